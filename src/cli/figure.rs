@@ -13,7 +13,6 @@ use crate::figure::table::Table;
 use crate::figure::{self, Format, PT_PER_MM, of_table};
 use crate::measured::{self, Measured};
 use crate::physics::scheme;
-use crate::scenario::Problems;
 use crate::text::printable::{Shown, printable};
 use anyhow::bail;
 use clap::Args;
@@ -129,9 +128,7 @@ enum Subject {
 fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
     let mut tables = Vec::new();
     for named in &args.runs {
-        let table = Table::read(Path::new(named));
-        let table = table.map_err(|problem| Problems::one(named.clone(), problem))?;
-        tables.extend(table);
+        tables.extend(Table::read(Path::new(named))?);
     }
     match (tables.pop(), args.runs.len()) {
         (None, _) => {

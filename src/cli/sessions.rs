@@ -45,7 +45,7 @@ pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
 pub(super) fn folder_of(confined: Option<&Confined>) -> Result<PathBuf, String> {
     match confined {
         Some(confined) => confined.sessions(),
-        None => session::folder().map_err(|error| error.to_string()),
+        None => session::folder(),
     }
 }
 

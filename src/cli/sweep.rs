@@ -1,7 +1,5 @@
 //! `gyrolab sweep`: a grid of runs, a row each.
 
-mod empty_rows;
-
 use super::args::Changes;
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::scenario::change;
@@ -11,14 +9,13 @@ use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
 use crate::study::sweep::in_order::in_order;
 use crate::study::sweep::join::join;
-use crate::study::sweep::part::{Opened, PartError, PartFile};
+use crate::study::sweep::part::{Opened, PartFile, SweepFileError};
 use crate::study::sweep::shipped::{self, SWEEPS};
-use crate::study::sweep::{Shard, Sweep, SweepFile, axis};
+use crate::study::sweep::{EmptyRows, Shard, Sweep, SweepFile, axis};
 use crate::text::number::counted;
-use crate::text::printable::Shown;
+use crate::text::printable::{Shown, printable_lines};
 use anyhow::bail;
 use clap::Args;
-use empty_rows::EmptyRows;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -69,8 +66,8 @@ pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
     match (&args.scenario, &args.output) {
         (Some(name), Some(output)) => run(&sweep_of(name, args)?, output, args.force),
         (None, Some(output)) if !args.join.is_empty() => {
-            let (sweep, rows) = join(&args.join, output, args.force)?;
-            EmptyRows::of_file(rows).tell(&sweep);
+            let (sweep, empty) = join(&args.join, output, args.force)?;
+            tell_of_empty(&empty, &sweep, &progress::interruption()?);
             tell_of_rows(&sweep, output);
             Ok(ExitCode::SUCCESS)
         }
@@ -189,8 +186,8 @@ fn argument_behind<'a>(
 fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCode> {
     let interruption = progress::interruption()?;
     let mut part = match PartFile::open(output, sweep, may_replace)? {
-        Opened::Whole(there) => {
-            EmptyRows::of_file(there).tell(sweep);
+        Opened::Whole(empty) => {
+            tell_of_empty(&empty, sweep, &interruption);
             let rows = counted(sweep.rows(), "row");
             tell(format_args!(
                 "gyrolab: {} is whole, {rows} of this very sweep",
@@ -201,10 +198,10 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
         Opened::Part(part) => part,
     };
     tell_of_part(sweep, &part);
-    let mut empty = EmptyRows::of_file(part.found().clone());
+    let mut empty = part.empty().clone();
     let added = add_rows(sweep, &mut part, &interruption, &mut empty);
     let (rows, all) = (part.rows(), sweep.rows());
-    empty.tell(sweep);
+    tell_of_empty(&empty, sweep, &interruption);
     if added.is_err() || rows < all {
         tell(format_args!(
             "gyrolab: {rows} of {} are in {}: the same command goes on behind them",
@@ -224,7 +221,7 @@ fn tell_of_part(sweep: &Sweep, part: &PartFile) {
     if part.rows() == 0 {
         return;
     }
-    let empty = match part.found().empty() {
+    let empty = match part.empty().count() {
         0 => String::new(),
         empty => format!(", {empty} of them without readouts"),
     };
@@ -242,13 +239,33 @@ fn tell_of_rows(sweep: &Sweep, output: &Path) {
     tell(format_args!("gyrolab: {rows} in {}", Shown(output)));
 }
 
+/// Says how many rows hold no readouts, and of the first few which points they are, and why.
+fn tell_of_empty(empty: &EmptyRows, sweep: &Sweep, interruption: &Interruption) {
+    let count = empty.count();
+    if count == 0 {
+        return;
+    }
+    let all = sweep.rows();
+    tell(format_args!(
+        "gyrolab: rows without readouts: {count} of {all}"
+    ));
+    let lines = empty.in_words(sweep, || !interruption.has_come());
+    for line in &lines {
+        tell(format_args!("  {}", printable_lines(line)));
+    }
+    match count - lines.len() as u64 {
+        0 => {}
+        more => tell(format_args!("  and {more} more")),
+    }
+}
+
 /// Computes the rows that are not there yet and adds them to `part`, until a signal comes.
 fn add_rows(
     sweep: &Sweep,
     part: &mut PartFile,
     interruption: &Interruption,
     empty: &mut EmptyRows,
-) -> Result<(), PartError> {
+) -> Result<(), SweepFileError> {
     let (begin, all) = (part.rows(), sweep.rows());
     let meter = Meter::counting("row");
     meter.begin(all - begin);
@@ -262,7 +279,9 @@ fn add_rows(
         let count = rows.len() as u64;
         for (index, row) in (first..).zip(rows) {
             lines += &row.line;
-            empty.add(sweep, index, &row);
+            if row.empty.is_some() {
+                empty.add(index, row.empty);
+            }
         }
         added = part.add(&lines, count);
         if added.is_err() {

@@ -6,13 +6,12 @@ use super::args::{Look, WorkbenchArgs};
 use super::new_lab::{DEFAULT, lab, theme, variable};
 use super::progress::Interruption;
 use super::show::{ShowArgs, go_to, print_picture};
-use super::{sessions, settings, tell};
+use super::{sessions, settings};
 use crate::lab::Lab;
 use crate::lab::command;
 use crate::lab::view::FPS;
 use crate::storage::confined::Confined;
 use crate::storage::exporting;
-use crate::storage::settings::Keeper;
 use crate::teach::{Class, Lesson, Page};
 use crate::text::printable::{Shown, printable};
 use crate::tui::app;
@@ -23,6 +22,7 @@ use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// How long the end waits for the disk before it says that the session is not kept.
@@ -83,6 +83,8 @@ fn open_at(
     confined: Option<Confined>,
     lesson: Option<(&Lesson, &Page)>,
 ) -> anyhow::Result<ExitCode> {
+    // A write past `ulimit -f` fails then, like one to a full disk, and does not end the process.
+    signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     let commands = args.commands.as_deref().map(command::open).transpose()?;
     let folder = sessions::folder_of(confined.as_ref());
     let chosen = settings::read(
@@ -99,9 +101,8 @@ fn open_at(
         ),
     };
     chosen.tell(&mut lab);
-    // Without a thread nothing is remembered; the lab needs none for anything else.
-    if let Some(keeper) = folder.ok().and_then(|folder| Keeper::new(folder).ok()) {
-        lab.keeper = Some(keeper);
+    if let Ok(folder) = folder {
+        lab.settings = Some(folder);
     }
     furnish(&mut lab, args, confined)?;
     if lesson.is_none() && commands.is_none() && args.scenario.is_none() && args.resume.is_none() {
@@ -114,9 +115,6 @@ fn open_at(
     }
     let mut class = class(&mut lab, lesson)?;
     app::run(&mut lab, &mut class, session.as_ref().ok()).context("the terminal cannot be used")?;
-    if let Some(trouble) = lab.keeper.take().and_then(|keeper| keeper.close(PATIENCE)) {
-        tell(format_args!("gyrolab: {}", printable(&trouble)));
-    }
     tell_of_exports(&lab)?;
     tell_of_session(session, args.folder.as_deref())?;
     Ok(ExitCode::SUCCESS)

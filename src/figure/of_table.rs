@@ -16,13 +16,10 @@ type Rows = Vec<usize>;
 
 /// The chart of `table` on a page of that width, pt; `columns` are the ones that are asked for, all that make sense where
 /// there are none.
-///
-/// # Errors
-/// When there is no such column, or nothing in it that can be drawn.
 pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, String> {
     for column in columns {
-        if !table.names.iter().any(|name| name == column) {
-            let near = problem::nearest(column, table.names.iter().map(String::as_str));
+        if !table.names().iter().any(|name| name == column) {
+            let near = problem::nearest(column, table.names().iter().map(String::as_str));
             return Err(format!("{column} is no column of this table: {near}"));
         }
     }

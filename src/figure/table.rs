@@ -1,25 +1,24 @@
 //! A CSV that is no run: the table of a comparison, of a sweep, or of a fit.
 
 use crate::export::comments::above_run_file;
-use crate::scenario::Problem;
+use crate::scenario::csv::{self, Csv};
+use crate::scenario::head::Head;
+use crate::scenario::{Problem, Problems};
 use crate::text::number::NONE;
 use crate::text::unread;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::BufReader;
 use std::path::Path;
 
-/// The longest file that is drawn, bytes: a sweep of some hundred thousand runs.
-const LONGEST: u64 = 32 << 20;
+/// The most values of a table, rows times columns: those of a sweep of some hundred thousand runs.
+const MOST_VALUES: usize = 4_000_000;
 
-/// What kind of table it is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
-    /// Errors of schemes over time steps.
     Comparison,
-    /// Readouts over what was varied.
     Sweep {
-        /// The keys that were varied, the last of which runs fastest.
+        /// The keys that were varied; the last runs fastest.
         varied: Vec<String>,
         /// The scenario, in which the keys have their names.
         scenario: toml::Table,
@@ -35,13 +34,11 @@ pub enum Subject {
     },
 }
 
-/// What was found for a key by a fit, as it stands above the run file.
+/// A fitted key, as the header of a fit's CSV has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Found {
-    /// The key.
     pub key: String,
-    /// Its value.
     pub value: f64,
     /// One standard uncertainty of it.
     pub uncertainty: Option<f64>,
@@ -57,85 +54,59 @@ pub const OF_FIT: [&str; 6] = [
     "residual_sigmas",
 ];
 
-/// The columns of a table.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// What kind of table it is.
     pub subject: Subject,
     /// The title in its header, or empty.
     pub title: String,
-    /// The names of its columns.
-    pub names: Vec<String>,
-    /// Its rows, as they are written.
-    rows: Vec<Vec<String>>,
+    csv: Csv,
 }
 
 impl Table {
     /// The table in the file `path`; `None` where that is a run or no CSV.
-    ///
-    /// # Errors
-    /// When it is a table and cannot be read.
-    pub fn read(path: &Path) -> Result<Option<Self>, Problem> {
-        let is_part = path.extension().is_some_and(|ending| ending == "part");
-        let is_csv = path.extension().is_some_and(|ending| ending == "csv");
-        if !(is_csv || is_part) || !path.is_file() {
+    pub fn read(path: &Path) -> Result<Option<Self>, Problems> {
+        let refused = |problem| Problems::one(path.display().to_string(), problem);
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let is_part = ending == Some("part");
+        if !(ending == Some("csv") || is_part) || !path.is_file() {
             return Ok(None);
         }
-        let refused = |error: std::io::Error| Problem::at("", unread::why(&error));
-        let file = File::open(path).map_err(refused)?;
-        let size = file.metadata().map_err(refused)?.len();
-        let mut lines = BufReader::new(file);
-        let (header, names) = head(&mut lines).map_err(refused)?;
+        let head = File::open(path).and_then(|file| Head::read(&mut BufReader::new(file)));
+        let head = head.map_err(|error| refused(Problem::at("", unread::why(&error))))?;
+        let names = String::from_utf8_lossy(head.names()).into_owned();
+        let names: Vec<&str> = names
+            .split(',')
+            .map(|name| name.trim_matches('"'))
+            .collect();
+        let header = head.header().unwrap_or_default();
         let Some((subject, title)) = subject(&header, &names) else {
             return Ok(None);
         };
         if is_part {
             let rule = "holds the rows of a sweep that is not whole yet: the command that began it goes on with it, and the file gets its name";
-            return Err(Problem::at("", rule));
+            return Err(refused(Problem::at("", rule)));
         }
-        if size > LONGEST {
-            let most = LONGEST >> 20;
-            let rule = format!("is longer than {most} MiB, the most that is drawn: leave rows out");
-            return Err(Problem::at("", rule));
-        }
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .from_reader(lines);
-        let mut rows = Vec::new();
-        for (index, row) in reader.records().enumerate() {
-            let row = row.map_err(|error| Problem::at("", format!("cannot be read: {error}")))?;
-            if row.len() != names.len() {
-                let rule = format!(
-                    "row {}: has {} values, and {} columns have a name",
-                    index + 1,
-                    row.len(),
-                    names.len()
-                );
-                return Err(Problem::at("", rule));
-            }
-            rows.push(row.iter().map(str::to_owned).collect());
-        }
-        if rows.is_empty() {
-            return Err(Problem::at("", "has no rows: there is nothing to draw"));
-        }
+        let text = csv::text(path).map_err(refused)?;
+        let csv = Csv::of(&text, MOST_VALUES);
+        let csv = csv.map_err(|found| Problems::of(path.display().to_string(), found))?;
         Ok(Some(Self {
             subject,
             title,
-            names,
-            rows,
+            csv,
         }))
     }
 
-    /// How many rows it has.
+    pub fn names(&self) -> &[String] {
+        &self.csv.names
+    }
+
     pub fn count(&self) -> usize {
-        self.rows.len()
+        self.csv.rows.len()
     }
 
     /// The texts of the column of that name.
     pub fn texts(&self, name: &str) -> Option<Vec<&str>> {
-        let place = self.names.iter().position(|other| other == name)?;
-        Some(self.rows.iter().map(|row| row[place].as_str()).collect())
+        Some(self.csv.column(name)?.collect())
     }
 
     /// The numbers of the column of that name, NaN where there is none; `None` where the column has texts that are no numbers.
@@ -146,43 +117,17 @@ impl Table {
             "false" => Some(0.0),
             text => text.parse().ok(),
         };
-        self.texts(name)?.into_iter().map(number).collect()
+        self.csv.column(name)?.map(number).collect()
     }
 }
 
-/// The lines of comments at the begin of a CSV without their marks, and the names of its columns.
-fn head(lines: &mut impl BufRead) -> std::io::Result<(String, Vec<String>)> {
-    let mut header = String::new();
-    let mut line = Vec::new();
-    loop {
-        line.clear();
-        if lines.read_until(b'\n', &mut line)? == 0 {
-            return Ok((header, Vec::new()));
-        }
-        let text = String::from_utf8_lossy(&line);
-        let text = text.trim_start_matches('\u{feff}').trim_end();
-        match text.strip_prefix('#') {
-            Some(comment) => {
-                header.push_str(comment.strip_prefix(' ').unwrap_or(comment));
-                header.push('\n');
-            }
-            None => {
-                let names = text
-                    .split(',')
-                    .map(|name| name.trim_matches('"').to_owned());
-                return Ok((header, names.collect()));
-            }
-        }
-    }
-}
-
-fn subject(header: &str, names: &[String]) -> Option<(Subject, String)> {
+fn subject(header: &str, names: &[&str]) -> Option<(Subject, String)> {
     let table: Option<toml::Table> = header.parse().ok();
     let title = |table: &toml::Table| {
         let title = table.get("title").and_then(toml::Value::as_str);
         title.unwrap_or_default().to_owned()
     };
-    let has = |name: &str| names.iter().any(|other| other == name);
+    let has = |name: &str| names.contains(&name);
     if has("scheme") && has("time_step_s") && has("error_m") {
         let title = table.as_ref().map(title).unwrap_or_default();
         return Some((Subject::Comparison, title));
@@ -219,8 +164,9 @@ fn found(header: &str) -> Vec<Found> {
 }
 
 /// The columns of the CSV of a fit that say where its values were measured; `None` where it is none.
-fn settings_of_fit(names: &[String]) -> Option<Vec<String>> {
+fn settings_of_fit(names: &[&str]) -> Option<Vec<String>> {
     let (row, rest) = names.split_first()?;
     let count = rest.len().checked_sub(OF_FIT.len())?;
-    (row == "row" && rest[count..] == OF_FIT).then(|| rest[..count].to_vec())
+    let settings = rest[..count].iter().map(|name| (*name).to_owned());
+    (*row == "row" && rest[count..] == OF_FIT).then(|| settings.collect())
 }

@@ -9,7 +9,7 @@ use super::{Lab, UnderWay};
 use crate::observe::pace::Speed;
 use crate::scenario::Problems;
 use crate::scenario::file::{Choice, ScenarioFile, ZoomFile};
-use crate::storage::session::{Content, Text};
+use crate::storage::session::{Content, Text, later};
 use crate::text::printable::Shown;
 use crate::work::history::History;
 use crate::work::journal::Journal;
@@ -227,7 +227,7 @@ impl Lab {
 /// `history` as a session keeps it, with the pinned run. The text is written by the thread that first reads it.
 pub(super) fn written(history: &History, reference: Option<&Reference>) -> Text {
     let (history, reference) = (history.clone(), reference.cloned());
-    Text::later(move || {
+    later(move || {
         let work = KeptWork {
             history,
             pinned: reference.as_ref().map(KeptPinned::of),

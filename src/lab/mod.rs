@@ -59,8 +59,9 @@ pub use work::Work;
 
 use crate::run::NotFinite;
 use crate::scenario::Scenario;
-use crate::storage::settings::Keeper;
+use crate::storage::settings::remember;
 use action::LessonKey;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 use view::{Pane, View};
@@ -87,8 +88,8 @@ pub struct Lab {
     view: View,
     on_top: OnTop,
     script: Script,
-    /// Remembers what dots and colours the user chooses; `None` where nothing is remembered.
-    pub keeper: Option<Keeper>,
+    /// The folder in which the settings that the user chooses are remembered; `None` where nothing is.
+    pub settings: Option<PathBuf>,
     /// What the session keeps of the lessons.
     pub lessons: Option<toml::Table>,
     /// Whether there are colours where nobody chooses; `None` where that is not known.
@@ -110,7 +111,7 @@ impl Lab {
             view,
             on_top: OnTop::default(),
             script: Script::default(),
-            keeper: None,
+            settings: None,
             lessons: None,
             usual_colour: None,
             now: Duration::ZERO,
@@ -143,9 +144,11 @@ impl Lab {
     }
 
     /// Remembers that the user has chosen `value` for the setting `key`.
-    fn remember(&self, key: &'static str, value: impl Into<toml::Value>) {
-        if let Some(keeper) = &self.keeper {
-            keeper.keep(key, value);
+    fn remember(&mut self, key: &'static str, value: impl Into<toml::Value>) {
+        if let Some(folder) = &self.settings
+            && let Err(trouble) = remember(folder, key, value.into())
+        {
+            self.tell(trouble);
         }
     }
 
@@ -174,9 +177,6 @@ impl Lab {
         self.changed |= self.on_top.browser.take_what_was_read();
         self.open_what_was_read();
         self.follow_export();
-        if let Some(trouble) = self.keeper.as_ref().and_then(Keeper::trouble) {
-            self.tell(trouble);
-        }
         self.go_on_with_script(halt);
         if self.changed && self.player.is_due(now, self.view.window_s) {
             self.read_now();

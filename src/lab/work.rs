@@ -346,12 +346,12 @@ mod tests {
     fn the_kept_text_follows_every_change() {
         let mut work = work();
         let first = work.kept(None);
-        assert_eq!(first, work.kept(None));
+        assert_eq!(**first, **work.kept(None));
         work.act(40, vec![time_step(0.05)], false, 2300).unwrap();
         let second = work.kept(None);
-        assert_ne!(first, second);
+        assert_ne!(**first, **second);
         work.turn(Way::Back, 2300).unwrap();
-        assert_ne!(second, work.kept(None));
+        assert_ne!(**second, **work.kept(None));
     }
 
     #[test]

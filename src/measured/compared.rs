@@ -10,16 +10,12 @@ pub struct Compared {
     pub curves: Vec<Vec<Shown>>,
     /// Where the traced point was measured to be, from above; empty where the columns do not tell.
     pub places: Vec<Place>,
-    /// Statistics of the residuals.
     pub sum: Sum,
-    /// The same of each column.
     pub sums: Vec<Sum>,
 }
 
-/// A measured value as it is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
-    /// When it was measured, s.
     pub time_s: f64,
     /// The value, in the unit of its column; of a direction, with the number of full turns at which it is nearest to the run.
     pub value: f64,
@@ -29,18 +25,14 @@ pub struct Shown {
     pub model: Option<f64>,
 }
 
-/// Statistics of the residuals of all values.
 #[derive(Clone, Debug, Default)]
 pub struct Sum {
-    /// How many values were measured.
     pub points: usize,
     /// How many of them the run has reached.
     pub compared: usize,
-    /// How many of these have an uncertainty.
     pub weighed: usize,
     /// The sum of the squares of their residuals in units of the uncertainty.
     pub chi_squared: f64,
-    /// The largest of these residuals.
     pub largest: Option<Largest>,
     /// The root of the mean square of the residuals without uncertainty, for each column that has some.
     pub scatter: Vec<(&'static Quantity, f64)>,
@@ -49,16 +41,12 @@ pub struct Sum {
 /// The largest residual in units of the uncertainty.
 #[derive(Clone, Copy, Debug)]
 pub struct Largest {
-    /// Its size.
     pub sigmas: f64,
-    /// What was measured.
     pub quantity: &'static Quantity,
-    /// When, s.
     pub time_s: f64,
 }
 
 impl Shown {
-    /// Measured less run.
     pub fn residual(&self) -> Option<f64> {
         self.model.map(|model| self.value - model)
     }

@@ -5,11 +5,10 @@
 //! readouts were measured on it. The uncertainty of a column stands in a column of its own, named as readouts name
 //! theirs: `tilt_uncertainty_deg` of `tilt_deg`.
 //!
-//! [`open`] reads a file, or data that come with the program ([`shipped`]); `cells` takes it apart, `names` says what its
-//! columns are, `numbers` what stands in them. [`of_run`] reads a run at the times of a series, and [`residual`] holds what was
+//! [`open`] reads a file, or data that come with the program ([`shipped`]); `names` says what its columns are, `numbers` what
+//! stands in them. [`of_run`] reads a run at the times of a series, and [`residual`] holds what was
 //! measured against it: everything that shows or fits measured data takes its residuals from there. [`compared`] sums them up.
 
-mod cells;
 pub mod compared;
 mod names;
 mod numbers;
@@ -31,38 +30,30 @@ use crate::analysis::readouts::Readout;
 use crate::scenario::{Problem, Problems};
 use toml::Value;
 
-/// A file of measured data.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// The file, as the user named it.
     pub origin: String,
     /// Its comments before the columns' names, without their marks: where the data come from.
     pub about: String,
-    /// The data.
     pub data: Data,
 }
 
-/// The data of a file.
 #[derive(Clone, Debug)]
 pub enum Data {
-    /// One run, measured at several times.
     Series(Series),
-    /// Several runs.
     Table(Table),
 }
 
-/// Quantities of one run over its time.
 #[derive(Clone, Debug)]
 pub struct Series {
     /// The time of each row, s: not negative, and none before the row above.
     pub times_s: Vec<f64>,
-    /// The line of each row.
     pub lines: Vec<u64>,
     /// A curve for each column, in the order of the file.
     pub curves: Vec<Curve>,
 }
 
-/// A quantity measured over time.
 #[derive(Clone, Debug)]
 pub struct Curve {
     /// What was measured; its [`readout`](Quantity::readout) has name, unit and symbol.
@@ -71,21 +62,18 @@ pub struct Curve {
     pub points: Vec<Point>,
 }
 
-/// Runs, and what was measured on each.
 #[derive(Clone, Debug)]
 pub struct Table {
     /// The columns that set the scenario, in the order of the file.
     pub settings: Vec<Setting>,
     /// The columns that were measured, in the order of the file.
     pub readouts: Vec<Column>,
-    /// The line of each row.
     pub lines: Vec<u64>,
 }
 
 /// A key of the scenario that a table's rows set.
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// The dotted key.
     pub key: String,
     /// Its value in each row; `None` where the scenario's own stands.
     pub values: Vec<Option<Value>>,
@@ -96,13 +84,11 @@ pub struct Setting {
 /// A readout that was measured on the runs of a table.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// Which.
     pub readout: &'static Readout,
     /// The values, by rows; rows without one have no point.
     pub points: Vec<Point>,
 }
 
-/// A measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Its row, from 0: the index of the time, or of the settings.
@@ -118,9 +104,6 @@ const TABLE: &str = "is a table of runs: each of its rows is a run of its own, s
 
 impl Measured {
     /// The data as quantities over the time of one run.
-    ///
-    /// # Errors
-    /// Where they are a table of runs: what can be done with it.
     pub fn series(&self) -> Result<&Series, Problems> {
         match &self.data {
             Data::Series(series) => Ok(series),
@@ -128,7 +111,6 @@ impl Measured {
         }
     }
 
-    /// How many rows there are.
     pub fn rows(&self) -> usize {
         match &self.data {
             Data::Series(series) => series.lines.len(),
@@ -136,7 +118,7 @@ impl Measured {
         }
     }
 
-    /// Leaves out what was measured in the rows, counted from 0, of which `is_kept` says no.
+    /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts.
     pub fn keep_rows(&mut self, is_kept: impl Fn(usize) -> bool) {
         let keep = |points: &mut Vec<Point>| points.retain(|point| is_kept(point.row));
         match &mut self.data {
@@ -151,7 +133,6 @@ impl Measured {
         }
     }
 
-    /// How many values were measured.
     pub fn count(&self) -> usize {
         match &self.data {
             Data::Series(series) => series.curves.iter().map(|curve| curve.points.len()).sum(),

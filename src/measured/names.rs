@@ -1,11 +1,11 @@
 //! What the columns of a file are: the time, quantities, keys of the scenario, readouts, and uncertainties of these.
 
-use super::cells::{Cells, at_line};
 use super::quantity::{self, COUNTS, Quantity, TIME};
 use crate::analysis::readouts::{self, Readout, Source};
 use crate::scenario::Problem;
+use crate::scenario::csv::{Csv, at_line};
 use crate::scenario::keys::{self, Kind};
-use crate::scenario::problem::nearest;
+use crate::scenario::problem::{listed, nearest};
 use crate::text::number::significant;
 use crate::text::unit::{Unit, with_word};
 
@@ -50,40 +50,30 @@ pub(super) struct Named {
 }
 
 /// The columns of `cells`, without those that count.
-///
-/// # Errors
-/// Every name that is none, or that cannot stand beside the others.
-pub(super) fn named(cells: &Cells) -> Result<Vec<Named>, Vec<Problem>> {
+pub(super) fn named(cells: &Csv) -> Result<Vec<Named>, Vec<Problem>> {
     let mut problems = Vec::new();
     let names = &cells.names;
+    let is_series = names.iter().any(|name| name == TIME);
+    let of = if is_series { of_series } else { of_table };
+    let mut columns = Vec::new();
     for (place, name) in names.iter().enumerate() {
         if names[..place].contains(name) {
-            problems.push(Problem::at(
-                shown(name, place),
-                "names two columns: leave one of them out",
-            ));
+            let rule = "names two columns: leave one of them out";
+            problems.push(Problem::at(shown(name, place), rule));
         }
-    }
-    let is_series = names.iter().any(|name| name == TIME);
-    let values = names
-        .iter()
-        .enumerate()
-        .filter(|(_, name)| !is_uncertainty(name));
-    let mut columns = Vec::new();
-    for (place, name) in values {
-        let is = if is_series {
-            of_series(name)
-        } else {
-            of_table(name)
-        };
+        if is_uncertainty(name) {
+            continue;
+        }
         let uncertainty = with_word(name, UNCERTAINTY);
-        match is {
+        let of_it = |is: &Is| {
+            is.may_be_off()
+                .then(|| names.iter().position(|other| *other == uncertainty))?
+        };
+        match of(name) {
             Ok(is) => columns.push(Named {
                 place,
                 name: name.clone(),
-                uncertainty: names
-                    .iter()
-                    .position(|other| *other == uncertainty && is.may_be_off()),
+                uncertainty: of_it(&is),
                 is,
             }),
             Err(rule) => problems.push(Problem::at(shown(name, place), rule)),
@@ -102,7 +92,7 @@ pub(super) fn named(cells: &Cells) -> Result<Vec<Named>, Vec<Problem>> {
     }
 }
 
-/// A column's name as it is told; of one without a name its number.
+/// A column's name, or its number where it has none.
 fn shown(name: &str, place: usize) -> String {
     match name {
         "" => format!("column {}", place + 1),
@@ -163,25 +153,11 @@ fn of_table(name: &str) -> Result<Is, String> {
     }
     match keys::find(name) {
         Ok((_, kind)) => Ok(Is::Key(kind)),
-        Err(rule) if name.contains('.') => Err(wrong_unit(name, keys_like(name)).unwrap_or(rule)),
+        Err(rule) if name.contains('.') => {
+            Err(wrong_unit(name, keys::KEYS.iter().map(|key| key.path)).unwrap_or(rule))
+        }
         Err(_) => Err(unknown(name, readouts::names().chain([TIME]))),
     }
-}
-
-/// The paths of keys, with the places in arrays that `name` has.
-fn keys_like(name: &str) -> impl Iterator<Item = &str> + Clone {
-    // A key's name is compared by its last word alone: the tables above it are the same.
-    let table = name.rsplit_once('.').map_or("", |(table, _)| table);
-    let of_table = move |path: &'static str| {
-        let (above, _) = path.rsplit_once('.')?;
-        let is_same = above.split('.').count() == table.split('.').count()
-            && above
-                .split('.')
-                .zip(table.split('.'))
-                .all(|(one, other)| one == other || one == "*" && other.parse::<usize>().is_ok());
-        is_same.then_some(path)
-    };
-    keys::KEYS.iter().filter_map(move |key| of_table(key.path))
 }
 
 /// Why `name` is none of `known`, and which is meant.
@@ -230,54 +206,33 @@ fn wrong_unit<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<St
 
 /// The columns of uncertainties that belong to no column.
 fn uncertainties_alone(names: &[String], columns: &[Named]) -> Vec<Problem> {
-    let owned = |place: &usize| {
+    let owned = |place| {
         columns
             .iter()
-            .any(|column| column.uncertainty == Some(*place))
+            .any(|column| column.uncertainty == Some(place))
     };
-    let wanted: Vec<String> = columns
-        .iter()
-        .filter(|column| column.uncertainty.is_none() && column.is.may_be_off())
+    let all = names.iter().enumerate();
+    let alone = all.filter(|(place, name)| is_uncertainty(name) && !owned(*place));
+    let lacking = columns.iter();
+    let lacking = lacking.filter(|column| column.uncertainty.is_none() && column.is.may_be_off());
+    let wanted: Vec<String> = lacking
         .map(|column| with_word(&column.name, UNCERTAINTY))
         .collect();
-    let mut alone = Vec::new();
-    for (place, name) in names.iter().enumerate() {
-        if !is_uncertainty(name) || owned(&place) {
-            continue;
+    let rule = |name: &str| {
+        if let Some(wrong) = wrong_unit(name, wanted.iter().map(String::as_str)) {
+            return wrong;
         }
-        let own = own_of(name);
-        let wrong = wrong_unit(name, wanted.iter().map(String::as_str));
-        let is_there = columns.iter().any(|column| column.name == own);
-        let is_known = Quantity::find(&own).is_some()
-            || readouts::find(&own).is_some()
-            || keys::find(&own).is_ok();
-        let rule = match wrong {
-            Some(wrong) => wrong,
-            None if is_known && !is_there => {
-                format!("is the uncertainty of a column {own}, which the file does not have")
-            }
-            None if is_there => match with_word(&own, UNCERTAINTY) {
-                right if right != *name => {
-                    format!("is the uncertainty of no column: did you mean {right}?")
-                }
-                _ if own == TIME => format!(
-                    "is not taken: make what was measured the more uncertain, by its change in that time ({TIME} is without error)"
-                ),
-                _ => format!("is the uncertainty of {own}, which is no number that could be off"),
-            },
-            None => {
-                let near = nearest(name, wanted.iter().map(String::as_str));
-                format!("is the uncertainty of no column: {near}")
-            }
-        };
-        alone.push(Problem::at(name.clone(), rule));
-    }
-    alone
-}
-
-/// The name of the column whose uncertainty `name` is.
-fn own_of(name: &str) -> String {
-    name.replacen(&format!("_{UNCERTAINTY}"), "", 1)
+        let own = name.replacen(&format!("_{UNCERTAINTY}"), "", 1);
+        if own == TIME {
+            return format!(
+                "is not taken: make what was measured the more uncertain, by its change in that time ({TIME} is without error)"
+            );
+        }
+        let known = listed(wanted.iter().map(String::as_str));
+        format!("is the uncertainty of no measured column: there is {known}")
+    };
+    let alone = alone.map(|(_, name)| Problem::at(name.clone(), rule(name)));
+    alone.collect()
 }
 
 /// Why the columns make neither a time series nor a table of runs.

@@ -1,37 +1,30 @@
 //! The numbers in the cells of a file, and the rules that they obey.
 
-use super::cells::{Cells, at_line};
 use super::names::{Is, Named};
 use super::{Column, Curve, Point, Series, Setting, Table};
 use crate::scenario::Problem;
+use crate::scenario::csv::{Csv, at_line};
 use crate::scenario::document::toml_or_text;
 use crate::scenario::keys::Kind;
 use crate::scenario::problem::Found;
 use crate::text::number::shortest;
 use crate::text::printable::brief;
-use std::collections::BTreeMap;
 use toml::Value;
-
-/// So many places of a column that break one rule are told one by one.
-const FEW: usize = 3;
 
 /// Reads cells, and takes down what is wrong with them.
 pub(super) struct Numbers<'a> {
-    cells: &'a Cells,
-    found: Found,
-    /// Of a column and a rule, how many lines break it beyond those that are told.
-    alike: BTreeMap<(String, String), usize>,
+    cells: &'a Csv,
+    pub found: Found,
     /// The decimal signs that the file has used so far.
     uses_points: bool,
     uses_commas: bool,
 }
 
 impl<'a> Numbers<'a> {
-    pub fn of(cells: &'a Cells) -> Self {
+    pub fn of(cells: &'a Csv) -> Self {
         Self {
             cells,
             found: Found::default(),
-            alike: BTreeMap::new(),
             uses_points: false,
             uses_commas: false,
         }
@@ -41,7 +34,6 @@ impl<'a> Numbers<'a> {
         self.cells.rows.iter().map(|(line, _)| *line).collect()
     }
 
-    /// The time series of these columns.
     pub fn series(&mut self, columns: &[Named]) -> Series {
         let time = columns.iter().find(|column| matches!(column.is, Is::Time));
         let times_s = time.map_or_else(Vec::new, |column| self.times(column));
@@ -59,7 +51,6 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// The table of runs of these columns.
     pub fn table(&mut self, columns: &[Named]) -> Table {
         let (mut settings, mut readouts) = (Vec::new(), Vec::new());
         for column in columns {
@@ -79,7 +70,6 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// The times of a series, s.
     fn times(&mut self, column: &Named) -> Vec<f64> {
         let mut times_s: Vec<f64> = Vec::with_capacity(self.cells.rows.len());
         let mut before: Option<(u64, f64)> = None;
@@ -133,7 +123,6 @@ impl<'a> Numbers<'a> {
         points
     }
 
-    /// The values of a key of the scenario.
     fn setting(&mut self, column: &Named, kind: Kind) -> Setting {
         let cells = self.cells;
         let mut setting = Setting {
@@ -210,27 +199,7 @@ impl<'a> Numbers<'a> {
         Some(number)
     }
 
-    /// What is wrong with the numbers.
-    pub fn found(self) -> Found {
-        let mut found = self.found;
-        for ((name, rule), more) in self.alike {
-            let is_alike = |problem: &&mut Problem| problem.key == name && problem.rule == rule;
-            let lines = if more == 1 { "line is" } else { "lines are" };
-            if let Some(last) = found.list.iter_mut().rfind(is_alike) {
-                last.rule = format!("{rule} ({more} more {lines} like this)");
-            }
-        }
-        found
-    }
-
     fn refuse(&mut self, line: u64, name: &str, text: &str, rule: impl Into<String>) {
-        let rule = rule.into();
-        let is_alike = |problem: &&Problem| problem.key == name && problem.rule == rule;
-        if self.found.list.iter().filter(is_alike).count() == FEW {
-            let more = self.alike.entry((name.to_owned(), rule));
-            *more.or_default() += 1;
-            return;
-        }
         self.found.add(|| {
             let problem = Problem {
                 value: brief(text, 40),

@@ -17,7 +17,7 @@ const BLOCK: u64 = 4096;
 #[derive(Clone, Debug)]
 pub struct Reader<S> {
     series: S,
-    /// Where in the points of each curve the next one to be read stands.
+    /// The index of the next point to be read of each curve.
     next: Vec<usize>,
     values: Vec<Vec<f64>>,
 }
@@ -52,10 +52,7 @@ impl<S: Borrow<Series>> Reader<S> {
         rows.min().map(|row| series.times_s[row])
     }
 
-    /// Reads `simulation` at every time from the one at which it stands up to, and without, that of its next step.
-    ///
-    /// # Errors
-    /// When its numbers stop being finite on the way.
+    /// Reads `simulation` at every measured time from now up to, and without, its next step.
     pub fn take(&mut self, simulation: &Simulation) -> Result<(), NotFinite> {
         let end_s = simulation.next_time_s();
         while let Some(time_s) = self.next_time_s().filter(|time_s| *time_s < end_s) {
@@ -70,7 +67,7 @@ impl<S: Borrow<Series>> Reader<S> {
         Ok(())
     }
 
-    /// Reads what was measured at `time_s` off `simulation`, which stands there.
+    /// Reads the measured quantities off `simulation`, which is at `time_s`.
     fn read(&mut self, simulation: &Simulation, time_s: f64) {
         let series = self.series.borrow();
         let curves = series.curves.iter().zip(&mut self.next);
@@ -94,9 +91,6 @@ impl<S: Borrow<Series>> Reader<S> {
 
 /// What the run of `scenario` says at the times of `series`: of each curve a value for every point, in the point's unit.
 /// `None` where `go_on` said no on the way.
-///
-/// # Errors
-/// When the numbers stop being finite before the last of these times.
 pub fn at_times(
     series: &Series,
     scenario: &Arc<Scenario>,

@@ -9,7 +9,6 @@ const ON_AXLE: f64 = 1e-9;
 /// Where the traced point was measured to be, from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// When, s.
     pub time_s: f64,
     /// x and y, world frame, m.
     pub at: Vector2<f64>,

@@ -6,7 +6,6 @@ use crate::run::{Sample, Step};
 use crate::scenario::Scenario;
 use crate::text::unit::Unit;
 
-/// The column of the time.
 pub const TIME: &str = "t_s";
 
 /// Columns of a run's CSV that count its steps and edits, and measure nothing.
@@ -17,7 +16,7 @@ pub const COUNTS: [&str; 2] = ["step", "segment"];
 pub struct Quantity {
     /// Its name with the unit, as in the run's CSV and in the table of readouts.
     pub name: &'static str,
-    /// Whether it is an angle of which only the direction can be seen, so that it is known but for whole turns.
+    /// Whether it is an angle that can be measured only up to whole turns.
     pub is_direction: bool,
     read: Read,
 }
@@ -68,7 +67,6 @@ pub static QUANTITIES: [Quantity; 14] = [
 ];
 
 impl Quantity {
-    /// The quantity of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
         QUANTITIES.iter().find(|quantity| quantity.name == name)
     }

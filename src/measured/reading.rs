@@ -1,11 +1,11 @@
 //! A file of measured data, from its text to checked numbers.
 
-use super::cells::{Cells, text_of};
 use super::names::named;
 use super::numbers::Numbers;
 use super::quantity::TIME;
 use super::shipped;
 use super::{Data, Measured};
+use crate::scenario::csv::{self, Csv};
 use crate::scenario::problem::Found;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
@@ -13,18 +13,15 @@ use std::borrow::Cow;
 use std::path::Path;
 use toml::Value;
 
+/// The most values of one file, rows times columns.
+const MOST_VALUES: usize = 1_000_000;
+
 /// Opens what `name` names: data that come with the program, or else a file. A file's name holds a `/` or ends in `.csv`.
-///
-/// # Errors
-/// When there are no such data, or as [`read`].
 pub fn open(name: &str) -> Result<Measured, Problems> {
     read(name, &text(name)?)
 }
 
-/// The text of what `name` names, as it stands in the file.
-///
-/// # Errors
-/// When there are no such data, or the file cannot be read.
+/// The text of the data that `name` names.
 pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
     if let Some(shipped) = shipped::find(name) {
         return Ok(shipped.text.into());
@@ -37,7 +34,7 @@ pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
         );
         return Err(Problems::one(name, Problem::at("", rule)));
     }
-    let text = text_of(path).map_err(|problem| Problems::one(name, problem))?;
+    let text = csv::text(path).map_err(|problem| Problems::one(name, problem))?;
     Ok(text.into())
 }
 
@@ -56,17 +53,11 @@ fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
 /// # Errors
 /// Everything that is wrong with it: with the names of the columns first, and where these are right with the rows.
 pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
-    let cells = Cells::of(origin, text);
-    let cells = cells.map_err(|problems| scenario_instead(origin, text).unwrap_or(problems))?;
-    let refused = |found: Found| Problems {
-        origin: origin.to_owned(),
-        list: found.list,
-        more: found.more,
-    };
-    let columns = named(&cells).map_err(|problems| {
-        let refused = refused(problems.into());
-        scenario_instead(origin, text).unwrap_or(refused)
-    })?;
+    let refused = |found: Found| Problems::of(origin, found);
+    let cells = Csv::of(text, MOST_VALUES);
+    let named = cells.and_then(|cells| Ok((named(&cells)?, cells)));
+    let (columns, cells) =
+        named.map_err(|found| scenario_instead(origin, text).unwrap_or_else(|| refused(found)))?;
     let mut numbers = Numbers::of(&cells);
     let data = if columns.iter().any(|column| column.name == TIME) {
         Data::Series(numbers.series(&columns))
@@ -75,10 +66,10 @@ pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
     };
     let measured = Measured {
         origin: origin.to_owned(),
-        about: cells.about.clone(),
+        about: cells.header.clone(),
         data,
     };
-    let mut found = numbers.found();
+    let mut found = numbers.found;
     if found.list.is_empty() && measured.count() == 0 {
         found.add(|| {
             Problem::at(

@@ -2,7 +2,6 @@
 
 use crate::text::shipped::{Shipped, shipped};
 
-/// All of them.
 pub const SHIPPED: &[Shipped] = shipped!["measured", "csv":
     "heidelberg-body-cone"
     "heidelberg-nutation"
@@ -10,7 +9,6 @@ pub const SHIPPED: &[Shipped] = shipped!["measured", "csv":
     "heidelberg-spin-decay"
 ];
 
-/// The data of that name.
 pub fn find(name: &str) -> Option<&'static Shipped> {
     Shipped::find(SHIPPED, name)
 }

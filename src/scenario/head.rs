@@ -36,7 +36,9 @@ impl Head {
         let (mut bytes, mut names) = (Vec::new(), 0);
         loop {
             reader.read_until(b'\n', &mut bytes)?;
-            if !without_mark(&bytes[names..]).starts_with(b"#") {
+            let line = without_mark(&bytes[names..]);
+            let is_above = line.starts_with(b"#") || line.trim_ascii().is_empty();
+            if line.is_empty() || !is_above {
                 return Ok(Self { bytes, names });
             }
             names = bytes.len();
@@ -51,6 +53,12 @@ impl Head {
     /// The line that names the columns of a CSV, without its end.
     pub fn names(&self) -> &[u8] {
         without_mark(&self.bytes[self.names..]).trim_ascii_end()
+    }
+
+    /// The line of names, counted from 1.
+    pub fn line_of_names(&self) -> u64 {
+        let above = &self.bytes[..self.names];
+        1 + above.iter().filter(|&&byte| byte == b'\n').count() as u64
     }
 
     /// Whether it is the head of a CSV that gyrolab wrote. Nothing in TOML is a line of names without a value.
@@ -75,10 +83,18 @@ impl Head {
     /// # Errors
     /// When there is none, or it is not text.
     pub fn run_file(&self) -> Result<String, Problem> {
-        if self.comments().is_empty() {
+        if self.comments().trim_ascii().is_empty() {
             let rule = "is a CSV with no run file in its header, the \"# \" lines that gyrolab writes, and other programs drop: name the file as gyrolab wrote it";
             return Err(Problem::at("", rule));
         }
+        self.header()
+    }
+
+    /// The lines above the line of names without their `# `; none where there are none.
+    ///
+    /// # Errors
+    /// When they are not text.
+    pub fn header(&self) -> Result<String, Problem> {
         let lines = utf8(self.comments().to_vec())?;
         let stripped = |line: &str| {
             let line = line.trim_start_matches('\u{feff}');

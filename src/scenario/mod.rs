@@ -3,9 +3,10 @@
 //! A [`Document`] is the text with its `--set` overrides; [`keys`] is the one table of every key a file may hold;
 //! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts`, `solids`, `start`, `rubbing` and `edits` make
 //! checked numbers of its tables, and `checks` a [`Scenario`] of those. What is refused comes back as [`Problems`], each
-//! with place, key, value and rule.
+//! with place, key, value and rule. [`csv`] reads the other CSVs: measured data and tables.
 
 mod checks;
+pub mod csv;
 pub mod document;
 pub mod dotted;
 mod edits;

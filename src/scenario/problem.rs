@@ -119,6 +119,15 @@ impl Problems {
         }
     }
 
+    /// What was `found` in the file `origin`.
+    pub fn of(origin: impl Into<String>, found: Found) -> Self {
+        Self {
+            origin: origin.into(),
+            list: found.list,
+            more: found.more,
+        }
+    }
+
     fn is_about_option(&self, problem: &Problem) -> bool {
         let place = problem.place.as_deref().unwrap_or_default();
         place.starts_with("--") && self.origin.starts_with(PRESETS)

@@ -12,15 +12,11 @@ const SESSIONS: &str = ".gyrolab";
 /// A folder that the lab's reads and writes never leave.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Confined {
-    /// Its absolute path, without symbolic links.
     root: PathBuf,
 }
 
 impl Confined {
     /// Confines the lab to `folder` and makes it the working directory of this process.
-    ///
-    /// # Errors
-    /// When there is no such folder, or it cannot be entered.
     pub fn enter(folder: &Path) -> io::Result<Self> {
         let confined = Self::within(folder)?;
         std::env::set_current_dir(&confined.root)?;
@@ -28,9 +24,6 @@ impl Confined {
     }
 
     /// Confines the lab to `folder`, which must be the working directory whenever a path is checked.
-    ///
-    /// # Errors
-    /// When there is no such folder.
     pub fn within(folder: &Path) -> io::Result<Self> {
         let root = fs::canonicalize(folder)?;
         if !root.is_dir() {
@@ -40,9 +33,6 @@ impl Confined {
     }
 
     /// The folder for sessions; it may not exist yet.
-    ///
-    /// # Errors
-    /// When a link or a file has its name.
     pub fn sessions(&self) -> Result<PathBuf, String> {
         let folder = self.root.join(SESSIONS);
         match fs::symlink_metadata(&folder) {
@@ -56,9 +46,6 @@ impl Confined {
 
     /// Checks that the file `path`, existing or not, lies in the folder: the path is relative, has no `..`, and no symbolic
     /// link in it leads out of the folder.
-    ///
-    /// # Errors
-    /// Why the lab may neither read nor write the file.
     pub fn check(&self, path: &Path) -> Result<(), String> {
         let mut full = self.root.clone();
         for component in path.components() {

@@ -33,16 +33,12 @@ pub struct Exporting {
     _at_end: Registered,
 }
 
-/// What an export has written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// Absolute path of the file.
     pub path: PathBuf,
     /// Number of rows; `None` for a figure.
     pub rows: Option<u64>,
-    /// Size of the file.
     pub bytes: u64,
-    /// Warnings about a figure, for its reader.
     pub warnings: Vec<String>,
     /// Where the run's numbers stopped being finite, if they did. The file has the rows before that.
     pub not_finite: Option<NotFinite>,
@@ -55,12 +51,6 @@ struct Shared {
     has_ended: AtomicBool,
     /// Whether the end of the process has cancelled it.
     is_cut_off: AtomicBool,
-}
-
-struct Job {
-    scenario: Arc<Scenario>,
-    csv: CsvWriter<Destination>,
-    path: PathBuf,
 }
 
 impl Exporting {
@@ -78,13 +68,12 @@ impl Exporting {
     ) -> Result<Self, DestinationError> {
         let refused = |error| refused(path, error);
         let destination = Destination::open_file(path, replace)?;
-        let job = Job {
-            csv: CsvWriter::with_layout(destination, &scenario, layout).map_err(refused)?,
-            path: std::path::absolute(path).map_err(refused)?,
-            scenario,
-        };
-        let (path, steps) = (job.path.clone(), job.scenario.steps);
-        Self::spawn(path, steps, |shared| job.write(shared)).map_err(refused)
+        let csv = CsvWriter::with_layout(destination, &scenario, layout).map_err(refused)?;
+        let path = std::path::absolute(path).map_err(refused)?;
+        let steps = scenario.steps;
+        let written = path.clone();
+        let write = move |shared: &Shared| write(scenario, csv, written, shared);
+        Self::spawn(path, steps, write).map_err(refused)
     }
 
     fn spawn(
@@ -116,7 +105,6 @@ impl Exporting {
         })
     }
 
-    /// The absolute path that the finished file will have.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -157,8 +145,14 @@ impl Shared {
         self.is_cancelled.store(true, Ordering::SeqCst);
     }
 
-    fn is_cancelled(&self) -> bool {
-        self.is_cancelled.load(Ordering::SeqCst)
+    /// Notes that `step` has been reached; breaks where the export has been cancelled.
+    fn reach(&self, step: u64) -> ControlFlow<()> {
+        self.step.store(step.min(self.steps), Ordering::Relaxed);
+        if self.is_cancelled.load(Ordering::SeqCst) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 
     /// Before the process ends, cancels the export and waits until its temporary file is removed. A suspended process
@@ -178,42 +172,35 @@ impl Shared {
     }
 }
 
-impl Job {
-    fn write(mut self, shared: &Shared) -> Result<Written, String> {
-        let mut simulation = Simulation::new(self.scenario);
-        let csv = Some(&mut self.csv);
-        let watch = |step, _| {
-            shared.step.store(step, Ordering::Relaxed);
-            if shared.is_cancelled() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        };
-        let (path, steps) = (self.path, shared.steps);
-        let cannot_write = |error| refused(&path, error).fact();
-        let (ended, _) =
-            stream::play(&mut simulation, steps, csv, |_| {}, watch).map_err(cannot_write)?;
-        let rows = self.csv.count();
-        let destination = self.csv.finish().map_err(cannot_write)?;
-        if ended == Ended::Stopped || shared.is_cancelled() {
-            return Err("the export was stopped, and nothing was written".to_owned());
-        }
-        let last = simulation.step_number();
-        shared.step.store(last, Ordering::Relaxed);
-        let bytes = destination.bytes().map_err(cannot_write)?;
-        destination.keep().map_err(|error| error.fact())?;
-        Ok(Written {
-            path,
-            rows: Some(rows),
-            warnings: Vec::new(),
-            bytes,
-            not_finite: match ended {
-                Ended::NotFinite(error) => Some(error),
-                Ended::Done | Ended::Stopped => None,
-            },
-        })
+/// Plays the run of `scenario` and writes its rows to `csv`, which becomes the file `path`.
+fn write(
+    scenario: Arc<Scenario>,
+    mut csv: CsvWriter<Destination>,
+    path: PathBuf,
+    shared: &Shared,
+) -> Result<Written, String> {
+    let mut simulation = Simulation::new(scenario);
+    let watch = |step, _| shared.reach(step);
+    let cannot_write = |error| refused(&path, error).fact();
+    let played = stream::play(&mut simulation, shared.steps, Some(&mut csv), |_| {}, watch);
+    let (ended, _) = played.map_err(cannot_write)?;
+    let rows = csv.count();
+    let destination = csv.finish().map_err(cannot_write)?;
+    if ended == Ended::Stopped || shared.reach(simulation.step_number()).is_break() {
+        return Err("the export was stopped, and nothing was written".to_owned());
     }
+    let bytes = destination.bytes().map_err(cannot_write)?;
+    destination.keep().map_err(|error| error.fact())?;
+    Ok(Written {
+        path,
+        rows: Some(rows),
+        warnings: Vec::new(),
+        bytes,
+        not_finite: match ended {
+            Ended::NotFinite(error) => Some(error),
+            Ended::Done | Ended::Stopped => None,
+        },
+    })
 }
 
 fn refused(path: &Path, error: io::Error) -> DestinationError {
@@ -230,7 +217,7 @@ mod tests {
     /// An export that does nothing until it is cancelled.
     fn waiting() -> Exporting {
         let write = |shared: &Shared| {
-            while !shared.is_cancelled() {
+            while shared.reach(0).is_continue() {
                 thread::yield_now();
             }
             Err("stopped".to_owned())
@@ -256,7 +243,7 @@ mod tests {
         assert_eq!(stopped.outcome(), Some(Err("stopped".to_owned())));
         let mut suspended = waiting();
         suspended.shared.prepare_for(Release::Suspend);
-        assert!(!suspended.shared.is_cancelled());
+        assert!(suspended.shared.reach(0).is_continue());
         let mut cut_off = waiting();
         cut_off.shared.prepare_for(Release::Exit);
         wait(&cut_off);

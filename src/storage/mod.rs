@@ -5,5 +5,7 @@
 pub mod at_exit;
 pub mod confined;
 pub mod exporting;
+mod own;
 pub mod session;
 pub mod settings;
+mod slot;

@@ -4,17 +4,16 @@
 //! in the lab. `config.toml` in the configuration folder is the user's: it wins, and is never written. Both are checked as a
 //! scenario is, by the table [`KEYS`]; a setting that breaks a rule is not used, the others are.
 
-use super::session::{lock_folder, make_folder, own};
+use super::own;
 use crate::scenario::keys::Kind::{self, Flag, OneOf, Whole};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
 use crate::text::printable::Shown;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
-use std::io::ErrorKind;
+use serde::Deserialize;
+use std::fs;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{self, Receiver, Sender};
-use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
 use toml::{Table, Value};
 
 /// The file that the program writes.
@@ -45,17 +44,12 @@ pub const KEYS: [(&str, Kind, &str); 5] = [
 ];
 
 /// The settings that a file holds; `None` for those that it does not hold.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
 pub struct Settings {
-    /// Name of the kind of dots.
     pub marker: Option<String>,
-    /// `auto`, `always` or `never`.
     pub colour: Option<String>,
-    /// `dark` or `light`.
     pub background: Option<String>,
-    /// Frames a second at most, 1 to 60.
     pub fps: Option<u32>,
-    /// Whether the lab takes the mouse.
     pub mouse: Option<bool>,
 }
 
@@ -70,18 +64,6 @@ impl Settings {
             mouse: self.mouse.or(other.mouse),
         }
     }
-
-    fn of(table: &Table) -> Self {
-        let text = |key: &str| Some(table.get(key)?.as_str()?.to_owned());
-        let fps = table.get("fps").and_then(Value::as_integer);
-        Self {
-            marker: text("marker"),
-            colour: text("colour"),
-            background: text("background"),
-            fps: fps.and_then(|fps| u32::try_from(fps).ok()),
-            mouse: table.get("mouse").and_then(Value::as_bool),
-        }
-    }
 }
 
 /// The settings of one file, and what is wrong with it.
@@ -93,29 +75,30 @@ pub struct Read {
     pub problems: Option<Problems>,
 }
 
-impl Read {
-    fn broken(origin: String, rule: String) -> Self {
-        Self {
-            settings: Settings::default(),
-            problems: Some(Problems::one(origin, Problem::at("", rule))),
+/// The settings of the file `path` whose bytes are `read`; where there is no such file, there are no settings.
+fn checked(path: &Path, read: io::Result<Vec<u8>>) -> Read {
+    let origin = path.display().to_string();
+    let document = match read {
+        Ok(bytes) => Document::read_from(&origin, &*bytes),
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            return Read::default();
         }
-    }
-
-    fn of(document: Result<Document, Problems>) -> Self {
-        match document {
-            Ok(document) => {
-                let (good, found) = sifted(document.table());
-                Self {
-                    settings: Settings::of(&good),
-                    problems: (!found.is_empty()).then(|| document.placed(found)),
-                }
-            }
-            Err(problems) => Self {
-                settings: Settings::default(),
-                problems: Some(problems),
-            },
+        Err(error) => {
+            let rule = format!("cannot be read: {error}");
+            Err(Problems::one(origin, Problem::at("", rule)))
         }
-    }
+    };
+    let checked = document.map(|document| {
+        let (good, found) = sifted(document.table());
+        Read {
+            settings: good.try_into().unwrap_or_default(),
+            problems: (!found.is_empty()).then(|| document.placed(found)),
+        }
+    });
+    checked.unwrap_or_else(|problems| Read {
+        settings: Settings::default(),
+        problems: Some(problems),
+    })
 }
 
 /// The settings in `table` that break no rule, and what is wrong with the others.
@@ -148,150 +131,46 @@ pub fn config() -> Option<PathBuf> {
     Some(folder.join("gyrolab").join("config.toml"))
 }
 
-/// Reads the user's file at `path`, which may be a symbolic link; where there is none, there are no settings.
+/// Reads the user's file at `path`, which may be a symbolic link.
 pub fn read_config(path: &Path) -> Read {
-    match std::fs::metadata(path) {
-        Ok(there) if there.is_file() => Read::of(Document::read(path)),
-        Ok(_) => Read::broken(path.display().to_string(), "is not a file".to_owned()),
-        Err(error) if error.kind() == ErrorKind::NotFound => Read::default(),
-        Err(error) => Read::broken(
-            path.display().to_string(),
-            format!("cannot be read: {error}"),
-        ),
-    }
+    let bytes = match fs::metadata(path) {
+        Ok(there) if !there.is_file() => Err(io::Error::other("it is not a file")),
+        _ => fs::read(path),
+    };
+    checked(path, bytes)
 }
 
 /// Reads the file that the program has written in `folder`, if it is the user's own; no symbolic link is followed.
 pub fn read(folder: &Path) -> Read {
     let path = folder.join(FILE);
-    let origin = path.display().to_string();
-    match own::read(&path) {
-        Ok(bytes) => Read::of(Document::read_from(&origin, &*bytes)),
-        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
-            Read::default()
-        }
-        Err(error) => Read::broken(origin, format!("cannot be read: {error}")),
-    }
+    checked(&path, own::read(&path))
 }
 
-/// Replaces the settings `chosen` in the file of `folder`, which is created if it does not exist. What is wrong in the
-/// file is left out.
-///
-/// # Errors
-/// Why it cannot be written; the file is then unchanged.
-fn write(folder: &Path, chosen: &Table) -> Result<(), String> {
+/// Replaces the setting `key` in the file of `folder`, which is created if it does not exist. What is wrong in the file is
+/// left out.
+pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
     let path = folder.join(FILE);
-    let cannot = |reason: String| {
-        let path = Shown(&path);
-        format!("the choice cannot be remembered in {path}: {reason}")
-    };
-    make_folder(folder).map_err(|error| cannot(error.to_string()))?;
-    let _lock = lock_folder(folder);
-    let mut table = match own::read(&path) {
-        // What is no TOML was reported when the lab was opened.
-        Ok(bytes) => sifted(&toml::from_slice(&bytes).unwrap_or_default()).0,
-        Err(error) if error.kind() == ErrorKind::NotFound => Table::new(),
-        Err(error) => return Err(cannot(error.to_string())),
-    };
-    table.extend(chosen.clone());
-    let text = table.to_string();
-    own::replace(&path, &[HEAD, &text]).map_err(|error| cannot(error.to_string()))
-}
-
-/// Writes what the user chooses, in a thread of its own: a disk that hangs does not hold up the lab.
-#[derive(Debug)]
-pub struct Keeper {
-    chosen: Option<Sender<(&'static str, Value)>>,
-    trouble: Receiver<String>,
-    thread: Option<JoinHandle<()>>,
-}
-
-impl Keeper {
-    /// A keeper of the file in `folder`.
-    ///
-    /// # Errors
-    /// When the system gives no thread.
-    pub fn new(folder: PathBuf) -> std::io::Result<Self> {
-        let (chosen, choices) = mpsc::channel::<(&'static str, Value)>();
-        let (told, trouble) = mpsc::channel();
-        let keep = move || {
-            while let Ok((key, value)) = choices.recv() {
-                let mut table = Table::from_iter([(key.to_owned(), value)]);
-                table.extend(
-                    choices
-                        .try_iter()
-                        .map(|(key, value)| (key.to_owned(), value)),
-                );
-                if let Err(reason) = write(&folder, &table) {
-                    let _ = told.send(reason); // nobody to tell once the lab is closed
-                }
-            }
+    let remembered = || -> io::Result<()> {
+        own::make_folder(folder)?;
+        let mut table = match own::read(&path) {
+            // What is no TOML was reported when the lab was opened.
+            Ok(bytes) => sifted(&toml::from_slice(&bytes).unwrap_or_default()).0,
+            Err(error) if error.kind() == ErrorKind::NotFound => Table::new(),
+            Err(error) => return Err(error),
         };
-        let thread = thread::Builder::new()
-            .name("settings".to_owned())
-            .spawn(keep)?;
-        Ok(Self {
-            chosen: Some(chosen),
-            trouble,
-            thread: Some(thread),
-        })
-    }
-
-    /// Remembers that the setting `key` has the `value`.
-    pub fn keep(&self, key: &'static str, value: impl Into<Value>) {
-        if let Some(chosen) = &self.chosen {
-            let _ = chosen.send((key, value.into())); // the thread lives as long as this
-        }
-    }
-
-    /// Why a choice could not be remembered; each reason is given once.
-    pub fn trouble(&self) -> Option<String> {
-        self.trouble.try_iter().last()
-    }
-
-    /// Waits until everything is written, at most `patience`. Returns why the last choice could not be remembered.
-    pub fn close(mut self, patience: Duration) -> Option<String> {
-        self.chosen = None;
-        let begin = Instant::now();
-        let thread = self.thread.take()?;
-        while !thread.is_finished() && begin.elapsed() < patience {
-            thread::sleep(Duration::from_millis(2));
-        }
-        self.trouble()
-    }
+        table.insert(key.to_owned(), value);
+        own::replace(&path, &[HEAD, &table.to_string()])
+    };
+    remembered().map_err(|error| {
+        let path = Shown(&path);
+        format!("the choice cannot be remembered in {path}: {error}")
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::fs;
-    use std::os::unix::fs::{PermissionsExt, symlink};
-
-    fn kept(folder: &Path, choices: &[(&'static str, Value)]) -> Option<String> {
-        let keeper = Keeper::new(folder.to_owned()).unwrap();
-        for (key, value) in choices {
-            keeper.keep(key, value.clone());
-        }
-        keeper.close(Duration::from_secs(20))
-    }
-
-    #[test]
-    fn what_is_kept_is_read_again_and_is_the_users_alone() {
-        let home = tempfile::tempdir().unwrap();
-        let folder = home.path().join("gyrolab");
-        assert_eq!(read(&folder), Read::default());
-        let choices = [("marker", "dot".into()), ("mouse", false.into())];
-        assert_eq!(kept(&folder, &choices), None);
-        assert_eq!(kept(&folder, &[("marker", "ascii".into())]), None);
-        let found = read(&folder);
-        assert_eq!(found.problems, None);
-        assert_eq!(found.settings.marker.as_deref(), Some("ascii"));
-        assert_eq!(found.settings.mouse, Some(false));
-        let file = folder.join(FILE);
-        let mode = fs::metadata(&file).unwrap().permissions().mode();
-        assert_eq!(mode & 0o777, 0o600);
-        assert!(!folder.join("settings.toml.new").exists());
-    }
+    use std::os::unix::fs::symlink;
 
     #[test]
     fn a_link_is_neither_read_nor_written_through() {
@@ -308,7 +187,7 @@ mod tests {
                 .to_string()
                 .contains("symbolic link")
         );
-        let trouble = kept(home.path(), &[("marker", "ascii".into())]).unwrap();
+        let trouble = remember(home.path(), "marker", "ascii".into()).unwrap_err();
         assert!(trouble.contains("symbolic link"), "{trouble}");
         assert_eq!(fs::read_to_string(&target).unwrap(), "marker = 'dot'\n");
         // The user's own file may be a link.
@@ -338,7 +217,7 @@ mod tests {
         assert!(told.contains("config.toml:"), "{told}");
         // A choice mends the program's own file.
         fs::write(home.path().join(FILE), text).unwrap();
-        assert_eq!(kept(home.path(), &[("colour", "never".into())]), None);
+        remember(home.path(), "colour", "never".into()).unwrap();
         let found = read(home.path());
         assert_eq!((found.problems, found.settings.fps), (None, Some(5)));
     }

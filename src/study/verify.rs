@@ -9,6 +9,7 @@ use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Layout};
 use crate::physics::SchemeInfo;
 use crate::run::{Clock, Simulation, Step};
+use crate::scenario::csv::{self, Csv};
 use crate::scenario::head::Head;
 use crate::scenario::rescale::MOST_STEPS;
 use crate::scenario::{Document, Problem, Problems, Scenario};
@@ -22,13 +23,12 @@ pub use against::Difference;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, BufReader, Read, Write};
+use std::io::{self, BufReader, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What has come out for one file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verified {
     /// Rows that are the same, up to the first that differs.
@@ -39,13 +39,11 @@ pub struct Verified {
     pub notes: Vec<String>,
 }
 
-/// Why a file was not verified.
 #[derive(Debug, thiserror::Error)]
 pub enum Unverified {
     /// It is no CSV of gyrolab's, or what its header holds cannot be computed.
     #[error("{0}")]
     Refused(Problems),
-    /// The watcher stopped it.
     #[error("stopped")]
     Stopped,
 }
@@ -56,15 +54,9 @@ impl From<Problems> for Unverified {
     }
 }
 
-impl From<Problem> for Unverified {
-    fn from(problem: Problem) -> Self {
-        Self::Refused(Problems::one("", problem))
-    }
-}
-
 impl From<String> for Unverified {
     fn from(rule: String) -> Self {
-        Problem::at("", rule).into()
+        Problems::one("", Problem::at("", rule)).into()
     }
 }
 
@@ -82,14 +74,11 @@ const OF_FIT: &[u8] = b",residual,residual_sigmas";
 const BY_THE_CLOCK: [&str; 2] = ["ns_per_step", "wall_s"];
 /// A run that differs and has more steps left than this is not played on for its verdict.
 const MOST_FOR_VERDICT: u64 = 2_000_000;
-/// The longest table that is taken as a comparison, bytes.
-const LONGEST_COMPARISON: u64 = 16 << 20;
+/// The most values of a table that is taken as a comparison.
+const MOST_VALUES: usize = 1_000_000;
 
-/// Computes the file `path` again and compares. `fit` makes the fit of a command line again and gives its CSV. `watch` is
-/// told the steps taken so far (of a sweep the rows), of how many, and says whether to go on.
-///
-/// # Errors
-/// When the file cannot be computed again, and why; or when `watch` said no.
+/// Computes the file `path` again and compares. `fit` makes the fit of a command line again and gives its CSV. `watch` gets
+/// the steps taken so far (of a sweep the rows) and their number in all, and says whether to go on.
 pub fn verify(
     path: &Path,
     fit: impl FnOnce(&str) -> Result<Vec<u8>, Unverified>,
@@ -117,33 +106,28 @@ fn verified(
     let head = Head::read(&mut file)?;
     let text = run_file(&head)?;
     let document = Document::parse(&path.display().to_string(), &text)?;
-    let (mut against, mut notes);
+    let (mut against, mut notes) = (Against::new(&head, file), Vec::new());
     let mut is_run = false;
     if head.names().starts_with(OF_COMPARISON) {
-        let mut rows = Vec::new();
-        file.take(LONGEST_COMPARISON + 1).read_to_end(&mut rows)?;
-        let computed = comparison(&document.scenario()?, &head, &rows, watch)?;
-        against = Against::new(&head, io::Cursor::new(rows), ',', 2);
-        against.leave_out(&BY_THE_CLOCK);
-        against.write_all(&computed)?;
+        against.keys = 2;
+        against.left_out = &BY_THE_CLOCK;
+        against.write_all(&comparison(&document.scenario()?, path, watch)?)?;
         let note = "a comparison: ns_per_step and wall_s are times by the clock, which nothing can compute again";
         notes = vec![note.to_owned()];
     } else if head.names().ends_with(OF_FIT) {
         let header: Header = toml::from_str(&above_run_file(&text))
             .map_err(|error| format!("{} (in its header)", error.message()))?;
-        let computed = fit(&header.fit.command)?;
-        against = Against::new(&head, file, ',', 0);
-        against.write_all(&computed)?;
-        notes = Vec::new();
+        against.write_all(&fit(&header.fit.command)?)?;
     } else if document.table().contains_key("vary") {
         let sweep = Sweep::open(&document)?;
-        against = Against::new(&head, file, ',', sweep.axes().len());
+        against.keys = sweep.axes().len();
         let failures = play_sweep(&sweep, &mut against, watch)?;
         let note = format!("runs that failed, and have empty rows: {failures}");
-        notes = Vec::from_iter((failures > 0).then_some(note));
+        notes.extend((failures > 0).then_some(note));
     } else {
         let layout = Layout::read(&text).map_err(|error| format!("{error} (in its header)"))?;
-        against = Against::new(&head, file, if layout.file().excel { ';' } else { ',' }, 1);
+        against.delimiter = if layout.file().excel { b';' } else { b',' };
+        against.keys = 1;
         let scenario = Arc::new(document.scenario()?);
         notes = play_run(&scenario, layout, &mut against, watch)?;
         is_run = true;
@@ -167,9 +151,11 @@ fn verified(
 }
 
 /// The run file in the head of a CSV that gyrolab wrote.
-fn run_file(head: &Head) -> Result<String, Problem> {
+fn run_file(head: &Head) -> Result<String, Problems> {
     if head.is_of_csv() {
-        return head.run_file();
+        return head
+            .run_file()
+            .map_err(|problem| Problems::one("", problem));
     }
     let bytes = head.bytes();
     let rule = if bytes.is_empty() {
@@ -179,7 +165,7 @@ fn run_file(head: &Head) -> Result<String, Problem> {
     } else {
         "is no CSV that gyrolab wrote: those begin with the run file in \"# \" lines, and name their columns below it"
     };
-    Err(Problem::at("", rule))
+    Err(Problems::one("", Problem::at("", rule)))
 }
 
 /// Plays `scenario`, and compares its rows. Gives what there is to say of the run, the verdict last.
@@ -240,7 +226,7 @@ fn play_sweep(
     let (mut failures, mut written) = (0, Ok(()));
     in_order(0..if differs.get() { 0 } else { total }, of, |rows| {
         for row in rows {
-            failures += u64::from(row.failure.is_some());
+            failures += u64::from(row.has_failed);
             written = against.write_all(row.line.as_bytes());
             if written.is_err() || differs.get() {
                 return ControlFlow::Break(());
@@ -256,11 +242,10 @@ fn play_sweep(
     Ok(failures)
 }
 
-/// Compares schemes and time steps again, those of the table `rows` below `head`, and gives the CSV.
+/// Compares schemes and time steps again, those of the table in the file `path`, and gives the CSV.
 fn comparison(
     scenario: &Scenario,
-    head: &Head,
-    rows: &[u8],
+    path: &Path,
     watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,
 ) -> Result<Vec<u8>, Unverified> {
     let cannot = |why: String| Unverified::from(format!("cannot be recomputed: {why}"));
@@ -268,16 +253,12 @@ fn comparison(
         let why = "the exact motion of its run would take too long";
         return Err(cannot(why.to_owned()));
     }
-    if rows.len() as u64 > LONGEST_COMPARISON {
-        return Err("is longer than any comparison".to_owned().into());
-    }
+    let text = csv::text(path).map_err(|problem| Problems::one("", problem))?;
+    let table = Csv::of(&text, MOST_VALUES).map_err(|found| Problems::of("", found))?;
     let (mut schemes, mut time_steps) = (Vec::<&SchemeInfo>::new(), BTreeMap::new());
-    let first = 1 + head.bytes().split_inclusive(|&byte| byte == b'\n').count();
-    for (at, row) in String::from_utf8_lossy(rows).lines().enumerate() {
-        let line = first + at;
-        let mut cells = row.split(',');
-        let scheme = cells.next().and_then(SchemeInfo::find);
-        let step = cells.next().and_then(|step| step.parse::<f64>().ok());
+    for (line, row) in &table.rows {
+        let scheme = SchemeInfo::find(&row[0]);
+        let step = row[1].parse::<f64>().ok();
         let step = step.filter(|step| *step > 0.0 && step.is_finite());
         let (Some(scheme), Some(step)) = (scheme, step) else {
             return Err(cannot(format!("line {line} names no scheme and time step")));
@@ -291,17 +272,13 @@ fn comparison(
         }
         time_steps.insert(step.to_bits(), step); // the bits of positive numbers are in their order
     }
-    if schemes.is_empty() {
-        return Err("has no rows: there is nothing to verify".to_owned().into());
-    }
     // From coarse to fine, as the order is measured.
     let time_steps: Vec<f64> = time_steps.into_values().rev().collect();
     let table = compare::compare(scenario, &schemes, &time_steps, watch);
-    let mut writer = csv::Writer::from_writer(commented(&scenario.to_toml()).into_bytes());
+    let mut writer = ::csv::Writer::from_writer(commented(&scenario.to_toml()).into_bytes());
     for row in table.ok_or(Unverified::Stopped)? {
         writer.serialize(row).map_err(io::Error::other)?;
     }
-    Ok(writer
-        .into_inner()
-        .map_err(csv::IntoInnerError::into_error)?)
+    let written = writer.into_inner();
+    Ok(written.map_err(::csv::IntoInnerError::into_error)?)
 }

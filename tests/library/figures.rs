@@ -855,7 +855,7 @@ fn a_run_is_no_table() {
         Table::read(&file)
             .unwrap_err()
             .to_string()
-            .contains("row 1")
+            .contains(":4: this row")
     );
     fs::write(&file, "# [[vary]]\n# key = \"a\"\na,b\n").unwrap();
     assert!(

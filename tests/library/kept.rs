@@ -204,12 +204,13 @@ fn the_pinned_run_comes_back_with_what_was_done_to_it() {
     let content = desk.lab.content();
     let mut back = resumed(&content);
     assert!(back.lab.player().is_pinned());
+    let is_same = |now: Content| now.place == content.place && **now.work == **content.work;
     assert!(
-        back.lab.content() == content,
+        is_same(back.lab.content()),
         "it is kept while it is made again"
     );
     await_pinned(&mut back);
-    assert!(back.lab.content() == content);
+    assert!(is_same(back.lab.content()));
     let again = back.lab.player().pinned().unwrap();
     assert_eq!(again.furthest(), before.furthest());
     assert_eq!(again.end_s(), before.end_s());

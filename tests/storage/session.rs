@@ -1,7 +1,7 @@
 //! Sessions on the disk, used by processes that run, quit and are killed.
 
 use gyrolab::storage::at_exit::{self, Release};
-use gyrolab::storage::session::{Content, Found, Session, Text, list, resume, resume_named};
+use gyrolab::storage::session::{Content, Found, Session, later, list, resume};
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::fs::PermissionsExt;
@@ -18,10 +18,20 @@ const END: &str = "end";
 const CHILD: &str = "GYROLAB_TEST_SESSION";
 
 pub(crate) fn content(work: &str, place: &str) -> Content {
+    let work = work.to_owned();
     Content {
-        work: work.into(),
+        work: later(move || work),
         place: place.to_owned(),
     }
+}
+
+/// The work and the place.
+pub(crate) fn texts(content: &Content) -> (String, String) {
+    (content.work.to_string(), content.place.clone())
+}
+
+fn pair(work: &str, place: &str) -> (String, String) {
+    (work.to_owned(), place.to_owned())
 }
 
 /// A sessions' folder in a temporary folder.
@@ -31,15 +41,15 @@ pub(crate) fn folder() -> (TempDir, PathBuf) {
     (outer, folder)
 }
 
-fn any(folder: &Path) -> Found<Content> {
-    resume(folder, |content| Ok(content.clone())).unwrap()
+fn any(folder: &Path) -> Found<(String, String)> {
+    resume(folder, None, |content| Ok(texts(content))).unwrap()
 }
 
 /// The content of the newest unused session, which is closed again.
-fn newest(folder: &Path) -> Option<Content> {
+fn newest(folder: &Path) -> Option<(String, String)> {
     let found = any(folder);
-    assert!(found.kept_aside.is_empty(), "{:?}", found.kept_aside);
-    found.resumed.map(|resumed| resumed.what)
+    assert!(found.left_alone.is_empty(), "{:?}", found.left_alone);
+    found.resumed.map(|(_, what)| what)
 }
 
 /// Saves a session and closes it.
@@ -57,10 +67,10 @@ fn written(session: &Session) {
 
 /// Closes the session, and returns its content as saved.
 #[track_caller]
-fn closed(session: Session) -> Content {
+fn closed(session: Session) {
     let closed = session.close(PATIENCE);
     assert_eq!(closed.trouble, None);
-    closed.kept.unwrap()
+    assert!(closed.kept.is_some());
 }
 
 fn names(folder: &Path, end: &str) -> Vec<PathBuf> {
@@ -126,19 +136,20 @@ fn an_empty_or_missing_folder_has_no_session() {
 fn the_last_content_is_resumed_and_the_session_continues() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
-    let work = Text::from("the run: ω\nand its journal\n");
+    let text = "the run: ω\nand its journal\n";
+    let work = content(text, "").work;
     for step in 0..1000 {
         let (work, place) = (work.clone(), format!("step {step}"));
         session.note(Content { work, place });
     }
     closed(session);
-    let found = any(&folder).resumed.unwrap();
-    assert_eq!(found.what, content(&work, "step 999"));
-    found.session.note(content("another run", "step 5"));
-    written(&found.session);
-    found.session.note(content("another run", "step 6"));
-    closed(found.session);
-    assert_eq!(newest(&folder), Some(content("another run", "step 6")));
+    let (session, what) = any(&folder).resumed.unwrap();
+    assert_eq!(what, pair(text, "step 999"));
+    session.note(content("another run", "step 5"));
+    written(&session);
+    session.note(content("another run", "step 6"));
+    closed(session);
+    assert_eq!(newest(&folder), Some(pair("another run", "step 6")));
     assert_eq!(names(&folder, ".session").len(), 1, "it is one session");
 }
 
@@ -193,19 +204,15 @@ fn the_newest_that_is_not_in_use_is_taken() {
     written(&middle);
     age(&file_of(&folder, "1middle"), 200);
     kept(&folder, "new", "");
-    assert_eq!(newest(&folder).unwrap().work.to_string(), "new");
+    assert_eq!(newest(&folder).unwrap().0, "new");
     let new = any(&folder).resumed.unwrap();
-    assert_eq!(
-        newest(&folder).unwrap().work.to_string(),
-        "old",
-        "two are in use"
-    );
+    assert_eq!(newest(&folder).unwrap().0, "old", "two are in use");
     middle.note(content("middle", "2"));
     closed(middle);
     drop(new);
     assert_eq!(
         newest(&folder),
-        Some(content("middle", "2")),
+        Some(pair("middle", "2")),
         "its place is the newest"
     );
 }
@@ -224,14 +231,14 @@ fn processes_that_resume_at_the_same_time_get_different_sessions() {
     });
     let mut works: Vec<_> = found
         .iter()
-        .map(|found| found.resumed.as_ref().unwrap().what.work.to_string())
+        .map(|found| found.resumed.as_ref().unwrap().1.0.clone())
         .collect();
     works.sort_unstable();
     assert_eq!(works, ["0", "1", "2", "3", "4", "5", "6", "7"]);
 }
 
 #[test]
-fn what_is_damaged_is_put_aside_and_told_of() {
+fn what_is_damaged_is_left_alone_and_told_of() {
     type Damage = fn(&Path);
     let damages: [(Damage, &str); 4] = [
         (|path| cut(path, 3), "cut off"),
@@ -250,16 +257,12 @@ fn what_is_damaged_is_put_aside_and_told_of() {
             .find(|path| *path != before);
         damage(&newest.unwrap());
         let found = any(&folder);
-        assert_eq!(
-            found.resumed.unwrap().what.work.to_string(),
-            "the one before"
-        );
-        let [aside] = found.kept_aside.as_slice() else {
-            panic!("{:?}", found.kept_aside);
+        assert_eq!(found.resumed.unwrap().1.0, "the one before");
+        let [alone] = found.left_alone.as_slice() else {
+            panic!("{:?}", found.left_alone);
         };
-        assert!(aside.reason.contains(words), "{}", aside.reason);
-        assert!(aside.path.exists() && aside.path.to_str().unwrap().ends_with(".session.damaged"));
-        assert!(any(&folder).kept_aside.is_empty(), "it is told of once");
+        assert!(alone.reason.contains(words), "{}", alone.reason);
+        assert!(alone.path.exists());
     }
 }
 
@@ -270,23 +273,22 @@ fn cut(path: &Path, bytes: u64) {
 }
 
 #[test]
-fn what_the_reader_refuses_is_put_aside_too_and_none_is_lost() {
+fn what_the_reader_refuses_is_left_alone_too() {
     let (_outer, folder) = folder();
     kept(&folder, "good", "");
     age(&only(&folder, ".session"), 100);
     kept(&folder, "bad", "");
-    let found = resume(&folder, |content| match &*content.work {
+    let found = resume(&folder, None, |content| match content.work.as_str() {
         "bad" => Err("line 3: no such key".to_owned()),
         work => Ok(work.to_owned()),
     })
     .unwrap();
-    assert_eq!(found.resumed.unwrap().what, "good");
-    assert_eq!(found.kept_aside[0].reason, "line 3: no such key");
-    assert!(
-        fs::read_to_string(&found.kept_aside[0].path)
-            .unwrap()
-            .ends_with("bad")
-    );
+    assert_eq!(found.resumed.unwrap().1, "good");
+    let [alone] = found.left_alone.as_slice() else {
+        panic!("{:?}", found.left_alone);
+    };
+    assert_eq!(alone.reason, "line 3: no such key");
+    assert!(fs::read_to_string(&alone.path).unwrap().ends_with("bad"));
 }
 
 #[test]
@@ -308,10 +310,7 @@ fn the_oldest_are_cleared_away_but_none_in_use() {
     while let Some(resumed) = any(&folder).resumed {
         found.push(resumed);
     }
-    let works: Vec<_> = found
-        .iter()
-        .map(|resumed| resumed.what.work.to_string())
-        .collect();
+    let works: Vec<_> = found.iter().map(|(_, what)| what.0.clone()).collect();
     let mut wanted: Vec<_> = (10..30).rev().map(|n| n.to_string()).collect();
     wanted.insert(0, "in use".to_owned()); // it was left last, whenever it was written
     assert_eq!(works, wanted);
@@ -323,12 +322,12 @@ fn a_folder_that_cannot_be_had_is_an_error_in_words() {
     fs::write(outer.path().join("state"), "a file").unwrap();
     let error = Session::begin(&folder).unwrap_err().to_string();
     assert!(error.contains(folder.to_str().unwrap()), "{error}");
-    assert!(resume(&folder, |_| Ok(())).is_err());
+    assert!(resume(&folder, None, |_| Ok(())).is_err());
     fs::remove_file(outer.path().join("state")).unwrap();
     fs::create_dir_all(folder.parent().unwrap()).unwrap();
     fs::write(&folder, "a file").unwrap();
     assert!(Session::begin(&folder).is_err());
-    assert!(resume(&folder, |_| Ok(())).is_err());
+    assert!(resume(&folder, None, |_| Ok(())).is_err());
     assert!(Session::begin(Path::new("/proc/gyrolab")).is_err());
 }
 
@@ -355,14 +354,14 @@ fn trouble_is_told_as_long_as_it_lasts_and_it_is_tried_again() {
     }
     fs::remove_dir(&path).unwrap();
     wait_until(|| session.trouble().is_none());
-    assert_eq!(fs::read_dir(&folder).unwrap().count(), 3, "two locks");
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "with its lock");
     in_the_way();
     session.note(content("run", "five"));
     written(&session);
     assert!(session.trouble().is_some(), "it is new again");
     let closed = session.close(PATIENCE);
     assert!(closed.trouble.is_some());
-    assert_eq!(closed.kept, Some(content("run", "four")));
+    assert_eq!(texts(&closed.kept.unwrap()), pair("run", "four"));
 }
 
 #[test]
@@ -396,15 +395,14 @@ fn sessions_have_short_names_that_stay() {
             ("3", false, None)
         ]
     );
-    let found = resume_named(&folder, "1", |content| Ok(content.clone())).unwrap();
-    let resumed = found.resumed.unwrap();
-    assert_eq!(resumed.what.work.to_string(), "first");
-    assert_eq!(resumed.session.name(), "1");
-    let found = resume_named(&folder, "2", |_| Ok(())).unwrap();
+    let found = resume(&folder, Some("1"), |content| Ok(texts(content))).unwrap();
+    let (session, what) = found.resumed.unwrap();
+    assert_eq!((what.0.as_str(), session.name()), ("first", "1"));
+    let found = resume(&folder, Some("2"), |_| Ok(())).unwrap();
     assert!(found.resumed.is_none());
     assert_eq!(found.in_use_by, [own]);
     for name in ["4", "", "lock", "../1", "1.session"] {
-        assert!(resume_named(&folder, name, |_| Ok(())).is_err(), "{name}");
+        assert!(resume(&folder, Some(name), |_| Ok(())).is_err(), "{name}");
     }
 }
 
@@ -417,9 +415,8 @@ fn a_folder_that_was_cleared_away_is_made_again() {
     fs::remove_dir_all(&folder).unwrap();
     session.note(content("run", "two"));
     written(&session);
-    assert_eq!(newest(&folder), None, "it is in use");
     closed(session);
-    assert_eq!(newest(&folder), Some(content("run", "two")));
+    assert_eq!(newest(&folder), Some(pair("run", "two")));
 }
 
 /// Not a test by itself, but the body of a child process: it keeps a session and notes each line of its input.
@@ -430,7 +427,7 @@ fn child() {
     };
     let found = any(Path::new(&folder));
     let (session, was) = match found.resumed {
-        Some(resumed) => (resumed.session, resumed.what.place),
+        Some((session, what)) => (session, what.1),
         None => (
             Session::begin(Path::new(&folder)).unwrap(),
             "new".to_owned(),
@@ -499,7 +496,7 @@ fn a_process_that_is_killed_loses_a_second_at_most_and_frees_its_session() {
     thread::sleep(Duration::from_secs(1));
     assert_eq!(newest(&folder), None, "it is in use");
     other.kill();
-    assert_eq!(newest(&folder), Some(content("run", "99")));
+    assert_eq!(newest(&folder), Some(pair("run", "99")));
     let mut next = Other::begin(&folder);
     assert_eq!(next.hear("begins"), "begins at 99");
     assert_eq!(
@@ -517,7 +514,7 @@ fn the_exit_hook_saves_the_last_content() {
     (0..1000).for_each(|n| other.note(&n.to_string()));
     writeln!(other.child.stdin.as_mut().unwrap(), "{END}").unwrap();
     assert!(other.child.wait().unwrap().success());
-    assert_eq!(newest(&folder), Some(content("run", "999")));
+    assert_eq!(newest(&folder), Some(pair("run", "999")));
 }
 
 #[test]
@@ -529,7 +526,7 @@ fn killed_at_any_moment_it_leaves_a_whole_session() {
         other.note(&n.to_string().repeat(1 << 22)); // takes a while to write
         thread::sleep(Duration::from_millis(n % 10));
         other.kill();
-        assert!(any(&folder).kept_aside.is_empty());
+        assert!(any(&folder).left_alone.is_empty());
     }
 }
 
@@ -542,7 +539,7 @@ fn the_processes_that_use_newer_sessions_are_reported() {
     newer.note(content("newer", ""));
     written(&newer);
     let found = any(&folder);
-    assert_eq!(found.resumed.unwrap().what.work.to_string(), "old");
+    assert_eq!(found.resumed.unwrap().1.0, "old");
     assert_eq!(found.in_use_by, [std::process::id()]);
     closed(newer);
     assert!(any(&folder).in_use_by.is_empty());

@@ -8,7 +8,7 @@ use crate::lab::view::View;
 use crate::lab::{Lab, Summary};
 use crate::scenario::Scenario;
 use crate::storage::confined::Confined;
-use crate::storage::session::{self, Found, Session};
+use crate::storage::session::{self, LeftAlone, Session};
 use crate::text::printable::{Shown, printable};
 use crate::tui::panes;
 use anyhow::{Context, bail};
@@ -72,17 +72,11 @@ pub(super) fn come_back_to(
     let folder = folder.map_err(anyhow::Error::msg)?;
     let name_shown = printable(name);
     let read = |content: &session::Content| resumed(content, args.look, confined);
-    let found = session::resume_named(&folder, name, read)
+    let found = session::resume(&folder, Some(name), read)
         .with_context(|| format!("--resume {name_shown} (gyrolab sessions lists what there is)"))?;
-    let passed_over = passed_over(&found);
+    let passed_over = left_alone(&found.left_alone);
     match (found.resumed, found.in_use_by.first()) {
-        (Some(resumed), _) => {
-            let mut lab = resumed.what;
-            if !passed_over.is_empty() {
-                lab.tell_first(&passed_over);
-            }
-            Ok((lab, Ok(resumed.session)))
-        }
+        (Some((session, lab)), _) => Ok((lab, Ok(session))),
         (None, Some(process)) => {
             bail!("--resume {name_shown}: it is open in another lab, process {process}")
         }
@@ -106,16 +100,15 @@ pub(super) fn come_back(
     let read = |content: &session::Content| resumed(content, args.look, confined);
     let found = folder
         .clone()
-        .and_then(|folder| session::resume(&folder, read).map_err(told));
+        .and_then(|folder| session::resume(&folder, None, read).map_err(told));
     let why_none = match found {
         Ok(found) => {
-            let passed_over = passed_over(&found) + &in_use(&found.in_use_by);
-            if let Some(resumed) = found.resumed {
-                let (mut lab, session) = (resumed.what, Ok(resumed.session));
+            let passed_over = left_alone(&found.left_alone) + &in_use(&found.in_use_by);
+            if let Some((session, mut lab)) = found.resumed {
                 if !passed_over.is_empty() {
                     lab.tell_first(&(passed_over + "this is an older one, "));
                 }
-                return Ok((lab, session));
+                return Ok((lab, Ok(session)));
             }
             let none = if found.in_use_by.is_empty() {
                 "no session to come back to: "
@@ -152,16 +145,9 @@ fn told(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
-/// The sessions that cannot be come back to, and why.
-fn passed_over<T>(found: &Found<T>) -> String {
-    let aside = found.kept_aside.iter().map(|one| {
-        let path = Shown(&one.path);
-        format!(
-            "a damaged session is put aside as {path} ({}); ",
-            one.reason
-        )
-    });
-    let alone = found.left_alone.iter();
-    let alone = alone.map(|one| format!("{} is left alone ({}); ", Shown(&one.path), one.reason));
-    aside.chain(alone).collect()
+fn left_alone(sessions: &[LeftAlone]) -> String {
+    let names = sessions
+        .iter()
+        .map(|one| format!("{} is left alone ({}); ", Shown(&one.path), one.reason));
+    names.collect()
 }

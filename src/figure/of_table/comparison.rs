@@ -112,7 +112,6 @@ fn or_error<'a>(columns: &'a [&'a str]) -> &'a [&'a str] {
     }
 }
 
-/// The axis of a column of a comparison.
 fn of_comparison(name: &str) -> Axis {
     match name {
         "error_m" => Axis::new("largest error", "m"),

@@ -13,9 +13,9 @@ use crate::scenario::Document;
 use crate::text::number::{significant, uncertain};
 use std::sync::Arc;
 
-/// So many points are on the curve of a model over time: several for each dot of a column's width.
+/// Points on the curve of a model over time: several for each dot of a column's width.
 const POINTS: u32 = 1500;
-/// Runs under several settings that are still told apart.
+/// The most runs under several settings that can be distinguished.
 const MOST_GROUPS: usize = 6;
 
 /// What was fitted, and what was found.

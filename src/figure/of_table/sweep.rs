@@ -12,9 +12,9 @@ use crate::figure::table::Table;
 use columns::{Part, Quantity, Role};
 use curves::Curve;
 
-/// Panels on a page of which none was asked for by name.
+/// Panels on a page where none was asked for by name.
 const MOST_PANELS: usize = 7;
-/// Series of one quantity that are still told apart.
+/// The most series of one quantity that can be distinguished.
 const MOST_SERIES: usize = 12;
 
 /// A sweep: its rows, the keys that were varied, and the scenario in which these have their names.
@@ -95,7 +95,7 @@ fn too_many(quantities: &[Quantity]) -> String {
     )
 }
 
-/// Values of which the greatest is so many times the least stand on a logarithmic axis.
+/// Ratio of greatest to least value from which an axis is logarithmic.
 const DECADES: f64 = 1e3;
 
 /// What follows the name of theory of which some line has gaps.
@@ -105,7 +105,7 @@ const OTHER: &str = "other values";
 
 /// The rows of `table` whose runs did not fail.
 fn rows_run(table: &Table, varied: &[String]) -> Vec<usize> {
-    let readouts = table.names.iter().filter(|name| !varied.contains(name));
+    let readouts = table.names().iter().filter(|name| !varied.contains(name));
     let readouts: Vec<_> = readouts.filter_map(|name| table.texts(name)).collect();
     let has_run = |row: &usize| readouts.iter().any(|texts| !texts[*row].is_empty());
     (0..table.count()).filter(has_run).collect()
@@ -339,7 +339,7 @@ impl Drawing<'_> {
     }
 }
 
-/// Whether none of `values` is below 0, and the greatest is so many times the least of those above it.
+/// Whether no value is below 0, and the greatest is at least `times` the least above 0.
 fn spans_decades(values: impl Iterator<Item = f64>, times: f64) -> bool {
     let extent = values
         .filter(|value| value.is_finite() && *value != 0.0)

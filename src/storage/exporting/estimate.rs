@@ -7,7 +7,6 @@ use std::io;
 use std::num::NonZeroU64;
 use std::sync::Arc;
 
-/// The expected size of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Estimate {
     /// Number of rows. The export has fewer only if the numbers stop being finite.
@@ -16,7 +15,7 @@ pub struct Estimate {
     pub bytes: u64,
 }
 
-/// Estimates the size of the export of `scenario` with a row `every` so many steps. It takes a few milliseconds: it writes
+/// Estimates the size of the export of `scenario` with every `every`-th row. It takes a few milliseconds: it writes
 /// 64 rows with the numbers of the run's beginning and with steps and times spread over the whole run.
 pub fn estimate(scenario: &Arc<Scenario>, every: NonZeroU64) -> Estimate {
     let rows = rows(scenario.steps, every.get());

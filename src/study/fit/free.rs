@@ -12,9 +12,7 @@ use toml::Value;
 pub struct Free {
     /// The dotted key; of several that have one value, all of them with + between.
     pub key: String,
-    /// The keys one by one.
     pub keys: Vec<String>,
-    /// Its value in the scenario.
     pub start: f64,
     /// The least value; -infinity where there is none.
     pub from: f64,
@@ -22,11 +20,10 @@ pub struct Free {
     pub to: f64,
     /// A value of the size that is usual for it.
     pub scale: f64,
-    /// The argument, as it was given.
     pub argument: String,
 }
 
-/// How large a change of a value is that is 0 and has no bounds, where the table of keys does not know better.
+/// A change of a value that is 0 and has no bounds, where the table of keys names none.
 const SMALL: f64 = 0.01;
 
 impl Free {
@@ -45,7 +42,7 @@ impl Free {
         Self::read(argument.trim(), scenario).map_err(refused)
     }
 
-    /// The size of the key where it has this value: by so much it changes when it changes wholly.
+    /// The size of the key at `value`, by which relative changes are measured.
     pub(super) fn size(&self, value: f64) -> f64 {
         match value.abs() {
             0.0 => self.scale,
@@ -108,7 +105,6 @@ impl Free {
         })
     }
 
-    /// What the key is in `scenario`.
     fn one(key: &str, scenario: &Document) -> Result<One, String> {
         let (row, kind) = keys::find(key)?;
         let Kind::Number(range) = kind else {
@@ -143,16 +139,12 @@ impl Free {
     }
 }
 
-/// What one key is in a scenario.
 struct One {
     start: f64,
-    /// A small change of it.
     nudge: f64,
-    /// The least value that it may have.
     least: f64,
 }
 
-/// Why `key` cannot be fitted, which holds no number.
 fn not_a_number(key: &str, kind: Kind) -> String {
     match kind {
         Kind::Vector => {
@@ -166,7 +158,6 @@ fn not_a_number(key: &str, kind: Kind) -> String {
     }
 }
 
-/// The two ends of `FROM..TO`.
 fn ends(bounds: &str) -> Result<(f64, f64), String> {
     let wrong = || {
         "bounds must be FROM..TO, two numbers of which either may be left out, such as 0.1..0.5 or 0..".to_owned()
@@ -202,9 +193,6 @@ pub(super) fn shown(bound: f64) -> String {
 }
 
 /// Refuses free keys that write into the same value.
-///
-/// # Errors
-/// When two of them do.
 pub fn are_apart(free: &[Free]) -> Result<(), Problems> {
     let keys: Vec<&String> = free.iter().flat_map(|free| &free.keys).collect();
     for (index, one) in keys.iter().enumerate() {

@@ -11,45 +11,32 @@ use nalgebra::{DMatrix, DVector};
 /// What is to be made small.
 pub trait Problem {
     /// The residuals r at `p`, in units in which a standard uncertainty is 1.
-    ///
-    /// # Errors
-    /// Why there are none.
     fn residuals(&self, p: &[f64]) -> Result<DVector<f64>, Stop>;
 
     /// −∂r/∂p at `p`: a column for each parameter.
-    ///
-    /// # Errors
-    /// Why there is none.
     fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop>;
 
-    /// Is told after each step how many have been taken and how large the sum is.
+    /// Called after each step, with the number of steps and the sum.
     fn tell(&self, step: u64, sum: f64);
 }
 
-/// Why something was not computed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stop {
     /// There is no such run, or no such number of it.
     Impossible(String),
-    /// Somebody wants it to end.
     Interrupted,
 }
 
-/// From where to where a parameter may go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// The least value; may be infinite.
     pub from: f64,
-    /// The greatest value; may be infinite.
     pub to: f64,
 }
 
 /// Where a search has ended.
 #[derive(Clone, Debug)]
 pub struct Minimum {
-    /// The parameters.
     pub p: Vec<f64>,
-    /// The residuals there.
     pub residuals: DVector<f64>,
     /// −∂r/∂p there.
     pub slopes: DMatrix<f64>,
@@ -57,27 +44,24 @@ pub struct Minimum {
     pub held: Vec<bool>,
     /// How many steps were taken.
     pub steps: u64,
-    /// Why it is no minimum, where it is none.
     pub failure: Option<Failure>,
 }
 
-/// Why a search has not found a minimum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// After so many steps it still got better.
+    /// The sum was still falling after [`MOST_STEPS`].
     TooManySteps,
     /// However short a step is, it makes nothing better, though the slopes say that it should.
     Stuck,
 }
 
-/// The most steps.
 pub const MOST_STEPS: u64 = 200;
 
-/// By less than this the sum (in which 1 is a standard uncertainty) is not worth making less.
+/// A foreseen gain below this ends the search; in the sum 1 is a standard uncertainty.
 const ENOUGH: f64 = 1e-8;
 /// The same as a part of the sum.
 const ENOUGH_OF_SUM: f64 = 1e-10;
-/// Where no step makes it less, so much is left to rounding.
+/// Where no step reduces the sum, a foreseen gain below this is rounding.
 const ROUNDING: f64 = 1e-3;
 /// Singular values below this part of the largest are the rounding of the slopes.
 pub const SINGULAR: f64 = 1e-6;
@@ -86,9 +70,6 @@ const DAMPING: f64 = 1e-3;
 const MOST_DAMPING: f64 = 1e12;
 
 /// Looks for the least sum of squares from `start` on.
-///
-/// # Errors
-/// When there are no residuals at the start, no slopes where the search stands, or somebody ended it.
 pub fn search(problem: &dyn Problem, start: &[f64], bounds: &[Bounds]) -> Result<Minimum, Stop> {
     let mut p = start.to_vec();
     let mut r = problem.residuals(&p)?;

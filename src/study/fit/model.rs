@@ -17,38 +17,33 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Value;
 
+/// Whether to go on.
+pub type GoOn<'a> = &'a (dyn Fn() -> bool + Sync);
+
 /// A scenario, its free keys, and the data that its runs are held against.
 #[derive(Debug)]
 pub struct Model {
     base: Document,
     /// The keys whose values are looked for.
     pub free: Vec<Free>,
-    /// The data.
     pub measured: Measured,
-    /// The title of the scenario.
     pub title: String,
-    /// The columns that were measured.
     pub columns: Vec<Measurand>,
     /// Every measured value: column by column, and in each in the order of the rows.
     pub data: Vec<Datum>,
     runs: AtomicU64,
 }
 
-/// A column that was measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Measurand {
-    /// Its row in the table of readouts.
     pub readout: &'static Readout,
     /// The quantity, of a time series.
     pub quantity: Option<&'static Quantity>,
 }
 
-/// A measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Datum {
-    /// The column, by its place.
     pub column: usize,
-    /// Row, value, and uncertainty.
     pub point: Point,
 }
 
@@ -85,23 +80,16 @@ impl Model {
         })
     }
 
-    /// How many runs have been computed so far.
     pub fn runs(&self) -> u64 {
         self.runs.load(Ordering::Relaxed)
     }
 
-    /// The scenario with these values of the free keys, as it stands in a file.
-    ///
-    /// # Errors
-    /// Why there is no such scenario.
+    /// The scenario with these values of the free keys.
     pub fn scenario(&self, p: &[f64]) -> Result<Scenario, String> {
         checked(&self.document(p)?)
     }
 
     /// The same, as long as it was measured: at least up to the last time of a time series.
-    ///
-    /// # Errors
-    /// As [`scenario`](Self::scenario).
     pub fn as_long_as_measured(&self, p: &[f64]) -> Result<Scenario, String> {
         let scenario = self.scenario(p)?;
         let last_s = match &self.measured.data {
@@ -129,39 +117,24 @@ impl Model {
         Ok(document)
     }
 
-    /// What the runs with these values say of each datum, in its unit.
+    /// What the runs with these values say of each datum, in its unit. Of a table of runs, the value of a setting, by its
+    /// place, may be `changed` by a multiple of its uncertainty in every row.
     ///
     /// # Errors
     /// Why there is no such run, or which number it does not have.
-    pub fn values(&self, p: &[f64], go_on: &(dyn Fn() -> bool + Sync)) -> Result<Vec<f64>, Stop> {
-        match &self.measured.data {
-            Data::Series(series) => self.of_series(series, p, go_on),
-            Data::Table(table) => self.of_table(table, p, go_on, None),
-        }
-    }
-
-    /// The same for a table of runs, with the value of the `key`-th setting changed by `by` times its uncertainty in every row.
-    ///
-    /// # Errors
-    /// As [`values`](Self::values).
-    pub fn values_with(
+    pub fn values(
         &self,
         p: &[f64],
-        (key, by): (usize, f64),
-        go_on: &(dyn Fn() -> bool + Sync),
+        changed: Option<(usize, f64)>,
+        go_on: GoOn<'_>,
     ) -> Result<Vec<f64>, Stop> {
         match &self.measured.data {
             Data::Series(series) => self.of_series(series, p, go_on),
-            Data::Table(table) => self.of_table(table, p, go_on, Some((key, by))),
+            Data::Table(table) => self.of_table(table, p, changed, go_on),
         }
     }
 
-    fn of_series(
-        &self,
-        series: &Series,
-        p: &[f64],
-        go_on: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Vec<f64>, Stop> {
+    fn of_series(&self, series: &Series, p: &[f64], go_on: GoOn<'_>) -> Result<Vec<f64>, Stop> {
         let scenario = self.scenario(p).map_err(Stop::Impossible)?;
         self.runs.fetch_add(1, Ordering::Relaxed);
         let values = at_times(series, &Arc::new(scenario), go_on);
@@ -177,8 +150,8 @@ impl Model {
         &self,
         table: &Table,
         p: &[f64],
-        go_on: &(dyn Fn() -> bool + Sync),
         changed: Option<(usize, f64)>,
+        go_on: GoOn<'_>,
     ) -> Result<Vec<f64>, Stop> {
         let document = self.document(p).map_err(Stop::Impossible)?;
         let wanted: Vec<&Readout> = self.columns.iter().map(|column| column.readout).collect();
@@ -201,7 +174,6 @@ impl Model {
         self.data.iter().map(of).collect()
     }
 
-    /// A value that is there and finite.
     fn finite(&self, datum: &Datum, value: Option<f64>) -> Result<f64, Stop> {
         let name = self.columns[datum.column].readout.name;
         value.filter(|value| value.is_finite()).ok_or_else(|| {
@@ -212,7 +184,7 @@ impl Model {
         })
     }
 
-    /// A row as it is told: by its number, from 1, and its line in the file.
+    /// A row in words: its number, from 1, and its line in the file.
     pub fn row(&self, row: usize) -> String {
         let lines = match &self.measured.data {
             Data::Series(series) => &series.lines,
@@ -262,7 +234,7 @@ fn listed(data: &Data) -> (Vec<Measurand>, Vec<Datum>) {
     (columns, all)
 }
 
-/// `document` with what the `row` of `table` sets, one setting changed by so many times its uncertainty.
+/// `document` with the settings of the `row` of `table`, one of them changed by a multiple of its uncertainty.
 fn with_settings(
     document: &Document,
     table: &Table,
@@ -308,7 +280,6 @@ fn too_far(measured: &Measured, series: &Series, scenario: &Scenario) -> Problem
     Problems::one(measured.origin.clone(), problem)
 }
 
-/// Refuses a free key that a column sets.
 fn are_apart(free: &[Free], table: &Table) -> Result<(), Problems> {
     for key in free.iter().flat_map(|free| &free.keys) {
         let mut settings = table.settings.iter();

@@ -9,7 +9,6 @@ pub(super) const RARE: f64 = 0.01;
 /// fewer, two data that agree by chance would make the keys as sure as one likes.
 pub(super) const LEAST_FREEDOM: u64 = 3;
 
-/// How well a model fits its data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
     /// The sum of the squared residuals in units of their uncertainties; `None` where none are stated.
@@ -25,7 +24,7 @@ pub struct Quality {
     pub scatter: Option<f64>,
 }
 
-/// The variance that data without uncertainties have by their scatter, of which `sum` is that of the squares, times the
+/// The variance of data without uncertainties, from their scatter (`sum` is the sum of the squared residuals), times the
 /// square of Student's factor; `None` where it cannot be stated.
 pub(super) fn variance(sum: f64, freedom: u64) -> Option<f64> {
     (freedom >= LEAST_FREEDOM).then(|| sum / freedom as f64 * student(freedom).powi(2))
@@ -40,7 +39,6 @@ pub(super) fn student(freedom: u64) -> f64 {
 }
 
 impl Quality {
-    /// Of data with uncertainties.
     pub(super) fn weighted(
         chi_squared: f64,
         degrees_of_freedom: u64,

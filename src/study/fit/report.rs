@@ -11,14 +11,10 @@ use serde::ser::{Serialize, Serializer};
 use serde_json::{Value, json};
 use std::fmt;
 
-/// A fit with what it is a fit of.
 #[derive(Clone, Copy, Debug)]
 pub struct Report<'a> {
-    /// What was found.
     pub fit: &'a Fit,
-    /// The scenario, the keys and the data.
     pub model: &'a Model,
-    /// The scheme of the runs.
     pub scheme: &'static str,
     /// The scheme of the scenario, where the runs have another.
     pub instead_of: Option<&'static str>,
@@ -60,7 +56,6 @@ impl Report<'_> {
         remarks.chain(self.fit.aliased(self.model)).collect()
     }
 
-    /// The table of the keys.
     fn keys(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rows = self.fit.keys.iter().map(|key| {
             let free = &key.free;
@@ -80,7 +75,6 @@ impl Report<'_> {
         write_table(f, &std::iter::once(head).chain(rows).collect::<Vec<_>>())
     }
 
-    /// The correlations, of several keys.
     fn correlations(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let count = self.fit.keys.len();
         if count < 2 {
@@ -98,7 +92,6 @@ impl Report<'_> {
         Ok(())
     }
 
-    /// The rows that are the furthest off.
     fn furthest(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const MOST: usize = 5;
         let mut all: Vec<(usize, &Residual)> = self.fit.residuals.iter().enumerate().collect();
@@ -131,19 +124,15 @@ impl Report<'_> {
             "residual",
             "in sigmas",
         ];
-        let rows: Vec<_> = std::iter::once(head.map(str::to_owned))
-            .chain(rows)
-            .collect();
-        if all.len() > MOST {
-            writeln!(
+        let head = std::iter::once(head.map(str::to_owned));
+        match all.len() {
+            0..=MOST => writeln!(f, "\nResiduals:")?,
+            count => writeln!(
                 f,
-                "\nThe {MOST} of {} residuals that are furthest off:",
-                all.len()
-            )?;
-        } else {
-            writeln!(f, "\nResiduals:")?;
+                "\nThe {MOST} of {count} residuals that are furthest off:"
+            )?,
         }
-        write_table(f, &rows)
+        write_table(f, &head.chain(rows).collect::<Vec<_>>())
     }
 
     fn json(&self) -> Value {

@@ -4,13 +4,11 @@ use super::free::Free;
 use super::levenberg::{Minimum, SINGULAR};
 use nalgebra::{DMatrix, DVector};
 
-/// What the data say of the keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     /// The covariances of the keys, in their units, for data whose uncertainty is 1; `None` of a key whose value the data do
     /// not say, or that is held at a bound.
     pub covariance: Vec<Vec<Option<f64>>>,
-    /// How many independent combinations of keys the data say.
     pub rank: usize,
     /// The keys on which no datum depends.
     pub silent: Vec<usize>,
@@ -24,8 +22,19 @@ pub(super) const SILENT: f64 = 1e-5;
 /// Parts of a combination below this are rounding.
 const PART: f64 = 1e-2;
 
+/// The largest of `parts` by size, the first of equal ones.
+fn largest(parts: &[f64]) -> f64 {
+    let larger = |largest: f64, part: f64| {
+        if part.abs() > largest.abs() {
+            part
+        } else {
+            largest
+        }
+    };
+    parts.iter().copied().fold(0.0, larger)
+}
+
 impl Solution {
-    /// What `minimum` says of `free`.
     pub fn of(minimum: &Minimum, free: &[Free]) -> Self {
         let slopes = &minimum.slopes;
         let norms: Vec<f64> = slopes.column_iter().map(|column| column.norm()).collect();
@@ -63,29 +72,18 @@ impl Solution {
         };
         for &k in &unseen {
             let parts: Vec<f64> = (0..moving.len()).map(|place| relative(k, place)).collect();
-            let is_part = |place: &usize| v_t[(k, *place)].abs() > PART;
-            let largest = parts.iter().copied().fold(0.0, |largest: f64, part| {
-                if part.abs() > largest.abs() {
-                    part
-                } else {
-                    largest
-                }
-            });
-            let parts = (0..moving.len())
-                .filter(is_part)
-                .map(|place| (moving[place], parts[place] / largest));
+            let largest = largest(&parts);
+            let places = (0..moving.len()).filter(|&place| v_t[(k, place)].abs() > PART);
+            let parts = places.map(|place| (moving[place], parts[place] / largest));
             solution.alike.push(parts.collect());
         }
-        let is_known = |place: usize| {
-            let in_unseen = |k: &usize| v_t[(*k, place)].abs() > PART;
-            !unseen.iter().any(in_unseen)
-        };
-        for i in (0..moving.len()).filter(|&place| is_known(place)) {
-            for j in (0..moving.len()).filter(|&place| is_known(place)) {
-                let terms = seen
-                    .iter()
-                    .map(|&k| v_t[(k, i)] * v_t[(k, j)] / singular(k).powi(2));
-                let covariance = terms.sum::<f64>() / (norms[moving[i]] * norms[moving[j]]);
+        let is_known = |place: &usize| unseen.iter().all(|&k| v_t[(k, *place)].abs() <= PART);
+        let known: Vec<usize> = (0..moving.len()).filter(is_known).collect();
+        for &i in &known {
+            for &j in &known {
+                let term = |&k: &usize| v_t[(k, i)] * v_t[(k, j)] / singular(k).powi(2);
+                let covariance = seen.iter().map(term).sum::<f64>();
+                let covariance = covariance / (norms[moving[i]] * norms[moving[j]]);
                 solution.covariance[moving[i]][moving[j]] =
                     Some(covariance).filter(|covariance| covariance.is_finite());
             }
@@ -98,7 +96,6 @@ impl Solution {
         self.covariance[index][index].map(f64::sqrt)
     }
 
-    /// The correlation of two keys.
     pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
         let correlation = self.covariance[i][j]? / (self.sigma(i)? * self.sigma(j)?);
         if i == j {

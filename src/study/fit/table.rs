@@ -11,13 +11,11 @@ use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
-/// What stands above the run file.
+/// The comments above the run file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Header {
-    /// What was fitted.
     pub fit: Asked,
-    /// What was found for each key.
     pub key: Vec<Found>,
 }
 
@@ -27,31 +25,23 @@ pub struct Header {
 pub struct Asked {
     /// The whole command, without its output.
     pub command: String,
-    /// The data, as they were named.
     pub measured: String,
-    /// The scenario, as it was named.
     #[serde(rename = "in")]
     pub scenario: String,
     /// The scheme of the runs that were held against the data.
     pub scheme: String,
-    /// The free keys, as they were given.
     pub free: Vec<String>,
     /// The rows that were fitted, where these are not all.
     pub rows: Option<String>,
     /// chi^2, of data with uncertainties.
     pub chi_squared: Option<f64>,
-    /// The degrees of freedom.
     pub degrees_of_freedom: u64,
     /// The scatter of data without uncertainties, in their unit.
     pub scatter: Option<f64>,
-    /// Whether the model fits, in a sentence.
     pub verdict: String,
 }
 
 /// Writes the CSV of `report` on `out`; `scenario` is the fitted one, and `asked` has what was asked for.
-///
-/// # Errors
-/// When `out` cannot be written.
 pub fn write(
     mut out: impl Write,
     report: &Report<'_>,
@@ -91,7 +81,6 @@ pub fn write(
     rows.flush()
 }
 
-/// The numbers of one row.
 #[derive(Serialize)]
 struct Numbers {
     measured: f64,

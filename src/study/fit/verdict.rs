@@ -8,7 +8,6 @@ use crate::text::number::{short, significant};
 
 /// From this chi^2 a degree of freedom on, the search may have ended in a valley that is not the deepest.
 const VERY_POOR: f64 = 10.0;
-/// What is said then.
 const ELSEWHERE: &str = " The search goes down from where it begins, and there may be a better fit elsewhere: begin at other values of the free keys by --set KEY=VALUE.";
 /// What is said instead where the data depend on no free key.
 const NOWHERE: &str =
@@ -19,7 +18,6 @@ const FAR: f64 = 3.0;
 const EVEN: f64 = 0.01;
 /// With more rows than this in a turn, another whole turn between two of them is too far from the fitted rate to be meant.
 const MOST_ROWS: f64 = 10.0;
-/// The most rows that are named.
 const MOST_NAMED: usize = 5;
 /// From this correlation on, two keys are hardly told apart.
 pub(super) const HARDLY: f64 = 0.99;
@@ -92,7 +90,6 @@ impl Fit {
         }
     }
 
-    /// The rows that are far off.
     fn far(&self) -> String {
         let mut off: Vec<(f64, usize)> = self
             .residuals
@@ -116,28 +113,22 @@ impl Fit {
             };
         }
         let least = off.last().map_or(0.0, |(sigmas, _)| *sigmas);
+        let [least, worst] = [least, worst].map(|sigmas| significant(sigmas, 2));
         let names: Vec<String> = rows
             .iter()
             .take(MOST_NAMED)
             .map(ToString::to_string)
             .collect();
-        let sigmas = match rows.len() {
-            1 => format!("{} sigma", significant(worst, 2)),
-            _ => format!(
-                "{} to {} sigma",
-                significant(least, 2),
-                significant(worst, 2)
-            ),
-        };
         match (&names[..], more) {
-            ([row], _) => format!("row {row} is {sigmas} off"),
-            (rows, 0) => {
-                let (last, rows) = rows
-                    .split_last()
-                    .map_or(("", rows), |(last, rows)| (last.as_str(), rows));
-                format!("rows {} and {last} are {sigmas} off", rows.join(", "))
+            ([row], _) => format!("row {row} is {worst} sigma off"),
+            ([rows @ .., last], 0) => {
+                let rows = rows.join(", ");
+                format!("rows {rows} and {last} are {least} to {worst} sigma off")
             }
-            (rows, more) => format!("rows {} and {more} more are {sigmas} off", rows.join(", ")),
+            (rows, more) => {
+                let rows = rows.join(", ");
+                format!("rows {rows} and {more} more are {least} to {worst} sigma off")
+            }
         }
     }
 
@@ -244,7 +235,6 @@ impl Fit {
     }
 }
 
-/// A small probability in words.
 fn once_in(probability: f64) -> String {
     match 1.0 / probability {
         times if times < 1e6 => format!("once in {} times", significant(times, 2)),

@@ -6,18 +6,15 @@
 //! minimum until nothing changes any more.
 
 use super::levenberg::Stop;
-use super::model::Model;
+use super::model::{GoOn, Model};
 use crate::measured::{Data, Setting};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// What the data are weighed by.
 #[derive(Clone, Debug)]
 pub struct Weights {
     /// One standard uncertainty of each datum less the model, in the datum's unit; of unweighted data all the same.
     pub sigma: Vec<f64>,
-    /// Whether the uncertainties are stated in the data.
     pub are_stated: bool,
-    /// Whether uncertainties of settings are among them.
     pub count_settings: bool,
     /// A change of each datum that is small and well above rounding, in its unit.
     pub(super) resolution: Vec<f64>,
@@ -39,9 +36,6 @@ const UNIT: f64 = 1e-6;
 const SMALL: f64 = 0.01;
 
 /// Whether the uncertainties of `model`'s data are stated: of all, or of none.
-///
-/// # Errors
-/// When some lack theirs, or data of several units have none.
 pub fn are_stated(model: &Model) -> Result<bool, String> {
     let stated = model
         .data
@@ -88,13 +82,8 @@ fn uncertain_settings(model: &Model) -> impl Iterator<Item = usize> {
 
 /// How far each datum moves with one uncertainty of the setting, which is changed up and down, or at the edge of its range
 /// only to the one side that is possible.
-fn moved_by(
-    setting: usize,
-    model: &Model,
-    p: &[f64],
-    go_on: &(dyn Fn() -> bool + Sync),
-) -> Result<Vec<f64>, Stop> {
-    let at = |by: f64| model.values_with(p, (setting, by), go_on);
+fn moved_by(setting: usize, model: &Model, p: &[f64], go_on: GoOn<'_>) -> Result<Vec<f64>, Stop> {
+    let at = |by: f64| model.values(p, Some((setting, by)), go_on);
     let ((high, above), (low, below)) = match (at(PART), at(-PART)) {
         (Ok(above), Err(Stop::Impossible(_))) => ((PART, above), (0.0, at(0.0)?)),
         (Err(Stop::Impossible(_)), Ok(below)) => ((0.0, at(0.0)?), (-PART, below)),
@@ -108,10 +97,7 @@ fn moved_by(
 
 impl Weights {
     /// The weights of the data of `model` at the values `p` of its free keys.
-    ///
-    /// # Errors
-    /// When some data lack their uncertainty, or there are no runs at `p`.
-    pub fn at(model: &Model, p: &[f64], go_on: &(dyn Fn() -> bool + Sync)) -> Result<Self, Stop> {
+    pub fn at(model: &Model, p: &[f64], go_on: GoOn<'_>) -> Result<Self, Stop> {
         if !are_stated(model).map_err(Stop::Impossible)? {
             return Ok(Self::alike(model));
         }
@@ -128,17 +114,15 @@ impl Weights {
             sigma,
         };
         // How far each datum moves with one uncertainty of each setting.
-        let mut moved = Vec::new();
-        for setting in uncertain_settings(model) {
-            moved.push(moved_by(setting, model, p, go_on)?);
-        }
+        let settings = uncertain_settings(model);
+        let moved = settings.map(|setting| moved_by(setting, model, p, go_on));
+        let moved = moved.collect::<Result<Vec<_>, _>>()?;
         if !moved.is_empty() {
             weights.add(model, &moved);
         }
         Ok(weights)
     }
 
-    /// Of data without uncertainties, all of one unit.
     fn alike(model: &Model) -> Self {
         let squares = model.data.iter().map(|datum| datum.point.value.powi(2));
         let size = (squares.sum::<f64>() / model.data.len() as f64).sqrt();
@@ -153,7 +137,6 @@ impl Weights {
         }
     }
 
-    /// Adds what the uncertainties of settings move.
     fn add(&mut self, model: &Model, moved: &[Vec<f64>]) {
         self.count_settings = true;
         let rows = model.data.iter().map(|datum| datum.point.row).max();

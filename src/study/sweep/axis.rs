@@ -12,13 +12,10 @@ use toml::Value;
 /// A key that varies, and its values in their order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// The dotted key.
     pub key: String,
-    /// Its values, at least one.
     pub values: Vec<Value>,
 }
 
-/// The most values of one key.
 const MOST: u64 = 10_000_000;
 
 /// Digits of a value between two ends: one less than rounding spoils.
@@ -26,9 +23,6 @@ const DIGITS: usize = 15;
 
 impl Axis {
     /// The axis that `vary` asks for.
-    ///
-    /// # Errors
-    /// A key that there is not, values that it cannot have, a range without end or count; `place` is where it stands.
     pub(super) fn new(vary: &VaryFile, place: &str) -> Result<Self, Vec<Problem>> {
         let at = |name: &str| join(place, name);
         let kind = kind(&vary.key).map_err(|rule| {
@@ -46,22 +40,16 @@ impl Axis {
             }
         };
         if values.is_empty() {
-            return Err(vec![Problem::at(
-                at("values"),
-                "must hold at least one value",
-            )]);
+            let rule = "must hold at least one value";
+            return Err(vec![Problem::at(at("values"), rule)]);
         }
-        let values: Vec<_> = values
-            .into_iter()
-            .map(|value| as_kind(kind, value))
-            .collect();
-        let problems: Vec<_> = values
-            .iter()
-            .filter_map(|value| {
-                let rule = fits(kind, value).err()?;
-                Some(Problem::with_value(vary.key.clone(), value, rule))
-            })
-            .collect();
+        let values = values.into_iter().map(|value| as_kind(kind, value));
+        let values: Vec<_> = values.collect();
+        let problem = |value| {
+            let rule = fits(kind, value).err()?;
+            Some(Problem::with_value(vary.key.clone(), value, rule))
+        };
+        let problems: Vec<_> = values.iter().filter_map(problem).collect();
         if problems.is_empty() {
             Ok(Self {
                 key: vary.key.clone(),
@@ -131,9 +119,6 @@ fn as_kind(kind: Kind, value: Value) -> Value {
 }
 
 /// What `--vary` is given: `KEY=A..B:N` or `KEY=V1,V2,...`.
-///
-/// # Errors
-/// When there is no `=`, or a range is not whole.
 pub fn parse(argument: &str) -> Result<VaryFile, String> {
     let Some((key, text)) = argument.split_once('=') else {
         return Err(

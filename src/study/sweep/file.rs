@@ -2,35 +2,32 @@
 
 use crate::scenario::document::Document;
 use crate::scenario::dotted::join;
-use crate::scenario::keys;
+use crate::scenario::keys::{Kind, Range};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, Problems, ScenarioFile};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 /// A sweep as its file tells it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SweepFile {
     /// The version that wrote the file; only in the header of a CSV.
     pub gyrolab: Option<String>,
     /// What it is called; without one, as the scenario is.
     pub title: Option<String>,
-    /// What it shows.
     pub about: Option<String>,
-    /// Where it comes from.
     pub source: Option<String>,
     /// `K/N`: of its rows only those of this shard.
     pub shard: Option<String>,
     /// The readouts; without any, every number.
     pub measure: Option<Vec<String>>,
-    /// What varies; the last fastest.
+    #[serde(default)]
     pub vary: Vec<VaryFile>,
-    /// What is run.
     pub scenario: Base,
 }
 
 /// The scenario of a sweep, the key `scenario` of its file.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Base {
     /// The name of a preset, or a file's path from the sweep file on.
@@ -38,28 +35,39 @@ pub enum Base {
     /// The scenario itself, as it is written.
     Written(Table),
     /// The scenario itself, checked.
+    #[serde(skip_deserializing)]
     Checked(Box<ScenarioFile>),
 }
 
 /// A key that varies, a table `[[vary]]` of a sweep's file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct VaryFile {
-    /// The dotted key.
     pub key: String,
-    /// Its values, one by one.
     pub values: Option<Vec<Value>>,
     /// The first of evenly spaced values, where `values` has none.
     pub from: Option<f64>,
-    /// The last of them.
     pub to: Option<f64>,
-    /// How many there are.
     pub count: Option<u64>,
 }
 
-const KEYS: [&str; 8] = [
-    "gyrolab", "title", "about", "source", "shard", "measure", "vary", "scenario",
+/// The keys of a sweep file and of `[[vary]]`, with what each may hold; the others are checked one by one.
+const KEYS: [(&str, Option<Kind>); 8] = [
+    ("gyrolab", Some(Kind::Line)),
+    ("title", Some(Kind::Line)),
+    ("about", Some(Kind::Paragraph)),
+    ("source", Some(Kind::Paragraph)),
+    ("shard", Some(Kind::Line)),
+    ("measure", None),
+    ("vary", None),
+    ("scenario", None),
 ];
-const VARY_KEYS: [&str; 5] = ["key", "values", "from", "to", "count"];
+const VARY_KEYS: [(&str, Option<Kind>); 5] = [
+    ("key", Some(Kind::Line)),
+    ("values", None),
+    ("from", Some(Kind::Number(Range::Any))),
+    ("to", Some(Kind::Number(Range::Any))),
+    ("count", Some(Kind::Whole(0, i64::MAX))),
+];
 
 impl SweepFile {
     /// A sweep that varies nothing yet.
@@ -76,164 +84,80 @@ impl SweepFile {
         }
     }
 
-    /// The sweep that `document` tells; what its values mean is not checked.
-    ///
-    /// # Errors
-    /// Unknown keys, wrong types, what is missing.
+    /// The sweep in `document`; what its values mean is not checked.
     pub fn read(document: &Document) -> Result<Self, Problems> {
-        let mut reader = Reader {
-            table: document.table(),
-            path: String::new(),
-            problems: Vec::new(),
-        };
-        reader.know(&KEYS);
-        let file = Self {
-            gyrolab: reader.as_in_scenarios("gyrolab"),
-            title: reader.as_in_scenarios("title"),
-            about: reader.as_in_scenarios("about"),
-            source: reader.as_in_scenarios("source"),
-            shard: reader.text("shard"),
-            measure: reader.words("measure"),
-            vary: Vec::new(),
-            scenario: reader.scenario(),
-        };
-        let vary = reader.varied();
-        if reader.problems.is_empty() {
-            Ok(Self { vary, ..file })
+        let table = document.table();
+        let mut problems = check(table, "", &KEYS);
+        let mut refuse = |key: &str, rule: &str| problems.push(refused(table, "", key, rule));
+        let is_words = |value: &Value| list(value).is_some_and(|all| all.iter().all(Value::is_str));
+        if !table.get("measure").is_none_or(is_words) {
+            refuse("measure", "must be a list of names in brackets");
+        }
+        if !matches!(
+            table.get("scenario"),
+            Some(Value::String(_) | Value::Table(_))
+        ) {
+            refuse(
+                "scenario",
+                "is missing, or is neither a preset's name, nor a file's path, nor a table [scenario] with the scenario itself",
+            );
+        }
+        let vary = table.get("vary");
+        if !vary.is_none_or(|vary| list(vary).is_some_and(|all| all.iter().all(Value::is_table))) {
+            refuse("vary", "must be tables: write [[vary]]");
+        }
+        let tables = vary.and_then(list).into_iter().flatten();
+        for (index, table) in tables.filter_map(Value::as_table).enumerate() {
+            let path = format!("vary.{index}");
+            problems.extend(check(table, &path, &VARY_KEYS));
+            if !table.contains_key("key") {
+                let rule = "is missing: the dotted key that varies";
+                problems.push(refused(table, &path, "key", rule));
+            }
+            if !table.get("values").is_none_or(Value::is_array) {
+                let rule = "must be a list in brackets";
+                problems.push(refused(table, &path, "values", rule));
+            }
+        }
+        if problems.is_empty() {
+            let file = table.clone().try_into();
+            file.map_err(|error: toml::de::Error| {
+                document.placed(vec![Problem::at("", error.message().to_owned())])
+            })
         } else {
-            Err(document.placed(reader.problems))
+            Err(document.placed(problems))
         }
     }
 
-    /// The file as TOML.
     pub fn to_toml(&self) -> String {
         // It holds nothing that TOML cannot write.
         toml::to_string(self).unwrap_or_default()
     }
 }
 
-/// Reads the values of one table, and notes what is wrong with them.
-struct Reader<'a> {
-    table: &'a Table,
-    path: String,
-    problems: Vec<Problem>,
+fn list(value: &Value) -> Option<&Vec<Value>> {
+    value.as_array()
 }
 
-impl<'a> Reader<'a> {
-    fn refuse(&mut self, name: &str, rule: impl Into<String>) {
-        let key = join(&self.path, name);
-        self.problems.push(match self.table.get(name) {
-            Some(value) => Problem::with_value(key, value, rule),
-            None => Problem::at(key, rule),
-        });
+/// The key `name` of `table`, which stands at `path`, breaks a `rule`.
+fn refused(table: &Table, path: &str, name: &str, rule: &str) -> Problem {
+    let key = join(path, name);
+    match table.get(name) {
+        Some(value) => Problem::with_value(key, value, rule),
+        None => Problem::at(key, rule),
     }
+}
 
-    fn know(&mut self, known: &[&str]) {
-        let unknown = self
-            .table
-            .keys()
-            .filter(|name| !known.contains(&name.as_str()));
-        for name in unknown.cloned().collect::<Vec<_>>() {
-            let near = nearest(&name, known.iter().copied());
-            let key = join(&self.path, &name);
-            self.problems
-                .push(Problem::at(key, format!("unknown key: {near}")));
-        }
-    }
-
-    /// The value of `name`, if there is one and `read` takes it; `wanted` says what that would be.
-    fn value<T>(
-        &mut self,
-        name: &str,
-        wanted: &str,
-        read: impl Fn(&'a Value) -> Option<T>,
-    ) -> Option<T> {
-        let value = self.table.get(name)?;
-        let read = read(value);
-        if read.is_none() {
-            self.refuse(name, format!("must be {wanted}"));
-        }
-        read
-    }
-
-    fn text(&mut self, name: &str) -> Option<String> {
-        self.value(name, "text", Value::as_str).map(str::to_owned)
-    }
-
-    /// The text of a key that scenarios have too, by their rule.
-    fn as_in_scenarios(&mut self, name: &str) -> Option<String> {
-        let value = self.table.get(name)?;
-        if let Err(rule) = keys::find(name).and_then(|(_, kind)| kind.check(value)) {
-            self.refuse(name, rule);
-        }
-        value.as_str().map(str::to_owned)
-    }
-
-    fn number(&mut self, name: &str) -> Option<f64> {
-        let number = |value: &Value| match value {
-            Value::Integer(whole) => Some(*whole as f64),
-            other => other.as_float(),
+/// What is wrong with the names in `table`, which stands at `path`, and with the values of `known` kinds.
+fn check(table: &Table, path: &str, known: &[(&str, Option<Kind>)]) -> Vec<Problem> {
+    let problem = |(name, value): (&String, &Value)| {
+        let Some((_, kind)) = known.iter().find(|(known, _)| known == name) else {
+            let near = nearest(name, known.iter().map(|(known, _)| *known));
+            let key = join(path, name);
+            return Some(Problem::at(key, format!("unknown key: {near}")));
         };
-        self.value(name, "a number", number)
-    }
-
-    fn count(&mut self, name: &str) -> Option<u64> {
-        let count = |value: &Value| u64::try_from(value.as_integer()?).ok();
-        self.value(name, "a whole number, 0 or more", count)
-    }
-
-    fn words(&mut self, name: &str) -> Option<Vec<String>> {
-        let words = |value: &Value| -> Option<Vec<String>> {
-            let word = |value: &Value| value.as_str().map(str::to_owned);
-            value.as_array()?.iter().map(word).collect()
-        };
-        self.value(name, "a list of names in brackets", words)
-    }
-
-    fn scenario(&mut self) -> Base {
-        let is_one = |value: &Value| match value {
-            Value::String(name) => Some(Base::Name(name.clone())),
-            Value::Table(table) => Some(Base::Written(table.clone())),
-            _ => None,
-        };
-        let wanted =
-            "a preset's name, a file's path, or a table [scenario] with the scenario itself";
-        let found = self.value("scenario", wanted, is_one);
-        if !self.table.contains_key("scenario") {
-            self.refuse("scenario", format!("is missing: it must be {wanted}"));
-        }
-        found.unwrap_or(Base::Written(Table::new()))
-    }
-
-    fn varied(&mut self) -> Vec<VaryFile> {
-        let is_list = |list: &&Vec<Value>| list.iter().all(Value::is_table);
-        let read = |value: &'a Value| value.as_array().filter(is_list);
-        let Some(list) = self.value("vary", "tables: write [[vary]]", read) else {
-            return Vec::new();
-        };
-        let tables = list.iter().filter_map(Value::as_table).enumerate();
-        let mut all = Vec::new();
-        for (index, table) in tables {
-            let mut reader = Reader {
-                table,
-                path: format!("vary.{index}"),
-                problems: Vec::new(),
-            };
-            reader.know(&VARY_KEYS);
-            if !table.contains_key("key") {
-                reader.refuse("key", "is missing: the dotted key that varies");
-            }
-            all.push(VaryFile {
-                key: reader.text("key").unwrap_or_default(),
-                values: reader.value("values", "a list in brackets", |value| {
-                    value.as_array().cloned()
-                }),
-                from: reader.number("from"),
-                to: reader.number("to"),
-                count: reader.count("count"),
-            });
-            self.problems.append(&mut reader.problems);
-        }
-        all
-    }
+        let rule = kind.and_then(|kind| kind.check(value).err())?;
+        Some(refused(table, path, name, &rule))
+    };
+    table.iter().filter_map(problem).collect()
 }

@@ -3,7 +3,6 @@
 use super::axis::Axis;
 use super::checks::{axes, measured};
 use super::file::{Base, SweepFile};
-use super::row::{SweepRow, line};
 use super::shard::Shard;
 use crate::analysis::at_end::readouts;
 use crate::analysis::readouts::{Readout, Value as Readable};
@@ -16,6 +15,7 @@ use crate::scenario::file::ScenarioFile;
 use crate::scenario::rescale::{MOST_STEPS, accumulates};
 use crate::scenario::{Problem, Problems, Scenario};
 use crate::text::number::{decimal, shortest};
+use serde::Serialize;
 use std::path::Path;
 use toml::Value;
 
@@ -25,15 +25,24 @@ const TIME_STEP: &str = "motion.time_step_s";
 /// The keys of a push in steps, and those that say the same in seconds.
 const IN_STEPS_OR_SECONDS: [(&str, &str); 2] = [("first_step", "from_s"), ("steps", "for_s")];
 
-/// The most points of one sweep.
 const MOST_POINTS: u64 = 1_000_000_000;
+
+/// One row of a sweep's CSV.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepRow {
+    /// The line of the file, with its end.
+    pub line: String,
+    /// Why it holds no readouts; `None` where it holds some.
+    pub empty: Option<String>,
+    /// Whether its run failed.
+    pub has_failed: bool,
+}
 
 /// A grid of runs whose keys, values and readouts have been checked.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// As it stands in the header of its CSV.
     file: SweepFile,
-    /// What every run begins from.
     base: Document,
     axes: Vec<Axis>,
     measure: Vec<&'static Readout>,
@@ -43,9 +52,6 @@ pub struct Sweep {
 
 impl Sweep {
     /// The sweep that `document` tells, a sweep file or the header of a sweep's CSV.
-    ///
-    /// # Errors
-    /// Everything that is wrong with it.
     pub fn open(document: &Document) -> Result<Self, Problems> {
         let file = SweepFile::read(document)?;
         let base = Self::base(&file, document, |_| Ok(()))?;
@@ -53,9 +59,6 @@ impl Sweep {
     }
 
     /// The sweep `file` from `base` on, whatever `file` says of its scenario; `placed` knows where things stand.
-    ///
-    /// # Errors
-    /// Everything that is wrong with it.
     pub fn new(
         file: SweepFile,
         base: &Scenario,
@@ -64,14 +67,11 @@ impl Sweep {
         let mut problems = Vec::new();
         let axes = axes(&file.vary, &mut problems);
         let measure = measured(file.measure.as_deref(), &axes, &mut problems);
-        let shard = match file.shard.as_deref().map(str::parse) {
-            None => Shard::WHOLE,
-            Some(Ok(shard)) => shard,
-            Some(Err(rule)) => {
-                problems.push(Problem::at("shard", rule));
-                Shard::WHOLE
-            }
-        };
+        let shard = file.shard.as_deref().map_or(Ok(Shard::WHOLE), str::parse);
+        let shard = shard.unwrap_or_else(|rule| {
+            problems.push(Problem::at("shard", rule));
+            Shard::WHOLE
+        });
         let counts = axes.iter().map(|axis| axis.values.len() as u64);
         let points = counts.fold(1, u64::saturating_mul);
         if points > MOST_POINTS {
@@ -88,23 +88,18 @@ impl Sweep {
             view: None,
             ..base.file.clone()
         };
-        let document = Document::from_file("", &base_file)?;
+        let base = Document::from_file("", &base_file)?;
+        let names = measure.iter().map(|readout| readout.name.to_owned());
         let sweep = Self {
             file: SweepFile {
-                scenario: Base::Checked(Box::new(base_file.clone())),
                 gyrolab: Some(env!("CARGO_PKG_VERSION").to_owned()),
                 title: Some(file.title.unwrap_or_else(|| base_file.title.clone())),
                 shard: (shard != Shard::WHOLE).then(|| shard.to_string()),
-                measure: Some(
-                    measure
-                        .iter()
-                        .map(|readout| readout.name.to_owned())
-                        .collect(),
-                ),
-                vary: file.vary,
+                measure: Some(names.collect()),
+                scenario: Base::Checked(Box::new(base_file)),
                 ..file
             },
-            base: document,
+            base,
             axes,
             measure,
             shard,
@@ -117,9 +112,6 @@ impl Sweep {
     }
 
     /// The scenario that `file`, which stands in `document`, begins from, with what `change` changes in it.
-    ///
-    /// # Errors
-    /// When there is none of that name, or it or the change is wrong.
     pub fn base(
         file: &SweepFile,
         document: &Document,
@@ -189,12 +181,10 @@ impl Sweep {
         })
     }
 
-    /// What it is called.
     pub fn title(&self) -> &str {
         self.file.title.as_deref().unwrap_or_default()
     }
 
-    /// What it shows, in a paragraph.
     pub fn about(&self) -> Option<&str> {
         self.file.about.as_deref()
     }
@@ -204,7 +194,6 @@ impl Sweep {
         &self.axes
     }
 
-    /// The readouts, in the order of their columns.
     pub fn measure(&self) -> &[&'static Readout] {
         &self.measure
     }
@@ -214,34 +203,21 @@ impl Sweep {
         self.shard
     }
 
-    /// How many rows it has: those of its shard.
+    /// How many rows its shard has.
     pub fn rows(&self) -> u64 {
         let points = self.shard.range(self.points);
         points.end - points.start
     }
 
-    /// The number of points of the whole grid.
     pub fn points(&self) -> u64 {
         self.points
     }
 
-    /// The sweep file in `# ` lines, as its CSV begins.
-    pub fn file_lines(&self) -> String {
-        commented(&self.file.to_toml())
-    }
-
     /// The sweep file in `# ` lines, and the line of the columns' names.
     pub fn header(&self) -> String {
-        self.file_lines() + &self.names()
-    }
-
-    /// The line of the columns' names, with its end.
-    pub fn names(&self) -> String {
         let keys = self.axes.iter().map(|axis| axis.key.as_str());
-        let names: Vec<_> = keys
-            .chain(self.measure.iter().map(|readout| readout.name))
-            .collect();
-        line(&names)
+        let readouts = self.measure.iter().map(|readout| readout.name);
+        commented(&self.file.to_toml()) + &line(&keys.chain(readouts).collect::<Vec<_>>())
     }
 
     /// The values of the point behind the `row`-th row, from 0, one of each axis.
@@ -283,9 +259,6 @@ impl Sweep {
     }
 
     /// The scenario of the `row`-th row, from 0.
-    ///
-    /// # Errors
-    /// Why there is none: the rule that its values break together.
     pub fn scenario(&self, row: u64) -> Result<Scenario, String> {
         let mut document = self.base.clone();
         let mut time_step_s = None;
@@ -316,10 +289,12 @@ impl Sweep {
             Ok(cells) => (cells?, None),
             Err(why) => (vec![Readable::Nothing; self.measure.len()], Some(why)),
         };
+        let is_empty = cells.iter().all(|cell| *cell == Readable::Nothing);
+        let none = || "none of its readouts can be stated".to_owned();
         Some(SweepRow {
-            holds_readouts: cells.iter().any(|cell| *cell != Readable::Nothing),
             line: line(&(self.labels(row), cells)),
-            failure,
+            empty: is_empty.then(|| failure.clone().unwrap_or_else(none)),
+            has_failed: failure.is_some(),
         })
     }
 }
@@ -342,6 +317,16 @@ fn inside(problems: Problems, document: &Document) -> Problems {
     document.placed(list)
 }
 
+/// `cells` as one line of CSV.
+fn line(cells: &impl Serialize) -> String {
+    let mut writer = csv::WriterBuilder::new()
+        .has_headers(false)
+        .from_writer(Vec::new());
+    // Writing plain values to memory does not fail.
+    let _ = writer.serialize(cells);
+    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+}
+
 /// A varied value as TOML has it, but for large numbers without their zeros.
 fn in_words(value: &Value) -> String {
     match value {
@@ -350,7 +335,7 @@ fn in_words(value: &Value) -> String {
     }
 }
 
-/// A varied value as it stands in its column.
+/// A varied value as its column has it.
 fn label(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),

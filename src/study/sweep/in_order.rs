@@ -4,7 +4,7 @@ use crate::cores;
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::sync::mpsc::channel;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -21,18 +21,14 @@ pub fn in_order<T: Send>(
     mut take: impl FnMut(Vec<T>) -> ControlFlow<()>,
 ) {
     let Some(pool) = cores::threads() else {
-        for index in range {
-            let result = of(index, &|| true);
-            if result.is_none_or(|result| take(vec![result]).is_break()) {
-                return;
-            }
-        }
+        let mut results = range.map_while(|index| of(index, &|| true));
+        let _ = results.try_for_each(|result| take(vec![result]));
         return;
     };
     let (next, taken) = (AtomicU64::new(range.start), AtomicU64::new(range.start));
     let goes_on = AtomicBool::new(true);
     let (sender, receiver) = channel();
-    let work = |results: std::sync::mpsc::Sender<(u64, T)>| {
+    let work = |results: Sender<(u64, T)>| {
         let goes_on = || goes_on.load(Relaxed);
         while goes_on() {
             let index = next.fetch_add(1, Relaxed);
@@ -58,22 +54,32 @@ pub fn in_order<T: Send>(
             scope.spawn(move |_| work(sender));
         }
         drop(sender); // so that the receiver ends with the last worker
-        let (mut waiting, mut wanted) = (BTreeMap::new(), range.start);
-        while let Ok(first) = receiver.recv() {
-            sleep(PERIOD);
-            waiting.extend(std::iter::once(first).chain(receiver.try_iter()));
-            let mut ready = Vec::new();
-            while let Some(result) = waiting.remove(&wanted) {
-                ready.push(result);
-                wanted += 1;
-            }
-            if !ready.is_empty() && take(ready).is_break() {
-                break;
-            }
-            taken.store(wanted, Relaxed);
-        }
+        hand_over(&receiver, &taken, &mut take);
         goes_on.store(false, Relaxed);
     });
+}
+
+/// Gives the results to `take` in their order, until the last worker has ended or `take` breaks. `taken` is the index of
+/// the next one.
+fn hand_over<T>(
+    receiver: &Receiver<(u64, T)>,
+    taken: &AtomicU64,
+    take: &mut impl FnMut(Vec<T>) -> ControlFlow<()>,
+) {
+    let (mut waiting, mut wanted) = (BTreeMap::new(), taken.load(Relaxed));
+    while let Ok(first) = receiver.recv() {
+        sleep(PERIOD);
+        waiting.extend(std::iter::once(first).chain(receiver.try_iter()));
+        let mut ready = Vec::new();
+        while let Some(result) = waiting.remove(&wanted) {
+            ready.push(result);
+            wanted += 1;
+        }
+        if !ready.is_empty() && take(ready).is_break() {
+            return;
+        }
+        taken.store(wanted, Relaxed);
+    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Sweeps: a grid of runs, of which every one becomes a row.
+//! Sweeps: a grid of runs; each run becomes a row.
 //!
 //! A [`SweepFile`] is the TOML: a scenario, the keys that vary, the readouts. Checked it is a [`Sweep`],
 //! which knows its points and computes the row of any of them. [`in_order`] does so on all cores, [`part`] keeps the rows
@@ -8,17 +8,17 @@
 
 pub mod axis;
 mod checks;
+mod empty_rows;
 pub mod file;
 mod grid;
 pub mod in_order;
 pub mod join;
 pub mod part;
-mod row;
 pub mod shard;
 pub mod shipped;
 
 pub use axis::Axis;
+pub use empty_rows::EmptyRows;
 pub use file::SweepFile;
-pub use grid::Sweep;
-pub use row::{RowsThere, SweepRow};
+pub use grid::{Sweep, SweepRow};
 pub use shard::Shard;

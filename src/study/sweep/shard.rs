@@ -12,19 +12,15 @@ pub struct Shard {
     of: u64,
 }
 
-/// The most shards of one sweep.
 const MOST: u64 = 1_000_000;
 
 impl Shard {
-    /// All points.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Which one it is, from 1.
     pub fn number(self) -> u64 {
         self.number
     }
 
-    /// How many there are.
     pub fn of(self) -> u64 {
         self.of
     }

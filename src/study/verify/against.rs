@@ -17,9 +17,7 @@ const VERSION: &[u8] = b"# gyrolab = ";
 /// The first thing in a file that is not as it is computed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// The line of the file, counted from 1.
     pub line: u64,
-    /// What differs there: column, both values.
     text: String,
 }
 
@@ -32,11 +30,11 @@ impl fmt::Display for Difference {
 /// Takes what is computed, and compares it with a file line by line up to the first difference.
 pub(super) struct Against {
     file: Box<dyn BufRead>,
-    delimiter: u8,
+    pub delimiter: u8,
     /// How many of the first columns say which row it is.
-    keys: usize,
+    pub keys: usize,
     /// The columns that are not compared.
-    left_out: &'static [&'static str],
+    pub left_out: &'static [&'static str],
     /// The computed line, as far as it has come.
     computed: Vec<u8>,
     line: u64,
@@ -50,17 +48,12 @@ pub(super) struct Against {
 
 impl Against {
     /// A file of which `head` has been read, and `rest` not.
-    pub(super) fn new(
-        head: &Head,
-        rest: impl Read + 'static,
-        delimiter: char,
-        keys: usize,
-    ) -> Self {
+    pub(super) fn new(head: &Head, rest: impl Read + 'static) -> Self {
         let head = Cursor::new(head.bytes().to_vec());
         Self {
             file: Box::new(BufReader::new(head.chain(rest))),
-            delimiter: delimiter as u8,
-            keys,
+            delimiter: b',',
+            keys: 0,
             left_out: &[],
             computed: Vec::new(),
             line: 0,
@@ -72,20 +65,12 @@ impl Against {
         }
     }
 
-    /// Does not compare the columns `names`.
-    pub(super) fn leave_out(&mut self, names: &'static [&'static str]) {
-        self.left_out = names;
-    }
-
     /// Says, while lines are compared, whether a difference has been found.
     pub(super) fn differs(&self) -> Rc<Cell<bool>> {
         Rc::clone(&self.differs)
     }
 
     /// How many rows are the same, and what differs first.
-    ///
-    /// # Errors
-    /// When the file cannot be read.
     pub(super) fn end(mut self) -> io::Result<(u64, Option<Difference>)> {
         if self.difference.is_none() {
             let more = self.next(MOST_BEYOND)?;
@@ -129,10 +114,6 @@ impl Against {
         }
         let there = without_cr.unwrap_or(there);
         let is_header = self.names.is_none() && computed.starts_with(b"#");
-        let is_version = is_header
-            && [computed, there]
-                .iter()
-                .all(|line| line.starts_with(VERSION));
         let line = self.line;
         let text = if !is_whole && there.is_empty() {
             let computed = shown(computed);
@@ -143,7 +124,7 @@ impl Against {
             Some(format!(
                 "line {line}, the last one, is cut off before its end"
             ))
-        } else if there == computed || is_version {
+        } else if there == computed || is_header && are_versions(computed, there) {
             None
         } else {
             self.fields_differ(there, computed)
@@ -183,22 +164,10 @@ impl Against {
         let Some(&at) = differing.iter().find(is_compared) else {
             return if differing.is_empty() { whole() } else { None };
         };
-        let keys = names.iter().zip(&computed).take(self.keys);
-        let keys: Vec<_> = keys
-            .map(|(name, value)| format!("{name} {value}"))
-            .collect();
-        let row = if keys.is_empty() {
-            String::new()
-        } else {
-            let keys = brief(&keys.join(", "), 2 * MOST_SHOWN);
-            format!(", the row of {keys}")
-        };
-        let [there, computed] = [&there[at], &computed[at]].map(|text| {
-            if text.is_empty() {
-                "empty".to_owned()
-            } else {
-                brief(text, MOST_SHOWN)
-            }
+        let row = self.row_of(names, &computed);
+        let [there, computed] = [&there[at], &computed[at]].map(|text| match text.as_str() {
+            "" => "empty".to_owned(),
+            text => brief(text, MOST_SHOWN),
         });
         let column = &names[at];
         let field = format!("line {line}{row}: {column} is {there}, computed {computed}");
@@ -207,6 +176,19 @@ impl Against {
             return Some(format!("{why}, {field}"));
         }
         Some(field)
+    }
+
+    /// Which row the one with these fields is: by its first columns.
+    fn row_of(&self, names: &[String], fields: &[String]) -> String {
+        let keys = names.iter().zip(fields).take(self.keys);
+        let keys: Vec<_> = keys
+            .map(|(name, value)| format!("{name} {value}"))
+            .collect();
+        if keys.is_empty() {
+            return String::new();
+        }
+        let keys = brief(&keys.join(", "), 2 * MOST_SHOWN);
+        format!(", the row of {keys}")
     }
 }
 
@@ -235,6 +217,11 @@ fn without_mark(line: &[u8], is_first: bool) -> &[u8] {
     marked.filter(|_| is_first).unwrap_or(line)
 }
 
+/// Whether both lines of a header name a version, which may be another one.
+fn are_versions(one: &[u8], other: &[u8]) -> bool {
+    [one, other].iter().all(|line| line.starts_with(VERSION))
+}
+
 /// The fields of a line; none where it is not text.
 fn fields(line: &[u8], delimiter: u8) -> Vec<String> {
     let mut reader = csv::ReaderBuilder::new();
@@ -248,7 +235,6 @@ fn fields(line: &[u8], delimiter: u8) -> Vec<String> {
     })
 }
 
-/// What there is to show of a line.
 fn shown(line: &[u8]) -> String {
     brief(
         String::from_utf8_lossy(line).trim_end_matches(['\r', '\n']),

@@ -63,7 +63,7 @@ pub(super) fn quantities(table: &Table, varied: &[String], columns: &[&str]) -> 
         let numbers = table.numbers(name);
         numbers.is_some_and(|numbers| numbers.iter().any(|number| number.is_finite()))
     };
-    let names = table.names.iter().filter(|name| {
+    let names = table.names().iter().filter(|name| {
         !varied.contains(name) && is_asked(name) && is_number(name) && !name.contains(UNCERTAINTY)
     });
     let names: Vec<&String> = names.collect();
@@ -112,7 +112,7 @@ fn uncertainty_of(table: &Table, name: &str) -> Option<String> {
         };
         name.starts_with(begin) && name.ends_with(unit)
     };
-    table.names.iter().find(of_name).cloned()
+    table.names().iter().find(of_name).cloned()
 }
 
 impl Quantity {
@@ -160,7 +160,7 @@ pub(super) fn theory<'a>(
     table: &'a Table,
     columns: &'a [&str],
 ) -> impl Iterator<Item = &'a str> + 'a {
-    let names = table.names.iter().map(String::as_str);
+    let names = table.names().iter().map(String::as_str);
     names.filter(|name| {
         let is_drawn = columns.is_empty() || columns.contains(name);
         is_drawn && Role::of(name) == Role::Theory && !name.contains(UNCERTAINTY)

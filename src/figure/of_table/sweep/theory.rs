@@ -6,7 +6,7 @@ use crate::figure::chart::Style;
 
 /// Numbers that differ by no more than this part of themselves are the same.
 const SAME: f64 = 1e-6;
-/// On a page as wide as a column, a line of so many rows looks smooth. One of fewer shows where they are.
+/// From this many rows on a line looks smooth at the width of a column; with fewer its points are marked.
 const SMOOTH: f64 = 40.0;
 
 /// A line of theory.

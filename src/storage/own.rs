@@ -4,15 +4,12 @@
 use crate::export::temporary;
 use rustix::fs::OFlags;
 use rustix::io::Errno;
-use std::fs::{File, OpenOptions, Permissions};
+use std::fs::{DirBuilder, File, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
-use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt};
+use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt, PermissionsExt};
 use std::path::Path;
 
-/// Opens the file at `path` with `options`.
-///
-/// # Errors
-/// When it cannot be opened, belongs to another user, or is not a regular file.
+/// Opens the file at `path`. It is refused if it belongs to another user or is not a regular file.
 pub(super) fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
     let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK;
     let opened = options.custom_flags(flags.bits() as i32).open(path);
@@ -38,22 +35,15 @@ fn refused(reason: &str) -> io::Error {
     io::Error::new(io::ErrorKind::PermissionDenied, reason)
 }
 
-/// Reads the bytes of the file at `path`.
-///
-/// # Errors
-/// As [`open`].
-pub(in crate::storage) fn read(path: &Path) -> io::Result<Vec<u8>> {
+pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open(path, OpenOptions::new().read(true))?.read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-/// Replaces the file at `path` by one that contains `parts` and that is the user's alone. A file at `path` is always
-/// complete.
-///
-/// # Errors
-/// When the new file cannot be written; the old one is then unchanged.
-pub(in crate::storage) fn replace(path: &Path, parts: &[&str]) -> io::Result<()> {
+/// Replaces the file at `path` by one that contains `parts` and that is the user's alone. The file is complete at any
+/// moment; where the new one cannot be written, the old one stays.
+pub(super) fn replace(path: &Path, parts: &[&str]) -> io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     let mut file = temporary::file_in(folder, &Permissions::from_mode(0o600))?;
     for part in parts {
@@ -61,4 +51,9 @@ pub(in crate::storage) fn replace(path: &Path, parts: &[&str]) -> io::Result<()>
     }
     file.persist(path)?;
     Ok(())
+}
+
+/// Creates the folder if it does not exist, accessible to the user alone.
+pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
+    DirBuilder::new().recursive(true).mode(0o700).create(folder)
 }

@@ -1,0 +1,168 @@
+//! A CSV with a header of `#` lines, taken apart: measured data, and the tables of sweeps, comparisons and fits.
+
+use super::head::Head;
+use super::problem::{Found, Problem};
+use crate::text::unread;
+use ::csv::{ReaderBuilder, StringRecord, Trim};
+use std::fmt;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// The longest file that is read, bytes.
+const LONGEST: u64 = 32 << 20;
+
+/// Separators of cells. The last two are used where decimals have a comma.
+const SEPARATORS: [char; 3] = [',', ';', '\t'];
+
+/// The cells of a file.
+#[derive(Clone, Debug)]
+pub struct Csv {
+    /// The lines that begin with `#` before the names, without that.
+    pub header: String,
+    pub line_of_names: u64,
+    pub names: Vec<String>,
+    pub separator: char,
+    /// The rows, each with its line and as many cells as there are names.
+    pub rows: Vec<(u64, Vec<String>)>,
+}
+
+/// A problem in `line`.
+pub fn at_line(line: u64, mut problem: Problem) -> Problem {
+    problem.place = Some(format!("line {line}"));
+    problem
+}
+
+/// The text of the file `path`.
+///
+/// # Errors
+/// When it is a folder, too long, no text in UTF-8, or the system reports an error.
+pub fn text(path: &Path) -> Result<String, Problem> {
+    if path.is_dir() {
+        return Err(Problem::at("", "is a folder: name a CSV file in it"));
+    }
+    let mut bytes = Vec::new();
+    // Of a FIFO no more than the limit.
+    let read = File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes));
+    read.map_err(|error| Problem::at("", unread::why(&error)))?;
+    if bytes.len() as u64 > LONGEST {
+        let most = LONGEST >> 20;
+        let rule = format!("is longer than {most} MiB, the most that is read: leave rows out");
+        return Err(Problem::at("", rule));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = good.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
+        let rule = "is not text in UTF-8: save the file in that encoding (\"CSV UTF-8\")";
+        at_line(line, Problem::at("", rule))
+    })
+}
+
+/// A problem of the whole file.
+fn one(rule: String) -> Found {
+    Found::from(vec![Problem::at("", rule)])
+}
+
+fn cannot(error: &dyn fmt::Display) -> Found {
+    one(format!("cannot be read: {error}"))
+}
+
+impl Csv {
+    /// Takes `text` apart, of at most `most` values (rows times columns).
+    ///
+    /// # Errors
+    /// When there are no names or no rows, too many values, or rows with more or fewer cells than there are names.
+    pub fn of(text: &str, most: usize) -> Result<Self, Found> {
+        let head = Head::read(&mut text.as_bytes()).map_err(|error| cannot(&error))?;
+        let names = str::from_utf8(head.names()).unwrap_or_default();
+        let is_there = |separator: &&char| names.contains(**separator);
+        let separator = *SEPARATORS.iter().find(is_there).unwrap_or(&SEPARATORS[0]);
+        let mut csv = Self {
+            header: head
+                .header()
+                .map_err(|problem| Found::from(vec![problem]))?,
+            line_of_names: head.line_of_names(),
+            names: Vec::new(),
+            separator,
+            rows: Vec::new(),
+        };
+        let lines = text.splitn(csv.line_of_names as usize, '\n').last();
+        let lines = lines.unwrap_or_default().trim_start_matches('\u{feff}');
+        csv.read_rows(lines, most)?;
+        if csv.names.is_empty() {
+            let rule = "has no columns: the first line after its comments must name them, such as t_s,tilt_deg";
+            return Err(one(rule.to_owned()));
+        }
+        if csv.rows.is_empty() {
+            return Err(one("has no rows below the names of its columns".to_owned()));
+        }
+        Ok(csv)
+    }
+
+    /// Reads the line of names and the rows, which are `text`.
+    fn read_rows(&mut self, text: &str, most: usize) -> Result<(), Found> {
+        // With every line ended alike, the reader's own count of lines is right.
+        let text = text.replace("\r\n", "\n") + "\n";
+        let mut reader = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(Trim::All)
+            .comment(Some(b'#'))
+            .delimiter(self.separator as u8)
+            .from_reader(text.as_bytes());
+        let (mut record, mut found) = (StringRecord::new(), Found::default());
+        loop {
+            let read = reader.read_record(&mut record);
+            if !read.map_err(|error| cannot(&error))? {
+                break;
+            }
+            let line = self.line_of_names + reader.position().line() - 2;
+            let all = record.iter().enumerate();
+            let filled = all.filter(|(_, cell)| !cell.is_empty()).last();
+            let filled = filled.map_or(0, |(last, _)| last + 1);
+            match self.names.len() {
+                0 => {
+                    let names = record.iter().take(filled.max(1));
+                    self.names = names.map(str::to_owned).collect();
+                }
+                _ if filled == 0 => {} // as spreadsheet programs write empty rows
+                // Empty cells behind the last column do not count.
+                count if filled <= count && record.len() >= count => {
+                    let cells = record.iter().take(count).map(str::to_owned);
+                    self.rows.push((line, cells.collect()));
+                }
+                _ => found.add(|| at_line(line, self.ragged(record.len()))),
+            }
+            if self.rows.len() * self.names.len() > most {
+                return Err(one(format!(
+                    "has more than {most} values (rows times columns): leave rows or columns out"
+                )));
+            }
+        }
+        if found.list.is_empty() {
+            Ok(())
+        } else {
+            Err(found)
+        }
+    }
+
+    /// A row of another number of values than there are names.
+    fn ragged(&self, count: usize) -> Problem {
+        let names = self.names.len();
+        let advice = if self.separator == ',' && count > names {
+            "numbers have a decimal point (1.5, not 1,5); a file with decimal commas parts its columns by ;"
+        } else {
+            "leave no column out; a value that is missing is an empty place between two separators"
+        };
+        Problem::at(
+            "this row",
+            format!("number of cells: {count}, of columns: {names}; {advice}"),
+        )
+    }
+
+    /// The cells of the column `name`.
+    pub fn column<'a>(&'a self, name: &str) -> Option<impl Iterator<Item = &'a str> + Clone> {
+        let place = self.names.iter().position(|other| other == name)?;
+        Some(self.rows.iter().map(move |(_, row)| row[place].as_str()))
+    }
+}

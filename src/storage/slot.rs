@@ -1,0 +1,247 @@
+//! The files of one session, and the lock by which a process holds it.
+//!
+//! ```text
+//! N.session    the place and the work
+//! N.lock       locked by the process that holds the session, and contains its number; kill -9 unlocks it
+//! ```
+//!
+//! A session begins with three lines, and the two texts follow:
+//!
+//! ```text
+//! gyrolab session 3
+//! sum 8d4f1d92          CRC-32 of all that follows this line
+//! place 204             bytes of the place
+//! ```
+//!
+//! The number in the first line is raised when the format or the meaning of the texts changes. Nothing is synced to the
+//! disk: sessions must survive the death of the process, not of the machine.
+
+use super::own;
+use super::session::{Content, later};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Write};
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
+use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+const FORMAT: &str = "gyrolab session 3";
+/// The most unused sessions that are kept.
+const MOST_KEPT: usize = 20;
+/// A lock that is held for a shorter time belongs to a process that only looks at the session.
+const GLANCE: Duration = Duration::from_millis(10);
+
+/// A session that this process holds as long as this value lives.
+pub(super) struct Slot {
+    folder: PathBuf,
+    name: String,
+    lock: File,
+}
+
+pub(super) fn file(folder: &Path, name: &str, kind: &str) -> PathBuf {
+    folder.join(format!("{name}.{kind}"))
+}
+
+/// The names of the files in `folder` that end in `kind`, without that.
+fn names(folder: &Path, kind: &str) -> io::Result<Vec<String>> {
+    let files =
+        fs::read_dir(folder)?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let names =
+        files.filter_map(|file| Some(file.strip_suffix(kind)?.strip_suffix('.')?.to_owned()));
+    Ok(names.collect())
+}
+
+/// The names of the sessions in `folder`, the one written last first.
+pub(super) fn sessions(folder: &Path) -> io::Result<Vec<String>> {
+    let mut names = names(folder, "session")?;
+    names.sort_by_cached_key(|name| (written_at(folder, name), name.clone()));
+    names.reverse();
+    Ok(names)
+}
+
+/// When the session was written last; the beginning of 1970 if it is not there.
+pub(super) fn written_at(folder: &Path, name: &str) -> SystemTime {
+    let there = fs::symlink_metadata(file(folder, name, "session"));
+    let modified = there.and_then(|there| there.modified());
+    modified.unwrap_or(UNIX_EPOCH)
+}
+
+pub(super) fn is_in_use(folder: &Path, name: &str) -> bool {
+    let lock = own::open(&file(folder, name, "lock"), OpenOptions::new().read(true));
+    lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
+/// The number of the process that holds, or last held, the session; `None` where its lock file does not tell.
+pub(super) fn owner(folder: &Path, name: &str) -> Option<u32> {
+    let bytes = own::read(&file(folder, name, "lock")).ok()?;
+    str::from_utf8(&bytes).ok()?.parse().ok()
+}
+
+/// Reads the session, whether or not a process holds it.
+pub(super) fn stored(folder: &Path, name: &str) -> Result<Content, String> {
+    let bytes = own::read(&file(folder, name, "session")).map_err(|error| error.to_string())?;
+    let text = String::from_utf8(bytes).unwrap_or_default();
+    let (format, rest) = text.split_once('\n').unwrap_or_default();
+    if format != FORMAT && format.starts_with("gyrolab session ") {
+        return Err("another version of gyrolab wrote it".to_owned());
+    }
+    let content = content(rest).filter(|_| format == FORMAT);
+    content.ok_or_else(|| "it has been cut off or changed".to_owned())
+}
+
+/// The content from the text of a session behind its first line; `None` if it is incomplete or changed.
+fn content(text: &str) -> Option<Content> {
+    let (sum, summed) = text.split_once('\n')?;
+    if sum != sum_line(&[summed]) {
+        return None;
+    }
+    let (length, texts) = summed.split_once('\n')?;
+    let length = length.strip_prefix("place ")?.parse().ok()?;
+    let (place, work) = texts.split_at_checked(length)?;
+    let work = work.to_owned();
+    Some(Content {
+        work: later(move || work),
+        place: place.to_owned(),
+    })
+}
+
+fn sum_line(parts: &[&str]) -> String {
+    let mut sum = crc32fast::Hasher::new();
+    for part in parts {
+        sum.update(part.as_bytes());
+    }
+    format!("sum {:08x}", sum.finalize())
+}
+
+/// Removes all but the newest unused sessions, and lock files without a session. What is another user's stays.
+pub(super) fn prune(folder: &Path) {
+    let take = |name: &String| Slot::take(folder, name).ok()?;
+    let old = sessions(folder).unwrap_or_default();
+    let free = old.iter().filter(|name| {
+        let path = file(folder, name, "session");
+        own::open(&path, OpenOptions::new().read(true)).is_ok()
+    });
+    free.filter_map(take).skip(MOST_KEPT).for_each(Slot::remove);
+    let locks = names(folder, "lock").unwrap_or_default();
+    let alone = locks
+        .iter()
+        .filter(|name| !exists(&file(folder, name, "session")));
+    alone.filter_map(take).for_each(Slot::remove);
+}
+
+/// Whether there is anything at `path`; a symbolic link to nothing counts too.
+fn exists(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok()
+}
+
+impl Slot {
+    /// A new session. Its name is the number above the largest in the folder.
+    pub(super) fn new(folder: &Path) -> io::Result<Self> {
+        let mut names = names(folder, "session")?;
+        names.extend(self::names(folder, "lock")?);
+        let numbers = names.iter().filter_map(|name| name.parse::<u64>().ok());
+        let mut number = numbers.max().unwrap_or(0);
+        loop {
+            number = number.wrapping_add(1);
+            let name = number.to_string();
+            // Another process may have taken the number meanwhile.
+            if let Some(slot) = Self::take(folder, &name)?
+                && !exists(&file(folder, &name, "session"))
+            {
+                return Ok(slot);
+            }
+        }
+    }
+
+    /// Locks the session; `None` if a running process holds it. A file system without locks refuses nobody.
+    pub(super) fn take(folder: &Path, name: &str) -> io::Result<Option<Self>> {
+        let path = file(folder, name, "lock");
+        let mut options = OpenOptions::new();
+        options.write(true).create(true).truncate(false).mode(0o600);
+        let mut lock = own::open(&path, &mut options)?;
+        let begin = Instant::now();
+        while let Err(TryLockError::WouldBlock) = lock.try_lock() {
+            if begin.elapsed() > GLANCE {
+                return Ok(None);
+            }
+            sleep(Duration::from_millis(1));
+        }
+        // The last owner may have removed the file between opening and locking.
+        let is_there = fs::symlink_metadata(&path);
+        if is_there.is_ok_and(|there| lock.metadata().is_ok_and(|own| own.ino() == there.ino())) {
+            // The number serves messages of other processes; the lock holds without it.
+            let written = lock.set_len(0);
+            let _ = written.and_then(|()| write!(lock, "{}", std::process::id()));
+            Ok(Some(Self {
+                folder: folder.to_owned(),
+                name: name.to_owned(),
+                lock,
+            }))
+        } else {
+            Ok(None)
+        }
+    }
+
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Writes `content`. If writing fails, the old file is unchanged.
+    pub(super) fn save(&self, content: &Content) -> io::Result<()> {
+        own::make_folder(&self.folder)?; // somebody may have removed it
+        let length = format!("place {}\n", content.place.len());
+        let parts = [&*length, &content.place, &content.work];
+        let head = format!("{FORMAT}\n{}\n", sum_line(&parts));
+        let [length, place, work] = parts;
+        let path = file(&self.folder, &self.name, "session");
+        own::replace(&path, &[&head, length, place, work])
+    }
+
+    /// Removes the session's files, the lock file last: until then no other process can take the session.
+    pub(super) fn remove(self) {
+        for kind in ["session", "lock"] {
+            let _ = fs::remove_file(file(&self.folder, &self.name, kind));
+        }
+    }
+}
+
+impl Drop for Slot {
+    /// Unlocks explicitly: closing alone keeps the lock while a child process that is just being started still has the
+    /// file open.
+    fn drop(&mut self) {
+        let _ = self.lock.unlock();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_changed_byte_is_detected() {
+        let folder = tempfile::tempdir().unwrap();
+        let slot = Slot::new(folder.path()).unwrap();
+        let wanted = ("title = \"Größe\"\nform = 2\n", "step = 12\n");
+        slot.save(&Content {
+            work: later(|| wanted.0.to_owned()),
+            place: wanted.1.to_owned(),
+        })
+        .unwrap();
+        let path = file(folder.path(), "1", "session");
+        let bytes = fs::read(&path).unwrap();
+        let read = |bytes: &[u8]| {
+            fs::write(&path, bytes).unwrap();
+            stored(folder.path(), "1").ok()
+        };
+        let content = read(&bytes).unwrap();
+        assert_eq!((content.work.as_str(), &*content.place), wanted);
+        for bit in 0..8 * bytes.len() {
+            let mut changed = bytes.clone();
+            changed[bit / 8] ^= 1 << (bit % 8);
+            assert!(read(&changed).is_none(), "bit {bit}");
+        }
+        for end in 0..bytes.len() {
+            assert!(read(&bytes[..end]).is_none(), "cut at {end}");
+        }
+    }
+}
