@@ -2,10 +2,11 @@
 
 use super::checks;
 use super::dotted::{find, is_in, set_key};
-use super::head::{LONGEST, read_text, short_enough};
+use super::head::{read_text, utf8};
+use super::limits::{self, LONGEST};
 use super::problem::{Found, PRESETS, Problem, Problems, nearest};
 use super::syntax::{mistake, offset_of, syntax_problem};
-use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start, tables};
+use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start};
 use crate::text::number::shortest;
 use crate::text::printable::{brief, printable};
 use crate::text::unread;
@@ -13,9 +14,6 @@ use std::io::Read;
 use std::path::Path;
 use toml::Value;
 use toml::de::DeTable;
-
-/// The most lines of one: 100 000 points take about 500 000.
-const MOST_LINES: usize = 2_000_000;
 
 /// A scenario or run file on its way to a [`Scenario`].
 #[derive(Clone, Debug)]
@@ -72,15 +70,12 @@ impl Document {
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
         let mut text = Vec::new();
         let read = reader.take(LONGEST + 1).read_to_end(&mut text);
-        let read = read.map_err(|error| Problem::at("", unread::why(&error)));
-        let fail = |problem| Problems {
-            origin: origin.to_owned(),
-            list: vec![problem],
-            more: 0,
-        };
-        read.and_then(|_| short_enough(text))
-            .map_err(fail)
-            .and_then(|text| Self::parse(origin, &text))
+        let text = read
+            .map_err(|error| Problem::at("", unread::why(&error)))
+            .and_then(|length| limits::short_enough(length as u64))
+            .and_then(|()| utf8(text))
+            .map_err(|problem| Problems::one(origin, problem))?;
+        Self::parse(origin, &text)
     }
 
     /// The file, as the user named it.
@@ -110,12 +105,7 @@ impl Document {
     /// When it is not TOML.
     pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
-        let lines = text.bytes().filter(|&byte| byte == b'\n').count();
-        if lines > MOST_LINES {
-            let rule = format!("has {lines} lines: at most {MOST_LINES} are allowed");
-            return Err(Problems::one(origin, Problem::at("", rule)));
-        }
-        tables::few_enough(&text).map_err(|problem| Problems::one(origin, problem))?;
+        limits::few_enough(&text).map_err(|problem| Problems::one(origin, problem))?;
         match text.parse() {
             Ok(table) => Ok(Self {
                 origin: origin.to_owned(),
@@ -156,11 +146,24 @@ impl Document {
     /// As [`scenario`](Self::scenario).
     pub fn check_file(origin: &str, file: ScenarioFile) -> Result<Scenario, Problems> {
         let document = Self::from_file(origin, &file)?;
-        let problems = keys::check(&document.table);
-        if !problems.list.is_empty() {
-            return Err(document.placed(problems));
-        }
+        document.check()?;
         checks::scenario(file).map_err(|problems| document.placed(problems))
+    }
+
+    /// Checks its size, and each key and value by itself.
+    ///
+    /// # Errors
+    /// Everything that is wrong with them.
+    pub(crate) fn check(&self) -> Result<(), Problems> {
+        if let Some(problem) = limits::exceeded(&self.table) {
+            return Err(self.placed(vec![problem]));
+        }
+        let mut problems = keys::check(&self.table);
+        if problems.list.is_empty() {
+            return Ok(());
+        }
+        checks::names(&self.table, &mut problems);
+        Err(self.placed(problems))
     }
 
     /// Carries out one `--set KEY=VALUE`: the value is TOML, or else text.
@@ -243,11 +246,7 @@ impl Document {
             let rule = "is a sweep of many runs, not a scenario: gyrolab sweep runs it";
             return Err(Problems::one(self.origin.as_str(), Problem::at("", rule)));
         }
-        let mut problems = keys::check(&self.table);
-        if !problems.list.is_empty() {
-            checks::names(&self.table, &mut problems);
-            return Err(self.placed(problems));
-        }
+        self.check()?;
         checks::scenario(self.file()?).map_err(|problems| self.placed(problems))
     }
 

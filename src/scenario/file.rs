@@ -1,7 +1,6 @@
 //! The shape of scenario and run files, as serde reads and writes them. What each key means is in [`super::keys`].
 
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// A scenario file; with `gyrolab` and any number of edits, a run file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -213,5 +212,5 @@ pub struct ExpectedFile {
 #[serde(deny_unknown_fields)]
 pub struct EditFile {
     pub step: u64,
-    pub set: Arc<toml::Table>,
+    pub set: toml::Table,
 }

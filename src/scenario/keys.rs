@@ -6,6 +6,7 @@
 mod check;
 
 pub use super::kind::{Kind, PITCH_DEG, Range, ZOOM};
+use super::limits::MOST_POINTS;
 use super::problem::nearest;
 use super::screen::{ALL_ROWS, DETAILS, FILLING, HIDEABLE, PANES, PHASES};
 use super::solids;
@@ -160,9 +161,6 @@ impl Key {
         self
     }
 }
-
-/// The most points a body may have.
-pub const MOST_POINTS: i64 = 100_000;
 
 /// The highest number of a phase of a time step that can be chosen.
 pub const MOST_PHASES: i64 = 1000;

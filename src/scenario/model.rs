@@ -2,7 +2,7 @@
 
 use super::file::ScenarioFile;
 use super::problem::{Problem, nearest};
-use super::pushes::{Push, PushFiles, Pushes};
+use super::pushes::{Push, Pushes};
 use crate::physics::{self, Friction, Part, SchemeInfo, State, observables, part};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -67,8 +67,6 @@ pub struct Edit {
     pub set_pushes: Vec<usize>,
     /// What it set.
     pub touches: Touches,
-    /// The pushes from then on, as a file would give them.
-    pub(crate) written: PushFiles,
 }
 
 /// Which parts of the motion an edit set.

@@ -3,7 +3,8 @@
 
 use super::dotted::join;
 use super::file::{BodyFile, MotionFile, PushFile};
-use super::keys::{GRAVITY, MOST_POINTS};
+use super::keys::GRAVITY;
+use super::limits::MOST_POINTS;
 use super::model::{Body, Motion};
 use super::problem::{Found, Problem};
 use super::pushes::Pushes;
@@ -136,9 +137,9 @@ pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Found> {
         let push = push(file, body, &format!("push.{index}"));
         push.map_err(|refused| found.add_all(refused)).ok()
     });
-    let pushes = pushes.collect();
+    let pushes = pushes.collect::<Vec<_>>();
     if found.list.is_empty() {
-        Ok(pushes)
+        Ok(pushes.into())
     } else {
         Err(found)
     }

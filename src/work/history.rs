@@ -65,7 +65,7 @@ impl History {
     pub fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
         Self {
             past: Vec::new(),
-            present: RunRecord::new(name, Journal::of_checked(scenario), scenario),
+            present: RunRecord::new(name, Journal::of(scenario.file.clone()), scenario),
             undone: Vec::new(),
         }
     }
@@ -84,8 +84,8 @@ impl History {
     ///
     /// # Errors
     /// As [`Journal::scenario`].
-    pub fn scenario(&mut self) -> Result<Arc<Scenario>, Problems> {
-        self.present.journal.check()
+    pub fn scenario(&self) -> Result<Arc<Scenario>, Problems> {
+        self.present.journal.scenario()
     }
 
     /// The present run.
@@ -102,7 +102,7 @@ impl History {
 
     /// Leaves the present run and begins that of `scenario`, opened as `name`.
     pub fn begin(&mut self, name: &str, scenario: &Arc<Scenario>) {
-        let journal = Journal::of_checked(scenario);
+        let journal = Journal::of(scenario.file.clone());
         self.begin_run(RunRecord::new(name, journal, scenario));
     }
 

@@ -6,7 +6,7 @@ mod offered;
 use crate::physics::scheme;
 use crate::scenario::dotted::{find, join, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
-use crate::scenario::keys::{EDITABLE_MOTION, InLab, KEYS, Key, Kind, Nudge, Range};
+use crate::scenario::keys::{InLab, KEYS, Key, Kind, Nudge, Range};
 use crate::scenario::{Document, Problems, Scenario, nudge};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
@@ -100,23 +100,9 @@ pub fn table_of(file: &ScenarioFile) -> Table {
 /// As [`table_of`], with the edits of the scenario up to `step`.
 pub fn table_at(scenario: &Scenario, step: u64) -> Table {
     let mut table = table_of(&scenario.file);
-    let count = scenario.edits.partition_point(|edit| edit.step <= step);
-    let Some(last) = count.checked_sub(1).map(|last| &scenario.edits[last]) else {
-        return table;
-    };
-    let made = &scenario.file.edit[..count];
-    for key in EDITABLE_MOTION {
-        let set = made.iter().rev().find_map(|edit| edit.set.get(key));
-        if let Some(value) = set {
-            let _ = set_key(&mut table, key, value.clone()); // checked when the scenario was read
-        }
-    }
-    let pushes = last.written.iter();
-    let pushes: Vec<_> = pushes
-        .filter_map(|push| Value::try_from(push).ok())
-        .collect();
-    if !pushes.is_empty() {
-        table.insert("push".to_owned(), Value::Array(pushes));
+    let made = scenario.file.edit.iter().filter(|edit| edit.step <= step);
+    for (key, value) in made.flat_map(|edit| &edit.set) {
+        let _ = set_key(&mut table, key, value.clone()); // checked when the scenario was read
     }
     table
 }
@@ -249,7 +235,7 @@ fn size(value: &Value) -> f64 {
     }
 }
 
-fn float(value: &Value) -> Option<f64> {
+pub(super) fn float(value: &Value) -> Option<f64> {
     let whole = || value.as_integer().map(|whole| whole as f64);
     value.as_float().or_else(whole)
 }

@@ -550,7 +550,7 @@ fn files_that_are_no_scenarios() {
     assert!(read_refusal(&lab.path().join("none.toml")).contains("there is no such file"));
     if Path::new("/dev/zero").exists() {
         let message = read_refusal(Path::new("/dev/zero"));
-        assert!(message.contains("longer than 16 MiB"), "{message}");
+        assert!(message.contains("longer than 4 MB"), "{message}");
     }
 }
 

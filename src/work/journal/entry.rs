@@ -79,12 +79,4 @@ impl Entry {
     pub(super) fn is_description(&self) -> bool {
         matches!(self.act, Act::Describe(_))
     }
-
-    /// The values that it describes the run by, if it is a description.
-    pub(super) fn description(&self) -> Option<&Table> {
-        match &self.act {
-            Act::Describe(set) => Some(set),
-            Act::Edit(_) | Act::Push(_) => None,
-        }
-    }
 }
