@@ -13,10 +13,6 @@ use crate::physics::{State, observables};
 use std::sync::Arc;
 use toml::Value;
 
-/// Makes a scenario of `file`.
-///
-/// # Errors
-/// Every rule that its numbers break together.
 pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
     // Without a body nothing can be said of the rest; of that, each part is looked at by itself.
     let mut body = body(&file.body)?;

@@ -21,15 +21,12 @@ pub struct Document {
     origin: String,
     text: String,
     table: toml::Table,
-    /// What `--set` wrote.
     set: Vec<Setting>,
 }
 
-/// A key that `--set` wrote.
 #[derive(Clone, Debug)]
 struct Setting {
     key: String,
-    /// The argument as it was given.
     argument: String,
     /// Why an array or a table is no TOML, and was taken as text.
     mistake: Option<String>,
@@ -38,9 +35,6 @@ struct Setting {
 impl Document {
     /// Opens what SCENARIO names: a shipped preset, or else a file (scenario, run file, or CSV with its run file in
     /// the header).
-    ///
-    /// # Errors
-    /// When there is no such preset, or the file cannot be read or is not TOML.
     pub fn open(scenario: &str) -> Result<Self, Problems> {
         if scenario.contains('/') || scenario.contains(".toml") || scenario.contains(".csv") {
             return Self::read(Path::new(scenario));
@@ -52,21 +46,13 @@ impl Document {
     }
 
     /// Reads a scenario or run file, or the header of a CSV.
-    ///
-    /// # Errors
-    /// When the file cannot be read or is not TOML.
     pub fn read(path: &Path) -> Result<Self, Problems> {
         let origin = path.display().to_string();
-        match read_text(path) {
-            Ok(text) => Self::parse(&origin, &text),
-            Err(problem) => Err(Problems::one(origin, problem)),
-        }
+        let text = read_text(path).map_err(|problem| Problems::one(&*origin, problem))?;
+        Self::parse(&origin, &text)
     }
 
     /// Reads what `reader` gives to its end.
-    ///
-    /// # Errors
-    /// When it cannot be read, is longer than any file that is taken, or is not TOML.
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
         let mut text = Vec::new();
         let read = reader.take(LONGEST + 1).read_to_end(&mut text);
@@ -78,52 +64,42 @@ impl Document {
         Self::parse(origin, &text)
     }
 
-    /// The file, as the user named it.
     pub fn origin(&self) -> &str {
         &self.origin
     }
 
-    /// What is in it.
     pub fn table(&self) -> &toml::Table {
         &self.table
     }
 
     /// The lines, from 1, at which the dotted `keys` stand in the text.
     pub fn lines_of(&self, keys: impl Iterator<Item = String>) -> Vec<Option<usize>> {
-        let spans = DeTable::parse(&self.text).ok();
-        let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
-        let line = |key: String| {
-            let offset = offset_of(spans.as_ref()?.get_ref(), &key)?;
-            Some(line_ends.partition_point(|&end| end < offset) + 1)
-        };
-        keys.map(line).collect()
+        let line = self.line_finder();
+        keys.map(|key| line(&key)).collect()
     }
 
-    /// Takes `text` as the scenario that `origin` holds.
-    ///
-    /// # Errors
-    /// When it is not TOML.
-    pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
-        let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
-        limits::few_enough(&text).map_err(|problem| Problems::one(origin, problem))?;
-        match text.parse() {
-            Ok(table) => Ok(Self {
-                origin: origin.to_owned(),
-                text,
-                table,
-                set: Vec::new(),
-            }),
-            Err(error) => {
-                let problem = syntax_problem(&text, &error);
-                Err(Problems::one(origin, problem))
-            }
+    fn line_finder(&self) -> impl Fn(&str) -> Option<usize> {
+        let spans = DeTable::parse(&self.text).ok();
+        let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
+        move |key| {
+            let offset = offset_of(spans.as_ref()?.get_ref(), key)?;
+            Some(line_ends.partition_point(|&end| end < offset) + 1)
         }
     }
 
+    /// Takes `text` as the scenario that `origin` holds.
+    pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
+        let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+        limits::few_enough(&text).map_err(|problem| Problems::one(origin, problem))?;
+        let table = text.parse();
+        let table = table.map_err(|error| Problems::one(origin, syntax_problem(&text, &error)))?;
+        Ok(Self {
+            text,
+            ..Self::from_table(origin, table)
+        })
+    }
+
     /// The document that `file` would be written as.
-    ///
-    /// # Errors
-    /// Never for a file that came from a checked scenario.
     pub fn from_file(origin: &str, file: &ScenarioFile) -> Result<Self, Problems> {
         let table = toml::Table::try_from(file)
             .map_err(|error| Problems::one(origin, Problem::at("", error.to_string())))?;
@@ -140,20 +116,7 @@ impl Document {
         }
     }
 
-    /// The scenario that `file` would be written and read as, checked, without writing and reading it.
-    ///
-    /// # Errors
-    /// As [`scenario`](Self::scenario).
-    pub fn check_file(origin: &str, file: ScenarioFile) -> Result<Scenario, Problems> {
-        let document = Self::from_file(origin, &file)?;
-        document.check()?;
-        checks::scenario(file).map_err(|problems| document.placed(problems))
-    }
-
     /// Checks its size, and each key and value by itself.
-    ///
-    /// # Errors
-    /// Everything that is wrong with them.
     pub(crate) fn check(&self) -> Result<(), Problems> {
         if let Some(problem) = limits::exceeded(&self.table) {
             return Err(self.placed(vec![problem]));
@@ -193,10 +156,6 @@ impl Document {
         Problems::one(self.origin.as_str(), problem)
     }
 
-    /// Writes `value` at the dotted `key` as `--set` does.
-    ///
-    /// # Errors
-    /// When the key leads nowhere.
     pub fn set_value(&mut self, key: &str, value: Value) -> Result<(), Problem> {
         start::make_room(&mut self.table, key);
         reshape::prepare(&mut self.table, key, &value);
@@ -237,10 +196,6 @@ impl Document {
         Ok(())
     }
 
-    /// The scenario, checked.
-    ///
-    /// # Errors
-    /// Everything that is wrong with it, each with its place.
     pub fn scenario(&self) -> Result<Scenario, Problems> {
         if self.is_sweep() {
             let rule = "is a sweep of many runs, not a scenario: gyrolab sweep runs it";
@@ -258,9 +213,6 @@ impl Document {
     }
 
     /// The file's shape; its numbers are not checked.
-    ///
-    /// # Errors
-    /// When it has another shape.
     pub(crate) fn file(&self) -> Result<ScenarioFile, Problems> {
         let file = self.table.clone().try_into();
         file.map_err(|error: toml::de::Error| {
@@ -303,9 +255,8 @@ impl Document {
     /// Problems with the places at which the user wrote their keys, in the order of the file.
     pub fn placed(&self, found: impl Into<Found>) -> Problems {
         let Found { list, more } = found.into();
-        let spans = DeTable::parse(&self.text).ok();
+        let line_of = self.line_finder();
         let written = (!self.set.is_empty()).then(|| self.text.parse().unwrap_or_default());
-        let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
         let mut lines: Vec<(usize, Problem)> = Vec::with_capacity(list.len());
         for mut problem in list {
             if let Some(setting) = self.setting_behind(&problem.key, written.as_ref()) {
@@ -326,10 +277,7 @@ impl Document {
                 lines.push((usize::MAX, problem));
                 continue;
             }
-            let offset = spans
-                .as_ref()
-                .and_then(|table| offset_of(table.get_ref(), &problem.key));
-            let line = offset.map(|offset| line_ends.partition_point(|&end| end < offset) + 1);
+            let line = line_of(&problem.key);
             problem.place = line.map(|line| format!("line {line}"));
             lines.push((line.unwrap_or(0), problem));
         }

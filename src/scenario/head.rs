@@ -26,9 +26,6 @@ pub struct Head {
 
 impl Head {
     /// Reads the head of a file from its beginning; of a longer one no more than the longest.
-    ///
-    /// # Errors
-    /// When the system reports an error.
     pub fn read(reader: &mut impl BufRead) -> io::Result<Self> {
         let mut reader = reader.take(LONGEST_HEADER + 1);
         let (mut bytes, mut names) = (Vec::new(), 0);
@@ -41,7 +38,6 @@ impl Head {
         }
     }
 
-    /// Every byte of it.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }

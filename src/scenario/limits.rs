@@ -11,7 +11,6 @@ pub const LONGEST: u64 = 4_000_000;
 /// and each line begins with "# ".
 pub(super) const LONGEST_HEADER: u64 = 4 * LONGEST;
 
-/// The most points a body may have.
 pub const MOST_POINTS: i64 = 100_000;
 
 pub const MOST_PUSHES: usize = 10_000;
@@ -27,9 +26,6 @@ const MOST_TABLES: usize = 120_000;
 const MOST_VALUES: usize = 800_000;
 
 /// Refuses a `text` that would take far more memory than a scenario of its length.
-///
-/// # Errors
-/// The limits, and what to do.
 pub(super) fn few_enough(text: &str) -> Result<(), Problem> {
     let (mut tables, mut values, mut heading) = (0, 0, "");
     for line in text.lines() {
@@ -95,9 +91,6 @@ pub(super) fn too_many(edits: usize, bodies: usize, pushes: usize) -> Option<Pro
 }
 
 /// Refuses a file of `length` bytes where that is too long.
-///
-/// # Errors
-/// The limit, and what to do.
 pub fn short_enough(length: u64) -> Result<(), Problem> {
     if length <= LONGEST {
         return Ok(());

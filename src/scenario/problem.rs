@@ -42,16 +42,24 @@ impl Problem {
     }
 }
 
+impl Problem {
+    /// It in words, without its place.
+    fn bare(&self) -> String {
+        let (key, value, rule) = (brief(&self.key, 80), &self.value, &self.rule);
+        match (self.key.is_empty(), value.is_empty()) {
+            (true, _) => rule.clone(),
+            (false, true) => format!("{key}: {rule}"),
+            (false, false) => format!("{key} ({value}) {rule}"),
+        }
+    }
+}
+
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(place) = &self.place {
             write!(f, "{place}: ")?;
         }
-        match (self.key.is_empty(), self.value.is_empty()) {
-            (true, _) => write!(f, "{}", self.rule),
-            (false, true) => write!(f, "{}: {}", brief(&self.key, 80), self.rule),
-            (false, false) => write!(f, "{} ({}) {}", brief(&self.key, 80), self.value, self.rule),
-        }
+        f.write_str(&self.bare())
     }
 }
 
@@ -101,7 +109,6 @@ impl From<Vec<Problem>> for Found {
 /// Everything found wrong with one file; never empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problems {
-    /// The file, as the user named it.
     pub origin: String,
     /// What was found, in the order of the file.
     pub list: Vec<Problem>,
@@ -126,18 +133,8 @@ impl Problems {
 
     /// The first of them in one line, without file, line or `--set`: `motion.time_step_s (-0.1) must be greater than zero`.
     pub fn in_one_line(&self) -> String {
-        let bare = |problem: &Problem| {
-            Problem {
-                place: None,
-                ..problem.clone()
-            }
-            .to_string()
-        };
-        self.list
-            .first()
-            .map(bare)
-            .unwrap_or_default()
-            .replace('\n', " ")
+        let first = self.list.first().map(Problem::bare);
+        first.unwrap_or_default().replace('\n', " ")
     }
 }
 
@@ -152,16 +149,10 @@ impl fmt::Display for Problems {
         for (index, problem) in self.list.iter().take(SHOWN).enumerate() {
             let newline = if index == 0 { "" } else { "\n" };
             // A line's number belongs to the file's name (`file.toml:12: ...`), as editors and compilers write it.
-            match problem
-                .place
-                .as_deref()
-                .and_then(|place| place.strip_prefix("line "))
-            {
+            let place = problem.place.as_deref();
+            match place.and_then(|place| place.strip_prefix("line ")) {
                 Some(line) => {
-                    let bare = Problem {
-                        place: None,
-                        ..problem.clone()
-                    };
+                    let bare = problem.bare();
                     write!(f, "{newline}{}:{line}: {bare}", printable(&self.origin))?;
                 }
                 // What is wrong with an option is none of a preset's file, which the user has not named.

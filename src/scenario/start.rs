@@ -78,7 +78,6 @@ fn orientation(file: &StartFile) -> Matrix3<f64> {
     orientation
 }
 
-/// The spin that is written, rad/s.
 fn spin(file: &StartFile) -> Option<f64> {
     file.spin_rad_per_s.or(file.spin_rpm.map(|rpm| rpm * RPM))
 }
@@ -92,16 +91,11 @@ fn refused(name: &str, value: impl Into<Value>, rule: impl Into<String>) -> Vec<
 }
 
 fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
-    let three = |numbers: Option<[f64; 3]>| numbers.map(|numbers| vector(&numbers.into()));
-    let told: Vec<(&str, Value)> = [
-        ("momentum_Js", three(file.momentum_Js)),
-        ("spin_rpm", file.spin_rpm.map(Value::from)),
-        ("spin_rad_per_s", file.spin_rad_per_s.map(Value::from)),
-        ("omega_rad_per_s", three(file.omega_rad_per_s)),
-    ]
-    .into_iter()
-    .filter_map(|(name, value)| Some((name, value?)))
-    .collect();
+    let written = Table::try_from(file).unwrap_or_default();
+    let told: Vec<_> = WAYS_TO_TELL
+        .iter()
+        .filter_map(|name| Some((*name, written.get(*name)?)))
+        .collect();
     let way = match &told[..] {
         [] => {
             let rule = format!("is missing ({STATED})");
@@ -110,7 +104,7 @@ fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
         [(way, _)] => *way,
         [(first, _), (other, value), ..] => {
             let rule = format!("is given beside {first}: keep one of the two");
-            return Err(refused(other, value.clone(), rule));
+            return Err(refused(other, (*value).clone(), rule));
         }
     };
     let goes_with = |name: &str, wanted: &str| {
@@ -187,6 +181,13 @@ fn above(number: f64) -> String {
     number::significant(up, 4)
 }
 
+/// The keys of which a start has one.
+const WAYS_TO_TELL: [&str; 4] = [
+    "momentum_Js",
+    "spin_rpm",
+    "spin_rad_per_s",
+    "omega_rad_per_s",
+];
 /// The ways to tell the momentum: the keys of each.
 const WAYS: [&[&str]; 3] = [&MOMENTUM, &SPIN, &OMEGA];
 const MOMENTUM: [&str; 2] = ["momentum_Js", "momentum_frame"];

@@ -127,26 +127,16 @@ fn preset_with_words_of(scenario: &Scenario) -> Option<(&'static Preset, Scenari
 fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
     let (old, new) = (last_motion(before), last_motion(now));
     let mut changes = Vec::new();
-    if new.time_step_s != old.time_step_s {
-        changes.push(format!(
-            "dt {} s, not {}",
-            shortest(new.time_step_s),
-            shortest(old.time_step_s)
-        ));
-    }
-    if new.scheme.name != old.scheme.name {
-        changes.push(format!(
-            "{} scheme, not {}",
-            new.scheme.name, old.scheme.name
-        ));
-    }
-    if new.gravity != old.gravity {
-        changes.push(format!(
-            "gravity {} m/s2, not {}",
-            shortest(new.gravity),
-            shortest(old.gravity)
-        ));
-    }
+    let mut differs = |is_other: bool, what: String| changes.extend(is_other.then_some(what));
+    let [dt, old_dt] = [new.time_step_s, old.time_step_s];
+    let words = format!("dt {} s, not {}", shortest(dt), shortest(old_dt));
+    differs(dt != old_dt, words);
+    let [scheme, old_scheme] = [new.scheme.name, old.scheme.name];
+    let words = format!("{scheme} scheme, not {old_scheme}");
+    differs(scheme != old_scheme, words);
+    let [g, old_g] = [new.gravity, old.gravity];
+    let words = format!("gravity {} m/s2, not {}", shortest(g), shortest(old_g));
+    differs(g != old_g, words);
     if now.file.body != before.file.body {
         changes.push("another body".to_owned());
     }

@@ -7,7 +7,6 @@ use crate::scenario::rescale::{MOST_STEPS, at_time_step};
 use crate::scenario::{Document, Problem, Problems, Scenario};
 use toml::{Table, Value};
 
-/// The name of the run in messages.
 const ORIGIN: &str = "the run as advised";
 /// The keys of an edit that another time step or scheme throughout replaces.
 const REPLACED: [&str; 2] = ["motion.time_step_s", "motion.scheme"];

@@ -1,16 +1,15 @@
 //! The values of a scenario, each as a parameter that the lab lists, nudges and lets the user type. The table of
 //! [`keys`](crate::scenario::keys) holds their labels, units, nudges and defaults.
 
-mod offered;
-
 use crate::physics::scheme;
 use crate::scenario::dotted::{find, join, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
 use crate::scenario::keys::{InLab, KEYS, Key, Kind, Nudge, Range};
-use crate::scenario::{Document, Problems, Scenario, nudge};
+use crate::scenario::solids::has_dimension;
+use crate::scenario::{Document, Problems, Scenario, nudge, start, vector};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
-use offered::{is_offered, present};
+use nalgebra::Vector3;
 use toml::{Table, Value};
 
 /// The most points, and the most pushes, that are listed.
@@ -52,19 +51,12 @@ pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
     let names = Names::of(table);
     let mut list = Vec::with_capacity(64);
     for keys in KEYS.chunk_by(|one, next| array_of(one) == array_of(next)) {
-        let Some(array) = array_of(&keys[0]) else {
-            list.extend(
-                keys.iter()
-                    .flat_map(|key| parameters_of(key, key.path, table, &names, scenario)),
-            );
-            continue;
-        };
-        for index in 0..length(table, array) {
-            let inside = |key: &Key| key.path.replacen('*', &index.to_string(), 1);
-            list.extend(
-                keys.iter()
-                    .flat_map(|key| parameters_of(key, &inside(key), table, &names, scenario)),
-            );
+        let count = array_of(&keys[0]).map_or(1, |array| length(table, array));
+        for index in 0..count {
+            for key in keys {
+                let place = key.path.replacen('*', &index.to_string(), 1);
+                list.extend(parameters_of(key, &place, table, &names, scenario));
+            }
         }
     }
     list
@@ -76,7 +68,6 @@ pub fn table_of(file: &ScenarioFile) -> Table {
     let point = file.body.point.iter().take(MOST_LISTED).cloned().collect();
     let part = file.body.part.iter().take(MOST_LISTED).cloned().collect();
     let listed = ScenarioFile {
-        gyrolab: None,
         title: file.title.clone(),
         about: file.about.clone(),
         source: file.source.clone(),
@@ -91,8 +82,7 @@ pub fn table_of(file: &ScenarioFile) -> Table {
         push: file.push.clone(),
         friction: file.friction,
         view: file.view.clone(),
-        expected: Vec::new(),
-        edit: Vec::new(),
+        ..ScenarioFile::default()
     };
     Table::try_from(&listed).unwrap_or_default() // a checked file holds nothing that TOML cannot write
 }
@@ -118,9 +108,6 @@ pub fn changed(file: &ScenarioFile, key: &str, value: Value) -> Result<Scenario,
 }
 
 /// As [`changed`], with all values of `set`.
-///
-/// # Errors
-/// As [`changed`].
 pub fn changed_all(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
     let mut document = Document::from_file("scenario", file)?;
     for (key, value) in set {
@@ -198,6 +185,46 @@ fn parameters_of(
     }
 }
 
+/// The value that the file implies by leaving out the key at `place`, where it follows from other values: the spin or
+/// momentum of a start that is given in another way, the axis and the length of a part.
+fn present(key: &Key, place: &str, table: &Table, scenario: &Scenario) -> Option<Value> {
+    let start = &scenario.start;
+    let spin = || scenario.spin_rad_per_s(start);
+    match key.path {
+        "start.momentum_Js" => Some(vector(&start.momentum)),
+        "start.spin_rpm" => Some(start::rpm(spin()).into()),
+        "start.spin_rad_per_s" => Some(spin().into()),
+        "body.part.*.axis" => Some(vector(&Vector3::z())),
+        "body.part.*.length_m" => {
+            let shape = find(table, &place.replace("length_m", "shape"))?.as_str()?;
+            has_dimension(shape, "length_m").then_some(Value::Float(0.0))
+        }
+        _ => None,
+    }
+}
+
+/// Whether the key at `place` fits the other keys of its table: a push has its times either in steps or in seconds, and
+/// an angular velocity is listed only where the file gives one.
+fn is_offered(place: &str, table: &Table) -> bool {
+    let Some((inside, name)) = place.rsplit_once('.') else {
+        return true;
+    };
+    if inside == "start" && name.starts_with("omega") {
+        return find(table, "start.omega_rad_per_s").is_some();
+    }
+    if !inside.starts_with("push.") {
+        return true;
+    }
+    let is_in_seconds = ["from_s", "for_s"]
+        .iter()
+        .any(|name| find(table, &join(inside, name)).is_some());
+    match name {
+        "first_step" | "steps" | "accumulates" => !is_in_seconds,
+        "from_s" | "for_s" => is_in_seconds,
+        _ => true,
+    }
+}
+
 fn group(place: &str, table: &Table) -> String {
     let names: Vec<&str> = place.split('.').collect();
     match names[..] {
@@ -249,7 +276,6 @@ fn as_kind(value: Value, kind: Kind) -> Value {
 }
 
 impl Parameter {
-    /// Its unit, or empty.
     pub fn unit(&self) -> &'static str {
         self.lab.unit
     }

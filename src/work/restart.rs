@@ -37,14 +37,11 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
     let old = &scenario.file;
     let speed = old.view.as_ref().and_then(|view| view.speed);
     let file = ScenarioFile {
-        gyrolab: None,
         title: format!(
             "{}, from t = {} s",
             old.title,
             number::significant(state.time_s, 7)
         ),
-        about: None,
-        source: None,
         trace: old.trace.clone(),
         body: old.body.clone(),
         start: StartFile {
@@ -63,8 +60,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
             speed: Some(speed),
             ..ViewFile::default()
         }),
-        expected: Vec::new(),
-        edit: Vec::new(),
+        ..ScenarioFile::default()
     };
     Document::from_file(origin, &file)?.scenario()
 }
@@ -133,11 +129,8 @@ impl Now<'_> {
         let file = PushFile {
             point: self.name(push.point).to_owned(),
             force_N: push.force.into(),
-            first_step: None,
-            steps: None,
-            from_s: None,
-            for_s: None,
             accumulates: push.accumulates.then_some(true),
+            ..PushFile::default()
         };
         match push.window {
             Window::Steps { first, count } if push.accumulates || self.may_keep_step_numbers() => {

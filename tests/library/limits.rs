@@ -156,7 +156,9 @@ fn an_edit_is_refused_for_what_it_sets() {
 fn what_would_take_too_much_memory_is_refused_before_it_is_read() {
     for nested in [
         "x.a.b.c.d.e.f.g=1\n".repeat(20_000),
-        (0..20_000).fold(String::new(), |text, k| format!("{text}[x{k}.a.b.c.d.e]\n")),
+        (0..20_000).fold(String::new(), |text, k| {
+            format!("{text}[x{k}.a.b.c.d.e.f]\n")
+        }),
         format!("x=[{}]\n", "{a=1},".repeat(130_000)),
         format!("x=[{}]\n", "[1],".repeat(900_000)),
     ] {

@@ -9,11 +9,9 @@ use toml::{Table, Value};
 /// The most characters of a value that a message shows.
 const LONGEST_VALUE: usize = 30;
 
-/// One act, and the step at which it was done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
-    /// The step at which the user acted.
     pub step: u64,
     /// Whether the entry is an edit that the opened file contained.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -30,7 +28,6 @@ pub struct Entry {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Act {
-    /// Adds a push.
     Push(PushFile),
     /// Sets keys of `motion` or `push`, with effect from the next step on.
     Edit(Table),
@@ -49,7 +46,6 @@ impl Act {
         }
     }
 
-    /// The act in words, for a message.
     pub fn in_words(&self) -> String {
         match self {
             Self::Push(push) => format!("the push on {}", push.point),

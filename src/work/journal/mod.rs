@@ -23,16 +23,14 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toml::{Table, Value};
 
-/// The name of the run in a refusal.
 const ORIGIN: &str = "the run";
 
 /// A scenario and what the user did to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Journal {
-    /// The scenario before the first act.
     base: Arc<ScenarioFile>,
-    /// All acts in the order in which the user did them, dropped ones included.
+    /// All acts in the order in which the user did them, including those that newer ones have dropped.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     log: Vec<Arc<Entry>>,
     /// Undone entries, the one undone last at the end: redo takes it first.
@@ -61,12 +59,10 @@ impl Journal {
         }
     }
 
-    /// The scenario before the first act.
     pub fn base(&self) -> &ScenarioFile {
         &self.base
     }
 
-    /// The run file: the base with all entries in force.
     pub fn file(&self) -> ScenarioFile {
         self.file_with(&self.in_force())
     }
@@ -76,13 +72,10 @@ impl Journal {
     /// # Errors
     /// What is wrong with the run file. A journal that was changed by [`act`](Self::act) alone has no errors.
     pub fn scenario(&self) -> Result<Arc<Scenario>, Problems> {
-        checked(self.file())
+        checked(&self.file())
     }
 
     /// The scenario as it was when its number of steps was set last: by the opened file, or by a later `motion.steps`.
-    ///
-    /// # Errors
-    /// As [`scenario`](Self::scenario).
     pub fn when_steps_were_set(&self) -> Result<Arc<Scenario>, Problems> {
         let sets_steps = |entry: &Entry| match &entry.act {
             Act::Describe(set) => set.contains_key("motion.steps"),
@@ -90,7 +83,7 @@ impl Journal {
         };
         let entries = self.in_force();
         let last = entries.iter().rposition(|entry| sets_steps(entry));
-        checked(self.file_with(&entries[..last.map_or(0, |last| last + 1)]))
+        checked(&self.file_with(&entries[..last.map_or(0, |last| last + 1)]))
     }
 
     /// The run file of the run up to `step`: it has that many steps (at least one), and no later entry.
@@ -101,11 +94,8 @@ impl Journal {
     }
 
     /// The checked scenario of the run file up to `step`, see [`file_until`](Self::file_until).
-    ///
-    /// # Errors
-    /// As [`scenario`](Self::scenario).
     pub fn scenario_until(&self, step: u64) -> Result<Arc<Scenario>, Problems> {
-        checked(self.file_until(step))
+        checked(&self.file_until(step))
     }
 
     /// How many entries in force stand at steps later than `step`.
@@ -118,18 +108,12 @@ impl Journal {
     }
 
     /// Does `act` at `step` and returns the run's new scenario.
-    ///
-    /// # Errors
-    /// Why the act is refused; the journal is then unchanged.
     pub fn act(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
         self.enter(step, act, false)
     }
 
     /// Does `act` at `step` as one more nudge of the value that the last entry set: undo takes all nudges of this chain
     /// back at once.
-    ///
-    /// # Errors
-    /// As [`act`](Self::act).
     pub fn act_again(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
         self.enter(step, act, !self.log.is_empty())
     }
@@ -210,9 +194,6 @@ impl Journal {
 
     /// A new run with the values of `set` and an empty journal. From its start on it has the gravity, scheme, time step and
     /// pushes that this run has at `step`.
-    ///
-    /// # Errors
-    /// Why the values are refused.
     pub fn begun_with(&self, step: u64, set: &Table) -> Result<(Self, Arc<Scenario>), Problems> {
         let scenario = Arc::new(parameters::changed_all(&self.settings_at(step)?, set)?);
         Ok((Self::of(scenario.file.clone()), scenario))
@@ -246,8 +227,9 @@ impl Journal {
     }
 }
 
-fn checked(file: ScenarioFile) -> Result<Arc<Scenario>, Problems> {
-    Document::check_file(ORIGIN, file).map(Arc::new)
+fn checked(file: &ScenarioFile) -> Result<Arc<Scenario>, Problems> {
+    let scenario = Document::from_file(ORIGIN, file)?.scenario()?;
+    Ok(Arc::new(scenario))
 }
 
 /// The act that adds `push` to the run of `file`: a `[[push]]` table. Where edits have added pushes, one more table would

@@ -31,7 +31,6 @@ impl Journal {
         entries
     }
 
-    /// The base with `entries`.
     pub(super) fn file_with(&self, entries: &[&Entry]) -> ScenarioFile {
         let mut file = (*self.base).clone();
         let mut descriptions = Table::new();

@@ -15,11 +15,9 @@ fn pushed(from_s: f64) -> PushFile {
     PushFile {
         point: "top".to_owned(),
         force_N: [10.0, 0.0, 0.0],
-        first_step: None,
-        steps: None,
         from_s: Some(from_s),
         for_s: Some(1.0),
-        accumulates: None,
+        ..PushFile::default()
     }
 }
 
@@ -88,11 +86,9 @@ fn an_act_that_passes_a_limit_is_refused() {
     let refusal = |done: Result<_, Problems>| done.map(drop).unwrap_err().in_one_line();
     let edit = journal.act(1_000_000, gravity(2.0));
     assert!(refusal(edit).starts_with("edit: 10001 edits are too many: at most 10000"));
-    // With the points of method-2 there is room for 89 pushes.
-    let first = journal.base().push.len();
-    for _ in first..89 {
-        Arc::make_mut(&mut journal.base).push.push(pushed(1.0));
-    }
+    // With the 14 points of method-2 there is room for 86 pushes.
+    Arc::make_mut(&mut journal.base).push = vec![pushed(1.0); 86];
+    journal.scenario().unwrap();
     let push = journal.act(1_000_000, push(2.0));
     assert!(refusal(push).contains("10000 times 101 may be at most 1000000"));
     journal.log.clear();
