@@ -162,12 +162,9 @@ impl Document {
         set_key(&mut self.table, key, value)
     }
 
-    /// Writes `value` at the dotted `key`, of which no problem's place will speak. What the value is about is first told
-    /// so that it can be changed: a momentum where there is a spin, a spin that is to be steady where there is a momentum, the
-    /// dimensions of a part that is to have another shape.
-    ///
-    /// # Errors
-    /// When the key leads nowhere, or the scenario is wrong before it has the value.
+    /// Writes `value` at the dotted `key`, without a place for problems. What the value changes is first written in the way
+    /// that it needs: a momentum where there is a spin, a spin where a momentum becomes steady, the dimensions of a part that
+    /// gets another shape.
     pub(crate) fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
         start::make_room(&mut self.table, key);
         reshape::prepare(&mut self.table, key, &value);
@@ -232,8 +229,7 @@ impl Document {
         })
     }
 
-    /// Where `problem` is that a push, a point or another entry lacks a key that `--set` alone began: which entries the
-    /// file has.
+    /// Which entries the file has, where `--set` alone began the entry (a push, a point) that lacks a key.
     fn that_are_there(&self, problem: &Problem, written: Option<&toml::Table>) -> String {
         let told = || {
             let (entry, _) = problem.key.rsplit_once('.')?;

@@ -17,17 +17,7 @@ use std::f64::consts::TAU;
 const OF_PART: usize = 6;
 
 pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
-    let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
-    let count = rim + file.point.len() + OF_PART * file.part.len();
-    if count > usize::try_from(MOST_POINTS).unwrap_or(usize::MAX) {
-        let of_parts = if file.part.is_empty() {
-            ""
-        } else {
-            ", six for each part"
-        };
-        let rule = format!("has {count} points{of_parts}; at most {MOST_POINTS} are allowed");
-        return Err(vec![Problem::at("body", rule)].into());
-    }
+    few_enough(file)?;
     let mut points = rim_points(file);
     let mut named = Named::default();
     for (index, point) in file.point.iter().enumerate() {
@@ -65,6 +55,21 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
         parts,
         names: named.names,
     })
+}
+
+fn few_enough(file: &BodyFile) -> Result<(), Vec<Problem>> {
+    let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
+    let count = rim + file.point.len() + OF_PART * file.part.len();
+    if count <= usize::try_from(MOST_POINTS).unwrap_or(usize::MAX) {
+        return Ok(());
+    }
+    let of_parts = if file.part.is_empty() {
+        ""
+    } else {
+        ", six for each part"
+    };
+    let rule = format!("has {count} points{of_parts}; at most {MOST_POINTS} are allowed");
+    Err(vec![Problem::at("body", rule)])
 }
 
 /// The names of points and parts as they are found, each with the index of its point, and what is wrong with them.

@@ -200,45 +200,19 @@ pub fn listed<'a>(names: impl Iterator<Item = &'a str> + Clone) -> String {
     list.join(", ")
 }
 
+/// The longest name that is compared: nothing longer is a slip of the pen.
+const LONGEST: usize = 80;
+/// The most names that are compared: the body may have 100 000 points.
+const MOST_COMPARED: usize = 2000;
+
 /// "did you mean ...?" for a name that is not in `known`, or the list of them where none is near.
 pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
-    // Nothing so long is a slip of the pen, and comparing costs its length times that of every name.
-    const LONGEST: usize = 80;
     if wrong.len() > LONGEST {
         return format!("there is {}", listed(known));
     }
-    let lower = wrong.to_lowercase();
-    // Of more names than this the rest is not looked at: the body may have 100 000 points.
-    const MOST_COMPARED: usize = 2000;
-    let furthest = |name: &str| 2.max(name.len() / 3);
-    let length = lower.chars().count();
-    let near = known
-        .clone()
-        .take(MOST_COMPARED)
-        // What differs more in length than it may in letters need not be compared.
-        .filter(|name| {
-            name.len() <= LONGEST && name.chars().count().abs_diff(length) <= furthest(name)
-        })
-        .map(|name| {
-            (
-                strsim::damerau_levenshtein(&lower, &name.to_lowercase()),
-                name,
-            )
-        })
-        .min_by_key(|(distance, _)| *distance);
-    // A name that lacks its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near however long the unit; nearer is one
-    // that differs in no letter and no digit ("method2" for "method-2", and not for "method-2-slow").
     let bare = letters(wrong);
-    let is_bare = |name: &&str| !bare.is_empty() && begins_with(letters_of(name), &bare);
-    let is_same = |name: &&str| !bare.is_empty() && letters_of(name).eq(bare.chars());
-    let begins = known.clone().find(is_same);
-    let begins = begins.or_else(|| known.clone().find(is_bare));
-    match (begins, near) {
-        (Some(name), _) => return format!("did you mean {}?", brief(name, LONGEST)),
-        (None, Some((distance, name))) if distance <= furthest(name) => {
-            return format!("did you mean {name}?");
-        }
-        _ => {}
+    if let Some(name) = closest(wrong, &bare, known.clone().take(MOST_COMPARED)) {
+        return format!("did you mean {}?", brief(name, LONGEST));
     }
     // Of "precession" all that have to do with it.
     let has_it = |name: &&str| bare.len() > 2 && letters(name).contains(&bare);
@@ -249,19 +223,41 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
     }
 }
 
+/// The name of `known` that is so near to `wrong`, whose letters are `bare`, that it was meant.
+fn closest<'a>(
+    wrong: &str,
+    bare: &str,
+    known: impl Iterator<Item = &'a str> + Clone,
+) -> Option<&'a str> {
+    // A name that lacks its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near however long the unit; nearer is one
+    // that differs in no letter and no digit ("method2" for "method-2", and not for "method-2-slow").
+    if !bare.is_empty() {
+        let is_same = |name: &&str| letters(name) == bare;
+        let begins = |name: &&str| letters(name).starts_with(bare);
+        let found = known.clone().find(is_same);
+        let found = found.or_else(|| known.clone().find(begins));
+        if found.is_some() {
+            return found;
+        }
+    }
+    let lower = wrong.to_lowercase();
+    let length = lower.chars().count();
+    let distances = known.filter_map(|name| {
+        let furthest = 2.max(name.len() / 3);
+        // A name that differs in length by more than this differs in as many letters.
+        let may_be_near =
+            name.len() <= LONGEST && name.chars().count().abs_diff(length) <= furthest;
+        let distance = || strsim::damerau_levenshtein(&lower, &name.to_lowercase());
+        may_be_near.then(|| (distance(), furthest, name))
+    });
+    let (distance, furthest, name) = distances.min_by_key(|(distance, ..)| *distance)?;
+    (distance <= furthest).then_some(name)
+}
+
 /// The letters and digits of `name`, in lower case.
 fn letters(name: &str) -> String {
-    letters_of(name).collect()
-}
-
-/// The same one by one.
-fn letters_of(name: &str) -> impl Iterator<Item = char> + '_ {
     let all = name.chars().filter(|c| c.is_alphanumeric());
-    all.flat_map(char::to_lowercase)
-}
-
-fn begins_with(mut letters: impl Iterator<Item = char>, begin: &str) -> bool {
-    begin.chars().all(|letter| letters.next() == Some(letter))
+    all.flat_map(char::to_lowercase).collect()
 }
 
 #[cfg(test)]

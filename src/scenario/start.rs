@@ -1,5 +1,5 @@
-//! The start: how the body stands, and its momentum, told in one of three ways: as it is, by the spin about the axle, or by
-//! the angular velocity.
+//! The start: orientation, and momentum. A file gives the momentum itself, the spin about the axle, or the angular
+//! velocity.
 
 use super::dotted::find;
 use super::file::{Frame, StartFile};
@@ -21,7 +21,7 @@ const RPM: f64 = TAU / 60.0;
 /// The state at t = 0 under the gravity `gravity`, m/s²; pushes do not count.
 ///
 /// # Errors
-/// Where the momentum is told in several ways or in none, or asked to be steady where it cannot be.
+/// Where the momentum is given in several ways or in none, or cannot be steady.
 pub(super) fn start(
     file: &StartFile,
     body: &physics::Body,
@@ -199,8 +199,8 @@ fn way_of(name: &str) -> Option<&'static [&'static str]> {
     WAYS.into_iter().find(|way| way.contains(&name))
 }
 
-/// Takes out of the file's `table` what a new value at `key` replaces: the other ways to tell the momentum, and of two
-/// spins the other one.
+/// Removes from the file's `table` what a new value at `key` replaces: the other ways to give the momentum, or the other
+/// spin.
 pub(super) fn make_room(table: &mut Table, key: &str) {
     let name = key.strip_prefix("start.").unwrap_or_default();
     let is_frame_or_flag = ["momentum_frame", "omega_frame", "steady"].contains(&name);

@@ -12,15 +12,15 @@ use std::path::Path;
 use std::sync::Arc;
 use toml::{Table, Value};
 
-/// Stands between the name of the original and its `about`, in the file of a run that was changed since.
+/// Joins the name of the original and its `about`, in the file of a run that was changed since.
 const AS_IT_WAS: &str = " as it was: ";
-/// Stands behind its `source` there.
+/// Ends its `source` there.
 const CHANGED: &str = "; changed since";
 
-/// More changed values of one table than these are not listed.
+/// The most changed values of one table that are listed.
 const MOST_VALUES: usize = 2;
 
-/// A file with a longer name than this, in characters, is called "what was opened".
+/// The longest name of a file, in characters; a file of a longer name is called "what was opened".
 const LONGEST_NAME: usize = 30;
 
 /// The `look_at` line of the file of `scenario`: what the viewer should watch for.

@@ -48,14 +48,13 @@ pub struct Parameter {
 /// the first 50 elements of an array of tables gives a group. `scenario` is the scenario of that file: it provides the spin
 /// or momentum that the file does not contain.
 pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
-    let names = Names::of(table);
     let mut list = Vec::with_capacity(64);
     for keys in KEYS.chunk_by(|one, next| array_of(one) == array_of(next)) {
         let count = array_of(&keys[0]).map_or(1, |array| length(table, array));
         for index in 0..count {
             for key in keys {
                 let place = key.path.replacen('*', &index.to_string(), 1);
-                list.extend(parameters_of(key, &place, table, &names, scenario));
+                list.extend(parameters_of(key, &place, table, scenario));
             }
         }
     }
@@ -127,24 +126,11 @@ fn length(table: &Table, array: &str) -> usize {
     elements.map_or(0, |elements| elements.len().min(MOST_LISTED))
 }
 
-/// The names of the points and parts that are listed.
-struct Names {
-    points: Vec<String>,
-    parts: Vec<String>,
-}
-
-impl Names {
-    fn of(table: &Table) -> Self {
-        let names = |array: &str| {
-            let name = |index| find(table, &format!("{array}.{index}.name"))?.as_str();
-            let names = (0..length(table, array)).filter_map(name);
-            names.map(str::to_owned).collect()
-        };
-        Self {
-            points: names("body.point"),
-            parts: names("body.part"),
-        }
-    }
+/// The names of the points or parts in `array` that are listed.
+fn names(table: &Table, array: &str) -> Vec<String> {
+    let name = |index| find(table, &format!("{array}.{index}.name"))?.as_str();
+    let names = (0..length(table, array)).filter_map(name);
+    names.map(str::to_owned).collect()
 }
 
 /// The parameters of one key, at its `place` in `table`: none, one, or the three components of a vector.
@@ -152,7 +138,6 @@ fn parameters_of(
     key: &'static Key,
     place: &str,
     table: &Table,
-    names: &Names,
     scenario: &Scenario,
 ) -> Vec<Parameter> {
     let Some(lab) = key.lab.filter(|_| is_offered(place, table)) else {
@@ -175,7 +160,7 @@ fn parameters_of(
         size: size(&value),
         value: as_kind(value, key.kind),
         is_default: written.is_none(),
-        choices: choices(key, names, scenario),
+        choices: choices(key, table, scenario),
         kind: key.kind,
         lab,
     };
@@ -241,15 +226,17 @@ fn group(place: &str, table: &Table) -> String {
     }
 }
 
-fn choices(key: &Key, names: &Names, scenario: &Scenario) -> Vec<String> {
+fn choices(key: &Key, table: &Table, scenario: &Scenario) -> Vec<String> {
     match (key.kind, key.path) {
         (_, "motion.scheme") => {
             let able = scheme::true_to(scenario.friction);
             able.map(|scheme| scheme.name.to_owned()).collect()
         }
         (Kind::OneOf(words), _) => words.iter().map(|&word| word.to_owned()).collect(),
-        (_, "trace" | "push.*.point") => [&names.points[..], &names.parts].concat(),
-        (_, "start.rotor") => names.parts.clone(),
+        (_, "trace" | "push.*.point") => {
+            [names(table, "body.point"), names(table, "body.part")].concat()
+        }
+        (_, "start.rotor") => names(table, "body.part"),
         _ => Vec::new(),
     }
 }

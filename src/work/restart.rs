@@ -27,13 +27,9 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
         step,
         motion: &motion,
     };
-    let moved = pushes
-        .iter()
-        .enumerate()
-        .filter_map(|(index, push)| now.push(index, push).transpose());
-    let push = moved
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(|problem| Problems::one(origin.to_owned(), problem))?;
+    let push = now
+        .pushes(pushes)
+        .map_err(|problem| Problems::one(origin, problem))?;
     let old = &scenario.file;
     let speed = old.view.as_ref().and_then(|view| view.speed);
     let file = ScenarioFile {
@@ -124,10 +120,16 @@ struct Now<'a> {
 }
 
 impl Now<'_> {
+    fn pushes(&self, pushes: &Pushes) -> Result<Vec<PushFile>, Problem> {
+        let pushes = pushes.iter().enumerate();
+        let moved = pushes.filter_map(|(index, push)| self.push(index, push).transpose());
+        moved.collect()
+    }
+
     /// The rest of `push`, number `index` of the run, from now on; `None` where it is over.
     fn push(&self, index: usize, push: &Push) -> Result<Option<PushFile>, Problem> {
         let file = PushFile {
-            point: self.name(push.point).to_owned(),
+            point: self.scenario.point_name(push.point).unwrap_or_default(),
             force_N: push.force.into(),
             accumulates: push.accumulates.then_some(true),
             ..PushFile::default()
@@ -152,13 +154,6 @@ impl Now<'_> {
                 ..file
             })),
         }
-    }
-
-    fn name(&self, point: usize) -> &str {
-        let mut names = self.scenario.body.names.iter();
-        names
-            .find(|(_, index)| **index == point)
-            .map_or("", |(name, _)| name)
     }
 
     /// Whether the new scenario has the old one's start and time step, so that a step has the same number in both.

@@ -51,6 +51,11 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Foun
             check_value(value, &join(under, name), &key, problems);
         }
     }
+    check_missing(table, under, path, problems);
+}
+
+/// Finds the keys and tables that `table` lacks.
+fn check_missing(table: &toml::Table, under: &str, path: &str, problems: &mut Found) {
     let is_there = |name: &&str| table.contains_key(*name);
     for (name, key) in below(under).filter(|(_, key)| key.required) {
         if name.contains('.') || is_there(&name) || key.instead.iter().any(is_there) {
