@@ -147,16 +147,12 @@ impl Work {
     ) -> Result<Arc<Scenario>, String> {
         let before = (!acts.is_empty()).then(|| self.history.clone());
         let history = self.change();
-        let begun = if is_again {
-            history.begin_again_with(set)
-        } else {
-            history.begin_with(set)
-        };
+        let begun = history.begin_with(set, is_again);
         let mut begun_with = None;
         let begun = begun.and_then(|begun| {
             begun_with = Some(Arc::clone(&begun));
             let mut acts = acts.into_iter();
-            acts.try_fold(begun, |_, act| history.act(0, act))
+            acts.try_fold(begun, |_, act| history.act(0, act, false))
         });
         let scenario = self.or_back_to(before, begun)?;
         // An edit of the time step holds the seconds of the run, unless the number of steps was set with it.
@@ -183,11 +179,7 @@ impl Work {
         let history = self.change();
         let mut done = None;
         for (index, act) in acts.into_iter().enumerate() {
-            let result = if is_again || index > 0 {
-                history.act_again(step, act)
-            } else {
-                history.act(step, act)
-            };
+            let result = history.act(step, act, is_again || index > 0);
             let is_refused = result.is_err();
             done = Some(result);
             if is_refused {

@@ -13,10 +13,6 @@ use crate::physics::{State, observables};
 use std::sync::Arc;
 use toml::Value;
 
-/// Makes a scenario of `file`.
-///
-/// # Errors
-/// Every rule that its numbers break together.
 pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
     // Without a body nothing can be said of the rest; of that, each part is looked at by itself.
     let mut body = body(&file.body)?;
@@ -66,8 +62,8 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
     })
 }
 
-/// Adds the names in `table` that are none of its body's points to what is `found` wrong with its keys, so that both are told
-/// together. Where something is wrong with the body, nothing is said of them.
+/// Adds the unknown names of points in `table` to the problems `found` with its keys, so that both are printed together.
+/// Where the body itself is wrong, its points are unknown and nothing is added.
 pub fn names(table: &toml::Table, found: &mut Found) {
     let is_of_body = |key: &str| key == "body" || is_under(key, "body");
     let file = table.get("body").filter(|_| {

@@ -2,10 +2,11 @@
 
 use super::checks;
 use super::dotted::{find, is_in, set_key};
-use super::head::{LONGEST, read_text, short_enough};
+use super::head::{read_text, utf8};
+use super::limits::{self, LONGEST};
 use super::problem::{Found, PRESETS, Problem, Problems, nearest};
 use super::syntax::{mistake, offset_of, syntax_problem};
-use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start, tables};
+use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start};
 use crate::text::number::shortest;
 use crate::text::printable::{brief, printable};
 use crate::text::unread;
@@ -14,24 +15,18 @@ use std::path::Path;
 use toml::Value;
 use toml::de::DeTable;
 
-/// The most lines of one: 100 000 points take about 500 000.
-const MOST_LINES: usize = 2_000_000;
-
 /// A scenario or run file on its way to a [`Scenario`].
 #[derive(Clone, Debug)]
 pub struct Document {
     origin: String,
     text: String,
     table: toml::Table,
-    /// What `--set` wrote.
     set: Vec<Setting>,
 }
 
-/// A key that `--set` wrote.
 #[derive(Clone, Debug)]
 struct Setting {
     key: String,
-    /// The argument as it was given.
     argument: String,
     /// Why an array or a table is no TOML, and was taken as text.
     mistake: Option<String>,
@@ -40,9 +35,6 @@ struct Setting {
 impl Document {
     /// Opens what SCENARIO names: a shipped preset, or else a file (scenario, run file, or CSV with its run file in
     /// the header).
-    ///
-    /// # Errors
-    /// When there is no such preset, or the file cannot be read or is not TOML.
     pub fn open(scenario: &str) -> Result<Self, Problems> {
         if scenario.contains('/') || scenario.contains(".toml") || scenario.contains(".csv") {
             return Self::read(Path::new(scenario));
@@ -54,86 +46,60 @@ impl Document {
     }
 
     /// Reads a scenario or run file, or the header of a CSV.
-    ///
-    /// # Errors
-    /// When the file cannot be read or is not TOML.
     pub fn read(path: &Path) -> Result<Self, Problems> {
         let origin = path.display().to_string();
-        match read_text(path) {
-            Ok(text) => Self::parse(&origin, &text),
-            Err(problem) => Err(Problems::one(origin, problem)),
-        }
+        let text = read_text(path).map_err(|problem| Problems::one(&*origin, problem))?;
+        Self::parse(&origin, &text)
     }
 
     /// Reads what `reader` gives to its end.
-    ///
-    /// # Errors
-    /// When it cannot be read, is longer than any file that is taken, or is not TOML.
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
         let mut text = Vec::new();
         let read = reader.take(LONGEST + 1).read_to_end(&mut text);
-        let read = read.map_err(|error| Problem::at("", unread::why(&error)));
-        let fail = |problem| Problems {
-            origin: origin.to_owned(),
-            list: vec![problem],
-            more: 0,
-        };
-        read.and_then(|_| short_enough(text))
-            .map_err(fail)
-            .and_then(|text| Self::parse(origin, &text))
+        let text = read
+            .map_err(|error| Problem::at("", unread::why(&error)))
+            .and_then(|length| limits::short_enough(length as u64))
+            .and_then(|()| utf8(text))
+            .map_err(|problem| Problems::one(origin, problem))?;
+        Self::parse(origin, &text)
     }
 
-    /// The file, as the user named it.
     pub fn origin(&self) -> &str {
         &self.origin
     }
 
-    /// What is in it.
     pub fn table(&self) -> &toml::Table {
         &self.table
     }
 
     /// The lines, from 1, at which the dotted `keys` stand in the text.
     pub fn lines_of(&self, keys: impl Iterator<Item = String>) -> Vec<Option<usize>> {
+        let line = self.line_finder();
+        keys.map(|key| line(&key)).collect()
+    }
+
+    fn line_finder(&self) -> impl Fn(&str) -> Option<usize> {
         let spans = DeTable::parse(&self.text).ok();
         let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
-        let line = |key: String| {
-            let offset = offset_of(spans.as_ref()?.get_ref(), &key)?;
+        move |key| {
+            let offset = offset_of(spans.as_ref()?.get_ref(), key)?;
             Some(line_ends.partition_point(|&end| end < offset) + 1)
-        };
-        keys.map(line).collect()
+        }
     }
 
     /// Takes `text` as the scenario that `origin` holds.
-    ///
-    /// # Errors
-    /// When it is not TOML.
     pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
-        let lines = text.bytes().filter(|&byte| byte == b'\n').count();
-        if lines > MOST_LINES {
-            let rule = format!("has {lines} lines: at most {MOST_LINES} are allowed");
-            return Err(Problems::one(origin, Problem::at("", rule)));
-        }
-        tables::few_enough(&text).map_err(|problem| Problems::one(origin, problem))?;
-        match text.parse() {
-            Ok(table) => Ok(Self {
-                origin: origin.to_owned(),
-                text,
-                table,
-                set: Vec::new(),
-            }),
-            Err(error) => {
-                let problem = syntax_problem(&text, &error);
-                Err(Problems::one(origin, problem))
-            }
-        }
+        limits::few_enough(&text).map_err(|problem| Problems::one(origin, problem))?;
+        let table = text.parse();
+        let table = table.map_err(|error| Problems::one(origin, syntax_problem(&text, &error)))?;
+        Ok(Self {
+            text,
+            ..Self::from_table(origin, table)
+        })
     }
 
     /// The document that `file` would be written as.
-    ///
-    /// # Errors
-    /// Never for a file that came from a checked scenario.
     pub fn from_file(origin: &str, file: &ScenarioFile) -> Result<Self, Problems> {
         let table = toml::Table::try_from(file)
             .map_err(|error| Problems::one(origin, Problem::at("", error.to_string())))?;
@@ -150,17 +116,17 @@ impl Document {
         }
     }
 
-    /// The scenario that `file` would be written and read as, checked, without writing and reading it.
-    ///
-    /// # Errors
-    /// As [`scenario`](Self::scenario).
-    pub fn check_file(origin: &str, file: ScenarioFile) -> Result<Scenario, Problems> {
-        let document = Self::from_file(origin, &file)?;
-        let problems = keys::check(&document.table);
-        if !problems.list.is_empty() {
-            return Err(document.placed(problems));
+    /// Checks its size, and each key and value by itself.
+    pub(crate) fn check(&self) -> Result<(), Problems> {
+        if let Some(problem) = limits::exceeded(&self.table) {
+            return Err(self.placed(vec![problem]));
         }
-        checks::scenario(file).map_err(|problems| document.placed(problems))
+        let mut problems = keys::check(&self.table);
+        if problems.list.is_empty() {
+            return Ok(());
+        }
+        checks::names(&self.table, &mut problems);
+        Err(self.placed(problems))
     }
 
     /// Carries out one `--set KEY=VALUE`: the value is TOML, or else text.
@@ -190,22 +156,15 @@ impl Document {
         Problems::one(self.origin.as_str(), problem)
     }
 
-    /// Writes `value` at the dotted `key` as `--set` does.
-    ///
-    /// # Errors
-    /// When the key leads nowhere.
     pub fn set_value(&mut self, key: &str, value: Value) -> Result<(), Problem> {
         start::make_room(&mut self.table, key);
         reshape::prepare(&mut self.table, key, &value);
         set_key(&mut self.table, key, value)
     }
 
-    /// Writes `value` at the dotted `key`, of which no problem's place will speak. What the value is about is first told
-    /// so that it can be changed: a momentum where there is a spin, a spin that is to be steady where there is a momentum, the
-    /// dimensions of a part that is to have another shape.
-    ///
-    /// # Errors
-    /// When the key leads nowhere, or the scenario is wrong before it has the value.
+    /// Writes `value` at the dotted `key`, without a place for problems. What the value changes is first written in the way
+    /// that it needs: a momentum where there is a spin, a spin where a momentum becomes steady, the dimensions of a part that
+    /// gets another shape.
     pub(crate) fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
         start::make_room(&mut self.table, key);
         reshape::prepare(&mut self.table, key, &value);
@@ -234,20 +193,12 @@ impl Document {
         Ok(())
     }
 
-    /// The scenario, checked.
-    ///
-    /// # Errors
-    /// Everything that is wrong with it, each with its place.
     pub fn scenario(&self) -> Result<Scenario, Problems> {
         if self.is_sweep() {
             let rule = "is a sweep of many runs, not a scenario: gyrolab sweep runs it";
             return Err(Problems::one(self.origin.as_str(), Problem::at("", rule)));
         }
-        let mut problems = keys::check(&self.table);
-        if !problems.list.is_empty() {
-            checks::names(&self.table, &mut problems);
-            return Err(self.placed(problems));
-        }
+        self.check()?;
         checks::scenario(self.file()?).map_err(|problems| self.placed(problems))
     }
 
@@ -259,9 +210,6 @@ impl Document {
     }
 
     /// The file's shape; its numbers are not checked.
-    ///
-    /// # Errors
-    /// When it has another shape.
     pub(crate) fn file(&self) -> Result<ScenarioFile, Problems> {
         let file = self.table.clone().try_into();
         file.map_err(|error: toml::de::Error| {
@@ -281,8 +229,7 @@ impl Document {
         })
     }
 
-    /// Where `problem` is that a push, a point or another entry lacks a key that `--set` alone began: which entries the
-    /// file has.
+    /// Which entries the file has, where `--set` alone began the entry (a push, a point) that lacks a key.
     fn that_are_there(&self, problem: &Problem, written: Option<&toml::Table>) -> String {
         let told = || {
             let (entry, _) = problem.key.rsplit_once('.')?;
@@ -304,9 +251,8 @@ impl Document {
     /// Problems with the places at which the user wrote their keys, in the order of the file.
     pub fn placed(&self, found: impl Into<Found>) -> Problems {
         let Found { list, more } = found.into();
-        let spans = DeTable::parse(&self.text).ok();
+        let line_of = self.line_finder();
         let written = (!self.set.is_empty()).then(|| self.text.parse().unwrap_or_default());
-        let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
         let mut lines: Vec<(usize, Problem)> = Vec::with_capacity(list.len());
         for mut problem in list {
             if let Some(setting) = self.setting_behind(&problem.key, written.as_ref()) {
@@ -327,10 +273,7 @@ impl Document {
                 lines.push((usize::MAX, problem));
                 continue;
             }
-            let offset = spans
-                .as_ref()
-                .and_then(|table| offset_of(table.get_ref(), &problem.key));
-            let line = offset.map(|offset| line_ends.partition_point(|&end| end < offset) + 1);
+            let line = line_of(&problem.key);
             problem.place = line.map(|line| format!("line {line}"));
             lines.push((line.unwrap_or(0), problem));
         }

@@ -3,26 +3,8 @@
 use super::problem::Problem;
 use toml::Value;
 
-const NOT_DOTTED: &str = "is not a dotted key such as motion.time_step_s";
-
-/// The names and numbers of the dotted `key`.
-///
-/// # Errors
-/// When one of them is empty, or there are more than any key has.
-pub(super) fn names(key: &str) -> Result<Vec<&str>, Problem> {
-    // The deepest key is body.point.N.at_m.N. Tables nested without bound would exhaust the stack.
-    const DEEPEST: usize = 5;
-    let names: Vec<&str> = key.split('.').collect();
-    if names.len() > DEEPEST {
-        let rule = format!("leads deeper than any key: at most {DEEPEST} names and numbers");
-        return Err(Problem::at(key, rule));
-    }
-    if names.iter().all(|name| !name.is_empty()) {
-        Ok(names)
-    } else {
-        Err(Problem::at(key, NOT_DOTTED))
-    }
-}
+/// The most names and numbers of a key: body.point.N.at_m.N has five. Tables nested without bound would exhaust the stack.
+const DEEPEST: usize = 5;
 
 /// `name` below the dotted path `under`.
 pub fn join(under: &str, name: &str) -> String {
@@ -33,19 +15,19 @@ pub fn join(under: &str, name: &str) -> String {
     }
 }
 
-/// The rule that a number beyond the end of an array of `length` elements breaks.
-pub(super) fn past_the_end(length: usize) -> String {
-    format!("leads past the end: the array has {length} elements, numbered from 0")
-}
-
 /// Writes `value` at the dotted `key`; numbers lead into arrays, and the one past the end adds an element.
 ///
 /// # Errors
 /// When the key leads into something that is neither table nor array, or past an array's end.
 pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), Problem> {
-    let names = names(key)?;
-    let Some((last, way)) = names.split_last() else {
-        return Err(Problem::at(key, NOT_DOTTED));
+    let names: Vec<&str> = key.split('.').collect();
+    if names.len() > DEEPEST {
+        let rule = format!("leads deeper than any key: at most {DEEPEST} names and numbers");
+        return Err(Problem::at(key, rule));
+    }
+    let (Some((last, way)), false) = (names.split_last(), names.contains(&"")) else {
+        let rule = "is not a dotted key such as motion.time_step_s";
+        return Err(Problem::at(key, rule));
     };
     let mut path = String::new();
     let mut inside = Place::Table(table);
@@ -61,7 +43,7 @@ pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), P
             Value::Table(table) => Place::Table(table),
             Value::Array(array) => Place::Array(array),
             other => {
-                let rule = format!("holds no {}", join("", names[index + 1]));
+                let rule = format!("holds no {}", names[index + 1]);
                 return Err(Problem::with_value(path, other, rule));
             }
         };
@@ -92,8 +74,12 @@ impl<'a> Place<'a> {
                 if index == length {
                     array.push(empty);
                 }
-                let past = || Problem::at(path, past_the_end(length));
-                array.get_mut(index).ok_or_else(past)
+                array.get_mut(index).ok_or_else(|| {
+                    let rule = format!(
+                        "leads past the end: the array has {length} elements, numbered from 0"
+                    );
+                    Problem::at(path, rule)
+                })
             }
         }
     }

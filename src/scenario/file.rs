@@ -1,10 +1,9 @@
 //! The shape of scenario and run files, as serde reads and writes them. What each key means is in [`super::keys`].
 
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// A scenario file; with `gyrolab` and any number of edits, a run file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
     pub gyrolab: Option<String>,
@@ -26,7 +25,6 @@ pub struct ScenarioFile {
     pub edit: Vec<EditFile>,
 }
 
-/// `[body]`
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyFile {
@@ -37,7 +35,6 @@ pub struct BodyFile {
     pub part: Vec<PartFile>,
 }
 
-/// `[body.rim]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RimFile {
@@ -47,7 +44,6 @@ pub struct RimFile {
     pub point_mass_kg: f64,
 }
 
-/// `[[body.point]]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PointFile {
@@ -56,7 +52,6 @@ pub struct PointFile {
     pub mass_kg: Option<f64>,
 }
 
-/// `[[body.part]]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartFile {
@@ -73,7 +68,6 @@ pub struct PartFile {
     pub moments_kg_m2: Option<[f64; 3]>,
 }
 
-/// `[start]`
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
@@ -103,7 +97,6 @@ pub enum Frame {
 }
 
 impl Frame {
-    /// Its name, as a file has it.
     pub fn name(self) -> &'static str {
         match self {
             Self::World => "world",
@@ -112,8 +105,7 @@ impl Frame {
     }
 }
 
-/// `[motion]`
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionFile {
     pub gravity_m_per_s2: Option<f64>,
@@ -122,8 +114,7 @@ pub struct MotionFile {
     pub steps: u64,
 }
 
-/// `[[push]]`
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct PushFile {
@@ -136,7 +127,6 @@ pub struct PushFile {
     pub accumulates: Option<bool>,
 }
 
-/// `[friction]`
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
@@ -147,7 +137,6 @@ pub struct FrictionFile {
     pub swing_viscous_Nms: Option<f64>,
 }
 
-/// `[view]`
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViewFile {
@@ -175,13 +164,10 @@ pub struct ViewFile {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Choice {
-    /// The number.
     Number(u64),
-    /// The word.
     Word(String),
 }
 
-/// `[view.camera]`
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraFile {
@@ -189,7 +175,6 @@ pub struct CameraFile {
     pub pitch_deg: Option<f64>,
 }
 
-/// `[view.zoom]`
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ZoomFile {
@@ -198,7 +183,6 @@ pub struct ZoomFile {
     pub three_d: Option<f64>,
 }
 
-/// `[[expected]]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExpectedFile {
@@ -208,10 +192,9 @@ pub struct ExpectedFile {
     pub tolerance: f64,
 }
 
-/// `[[edit]]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EditFile {
     pub step: u64,
-    pub set: Arc<toml::Table>,
+    pub set: toml::Table,
 }

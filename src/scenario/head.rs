@@ -1,13 +1,11 @@
 //! Files as they are read: the whole of a scenario, or the head of a CSV, which holds the run file.
 
+use super::limits::{LONGEST, LONGEST_HEADER, short_enough};
 use super::problem::Problem;
 use crate::text::unread;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
-
-/// The longest file that is read as a scenario, bytes: 100 000 points take about 8 MB.
-pub(super) const LONGEST: u64 = 16 << 20;
 
 /// How the line of names begins in the CSV of a run with every column.
 const EVERY_COLUMN: &[u8] = b"step,t_s,";
@@ -27,12 +25,9 @@ pub struct Head {
 }
 
 impl Head {
-    /// Reads the head of a file from its beginning; of a longer one no more than the length of a scenario.
-    ///
-    /// # Errors
-    /// When the system reports an error.
+    /// Reads the head of a file from its beginning; of a longer one no more than the longest.
     pub fn read(reader: &mut impl BufRead) -> io::Result<Self> {
-        let mut reader = reader.take(LONGEST + 1);
+        let mut reader = reader.take(LONGEST_HEADER + 1);
         let (mut bytes, mut names) = (Vec::new(), 0);
         loop {
             reader.read_until(b'\n', &mut bytes)?;
@@ -45,7 +40,6 @@ impl Head {
         }
     }
 
-    /// Every byte of it.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -116,7 +110,7 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
     if path.is_dir() {
         return Err(whole("is a folder: name a file in it".to_owned()));
     }
-    let mut reader = BufReader::new(File::open(path).map_err(cannot)?.take(LONGEST + 1));
+    let mut reader = BufReader::new(File::open(path).map_err(cannot)?);
     let head = Head::read(&mut reader).map_err(cannot)?;
     if head.is_of_csv() {
         return head.run_file();
@@ -127,34 +121,17 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
             "is not the CSV of a run: no line \"{names}...\" below a run file"
         )));
     }
-    let mut text = head.bytes;
     let length = std::fs::metadata(path).map_or(0, |file| file.len());
-    if length <= LONGEST {
-        reader.read_to_end(&mut text).map_err(cannot)?; // of a FIFO no more than the limit
-    }
-    if length > LONGEST || text.len() as u64 > LONGEST {
-        let how_long = if length > LONGEST {
-            format!("{length} bytes long, longer")
-        } else {
-            "longer".to_owned()
-        };
-        let most = LONGEST >> 20;
-        return Err(whole(format!(
-            "is {how_long} than {most} MiB ({LONGEST} bytes), the most that a scenario or run file may have"
-        )));
-    }
+    short_enough(length)?;
+    let mut text = head.bytes;
+    // A pipe has no length.
+    let rest = LONGEST.saturating_sub(text.len() as u64) + 1;
+    reader.take(rest).read_to_end(&mut text).map_err(cannot)?;
+    short_enough(text.len() as u64)?;
     utf8(text)
 }
 
-pub(super) fn short_enough(text: Vec<u8>) -> Result<String, Problem> {
-    if text.len() as u64 > LONGEST {
-        let rule = format!("is longer than {LONGEST} bytes, the most that is read");
-        return Err(Problem::at("", rule));
-    }
-    utf8(text)
-}
-
-fn utf8(bytes: Vec<u8>) -> Result<String, Problem> {
+pub(super) fn utf8(bytes: Vec<u8>) -> Result<String, Problem> {
     String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;

@@ -6,13 +6,13 @@
 mod check;
 
 pub use super::kind::{Kind, PITCH_DEG, Range, ZOOM};
+use super::limits::MOST_POINTS;
 use super::problem::nearest;
 use super::screen::{ALL_ROWS, DETAILS, FILLING, HIDEABLE, PANES, PHASES};
 use super::solids;
 use crate::physics::scheme;
 pub use check::check;
-pub(super) use check::check_part;
-pub(super) use check::is_under;
+pub(super) use check::{check_part, is_under};
 use toml::Value;
 
 /// One key a scenario or run file may hold.
@@ -20,7 +20,6 @@ use toml::Value;
 pub struct Key {
     /// Dotted path; `*` stands for any place in an array.
     pub path: &'static str,
-    /// What it holds.
     pub kind: Kind,
     /// Whether its table is incomplete without it.
     pub required: bool,
@@ -37,9 +36,7 @@ pub struct Key {
 pub struct InLab {
     /// Short name; of a vector the stem to which x, y or z is added.
     pub label: &'static str,
-    /// Unit, or empty.
     pub unit: &'static str,
-    /// What a nudge does to it.
     pub nudge: Nudge,
     /// What is assumed where the key is absent.
     pub absent: Absent,
@@ -68,13 +65,9 @@ pub enum Nudge {
 pub enum Absent {
     /// Nothing that a value could tell.
     Nothing,
-    /// This number.
     Number(f64),
-    /// This whole number.
     Whole(i64),
-    /// This word or name.
     Word(&'static str),
-    /// true or false.
     Flag(bool),
 }
 
@@ -114,12 +107,8 @@ use Range::{Any, NotNegative, Positive};
 
 const fn must(path: &'static str, kind: Kind, about: &'static str) -> Key {
     Key {
-        path,
-        kind,
         required: true,
-        instead: &[],
-        about,
-        lab: None,
+        ..may(path, kind, about)
     }
 }
 
@@ -160,9 +149,6 @@ impl Key {
         self
     }
 }
-
-/// The most points a body may have.
-pub const MOST_POINTS: i64 = 100_000;
 
 /// The highest number of a phase of a time step that can be chosen.
 pub const MOST_PHASES: i64 = 1000;
@@ -249,10 +235,18 @@ pub static KEYS: &[Key] = &[
     must("edit.*.set", Settings, "dotted keys of motion or push and their new values"),
 ];
 
-/// The shapes of parts.
 const SHAPES: [&str; solids::FORMS.len()] = solids::names();
 
 const SCHEME_NAMES: [&str; scheme::SCHEMES.len()] = scheme::names();
+
+/// The dotted `key` with `*` in the place of each number.
+fn pattern(key: &str) -> String {
+    let is_number = |name: &str| !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
+    let names = key
+        .split('.')
+        .map(|name| if is_number(name) { "*" } else { name });
+    names.collect::<Vec<_>>().join(".")
+}
 
 /// The row of the dotted `key`, numbers for places in arrays, and what a value there may be: of a number in a vector any
 /// finite number.
@@ -260,13 +254,6 @@ const SCHEME_NAMES: [&str; scheme::SCHEMES.len()] = scheme::names();
 /// # Errors
 /// Why there is no such key, with the nearest that there is.
 pub fn find(key: &str) -> Result<(&'static Key, Kind), String> {
-    let is_number = |name: &str| !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
-    let pattern = |key: &str| {
-        let names = key
-            .split('.')
-            .map(|name| if is_number(name) { "*" } else { name });
-        names.collect::<Vec<_>>().join(".")
-    };
     let row = |pattern: &str| KEYS.iter().find(|known| known.path == pattern);
     if let Some(row) = row(&pattern(key)) {
         return Ok((row, row.kind));
@@ -302,31 +289,30 @@ const ON_SCREEN: [(&str, &str); 4] = [
 pub(super) fn meant(key: &str) -> Option<&'static str> {
     let name = key.rsplit('.').next().unwrap_or(key);
     let on_screen = ON_SCREEN.iter().find(|(word, _)| *word == name);
-    let only = |is_it: &dyn Fn(&str) -> bool| {
-        let last = |key: &&Key| key.path.rsplit('.').next().is_some_and(is_it);
-        let mut found = KEYS.iter().filter(last).map(|key| key.path);
-        let first = found.next();
-        first.filter(|path| found.next().is_none() && !path.contains('*') && *path != key)
-    };
     let without_unit = |last: &str| {
         let unit = last.strip_prefix(name);
         unit.is_some_and(|unit| unit.starts_with('_'))
     };
     on_screen
         .map(|(_, key)| *key)
-        .or_else(|| only(&|last| last == name))
-        .or_else(|| only(&without_unit))
+        .or_else(|| only(|last| last == name).filter(|path| *path != key))
+        .or_else(|| only(without_unit))
+}
+
+/// The one key whose last name is such as `is_it` wants, where it is in no array.
+fn only(is_it: impl Fn(&str) -> bool) -> Option<&'static str> {
+    let mut found = KEYS
+        .iter()
+        .map(|key| key.path)
+        .filter(|path| path.rsplit('.').next().is_some_and(&is_it));
+    let first = found.next()?;
+    (found.next().is_none() && !first.contains('*')).then_some(first)
 }
 
 /// Whether the dotted `key` leads to a table of keys, or to an element of an array of such.
 pub fn is_table(key: &str) -> bool {
-    let is_number = |name: &str| !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
-    let names: Vec<_> = key
-        .split('.')
-        .map(|name| if is_number(name) { "*" } else { name })
-        .collect();
-    KEYS.iter()
-        .any(|known| is_under(known.path, &names.join(".")))
+    let pattern = pattern(key);
+    KEYS.iter().any(|known| is_under(known.path, &pattern))
 }
 
 /// What setting a key does to a run.
@@ -341,7 +327,6 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// What setting the dotted `key` does.
     pub fn of(key: &str) -> Self {
         const IDLE: [&str; 4] = ["title", "about", "source", "motion.steps"];
         const IDLE_TABLES: [&str; 2] = ["view.", "expected."];

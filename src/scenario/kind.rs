@@ -7,10 +7,8 @@ use Range::{NotNegative, Positive, Within};
 use nalgebra::Vector3;
 use toml::Value;
 
-/// Characters of a name, a title or another text on one line, at most.
 pub const LONGEST_LINE: usize = 1000;
 
-/// Characters of a text of several lines, at most.
 pub const LONGEST_PARAGRAPH: usize = 20_000;
 
 /// What a key may hold.
@@ -20,19 +18,14 @@ pub enum Kind {
     Line,
     /// Text that may have several lines.
     Paragraph,
-    /// A finite number.
     Number(Range),
     /// A whole number, from the least to the most.
     Whole(i64, i64),
     /// A whole number from 1 to the most, or one of these words.
     WholeOr(i64, &'static [&'static str]),
-    /// Three finite numbers.
     Vector,
-    /// true or false.
     Flag,
-    /// One of these words.
     OneOf(&'static [&'static str]),
-    /// A list of these words.
     Words(&'static [&'static str]),
     /// A table of dotted keys and their new values (run files).
     Settings,
@@ -41,26 +34,19 @@ pub enum Kind {
 /// The range of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
-    /// Any finite number.
     Any,
-    /// Greater than zero.
     Positive,
-    /// Zero or greater.
     NotNegative,
     /// From the first to the second.
     Within((f64, f64)),
 }
 
-/// The least and the greatest zoom.
 pub const ZOOM: (f64, f64) = (0.5, 100.0);
 /// The least and the greatest height of the eye above the horizontal, degrees.
 pub const PITCH_DEG: (f64, f64) = (-90.0, 90.0);
 
 impl Kind {
     /// Whether `value` is of this kind and in its range.
-    ///
-    /// # Errors
-    /// The rule that it breaks.
     pub fn check(self, value: &Value) -> Result<(), String> {
         match self {
             Line => text(value).and_then(check_line),

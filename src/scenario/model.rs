@@ -2,8 +2,8 @@
 
 use super::file::ScenarioFile;
 use super::problem::{Problem, nearest};
-use super::pushes::{Push, PushFiles, Pushes};
 use crate::physics::{self, Friction, Part, SchemeInfo, State, observables, part};
+use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -19,15 +19,12 @@ pub struct Scenario {
     pub trace: usize,
     /// Orientation and momentum at t = 0.
     pub start: State,
-    /// Friction about the pivot, throughout.
     pub friction: Friction,
     /// How it moves at the start.
     pub motion: Motion,
-    /// Length of the run in steps.
     pub steps: u64,
     /// The time step for which its step counts were written, s.
     pub written_for_s: f64,
-    /// The pushes at the start.
     pub pushes: Pushes,
     /// What the user changed during the run, in the order of the steps.
     pub edits: Vec<Edit>,
@@ -38,7 +35,6 @@ pub struct Scenario {
 pub struct Body {
     /// The mechanics: the points of the rim, the points, and then those that stand for the parts.
     pub mechanics: physics::Body,
-    /// The solid parts.
     pub parts: Vec<Part>,
     pub(crate) names: HashMap<String, usize>,
 }
@@ -48,27 +44,46 @@ pub struct Body {
 pub struct Motion {
     /// Acceleration of gravity along −z, m/s².
     pub gravity: f64,
-    /// The numerical scheme.
     pub scheme: &'static SchemeInfo,
-    /// dt, s.
     pub time_step_s: f64,
 }
+
+/// A force on one point for a while.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// Index of the pushed point.
+    pub point: usize,
+    /// Force, world frame, N.
+    pub force: Vector3<f64>,
+    pub window: Window,
+    /// Whether it is the report's line taken literally: j times the force on its j-th step, and kept to the end.
+    pub accumulates: bool,
+}
+
+/// When a push acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Window {
+    /// On `count` steps from step `first` on; step 1 ends at t = dt.
+    Steps { first: u64, count: u64 },
+    /// From one time on, for a length of time.
+    Time { from_s: f64, for_s: f64 },
+}
+
+/// The pushes that a run has at one time. Edits that set no push share the list of the edit before.
+pub type Pushes = Arc<Vec<Push>>;
 
 /// A change during the run: made at `step`, it acts from the next step on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edit {
-    /// The step at which it was made.
     pub step: u64,
     /// How the body moves from then on.
     pub motion: Motion,
     /// The pushes from then on.
     pub pushes: Pushes,
-    /// The places of those that it set, each once, in their order.
+    /// The numbers of the pushes that it set, each once, in order.
     pub set_pushes: Vec<usize>,
     /// What it set.
     pub touches: Touches,
-    /// The pushes from then on, as a file would give them.
-    pub(crate) written: PushFiles,
 }
 
 /// Which parts of the motion an edit set.
@@ -101,7 +116,6 @@ impl Body {
         first..first + part::POINTS
     }
 
-    /// Index of the point called `name`.
     pub fn point(&self, name: &str) -> Option<usize> {
         self.names.get(name).copied()
     }

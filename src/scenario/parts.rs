@@ -3,11 +3,10 @@
 
 use super::dotted::join;
 use super::file::{BodyFile, MotionFile, PushFile};
-use super::keys::{GRAVITY, MOST_POINTS};
-use super::model::{Body, Motion};
+use super::keys::GRAVITY;
+use super::limits::MOST_POINTS;
+use super::model::{Body, Motion, Push, Pushes, Window};
 use super::problem::{Found, Problem};
-use super::pushes::Pushes;
-use super::pushes::{Push, Window};
 use super::solids;
 use crate::physics::{self, BodyError, PointMass, SchemeInfo};
 use nalgebra::Vector3;
@@ -18,17 +17,7 @@ use std::f64::consts::TAU;
 const OF_PART: usize = 6;
 
 pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
-    let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
-    let count = rim + file.point.len() + OF_PART * file.part.len();
-    if count > usize::try_from(MOST_POINTS).unwrap_or(usize::MAX) {
-        let of_parts = if file.part.is_empty() {
-            ""
-        } else {
-            ", six for each part"
-        };
-        let rule = format!("has {count} points{of_parts}; at most {MOST_POINTS} are allowed");
-        return Err(vec![Problem::at("body", rule)].into());
-    }
+    few_enough(file)?;
     let mut points = rim_points(file);
     let mut named = Named::default();
     for (index, point) in file.point.iter().enumerate() {
@@ -66,6 +55,21 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
         parts,
         names: named.names,
     })
+}
+
+fn few_enough(file: &BodyFile) -> Result<(), Vec<Problem>> {
+    let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
+    let count = rim + file.point.len() + OF_PART * file.part.len();
+    if count <= usize::try_from(MOST_POINTS).unwrap_or(usize::MAX) {
+        return Ok(());
+    }
+    let of_parts = if file.part.is_empty() {
+        ""
+    } else {
+        ", six for each part"
+    };
+    let rule = format!("has {count} points{of_parts}; at most {MOST_POINTS} are allowed");
+    Err(vec![Problem::at("body", rule)])
 }
 
 /// The names of points and parts as they are found, each with the index of its point, and what is wrong with them.
@@ -136,9 +140,9 @@ pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Found> {
         let push = push(file, body, &format!("push.{index}"));
         push.map_err(|refused| found.add_all(refused)).ok()
     });
-    let pushes = pushes.collect();
+    let pushes = pushes.collect::<Vec<_>>();
     if found.list.is_empty() {
-        Ok(pushes)
+        Ok(pushes.into())
     } else {
         Err(found)
     }

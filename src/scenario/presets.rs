@@ -5,7 +5,6 @@
 pub struct Preset {
     /// Its name on the command line; `presets/NAME.toml` in the source.
     pub name: &'static str,
-    /// The file's text.
     pub text: &'static str,
     /// What to try after its run, one line. It is no part of the file, which stands in the header of every CSV of its run.
     pub next: &'static str,
@@ -51,7 +50,6 @@ pub const PRESETS: &[Preset] = presets![
     "poinsot": "o opens wing-nut: a free body again, about its middle axis."
 ];
 
-/// The preset of that name.
 pub fn find(name: &str) -> Option<&'static Preset> {
     PRESETS.iter().find(|preset| preset.name == name)
 }

@@ -42,16 +42,24 @@ impl Problem {
     }
 }
 
+impl Problem {
+    /// It in words, without its place.
+    fn bare(&self) -> String {
+        let (key, value, rule) = (brief(&self.key, 80), &self.value, &self.rule);
+        match (self.key.is_empty(), value.is_empty()) {
+            (true, _) => rule.clone(),
+            (false, true) => format!("{key}: {rule}"),
+            (false, false) => format!("{key} ({value}) {rule}"),
+        }
+    }
+}
+
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(place) = &self.place {
             write!(f, "{place}: ")?;
         }
-        match (self.key.is_empty(), self.value.is_empty()) {
-            (true, _) => write!(f, "{}", self.rule),
-            (false, true) => write!(f, "{}: {}", brief(&self.key, 80), self.rule),
-            (false, false) => write!(f, "{} ({}) {}", brief(&self.key, 80), self.value, self.rule),
-        }
+        f.write_str(&self.bare())
     }
 }
 
@@ -101,7 +109,6 @@ impl From<Vec<Problem>> for Found {
 /// Everything found wrong with one file; never empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problems {
-    /// The file, as the user named it.
     pub origin: String,
     /// What was found, in the order of the file.
     pub list: Vec<Problem>,
@@ -135,18 +142,8 @@ impl Problems {
 
     /// The first of them in one line, without file, line or `--set`: `motion.time_step_s (-0.1) must be greater than zero`.
     pub fn in_one_line(&self) -> String {
-        let bare = |problem: &Problem| {
-            Problem {
-                place: None,
-                ..problem.clone()
-            }
-            .to_string()
-        };
-        self.list
-            .first()
-            .map(bare)
-            .unwrap_or_default()
-            .replace('\n', " ")
+        let first = self.list.first().map(Problem::bare);
+        first.unwrap_or_default().replace('\n', " ")
     }
 }
 
@@ -161,16 +158,10 @@ impl fmt::Display for Problems {
         for (index, problem) in self.list.iter().take(SHOWN).enumerate() {
             let newline = if index == 0 { "" } else { "\n" };
             // A line's number belongs to the file's name (`file.toml:12: ...`), as editors and compilers write it.
-            match problem
-                .place
-                .as_deref()
-                .and_then(|place| place.strip_prefix("line "))
-            {
+            let place = problem.place.as_deref();
+            match place.and_then(|place| place.strip_prefix("line ")) {
                 Some(line) => {
-                    let bare = Problem {
-                        place: None,
-                        ..problem.clone()
-                    };
+                    let bare = problem.bare();
                     write!(f, "{newline}{}:{line}: {bare}", printable(&self.origin))?;
                 }
                 // What is wrong with an option is none of a preset's file, which the user has not named.
@@ -218,45 +209,19 @@ pub fn listed<'a>(names: impl Iterator<Item = &'a str> + Clone) -> String {
     list.join(", ")
 }
 
+/// The longest name that is compared: nothing longer is a slip of the pen.
+const LONGEST: usize = 80;
+/// The most names that are compared: the body may have 100 000 points.
+const MOST_COMPARED: usize = 2000;
+
 /// "did you mean ...?" for a name that is not in `known`, or the list of them where none is near.
 pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
-    // Nothing so long is a slip of the pen, and comparing costs its length times that of every name.
-    const LONGEST: usize = 80;
     if wrong.len() > LONGEST {
         return format!("there is {}", listed(known));
     }
-    let lower = wrong.to_lowercase();
-    // Of more names than this the rest is not looked at: the body may have 100 000 points.
-    const MOST_COMPARED: usize = 2000;
-    let furthest = |name: &str| 2.max(name.len() / 3);
-    let length = lower.chars().count();
-    let near = known
-        .clone()
-        .take(MOST_COMPARED)
-        // What differs more in length than it may in letters need not be compared.
-        .filter(|name| {
-            name.len() <= LONGEST && name.chars().count().abs_diff(length) <= furthest(name)
-        })
-        .map(|name| {
-            (
-                strsim::damerau_levenshtein(&lower, &name.to_lowercase()),
-                name,
-            )
-        })
-        .min_by_key(|(distance, _)| *distance);
-    // A name that lacks its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near however long the unit; nearer is one
-    // that differs in no letter and no digit ("method2" for "method-2", and not for "method-2-slow").
     let bare = letters(wrong);
-    let is_bare = |name: &&str| !bare.is_empty() && begins_with(letters_of(name), &bare);
-    let is_same = |name: &&str| !bare.is_empty() && letters_of(name).eq(bare.chars());
-    let begins = known.clone().find(is_same);
-    let begins = begins.or_else(|| known.clone().find(is_bare));
-    match (begins, near) {
-        (Some(name), _) => return format!("did you mean {}?", brief(name, LONGEST)),
-        (None, Some((distance, name))) if distance <= furthest(name) => {
-            return format!("did you mean {name}?");
-        }
-        _ => {}
+    if let Some(name) = closest(wrong, &bare, known.clone().take(MOST_COMPARED)) {
+        return format!("did you mean {}?", brief(name, LONGEST));
     }
     // Of "precession" all that have to do with it.
     let has_it = |name: &&str| bare.len() > 2 && letters(name).contains(&bare);
@@ -267,19 +232,41 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
     }
 }
 
+/// The name of `known` that is so near to `wrong`, whose letters are `bare`, that it was meant.
+fn closest<'a>(
+    wrong: &str,
+    bare: &str,
+    known: impl Iterator<Item = &'a str> + Clone,
+) -> Option<&'a str> {
+    // A name that lacks its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near however long the unit; nearer is one
+    // that differs in no letter and no digit ("method2" for "method-2", and not for "method-2-slow").
+    if !bare.is_empty() {
+        let is_same = |name: &&str| letters(name) == bare;
+        let begins = |name: &&str| letters(name).starts_with(bare);
+        let found = known.clone().find(is_same);
+        let found = found.or_else(|| known.clone().find(begins));
+        if found.is_some() {
+            return found;
+        }
+    }
+    let lower = wrong.to_lowercase();
+    let length = lower.chars().count();
+    let distances = known.filter_map(|name| {
+        let furthest = 2.max(name.len() / 3);
+        // A name that differs in length by more than this differs in as many letters.
+        let may_be_near =
+            name.len() <= LONGEST && name.chars().count().abs_diff(length) <= furthest;
+        let distance = || strsim::damerau_levenshtein(&lower, &name.to_lowercase());
+        may_be_near.then(|| (distance(), furthest, name))
+    });
+    let (distance, furthest, name) = distances.min_by_key(|(distance, ..)| *distance)?;
+    (distance <= furthest).then_some(name)
+}
+
 /// The letters and digits of `name`, in lower case.
 fn letters(name: &str) -> String {
-    letters_of(name).collect()
-}
-
-/// The same one by one.
-fn letters_of(name: &str) -> impl Iterator<Item = char> + '_ {
     let all = name.chars().filter(|c| c.is_alphanumeric());
-    all.flat_map(char::to_lowercase)
-}
-
-fn begins_with(mut letters: impl Iterator<Item = char>, begin: &str) -> bool {
-    begin.chars().all(|letter| letters.next() == Some(letter))
+    all.flat_map(char::to_lowercase).collect()
 }
 
 #[cfg(test)]

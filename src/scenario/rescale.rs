@@ -42,7 +42,7 @@ pub fn at_time_step(file: &ScenarioFile, time_step_s: f64) -> Result<ScenarioFil
     Ok(other)
 }
 
-/// Whether steps mean nothing in `file` that seconds cannot hold.
+/// Whether seconds can replace every number of steps in `file`.
 pub fn can_be_rescaled(file: &ScenarioFile) -> bool {
     file.edit.is_empty() && !file.push.iter().any(|push| push.accumulates == Some(true))
 }

@@ -4,7 +4,7 @@
 use super::dotted::find;
 use super::file::PartFile;
 use super::kind::vector;
-use super::solids::{self, has_dimension};
+use super::solids::{self, DIMENSIONS, has_dimension};
 use crate::physics::part::Shape;
 use nalgebra::Vector3;
 use toml::{Table, Value};
@@ -38,26 +38,12 @@ pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
         return;
     };
     if name == "shape" && !told.is_empty() {
-        part.retain(|key, _| !is_dimension(key));
+        part.retain(|key, _| !DIMENSIONS.contains(&key));
     }
     part.extend(
         told.into_iter()
             .map(|(name, value)| (name.to_owned(), value)),
     );
-}
-
-/// The dimensions of any shape, in the order of the table of keys.
-const DIMENSIONS: [&str; 6] = [
-    "radius_m",
-    "inner_radius_m",
-    "outer_radius_m",
-    "length_m",
-    "size_m",
-    "moments_kg_m2",
-];
-
-fn is_dimension(key: &str) -> bool {
-    DIMENSIONS.contains(&key)
 }
 
 /// The dimensions that a part of the shape `shape` has in the place of `old`; none where there is no such shape, or no such

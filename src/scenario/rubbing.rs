@@ -4,8 +4,7 @@ use super::file::FrictionFile;
 use super::problem::{Problem, listed};
 use crate::physics::{Body, Damping, Friction, SchemeInfo, scheme};
 
-/// The most that a coefficient of friction may be over the least moment of the body: what it does to the motion is then
-/// still told apart from infinity.
+/// The largest coefficient of friction, divided by the least moment of the body, whose effect is still finite.
 const MOST_RATE: f64 = 1e100;
 
 /// The friction of `[friction]` on `body`.

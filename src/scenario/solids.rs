@@ -6,7 +6,7 @@ use super::problem::Problem;
 use crate::physics::part::{Part, PartError, Shape};
 use crate::text::number::shortest;
 use nalgebra::Vector3;
-use toml::Value;
+use toml::{Table, Value};
 
 /// A shape as a file names it, and its dimensions.
 pub(super) struct Form {
@@ -77,7 +77,16 @@ pub(super) static FORMS: [Form; 9] = [
     }),
 ];
 
-/// Their names.
+/// The dimensions of any shape, in the order of the table of keys.
+pub(super) const DIMENSIONS: [&str; 6] = [
+    "radius_m",
+    "inner_radius_m",
+    "outer_radius_m",
+    "length_m",
+    "size_m",
+    "moments_kg_m2",
+];
+
 pub(super) const fn names() -> [&'static str; FORMS.len()] {
     let mut names = [""; FORMS.len()];
     let mut at = 0;
@@ -128,28 +137,18 @@ pub(super) fn part(file: &PartFile) -> Result<Part, Vec<Problem>> {
 
 /// The dimensions that are missing, and those that a solid of this form has not.
 fn wrong_dimensions(form: &Form, file: &PartFile) -> Vec<Problem> {
-    let dimensions = [
-        ("radius_m", file.radius_m.map(Value::Float)),
-        ("inner_radius_m", file.inner_radius_m.map(Value::Float)),
-        ("outer_radius_m", file.outer_radius_m.map(Value::Float)),
-        ("length_m", file.length_m.map(Value::Float)),
-        ("size_m", file.size_m.map(|size| vector(&size.into()))),
-        (
-            "moments_kg_m2",
-            file.moments_kg_m2.map(|moments| vector(&moments.into())),
-        ),
-    ];
+    let written = Table::try_from(file).unwrap_or_default();
     let all = || [form.needs, form.may_have].concat().join(", ");
-    let wrong = |(name, value): (&'static str, Option<Value>)| {
+    let wrong = |name: &'static str| {
         let (needs, may) = (form.needs.contains(&name), form.may_have.contains(&name));
-        match value {
+        match written.get(name) {
             None if needs => Some(Problem::at(
                 name,
                 format!("is missing: a part of shape {} has {}", form.name, all()),
             )),
             Some(value) if !needs && !may => Some(Problem::with_value(
                 name,
-                &value,
+                value,
                 format!(
                     "does not go with shape {}, which has {}: leave it out",
                     form.name,
@@ -159,7 +158,7 @@ fn wrong_dimensions(form: &Form, file: &PartFile) -> Vec<Problem> {
             _ => None,
         }
     };
-    dimensions.into_iter().filter_map(wrong).collect()
+    DIMENSIONS.into_iter().filter_map(wrong).collect()
 }
 
 /// A dimension that is there, or may be left out and is then 0.

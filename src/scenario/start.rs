@@ -1,5 +1,5 @@
-//! The start: how the body stands, and its momentum, told in one of three ways: as it is, by the spin about the axle, or by
-//! the angular velocity.
+//! The start: orientation, and momentum. A file gives the momentum itself, the spin about the axle, or the angular
+//! velocity.
 
 use super::dotted::find;
 use super::file::{Frame, StartFile};
@@ -21,7 +21,7 @@ const RPM: f64 = TAU / 60.0;
 /// The state at t = 0 under the gravity `gravity`, m/s²; pushes do not count.
 ///
 /// # Errors
-/// Where the momentum is told in several ways or in none, or asked to be steady where it cannot be.
+/// Where the momentum is given in several ways or in none, or cannot be steady.
 pub(super) fn start(
     file: &StartFile,
     body: &physics::Body,
@@ -78,7 +78,6 @@ fn orientation(file: &StartFile) -> Matrix3<f64> {
     orientation
 }
 
-/// The spin that is written, rad/s.
 fn spin(file: &StartFile) -> Option<f64> {
     file.spin_rad_per_s.or(file.spin_rpm.map(|rpm| rpm * RPM))
 }
@@ -92,16 +91,11 @@ fn refused(name: &str, value: impl Into<Value>, rule: impl Into<String>) -> Vec<
 }
 
 fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
-    let three = |numbers: Option<[f64; 3]>| numbers.map(|numbers| vector(&numbers.into()));
-    let told: Vec<(&str, Value)> = [
-        ("momentum_Js", three(file.momentum_Js)),
-        ("spin_rpm", file.spin_rpm.map(Value::from)),
-        ("spin_rad_per_s", file.spin_rad_per_s.map(Value::from)),
-        ("omega_rad_per_s", three(file.omega_rad_per_s)),
-    ]
-    .into_iter()
-    .filter_map(|(name, value)| Some((name, value?)))
-    .collect();
+    let written = Table::try_from(file).unwrap_or_default();
+    let told: Vec<_> = WAYS_TO_TELL
+        .iter()
+        .filter_map(|name| Some((*name, written.get(*name)?)))
+        .collect();
     let way = match &told[..] {
         [] => {
             let rule = format!("is missing ({STATED})");
@@ -110,7 +104,7 @@ fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
         [(way, _)] => *way,
         [(first, _), (other, value), ..] => {
             let rule = format!("is given beside {first}: keep one of the two");
-            return Err(refused(other, value.clone(), rule));
+            return Err(refused(other, (*value).clone(), rule));
         }
     };
     let goes_with = |name: &str, wanted: &str| {
@@ -187,6 +181,13 @@ fn above(number: f64) -> String {
     number::significant(up, 4)
 }
 
+/// The keys of which a start has one.
+const WAYS_TO_TELL: [&str; 4] = [
+    "momentum_Js",
+    "spin_rpm",
+    "spin_rad_per_s",
+    "omega_rad_per_s",
+];
 /// The ways to tell the momentum: the keys of each.
 const WAYS: [&[&str]; 3] = [&MOMENTUM, &SPIN, &OMEGA];
 const MOMENTUM: [&str; 2] = ["momentum_Js", "momentum_frame"];
@@ -198,8 +199,8 @@ fn way_of(name: &str) -> Option<&'static [&'static str]> {
     WAYS.into_iter().find(|way| way.contains(&name))
 }
 
-/// Takes out of the file's `table` what a new value at `key` replaces: the other ways to tell the momentum, and of two
-/// spins the other one.
+/// Removes from the file's `table` what a new value at `key` replaces: the other ways to give the momentum, or the other
+/// spin.
 pub(super) fn make_room(table: &mut Table, key: &str) {
     let name = key.strip_prefix("start.").unwrap_or_default();
     let is_frame_or_flag = ["momentum_frame", "omega_frame", "steady"].contains(&name);

@@ -12,15 +12,15 @@ use std::path::Path;
 use std::sync::Arc;
 use toml::{Table, Value};
 
-/// Stands between the name of the original and its `about`, in the file of a run that was changed since.
+/// Joins the name of the original and its `about`, in the file of a run that was changed since.
 const AS_IT_WAS: &str = " as it was: ";
-/// Stands behind its `source` there.
+/// Ends its `source` there.
 const CHANGED: &str = "; changed since";
 
-/// More changed values of one table than these are not listed.
+/// The most changed values of one table that are listed.
 const MOST_VALUES: usize = 2;
 
-/// A file with a longer name than this, in characters, is called "what was opened".
+/// The longest name of a file, in characters; a file of a longer name is called "what was opened".
 const LONGEST_NAME: usize = 30;
 
 /// The `look_at` line of the file of `scenario`: what the viewer should watch for.
@@ -127,26 +127,16 @@ fn preset_with_words_of(scenario: &Scenario) -> Option<(&'static Preset, Scenari
 fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
     let (old, new) = (last_motion(before), last_motion(now));
     let mut changes = Vec::new();
-    if new.time_step_s != old.time_step_s {
-        changes.push(format!(
-            "dt {} s, not {}",
-            shortest(new.time_step_s),
-            shortest(old.time_step_s)
-        ));
-    }
-    if new.scheme.name != old.scheme.name {
-        changes.push(format!(
-            "{} scheme, not {}",
-            new.scheme.name, old.scheme.name
-        ));
-    }
-    if new.gravity != old.gravity {
-        changes.push(format!(
-            "gravity {} m/s2, not {}",
-            shortest(new.gravity),
-            shortest(old.gravity)
-        ));
-    }
+    let mut differs = |is_other: bool, what: String| changes.extend(is_other.then_some(what));
+    let [dt, old_dt] = [new.time_step_s, old.time_step_s];
+    let words = format!("dt {} s, not {}", shortest(dt), shortest(old_dt));
+    differs(dt != old_dt, words);
+    let [scheme, old_scheme] = [new.scheme.name, old.scheme.name];
+    let words = format!("{scheme} scheme, not {old_scheme}");
+    differs(scheme != old_scheme, words);
+    let [g, old_g] = [new.gravity, old.gravity];
+    let words = format!("gravity {} m/s2, not {}", shortest(g), shortest(old_g));
+    differs(g != old_g, words);
     if now.file.body != before.file.body {
         changes.push("another body".to_owned());
     }

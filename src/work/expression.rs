@@ -9,7 +9,6 @@ mod parse;
 /// The longest expression, bytes.
 const LONGEST: usize = 1000;
 
-/// An expression that was read.
 #[derive(Clone, Debug)]
 pub struct Expression {
     text: String,
@@ -36,88 +35,83 @@ pub struct Fault {
     pub rule: String,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 enum Node {
     Number(f64),
     /// The number of the name.
     Name(usize),
     Negated(Box<Node>),
     Absolute(Box<Node>),
-    Computed(Operator, Box<Node>, Box<Node>),
+    Computed(&'static Operator, Box<Node>, Box<Node>),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Operator {
-    Or,
-    And,
-    Less,
-    LessOrEqual,
-    Greater,
-    GreaterOrEqual,
-    Equal,
-    NotEqual,
-    Plus,
-    Minus,
-    Times,
-    Over,
+#[derive(Debug)]
+struct Operator {
+    name: &'static str,
+    /// How tightly it binds: the larger, the tighter.
+    power: u8,
+    apply: fn(f64, f64) -> f64,
 }
 
-use Operator::{
-    And, Equal, Greater, GreaterOrEqual, Less, LessOrEqual, Minus, NotEqual, Or, Over, Plus, Times,
-};
+const OR: u8 = 1;
+const AND: u8 = 2;
+const COMPARES: u8 = 3;
+const ADDS: u8 = 4;
+const MULTIPLIES: u8 = 5;
 
-/// The text of each operator. Of two that begin alike the longer stands first.
-const OPERATORS: [(&str, Operator); 12] = [
-    ("<=", LessOrEqual),
-    (">=", GreaterOrEqual),
-    ("==", Equal),
-    ("!=", NotEqual),
-    ("<", Less),
-    (">", Greater),
-    ("+", Plus),
-    ("-", Minus),
-    ("*", Times),
-    ("/", Over),
-    ("and", And),
-    ("or", Or),
+/// Of two that begin alike the longer stands first. A condition is 1 where it holds and 0 where it does not.
+static OPERATORS: [Operator; 12] = [
+    operator("<=", COMPARES, |a, b| truth(a <= b)),
+    operator(">=", COMPARES, |a, b| truth(a >= b)),
+    operator("==", COMPARES, |a, b| truth(a == b)),
+    operator("!=", COMPARES, |a, b| truth(a != b)),
+    operator("<", COMPARES, |a, b| truth(a < b)),
+    operator(">", COMPARES, |a, b| truth(a > b)),
+    operator("+", ADDS, |a, b| a + b),
+    operator("-", ADDS, |a, b| a - b),
+    operator("*", MULTIPLIES, |a, b| a * b),
+    operator("/", MULTIPLIES, |a, b| a / b),
+    // Where neither side decides.
+    operator("and", AND, |_, _| 1.0),
+    operator("or", OR, |_, _| 0.0),
 ];
 
-impl Operator {
-    /// How tightly it binds: the larger, the tighter.
-    fn power(self) -> u8 {
-        match self {
-            Or => 1,
-            And => 2,
-            Less | LessOrEqual | Greater | GreaterOrEqual | Equal | NotEqual => 3,
-            Plus | Minus => 4,
-            Times | Over => 5,
-        }
-    }
-
-    fn joins_conditions(self) -> bool {
-        matches!(self, Or | And)
-    }
-
-    fn gives_condition(self) -> bool {
-        self.power() <= 3
-    }
-
-    fn name(self) -> &'static str {
-        let found = OPERATORS.iter().find(|(_, operator)| *operator == self);
-        found.map_or("", |(name, _)| name)
-    }
+const fn operator(name: &'static str, power: u8, apply: fn(f64, f64) -> f64) -> Operator {
+    Operator { name, power, apply }
 }
 
-/// Conditions are 1 where they hold and 0 where they do not.
 fn truth(holds: bool) -> f64 {
     f64::from(u8::from(holds))
 }
 
+impl Operator {
+    fn joins_conditions(&self) -> bool {
+        self.power < COMPARES
+    }
+
+    fn gives_condition(&self) -> bool {
+        self.power <= COMPARES
+    }
+
+    /// The result where one side alone decides it, whatever the other is.
+    fn decided_by(&self, side: Option<f64>) -> Option<f64> {
+        match (self.power, side?) {
+            (OR, value) if value != 0.0 => Some(1.0),
+            (AND, 0.0) => Some(0.0),
+            _ => None,
+        }
+    }
+
+    fn value(&self, left: Option<f64>, right: impl FnOnce() -> Option<f64>) -> Option<f64> {
+        self.decided_by(left).or_else(|| {
+            let right = right();
+            let decided = self.decided_by(right);
+            decided.or_else(|| Some((self.apply)(left?, right?)))
+        })
+    }
+}
+
 impl Expression {
-    /// Reads `text`.
-    ///
-    /// # Errors
-    /// What is wrong with it, and at which character.
     pub fn parse(text: &str) -> Result<Self, Fault> {
         if text.len() > LONGEST {
             let rule = format!("an expression has at most {LONGEST} characters");
@@ -133,9 +127,6 @@ impl Expression {
     }
 
     /// Reads `text`, which must say whether something holds.
-    ///
-    /// # Errors
-    /// As [`parse`](Self::parse), and where it is a number.
     pub fn condition(text: &str) -> Result<Self, Fault> {
         let expression = Self::parse(text)?;
         if expression.is_condition {
@@ -147,7 +138,6 @@ impl Expression {
         })
     }
 
-    /// As it was written.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -157,7 +147,6 @@ impl Expression {
         self.is_condition
     }
 
-    /// Every name in it, once.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.names.iter().map(|(name, _)| name.as_str())
     }
@@ -215,41 +204,9 @@ impl Node {
             Self::Absolute(inner) => Some(inner.value(name)?.abs()),
             Self::Computed(operator, left, right) => {
                 let left = left.value(name);
-                operator.apply(left, || right.value(name))
+                operator.value(left, || right.value(name))
             }
         }
-    }
-}
-
-impl Operator {
-    fn apply(self, left: Option<f64>, right: impl FnOnce() -> Option<f64>) -> Option<f64> {
-        // One side can decide the result, even where the other has no value.
-        match (self, left) {
-            (Or, Some(left)) if left != 0.0 => return Some(1.0),
-            (And, Some(0.0)) => return Some(0.0),
-            _ => {}
-        }
-        let right = right();
-        match (self, right) {
-            (Or, Some(right)) if right != 0.0 => return Some(1.0),
-            (And, Some(0.0)) => return Some(0.0),
-            _ => {}
-        }
-        let (left, right) = (left?, right?);
-        Some(match self {
-            Or => 0.0,
-            And => 1.0,
-            Less => truth(left < right),
-            LessOrEqual => truth(left <= right),
-            Greater => truth(left > right),
-            GreaterOrEqual => truth(left >= right),
-            Equal => truth(left == right),
-            NotEqual => truth(left != right),
-            Plus => left + right,
-            Minus => left - right,
-            Times => left * right,
-            Over => left / right,
-        })
     }
 }
 

@@ -20,7 +20,6 @@ const MOST_POINTS: usize = 200_000;
 pub struct RunRecord {
     /// The name under which the user opened the scenario: a preset or a file.
     pub name: String,
-    /// The step at which the user left the run.
     pub left_at: u64,
     /// Time at which the run ends, s. An edit of the time step changes the number of steps, not this time.
     pub end_s: f64,
@@ -50,12 +49,7 @@ pub struct History {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reversal {
     /// The present run has changed after `step`; up to there it is the same.
-    SameRun {
-        /// The step at which the act was done.
-        step: u64,
-        /// The act that was undone or redone.
-        act: Act,
-    },
+    SameRun { step: u64, act: Act },
     /// Another run is now the present one.
     OtherRun,
 }
@@ -65,30 +59,22 @@ impl History {
     pub fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
         Self {
             past: Vec::new(),
-            present: RunRecord::new(name, Journal::of_checked(scenario), scenario),
+            present: RunRecord::new(name, Journal::of(scenario.file.clone()), scenario),
             undone: Vec::new(),
         }
     }
 
     /// Checks the journals of all past and undone runs. They are valid unless somebody has edited a session file by hand.
-    ///
-    /// # Errors
-    /// What is wrong with the first invalid one.
     pub fn check(&self) -> Result<(), Problems> {
         let runs = self.past.iter().chain(&self.undone);
         runs.map(|run| &run.journal)
             .try_for_each(|journal| journal.scenario().map(drop))
     }
 
-    /// The checked scenario of the present run.
-    ///
-    /// # Errors
-    /// As [`Journal::scenario`].
-    pub fn scenario(&mut self) -> Result<Arc<Scenario>, Problems> {
-        self.present.journal.check()
+    pub fn scenario(&self) -> Result<Arc<Scenario>, Problems> {
+        self.present.journal.scenario()
     }
 
-    /// The present run.
     pub fn present(&self) -> &RunRecord {
         &self.present
     }
@@ -102,7 +88,7 @@ impl History {
 
     /// Leaves the present run and begins that of `scenario`, opened as `name`.
     pub fn begin(&mut self, name: &str, scenario: &Arc<Scenario>) {
-        let journal = Journal::of_checked(scenario);
+        let journal = Journal::of(scenario.file.clone());
         self.begin_run(RunRecord::new(name, journal, scenario));
     }
 
@@ -138,50 +124,39 @@ impl History {
         self.past.drain(..self.past.len() - kept);
     }
 
-    /// Does `act` at `step` of the present run and returns the run's new scenario.
+    /// Does `act` at `step` of the present run and returns the run's new scenario. With `is_again` it is one more nudge of
+    /// the same value: one undo takes back all nudges of the chain.
     ///
     /// # Errors
     /// Why the act is refused; the history is then unchanged.
-    pub fn act(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
-        let scenario = self.present.journal.act(step, act)?;
-        self.undone.clear();
-        Ok(scenario)
-    }
-
-    /// As [`act`](Self::act), for one more nudge of the same value: one undo takes back all nudges of the chain.
-    ///
-    /// # Errors
-    /// Why the act is refused; the history is then unchanged.
-    pub fn act_again(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
-        let scenario = self.present.journal.act_again(step, act)?;
+    pub fn act(&mut self, step: u64, act: Act, is_again: bool) -> Result<Arc<Scenario>, Problems> {
+        let journal = &mut self.present.journal;
+        let scenario = if is_again {
+            journal.act_again(step, act)?
+        } else {
+            journal.act(step, act)?
+        };
         self.undone.clear();
         Ok(scenario)
     }
 
     /// Begins a new run: the present one as it moves where it was left, with the values of `set`; see
-    /// [`Journal::begun_with`].
+    /// [`Journal::begun_with`]. With `is_again`, one more nudge of the value that began the present run, it replaces the
+    /// present run: one undo then returns to the run before both.
     ///
     /// # Errors
     /// Why the values are refused; the history is then unchanged.
-    pub fn begin_with(&mut self, set: &Table) -> Result<Arc<Scenario>, Problems> {
-        let left = &self.present;
+    pub fn begin_with(&mut self, set: &Table, is_again: bool) -> Result<Arc<Scenario>, Problems> {
+        let replaced = self.past.last().filter(|_| is_again);
+        let left = replaced.unwrap_or(&self.present);
         let (journal, scenario) = left.journal.begun_with(left.left_at, set)?;
-        self.begin_run(RunRecord::new(&left.name, journal, &scenario));
-        Ok(scenario)
-    }
-
-    /// Replaces the present run with one that began with the values of `set` instead: one more nudge of the value that
-    /// began the present run. One undo then returns to the run before both.
-    ///
-    /// # Errors
-    /// Why the values are refused; the history is then unchanged.
-    pub fn begin_again_with(&mut self, set: &Table) -> Result<Arc<Scenario>, Problems> {
-        let Some(left) = self.past.last() else {
-            return self.begin_with(set);
-        };
-        let (journal, scenario) = left.journal.begun_with(left.left_at, set)?;
-        self.present = RunRecord::new(&left.name, journal, &scenario);
-        self.undone.clear();
+        let record = RunRecord::new(&left.name, journal, &scenario);
+        if replaced.is_some() {
+            self.present = record;
+            self.undone.clear();
+        } else {
+            self.begin_run(record);
+        }
         Ok(scenario)
     }
 
@@ -253,7 +228,7 @@ mod tests {
     fn begin_with_tilt(history: &mut History, step: u64, tilt_deg: f64) {
         leave(history, step);
         history
-            .begin_with(&one("start.tilt_deg", tilt_deg))
+            .begin_with(&one("start.tilt_deg", tilt_deg), false)
             .unwrap();
     }
 
@@ -273,11 +248,15 @@ mod tests {
     fn undo_and_redo_go_through_all_acts_and_runs_in_order() {
         let mut history = History::new("method-2", &opened("method-2"));
         history
-            .act(40, Act::set("motion.time_step_s", Value::Float(0.05)))
+            .act(
+                40,
+                Act::set("motion.time_step_s", Value::Float(0.05)),
+                false,
+            )
             .unwrap();
         begin_with_tilt(&mut history, 90, 30.0);
         history
-            .act(7, Act::set("motion.time_step_s", Value::Float(0.02)))
+            .act(7, Act::set("motion.time_step_s", Value::Float(0.02)), false)
             .unwrap();
         leave(&mut history, 9);
         history.begin("cusps", &opened("cusps"));
@@ -311,11 +290,11 @@ mod tests {
     fn undo_takes_the_advice_back_before_the_edits_that_it_kept() {
         let mut history = History::new("method-2", &opened("method-2"));
         let gravity = Act::set("motion.gravity_m_per_s2", Value::Float(5.0));
-        let edited = history.act(40, gravity).unwrap();
+        let edited = history.act(40, gravity, false).unwrap();
         leave(&mut history, 90);
         history.begin_as_advised(&edited);
         let push = Act::set("motion.time_step_s", Value::Float(0.02));
-        history.act(7, push).unwrap();
+        history.act(7, push, false).unwrap();
         assert!(matches!(
             history.undo(),
             Some(Reversal::SameRun { step: 7, .. })
@@ -338,7 +317,11 @@ mod tests {
         begin_with_tilt(&mut history, 90, 30.0);
         history.undo();
         history
-            .act(5, Act::set("motion.gravity_m_per_s2", Value::Float(1.0)))
+            .act(
+                5,
+                Act::set("motion.gravity_m_per_s2", Value::Float(1.0)),
+                false,
+            )
             .unwrap();
         assert_eq!(history.redo(), None);
     }
@@ -350,7 +333,7 @@ mod tests {
         for tilt_deg in [31.0, 32.0] {
             leave(&mut history, 5);
             history
-                .begin_again_with(&one("start.tilt_deg", tilt_deg))
+                .begin_with(&one("start.tilt_deg", tilt_deg), true)
                 .unwrap();
         }
         assert_eq!(tilt(&history), Some(32.0));
@@ -366,7 +349,11 @@ mod tests {
     fn redo_brings_the_new_run_back_and_not_an_edit_undone_before_it() {
         let mut history = History::new("method-2", &opened("method-2"));
         history
-            .act(40, Act::set("motion.time_step_s", Value::Float(0.05)))
+            .act(
+                40,
+                Act::set("motion.time_step_s", Value::Float(0.05)),
+                false,
+            )
             .unwrap();
         history.undo();
         begin_with_tilt(&mut history, 90, 30.0);
@@ -380,13 +367,13 @@ mod tests {
         let mut history = History::new("method-2", &opened("method-2"));
         let before = history.clone();
         history
-            .act(5, Act::set("motion.time_step_s", Value::Float(-1.0)))
+            .act(5, Act::set("motion.time_step_s", Value::Float(-1.0)), false)
             .unwrap_err();
         history
-            .begin_with(&one("body.rim.radius_m", -1.0))
+            .begin_with(&one("body.rim.radius_m", -1.0), false)
             .unwrap_err();
         history
-            .act(5, Act::set("motion.steps", Value::Integer(0)))
+            .act(5, Act::set("motion.steps", Value::Integer(0)), false)
             .unwrap_err();
         assert_eq!(history, before);
     }

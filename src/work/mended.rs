@@ -5,10 +5,8 @@ use crate::scenario::dotted::number_of_push;
 use crate::scenario::file::EditFile;
 use crate::scenario::rescale::{MOST_STEPS, at_time_step};
 use crate::scenario::{Document, Problem, Problems, Scenario};
-use std::sync::Arc;
 use toml::{Table, Value};
 
-/// The name of the run in messages.
 const ORIGIN: &str = "the run as advised";
 /// The keys of an edit that another time step or scheme throughout replaces.
 const REPLACED: [&str; 2] = ["motion.time_step_s", "motion.scheme"];
@@ -53,7 +51,7 @@ pub fn mended(
         if !set.is_empty() {
             file.edit.push(EditFile {
                 step: (time_s / time_step_s).round() as u64,
-                set: Arc::new(set),
+                set,
             });
         }
     }

@@ -6,6 +6,7 @@ pub use toward::Toward;
 
 use crate::physics::{State, observables};
 use crate::scenario::file::PushFile;
+use crate::scenario::problem::listed;
 use crate::scenario::{Scenario, Window, nudge};
 use crate::text::ladder::{at_or_below, climbed};
 use crate::text::number::shortest;
@@ -16,18 +17,15 @@ use serde::{Deserialize, Serialize};
 const SHARE: f64 = 0.1;
 /// Force of the default push, in weights of the body.
 const WEIGHTS: f64 = 2.0;
+
 /// A push that has not been given yet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct NextPush {
-    /// Name of the pushed point.
     pub point: String,
-    /// Size of the force, N.
     pub size_N: f64,
-    /// Direction of the force.
     pub toward: Toward,
-    /// Duration, s.
     pub for_s: f64,
 }
 
@@ -42,10 +40,8 @@ pub enum Field {
 }
 
 impl Field {
-    /// All four, in the order in which the lab lists them.
     pub const ALL: [Self; 4] = [Self::Point, Self::Size, Self::Toward, Self::Length];
 
-    /// What the user may type for the field.
     pub fn about(self) -> &'static str {
         match self {
             Self::Point => "the name of a point of the body",
@@ -103,15 +99,10 @@ impl NextPush {
         let weight = body.mass() * scenario.motion.gravity.abs().max(1.0);
         let length_s = scenario.steps as f64 * scenario.motion.time_step_s;
         let names = scenario.body.names();
-        let traced = names
-            .iter()
-            .find(|name| scenario.body.point(name) == Some(scenario.trace));
+        let is_traced = |name: &&&str| scenario.body.point(name) == Some(scenario.trace);
+        let point = names.iter().find(is_traced).or(names.first());
         Self {
-            point: traced
-                .or(names.first())
-                .copied()
-                .unwrap_or_default()
-                .to_owned(),
+            point: point.copied().unwrap_or_default().to_owned(),
             size_N: at_or_below(WEIGHTS * weight),
             toward: Toward::Down,
             for_s: at_or_below(SHARE * length_s),
@@ -140,40 +131,25 @@ impl NextPush {
     }
 
     /// The push with `field` nudged `times` times, downwards where negative.
-    ///
-    /// # Errors
-    /// Why the nudged value makes no push.
     pub fn nudged(&self, field: Field, times: i32, scenario: &Scenario) -> Result<Self, String> {
-        let names = scenario.body.names();
-        let next = match field {
-            Field::Point => Self {
-                point: cycled(&names, |name| **name == *self.point, times)
-                    .copied()
-                    .unwrap_or_default()
-                    .to_owned(),
-                ..self.clone()
-            },
-            Field::Toward => Self {
-                toward: cycled(&Toward::NAMED, |(_, toward)| *toward == self.toward, times)
-                    .map_or(self.toward, |(_, toward)| *toward),
-                ..self.clone()
-            },
-            Field::Size => Self {
-                size_N: climbed(self.size_N, times),
-                ..self.clone()
-            },
-            Field::Length => Self {
-                for_s: climbed(self.for_s, times),
-                ..self.clone()
-            },
-        };
+        let mut next = self.clone();
+        match field {
+            Field::Point => {
+                let names = scenario.body.names();
+                let point = cycled(&names, |name| **name == *self.point, times);
+                next.point = point.copied().unwrap_or_default().to_owned();
+            }
+            Field::Toward => {
+                let toward = cycled(&Toward::NAMED, |(_, toward)| *toward == self.toward, times);
+                next.toward = toward.map_or(self.toward, |(_, toward)| *toward);
+            }
+            Field::Size => next.size_N = climbed(self.size_N, times),
+            Field::Length => next.for_s = climbed(self.for_s, times),
+        }
         next.checked()
     }
 
     /// The push with the value of `field` that the user typed. A duration in steps is converted with `time_step_s` (s).
-    ///
-    /// # Errors
-    /// Why the text is no value of the field.
     pub fn typed(
         &self,
         field: Field,
@@ -188,7 +164,8 @@ impl NextPush {
             Field::Point => {
                 let point = text.trim();
                 scenario.body.point(point).ok_or_else(|| {
-                    format!("{label} must be one of {}", listed(&scenario.body.names()))
+                    let names = listed(scenario.body.names().into_iter());
+                    format!("{label} must be one of {names}")
                 })?;
                 next.point = point.to_owned();
             }
@@ -205,18 +182,15 @@ impl NextPush {
     }
 
     /// Returns the push if its force and duration are positive and finite.
-    ///
-    /// # Errors
-    /// Which of the two is not.
     pub fn checked(self) -> Result<Self, String> {
         let is_valid = |number: f64| number > 0.0 && number.is_finite();
-        match (is_valid(self.size_N), is_valid(self.for_s)) {
-            (true, true) => Ok(self),
-            (false, _) => {
-                Err("force must be greater than zero: the direction says where to".to_owned())
-            }
-            (_, false) => Err("must last longer than zero".to_owned()),
+        if !is_valid(self.size_N) {
+            return Err("force must be greater than zero: the direction says where to".to_owned());
         }
+        if !is_valid(self.for_s) {
+            return Err("must last longer than zero".to_owned());
+        }
+        Ok(self)
     }
 
     /// The push as a table of a run file, beginning at the time of `state`. Its times are in seconds, so that an edit of
@@ -234,15 +208,12 @@ impl NextPush {
         Ok(PushFile {
             point: self.point.clone(),
             force_N: force.map(|component| component + 0.0).into(), // no -0
-            first_step: None,
-            steps: None,
             from_s: Some(state.time_s),
             for_s: Some(self.for_s),
-            accumulates: None,
+            ..PushFile::default()
         })
     }
 
-    /// The push in words, for a message.
     pub fn in_words(&self) -> String {
         let [point, size, toward, length] = Field::ALL.map(|field| self.shown(field));
         format!("{size} N on {point}, {toward}, for {length} s")
@@ -257,10 +228,6 @@ fn cycled<T>(list: &[T], is_present: impl Fn(&T) -> bool, times: i32) -> Option<
         .map_or(-1, |now| now as i64);
     let count = i64::try_from(list.len()).ok().filter(|count| *count > 0)?;
     list.get((now + i64::from(times)).rem_euclid(count) as usize)
-}
-
-fn listed(names: &[&str]) -> String {
-    crate::scenario::problem::listed(names.iter().copied())
 }
 
 #[cfg(test)]

@@ -1,16 +1,15 @@
 //! The values of a scenario, each as a parameter that the lab lists, nudges and lets the user type. The table of
 //! [`keys`](crate::scenario::keys) holds their labels, units, nudges and defaults.
 
-mod offered;
-
 use crate::physics::scheme;
 use crate::scenario::dotted::{find, join, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
-use crate::scenario::keys::{EDITABLE_MOTION, InLab, KEYS, Key, Kind, Nudge, Range};
-use crate::scenario::{Document, Problems, Scenario, nudge};
+use crate::scenario::keys::{InLab, KEYS, Key, Kind, Nudge, Range};
+use crate::scenario::solids::has_dimension;
+use crate::scenario::{Document, Problems, Scenario, nudge, start, vector};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
-use offered::{is_offered, present};
+use nalgebra::Vector3;
 use toml::{Table, Value};
 
 /// The most points, and the most pushes, that are listed.
@@ -49,22 +48,14 @@ pub struct Parameter {
 /// the first 50 elements of an array of tables gives a group. `scenario` is the scenario of that file: it provides the spin
 /// or momentum that the file does not contain.
 pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
-    let names = Names::of(table);
     let mut list = Vec::with_capacity(64);
     for keys in KEYS.chunk_by(|one, next| array_of(one) == array_of(next)) {
-        let Some(array) = array_of(&keys[0]) else {
-            list.extend(
-                keys.iter()
-                    .flat_map(|key| parameters_of(key, key.path, table, &names, scenario)),
-            );
-            continue;
-        };
-        for index in 0..length(table, array) {
-            let inside = |key: &Key| key.path.replacen('*', &index.to_string(), 1);
-            list.extend(
-                keys.iter()
-                    .flat_map(|key| parameters_of(key, &inside(key), table, &names, scenario)),
-            );
+        let count = array_of(&keys[0]).map_or(1, |array| length(table, array));
+        for index in 0..count {
+            for key in keys {
+                let place = key.path.replacen('*', &index.to_string(), 1);
+                list.extend(parameters_of(key, &place, table, scenario));
+            }
         }
     }
     list
@@ -76,7 +67,6 @@ pub fn table_of(file: &ScenarioFile) -> Table {
     let point = file.body.point.iter().take(MOST_LISTED).cloned().collect();
     let part = file.body.part.iter().take(MOST_LISTED).cloned().collect();
     let listed = ScenarioFile {
-        gyrolab: None,
         title: file.title.clone(),
         about: file.about.clone(),
         source: file.source.clone(),
@@ -91,8 +81,7 @@ pub fn table_of(file: &ScenarioFile) -> Table {
         push: file.push.clone(),
         friction: file.friction,
         view: file.view.clone(),
-        expected: Vec::new(),
-        edit: Vec::new(),
+        ..ScenarioFile::default()
     };
     Table::try_from(&listed).unwrap_or_default() // a checked file holds nothing that TOML cannot write
 }
@@ -100,23 +89,9 @@ pub fn table_of(file: &ScenarioFile) -> Table {
 /// As [`table_of`], with the edits of the scenario up to `step`.
 pub fn table_at(scenario: &Scenario, step: u64) -> Table {
     let mut table = table_of(&scenario.file);
-    let count = scenario.edits.partition_point(|edit| edit.step <= step);
-    let Some(last) = count.checked_sub(1).map(|last| &scenario.edits[last]) else {
-        return table;
-    };
-    let made = &scenario.file.edit[..count];
-    for key in EDITABLE_MOTION {
-        let set = made.iter().rev().find_map(|edit| edit.set.get(key));
-        if let Some(value) = set {
-            let _ = set_key(&mut table, key, value.clone()); // checked when the scenario was read
-        }
-    }
-    let pushes = last.written.iter();
-    let pushes: Vec<_> = pushes
-        .filter_map(|push| Value::try_from(push).ok())
-        .collect();
-    if !pushes.is_empty() {
-        table.insert("push".to_owned(), Value::Array(pushes));
+    let made = scenario.file.edit.iter().filter(|edit| edit.step <= step);
+    for (key, value) in made.flat_map(|edit| &edit.set) {
+        let _ = set_key(&mut table, key, value.clone()); // checked when the scenario was read
     }
     table
 }
@@ -132,9 +107,6 @@ pub fn changed(file: &ScenarioFile, key: &str, value: Value) -> Result<Scenario,
 }
 
 /// As [`changed`], with all values of `set`.
-///
-/// # Errors
-/// As [`changed`].
 pub fn changed_all(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
     let mut document = Document::from_file("scenario", file)?;
     for (key, value) in set {
@@ -154,24 +126,11 @@ fn length(table: &Table, array: &str) -> usize {
     elements.map_or(0, |elements| elements.len().min(MOST_LISTED))
 }
 
-/// The names of the points and parts that are listed.
-struct Names {
-    points: Vec<String>,
-    parts: Vec<String>,
-}
-
-impl Names {
-    fn of(table: &Table) -> Self {
-        let names = |array: &str| {
-            let name = |index| find(table, &format!("{array}.{index}.name"))?.as_str();
-            let names = (0..length(table, array)).filter_map(name);
-            names.map(str::to_owned).collect()
-        };
-        Self {
-            points: names("body.point"),
-            parts: names("body.part"),
-        }
-    }
+/// The names of the points or parts in `array` that are listed.
+fn names(table: &Table, array: &str) -> Vec<String> {
+    let name = |index| find(table, &format!("{array}.{index}.name"))?.as_str();
+    let names = (0..length(table, array)).filter_map(name);
+    names.map(str::to_owned).collect()
 }
 
 /// The parameters of one key, at its `place` in `table`: none, one, or the three components of a vector.
@@ -179,7 +138,6 @@ fn parameters_of(
     key: &'static Key,
     place: &str,
     table: &Table,
-    names: &Names,
     scenario: &Scenario,
 ) -> Vec<Parameter> {
     let Some(lab) = key.lab.filter(|_| is_offered(place, table)) else {
@@ -202,13 +160,53 @@ fn parameters_of(
         size: size(&value),
         value: as_kind(value, key.kind),
         is_default: written.is_none(),
-        choices: choices(key, names, scenario),
+        choices: choices(key, table, scenario),
         kind: key.kind,
         lab,
     };
     match key.kind {
         Kind::Vector => parameter.components(),
         _ => vec![parameter],
+    }
+}
+
+/// The value that the file implies by leaving out the key at `place`, where it follows from other values: the spin or
+/// momentum of a start that is given in another way, the axis and the length of a part.
+fn present(key: &Key, place: &str, table: &Table, scenario: &Scenario) -> Option<Value> {
+    let start = &scenario.start;
+    let spin = || scenario.spin_rad_per_s(start);
+    match key.path {
+        "start.momentum_Js" => Some(vector(&start.momentum)),
+        "start.spin_rpm" => Some(start::rpm(spin()).into()),
+        "start.spin_rad_per_s" => Some(spin().into()),
+        "body.part.*.axis" => Some(vector(&Vector3::z())),
+        "body.part.*.length_m" => {
+            let shape = find(table, &place.replace("length_m", "shape"))?.as_str()?;
+            has_dimension(shape, "length_m").then_some(Value::Float(0.0))
+        }
+        _ => None,
+    }
+}
+
+/// Whether the key at `place` fits the other keys of its table: a push has its times either in steps or in seconds, and
+/// an angular velocity is listed only where the file gives one.
+fn is_offered(place: &str, table: &Table) -> bool {
+    let Some((inside, name)) = place.rsplit_once('.') else {
+        return true;
+    };
+    if inside == "start" && name.starts_with("omega") {
+        return find(table, "start.omega_rad_per_s").is_some();
+    }
+    if !inside.starts_with("push.") {
+        return true;
+    }
+    let is_in_seconds = ["from_s", "for_s"]
+        .iter()
+        .any(|name| find(table, &join(inside, name)).is_some());
+    match name {
+        "first_step" | "steps" | "accumulates" => !is_in_seconds,
+        "from_s" | "for_s" => is_in_seconds,
+        _ => true,
     }
 }
 
@@ -228,15 +226,17 @@ fn group(place: &str, table: &Table) -> String {
     }
 }
 
-fn choices(key: &Key, names: &Names, scenario: &Scenario) -> Vec<String> {
+fn choices(key: &Key, table: &Table, scenario: &Scenario) -> Vec<String> {
     match (key.kind, key.path) {
         (_, "motion.scheme") => {
             let able = scheme::true_to(scenario.friction);
             able.map(|scheme| scheme.name.to_owned()).collect()
         }
         (Kind::OneOf(words), _) => words.iter().map(|&word| word.to_owned()).collect(),
-        (_, "trace" | "push.*.point") => [&names.points[..], &names.parts].concat(),
-        (_, "start.rotor") => names.parts.clone(),
+        (_, "trace" | "push.*.point") => {
+            [names(table, "body.point"), names(table, "body.part")].concat()
+        }
+        (_, "start.rotor") => names(table, "body.part"),
         _ => Vec::new(),
     }
 }
@@ -249,7 +249,7 @@ fn size(value: &Value) -> f64 {
     }
 }
 
-fn float(value: &Value) -> Option<f64> {
+pub(super) fn float(value: &Value) -> Option<f64> {
     let whole = || value.as_integer().map(|whole| whole as f64);
     value.as_float().or_else(whole)
 }
@@ -263,7 +263,6 @@ fn as_kind(value: Value, kind: Kind) -> Value {
 }
 
 impl Parameter {
-    /// Its unit, or empty.
     pub fn unit(&self) -> &'static str {
         self.lab.unit
     }

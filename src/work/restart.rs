@@ -27,24 +27,17 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
         step,
         motion: &motion,
     };
-    let moved = pushes
-        .iter()
-        .enumerate()
-        .filter_map(|(index, push)| now.push(index, push).transpose());
-    let push = moved
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(|problem| Problems::one(origin.to_owned(), problem))?;
+    let push = now
+        .pushes(pushes)
+        .map_err(|problem| Problems::one(origin, problem))?;
     let old = &scenario.file;
     let speed = old.view.as_ref().and_then(|view| view.speed);
     let file = ScenarioFile {
-        gyrolab: None,
         title: format!(
             "{}, from t = {} s",
             old.title,
             number::significant(state.time_s, 7)
         ),
-        about: None,
-        source: None,
         trace: old.trace.clone(),
         body: old.body.clone(),
         start: StartFile {
@@ -63,8 +56,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
             speed: Some(speed),
             ..ViewFile::default()
         }),
-        expected: Vec::new(),
-        edit: Vec::new(),
+        ..ScenarioFile::default()
     };
     Document::from_file(origin, &file)?.scenario()
 }
@@ -128,16 +120,19 @@ struct Now<'a> {
 }
 
 impl Now<'_> {
+    fn pushes(&self, pushes: &Pushes) -> Result<Vec<PushFile>, Problem> {
+        let pushes = pushes.iter().enumerate();
+        let moved = pushes.filter_map(|(index, push)| self.push(index, push).transpose());
+        moved.collect()
+    }
+
     /// The rest of `push`, number `index` of the run, from now on; `None` where it is over.
     fn push(&self, index: usize, push: &Push) -> Result<Option<PushFile>, Problem> {
         let file = PushFile {
-            point: self.name(push.point).to_owned(),
+            point: self.scenario.point_name(push.point).unwrap_or_default(),
             force_N: push.force.into(),
-            first_step: None,
-            steps: None,
-            from_s: None,
-            for_s: None,
             accumulates: push.accumulates.then_some(true),
+            ..PushFile::default()
         };
         match push.window {
             Window::Steps { first, count } if push.accumulates || self.may_keep_step_numbers() => {
@@ -159,13 +154,6 @@ impl Now<'_> {
                 ..file
             })),
         }
-    }
-
-    fn name(&self, point: usize) -> &str {
-        let mut names = self.scenario.body.names.iter();
-        names
-            .find(|(_, index)| **index == point)
-            .map_or("", |(name, _)| name)
     }
 
     /// Whether the new scenario has the old one's start and time step, so that a step has the same number in both.

@@ -17,7 +17,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 fn browsing() -> (TempDir, Desk) {
     let folder = tempfile::tempdir().unwrap();
     let mut text = presets::find("loops").unwrap().text.to_owned();
-    for step in 0..40_000 {
+    for step in 0..10_000 {
         let _ = writeln!(
             text,
             "[[edit]]\nstep = {step}\nset.'motion.gravity_m_per_s2' = 9"
@@ -54,7 +54,7 @@ fn it_opens_when_it_has_been_read() {
     );
     assert_eq!(desk.lab.player().run().scenario().edits.len(), 0);
     wait_until(&mut desk, |desk| desk.lab.on_top().mode == Mode::Lab);
-    assert_eq!(desk.lab.player().run().scenario().edits.len(), 40_000);
+    assert_eq!(desk.lab.player().run().scenario().edits.len(), 10_000);
     assert!(desk.lab.player().playback.is_running());
 }
 

@@ -550,7 +550,7 @@ fn files_that_are_no_scenarios() {
     assert!(read_refusal(&lab.path().join("none.toml")).contains("there is no such file"));
     if Path::new("/dev/zero").exists() {
         let message = read_refusal(Path::new("/dev/zero"));
-        assert!(message.contains("longer than 16 MiB"), "{message}");
+        assert!(message.contains("longer than 4 MB"), "{message}");
     }
 }
 
@@ -707,11 +707,11 @@ fn thousands_of_wrong_names_are_refused_at_once() {
         .map(|index| format!("[[body.point]]\nname = \"p{index}\"\nat_m = [0, 0, 1]\n"))
         .collect();
     let push = "[[push]]\npoint = \"nobody\"\nforce_N = [0, 0, 1]\nsteps = 1\n";
-    let text = format!("{WHOLE}{points}{}", push.repeat(20_000));
+    let text = format!("{WHOLE}{points}{}", push.repeat(9_000));
     for (wrong, others) in [("", 0), ("[friction]\nspin_dry_Nm = -1\n", 1)] {
         let document = Document::parse("file.toml", &format!("{text}{wrong}")).unwrap();
         let problems = document.scenario().unwrap_err();
         assert_eq!(problems.list.len(), 100);
-        assert_eq!(problems.list.len() + problems.more, 20_000 + others);
+        assert_eq!(problems.list.len() + problems.more, 9_000 + others);
     }
 }

@@ -855,10 +855,10 @@ fn an_edit_on_the_way_leads_to_the_truth_that_was_edited_from_the_start() {
         }));
         file.edit.push(EditFile {
             step,
-            set: Arc::new(toml::Table::from_iter([(
+            set: toml::Table::from_iter([(
                 "motion.gravity_m_per_s2".to_owned(),
                 toml::Value::Float(3.0),
-            )])),
+            )]),
         });
         let edited = Document::from_file("edited", &file).and_then(|document| document.scenario());
         let edited = Arc::new(edited.unwrap());
@@ -885,10 +885,10 @@ fn an_edit_at_the_start_is_in_force_from_the_start() {
     let mut file = plain.file.clone();
     file.edit.push(EditFile {
         step: 0,
-        set: Arc::new(toml::Table::from_iter([(
+        set: toml::Table::from_iter([(
             "motion.gravity_m_per_s2".to_owned(),
             toml::Value::Float(3.0),
-        )])),
+        )]),
     });
     let edited = Document::from_file("edited", &file).and_then(|document| document.scenario());
     let edited = Arc::new(edited.unwrap());

@@ -97,11 +97,9 @@ fn act(kind: u8, value: f64) -> Act {
         _ => Act::Push(PushFile {
             point: "top".to_owned(),
             force_N: [value, 0.0, 0.0],
-            first_step: None,
-            steps: None,
             from_s: Some(value),
             for_s: Some(1.0),
-            accumulates: None,
+            ..PushFile::default()
         }),
     }
 }

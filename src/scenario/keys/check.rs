@@ -1,10 +1,8 @@
 //! Checks files against the table of keys.
 
-use super::{KEYS, Key};
+use super::{KEYS, Key, only, pattern};
 use crate::scenario::dotted::join;
 use crate::scenario::problem::{Found, Problem, nearest};
-use std::collections::HashMap;
-use std::sync::LazyLock;
 use toml::Value;
 
 /// Tables that a file must have.
@@ -20,11 +18,7 @@ pub fn check(table: &toml::Table) -> Found {
 /// Checks `value`, a part of a file: the table at the dotted `path`.
 pub(in crate::scenario) fn check_part(value: &Value, path: &str) -> Vec<Problem> {
     let mut problems = Found::default();
-    let is_place = |name: &str| name.parse::<usize>().is_ok();
-    let names = path
-        .split('.')
-        .map(|name| if is_place(name) { "*" } else { name });
-    let pattern = names.collect::<Vec<_>>().join(".");
+    let pattern = pattern(path);
     match value {
         Value::Table(table) => check_table(table, &pattern, path, &mut problems),
         other => problems.add(|| Problem::with_value(path, other, "must be a table")),
@@ -34,14 +28,17 @@ pub(in crate::scenario) fn check_part(value: &Value, path: &str) -> Vec<Problem>
 
 /// Checks `table`, whose keys begin with the pattern `under`, and which stands at `path` in the file.
 fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Found) {
-    let nothing = Level::default();
-    let level = LEVELS.get(under).unwrap_or(&nothing);
+    let names = names(under);
     for (name, value) in table {
         let key = join(path, name);
-        if !level.names.contains(&name.as_str()) {
+        if !names.contains(&name.as_str()) {
             problems.add(|| {
-                let near =
-                    elsewhere(name).unwrap_or_else(|| nearest(name, level.names.iter().copied()));
+                // It may belong into another table.
+                let home = only(|last| last == name).filter(|home| home != name);
+                let near = match home {
+                    Some(home) => format!("did you mean {home}?"),
+                    None => nearest(name, names.iter().copied()),
+                };
                 // In quotes, or a dot in the name would make it the path of another key.
                 let key = if name.contains('.') {
                     join(path, &format!("\"{name}\""))
@@ -54,34 +51,26 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Foun
             check_value(value, &join(under, name), &key, problems);
         }
     }
-    let is_there = |name: &&str| table.contains_key(*name);
-    for (missing, key) in &level.required {
-        let is_replaced = key.is_some_and(|key| key.instead.iter().any(is_there));
-        if is_there(missing) || is_replaced {
-            continue;
-        }
-        problems.add(|| {
-            let rule = match key {
-                Some(key) => format!("is missing ({})", key.about),
-                None => format!(
-                    "is missing: add a table [{missing}], at the end of the file for instance; gyrolab keys lists what it holds"
-                ),
-            };
-            Problem::at(join(path, missing), rule)
-        });
-    }
+    check_missing(table, under, path, problems);
 }
 
-/// Where a name belongs that stands in the wrong table.
-fn elsewhere(name: &str) -> Option<String> {
-    let mut homes = KEYS
-        .iter()
-        .filter(|key| key.path.rsplit('.').next() == Some(name) && key.path != name);
-    match (homes.next(), homes.next()) {
-        (Some(home), None) if !home.path.contains('*') => {
-            Some(format!("did you mean {}?", home.path))
+/// Finds the keys and tables that `table` lacks.
+fn check_missing(table: &toml::Table, under: &str, path: &str, problems: &mut Found) {
+    let is_there = |name: &&str| table.contains_key(*name);
+    for (name, key) in below(under).filter(|(_, key)| key.required) {
+        if name.contains('.') || is_there(&name) || key.instead.iter().any(is_there) {
+            continue;
         }
-        _ => None,
+        let rule = format!("is missing ({})", key.about);
+        problems.add(|| Problem::at(join(path, name), rule));
+    }
+    for name in REQUIRED_TABLES {
+        if under.is_empty() && !is_there(&name) {
+            let rule = format!(
+                "is missing: add a table [{name}], at the end of the file for instance; gyrolab keys lists what it holds"
+            );
+            problems.add(|| Problem::at(name, rule));
+        }
     }
 }
 
@@ -126,36 +115,28 @@ pub(in crate::scenario) fn is_under(path: &str, table: &str) -> bool {
         .is_some_and(|rest| rest.starts_with('.'))
 }
 
-/// What may stand in the tables of one pattern, and what must.
-#[derive(Debug, Default)]
-struct Level {
-    /// The names, each once.
-    names: Vec<&'static str>,
-    /// Those without which the table is incomplete; a key's row, of a table none.
-    required: Vec<(&'static str, Option<&'static Key>)>,
+/// The names that may stand in the tables of the pattern `under`, each once.
+fn names(under: &str) -> Vec<&'static str> {
+    let mut names: Vec<_> = below(under)
+        .filter_map(|(rest, _)| rest.split('.').next())
+        .filter(|name| *name != "*")
+        .collect();
+    names.dedup();
+    names
 }
 
-/// Every pattern of a table, such as `body.point.*`, and what it holds: looked up for each table of a file.
-static LEVELS: LazyLock<HashMap<String, Level>> = LazyLock::new(|| {
-    let mut levels: HashMap<String, Level> = HashMap::new();
-    for key in KEYS {
-        let mut under = String::new();
-        for name in key.path.split('.') {
-            let path = join(&under, name);
-            let level = levels.entry(under).or_default();
-            if name != "*" && !level.names.contains(&name) {
-                level.names.push(name);
-                if REQUIRED_TABLES.contains(&path.as_str()) {
-                    level.required.push((name, None));
-                } else if key.path == path && key.required {
-                    level.required.push((name, Some(key)));
-                }
-            }
-            under = path;
-        }
-    }
-    levels
-});
+/// The keys below the pattern `under`, and what their paths have after it.
+fn below(under: &str) -> impl Iterator<Item = (&'static str, &'static Key)> {
+    KEYS.iter().filter_map(move |key| {
+        let rest = key.path.strip_prefix(under)?;
+        let rest = if under.is_empty() {
+            rest
+        } else {
+            rest.strip_prefix('.')?
+        };
+        Some((rest, key))
+    })
+}
 
 #[cfg(test)]
 mod tests {

@@ -1,7 +1,6 @@
 //! Parses an expression: its tokens, and the tree of operators.
 
-use super::Operator::{Minus, Times};
-use super::{Fault, Node, OPERATORS, Operator};
+use super::{Fault, MULTIPLIES, Node, OPERATORS, Operator};
 use std::fmt;
 
 /// How deep parentheses and signs may be nested.
@@ -10,10 +9,6 @@ const DEEPEST: usize = 64;
 /// The result: the expression, whether it is a condition, and each name in it once with its column.
 type Read = (Node, bool, Vec<(String, usize)>);
 
-/// Reads `text` to its end.
-///
-/// # Errors
-/// What is wrong with it, and at which character.
 pub(super) fn parse(text: &str) -> Result<Read, Fault> {
     let mut parser = Parser {
         tokens: tokens(text)?,
@@ -32,11 +27,11 @@ pub(super) fn parse(text: &str) -> Result<Read, Fault> {
     }
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone)]
 enum Token {
     Number(f64),
     Name(String),
-    Operator(Operator),
+    Operator(&'static Operator),
     Open,
     Close,
 }
@@ -46,14 +41,13 @@ impl fmt::Display for Token {
         match self {
             Self::Number(number) => write!(f, "{number}"),
             Self::Name(name) => f.write_str(name),
-            Self::Operator(operator) => f.write_str(operator.name()),
+            Self::Operator(operator) => f.write_str(operator.name),
             Self::Open => f.write_str("("),
             Self::Close => f.write_str(")"),
         }
     }
 }
 
-/// Every token with its column.
 fn tokens(text: &str) -> Result<Vec<(usize, Token)>, Fault> {
     let characters: Vec<char> = text.chars().collect();
     let mut tokens = Vec::new();
@@ -64,20 +58,16 @@ fn tokens(text: &str) -> Result<Vec<(usize, Token)>, Fault> {
             continue;
         }
         let rest = &characters[at..];
-        let (token, length) = if c.is_ascii_digit() || c == '.' {
-            number(rest).map_err(|rule| Fault {
-                column: at + 1,
-                rule,
-            })?
+        let column = at + 1;
+        let read = if c.is_ascii_digit() || c == '.' {
+            number(rest)
         } else if c.is_ascii_alphabetic() || c == '_' {
-            word(rest)
+            Ok(word(rest))
         } else {
-            sign(rest).map_err(|rule| Fault {
-                column: at + 1,
-                rule,
-            })?
+            sign(rest)
         };
-        tokens.push((at + 1, token));
+        let (token, length) = read.map_err(|rule| Fault { column, rule })?;
+        tokens.push((column, token));
         at += length;
     }
     Ok(tokens)
@@ -107,10 +97,8 @@ fn word(text: &[char]) -> (Token, usize) {
     let is_part = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.');
     let name: String = text.iter().take_while(|c| is_part(c)).collect();
     let length = name.len();
-    let operator = OPERATORS.iter().find(|(known, _)| *known == name);
-    let token = operator.map_or(Token::Name(name), |(_, operator)| {
-        Token::Operator(*operator)
-    });
+    let operator = OPERATORS.iter().find(|operator| operator.name == name);
+    let token = operator.map_or(Token::Name(name), Token::Operator);
     (token, length)
 }
 
@@ -122,9 +110,9 @@ fn sign(text: &[char]) -> Result<(Token, usize), String> {
     }
     let begins =
         |name: &str| name.chars().zip(text).all(|(a, b)| a == *b) && name.len() <= text.len();
-    let operator = OPERATORS.iter().find(|(name, _)| begins(name));
+    let operator = OPERATORS.iter().find(|operator| begins(operator.name));
     match (operator, text[0]) {
-        (Some((name, operator)), _) => Ok((Token::Operator(*operator), name.len())),
+        (Some(operator), _) => Ok((Token::Operator(operator), operator.name.len())),
         (None, '=') if text.get(1) == Some(&'>') => Err("write >= for =>".to_owned()),
         (None, '=') if text.get(1) == Some(&'<') => Err("write <= for =<".to_owned()),
         (None, '=') => Err("a comparison is written ==".to_owned()),
@@ -166,12 +154,12 @@ impl Parser {
         let (mut left, mut is_condition) = self.operand()?;
         while let Some((column, Token::Operator(operator))) = self.tokens.get(self.at) {
             let (column, operator) = (*column, *operator);
-            if operator.power() < least {
+            if operator.power < least {
                 break;
             }
             self.at += 1;
             let right_begins = self.column();
-            let (right, right_is) = self.expression(operator.power() + 1)?;
+            let (right, right_is) = self.expression(operator.power + 1)?;
             for (is, at) in [(is_condition, begin), (right_is, right_begins)] {
                 Self::check_side(operator, is, at, column)?;
             }
@@ -183,12 +171,12 @@ impl Parser {
     }
 
     fn check_side(
-        operator: Operator,
+        operator: &Operator,
         is_condition: bool,
         at: usize,
         column: usize,
     ) -> Result<(), Fault> {
-        let name = operator.name();
+        let name = operator.name;
         match (operator.joins_conditions(), is_condition) {
             (true, false) => Self::fault(at, format!("{name} joins comparisons, not numbers")),
             (false, true) => Self::fault(
@@ -206,9 +194,9 @@ impl Parser {
         self.at += 1;
         match token {
             Token::Number(number) => Ok((Node::Number(number), false)),
-            Token::Operator(Minus) => {
-                let (inner, is_condition) = self.expression(Times.power() + 1)?;
-                Self::check_side(Minus, is_condition, column, column)?;
+            Token::Operator(operator) if operator.name == "-" => {
+                let (inner, is_condition) = self.expression(MULTIPLIES + 1)?;
+                Self::check_side(operator, is_condition, column, column)?;
                 Ok((Node::Negated(Box::new(inner)), false))
             }
             Token::Open => {
@@ -227,7 +215,7 @@ impl Parser {
 
     fn absolute(&mut self, column: usize) -> Result<(Node, bool), Fault> {
         let open = self.column();
-        if self.tokens.get(self.at).map(|(_, token)| token) != Some(&Token::Open) {
+        if !matches!(self.tokens.get(self.at), Some((_, Token::Open))) {
             return Self::fault(open, "abs needs parentheses: abs(...)");
         }
         self.at += 1;

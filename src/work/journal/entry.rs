@@ -9,11 +9,9 @@ use toml::{Table, Value};
 /// The most characters of a value that a message shows.
 const LONGEST_VALUE: usize = 30;
 
-/// One act, and the step at which it was done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
-    /// The step at which the user acted.
     pub step: u64,
     /// Whether the entry is an edit that the opened file contained.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -30,7 +28,6 @@ pub struct Entry {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Act {
-    /// Adds a push.
     Push(PushFile),
     /// Sets keys of `motion` or `push`, with effect from the next step on.
     Edit(Table),
@@ -49,7 +46,6 @@ impl Act {
         }
     }
 
-    /// The act in words, for a message.
     pub fn in_words(&self) -> String {
         match self {
             Self::Push(push) => format!("the push on {}", push.point),
@@ -78,13 +74,5 @@ impl Entry {
     /// Whether no number of the run depends on it.
     pub(super) fn is_description(&self) -> bool {
         matches!(self.act, Act::Describe(_))
-    }
-
-    /// The values that it describes the run by, if it is a description.
-    pub(super) fn description(&self) -> Option<&Table> {
-        match &self.act {
-            Act::Describe(set) => Some(set),
-            Act::Edit(_) | Act::Push(_) => None,
-        }
     }
 }

@@ -6,41 +6,36 @@
 //!
 //! The journal lists all acts in the order in which the user did them. Which entries are in force is computed from their
 //! steps: an entry that a newer one dropped stays in the list, and is in force again once the newer one is undone.
-
 //!
-//! `entry` is one act; `run_file` decides which entries are in force and makes the run file of them; `known` checks
-//! that file, as far as it has changed; `next_run` begins another run from it.
+//! `entry` is one act; `run_file` decides which entries are in force and makes the run file of them.
 
 mod entry;
-mod known;
-mod next_run;
 mod run_file;
 
 pub use crate::scenario::dotted::number_of_push;
 pub use entry::{Act, Entry};
 
+use super::parameters;
 use crate::scenario::file::{EditFile, PushFile, ScenarioFile};
-use crate::scenario::{Problems, Scenario, growing};
-use known::Checked;
+use crate::scenario::{Document, Problems, Scenario, rescale};
+use run_file::describe;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toml::{Table, Value};
+
+const ORIGIN: &str = "the run";
 
 /// A scenario and what the user did to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Journal {
-    /// The scenario before the first act.
     base: Arc<ScenarioFile>,
-    /// All acts in the order in which the user did them, dropped ones included.
+    /// All acts in the order in which the user did them, including those that newer ones have dropped.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     log: Vec<Arc<Entry>>,
     /// Undone entries, the one undone last at the end: redo takes it first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     undone: Vec<Arc<Entry>>,
-    /// Scenarios that it leads to, checked already.
-    #[serde(skip)]
-    checked: Checked,
 }
 
 impl Journal {
@@ -49,7 +44,7 @@ impl Journal {
         let entry = |edit: EditFile| {
             Arc::new(Entry {
                 step: edit.step,
-                act: Act::Edit(Arc::unwrap_or_clone(edit.set)),
+                act: Act::Edit(edit.set),
                 from_file: true,
                 is_chained: false,
             })
@@ -61,31 +56,26 @@ impl Journal {
                 .collect(),
             base: Arc::new(file),
             undone: Vec::new(),
-            checked: Checked::default(),
         }
     }
 
-    /// The journal of the run file of `scenario`.
-    pub fn of_checked(scenario: &Arc<Scenario>) -> Self {
-        let mut journal = Self::of(scenario.file.clone());
-        journal.is_checked_as(scenario);
-        journal
-    }
-
-    /// The scenario before the first act.
     pub fn base(&self) -> &ScenarioFile {
         &self.base
     }
 
-    /// The run file: the base with all entries in force.
     pub fn file(&self) -> ScenarioFile {
         self.file_with(&self.in_force())
     }
 
-    /// The scenario as it was when its number of steps was set last: by the opened file, or by a later `motion.steps`.
+    /// The checked scenario of the run file.
     ///
     /// # Errors
-    /// As [`scenario`](Self::scenario).
+    /// What is wrong with the run file. A journal that was changed by [`act`](Self::act) alone has no errors.
+    pub fn scenario(&self) -> Result<Arc<Scenario>, Problems> {
+        checked(&self.file())
+    }
+
+    /// The scenario as it was when its number of steps was set last: by the opened file, or by a later `motion.steps`.
     pub fn when_steps_were_set(&self) -> Result<Arc<Scenario>, Problems> {
         let sets_steps = |entry: &Entry| match &entry.act {
             Act::Describe(set) => set.contains_key("motion.steps"),
@@ -93,7 +83,7 @@ impl Journal {
         };
         let entries = self.in_force();
         let last = entries.iter().rposition(|entry| sets_steps(entry));
-        self.scenario_of(&entries[..last.map_or(0, |last| last + 1)])
+        checked(&self.file_with(&entries[..last.map_or(0, |last| last + 1)]))
     }
 
     /// The run file of the run up to `step`: it has that many steps (at least one), and no later entry.
@@ -104,16 +94,8 @@ impl Journal {
     }
 
     /// The checked scenario of the run file up to `step`, see [`file_until`](Self::file_until).
-    ///
-    /// # Errors
-    /// As [`scenario`](Self::scenario).
     pub fn scenario_until(&self, step: u64) -> Result<Arc<Scenario>, Problems> {
-        let mut run = self.scenario_of(&self.in_force_by(step))?;
-        // No check depends on the number of steps.
-        let changed = Arc::make_mut(&mut run);
-        changed.steps = step.max(1);
-        changed.file.motion.steps = changed.steps;
-        Ok(run)
+        checked(&self.file_until(step))
     }
 
     /// How many entries in force stand at steps later than `step`.
@@ -126,42 +108,32 @@ impl Journal {
     }
 
     /// Does `act` at `step` and returns the run's new scenario.
-    ///
-    /// # Errors
-    /// Why the act is refused; the journal is then unchanged.
     pub fn act(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
         self.enter(step, act, false)
     }
 
     /// Does `act` at `step` as one more nudge of the value that the last entry set: undo takes all nudges of this chain
     /// back at once.
-    ///
-    /// # Errors
-    /// As [`act`](Self::act).
     pub fn act_again(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
         self.enter(step, act, !self.log.is_empty())
     }
 
     fn enter(&mut self, step: u64, act: Act, is_chained: bool) -> Result<Arc<Scenario>, Problems> {
-        let before = self.check()?;
-        if let Act::Describe(set) = &act {
-            let head = growing::head(&before.file);
-            set.iter().try_for_each(|(key, value)| {
-                growing::may_describe("scenario", &head, key, value.clone())
-            })?;
-        }
+        let file = self.file();
         let act = match act {
-            Act::Push(push) => push_with_new_number(&before, push),
+            Act::Push(push) => push_with_new_number(&file, push),
             act => act,
         };
-        self.checked.cut_back(self.log.len());
+        if let Act::Describe(set) = &act {
+            describe(&mut { file }, set)?;
+        }
         self.log.push(Arc::new(Entry {
             step,
             act,
             from_file: false,
             is_chained,
         }));
-        let scenario = self.check();
+        let scenario = self.scenario();
         match &scenario {
             Ok(_) => self.undone.clear(),
             Err(_) => drop(self.log.pop()),
@@ -178,7 +150,6 @@ impl Journal {
             let (step, is_chained) = (entry.step, entry.is_chained);
             self.undone.push(entry);
             if !is_chained {
-                let _ = self.check(); // what is wrong is told when the scenario is asked for
                 return Some((step, last));
             }
         }
@@ -193,7 +164,6 @@ impl Journal {
             let act = entry.act.clone();
             self.log.push(entry);
             if !self.undone.last().is_some_and(|next| next.is_chained) {
-                let _ = self.check();
                 return Some((first, act));
             }
         }
@@ -221,14 +191,54 @@ impl Journal {
         added.retain(|entry| entry.step <= step && matches!(entry.act, Act::Push(_)));
         self.base.push.len() + added.len()
     }
+
+    /// A new run with the values of `set` and an empty journal. From its start on it has the gravity, scheme, time step and
+    /// pushes that this run has at `step`.
+    pub fn begun_with(&self, step: u64, set: &Table) -> Result<(Self, Arc<Scenario>), Problems> {
+        let scenario = Arc::new(parameters::changed_all(&self.settings_at(step)?, set)?);
+        Ok((Self::of(scenario.file.clone()), scenario))
+    }
+
+    /// The base with gravity, scheme, time step and its own pushes as they are at `step`, without added pushes. The base
+    /// keeps its time step where its pushes cannot be rescaled to the new one.
+    fn settings_at(&self, step: u64) -> Result<ScenarioFile, Problems> {
+        let is_added =
+            |key: &str| number_of_push(key).is_some_and(|number| number >= self.base.push.len());
+        let mut document = Document::from_file(ORIGIN, &self.base)?;
+        let mut time_step_s = self.base.motion.time_step_s;
+        for entry in self.in_force_by(step) {
+            let (Act::Edit(set) | Act::Describe(set)) = &entry.act else {
+                continue;
+            };
+            for (key, value) in set {
+                if key == "motion.time_step_s" {
+                    time_step_s = parameters::float(value).unwrap_or(time_step_s);
+                } else if !is_added(key) {
+                    document.write(key, value.clone())?;
+                }
+            }
+        }
+        let file = document.file()?;
+        Ok(if time_step_s == file.motion.time_step_s {
+            file
+        } else {
+            rescale::at_time_step(&file, time_step_s).unwrap_or(file)
+        })
+    }
 }
 
-/// The act that adds `push` to `scenario`: a `[[push]]` table. Where edits have added pushes, one more table would change
-/// their numbers, so the push is then added by one more edit.
-fn push_with_new_number(scenario: &Scenario, push: PushFile) -> Act {
-    let set = scenario.edits.iter().flat_map(|edit| &edit.set_pushes);
-    match (set.max(), Table::try_from(&push)) {
-        (Some(last), Ok(table)) if *last >= scenario.pushes.len() => {
+fn checked(file: &ScenarioFile) -> Result<Arc<Scenario>, Problems> {
+    let scenario = Document::from_file(ORIGIN, file)?.scenario()?;
+    Ok(Arc::new(scenario))
+}
+
+/// The act that adds `push` to the run of `file`: a `[[push]]` table. Where edits have added pushes, one more table would
+/// change their numbers, so the push is then added by one more edit.
+fn push_with_new_number(file: &ScenarioFile, push: PushFile) -> Act {
+    let set = file.edit.iter().flat_map(|edit| edit.set.keys());
+    let last = set.filter_map(|key| number_of_push(key)).max();
+    match (last, Table::try_from(&push)) {
+        (Some(last), Ok(table)) if last >= file.push.len() => {
             let key = format!("push.{}", last + 1);
             Act::Edit(Table::from_iter([(key, Value::Table(table))]))
         }

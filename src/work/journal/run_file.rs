@@ -1,42 +1,15 @@
 //! Which entries are in force, and the run file that they make of the base.
 
-use super::{Act, Entry, Journal};
+use super::{Act, Entry, Journal, ORIGIN};
 use crate::scenario::file::{EditFile, ScenarioFile};
-use crate::scenario::growing;
+use crate::scenario::{Document, Problems};
 use std::sync::Arc;
 use toml::{Table, Value};
-
-/// Which edits stand in the run file so far, as entry after entry is added.
-#[derive(Default)]
-pub(super) struct Edits {
-    /// How many there are.
-    pub(super) count: usize,
-    /// Step of the last one, and whether the opened file contained it.
-    last: Option<(u64, bool)>,
-}
-
-impl Edits {
-    /// Adds the edit `entry`. Returns whether it is joined with the last edit: edits at one step become one edit, unless
-    /// the file had them apart.
-    pub(super) fn add(&mut self, entry: &Entry) -> bool {
-        let is_joined = self.last == Some((entry.step, false)) && may_be_joined(entry);
-        if !is_joined {
-            self.last = Some((entry.step, entry.from_file));
-            self.count += 1;
-        }
-        is_joined
-    }
-
-    /// Whether another edit may be joined with the last one.
-    pub(super) fn last_may_be_joined(&self) -> bool {
-        self.last.is_some_and(|(_, is_of_file)| !is_of_file)
-    }
-}
 
 impl Journal {
     /// The entries in force, in the order in which they were done: those that no newer entry has dropped. Descriptions
     /// are never dropped and drop nothing.
-    pub(super) fn in_force(&self) -> Vec<&Arc<Entry>> {
+    pub(super) fn in_force(&self) -> Vec<&Entry> {
         let mut earliest = u64::MAX; // smallest step of the newer entries
         let is_in_force = |entry: &&Arc<Entry>| {
             let is_in_force = !entry.is_later_than(earliest);
@@ -45,64 +18,46 @@ impl Journal {
             }
             is_in_force
         };
-        let mut entries: Vec<_> = self.log.iter().rev().filter(is_in_force).collect();
+        let newest_first = self.log.iter().rev().filter(is_in_force);
+        let mut entries: Vec<_> = newest_first.map(|entry| &**entry).collect();
         entries.reverse();
         entries
     }
 
     /// The entries in force that have an effect by `step`; descriptions always do.
-    pub(super) fn in_force_by(&self, step: u64) -> Vec<&Arc<Entry>> {
+    pub(super) fn in_force_by(&self, step: u64) -> Vec<&Entry> {
         let mut entries = self.in_force();
         entries.retain(|entry| !entry.is_later_than(step));
         entries
     }
 
-    /// The base with `entries`.
-    pub(super) fn file_with(&self, entries: &[&Arc<Entry>]) -> ScenarioFile {
-        let mut file = self.described(entries);
-        let mut edits = Edits::default();
+    pub(super) fn file_with(&self, entries: &[&Entry]) -> ScenarioFile {
+        let mut file = (*self.base).clone();
+        let mut descriptions = Table::new();
+        // The step of the last edit, where another may be joined with it.
+        let mut open = None;
         for entry in entries {
             match &entry.act {
-                Act::Describe(_) => {}
+                Act::Describe(set) => descriptions.extend(set.clone()),
                 Act::Push(push) => file.push.push(push.clone()),
-                Act::Edit(set) => match (edits.add(entry), file.edit.last_mut()) {
-                    (true, Some(last)) => Arc::make_mut(&mut last.set).extend(set.clone()),
-                    _ => file.edit.push(EditFile {
-                        step: entry.step,
-                        set: Arc::new(set.clone()),
-                    }),
-                },
-            }
-        }
-        file
-    }
-
-    /// The base with the descriptions among `entries`.
-    fn described(&self, entries: &[&Arc<Entry>]) -> ScenarioFile {
-        let base = (*self.base).clone();
-        let sets: Vec<&Table> = entries
-            .iter()
-            .filter_map(|entry| entry.description())
-            .collect();
-        if sets.is_empty() {
-            return base;
-        }
-        let mut head = growing::head(&base);
-        match growing::described("the run", &head, sets.iter().copied()) {
-            Ok(described) => head = described,
-            // One of them is wrong, which happens only in a file that was edited by hand. The others are kept.
-            Err(_) => {
-                for set in sets {
-                    head = growing::described("the run", &head, [set].into_iter()).unwrap_or(head);
+                Act::Edit(set) => {
+                    let is_joined = open == Some(entry.step) && may_be_joined(entry);
+                    match file.edit.last_mut() {
+                        Some(last) if is_joined => last.set.extend(set.clone()),
+                        _ => file.edit.push(EditFile {
+                            step: entry.step,
+                            set: set.clone(),
+                        }),
+                    }
+                    if !is_joined {
+                        open = (!entry.from_file).then_some(entry.step);
+                    }
                 }
             }
         }
-        ScenarioFile {
-            body: base.body,
-            push: base.push,
-            edit: base.edit,
-            ..head
-        }
+        // Each was checked when it was made.
+        let _ = describe(&mut file, &descriptions);
+        file
     }
 }
 
@@ -111,4 +66,30 @@ impl Journal {
 fn may_be_joined(entry: &Entry) -> bool {
     let adds = matches!(&entry.act, Act::Edit(set) if set.values().any(Value::is_table));
     !entry.from_file && !adds
+}
+
+/// Writes values on which no number depends into `file`.
+///
+/// # Errors
+/// What is wrong with them; the file is then unchanged.
+pub(super) fn describe(file: &mut ScenarioFile, set: &Table) -> Result<(), Problems> {
+    if set.is_empty() {
+        return Ok(());
+    }
+    // No description touches what may be long.
+    let body = std::mem::take(&mut file.body);
+    let (push, edit) = (
+        std::mem::take(&mut file.push),
+        std::mem::take(&mut file.edit),
+    );
+    let described = Document::from_file(ORIGIN, file).and_then(|mut document| {
+        for (key, value) in set {
+            document.write(key, value.clone())?;
+        }
+        document.check()?;
+        document.file()
+    });
+    let described = described.map(|described| *file = described);
+    (file.body, file.push, file.edit) = (body, push, edit);
+    described
 }

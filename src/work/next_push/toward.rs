@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 /// distance from the pivot.
 const UPRIGHT: f64 = 1e-9;
 
-/// Direction of a push.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Toward {
@@ -59,9 +58,6 @@ impl Toward {
     }
 
     /// Reads a direction: a name, or three numbers.
-    ///
-    /// # Errors
-    /// What a direction may be, where `text` is none.
     pub fn typed(text: &str) -> Result<Self, String> {
         let text = text.trim().trim_matches(['[', ']']);
         if let Some((_, toward)) = Self::NAMED.iter().find(|(name, _)| *name == text) {

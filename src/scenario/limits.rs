@@ -1,0 +1,102 @@
+//! How large a scenario or run file may be. A larger one is refused in one line, and nothing else of it is checked.
+
+use super::dotted::find;
+use super::problem::Problem;
+use toml::{Table, Value};
+
+/// The longest scenario or run file, bytes.
+pub const LONGEST: u64 = 4_000_000;
+
+/// The longest header of a CSV, bytes. The run file in it is longer than the scenario was: it gives every number in full,
+/// and each line begins with "# ".
+pub(super) const LONGEST_HEADER: u64 = 4 * LONGEST;
+
+pub const MOST_POINTS: i64 = 100_000;
+
+pub const MOST_PUSHES: usize = 10_000;
+pub const MOST_EDITS: usize = 10_000;
+
+/// The most that the number of edits times that of points, parts and pushes may be.
+pub const MOST_PRODUCT: usize = 1_000_000;
+
+/// The most tables that a file may ask for. A few letters ask for one, and it takes 2 kB.
+const MOST_TABLES: usize = 120_000;
+
+/// The most lines and elements of arrays that a file may have.
+const MOST_VALUES: usize = 800_000;
+
+/// Refuses a `text` that would take far more memory than a scenario of its length.
+pub(super) fn few_enough(text: &str) -> Result<(), Problem> {
+    let (mut tables, mut values, mut heading) = (0, 0, "");
+    for line in text.lines() {
+        // A dot in quotes is part of a name.
+        let dots = |part: &str| {
+            let unquoted = part.split(['"', '\'']).step_by(2);
+            unquoted
+                .map(|part| part.matches('.').count())
+                .sum::<usize>()
+        };
+        let line = line.trim_start();
+        if line.starts_with('[') {
+            // Around the second [[body.point]] no further table is made.
+            tables += 1 + if line == heading { 0 } else { dots(line) };
+            heading = line;
+        } else {
+            let keys = line
+                .split(['{', ','])
+                .filter_map(|part| part.split_once('='));
+            tables += line.matches('{').count() + keys.map(|(key, _)| dots(key)).sum::<usize>();
+        }
+        values += 1 + line.matches(',').count();
+    }
+    if tables <= MOST_TABLES && values <= MOST_VALUES {
+        return Ok(());
+    }
+    let rule = format!(
+        "asks for more than {MOST_TABLES} tables (a dot in a key is one, too) or {MOST_VALUES} values: leave some out"
+    );
+    Err(Problem::at("", rule))
+}
+
+/// What of the file in `table` is too large.
+pub(super) fn exceeded(table: &Table) -> Option<Problem> {
+    let count = |key: &str| {
+        let list = find(table, key).and_then(Value::as_array);
+        list.map_or(0, Vec::len)
+    };
+    let rim = find(table, "body.rim.points").and_then(Value::as_integer);
+    let rim = usize::try_from(rim.unwrap_or(0)).unwrap_or(0);
+    let bodies = rim
+        .saturating_add(count("body.point"))
+        .saturating_add(count("body.part"));
+    too_many(count("edit"), bodies, count("push"))
+}
+
+/// What there is against so many edits of a body of `bodies` points and parts, with so many pushes.
+pub(super) fn too_many(edits: usize, bodies: usize, pushes: usize) -> Option<Problem> {
+    let several = |key: &str, name: &str, count: usize, most: usize| {
+        let rule =
+            format!("{count} {name} are too many: at most {most} are allowed; leave some out");
+        (count > most).then(|| Problem::at(key, rule))
+    };
+    let others = bodies.saturating_add(pushes);
+    several("push", "pushes", pushes, MOST_PUSHES)
+        .or_else(|| several("edit", "edits", edits, MOST_EDITS))
+        .or_else(|| {
+            let rule = format!(
+                "{edits} edits of {others} points, parts and pushes are too many: {edits} times {others} may be at most {MOST_PRODUCT}; leave some out"
+            );
+            (edits.saturating_mul(others) > MOST_PRODUCT).then(|| Problem::at("edit", rule))
+        })
+}
+
+/// Refuses a file of `length` bytes where that is too long.
+pub fn short_enough(length: u64) -> Result<(), Problem> {
+    if length <= LONGEST {
+        return Ok(());
+    }
+    let rule = format!(
+        "is longer than 4 MB ({LONGEST} bytes), the most that a scenario or run file may have: leave some of it out"
+    );
+    Err(Problem::at("", rule))
+}
