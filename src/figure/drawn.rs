@@ -3,10 +3,8 @@
 use super::dense::Dense;
 use super::page::scene::Scene;
 
-/// A figure, and what its reader should know of it.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// The page.
     pub scene: Scene,
     /// Warnings but for that of `dense`, each a sentence without its end.
     pub warnings: Vec<String>,

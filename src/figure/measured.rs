@@ -258,7 +258,6 @@ pub(super) fn residuals(
     }))
 }
 
-/// The data as a series.
 fn series(measured: &Measured) -> Result<&measured::Series, String> {
     let series = measured.series();
     series.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))

@@ -23,7 +23,6 @@ use crate::text::number::{short, shortest};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// The runs of a figure with their numbers.
 struct Played {
     drawn: Vec<Drawn>,
     /// What is said of all figures of them.
@@ -80,16 +79,13 @@ pub fn figures(
         let Some(played) = play(runs, request, &kinds, known, &mut watch)? else {
             return Ok(None);
         };
-        let mut curve = 0;
         for (index, request) in group {
-            figures[index] = Some(draw(runs, request, known, &played, curve)?);
-            curve += request.kind.columns().len();
+            figures[index] = Some(draw(runs, request, known, &played)?);
         }
     }
     Ok(Some(figures.into_iter().flatten().collect()))
 }
 
-/// Plays `runs` for figures of those `kinds`.
 fn play(
     runs: &[Run],
     request: &Request,
@@ -156,28 +152,22 @@ fn play(
     }))
 }
 
-/// The figure that `request` asks for; `curve` is the number of the first of its curves among those that were played.
+/// The figure that `request` asks for.
 ///
 /// # Errors
 /// When what was measured cannot be drawn so.
-fn draw(
-    runs: &[Run],
-    request: &Request,
-    known: &Known,
-    played: &Played,
-    curve: usize,
-) -> Result<Figure, String> {
+fn draw(runs: &[Run], request: &Request, known: &Known, played: &Played) -> Result<Figure, String> {
     let (title, drawn) = (title(runs), &played.drawn);
     let mut warnings = played.warnings.clone();
     let dense;
     let scene = match &request.kind {
         Kind::OverTime(columns) => {
-            let mut chart = charts::over_time(title, runs, columns, drawn, curve, request);
+            let mut chart = charts::over_time(title, runs, columns, drawn, request);
             warnings.extend(measured::over_time(
                 &mut chart, columns, runs, request, known,
             )?);
             warnings.extend(measured::beyond_runs(runs, request));
-            dense = dense::warning(&chart, drawn, curve, request);
+            dense = dense::warning(&chart, columns, drawn, request);
             chart.scene()
         }
         Kind::Above => {

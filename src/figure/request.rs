@@ -1,43 +1,35 @@
 //! What a figure of runs is to show, and what it is drawn from.
 
 use super::chart::Style;
-use super::course::{Course, Recorded, Wanted};
+use super::course::{Course, Wanted};
 use super::kind::Kind;
 use crate::measured::Measured;
 use crate::scenario::Scenario;
 use std::sync::Arc;
 
-/// What a figure of runs is to show.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// What of the runs.
     pub kind: Kind,
-    /// From when on, s.
     pub from_s: f64,
     /// Until when, s; `None`: to the end of the longest run.
     pub to_s: Option<f64>,
-    /// Whether the exact motion is drawn beside them.
     pub exact: bool,
     /// What was measured on a run, to be drawn with them.
     pub measured: Option<Arc<Measured>>,
-    /// Width of the page, pt.
     pub width_pt: f64,
 }
 
 /// A run that is drawn.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// What is run.
     pub scenario: Arc<Scenario>,
-    /// How the user named it.
     pub named: String,
 }
 
 /// What is known of a single run before its figures are drawn: so much of it need not be computed once more.
 #[derive(Clone, Debug, Default)]
 pub struct Known {
-    /// Its numbers.
-    pub recorded: Option<Recorded>,
+    pub recorded: Option<Course>,
     /// What it says of the measured data of the figures: of each column a value for every point.
     pub said: Option<Vec<Vec<f64>>>,
 }
@@ -47,7 +39,6 @@ pub(super) struct Drawn {
     pub name: String,
     pub style: Style,
     pub course: Course,
-    /// Whether it is the exact motion beside a run.
     pub is_exact: bool,
 }
 

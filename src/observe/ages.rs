@@ -4,7 +4,6 @@
 use crate::analysis::{Measured, Readouts};
 use std::f64::consts::TAU;
 
-/// The number of swings that count as recent.
 const RECENT_SWINGS: f64 = 10.0;
 /// Where swings are closer together on the picture than this many dots, fewer of them count as recent, but at least
 /// `LEAST_SWINGS`.
@@ -27,7 +26,6 @@ pub struct Ages {
     pub recent_s: f64,
     /// The time of the last turn, s, what is recent included.
     pub turn_s: f64,
-    /// The time of one swing, s.
     pub swing_s: Option<f64>,
     /// Whether the swings cover each other on the picture.
     pub are_crowded: bool,
@@ -36,11 +34,8 @@ pub struct Ages {
 /// The age of a part of a path, the oldest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Age {
-    /// Before the last turn.
     Old,
-    /// Of the last turn.
     Turn,
-    /// Of the last swings.
     Recent,
 }
 

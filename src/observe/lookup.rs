@@ -79,14 +79,12 @@ pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
 /// A copy of a run that steps through its past.
 struct Steps {
     simulation: Simulation,
-    /// Steps that may still be computed.
     left: u64,
     /// How the height of the axle changed in the last step, where it did.
     change: f64,
 }
 
 impl Steps {
-    /// From the last stored state at `step` or before.
     fn before(run: &LiveRun, step: u64) -> Result<Self, Missing> {
         let points = run.scenario().body.mechanics.points().len() as u64;
         Ok(Self {

@@ -12,20 +12,16 @@ const SIDE: usize = 512;
 /// motion in between is unknown.
 const LONGEST_LINE: f64 = 24.0;
 
-/// The path from above; lengths in m, world frame.
 #[derive(Clone, Debug)]
 pub struct Path {
     half_width: f64,
-    /// Whether a cell has been visited, row by row.
     is_visited: Vec<bool>,
-    /// The visited cells, in the order of their first visits.
     visits: Vec<Visit>,
     last: Option<(f64, f64)>,
     radius: f64,
     home: Home,
 }
 
-/// The first visit of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Visit {
     step: u64,
@@ -49,7 +45,6 @@ impl Home {
 }
 
 impl Path {
-    /// An empty path of a point whose distance from the pivot is `reach` (m).
     pub fn new(reach: f64) -> Self {
         let half_width = if reach > 0.0 { reach / 64.0 } else { 1.0 };
         Self {
@@ -62,7 +57,6 @@ impl Path {
         }
     }
 
-    /// Follows the point to `position` at `step`.
     pub fn follow(&mut self, step: u64, position: &Vector3<f64>) {
         let (x, y) = (position.x, position.y);
         let radius = x.abs().max(y.abs());
@@ -138,7 +132,6 @@ impl Path {
             .fold(0.0, f64::max);
     }
 
-    /// Sets the position from which the path continues.
     pub fn stand_at(&mut self, position: &Vector3<f64>) {
         self.last = Some((position.x, position.y));
         self.home = Home::NONE;
@@ -159,7 +152,6 @@ impl Path {
         }
     }
 
-    /// The largest distance from the vertical through the pivot so far, m.
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -172,7 +164,6 @@ impl Path {
         distances.fold(0.0, f64::max)
     }
 
-    /// The middle of every cell the path went through, x and y in m.
     pub fn dots(&self) -> impl Iterator<Item = (f64, f64)> {
         let middle =
             |place: usize| ((place as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0) * self.half_width;

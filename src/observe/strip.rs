@@ -19,18 +19,13 @@ pub(super) const LEAST_SWING_DEG: f64 = 0.01;
 /// The longest window, s: small enough that adding it to a time does not overflow.
 const LONGEST_S: f64 = f64::MAX / 4.0;
 
-/// A window of time on a number of columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strip {
-    /// Time at the left edge, s.
     pub begin_s: f64,
-    /// Length of the window, s.
     pub window_s: f64,
-    /// Columns (of dots) the window is wide.
     pub columns: usize,
 }
 
-/// A curve in one column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Column {
     /// The extremes of all steps in the column, and of the straight lines to the steps before and after.
@@ -41,7 +36,6 @@ pub struct Column {
 }
 
 impl Strip {
-    /// The window of `window_s` (s) on `columns` that begins at `begin_s` (s).
     pub fn new(begin_s: f64, window_s: f64, columns: usize) -> Self {
         Self {
             begin_s,
@@ -59,7 +53,6 @@ impl Strip {
         Self::new(halves.max(0.0) * 0.5 * window_s, window_s, columns)
     }
 
-    /// Time at the right edge, s.
     pub fn end_s(&self) -> f64 {
         self.begin_s + self.window_s
     }
@@ -70,7 +63,6 @@ impl Strip {
         is_shown.then(|| self.place(time_s).min(self.columns - 1))
     }
 
-    /// The time at the middle of `column`, s.
     pub fn time_s(&self, column: usize) -> f64 {
         self.begin_s + (column as f64 + 0.5) / self.columns.max(1) as f64 * self.window_s
     }
@@ -115,7 +107,7 @@ impl Strip {
             };
             (block, column(block.begin_s).min(last), last)
         };
-        let blocks = recording.in_columns(self.begin_s, self.end_s(), column);
+        let blocks = recording.in_columns(self.begin_s, self.end_s(), Some(column));
         Blocks {
             columns: self.columns,
             placed: blocks.map(place).collect(),
@@ -123,10 +115,8 @@ impl Strip {
     }
 }
 
-/// The blocks of a recording on the columns of a strip.
 pub struct Blocks {
     columns: usize,
-    /// Each with its first and its last column.
     placed: Vec<(Block, usize, usize)>,
 }
 

@@ -15,7 +15,6 @@ use std::rc::Rc;
 pub struct Recorder {
     backend: CrosstermBackend<Shared>,
     sent: Shared,
-    /// What the terminal shows.
     shown: Buffer,
 }
 

@@ -24,18 +24,15 @@ const SHARE: f64 = 0.7;
 const BEYOND_PT: f64 = 2.0;
 
 impl Placed {
-    /// Where `point` stands on the page.
     pub fn place(&self, point: &[f64; 2]) -> Point {
         at(self.x.place(point[0]), self.y.place(point[1]))
     }
 
-    /// Draws the line of `series` in this panel.
     pub fn draw_line(&self, series: &Series, scene: &mut Scene) {
         let pieces = self.pieces(series);
         draw_curve(&pieces, &series.style.pen(), Some(&self.frame), scene);
     }
 
-    /// The line of `series` in this panel.
     pub fn pieces(&self, series: &Series) -> Vec<Vec<Point>> {
         let places = series.points.iter().map(|point| self.place(point));
         let clip = self.frame.grown(BEYOND_PT);
@@ -89,7 +86,6 @@ impl Placed {
     }
 }
 
-/// A dot at each of `places`, as the shortest line that every program draws.
 pub fn dots(places: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     const LENGTH_PT: f64 = 0.02;
     let dot = |place: Point| vec![place, at(place.x + LENGTH_PT, place.y)];
@@ -121,7 +117,6 @@ fn without_ripples(line: &[Point]) -> Vec<Point> {
     }
 }
 
-/// The length of `line`, pt.
 pub fn length(line: &[Point]) -> f64 {
     let pairs = line.windows(2);
     let ways = pairs.map(|pair| (pair[1].x - pair[0].x).hypot(pair[1].y - pair[0].y));

@@ -14,18 +14,15 @@ use std::f64::consts::{PI, TAU};
 
 /// Fewer marks than these in a panel are all drawn, and of more at most so many.
 const MOST_MARKS: f64 = 10_000.0;
-/// Width of axes, ticks and error bars, pt.
 const FRAME_PT: f64 = 0.5;
 /// Length of a tick with a label and of one without, pt.
 const TICK: f64 = 3.0;
 const MINOR_TICK: f64 = 1.7;
-/// Half the width of the ends of an error bar, pt.
 const BAR_END: f64 = 1.7;
 /// An error bar from end to end that the lowest of the marks covers, pt.
 const COVERED_PT: f64 = 2.8;
 
 impl Chart {
-    /// The chart on its page.
     pub fn scene(&self) -> Scene {
         let bare = Layout::new(self, 0.0);
         self.as_seen(&bare).placed(bare)
@@ -127,7 +124,6 @@ impl Chart {
     }
 }
 
-/// The error bar of a point.
 struct Bar {
     x: f64,
     top: f64,

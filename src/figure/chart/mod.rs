@@ -15,27 +15,20 @@ use crate::figure::page::ink::{BLACK, Mark, grey};
 use crate::figure::page::scene::{Color, Pen};
 use ticks::{Ticks, power_of_ten};
 
-/// A figure with axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// Title for readers of the file.
     pub title: String,
-    /// Width of the page, pt.
     pub width_pt: f64,
-    /// The axis below the panels.
     pub x: Axis,
     /// The panels, from the top; one at least.
     pub panels: Vec<Panel>,
     /// Whether a unit is as long on both axes; then there is one panel.
     pub is_true_to_scale: bool,
-    /// What the errors of its points are.
     pub errors: Errors,
 }
 
-/// What errors are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Errors {
-    /// Those that come with measured data.
     #[default]
     OfData,
     /// Those of reading a number off a run: they do not hold what the scheme does to the run.
@@ -43,7 +36,6 @@ pub enum Errors {
 }
 
 impl Errors {
-    /// What the legend calls them.
     pub fn words(self) -> &'static str {
         match self {
             Self::OfData => "errors",
@@ -52,14 +44,12 @@ impl Errors {
     }
 }
 
-/// An axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Axis {
     /// What is measured on it, as markup.
     pub name: String,
     /// Its unit, as markup; empty for a pure number.
     pub unit: String,
-    /// Whether equal distances are equal factors.
     pub is_log: bool,
     /// From where to where it goes; `None`: as the data need it.
     pub range: Option<(f64, f64)>,
@@ -69,12 +59,9 @@ pub struct Axis {
     pub flat_below: f64,
 }
 
-/// Curves and points over one stretch of the axis below.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
-    /// The axis at its left.
     pub y: Axis,
-    /// What is drawn in it, from the back to the front.
     pub series: Vec<Series>,
     /// The slope of a triangle to be drawn where no curve is: for two logarithmic axes.
     pub slope: Option<f64>,
@@ -82,17 +69,13 @@ pub struct Panel {
     pub circles: Circles,
 }
 
-/// Circles about the origin.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Circles {
-    /// Their name in the legend, as markup.
     pub name: String,
-    /// Their radii, in the unit of the axes.
     pub radii: Vec<f64>,
 }
 
 impl Circles {
-    /// How they are drawn.
     pub fn style() -> Style {
         Style {
             color: grey(165),
@@ -102,7 +85,6 @@ impl Circles {
     }
 }
 
-/// A curve, or points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
     /// Its name in the legend, as markup; empty for none.
@@ -111,22 +93,17 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
     /// One standard error of each point's second number; empty where there are none, NaN where one is not known.
     pub errors: Vec<f64>,
-    /// The same of each point's first number.
     pub errors_across: Vec<f64>,
-    /// How it is drawn.
     pub style: Style,
 }
 
-/// How a series is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
-    /// Its colour.
     pub color: Color,
     /// Width of its line, pt; 0 for points alone.
     pub width_pt: f64,
     /// Lengths of strokes and gaps, pt; empty for a solid line.
     pub dash_pt: &'static [f64],
-    /// What is at its points.
     pub mark: Option<Mark>,
     /// Whether its points are drawn behind all lines.
     pub is_behind: bool,
@@ -160,7 +137,6 @@ const COLORS: [Color; KINDS_OF_LINE] = [
     Color([0, 158, 115]),
     Color([204, 121, 167]),
 ];
-/// Strokes and gaps, pt.
 const DASHES: [&[f64]; KINDS_OF_LINE] = [
     &[],
     &[3.2, 1.6],
@@ -214,7 +190,6 @@ impl Style {
         }
     }
 
-    /// Points, for the series `index` of several.
     pub fn points(index: usize) -> Self {
         Self {
             color: match index {
@@ -294,7 +269,6 @@ impl Style {
         }
     }
 
-    /// The pen of its line.
     pub fn pen(&self) -> Pen {
         Pen {
             width_pt: self.width_pt,
@@ -306,7 +280,6 @@ impl Style {
 }
 
 impl Axis {
-    /// An axis of this name and unit, as the data need it.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
             name: name.into(),

@@ -9,19 +9,18 @@ use crate::figure::{chords, dense, quantity, size};
 use crate::run::Truth;
 use std::sync::Arc;
 
-/// Columns of the runs over time, a panel each; `curve` is the number of the first of them among those that were played.
+/// Columns of the runs over time, a panel each.
 pub(super) fn over_time(
     title: String,
     runs: &[Run],
     columns: &[Plotted],
     drawn: &[Drawn],
-    curve: usize,
     request: &Request,
 ) -> Chart {
     let ends = drawn.iter().map(|drawn| drawn.course.end_s);
     let end_s = ends.fold(0.0, f64::max);
     let range = (end_s > request.from_s).then_some((request.from_s, end_s));
-    let panel = |(place, column): (usize, &Plotted)| Panel {
+    let panel = |column: &Plotted| Panel {
         y: Axis {
             size: size::of(runs, column.name()),
             flat_below: size::flat_below(column.name()),
@@ -31,14 +30,14 @@ pub(super) fn over_time(
             .iter()
             .map(|drawn| Series {
                 name: drawn.name.clone(),
-                points: drawn.course.curves[curve + place].points(),
+                points: drawn.course.points(*column),
                 style: drawn.style.clone(),
                 ..Series::default()
             })
             .collect(),
         ..Panel::default()
     };
-    let mut panels: Vec<Panel> = columns.iter().enumerate().map(panel).collect();
+    let mut panels: Vec<Panel> = columns.iter().map(panel).collect();
     // Many swings beside each other are told apart by thin lines alone.
     for panel in &mut panels {
         for series in &mut panel.series {

@@ -10,7 +10,6 @@ use super::simplify::simplified;
 const CELLS_PT: [f64; 2] = [0.06, 0.12];
 /// Points of an outline beyond which the grid is made coarser: a file of 800 kB.
 const MANY: usize = 100_000;
-/// Cells of a grid at most.
 const MOST_CELLS: f64 = 32e6;
 /// How far an outline may leave the middles of the cells' sides, in cells.
 const SMOOTH: f64 = 1.0;
@@ -52,7 +51,6 @@ fn area_of_level(lines: &[Vec<Point>], width_pt: f64) -> Path {
 
 /// Cells in rows from the top, with an empty one at each edge.
 pub struct Grid {
-    /// The place of the upper left corner, pt.
     origin: Point,
     cell_pt: f64,
     columns: usize,
@@ -70,7 +68,6 @@ impl Grid {
         Some(grid)
     }
 
-    /// The area of the inked cells, pt².
     pub fn area_pt2(&self) -> f64 {
         let inked = self.is_inked.iter().filter(|inked| **inked).count();
         inked as f64 * self.cell_pt * self.cell_pt

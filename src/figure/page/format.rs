@@ -10,12 +10,9 @@ use crate::text::printable::Shown;
 /// Dots per inch of a PNG: what journals ask of drawings with lines and letters.
 pub const DOTS_PER_INCH: f64 = 600.0;
 
-/// A form of file.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Format {
-    /// Scalable Vector Graphics 1.1.
     Svg,
-    /// Portable Document Format 1.4.
     Pdf,
     /// Portable Network Graphics, at [`DOTS_PER_INCH`].
     Png,
@@ -117,7 +114,6 @@ fn hundredths_of(point: Point) -> Point {
     }
 }
 
-/// Rounded to hundredths; 0 has no sign.
 fn hundredths(pt: f64) -> f64 {
     libm::round(pt * 100.0) / 100.0 + 0.0
 }

@@ -11,7 +11,6 @@ use super::unwritable::Unwritable;
 use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
 use crate::text::printable::printable;
 
-/// The most dots of a picture.
 const MOST_DOTS: f64 = 1e8;
 /// The most dots that are drawn together: a large picture is drawn in bands, of which each takes 40 MB.
 const DOTS_OF_BAND: u32 = 8_000_000;
@@ -95,7 +94,6 @@ fn in_bands(
 /// The paper while it is drawn on.
 struct Easel {
     sheet: Pixmap,
-    /// From places on the page to dots of the sheet.
     transform: Transform,
     /// The rectangle of the last item that was cut off, and its mask: many items in turn have the same.
     clip: Option<([Point; 2], Mask)>,

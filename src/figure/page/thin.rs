@@ -12,7 +12,6 @@ const MANY: usize = 5_000;
 /// A line as it is put on the page.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Thinned {
-    /// To be stroked, piece by piece.
     Lines(Vec<Vec<Point>>),
     /// The outline of what the line's ink covers, to be filled by the non-zero rule.
     Area(Path),

@@ -5,7 +5,6 @@ use thiserror::Error;
 /// The largest number that a page can hold, pt: far beyond every sheet, and exact in a file to a hundredth.
 pub(super) const LARGEST_PT: f64 = 20_000.0;
 
-/// Why a page cannot be written.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum Unwritable {
     /// The file's name does not say which form it shall have.
@@ -17,12 +16,7 @@ pub enum Unwritable {
     #[error(
         "a page of {width_pt} pt x {height_pt} pt cannot be written: each side must be above 0 and at most {LARGEST_PT} pt"
     )]
-    Size {
-        /// Width of the page, pt.
-        width_pt: f64,
-        /// Height of the page, pt.
-        height_pt: f64,
-    },
+    Size { width_pt: f64, height_pt: f64 },
     /// Something on the page lies at no place, or at one that a file cannot say.
     #[error(
         "item {0} of the page lies farther than {LARGEST_PT} pt from its corner, or its place or its line is not a number"
@@ -33,11 +27,8 @@ pub enum Unwritable {
         "a picture of {width} x {height} dots cannot be written: {reason}; make the figure smaller, or write SVG or PDF"
     )]
     Picture {
-        /// Dots from left to right.
         width: u32,
-        /// Dots from top to bottom.
         height: u32,
-        /// What did not work.
         reason: String,
     },
 }

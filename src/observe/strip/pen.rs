@@ -13,27 +13,22 @@ const MOST_TURNS: f64 = 0.4;
 /// The part of a band's width by which slow motion may carry the curve in two swings.
 const MOST_CARRIED: f64 = 0.5;
 
-/// What has been drawn in one column.
 #[derive(Clone, Copy, Debug, Default)]
 struct Drawn {
     /// The extremes of the lines from block to block, in the curve's unit; [`Pen::finish`] adds those of the blocks.
     extent: Option<Extent>,
-    /// The extremes of blocks, as they are stored.
     stored: Option<Extent>,
     turns: f64,
     /// How often the tilt turns, which swings with every nutation; the curve itself does not turn where slow motion is
     /// faster than its swings.
     turns_of_tilt: f64,
-    /// The extremes of the tilt, as they are stored.
     tilt: Option<Extent>,
 }
 
-/// Makes `all` include `extent`.
 fn include(all: &mut Option<Extent>, extent: Extent) {
     *all = Some(all.map_or(extent, |old| old.and(extent)));
 }
 
-/// Draws a curve block by block.
 pub(super) struct Pen<'a> {
     columns: Vec<Drawn>,
     curve: Curve,
@@ -173,7 +168,6 @@ impl<'a> Pen<'a> {
         self.columns.iter().enumerate().map(column).collect()
     }
 
-    /// The extremes of the columns up to `reach` from the column `index`.
     fn extent_about(&self, index: usize, reach: usize) -> Option<Extent> {
         let extents = self
             .about(index, reach)
@@ -218,7 +212,6 @@ fn join(columns: &mut [Drawn], from: (usize, Extent), to: (usize, Extent)) {
     }
 }
 
-/// The pair of values, one from each extent, with the smallest distance.
 fn nearest(from: Extent, to: Extent) -> (f64, f64) {
     if from.max < to.min {
         (from.max, to.min)

@@ -24,7 +24,6 @@ struct Glyph {
 }
 
 impl Font {
-    /// The font of those of `letters` that `style` has.
     pub fn of(style: &Style, letters: &BTreeSet<char>) -> Self {
         let known = letters
             .iter()
@@ -65,7 +64,6 @@ impl Font {
         })
     }
 
-    /// The font as a file.
     pub fn file(&self) -> Vec<u8> {
         let (mut outlines, mut places) = (Vec::new(), Vec::new());
         for glyph in &self.glyphs {
@@ -199,7 +197,6 @@ impl Glyph {
     }
 }
 
-/// A font file of these tables.
 fn file<const N: usize>(tables: [([u8; 4], Vec<u8>); N]) -> Vec<u8> {
     let largest = N.ilog2() as u16; // of the powers of two up to N
     let range = 16 << largest;

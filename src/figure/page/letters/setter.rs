@@ -44,7 +44,6 @@ pub struct Setter {
     size_pt: f64,
     /// Below that of the whole label, pt.
     baseline_pt: f64,
-    /// Whether the next letter is slanted.
     pub is_italic: bool,
     scripts: Vec<Script>,
     before: Option<Before>,
@@ -115,7 +114,6 @@ impl Setter {
         });
     }
 
-    /// Whether a script has been begun and not ended.
     pub fn is_in_script(&self) -> bool {
         !self.scripts.is_empty()
     }

@@ -18,7 +18,6 @@ const SAME: f64 = 0.5;
 /// Angle of the slanted letters, degrees, as the font they are from has it.
 const SLANT_DEG: f32 = -14.0;
 
-/// The fonts of a page: upright and slanted.
 pub struct Fonts([OfPage; 2]);
 
 /// A font of a page.

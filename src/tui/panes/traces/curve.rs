@@ -14,7 +14,6 @@ const ROUNDING: f64 = 1e-4;
 /// Cells after which long and short dashes repeat.
 const LONG_AND_SHORT: usize = 6;
 
-/// Which dots of a curve are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
     /// All of them, and a band is filled with a few.
@@ -29,7 +28,6 @@ pub enum Stroke {
     LongAndShort,
 }
 
-/// Draws `columns` on `dots`.
 pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: Stroke, ink: Ink) {
     let (across, down) = dots.in_a_cell();
     let height = dots.height();

@@ -3,7 +3,6 @@
 use crate::observe::recording::{Curve, Recording};
 use crate::observe::strip::{Blocks, Column, Strip};
 
-/// The recordings that have been drawn on a strip.
 pub(super) struct Shared<'a> {
     pub strip: &'a Strip,
     seen: Vec<(&'a Recording, Blocks)>,
