@@ -1,14 +1,17 @@
 //! The line of a series on the page, without the points that nobody could see.
 
+use super::draw::arcs;
 use super::layout::Placed;
 use super::{Circles, Series, Style};
-use crate::figure::page::clip::clipped;
-use crate::figure::page::cover::Grid;
+use crate::figure::page::cover::{self, Grid};
 use crate::figure::page::ink::{Frame, at};
+use crate::figure::page::line::{clipped, simplified};
 use crate::figure::page::scene::{Path, Pen, Point, Scene};
-use crate::figure::page::simplify::simplified;
-use crate::figure::page::thin::{Thinned, plane_curve};
 
+/// How far a solid line may leave its points, of its width: a tenth of a dot at 600 an inch for a line of 0.7 pt.
+const TOLERANCE: f64 = 0.02;
+/// A solid line of more points than this is drawn by the outline of its ink if that has fewer: a file of 40 kB.
+const MANY: usize = 5_000;
 /// How far a dashed line may leave its points, pt: below a dot at 600 an inch. And where it is a ripple about a flatter line.
 const UNSEEN_PT: f64 = 0.015;
 const FLAT_PT: f64 = 0.4;
@@ -46,17 +49,8 @@ impl Placed {
     /// Whether a part of one of `circles` is drawn in `frame`.
     pub fn has_circle_in(&self, frame: &Frame, circles: &Circles) -> bool {
         let middle = self.place(&[0.0, 0.0]);
-        let near = |low: f64, high: f64, at: f64| (low - at).max(at - high).max(0.0);
-        let far = |low: f64, high: f64, at: f64| (at - low).abs().max((high - at).abs());
-        let [nearest, farthest] = [&near as &dyn Fn(f64, f64, f64) -> f64, &far].map(|distance| {
-            let across = distance(frame.left, frame.right, middle.x);
-            across.hypot(distance(frame.top, frame.bottom, middle.y))
-        });
         let mut radii = circles.radii.iter();
-        radii.any(|radius| {
-            let radius = self.x.place(*radius) - middle.x;
-            (nearest..=farthest).contains(&radius)
-        })
+        radii.any(|radius| !arcs(middle, self.x.place(*radius) - middle.x, frame).is_empty())
     }
 
     /// Whether something of `series` is drawn in `frame`.
@@ -94,14 +88,22 @@ pub fn dots(places: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
 
 /// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
 pub fn draw_curve(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
-    let lines = if pen.dash_pt.is_empty() {
-        match plane_curve(pieces, pen.width_pt) {
-            Thinned::Area(area) => return scene.fill_in(area, pen.color, clip),
-            Thinned::Lines(lines) => lines,
+    let thinned = |piece: &Vec<Point>| {
+        if pen.dash_pt.is_empty() {
+            simplified(piece, TOLERANCE * pen.width_pt)
+        } else {
+            without_ripples(piece)
         }
-    } else {
-        pieces.iter().map(|piece| without_ripples(piece)).collect()
     };
+    let lines: Vec<Vec<Point>> = pieces.iter().map(thinned).collect();
+    let count: usize = lines.iter().map(Vec::len).sum();
+    if pen.dash_pt.is_empty() && count > MANY {
+        let area = cover::area(&lines, pen.width_pt);
+        // There is none of lines that need too large a grid.
+        if !area.0.is_empty() && area.0.len() < count {
+            return scene.fill_in(area, pen.color, clip);
+        }
+    }
     for line in lines {
         scene.stroke(Path::polyline(line), pen.clone(), clip);
     }

@@ -5,9 +5,9 @@ use super::legend::Legend;
 use super::ticks::Ticks;
 use super::{Chart, Circles, Panel, Series};
 use super::{curve, slope};
-use crate::figure::page::clip::clipped;
 use crate::figure::page::ink::{self, BLACK, Frame, LABEL_PT, MARK_PT, at, pen};
 use crate::figure::page::letters;
+use crate::figure::page::line::clipped;
 use crate::figure::page::scene::{Path, Point, Scene};
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
@@ -236,7 +236,7 @@ fn retain<Item>(items: &mut Vec<Item>, is_kept: &[bool]) {
 }
 
 /// The parts in `frame` of the circle of that radius (pt), as lines: it may be far larger than the page.
-fn arcs(middle: Point, radius_pt: f64, frame: &Frame) -> Vec<Vec<Point>> {
+pub(super) fn arcs(middle: Point, radius_pt: f64, frame: &Frame) -> Vec<Vec<Point>> {
     /// How far the lines are off it, pt, and how many there are at most.
     const OFF_PT: f64 = 0.02;
     const MOST: f64 = 1e5;

@@ -7,8 +7,7 @@ use tiny_skia::{
 };
 
 use super::svg::MITER_LIMIT;
-use super::unwritable::Unwritable;
-use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment, Unwritable};
 use crate::text::printable::printable;
 
 const MOST_DOTS: f64 = 1e8;
