@@ -16,7 +16,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 const TOGETHER: usize = 4;
-/// A curve over time is drawn by the extremes of so many parts of its time: more than the widest page has dots across.
+/// A curve over time is drawn by the extremes of this many parts of its time: more than the widest page has dots across.
 const PARTS: f64 = 8192.0;
 
 #[derive(Clone, Debug)]
@@ -32,14 +32,14 @@ pub struct Course {
     wanted: Wanted,
     curves: Arc<Vec<Recording>>,
     pub path: Arc<Path>,
-    /// The same from above, of which z is 0: a path that goes up and down in one place is not interrupted there.
+    /// The same from above, with z = 0: a path that goes up and down in one place is not interrupted there.
     pub above: Arc<Path>,
     pub end_s: f64,
     /// Whether no moment lay in the stretch.
     pub is_empty: bool,
     /// Where its numbers stopped being finite, if they did.
     pub broke: Option<NotFinite>,
-    /// How it stands beside the exact motion at its last step; `None` where it was not held against that.
+    /// Its health at its last step; `None` where it was not compared with the exact motion.
     pub health: Option<Health>,
 }
 
@@ -376,7 +376,7 @@ mod tests {
     #[test]
     fn no_extreme_of_a_long_run_is_lost() {
         let mut document = Document::open("wobble-push").unwrap();
-        document.set("motion.steps", "50000").unwrap();
+        document.set("motion.steps=50000").unwrap();
         let scenario = Arc::new(document.scenario().unwrap());
         let column = Plotted::find("z_m").unwrap();
         let wanted = Wanted {

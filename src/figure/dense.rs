@@ -14,7 +14,7 @@ use crate::text::ladder;
 use crate::text::number::{shortest, significant};
 use std::fmt;
 
-/// What covers the paper so densely that nothing of it is told apart, and a stretch of time in which it does not.
+/// What fills the paper with ink until nothing can be distinguished, and a shorter stretch of time that does not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dense {
     /// What does, in words: "about 1200 swings".
@@ -47,7 +47,7 @@ impl fmt::Display for Dense {
 const PART_PT: f64 = 1.0;
 /// Such a part is black where its lines are as wide as it is, and reach over so much of the panel's height.
 const HIGH: f64 = 0.05;
-/// A curve is black where so many of its parts are.
+/// A curve is black where more than this share of its parts is.
 const MOST: f64 = 0.5;
 const SWINGS: f64 = 20.0;
 

@@ -6,7 +6,7 @@
 //!   [`course`] takes the numbers from stepping through the runs, in bounded memory (`path` those of a path),
 //!   `measured` draws what was measured with them, [`dense`] finds the figures that would be solid ink, `chords` those
 //!   whose paths have too few points, `size` tells what of a curve is rounding.
-//!   `request` says what is asked for, and `drawn` what a figure is once it is drawn.
+//!   `request` says what is asked for, and what a figure is once it is drawn.
 //! - [`of_table`]: figures of a comparison, of a sweep or of a fit, read by [`table`].
 //! - [`quantity`]: columns and readouts as they stand at an axis.
 
@@ -14,7 +14,6 @@ pub mod chart;
 mod chords;
 pub mod course;
 pub mod dense;
-mod drawn;
 pub mod kind;
 mod measured;
 mod names;

@@ -196,7 +196,7 @@ mod tests {
             let point = |angle: f64| [angle.cos(), angle.sin(), 0.0];
             recorded(false, (0..600_000).map(|number| point(angle(number))))
         };
-        // Chords of which none is gone twice are points; what stands still is one.
+        // Chords that are never repeated become points; a path that stands still is one point.
         let chords = bounded(2.0_f64.sqrt());
         assert!(chords.points.len() <= MOST && chords.few_a_turn.is_some());
         assert!(chords.points.iter().all(|point| point[0].is_finite()));

@@ -1,8 +1,10 @@
-//! What a figure of runs is to show, and what it is drawn from.
+//! What a figure of runs is to show, what it is drawn from, and what it then is.
 
 use super::chart::Style;
 use super::course::{Course, Wanted};
+use super::dense::Dense;
 use super::kind::Kind;
+use super::page::scene::Scene;
 use crate::measured::Measured;
 use crate::scenario::Scenario;
 use std::sync::Arc;
@@ -66,8 +68,27 @@ impl Request {
         alike(self) == alike(other)
     }
 
-    /// Whether something is drawn beside the runs, from which a single one is told by its name.
+    /// Whether something is drawn beside the runs, so that a single run needs a name.
     pub(super) fn is_beside(&self) -> bool {
         self.exact || self.measured.is_some()
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct Figure {
+    pub scene: Scene,
+    /// Warnings without the one of `dense`, each a sentence without its full stop.
+    pub warnings: Vec<String>,
+    /// What covers the paper so densely that it is solid black, where something does.
+    pub dense: Option<Dense>,
+    /// Which run's numbers stopped being finite, and at which step.
+    pub broke: Option<String>,
+}
+
+impl Figure {
+    /// All that its reader should know of it, each a sentence without its end.
+    pub fn told(&self) -> impl Iterator<Item = String> + '_ {
+        let dense = self.dense.iter().map(ToString::to_string);
+        self.warnings.iter().cloned().chain(dense)
     }
 }

@@ -11,7 +11,7 @@ const CLOSEST_DOTS: f64 = 4.0;
 const LEAST_SWINGS: f64 = 2.0;
 /// The recent part of a path is at most this share of a turn, so that its beginning and its end can be told apart.
 const RECENT_TURN: f64 = 1.0 / 3.0;
-/// Where the time of a turn is not known, it is taken to be this many times the recent time.
+/// Where the time of a turn is not known, it is this multiple of the recent time.
 const TURN: f64 = 6.0;
 /// Lengths of time are rounded up to a power of e to this number: measured periods change a little all the time, and the
 /// picture should not.

@@ -287,7 +287,7 @@ mod tests {
         let detail = Detail::new(&run, &readouts, &Wanted::following(20.0), None);
         assert_eq!(detail.curve, Curve::X);
         let strip = Strip::new(detail.begin_s, detail.window_s, 100);
-        let columns = strip.columns(run.recording(), Curve::X, &[]);
+        let columns = strip.blocks(run.recording()).columns(Curve::X, &[]);
         assert!(columns.iter().flatten().all(|column| column.band.is_none()));
         assert!(detail.window_s < 10.0, "{}", detail.window_s);
     }

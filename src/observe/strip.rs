@@ -86,16 +86,6 @@ impl Strip {
         (column.max(0.0) as usize).min(usize::MAX / 2)
     }
 
-    /// `curve` of `recording` in each column, as [`Blocks::columns`] has it.
-    pub fn columns(
-        &self,
-        recording: &Recording,
-        curve: Curve,
-        cuts: &[f64],
-    ) -> Vec<Option<Column>> {
-        self.blocks(recording).columns(curve, cuts)
-    }
-
     /// Where the blocks of `recording` are on the columns: for all its curves at once.
     pub fn blocks(&self, recording: &Recording) -> Blocks {
         let column = |time_s: f64| self.place(time_s.max(self.begin_s));
@@ -152,7 +142,7 @@ mod tests {
     }
 
     fn x(strip: Strip, recording: &Recording) -> Vec<Option<Column>> {
-        strip.columns(recording, Curve::X, &[])
+        strip.blocks(recording).columns(Curve::X, &[])
     }
 
     proptest! {
@@ -194,34 +184,6 @@ mod tests {
         );
     }
 
-    #[test]
-    fn right_of_the_pen_there_is_nothing() {
-        let values: Vec<f64> = (0..150).map(f64::from).collect();
-        let drawn = x(Strip::following(149.0, 100.0, 100), &recorded(&values, 1.0));
-        assert_eq!(drawn[10].unwrap().extent.max, 60.5);
-        assert!(drawn[..99].iter().all(Option::is_some) && drawn[99].is_some());
-        let drawn = x(Strip::new(100.0, 100.0, 100), &recorded(&values, 1.0));
-        assert_eq!(drawn.iter().rposition(Option::is_some), Some(49));
-    }
-
-    #[test]
-    fn a_window_in_the_past_shows_its_own_time() {
-        let values: Vec<f64> = (0..3000).map(f64::from).collect();
-        let drawn = x(Strip::new(100.0, 100.0, 50), &recorded(&values, 1.0));
-        assert_eq!(drawn[0].unwrap().extent.min, 100.0);
-        assert!(drawn[49].unwrap().extent.max <= 200.0);
-        assert!(drawn.iter().all(Option::is_some));
-    }
-
-    #[test]
-    fn neighbours_are_joined() {
-        let recording = recorded(&[0.0, 10.0], 1.0);
-        let drawn = x(Strip::new(0.0, 1.0, 6), &recording);
-        for pair in drawn.windows(2) {
-            assert!(pair[0].unwrap().extent.max >= pair[1].unwrap().extent.min - 1e-12);
-        }
-    }
-
     /// Columns of which 1000 steps of a sine of `period` steps are bands, of 100.
     fn bands(period: f64) -> usize {
         let sine = |step: u32| (f64::from(step) / period * std::f64::consts::TAU).sin();
@@ -256,13 +218,6 @@ mod tests {
             let changes = changes.count();
             assert!(changes <= 2, "{period}: {changes}");
         }
-    }
-
-    #[test]
-    fn a_slow_curve_is_no_band() {
-        let values: Vec<f64> = (0..1000).map(f64::from).collect();
-        let drawn = x(Strip::new(0.0, 1000.0, 100), &recorded(&values, 1.0));
-        assert!(drawn.iter().flatten().all(|column| column.band.is_none()));
     }
 
     #[test]

@@ -21,7 +21,7 @@ const RIPPLED: f64 = 0.8;
 const MOST_PIECES: usize = 50;
 /// Parts of a dashed line that are nearer to each other than this lie in each other's gaps, in periods of its dashes.
 const APART: f64 = 1.0 / 3.0;
-/// The area of the places that a line passes, of that of a straight line as long: at least this where no part of it lies in another one's gaps.
+/// The least area of the places that a line passes, as a share of a straight line's area, where no part lies in another part's gaps.
 const SHARE: f64 = 0.7;
 /// How far outside of its panel a line is followed, pt: half its width, which is cut off at the edge.
 const BEYOND_PT: f64 = 2.0;
@@ -125,7 +125,7 @@ pub fn length(line: &[Point]) -> f64 {
     ways.sum()
 }
 
-/// `style` as it is told apart on the line that consists of `pieces`: a thin solid one in place of dashes that fill their gaps.
+/// `style` for the line that consists of `pieces`: thin and solid where its dashes would fill their own gaps.
 pub fn told_apart(pieces: &[Vec<Point>], style: Style) -> Style {
     if fills_its_gaps(pieces, style.dash_pt) {
         style.solid()

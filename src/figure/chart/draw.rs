@@ -12,7 +12,7 @@ use crate::figure::page::scene::{Path, Point, Scene};
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
-/// Fewer marks than these in a panel are all drawn, and of more at most so many.
+/// The most marks in a panel.
 const MOST_MARKS: f64 = 10_000.0;
 const FRAME_PT: f64 = 0.5;
 /// Length of a tick with a label and of one without, pt.
@@ -28,7 +28,7 @@ impl Chart {
         self.as_seen(&bare).placed(bare)
     }
 
-    /// The chart without what could not be told apart in the places of `layout`: points that stand upon each other, and
+    /// The chart without what nobody could distinguish in the places of `layout`: points that stand upon each other, and
     /// dashes of a line that fills its own gaps.
     fn as_seen(&self, layout: &Layout) -> Self {
         let mut seen = self.clone();
@@ -46,7 +46,7 @@ impl Chart {
         seen
     }
 
-    /// The chart in its places, of which `bare` leaves no room for a legend above the panels.
+    /// The chart in its places; `bare` leaves no room for a legend above the panels.
     fn placed(&self, bare: Layout) -> Scene {
         let known = if self.lacks_errors() { "known " } else { "" };
         let errors = self.errors.words();
@@ -96,7 +96,7 @@ impl Chart {
         scene.write(title, *size, at(middle, layout.title_at()), 0.5);
     }
 
-    /// Whether there are marks of something measured of which no error is known.
+    /// Whether something measured has marks without a known error.
     fn lacks_errors(&self) -> bool {
         let mut series = self.panels.iter().flat_map(|panel| &panel.series);
         series.any(|series| {
@@ -229,7 +229,7 @@ impl Panel {
     }
 }
 
-/// Leaves those of `items`, which may be none, of which `is_kept` says so.
+/// Keeps the `items` that `is_kept` marks; there may be no items.
 fn retain<Item>(items: &mut Vec<Item>, is_kept: &[bool]) {
     let mut kept = is_kept.iter();
     items.retain(|_| kept.next() == Some(&true));

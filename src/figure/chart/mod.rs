@@ -124,7 +124,7 @@ impl Default for Style {
     }
 }
 
-/// So many curves, or series of points, are told apart.
+/// The number of curves, or series of points, that can be distinguished.
 pub const KINDS_OF_LINE: usize = 6;
 
 /// Colours that people with any colour vision tell apart (Okabe and Ito, 2008), in the order in which their greys, too, are
@@ -164,9 +164,7 @@ impl Style {
             color: COLORS[index % COLORS.len()],
             dash_pt: DASHES[index % DASHES.len()],
             width_pt: if index == 0 { 0.7 } else { 0.85 },
-            mark: None,
-            is_behind: false,
-            is_dots: false,
+            ..Self::default()
         }
     }
 
@@ -176,9 +174,7 @@ impl Style {
             color: COLORS[1],
             width_pt: 0.8,
             dash_pt: DASHES[1],
-            mark: None,
-            is_behind: false,
-            is_dots: false,
+            ..Self::default()
         }
     }
 
@@ -192,15 +188,10 @@ impl Style {
 
     pub fn points(index: usize) -> Self {
         Self {
-            color: match index {
-                0 => BLACK,
-                index => COLORS[index % COLORS.len()],
-            },
+            color: COLORS[index % COLORS.len()],
             width_pt: 0.0,
-            dash_pt: &[],
             mark: Some(MARKS[index % MARKS.len()]),
-            is_behind: false,
-            is_dots: false,
+            ..Self::default()
         }
     }
 
@@ -258,7 +249,7 @@ impl Style {
         }
     }
 
-    /// The same as a thin solid line, where its dashes could not be told apart.
+    /// The same as a thin solid line, for lines too dense to dash.
     pub fn solid(self) -> Self {
         /// Of its width.
         const THIN: f64 = 0.4;
@@ -278,6 +269,12 @@ impl Style {
         }
     }
 }
+
+/// The farthest that an axis reaches: the distance of its ends is still finite.
+const FARTHEST: f64 = 1e306;
+/// The room beyond the data, of their span, and where that is rounding, of their size.
+const MARGIN: f64 = 0.045;
+const AROUND: f64 = 0.1;
 
 impl Axis {
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
@@ -306,11 +303,6 @@ impl Axis {
     /// From where to where the axis goes for these `values`; those that it cannot show are passed over. Without a value: any
     /// stretch.
     pub fn range_of(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
-        /// The farthest that an axis reaches: its ends are still told apart by a finite number.
-        const FARTHEST: f64 = 1e306;
-        /// The room beyond the data, of their span, and where that is rounding, of their size.
-        const MARGIN: f64 = 0.045;
-        const AROUND: f64 = 0.1;
         /// Values that differ by less than this part of themselves, or of the quantity's own size, differ by rounding.
         const ROUNDING: f64 = 1e-10;
         if let Some(range) = self.range {
@@ -327,18 +319,7 @@ impl Axis {
             return if self.is_log { (0.1, 10.0) } else { (0.0, 1.0) };
         };
         if self.is_log {
-            let (low, high) = (low.max(1.0 / FARTHEST), high.max(1.0 / FARTHEST));
-            let decades = libm::log10(high / low);
-            let margin = if decades > 0.1 {
-                MARGIN * decades
-            } else {
-                AROUND
-            };
-            let factor = libm::exp10(margin);
-            return (
-                (low / factor).max(0.1 / FARTHEST),
-                (high * factor).min(10.0 * FARTHEST),
-            );
+            return decades_around(low, high);
         }
         let largest = low.abs().max(high.abs());
         let span = high - low;
@@ -357,4 +338,20 @@ impl Axis {
         let middle = 0.5 * low + 0.5 * high;
         (middle - half, middle + half)
     }
+}
+
+/// A logarithmic axis for values from `low` to `high`, with some room.
+fn decades_around(low: f64, high: f64) -> (f64, f64) {
+    let (low, high) = (low.max(1.0 / FARTHEST), high.max(1.0 / FARTHEST));
+    let decades = libm::log10(high / low);
+    let margin = if decades > 0.1 {
+        MARGIN * decades
+    } else {
+        AROUND
+    };
+    let factor = libm::exp10(margin);
+    (
+        (low / factor).max(0.1 / FARTHEST),
+        (high * factor).min(10.0 * FARTHEST),
+    )
 }

@@ -38,7 +38,7 @@ pub(super) fn over_time(
         ..Panel::default()
     };
     let mut panels: Vec<Panel> = columns.iter().map(panel).collect();
-    // Many swings beside each other are told apart by thin lines alone.
+    // Only thin lines show many swings beside each other.
     for panel in &mut panels {
         for series in &mut panel.series {
             if series.points.len() > 600 && columns.len() > 1 {

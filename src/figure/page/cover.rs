@@ -6,14 +6,14 @@
 use super::line::simplified;
 use super::scene::{Path, Point, Segment};
 
-/// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one is taken where the finer one gives too many points.
+/// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one where the finer one gives too many points.
 const CELLS_PT: [f64; 2] = [0.06, 0.12];
 /// Points of an outline beyond which the grid is made coarser: a file of 800 kB.
 const MANY: usize = 100_000;
 const MOST_CELLS: f64 = 32e6;
 /// How far an outline may leave the middles of the cells' sides, in cells.
 const SMOOTH: f64 = 1.0;
-/// An outline of so many sides of cells is a dot that cannot be seen.
+/// An outline of no more sides of cells than this is a dot that cannot be seen.
 const SMALLEST: usize = 8;
 
 /// The outline of the ink of lines with round corners and ends, `width_pt` wide; inked is what it winds about.
@@ -123,7 +123,7 @@ impl Grid {
         }
     }
 
-    /// Inks all cells whose middle is at most `radius` (in cells) from that of an inked one.
+    /// Inks all cells whose middle is at most `radius` (in cells) from the middle of an inked one.
     fn widen(&mut self, radius: f64) {
         let blank = vec![false; self.is_inked.len()];
         let traced = std::mem::replace(&mut self.is_inked, blank);

@@ -5,7 +5,6 @@ mod axis;
 mod content;
 mod curve;
 mod groups;
-mod pointing;
 mod points;
 mod pushes;
 mod range;
@@ -329,7 +328,7 @@ impl Traces<'_> {
             draw(&mut dots, &exact, scale, Stroke::Dashed, ink);
         }
         let ink = Ink::Strong(Self::role(content));
-        // The dots of a filled band and the dashes of the exact motion are told apart where dots are small.
+        // The dots of a filled band and the dashes of the exact motion look different only where dots are small.
         let (across, down) = dots.in_a_cell();
         let has_dashes = self.run.overlay().is_some();
         let stroke = if has_dashes && across * down <= 2 {

@@ -46,7 +46,7 @@ impl Font {
         (1..).zip(self.letters.iter().copied())
     }
 
-    /// From each glyph's origin to that of the next letter, thousandths of the size.
+    /// From each glyph's origin to the next letter's origin, thousandths of the size.
     pub fn advances(&self) -> impl Iterator<Item = f32> + '_ {
         self.glyphs.iter().map(|glyph| f32::from(glyph.advance))
     }

@@ -14,7 +14,7 @@ pub const UNITS: f64 = 1000.0;
 /// A letter: lengths are thousandths of its size, y down from the baseline.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Letter {
-    /// From its origin to that of the next letter.
+    /// From its origin to the next letter's origin.
     pub advance: f64,
     pub outline: Path,
 }

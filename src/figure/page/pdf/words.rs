@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 /// The objects of the first font; each takes this many.
 const FIRST: i32 = 6;
 const OBJECTS: i32 = 5;
-/// Lengths in an outline and in a line of letters that are taken to be the same, thousandths of the size.
+/// Lengths in an outline and in a line of letters that differ by less than this count as the same, thousandths of the size.
 const SAME: f64 = 0.5;
 /// Angle of the slanted letters, degrees, as the font they are from has it.
 const SLANT_DEG: f32 = -14.0;

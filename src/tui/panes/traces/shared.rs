@@ -16,7 +16,7 @@ impl<'a> Shared<'a> {
         }
     }
 
-    /// `curve` of `recording` in each column, as [`Strip::columns`] has it.
+    /// `curve` of `recording` in each column, as [`Blocks::columns`] has it.
     pub fn columns(
         &mut self,
         recording: &'a Recording,
