@@ -24,7 +24,6 @@ use std::sync::Arc;
 
 struct Played {
     drawn: Vec<Drawn>,
-    /// What is said of all figures of them.
     warnings: Vec<String>,
     broke: Option<String>,
 }

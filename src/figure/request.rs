@@ -21,7 +21,6 @@ pub struct Request {
     pub width_pt: f64,
 }
 
-/// A run that is drawn.
 #[derive(Clone, Debug)]
 pub struct Run {
     pub scenario: Arc<Scenario>,

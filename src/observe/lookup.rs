@@ -9,14 +9,10 @@ const MOST_STEPS: u64 = 4_000_000;
 /// What a point of a body costs in one of these steps, as an integration's cost is counted.
 const COST_OF_A_POINT: u64 = 30;
 
-/// Why a step cannot be looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Missing {
-    /// The run has not been there.
     NotReached,
-    /// Computing it would take too long.
     TooFar,
-    /// The curve turns nowhere on that side.
     NoTurn,
 }
 

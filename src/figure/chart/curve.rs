@@ -46,14 +46,12 @@ impl Placed {
         }
     }
 
-    /// Whether a part of one of `circles` is drawn in `frame`.
     pub fn has_circle_in(&self, frame: &Frame, circles: &Circles) -> bool {
         let middle = self.place(&[0.0, 0.0]);
         let mut radii = circles.radii.iter();
         radii.any(|radius| !arcs(middle, self.x.place(*radius) - middle.x, frame).is_empty())
     }
 
-    /// Whether something of `series` is drawn in `frame`.
     pub fn has_in(&self, frame: &Frame, series: &Series) -> bool {
         if series.style.width_pt > 0.0 {
             let places = series.points.iter().map(|point| self.place(point));

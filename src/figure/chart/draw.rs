@@ -277,7 +277,6 @@ fn each_tick(ticks: &Ticks, mut draw: impl FnMut(f64, f64)) {
     ticks.minor.iter().for_each(|&at| draw(at, MINOR_TICK));
 }
 
-/// The marks of a series with their error bars.
 fn draw_points(series: &Series, placed: &Placed, scene: &mut Scene) {
     let Some(mark) = series.style.mark else {
         return;

@@ -59,7 +59,6 @@ pub(super) fn over_time(
     }
 }
 
-/// The paths from above.
 pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Request) -> Chart {
     let series = drawn.iter().map(|drawn| {
         let (name, style) = chords::as_drawn(drawn, &drawn.course.above);
@@ -103,7 +102,6 @@ pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Requ
     }
 }
 
-/// Whether a path from above is solid black.
 pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<Dense> {
     let layout = Layout::new(chart, 0.0);
     let placed = layout.panels.first()?;

@@ -114,7 +114,6 @@ impl Mark {
     }
 }
 
-/// The length of `markup` at this size, pt.
 pub fn width(markup: &str, size_pt: f64) -> f64 {
     letters::label(markup, size_pt).width_pt
 }
@@ -138,12 +137,10 @@ impl Scene {
         self.put(path, Paint::Fill(color), None);
     }
 
-    /// Fills `path`, cut off outside of `clip`.
     pub fn fill_in(&mut self, path: Path, color: Color, clip: Option<&Frame>) {
         self.put(path, Paint::Fill(color), clip.map(Frame::corners));
     }
 
-    /// Draws the line of `path`, cut off outside of `clip`.
     pub fn stroke(&mut self, path: Path, pen: Pen, clip: Option<&Frame>) {
         self.put(path, Paint::Stroke(pen), clip.map(Frame::corners));
     }

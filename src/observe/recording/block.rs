@@ -21,7 +21,6 @@ impl Curve {
 
     pub const OF_POINT: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// The curve of this [name](Self::name).
     pub fn of_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|curve| curve.name() == name)
     }

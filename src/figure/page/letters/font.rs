@@ -41,7 +41,6 @@ impl Font {
         place.map_or(0, |place| place as u16 + 1)
     }
 
-    /// The letters with their glyphs.
     pub fn letters(&self) -> impl Iterator<Item = (u16, char)> + '_ {
         (1..).zip(self.letters.iter().copied())
     }

@@ -36,7 +36,6 @@ struct Before {
     overhang_pt: f64,
 }
 
-/// A label that is being written.
 pub struct Setter {
     label: Label,
     /// Where the next letter begins, pt.
@@ -52,7 +51,6 @@ pub struct Setter {
 }
 
 impl Setter {
-    /// Begins a label of this size.
     pub fn new(size_pt: f64) -> Self {
         Self {
             label: Label::default(),

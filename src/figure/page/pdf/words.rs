@@ -20,7 +20,6 @@ const SLANT_DEG: f32 = -14.0;
 
 pub struct Fonts([OfPage; 2]);
 
-/// A font of a page.
 struct OfPage {
     /// `None` where no letter is of it.
     font: Option<Font>,
@@ -30,7 +29,6 @@ struct OfPage {
 }
 
 impl Fonts {
-    /// The fonts of the letters on `scene`.
     pub fn of(scene: &Scene) -> Self {
         let words = || scene.items.iter().filter_map(|item| item.words.as_ref());
         Self([false, true].map(|is_italic| {
@@ -64,7 +62,6 @@ impl Fonts {
         }
     }
 
-    /// Writes the fonts into the file.
     pub fn write(&self, pdf: &mut Pdf, packed: impl Fn(&[u8]) -> Vec<u8>) {
         for (id, of_page, font) in self.used() {
             of_page.write(id, font, pdf, &packed);

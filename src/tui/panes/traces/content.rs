@@ -59,7 +59,6 @@ impl Traces<'_> {
         self.view.residuals && !is_detail && self.index(content).is_some()
     }
 
-    /// Name and unit of what `content` shows.
     pub(super) fn named(&self, content: Content) -> (String, &'static str) {
         let quantity = match content {
             Content::Curve(curve) => return (curve.name().to_owned(), curve.unit()),

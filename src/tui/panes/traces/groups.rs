@@ -22,7 +22,6 @@ pub(super) struct Group {
 }
 
 impl Traces<'_> {
-    /// Columns for the values beside the strips.
     pub(super) fn beside(&self, inside: Rect) -> u16 {
         if inside.width < BESIDE_FROM {
             return 0;
@@ -38,7 +37,6 @@ impl Traces<'_> {
         self.name_columns() + widest.unwrap_or(0) + 1
     }
 
-    /// Columns for the names beside the strips.
     fn name_columns(&self) -> u16 {
         let names = self.measured_contents().into_iter();
         let names = names.map(|content| self.named(content).0.len() as u16 + 1);
@@ -125,7 +123,6 @@ impl Traces<'_> {
         contents.iter().map(place).collect()
     }
 
-    /// How many shares of the height a strip has.
     fn weight(&self, content: Content) -> u16 {
         match self.points(content) {
             Some(_) => WITH_POINTS,
