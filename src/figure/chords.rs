@@ -1,8 +1,8 @@
-//! Paths of which a figure has too few points: straight lines between them would cut the bends off.
+//! Paths with too few points for a figure: straight lines between them would cut the bends off.
 //!
 //! A run that takes ten time steps for a turn of its path, drawn as chords, lies inside the circle that its points lie on.
 //! Beside the exact motion that looks like an error of the run: so the points are drawn, and not joined. The exact motion is
-//! a line with more points; only of a very long stretch of time it has no more than so many.
+//! a line with more points, though over a very long stretch of time they are too few as well.
 
 use super::chart::Style;
 use super::course::Course;
@@ -17,7 +17,7 @@ const ROUND: f64 = 18.0;
 const UNSEEN: f64 = 7e-4;
 /// Of fewer bends than these there is no average.
 const FEWEST: u32 = 3;
-/// About so many points of a path are looked at.
+/// About this many points of a path are examined.
 const LOOKED_AT: usize = 50_000;
 
 /// How many points there are to a turn of `path` (m), where they are too few to look round.

@@ -1,10 +1,10 @@
 //! The numbers of a figure, from a run that is stepped through: once more, or while something else is read off it.
 
 use super::kind::Plotted;
-use super::over_time::OverTime;
 use super::path::{self, Path};
 use crate::analysis::{Beside, Health};
 use crate::export::stream::{self, Ended};
+use crate::observe::recording::{Block, Extent, Recording};
 use crate::physics::State;
 use crate::physics::exact::LagrangeTop;
 use crate::physics::observables::{self, Azimuth};
@@ -15,53 +15,137 @@ use std::io;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// What is asked of a run.
+const TOGETHER: usize = 4;
+/// A curve over time is drawn by the extremes of this many parts of its time: more than the widest page has dots across.
+const PARTS: f64 = 8192.0;
+
 #[derive(Clone, Debug)]
 pub struct Wanted {
-    /// The curves over time.
     pub columns: Vec<Plotted>,
-    /// Whether the path of the traced point is wanted.
     pub path: bool,
-    /// The begin of the stretch of time, s.
     pub from_s: f64,
-    /// Its end, s; `None`: the end of the run.
     pub to_s: Option<f64>,
 }
 
-/// What a run gave.
 #[derive(Clone, Debug)]
 pub struct Course {
-    /// A curve for each column.
-    pub curves: Vec<OverTime>,
-    /// The path of the traced point in space.
+    wanted: Wanted,
+    curves: Arc<Vec<Recording>>,
     pub path: Arc<Path>,
-    /// The same from above, of which z is 0: a path that goes up and down in one place is not interrupted there.
+    /// The same from above, with z = 0: a path that goes up and down in one place is not interrupted there.
     pub above: Arc<Path>,
-    /// The last time of the stretch that it reached, s.
     pub end_s: f64,
     /// Whether no moment lay in the stretch.
     pub is_empty: bool,
     /// Where its numbers stopped being finite, if they did.
     pub broke: Option<NotFinite>,
-    /// How it stands beside the exact motion at its last step; `None` where it was not held against that.
+    /// Its health at its last step; `None` where it was not compared with the exact motion.
     pub health: Option<Health>,
 }
 
+/// A column in a part of the time.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Its first and last time, s.
+    pub times_s: [f64; 2],
+    pub extent: Extent,
+    last: f64,
+    /// How often the curve turned up or down.
+    pub turns: u32,
+}
+
 impl Wanted {
-    /// The end of the stretch of a run of `scenario`, s.
     pub fn end_s(&self, scenario: &Scenario) -> f64 {
         let end_s = Clock::end_s(scenario);
         self.to_s.map_or(end_s, |to_s| to_s.min(end_s))
     }
 }
 
-/// Writes down what is asked for, step by step.
+impl Course {
+    /// The part of the run of `scenario` that is `wanted`, where it has all of that.
+    pub(super) fn part(&self, scenario: &Scenario, wanted: &Wanted) -> Option<Self> {
+        let end_s = wanted.end_s(scenario);
+        let mut columns = wanted.columns.iter();
+        let is_all = self.wanted.from_s == wanted.from_s
+            && self.end_s <= end_s + rounding_s(end_s)
+            && end_s <= self.wanted.end_s(scenario)
+            && (self.wanted.path || !wanted.path)
+            && columns.all(|column| self.place(*column).is_some());
+        is_all.then(|| Self {
+            end_s: self.end_s.min(end_s),
+            ..self.clone()
+        })
+    }
+
+    fn place(&self, column: Plotted) -> Option<usize> {
+        let mut columns = self.wanted.columns.iter();
+        columns.position(|it| it.name() == column.name())
+    }
+
+    /// `column` part by part, in the order of time.
+    pub fn parts(&self, column: Plotted) -> Vec<Part> {
+        let Some(place) = self.place(column) else {
+            return Vec::new();
+        };
+        let curves = &self.curves[place / TOGETHER];
+        let Some(whole) = curves.whole() else {
+            return Vec::new();
+        };
+        let length_s = (whole.end_s - whole.begin_s).max(f64::MIN_POSITIVE);
+        let part = |time_s: f64| (PARTS * ((time_s - whole.begin_s) / length_s)) as u64;
+        let mut blocks: Vec<Block> = Vec::new();
+        for block in curves.finest() {
+            match blocks.last_mut() {
+                Some(last) if part(last.begin_s) == part(block.end_s) => *last = last.and(block),
+                _ => blocks.push(block),
+            }
+        }
+        let curve = place % TOGETHER;
+        let parts = blocks.iter().map(|block| Part {
+            times_s: [block.begin_s, block.end_s],
+            extent: block.extents[curve],
+            last: block.last[curve],
+            turns: block.turned[curve],
+        });
+        let are_finite = |part: &Part| (part.extent.min + part.extent.max + part.last).is_finite();
+        parts.filter(are_finite).collect()
+    }
+
+    /// The points of `column`, every extreme among them.
+    pub fn points(&self, column: Plotted) -> Vec<[f64; 2]> {
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        for Part {
+            times_s: [begin_s, end_s],
+            extent: Extent { min, max },
+            last,
+            ..
+        } in self.parts(column)
+        {
+            let before = points.last().map_or(min, |point| point[1]);
+            let (early, late) = if max - before < before - min {
+                (max, min)
+            } else {
+                (min, max)
+            };
+            let middle_s = 0.5 * (begin_s + end_s);
+            let middle = (late != last).then_some([middle_s, late]);
+            let part = [Some([begin_s, early]), middle, Some([end_s, last])];
+            for point in part.into_iter().flatten() {
+                if points.last() != Some(&point) {
+                    points.push(point);
+                }
+            }
+        }
+        points
+    }
+}
+
 #[derive(Clone, Debug)]
 pub struct Recorder {
     wanted: Wanted,
     scenario: Arc<Scenario>,
     stretch_end_s: f64,
-    curves: Vec<OverTime>,
+    curves: Vec<Recording>,
     path: path::Recorder,
     above: path::Recorder,
     end_s: f64,
@@ -71,14 +155,14 @@ pub struct Recorder {
 impl Recorder {
     /// A recorder of what is `wanted` of the run of `scenario`, before its start.
     pub fn new(scenario: &Arc<Scenario>, wanted: Wanted) -> Self {
-        Self::of_moments(scenario, wanted, scenario.least_time_step_s(), false)
+        Self::of(scenario, wanted, false)
     }
 
-    /// The same of moments that are about `apart_s` apart, s; `is_exact` says whether of the exact motion, whose path is a line.
-    fn of_moments(scenario: &Arc<Scenario>, wanted: Wanted, apart_s: f64, is_exact: bool) -> Self {
+    /// The same; `is_exact` says whether it is of the exact motion, whose path is a line.
+    fn of(scenario: &Arc<Scenario>, wanted: Wanted, is_exact: bool) -> Self {
         Self {
             stretch_end_s: wanted.end_s(scenario),
-            curves: vec![OverTime::new(apart_s); wanted.columns.len()],
+            curves: vec![Recording::default(); wanted.columns.len().div_ceil(TOGETHER)],
             path: path::Recorder::new(is_exact),
             above: path::Recorder::new(is_exact),
             end_s: 0.0,
@@ -116,69 +200,32 @@ impl Recorder {
             self.path.push([position.x, position.y, position.z]);
             self.above.push([position.x, position.y, 0.0]);
         }
-        if self.wanted.columns.is_empty() {
+        if self.curves.is_empty() {
             return;
         }
         let sample = sample();
-        for (column, curve) in self.wanted.columns.iter().zip(&mut self.curves) {
-            curve.push(time_s, column.value(&self.scenario, &sample));
+        let columns = self.wanted.columns.chunks(TOGETHER);
+        for (columns, curves) in columns.zip(&mut self.curves) {
+            let mut values = [0.0; TOGETHER];
+            for (value, column) in values.iter_mut().zip(columns) {
+                *value = column.value(&self.scenario, &sample);
+            }
+            curves.push_values(time_s, values);
         }
     }
 
     /// What was written down; `broke` says why the run ended before the stretch, where it did.
-    pub fn end(self, broke: Option<NotFinite>) -> Recorded {
-        Recorded {
-            course: Course {
-                curves: self.curves,
-                path: Arc::new(self.path.end()),
-                above: Arc::new(self.above.end()),
-                end_s: self.end_s,
-                is_empty: self.is_empty,
-                broke,
-                health: None,
-            },
+    pub fn end(self, broke: Option<NotFinite>) -> Course {
+        Course {
             wanted: self.wanted,
+            curves: Arc::new(self.curves),
+            path: Arc::new(self.path.end()),
+            above: Arc::new(self.above.end()),
+            end_s: self.end_s,
+            is_empty: self.is_empty,
+            broke,
+            health: None,
         }
-    }
-}
-
-/// What was written down of a run, and what that is.
-#[derive(Clone, Debug)]
-pub struct Recorded {
-    wanted: Wanted,
-    course: Course,
-}
-
-impl Recorded {
-    /// What is `wanted` of the run, which is of `scenario`, where all of it was written down.
-    pub(super) fn part(&self, scenario: &Scenario, wanted: &Wanted) -> Option<Course> {
-        let end_s = wanted.end_s(scenario);
-        let is_all = self.wanted.from_s == wanted.from_s
-            && self.course.end_s <= end_s + rounding_s(end_s)
-            && end_s <= self.wanted.end_s(scenario)
-            && (self.wanted.path || !wanted.path);
-        let curve = |column: &Plotted| {
-            let columns = &self.wanted.columns;
-            let place = columns.iter().position(|it| it.name() == column.name())?;
-            Some(self.course.curves[place].clone())
-        };
-        let curves = wanted.columns.iter().map(curve).collect::<Option<_>>()?;
-        let if_path = |path: &Arc<Path>| {
-            if wanted.path {
-                Arc::clone(path)
-            } else {
-                Arc::default()
-            }
-        };
-        is_all.then(|| Course {
-            curves,
-            path: if_path(&self.course.path),
-            above: if_path(&self.course.above),
-            end_s: self.course.end_s.min(end_s),
-            is_empty: self.course.is_empty,
-            broke: self.course.broke,
-            health: self.course.health,
-        })
     }
 }
 
@@ -213,7 +260,7 @@ pub fn play(
     };
     Some(Course {
         health: Some(Health::new(simulation.now(), &mut beside)),
-        ..recorder.end(broke).course
+        ..recorder.end(broke)
     })
 }
 
@@ -249,8 +296,7 @@ pub fn exact(
     let fine_s = period_s.map_or(f64::INFINITY, |period_s| period_s / A_PERIOD);
     let apart_s = fine_s.min(scenario.motion.time_step_s);
     let count = ((end_s - begin_s) / apart_s).ceil().clamp(LEAST, MOST) as u64;
-    let apart_s = (end_s - begin_s) / count as f64;
-    let mut recorder = Recorder::of_moments(scenario, wanted.clone(), apart_s, true);
+    let mut recorder = Recorder::of(scenario, wanted.clone(), true);
     let mut azimuth = Azimuth::start(&scenario.start.axle());
     for number in 0..=count {
         let time_s = begin_s + (end_s - begin_s) * (number as f64 / count as f64);
@@ -265,7 +311,7 @@ pub fn exact(
             return None;
         }
     }
-    Some(recorder.end(None).course)
+    Some(recorder.end(None))
 }
 
 fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, gravity: f64) -> Sample {
@@ -305,7 +351,7 @@ mod tests {
             ControlFlow::Continue(())
         });
         let course = course.unwrap();
-        let points = course.curves[0].points();
+        let points = course.points(Plotted::find("z_m").unwrap());
         let times = points
             .iter()
             .map(|point| (point[0] * 1e6).round() / 1e6)
@@ -325,5 +371,38 @@ mod tests {
         // They are at steps: nothing more is needed.
         assert_eq!(played(20.0, 20.2), (vec![20.0, 20.1, 20.2], 3, 20.2));
         assert_eq!(played(0.0, 0.15), (vec![0.0, 0.1, 0.2], 2, 0.15));
+    }
+
+    #[test]
+    fn no_extreme_of_a_long_run_is_lost() {
+        let mut document = Document::open("wobble-push").unwrap();
+        document.set("motion.steps=50000").unwrap();
+        let scenario = Arc::new(document.scenario().unwrap());
+        let column = Plotted::find("z_m").unwrap();
+        let wanted = Wanted {
+            columns: vec![column],
+            path: false,
+            from_s: 0.0,
+            to_s: None,
+        };
+        let course = play(&scenario, &wanted, |_, _| ControlFlow::Continue(())).unwrap();
+        let points = course.points(column);
+        assert!(points.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
+        let mut run = Simulation::new(Arc::clone(&scenario));
+        // Each fiftieth of the run has its extremes near.
+        for fiftieth in 0..50 {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            let begin_s = run.now().time_s();
+            for _ in 0..1000 {
+                let z = run.step().unwrap().position().z;
+                (low, high) = (low.min(z), high.max(z));
+            }
+            let end_s = run.now().time_s();
+            let near = |point: &&[f64; 2]| (begin_s - 2.0..=end_s + 2.0).contains(&point[0]);
+            for extreme in [low, high] {
+                let mut near = points.iter().filter(near);
+                assert!(near.any(|point| point[1] == extreme), "{fiftieth}");
+            }
+        }
     }
 }

@@ -2,31 +2,29 @@
 
 use super::chart::Chart;
 use super::chart::curve;
-use super::chart::layout::Layout;
-use super::course::Course;
+use super::chart::layout::{Layout, Placed};
+use super::course::{Course, Part};
+use super::kind::Plotted;
 use super::page::cover::Grid;
 use super::page::scene::Point;
 use super::path::Path;
 use super::request::{Drawn, Request};
+use crate::observe::recording::Extent;
 use crate::text::ladder;
 use crate::text::number::{shortest, significant};
 use std::fmt;
 
-/// What covers the paper so densely that nothing of it is told apart, and a stretch of time in which it does not.
+/// What fills the paper with ink until nothing can be distinguished, and a shorter stretch of time that does not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dense {
     /// What does, in words: "about 1200 swings".
     pub what: String,
-    /// The width of the page, mm.
     pub width_mm: f64,
-    /// The begin of the stretch, s.
     pub from_s: f64,
-    /// Its end, s.
     pub to_s: f64,
 }
 
 impl Dense {
-    /// The stretch as options of the command line.
     pub fn options(&self) -> String {
         let (from_s, to_s) = (shortest(self.from_s), significant(self.to_s, 9));
         format!("--from {from_s} --to {to_s}")
@@ -49,45 +47,23 @@ impl fmt::Display for Dense {
 const PART_PT: f64 = 1.0;
 /// Such a part is black where its lines are as wide as it is, and reach over so much of the panel's height.
 const HIGH: f64 = 0.05;
-/// A curve is black where so many of its parts are.
+/// A curve is black where more than this share of its parts is.
 const MOST: f64 = 0.5;
-/// Swings that a proposed stretch shows.
 const SWINGS: f64 = 20.0;
 
-/// Whether a curve of a chart is solid black; `drawn` are the runs of its curves, of which `first` is its first.
+/// Whether a curve of a chart, which shows `columns` of `drawn`, is solid black.
 pub(super) fn warning(
     chart: &Chart,
+    columns: &[Plotted],
     drawn: &[Drawn],
-    first: usize,
     request: &Request,
 ) -> Option<Dense> {
     let layout = Layout::new(chart, 0.0);
-    let panels = chart.panels.iter().zip(&layout.panels).enumerate();
-    let all = panels.flat_map(|(place, (panel, placed))| {
-        drawn.iter().zip(&panel.series).map(move |(drawn, series)| {
-            let curve = &drawn.course.curves[first + place];
-            let (low, high) = placed.y.range;
-            let columns = (placed.frame.width() / PART_PT).ceil() as usize;
-            let mut turns = vec![0; columns + 1];
-            let mut extents = vec![(f64::INFINITY, f64::NEG_INFINITY); columns + 1];
-            for part in curve.density() {
-                let column = (placed.x.place(part.time_s) - placed.frame.left) / PART_PT;
-                let column = (column.max(0.0) as usize).min(columns);
-                turns[column] += part.turns;
-                let extent = &mut extents[column];
-                *extent = (extent.0.min(part.extent.0), extent.1.max(part.extent.1));
-            }
-            let is_black = |(&turns, extent): (&u64, &(f64, f64))| {
-                turns as f64 * series.style.width_pt >= PART_PT
-                    && extent.1 - extent.0 >= HIGH * (high - low)
-            };
-            let black = turns
-                .iter()
-                .zip(&extents)
-                .filter(|part| is_black(*part))
-                .count();
-            let all: u64 = turns.iter().sum();
-            (black as f64 > MOST * columns as f64).then_some(all)
+    let panels = columns.iter().zip(chart.panels.iter().zip(&layout.panels));
+    let all = panels.flat_map(|(column, (panel, placed))| {
+        let series = drawn.iter().zip(&panel.series);
+        series.map(|(drawn, series)| {
+            swings_of_black(&drawn.course.parts(*column), series.style.width_pt, placed)
         })
     });
     // What shows the most swings shows those of the other curves too.
@@ -102,6 +78,26 @@ pub(super) fn warning(
         request,
         format!("about {} swings", turns / 2),
     ))
+}
+
+/// How often a curve, which has these `parts`, turns where its line makes most of its panel black.
+fn swings_of_black(parts: &[Part], width_pt: f64, placed: &Placed) -> Option<u64> {
+    let columns = (placed.frame.width() / PART_PT).ceil() as usize;
+    let mut black: Vec<(u32, Option<Extent>)> = vec![(0, None); columns + 1];
+    for part in parts {
+        let time_s = 0.5 * (part.times_s[0] + part.times_s[1]);
+        let column = (placed.x.place(time_s) - placed.frame.left) / PART_PT;
+        let (turns, extent) = &mut black[(column.max(0.0) as usize).min(columns)];
+        *turns += part.turns;
+        *extent = Some(extent.map_or(part.extent, |extent| extent.and(part.extent)));
+    }
+    let all = black.iter().map(|(turns, _)| u64::from(*turns)).sum();
+    let high = HIGH * (placed.y.range.1 - placed.y.range.0);
+    black.retain(|(turns, extent)| {
+        let is_high = extent.is_some_and(|extent| extent.max - extent.min >= high);
+        f64::from(*turns) * width_pt >= PART_PT && is_high
+    });
+    (black.len() as f64 > MOST * columns as f64).then_some(all)
 }
 
 /// Side of the places of a path that are looked at, pt, and how many places from the edge of the ink make its inside.

@@ -10,49 +10,38 @@ use crate::scenario::Scenario;
 use crate::scenario::problem;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
 
-/// What a figure shows of a run.
 #[derive(Clone, Debug)]
 pub enum Kind {
-    /// Quantities over time, a panel each.
     OverTime(Vec<Plotted>),
     /// What was measured less what the run says, a panel for each quantity.
     Residuals,
-    /// The path of the traced point from above.
     Above,
-    /// The same in space.
     ThreeD,
 }
 
-/// A quantity over time.
 #[derive(Clone, Copy, Debug)]
 pub enum Plotted {
-    /// A column of the run's CSV.
     Column(&'static Column),
-    /// What can be measured and is no column.
     Measurable(&'static Quantity),
 }
 
-/// The name of the figure of residuals.
 pub const RESIDUALS: &str = "residuals";
 
 /// The names that stand alone; a list of columns is the other way to name a figure.
 pub const NAMES: [&str; 4] = [TRACES, ABOVE, THREE_D, RESIDUALS];
 
 impl Plotted {
-    /// What is called `name`.
     pub fn find(name: &str) -> Option<Self> {
         let measurable = || Quantity::find(name).map(Self::Measurable);
         Column::find(name).map(Self::Column).or_else(measurable)
     }
 
-    /// The names of all there are.
     fn names() -> impl Iterator<Item = &'static str> + Clone {
         let others = QUANTITIES.iter().filter(|quantity| !quantity.is_column());
         let columns = COLUMNS.iter().map(|column| column.name);
         columns.chain(others.map(|quantity| quantity.name))
     }
 
-    /// Its name, with the unit.
     pub fn name(self) -> &'static str {
         match self {
             Self::Column(column) => column.name,
@@ -60,7 +49,6 @@ impl Plotted {
         }
     }
 
-    /// Its value at `sample`, which is of a run of `scenario`.
     pub fn value(self, scenario: &Scenario, sample: &Sample) -> f64 {
         match self {
             Self::Column(column) => column.value(sample).number(),
@@ -70,13 +58,11 @@ impl Plotted {
 }
 
 impl Kind {
-    /// x, y and z of the traced point over time.
     pub fn traces() -> Self {
         let column = |curve: Curve| Plotted::find(curve.column());
         Self::OverTime(Curve::OF_POINT.into_iter().filter_map(column).collect())
     }
 
-    /// The quantities that it shows over time.
     pub fn columns(&self) -> &[Plotted] {
         match self {
             Self::OverTime(columns) => columns,
@@ -84,7 +70,6 @@ impl Kind {
         }
     }
 
-    /// Its name on the command line.
     pub fn name(&self) -> String {
         match self {
             Self::OverTime(columns) => {

@@ -2,13 +2,12 @@
 
 use super::chart::legend::longest_name;
 use super::chart::{Axis, Chart, Errors, Panel, Series, Style};
-use super::drawn::Figure;
 use super::kind::Plotted;
 use super::of_runs::charts::both_ranges;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
 use super::quantity;
-use super::request::{Known, Request, Run};
+use super::request::{Figure, Known, Request, Run};
 use super::size;
 use crate::measured::{self, Curve, Measured, Point, at_times, places, residuals as held_against};
 use crate::run::Clock;
@@ -60,20 +59,9 @@ pub(super) fn over_time(
         }
         drawn_on.push((index, shown));
     }
-    let times = || {
-        drawn_on
-            .iter()
-            .flat_map(|(_, shown)| shown.iter().map(|(at, _)| at[0]))
-    };
-    if let Some((begin, end)) = &mut chart.x.range {
-        // A point on the frame has its error bar on it too.
-        let room = BESIDE_POINTS * (*end - *begin);
-        if times().any(|time| time < *begin + room) {
-            *begin -= room;
-        }
-        if times().any(|time| time > *end - room) {
-            *end += room;
-        }
+    let times = drawn_on.iter().flat_map(|(_, shown)| shown);
+    if let Some(range) = &mut chart.x.range {
+        make_room(range, times.map(|(at, _)| at[0]));
     }
     let count = drawn_on.iter().map(|(_, shown)| shown.len()).sum();
     for (index, shown) in drawn_on {
@@ -95,6 +83,21 @@ pub(super) fn over_time(
             columns.join(",")
         )
     }))
+}
+
+/// Widens the `range` of an axis where one of `times` would stand on the frame: its error bar would lie on it.
+fn make_room((begin, end): &mut (f64, f64), times: impl Iterator<Item = f64>) {
+    let room = BESIDE_POINTS * (*end - *begin);
+    let (least, most) = (*begin + room, *end - room);
+    let ends = times.fold((false, false), |(first, last), time| {
+        (first || time < least, last || time > most)
+    });
+    if ends.0 {
+        *begin -= room;
+    }
+    if ends.1 {
+        *end += room;
+    }
 }
 
 /// Adds the places from above. Returns what is to be said where the data do not tell any.
@@ -219,13 +222,7 @@ pub(super) fn residuals(
             _ => Style::points(index),
         };
         for ((panel, curve), model) in panels.iter_mut().zip(&series.curves).zip(&model) {
-            let held = held_against(Some(curve.quantity), &curve.points, model);
-            let less = |held: &measured::Residual| Point {
-                row: held.row,
-                value: held.value(),
-                sigma: held.sigma,
-            };
-            let points: Vec<Point> = held.iter().map(less).collect();
+            let points = less_run(curve, model);
             let (points, errors) = drawn(series, &points, request).into_iter().unzip();
             panel.series.push(Series {
                 name: match runs.len() {
@@ -258,7 +255,17 @@ pub(super) fn residuals(
     }))
 }
 
-/// The data as a series.
+/// The points of `curve` less what the run says of each, `model`.
+fn less_run(curve: &Curve, model: &[f64]) -> Vec<Point> {
+    let held = held_against(Some(curve.quantity), &curve.points, model);
+    let less = held.iter().map(|held| Point {
+        row: held.row,
+        value: held.value(),
+        sigma: held.sigma,
+    });
+    less.collect()
+}
+
 fn series(measured: &Measured) -> Result<&measured::Series, String> {
     let series = measured.series();
     series.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))

@@ -3,11 +3,10 @@
 //! - [`page`]: what stands on a page, and the page as SVG, PDF and PNG.
 //! - [`chart`]: what a figure with axes shows, and its place on a page.
 //! - [`of_runs`]: figures of runs: their curves over time, from above and in space. [`kind`] has the names of these,
-//!   [`course`] takes the numbers from stepping through the runs, in bounded memory ([`over_time`]: those of a curve,
-//!   `path`: those of a path),
+//!   [`course`] takes the numbers from stepping through the runs, in bounded memory (`path` those of a path),
 //!   `measured` draws what was measured with them, [`dense`] finds the figures that would be solid ink, `chords` those
 //!   whose paths have too few points, `size` tells what of a curve is rounding.
-//!   `request` says what is asked for, and `drawn` what a figure is once it is drawn.
+//!   `request` says what is asked for, and what a figure is once it is drawn.
 //! - [`of_table`]: figures of a comparison, of a sweep or of a fit, read by [`table`].
 //! - [`quantity`]: columns and readouts as they stand at an axis.
 
@@ -15,13 +14,11 @@ pub mod chart;
 mod chords;
 pub mod course;
 pub mod dense;
-mod drawn;
 pub mod kind;
 mod measured;
 mod names;
 pub mod of_runs;
 pub mod of_table;
-pub mod over_time;
 pub mod page;
 mod path;
 pub mod quantity;

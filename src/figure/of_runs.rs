@@ -7,13 +7,12 @@ use super::chart::{KINDS_OF_LINE, Style};
 use super::chords;
 use super::course::{self, Course, Wanted};
 use super::dense;
-pub use super::drawn::Figure;
 use super::kind::Kind;
 use super::measured;
 use super::names::names;
 use super::page::letters;
 use super::request::Drawn;
-pub use super::request::{Known, Request, Run};
+pub use super::request::{Figure, Known, Request, Run};
 use super::space;
 use crate::analysis::health::LEAST_SWING_DEG;
 use crate::run::Truth;
@@ -23,10 +22,8 @@ use crate::text::number::{short, shortest};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// The runs of a figure with their numbers.
 struct Played {
     drawn: Vec<Drawn>,
-    /// What is said of all figures of them.
     warnings: Vec<String>,
     broke: Option<String>,
 }
@@ -80,16 +77,13 @@ pub fn figures(
         let Some(played) = play(runs, request, &kinds, known, &mut watch)? else {
             return Ok(None);
         };
-        let mut curve = 0;
         for (index, request) in group {
-            figures[index] = Some(draw(runs, request, known, &played, curve)?);
-            curve += request.kind.columns().len();
+            figures[index] = Some(draw(runs, request, known, &played)?);
         }
     }
     Ok(Some(figures.into_iter().flatten().collect()))
 }
 
-/// Plays `runs` for figures of those `kinds`.
 fn play(
     runs: &[Run],
     request: &Request,
@@ -99,6 +93,7 @@ fn play(
 ) -> Result<Option<Played>, String> {
     check_range(runs, request)?;
     let wanted = wanted(request, kinds);
+    let is_over_time = kinds.iter().any(|kind| matches!(kind, Kind::OverTime(_)));
     let mut broke = None;
     let (mut drawn, mut warnings) = (Vec::new(), Vec::new());
     let named = names(runs, request.is_beside(), longest_name(request.width_pt));
@@ -112,13 +107,11 @@ fn play(
         if let Some(error) = course.broke {
             broke.get_or_insert_with(|| format!("{}: {error}", run.named));
         }
-        let is_over_time = kinds.iter().any(|kind| matches!(kind, Kind::OverTime(_)));
         let faults = || not_believed(run, &course, request.exact);
         warnings.extend(faults().or_else(|| few_a_swing(run).filter(|_| is_over_time)));
-        let style = Style::curve(index);
         drawn.push(Drawn {
             name,
-            style,
+            style: Style::curve(index),
             course,
             is_exact: false,
         });
@@ -126,21 +119,10 @@ fn play(
     if request.exact {
         let is_exact = |run: &Run| is_exact(&run.scenario);
         warnings.extend(runs.iter().any(is_exact).then(|| IS_EXACT.to_owned()));
-        for (run, name) in truths(runs, longest_name(request.width_pt)) {
-            let Some(course) = course::exact(&run.scenario, &wanted, &mut watch) else {
-                return Ok(None);
-            };
-            let style = match drawn.len() {
-                1 => Style::exact(),
-                index => Style::curve(index),
-            };
-            drawn.push(Drawn {
-                name,
-                style,
-                course,
-                is_exact: true,
-            });
-        }
+        let Some(truths) = play_truths(runs, request, &wanted, watch) else {
+            return Ok(None);
+        };
+        drawn.extend(truths);
     }
     warnings.extend(look_alike(&drawn));
     if drawn.iter().all(|drawn| drawn.course.is_empty) {
@@ -156,28 +138,45 @@ fn play(
     }))
 }
 
-/// The figure that `request` asks for; `curve` is the number of the first of its curves among those that were played.
+/// Plays the exact motions beside `runs`; `None` where `watch` said no.
+fn play_truths(
+    runs: &[Run],
+    request: &Request,
+    wanted: &Wanted,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Option<Vec<Drawn>> {
+    let truths = (runs.len()..).zip(truths(runs, longest_name(request.width_pt)));
+    let drawn = truths.map(|(place, (run, name))| {
+        let style = match place {
+            1 => Style::exact(),
+            place => Style::curve(place),
+        };
+        Some(Drawn {
+            name,
+            style,
+            course: course::exact(&run.scenario, wanted, &mut watch)?,
+            is_exact: true,
+        })
+    });
+    drawn.collect()
+}
+
+/// The figure that `request` asks for.
 ///
 /// # Errors
 /// When what was measured cannot be drawn so.
-fn draw(
-    runs: &[Run],
-    request: &Request,
-    known: &Known,
-    played: &Played,
-    curve: usize,
-) -> Result<Figure, String> {
+fn draw(runs: &[Run], request: &Request, known: &Known, played: &Played) -> Result<Figure, String> {
     let (title, drawn) = (title(runs), &played.drawn);
     let mut warnings = played.warnings.clone();
     let dense;
     let scene = match &request.kind {
         Kind::OverTime(columns) => {
-            let mut chart = charts::over_time(title, runs, columns, drawn, curve, request);
+            let mut chart = charts::over_time(title, runs, columns, drawn, request);
             warnings.extend(measured::over_time(
                 &mut chart, columns, runs, request, known,
             )?);
             warnings.extend(measured::beyond_runs(runs, request));
-            dense = dense::warning(&chart, drawn, curve, request);
+            dense = dense::warning(&chart, columns, drawn, request);
             chart.scene()
         }
         Kind::Above => {
@@ -295,7 +294,7 @@ fn not_believed(run: &Run, course: &Course, exact: bool) -> Option<String> {
 
 /// A nutation with fewer time steps than these is not seen in the lines from one to the next.
 const LEAST_A_SWING: f64 = 6.0;
-/// So many time steps in a nutation show it as a smooth curve.
+/// Time steps in a nutation that show it as a smooth curve.
 const A_SMOOTH_SWING: f64 = 20.0;
 
 /// What is said of `run` where it has too few time steps in a nutation for a curve over time.

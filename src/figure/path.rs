@@ -4,7 +4,6 @@ use super::chords;
 use foldhash::fast::FixedState;
 use std::collections::HashSet;
 
-/// Points that are kept at most.
 const MOST: usize = 1 << 19;
 /// The cells along each side of the path that it is first thinned by: finer than a page's dots at 600 an inch.
 const FINEST: f64 = 4096.0;
@@ -22,13 +21,11 @@ pub struct Recorder {
     last: Option<[f64; 3]>,
     /// Cells along each side; `None` while every point is kept.
     cells: Option<f64>,
-    /// The size of a cell, m.
     size: [f64; 3],
     gone: HashSet<[[i32; 3]; 2], FixedState>,
     left_out: u64,
 }
 
-/// What was kept of a path.
 #[derive(Clone, Debug, Default)]
 pub struct Path {
     /// Its points, world frame, m; NaN where the line is interrupted, since it has been there before.
@@ -65,7 +62,6 @@ impl Recorder {
         }
     }
 
-    /// Goes on to `point`, m.
     pub fn push(&mut self, point: [f64; 3]) {
         for (axis, value) in point.into_iter().enumerate() {
             self.low[axis] = self.low[axis].min(value);
@@ -148,7 +144,6 @@ impl Recorder {
         }
     }
 
-    /// What was kept.
     pub fn end(mut self) -> Path {
         if self.cells.is_none() {
             self.path.few_a_turn = chords::points_a_turn(&self.path.points);
@@ -201,7 +196,7 @@ mod tests {
             let point = |angle: f64| [angle.cos(), angle.sin(), 0.0];
             recorded(false, (0..600_000).map(|number| point(angle(number))))
         };
-        // Chords of which none is gone twice are points; what stands still is one.
+        // Chords that are never repeated become points; a path that stands still is one point.
         let chords = bounded(2.0_f64.sqrt());
         assert!(chords.points.len() <= MOST && chords.few_a_turn.is_some());
         assert!(chords.points.iter().all(|point| point[0].is_finite()));

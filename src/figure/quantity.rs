@@ -24,7 +24,7 @@ pub fn axis(name: &str) -> Axis {
     }
 }
 
-/// The axis of a dotted key: the value at the start, where it is that of a readout.
+/// The axis of a dotted key: of the readout's value at the start, where there is such a readout.
 fn of_key(key: &str) -> Axis {
     let last = key.rsplit('.').next().unwrap_or(key);
     let readout = readouts::find(last).filter(|readout| !readout.symbol.is_empty());
@@ -100,7 +100,7 @@ pub fn words(name: &str) -> (String, &'static str) {
     if parts.len() > 1 && ["motion", "body"].contains(&parts[0]) {
         parts.remove(0);
     }
-    // A number at the end is that of a component, elsewhere that of a point, a part or a push.
+    // A number at the end is a component, elsewhere a point, a part or a push.
     let component = PARTS
         .iter()
         .find(|(number, _)| parts.last() == Some(number));

@@ -1,43 +1,36 @@
-//! What a figure of runs is to show, and what it is drawn from.
+//! What a figure of runs is to show, what it is drawn from, and what it then is.
 
 use super::chart::Style;
-use super::course::{Course, Recorded, Wanted};
+use super::course::{Course, Wanted};
+use super::dense::Dense;
 use super::kind::Kind;
+use super::page::scene::Scene;
 use crate::measured::Measured;
 use crate::scenario::Scenario;
 use std::sync::Arc;
 
-/// What a figure of runs is to show.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// What of the runs.
     pub kind: Kind,
-    /// From when on, s.
     pub from_s: f64,
     /// Until when, s; `None`: to the end of the longest run.
     pub to_s: Option<f64>,
-    /// Whether the exact motion is drawn beside them.
     pub exact: bool,
     /// What was measured on a run, to be drawn with them.
     pub measured: Option<Arc<Measured>>,
-    /// Width of the page, pt.
     pub width_pt: f64,
 }
 
-/// A run that is drawn.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// What is run.
     pub scenario: Arc<Scenario>,
-    /// How the user named it.
     pub named: String,
 }
 
 /// What is known of a single run before its figures are drawn: so much of it need not be computed once more.
 #[derive(Clone, Debug, Default)]
 pub struct Known {
-    /// Its numbers.
-    pub recorded: Option<Recorded>,
+    pub recorded: Option<Course>,
     /// What it says of the measured data of the figures: of each column a value for every point.
     pub said: Option<Vec<Vec<f64>>>,
 }
@@ -47,7 +40,6 @@ pub(super) struct Drawn {
     pub name: String,
     pub style: Style,
     pub course: Course,
-    /// Whether it is the exact motion beside a run.
     pub is_exact: bool,
 }
 
@@ -75,8 +67,27 @@ impl Request {
         alike(self) == alike(other)
     }
 
-    /// Whether something is drawn beside the runs, from which a single one is told by its name.
+    /// Whether something is drawn beside the runs, so that a single run needs a name.
     pub(super) fn is_beside(&self) -> bool {
         self.exact || self.measured.is_some()
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct Figure {
+    pub scene: Scene,
+    /// Warnings without the one of `dense`, each a sentence without its full stop.
+    pub warnings: Vec<String>,
+    /// What covers the paper so densely that it is solid black, where something does.
+    pub dense: Option<Dense>,
+    /// Which run's numbers stopped being finite, and at which step.
+    pub broke: Option<String>,
+}
+
+impl Figure {
+    /// All that its reader should know of it, each a sentence without its end.
+    pub fn told(&self) -> impl Iterator<Item = String> + '_ {
+        let dense = self.dense.iter().map(ToString::to_string);
+        self.warnings.iter().cloned().chain(dense)
     }
 }

@@ -38,12 +38,10 @@ const SEEN: f64 = 1.1;
 /// Ways around the box.
 const SIDES: [f64; 2] = [-0.5, 0.5];
 
-/// The box on the page.
 struct Space {
     view: View,
     /// What the three sides of the box show.
     ranges: [(f64, f64); 3],
-    /// The length of a side on the page, pt.
     side_pt: f64,
 }
 

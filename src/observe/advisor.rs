@@ -17,7 +17,6 @@ pub struct Advisor {
 }
 
 impl Advisor {
-    /// Starts the search for advice on `scenario`.
     pub fn ask(scenario: Arc<Scenario>) -> Self {
         let answer = Arc::new(OnceLock::new());
         let asker = Arc::downgrade(&answer);
@@ -42,12 +41,10 @@ impl Advisor {
         }
     }
 
-    /// The answer, once there is one.
     pub fn advice(&self) -> Option<&Advice> {
         self.answer.get()
     }
 
-    /// Returns true once: at the first call after the answer has come.
     pub fn take_news(&mut self) -> bool {
         let is_news = !self.is_reported && self.answer.get().is_some();
         self.is_reported |= is_news;

@@ -4,7 +4,6 @@
 use crate::analysis::{Measured, Readouts};
 use std::f64::consts::TAU;
 
-/// The number of swings that count as recent.
 const RECENT_SWINGS: f64 = 10.0;
 /// Where swings are closer together on the picture than this many dots, fewer of them count as recent, but at least
 /// `LEAST_SWINGS`.
@@ -12,7 +11,7 @@ const CLOSEST_DOTS: f64 = 4.0;
 const LEAST_SWINGS: f64 = 2.0;
 /// The recent part of a path is at most this share of a turn, so that its beginning and its end can be told apart.
 const RECENT_TURN: f64 = 1.0 / 3.0;
-/// Where the time of a turn is not known, it is taken to be this many times the recent time.
+/// Where the time of a turn is not known, it is this multiple of the recent time.
 const TURN: f64 = 6.0;
 /// Lengths of time are rounded up to a power of e to this number: measured periods change a little all the time, and the
 /// picture should not.
@@ -27,7 +26,6 @@ pub struct Ages {
     pub recent_s: f64,
     /// The time of the last turn, s, what is recent included.
     pub turn_s: f64,
-    /// The time of one swing, s.
     pub swing_s: Option<f64>,
     /// Whether the swings cover each other on the picture.
     pub are_crowded: bool,
@@ -36,11 +34,8 @@ pub struct Ages {
 /// The age of a part of a path, the oldest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Age {
-    /// Before the last turn.
     Old,
-    /// Of the last turn.
     Turn,
-    /// Of the last swings.
     Recent,
 }
 

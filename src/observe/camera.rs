@@ -5,7 +5,6 @@ use crate::scenario::keys::{PITCH_DEG, ZOOM};
 use crate::text::ladder;
 use nalgebra::Vector3;
 
-/// The direction from which the picture shows the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Angle about +z from −y, degrees: at 0 the picture's right is +x and its depth +y.
@@ -28,9 +27,7 @@ const NOTCH_DEG: f64 = 10.0;
 /// The enlargement of the pictures in space: 1 where a picture shows the whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zoom {
-    /// The path from above.
     pub above: f64,
-    /// The scene in space.
     pub three_d: f64,
 }
 
@@ -141,7 +138,6 @@ pub struct View {
 }
 
 impl View {
-    /// As [`Camera::project`].
     pub fn project(&self, point: &Vector3<f64>) -> (f64, f64) {
         let right = self.cos_yaw * point.x + self.sin_yaw * point.y;
         let depth = self.cos_yaw * point.y - self.sin_yaw * point.x;
@@ -153,7 +149,6 @@ impl View {
         Vector3::new(self.cos_yaw, self.sin_yaw, 0.0)
     }
 
-    /// As [`Camera::depth`].
     pub fn depth(&self, point: &Vector3<f64>) -> f64 {
         let depth = self.cos_yaw * point.y - self.sin_yaw * point.x;
         self.cos_pitch * depth - self.sin_pitch * point.z

@@ -8,9 +8,7 @@ use crate::run::Simulation;
 
 /// Steps between two checkpoints at first; a power of two.
 const SPACING: u64 = 256;
-/// Memory for all checkpoints, bytes.
 const MEMORY: usize = 24 << 20;
-/// Memory of one checkpoint for each point of the body, bytes.
 const PER_POINT: usize = 64;
 /// Memory of one checkpoint besides its points, bytes.
 const PER_CHECKPOINT: usize = 16 << 10;
@@ -19,13 +17,10 @@ const FEWEST: usize = 8;
 
 /// A run as it stood, and what was measured on its steps up to there.
 pub struct Checkpoint {
-    /// The run.
     pub simulation: Simulation,
-    /// Its measurements.
     pub monitor: Monitor,
 }
 
-/// The checkpoints of one run, the first at its start.
 pub struct Checkpoints {
     start: Checkpoint,
     later: Vec<Checkpoint>,
@@ -49,7 +44,6 @@ impl Checkpoint {
 }
 
 impl Checkpoints {
-    /// The checkpoints of a run that stands at step 0.
     pub fn new(simulation: &Simulation, monitor: &Monitor) -> Self {
         let points = simulation.scenario().body.mechanics.points().len();
         Self {
@@ -82,7 +76,6 @@ impl Checkpoints {
         }
     }
 
-    /// The last checkpoint at `step` or earlier.
     pub fn before(&self, step: u64) -> &Checkpoint {
         let earlier = self.later.partition_point(|stored| stored.step() <= step);
         earlier
@@ -90,7 +83,6 @@ impl Checkpoints {
             .map_or(&self.start, |last| &self.later[last])
     }
 
-    /// Drops the checkpoints later than `step`, because the run changes from there on.
     pub fn cut_back(&mut self, step: u64) {
         self.later.retain(|stored| stored.step() <= step);
     }

@@ -10,7 +10,6 @@ use super::strip::{LEAST_SWING_DEG, Strip};
 use crate::analysis::Readouts;
 use crate::text::ladder;
 
-/// The most swings that the window shows.
 const MOST_SWINGS: f64 = 12.0;
 /// With this number of swings or fewer in the window, a longer window is taken.
 const FEWEST_SWINGS: f64 = 4.0;
@@ -24,17 +23,13 @@ const COLUMNS_OF_SMALL: f64 = 5.0;
 const COLUMNS_OF_LARGE: f64 = 8.0;
 /// The fewest swings that a part of the window shows, where there is room.
 const FEWEST_SEEN: f64 = 3.0;
-/// The shortest window, in time steps.
 const LEAST_STEPS: f64 = 10.0;
 
-/// A window of time, and the curve that it shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detail {
     /// What was chosen, or else the tilt, or x where the tilt does not swing and x does.
     pub curve: Curve,
-    /// Time at its left edge, s.
     pub begin_s: f64,
-    /// Its length, s.
     pub window_s: f64,
     /// The period of the swings that its length was chosen by, s; `None` where it was chosen by hand or nothing swings.
     pub swing_s: Option<f64>,
@@ -42,34 +37,26 @@ pub struct Detail {
     pub is_snapshot: bool,
 }
 
-/// What the window is chosen by.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted {
-    /// Its length, s, where it was chosen by hand.
     pub window_s: Option<f64>,
-    /// The curve, where it was chosen by hand.
     pub curve: Option<Curve>,
     /// Length of the long window, s: the longest that it may have.
     pub long_s: f64,
-    /// Which time it shows.
     pub place: Placement,
 }
 
-/// Which time the window shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Placement {
     /// The present: the run fills the window, which moves on when it is full.
     Following,
     /// The latest time for a whole window that begins at the top of a swing.
     Latest,
-    /// The time up to now.
     UpToNow,
-    /// The time about this one, s.
     About(f64),
 }
 
 impl Wanted {
-    /// The window that follows the run, no longer than `long_s` (s).
     pub fn following(long_s: f64) -> Self {
         Self {
             window_s: None,
@@ -300,7 +287,7 @@ mod tests {
         let detail = Detail::new(&run, &readouts, &Wanted::following(20.0), None);
         assert_eq!(detail.curve, Curve::X);
         let strip = Strip::new(detail.begin_s, detail.window_s, 100);
-        let columns = strip.columns(run.recording(), Curve::X, &[]);
+        let columns = strip.blocks(run.recording()).columns(Curve::X, &[]);
         assert!(columns.iter().flatten().all(|column| column.band.is_none()));
         assert!(detail.window_s < 10.0, "{}", detail.window_s);
     }

@@ -4,9 +4,7 @@ use crate::run::Simulation;
 use crate::scenario::Scenario;
 use std::sync::Arc;
 
-/// The most steps that are looked at.
 const MOST_STEPS: u64 = 4000;
-/// The most steps times points of the body.
 const MOST_COST: u64 = 2_000_000;
 /// An axle whose tilt has a smaller sine than this counts as upright: none of its sides is the lower one.
 const UPRIGHT: f64 = 1e-6;

@@ -9,7 +9,6 @@ use crate::scenario::Scenario;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
-/// The pictures of the previous run.
 #[derive(Clone, Debug)]
 pub struct Ghost {
     recording: Recording,
@@ -32,32 +31,26 @@ impl Ghost {
         }
     }
 
-    /// The scenario of its run, with all that was done to it.
     pub fn scenario(&self) -> &Arc<Scenario> {
         &self.scenario
     }
 
-    /// The step up to which it has pictures.
     pub fn furthest(&self) -> u64 {
         self.furthest
     }
 
-    /// The time that the run had reached, s.
     pub fn end_s(&self) -> f64 {
         self.recording.whole().map_or(0.0, |whole| whole.end_s)
     }
 
-    /// Its curves over time.
     pub fn recording(&self) -> &Recording {
         &self.recording
     }
 
-    /// Its path from above.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Its pushes and edits.
     pub fn marks(&self) -> &Marks {
         &self.marks
     }
@@ -98,17 +91,14 @@ impl GhostToBe {
         }
     }
 
-    /// The scenario of the run.
     pub fn scenario(&self) -> &Arc<Scenario> {
         &self.scenario
     }
 
-    /// The step up to which it is played.
     pub fn furthest(&self) -> u64 {
         self.furthest
     }
 
-    /// Takes the pictures once they are made.
     pub fn take(&self) -> Option<Ghost> {
         self.made
             .lock()

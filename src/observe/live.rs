@@ -34,13 +34,11 @@ const MOST_INTEGRATION: u64 = 250_000_000;
 /// A remaining time below this share of a time step is rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// A run that is being watched.
 pub struct LiveRun {
     simulation: Simulation,
     monitor: Monitor,
     checkpoints: Checkpoints,
     pictures: Pictures,
-    /// Whether the exact motion is shown, where it can be had.
     shows_exact: bool,
     overlay: Option<Overlay>,
     keeps_workings: bool,
@@ -48,32 +46,23 @@ pub struct LiveRun {
     explained: Option<(u64, Arc<Workings>)>,
 }
 
-/// The result of playing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Played {
-    /// Simulated time that passed, s.
     pub stepped_s: f64,
-    /// Why playing ended.
     pub end: PlayEnd,
 }
 
-/// Why playing ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlayEnd {
     /// The run has stepped all the simulated time that it was given.
     InTime,
-    /// The time for computing was used up.
     CutShort,
-    /// The run stands at its stop.
     AtStop,
-    /// The condition to which it was played holds.
     Fulfilled,
-    /// The numbers are no longer finite.
     NotFinite(NotFinite),
 }
 
 impl LiveRun {
-    /// The run of `scenario`, at step 0.
     pub fn new(scenario: Arc<Scenario>) -> Self {
         let reach = scenario.arm_m();
         let simulation = Simulation::new(scenario);
@@ -113,7 +102,6 @@ impl LiveRun {
         Ok(())
     }
 
-    /// The furthest step that the run has reached.
     pub fn furthest(&self) -> u64 {
         self.pictures.furthest()
     }
@@ -251,7 +239,6 @@ impl LiveRun {
         }
     }
 
-    /// Steps between two readings of the clock.
     fn steps_per_look(&self) -> usize {
         if self.integration_cost() > 0 {
             return 1;
@@ -285,12 +272,10 @@ impl LiveRun {
         self.shows_exact = shown;
     }
 
-    /// Whether the exact motion is shown, where it can be had.
     pub fn shows_exact(&self) -> bool {
         self.shows_exact
     }
 
-    /// Advances the exact motion to the run's time, or until `enough` returns true.
     pub fn follow_exact(&mut self, enough: impl FnMut() -> bool) {
         let now_s = self.now().time_s;
         if let Some(overlay) = &mut self.overlay {
@@ -298,7 +283,6 @@ impl LiveRun {
         }
     }
 
-    /// The exact motion, where it is shown and can be had.
     pub fn overlay(&self) -> Option<&Overlay> {
         self.overlay.as_ref()
     }
@@ -316,12 +300,10 @@ impl LiveRun {
         overlay.is_some_and(|overlay| overlay.is_before(now_s))
     }
 
-    /// How reliable the run's numbers are at the present step.
     pub fn health(&mut self) -> Health {
         self.monitor.health(self.simulation.now())
     }
 
-    /// Every number that is read off it where it stands.
     pub fn readouts(&mut self) -> Readouts {
         let health = self.health();
         Readouts::new(&self.simulation, &mut self.monitor, &health, None)
@@ -332,12 +314,10 @@ impl LiveRun {
         readouts.read_again(source, &self.simulation, &mut self.monitor);
     }
 
-    /// What theory says of the exact motion now; `None` where it says nothing.
     pub fn theory(&mut self) -> Option<Theory> {
         self.monitor.theory(self.now().time_s)
     }
 
-    /// What has been measured on its steps.
     pub fn instruments(&self) -> &Instruments {
         &self.monitor.gauges.instruments
     }
@@ -377,22 +357,18 @@ impl LiveRun {
         self.pictures.last_whole.as_ref()
     }
 
-    /// The run itself.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// The scenario it plays.
     pub fn scenario(&self) -> &Arc<Scenario> {
         self.simulation.scenario()
     }
 
-    /// Where it stands.
     pub fn now(&self) -> &Moment {
         &self.pictures.now
     }
 
-    /// Its curves over time and its path, as far as it has been.
     pub fn pictures(&self) -> (&Recording, &Path) {
         match &self.pictures.ahead {
             Some(ahead) => (&ahead.recording, &ahead.path),
@@ -400,12 +376,10 @@ impl LiveRun {
         }
     }
 
-    /// Its curves over time.
     pub fn recording(&self) -> &Recording {
         &self.pictures.recording
     }
 
-    /// Its path from above.
     pub fn path(&self) -> &Path {
         &self.pictures.path
     }

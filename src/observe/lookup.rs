@@ -9,14 +9,10 @@ const MOST_STEPS: u64 = 4_000_000;
 /// What a point of a body costs in one of these steps, as an integration's cost is counted.
 const COST_OF_A_POINT: u64 = 30;
 
-/// Why a step cannot be looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Missing {
-    /// The run has not been there.
     NotReached,
-    /// Computing it would take too long.
     TooFar,
-    /// The curve turns nowhere on that side.
     NoTurn,
 }
 
@@ -79,14 +75,12 @@ pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
 /// A copy of a run that steps through its past.
 struct Steps {
     simulation: Simulation,
-    /// Steps that may still be computed.
     left: u64,
     /// How the height of the axle changed in the last step, where it did.
     change: f64,
 }
 
 impl Steps {
-    /// From the last stored state at `step` or before.
     fn before(run: &LiveRun, step: u64) -> Result<Self, Missing> {
         let points = run.scenario().body.mechanics.points().len() as u64;
         Ok(Self {

@@ -4,18 +4,15 @@ use crate::run::Clock;
 use crate::run::pushes::acts_s;
 use crate::scenario::{Push, Scenario};
 
-/// Times of pushes and edits, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Marks {
     /// Beginning and end of each interval in which at least one push acts, s. Intervals do not touch; the last end may be
     /// infinite.
     pub pushes: Vec<(f64, f64)>,
-    /// Times at which the run was edited, s.
     pub edits: Vec<f64>,
 }
 
 impl Marks {
-    /// The marks of the run of `scenario`.
     pub fn of(scenario: &Scenario) -> Self {
         let mut edits = Vec::new();
         let mut stretches = Vec::new();
@@ -45,14 +42,12 @@ impl Marks {
     }
 }
 
-/// The part of `interval` (s) in which `push` of `scenario` acts.
 fn between(push: &Push, scenario: &Scenario, interval: (f64, f64)) -> Option<(f64, f64)> {
     let (begin, end) = acts_s(push, scenario);
     let (begin, end) = (begin.max(interval.0), end.min(interval.1));
     (begin < end && push.force.norm() > 0.0).then_some((begin, end))
 }
 
-/// `stretches` sorted, with those that touch joined.
 fn joined(mut stretches: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     stretches.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut joined: Vec<(f64, f64)> = Vec::with_capacity(stretches.len());

@@ -4,12 +4,10 @@ use crate::physics::part::{Part, Shape};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// Parts of a circle.
 const PARTS: usize = 48;
 /// Lines along a round solid, from end to end.
 const SIDES: usize = 4;
 
-/// A line of several points along a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polyline {
     /// The points that it goes through, body frame, m; at least two.
@@ -29,7 +27,6 @@ pub fn lines(part: &Part) -> Vec<Polyline> {
     lines
 }
 
-/// The lines of a solid in its own frame.
 fn own_lines(part: &Part) -> Vec<Polyline> {
     match part.shape {
         Shape::Ring { radius } => vec![circle(radius, 0.0), mark(0.0, radius, 0.0)],
@@ -64,7 +61,6 @@ fn own_lines(part: &Part) -> Vec<Polyline> {
     }
 }
 
-/// The equator and two meridians.
 fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Polyline> {
     let round = circle(1.0, 0.0);
     let turned = |turn: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| Polyline {
@@ -123,7 +119,6 @@ fn straight(ends: [Vector3<f64>; 2]) -> Polyline {
     }
 }
 
-/// The edges of a block; a thin one has the four of its middle.
 fn block(size: &Vector3<f64>) -> Vec<Polyline> {
     let half = 0.5 * size;
     let level = |z: f64| Polyline {

@@ -11,7 +11,6 @@ use std::sync::Arc;
 /// ahead, only every second, third, ... step is sampled.
 const MOST_SAMPLES: f64 = 20_000.0;
 
-/// The exact motion from the start to (almost) now.
 pub struct Overlay {
     truth: Truth,
     traced: Vector3<f64>,
@@ -25,7 +24,6 @@ pub struct Overlay {
 }
 
 impl Overlay {
-    /// The exact motion of `scenario`, to be sampled once a time step.
     pub fn new(scenario: &Arc<Scenario>) -> Self {
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
         let now = Moment::new(&scenario.start, &traced);
@@ -48,7 +46,6 @@ impl Overlay {
         self.truth.go_on_in(scenario);
     }
 
-    /// Computes the exact motion up to `time_s` (s), or until `enough` returns true.
     pub fn follow(&mut self, time_s: f64, mut enough: impl FnMut() -> bool) {
         let due = (time_s - self.now.time_s) / self.time_step_s;
         let spacing_s = self.time_step_s * (due / MOST_SAMPLES).ceil().max(1.0);
@@ -92,17 +89,14 @@ impl Overlay {
         !self.has_ended && self.now.time_s < time_s
     }
 
-    /// Where the exact motion stands.
     pub fn now(&self) -> &Moment {
         &self.now
     }
 
-    /// Its curves over time.
     pub fn recording(&self) -> &Recording {
         &self.recording
     }
 
-    /// Its path from above.
     pub fn path(&self) -> &Path {
         &self.path
     }

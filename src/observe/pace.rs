@@ -10,17 +10,13 @@ const LONGEST_FRAME: Duration = Duration::from_millis(250);
 /// Rungs of the 1-2-5 ladder that are playback speeds: 1e-4 to 5e5 simulated seconds a second.
 const SPEEDS: RangeInclusive<i64> = -12..=17;
 
-/// Playback speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Speed {
-    /// Simulated seconds a second.
     Times(f64),
-    /// As fast as the machine computes.
     Top,
 }
 
 impl Speed {
-    /// The speed `notches` rungs up the ladder, or down where negative.
     pub fn shifted(self, notches: i32) -> Self {
         let next = if notches > 0 { faster } else { slower };
         (0..notches.unsigned_abs()).fold(self, |speed, _| next(speed))
@@ -34,12 +30,10 @@ pub struct Pace {
     running: bool,
     /// Simulated time that is due and has not been stepped yet, s.
     owed_s: f64,
-    /// Recent speed as measured, simulated seconds a second.
     achieved: f64,
 }
 
 impl Pace {
-    /// The pace of `speed` simulated seconds a second.
     pub fn new(speed: f64, running: bool) -> Self {
         Self {
             speed: Speed::Times(speed),
@@ -61,12 +55,10 @@ impl Pace {
         }
     }
 
-    /// The speed that is set.
     pub fn speed(&self) -> Speed {
         self.speed
     }
 
-    /// Recent speed as measured, simulated seconds a second.
     pub fn achieved(&self) -> f64 {
         self.achieved
     }
@@ -76,12 +68,10 @@ impl Pace {
         matches!(self.speed, Speed::Times(speed) if self.running && self.achieved < 0.8 * speed)
     }
 
-    /// Whether the run goes on by itself.
     pub fn is_running(&self) -> bool {
         self.running
     }
 
-    /// Goes on, or stops.
     pub fn set_running(&mut self, running: bool) {
         self.running = running;
         self.owed_s = 0.0;
@@ -120,7 +110,6 @@ impl Pace {
     }
 }
 
-/// Every speed of the ladder, slowest first.
 fn ladder() -> impl DoubleEndedIterator<Item = f64> {
     SPEEDS.map(rung)
 }

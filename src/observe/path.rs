@@ -12,44 +12,22 @@ const SIDE: usize = 512;
 /// motion in between is unknown.
 const LONGEST_LINE: f64 = 24.0;
 
-/// The path from above; lengths in m, world frame.
 #[derive(Clone, Debug)]
 pub struct Path {
     half_width: f64,
-    /// Whether a cell has been visited, row by row.
     is_visited: Vec<bool>,
-    /// The visited cells, in the order of their first visits.
     visits: Vec<Visit>,
     last: Option<(f64, f64)>,
     radius: f64,
-    home: Home,
 }
 
-/// The first visit of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Visit {
     step: u64,
     cell: u32,
 }
 
-/// The inside of the cell in which the last position is: least and greatest x, least and greatest y. A slow point stays
-/// in it for many steps, for which nothing needs to be computed. A margin wider than rounding is left out at each edge.
-#[derive(Clone, Copy, Debug)]
-struct Home([f64; 4]);
-
-impl Home {
-    const NONE: Self = Self([f64::INFINITY, f64::NEG_INFINITY, 0.0, 0.0]);
-    /// What is left out at each edge, as a part of the cell.
-    const EDGE: f64 = 1e-6;
-
-    fn has(&self, x: f64, y: f64) -> bool {
-        let [least_x, most_x, least_y, most_y] = self.0;
-        (x > least_x) & (x < most_x) & (y > least_y) & (y < most_y)
-    }
-}
-
 impl Path {
-    /// An empty path of a point whose distance from the pivot is `reach` (m).
     pub fn new(reach: f64) -> Self {
         let half_width = if reach > 0.0 { reach / 64.0 } else { 1.0 };
         Self {
@@ -58,11 +36,9 @@ impl Path {
             visits: Vec::new(),
             last: None,
             radius: 0.0,
-            home: Home::NONE,
         }
     }
 
-    /// Follows the point to `position` at `step`.
     pub fn follow(&mut self, step: u64, position: &Vector3<f64>) {
         let (x, y) = (position.x, position.y);
         let radius = x.abs().max(y.abs());
@@ -73,9 +49,6 @@ impl Path {
             self.radius = libm::hypot(x, y);
         }
         let (from_x, from_y) = self.last.replace((x, y)).unwrap_or((x, y));
-        if self.home.has(x, y) {
-            return;
-        }
         let (way_x, way_y) = (x - from_x, y - from_y);
         let cell = 2.0 * self.half_width / SIDE as f64;
         let cells = way_x.abs().max(way_y.abs()) / cell;
@@ -90,21 +63,6 @@ impl Path {
         } else {
             self.visit(step, from_x + way_x, from_y + way_y);
         }
-        self.home = self.home_of(x, y);
-    }
-
-    /// The inside of the cell that (`x`, `y`) is in; none where that is in its edge, and may count to another one.
-    fn home_of(&self, x: f64, y: f64) -> Home {
-        let [least_x, most_x] = self.inside(self.row_or_column(x));
-        let [least_y, most_y] = self.inside(self.row_or_column(y));
-        let home = Home([least_x, most_x, least_y, most_y]);
-        if home.has(x, y) { home } else { Home::NONE }
-    }
-
-    /// From where to where a row or column reaches, without its edges, m.
-    fn inside(&self, place: usize) -> [f64; 2] {
-        [Home::EDGE, 1.0 - Home::EDGE]
-            .map(|part| ((place as f64 + part) / SIDE as f64 * 2.0 - 1.0) * self.half_width)
     }
 
     fn visit(&mut self, step: u64, x: f64, y: f64) {
@@ -127,7 +85,6 @@ impl Path {
     /// Clears the cells that were first visited after `step`. The raster keeps its width; the radius is then exact to a
     /// cell. Call [`stand_at`](Self::stand_at) before following the point further.
     pub fn cut_back(&mut self, step: u64) {
-        self.home = Home::NONE;
         let kept = self.visits.partition_point(|visit| visit.step <= step);
         for visit in self.visits.drain(kept..) {
             self.is_visited[visit.cell as usize] = false;
@@ -138,10 +95,8 @@ impl Path {
             .fold(0.0, f64::max);
     }
 
-    /// Sets the position from which the path continues.
     pub fn stand_at(&mut self, position: &Vector3<f64>) {
         self.last = Some((position.x, position.y));
-        self.home = Home::NONE;
     }
 
     /// Doubles the width of the raster: four cells become one.
@@ -151,7 +106,6 @@ impl Path {
             self.is_visited[visit.cell as usize] = false;
         }
         self.half_width *= 2.0;
-        self.home = Home::NONE;
         for Visit { step, cell } in visits {
             let cell = cell as usize;
             let halved = |place: usize| SIDE / 4 + place / 2;
@@ -159,7 +113,6 @@ impl Path {
         }
     }
 
-    /// The largest distance from the vertical through the pivot so far, m.
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -172,7 +125,6 @@ impl Path {
         distances.fold(0.0, f64::max)
     }
 
-    /// The middle of every cell the path went through, x and y in m.
     pub fn dots(&self) -> impl Iterator<Item = (f64, f64)> {
         let middle =
             |place: usize| ((place as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0) * self.half_width;
@@ -243,32 +195,5 @@ mod tests {
         };
         assert!(dots(0.02) > 400, "{}", dots(0.02));
         assert!(dots(1.0) > 400, "{}", dots(1.0));
-    }
-
-    proptest! {
-        #[test]
-        fn what_stays_in_a_cell_leaves_the_path_as_it_is(
-            start in (-1.0..1.0f64, -1.0..1.0f64), ways in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64), 1..300), at in 0usize..300
-        ) {
-            let (mut path, mut every) = (Path::new(2.0), Path::new(2.0));
-            let (mut x, mut y) = start;
-            for (step, (way_x, way_y)) in ways.into_iter().enumerate() {
-                // Ways of up to two thirds of the smallest cell.
-                (x, y) = (x + way_x * 8e-5, y + way_y * 8e-5);
-                let position = Vector3::new(x, y, 0.0);
-                path.follow(step as u64, &position);
-                every.home = Home::NONE;
-                every.follow(step as u64, &position);
-                if step == at {
-                    for path in [&mut path, &mut every] {
-                        path.cut_back(step as u64 / 2);
-                        path.stand_at(&position);
-                    }
-                }
-            }
-            prop_assert_eq!(&path.visits, &every.visits);
-            prop_assert_eq!(&path.is_visited, &every.is_visited);
-            prop_assert_eq!((path.last, path.radius), (every.last, every.radius));
-        }
     }
 }

@@ -22,25 +22,18 @@ const FOLLOWING: Duration = Duration::from_millis(6);
 /// The number of steps after which playing until a condition holds is given up; commands of a file go no further at once.
 pub const MOST_UNTIL: u64 = 10_000_000;
 
-/// A condition on a run, until which it is played.
 pub type Condition = Box<dyn FnMut(&mut LiveRun) -> bool>;
 
-/// Why the playback has stopped by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Halt {
-    /// The condition of [`run_until`](Playback::run_until) holds.
     Fulfilled,
-    /// That condition did not hold on any of so many steps.
     NotFulfilled(u64),
     /// The run stands at the scenario's last step; it can be played further.
     EndOfRun,
-    /// All requested steps are taken.
     StepsTaken,
-    /// The numbers would stop being finite.
     NotFinite(NotFinite),
 }
 
-/// A run, its pace, and the step at which it stops.
 pub struct Playback {
     run: LiveRun,
     pace: Pace,
@@ -48,16 +41,12 @@ pub struct Playback {
     stop: u64,
     /// Whether it steps towards `stop` as fast as it can, whatever its pace.
     hurries: bool,
-    /// Time at which the scenario's run ends, s.
     end_s: f64,
-    /// Whether it goes on at the end of the scenario's run.
     is_endless: bool,
-    /// The condition until which it is played, if there is one.
     until: Option<Condition>,
 }
 
 impl Playback {
-    /// The run of `scenario` at step 0, at the speed the scenario names.
     pub fn new(scenario: Arc<Scenario>, running: bool) -> Self {
         let speed = scenario.file.view.as_ref().and_then(|view| view.speed);
         let (stop, end_s) = (scenario.steps, Clock::end_s(&scenario));
@@ -73,7 +62,6 @@ impl Playback {
         }
     }
 
-    /// Sets the time at which the scenario's run ends, s.
     pub fn set_end(&mut self, end_s: f64) {
         self.end_s = end_s;
         if !self.hurries && self.until.is_none() {
@@ -81,12 +69,10 @@ impl Playback {
         }
     }
 
-    /// Time at which the scenario's run ends, s.
     pub fn end_s(&self) -> f64 {
         self.end_s
     }
 
-    /// The step at which the scenario's run ends.
     pub fn end_step(&self) -> u64 {
         Simulation::step_at(self.run.scenario(), self.end_s)
     }
@@ -103,7 +89,6 @@ impl Playback {
         self.stop = self.next_stop();
     }
 
-    /// Replaces the scenario by one that leads to the same numbers.
     pub fn describe_as(&mut self, scenario: &Arc<Scenario>) {
         self.run.describe_as(scenario);
         if !self.hurries && self.until.is_none() {
@@ -185,7 +170,6 @@ impl Playback {
         true
     }
 
-    /// The step at which it stops by itself.
     pub fn stops_at(&self) -> u64 {
         self.stop
     }
@@ -195,7 +179,6 @@ impl Playback {
         !self.is_running() && self.step_number() >= self.end_step()
     }
 
-    /// Whether it plays until a condition holds.
     pub fn is_running_until(&self) -> bool {
         self.until.is_some()
     }
@@ -224,7 +207,6 @@ impl Playback {
         }
     }
 
-    /// Whether it goes on at the end of the scenario's run.
     pub fn is_endless(&self) -> bool {
         self.is_endless
     }
@@ -250,53 +232,43 @@ impl Playback {
         self.pace.set_running(running);
     }
 
-    /// The number of requested steps still to be taken; `None` if none are in progress.
     pub fn steps_to_go(&self) -> Option<u64> {
         self.hurries
             .then(|| self.stop.saturating_sub(self.step_number()))
     }
 
-    /// Sets the speed.
     pub fn set_speed(&mut self, speed: Speed) {
         self.pace.set_speed(speed);
     }
 
-    /// The speed that is set.
     pub fn speed(&self) -> Speed {
         self.pace.speed()
     }
 
-    /// Shows the exact motion beside the run, or does not.
     pub fn set_exact(&mut self, shown: bool) {
         self.run.set_overlay(shown);
     }
 
-    /// Reads the numbers at the present step.
     pub fn read(&mut self) -> Reading {
         Reading::new(&mut self.run, &self.pace)
     }
 
-    /// The step it stands at.
     pub fn step_number(&self) -> u64 {
         self.run.simulation().step_number()
     }
 
-    /// What the scheme computed in the step taken last; `None` at step 0.
     pub fn workings(&mut self) -> Option<Arc<Workings>> {
         self.run.workings()
     }
 
-    /// Whether the workings of every step to come are kept.
     pub fn keep_workings(&mut self, kept: bool) {
         self.run.keep_workings(kept);
     }
 
-    /// The run.
     pub fn run(&self) -> &LiveRun {
         &self.run
     }
 
-    /// Whether it goes on by itself.
     pub fn is_running(&self) -> bool {
         self.pace.is_running()
     }

@@ -9,26 +9,20 @@ use crate::physics::State;
 use crate::text::number::{exponent, fixed, shortest};
 use std::time::Duration;
 
-/// Time between two updates while the run goes on.
 pub const EVERY: Duration = Duration::from_millis(250);
 
-/// The numbers shown at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// The run's numbers, as the table of readouts has them.
     pub readouts: Readouts,
     /// The state at that time. Where the scheme has broken down, the last state whose orientation is a rotation.
     pub state: State,
     /// The step of that state, if the scheme has broken down since; else `None`.
     pub last_whole: Option<u64>,
-    /// The exact motion at that time, where it is shown and has come so far.
     pub exact: Option<Moment>,
-    /// Whether the run goes on, and how fast.
     pub pace: String,
 }
 
 impl Reading {
-    /// Reads `run`, which is played at `pace`.
     pub fn new(run: &mut LiveRun, pace: &Pace) -> Self {
         let last_whole = run.last_whole();
         Self {

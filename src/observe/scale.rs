@@ -13,12 +13,9 @@ const UNSEEN: f64 = 0.025;
 /// Significant digits of a tick: no rounding of its last bits is seen.
 const DIGITS: usize = 15;
 
-/// The values at both ends of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// The lowest value.
     pub low: f64,
-    /// The highest value.
     pub high: f64,
 }
 
@@ -44,7 +41,6 @@ impl Scale {
         }
     }
 
-    /// The part of it that is `zoom` times smaller and has `value` at the same place.
     pub fn zoomed(&self, zoom: f64, value: f64) -> Self {
         Self {
             low: value + (self.low - value) / zoom,
@@ -57,12 +53,10 @@ impl Scale {
         (self.high - value) / (self.high - self.low)
     }
 
-    /// Whether some of `extent` is within it.
     pub fn meets(&self, extent: Extent) -> bool {
         extent.max >= self.low && extent.min <= self.high
     }
 
-    /// Round values within it, from low to high, about `most` of them and no more.
     pub fn ticks(&self, most: usize) -> Vec<f64> {
         ticks(self.low, self.high, most)
     }
@@ -79,7 +73,6 @@ impl Scale {
         (0..most).find(is_exact).unwrap_or(most)
     }
 
-    /// Both ends.
     pub fn in_words(&self) -> String {
         self.with_digits(self.decimals(), " .. ")
     }

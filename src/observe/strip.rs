@@ -19,18 +19,13 @@ pub(super) const LEAST_SWING_DEG: f64 = 0.01;
 /// The longest window, s: small enough that adding it to a time does not overflow.
 const LONGEST_S: f64 = f64::MAX / 4.0;
 
-/// A window of time on a number of columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strip {
-    /// Time at the left edge, s.
     pub begin_s: f64,
-    /// Length of the window, s.
     pub window_s: f64,
-    /// Columns (of dots) the window is wide.
     pub columns: usize,
 }
 
-/// A curve in one column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Column {
     /// The extremes of all steps in the column, and of the straight lines to the steps before and after.
@@ -41,7 +36,6 @@ pub struct Column {
 }
 
 impl Strip {
-    /// The window of `window_s` (s) on `columns` that begins at `begin_s` (s).
     pub fn new(begin_s: f64, window_s: f64, columns: usize) -> Self {
         Self {
             begin_s,
@@ -59,7 +53,6 @@ impl Strip {
         Self::new(halves.max(0.0) * 0.5 * window_s, window_s, columns)
     }
 
-    /// Time at the right edge, s.
     pub fn end_s(&self) -> f64 {
         self.begin_s + self.window_s
     }
@@ -70,7 +63,6 @@ impl Strip {
         is_shown.then(|| self.place(time_s).min(self.columns - 1))
     }
 
-    /// The time at the middle of `column`, s.
     pub fn time_s(&self, column: usize) -> f64 {
         self.begin_s + (column as f64 + 0.5) / self.columns.max(1) as f64 * self.window_s
     }
@@ -94,16 +86,6 @@ impl Strip {
         (column.max(0.0) as usize).min(usize::MAX / 2)
     }
 
-    /// `curve` of `recording` in each column, as [`Blocks::columns`] has it.
-    pub fn columns(
-        &self,
-        recording: &Recording,
-        curve: Curve,
-        cuts: &[f64],
-    ) -> Vec<Option<Column>> {
-        self.blocks(recording).columns(curve, cuts)
-    }
-
     /// Where the blocks of `recording` are on the columns: for all its curves at once.
     pub fn blocks(&self, recording: &Recording) -> Blocks {
         let column = |time_s: f64| self.place(time_s.max(self.begin_s));
@@ -115,7 +97,7 @@ impl Strip {
             };
             (block, column(block.begin_s).min(last), last)
         };
-        let blocks = recording.in_columns(self.begin_s, self.end_s(), column);
+        let blocks = recording.in_columns(self.begin_s, self.end_s(), Some(column));
         Blocks {
             columns: self.columns,
             placed: blocks.map(place).collect(),
@@ -123,10 +105,8 @@ impl Strip {
     }
 }
 
-/// The blocks of a recording on the columns of a strip.
 pub struct Blocks {
     columns: usize,
-    /// Each with its first and its last column.
     placed: Vec<(Block, usize, usize)>,
 }
 
@@ -162,7 +142,7 @@ mod tests {
     }
 
     fn x(strip: Strip, recording: &Recording) -> Vec<Option<Column>> {
-        strip.columns(recording, Curve::X, &[])
+        strip.blocks(recording).columns(Curve::X, &[])
     }
 
     proptest! {
@@ -204,34 +184,6 @@ mod tests {
         );
     }
 
-    #[test]
-    fn right_of_the_pen_there_is_nothing() {
-        let values: Vec<f64> = (0..150).map(f64::from).collect();
-        let drawn = x(Strip::following(149.0, 100.0, 100), &recorded(&values, 1.0));
-        assert_eq!(drawn[10].unwrap().extent.max, 60.5);
-        assert!(drawn[..99].iter().all(Option::is_some) && drawn[99].is_some());
-        let drawn = x(Strip::new(100.0, 100.0, 100), &recorded(&values, 1.0));
-        assert_eq!(drawn.iter().rposition(Option::is_some), Some(49));
-    }
-
-    #[test]
-    fn a_window_in_the_past_shows_its_own_time() {
-        let values: Vec<f64> = (0..3000).map(f64::from).collect();
-        let drawn = x(Strip::new(100.0, 100.0, 50), &recorded(&values, 1.0));
-        assert_eq!(drawn[0].unwrap().extent.min, 100.0);
-        assert!(drawn[49].unwrap().extent.max <= 200.0);
-        assert!(drawn.iter().all(Option::is_some));
-    }
-
-    #[test]
-    fn neighbours_are_joined() {
-        let recording = recorded(&[0.0, 10.0], 1.0);
-        let drawn = x(Strip::new(0.0, 1.0, 6), &recording);
-        for pair in drawn.windows(2) {
-            assert!(pair[0].unwrap().extent.max >= pair[1].unwrap().extent.min - 1e-12);
-        }
-    }
-
     /// Columns of which 1000 steps of a sine of `period` steps are bands, of 100.
     fn bands(period: f64) -> usize {
         let sine = |step: u32| (f64::from(step) / period * std::f64::consts::TAU).sin();
@@ -266,13 +218,6 @@ mod tests {
             let changes = changes.count();
             assert!(changes <= 2, "{period}: {changes}");
         }
-    }
-
-    #[test]
-    fn a_slow_curve_is_no_band() {
-        let values: Vec<f64> = (0..1000).map(f64::from).collect();
-        let drawn = x(Strip::new(0.0, 1000.0, 100), &recorded(&values, 1.0));
-        assert!(drawn.iter().flatten().all(|column| column.band.is_none()));
     }
 
     #[test]

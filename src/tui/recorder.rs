@@ -6,32 +6,12 @@ use crossterm::style;
 use ratatui::backend::{Backend, ClearType, CrosstermBackend};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use std::cell::RefCell;
-use std::io::{self, Write};
-use std::mem;
-use std::rc::Rc;
+use std::{io, mem};
 
 /// A terminal of which there are the bytes alone.
 pub struct Recorder {
-    backend: CrosstermBackend<Shared>,
-    sent: Shared,
-    /// What the terminal shows.
+    sent: Vec<u8>,
     shown: Buffer,
-}
-
-/// Bytes that one has and another writes.
-#[derive(Clone, Default)]
-struct Shared(Rc<RefCell<Vec<u8>>>);
-
-impl Write for Shared {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.borrow_mut().extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
 }
 
 impl Recorder {
@@ -42,17 +22,14 @@ impl Recorder {
     pub fn new(lab: &mut Lab, (columns, lines): (u16, u16)) -> io::Result<Self> {
         // The recording is the same whatever NO_COLOR says.
         style::force_color_output(true);
-        let sent = Shared::default();
         let area = Rect::new(0, 0, columns, lines);
-        let mut recorder = Self {
-            backend: CrosstermBackend::new(sent.clone()),
-            sent,
-            shown: Buffer::empty(area),
-        };
-        recorder.backend.clear_region(ClearType::All)?;
-        recorder.backend.hide_cursor()?;
+        let mut sent = Vec::new();
+        let mut backend = CrosstermBackend::new(&mut sent);
+        backend.clear_region(ClearType::All)?;
+        backend.hide_cursor()?;
         screen::fit(lab, area);
-        Ok(recorder)
+        let shown = Buffer::empty(area);
+        Ok(Self { sent, shown })
     }
 
     /// Draws `lab` if its picture has changed, and gives what the terminal is sent for that: only what differs.
@@ -67,10 +44,11 @@ impl Recorder {
         if lab.take_changed() {
             let mut next = Buffer::empty(area);
             screen::draw(lab, true, area, &mut next);
-            self.backend.draw(self.shown.diff(&next).into_iter())?;
+            let mut backend = CrosstermBackend::new(&mut self.sent);
+            backend.draw(self.shown.diff(&next).into_iter())?;
             self.shown = next;
         }
-        let sent = mem::take(&mut *self.sent.0.borrow_mut());
+        let sent = mem::take(&mut self.sent);
         Ok(String::from_utf8_lossy(&sent).into_owned())
     }
 }

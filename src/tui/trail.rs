@@ -78,7 +78,7 @@ impl Trail {
     ) {
         let now = to_dot(now);
         let all = recording.since(f64::NEG_INFINITY);
-        let all = all.map(|block| (block.end_s, to_dot(&block.end)));
+        let all = all.map(|block| (block.end_s, to_dot(&block.end())));
         let all: Vec<_> = all.inspect(|(_, at)| self.count(*at)).collect();
         let old = all.iter().filter(|(end_s, _)| *end_s <= now_s);
         self.pass(old.map(|(_, at)| *at).chain([now]), LONGEST_LINE, Age::Old);
@@ -88,7 +88,7 @@ impl Trail {
             let blocks = recording
                 .since(since)
                 .filter(|block| block.end_s >= since && block.end_s <= now_s);
-            let places = blocks.map(|block| to_dot(&block.end));
+            let places = blocks.map(|block| to_dot(&block.end()));
             self.pass(places.chain([now]), longest, age);
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::support::scenarios::preset;
 use gyrolab::figure::chart::{Axis, Chart, Errors, Panel, Series, Style};
-use gyrolab::figure::course::{Recorded, Recorder, Wanted};
+use gyrolab::figure::course::{Course, Recorder, Wanted};
 use gyrolab::figure::kind::Kind;
 use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
 use gyrolab::figure::page::ink::WHITE;
@@ -683,7 +683,7 @@ fn a_run_that_breaks_is_drawn_up_to_there() {
 }
 
 /// What a recorder of traces, tilt and path has written down of `run`.
-fn recorded(run: &Run) -> Recorded {
+fn recorded(run: &Run) -> Course {
     let kinds = [Kind::traces(), Kind::named("tilt_deg").unwrap()];
     let wanted = Wanted {
         columns: kinds.iter().flat_map(Kind::columns).copied().collect(),

@@ -289,7 +289,7 @@ fn fast_and_slow_motion_are_both_seen() {
 fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
     let now = run("wobble-push", &[], "", 2300);
     let strip = Strip::new(0.0, 230.0, 50);
-    let columns = strip.columns(now.recording(), Curve::Z, &[]);
+    let columns = strip.blocks(now.recording()).columns(Curve::Z, &[]);
     let mut steps = run("wobble-push", &[], "", 0);
     let mut extremes = vec![(f64::INFINITY, f64::NEG_INFINITY); 50];
     for _ in 0..=2300 {

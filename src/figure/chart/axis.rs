@@ -8,14 +8,10 @@ use crate::figure::page::ink::{self, LABEL_PT};
 const BESIDE: f64 = 6.0;
 const ABOVE: f64 = 7.5;
 
-/// From values to places on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// The values at the axis's begin and end.
     pub range: (f64, f64),
-    /// Whether equal distances are equal factors.
     pub is_log: bool,
-    /// The places of its begin and end, pt.
     pub places: (f64, f64),
 }
 
@@ -35,7 +31,6 @@ impl Scale {
         (self.places.1 - self.places.0).abs()
     }
 
-    /// Whether `value` lies on the axis, rounding forgiven.
     fn shows(&self, value: f64) -> bool {
         let (low, high) = self.places;
         let place = self.place(value);
@@ -80,7 +75,6 @@ impl Scale {
     }
 }
 
-/// The widest label of `ticks`, pt.
 pub fn widest(ticks: &Ticks) -> f64 {
     let widths = ticks
         .major

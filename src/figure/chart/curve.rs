@@ -1,14 +1,17 @@
 //! The line of a series on the page, without the points that nobody could see.
 
+use super::draw::arcs;
 use super::layout::Placed;
 use super::{Circles, Series, Style};
-use crate::figure::page::clip::clipped;
-use crate::figure::page::cover::Grid;
+use crate::figure::page::cover::{self, Grid};
 use crate::figure::page::ink::{Frame, at};
+use crate::figure::page::line::{clipped, simplified};
 use crate::figure::page::scene::{Path, Pen, Point, Scene};
-use crate::figure::page::simplify::simplified;
-use crate::figure::page::thin::{Thinned, plane_curve};
 
+/// How far a solid line may leave its points, of its width: a tenth of a dot at 600 an inch for a line of 0.7 pt.
+const TOLERANCE: f64 = 0.02;
+/// A solid line of more points than this is drawn by the outline of its ink if that has fewer: a file of 40 kB.
+const MANY: usize = 5_000;
 /// How far a dashed line may leave its points, pt: below a dot at 600 an inch. And where it is a ripple about a flatter line.
 const UNSEEN_PT: f64 = 0.015;
 const FLAT_PT: f64 = 0.4;
@@ -18,24 +21,21 @@ const RIPPLED: f64 = 0.8;
 const MOST_PIECES: usize = 50;
 /// Parts of a dashed line that are nearer to each other than this lie in each other's gaps, in periods of its dashes.
 const APART: f64 = 1.0 / 3.0;
-/// The area of the places that a line passes, of that of a straight line as long: at least this where no part of it lies in another one's gaps.
+/// The least area of the places that a line passes, as a share of a straight line's area, where no part lies in another part's gaps.
 const SHARE: f64 = 0.7;
 /// How far outside of its panel a line is followed, pt: half its width, which is cut off at the edge.
 const BEYOND_PT: f64 = 2.0;
 
 impl Placed {
-    /// Where `point` stands on the page.
     pub fn place(&self, point: &[f64; 2]) -> Point {
         at(self.x.place(point[0]), self.y.place(point[1]))
     }
 
-    /// Draws the line of `series` in this panel.
     pub fn draw_line(&self, series: &Series, scene: &mut Scene) {
         let pieces = self.pieces(series);
         draw_curve(&pieces, &series.style.pen(), Some(&self.frame), scene);
     }
 
-    /// The line of `series` in this panel.
     pub fn pieces(&self, series: &Series) -> Vec<Vec<Point>> {
         let places = series.points.iter().map(|point| self.place(point));
         let clip = self.frame.grown(BEYOND_PT);
@@ -46,23 +46,12 @@ impl Placed {
         }
     }
 
-    /// Whether a part of one of `circles` is drawn in `frame`.
     pub fn has_circle_in(&self, frame: &Frame, circles: &Circles) -> bool {
         let middle = self.place(&[0.0, 0.0]);
-        let near = |low: f64, high: f64, at: f64| (low - at).max(at - high).max(0.0);
-        let far = |low: f64, high: f64, at: f64| (at - low).abs().max((high - at).abs());
-        let [nearest, farthest] = [&near as &dyn Fn(f64, f64, f64) -> f64, &far].map(|distance| {
-            let across = distance(frame.left, frame.right, middle.x);
-            across.hypot(distance(frame.top, frame.bottom, middle.y))
-        });
         let mut radii = circles.radii.iter();
-        radii.any(|radius| {
-            let radius = self.x.place(*radius) - middle.x;
-            (nearest..=farthest).contains(&radius)
-        })
+        radii.any(|radius| !arcs(middle, self.x.place(*radius) - middle.x, frame).is_empty())
     }
 
-    /// Whether something of `series` is drawn in `frame`.
     pub fn has_in(&self, frame: &Frame, series: &Series) -> bool {
         if series.style.width_pt > 0.0 {
             let places = series.points.iter().map(|point| self.place(point));
@@ -89,7 +78,6 @@ impl Placed {
     }
 }
 
-/// A dot at each of `places`, as the shortest line that every program draws.
 pub fn dots(places: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     const LENGTH_PT: f64 = 0.02;
     let dot = |place: Point| vec![place, at(place.x + LENGTH_PT, place.y)];
@@ -98,14 +86,22 @@ pub fn dots(places: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
 
 /// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
 pub fn draw_curve(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
-    let lines = if pen.dash_pt.is_empty() {
-        match plane_curve(pieces, pen.width_pt) {
-            Thinned::Area(area) => return scene.fill_in(area, pen.color, clip),
-            Thinned::Lines(lines) => lines,
+    let thinned = |piece: &Vec<Point>| {
+        if pen.dash_pt.is_empty() {
+            simplified(piece, TOLERANCE * pen.width_pt)
+        } else {
+            without_ripples(piece)
         }
-    } else {
-        pieces.iter().map(|piece| without_ripples(piece)).collect()
     };
+    let lines: Vec<Vec<Point>> = pieces.iter().map(thinned).collect();
+    let count: usize = lines.iter().map(Vec::len).sum();
+    if pen.dash_pt.is_empty() && count > MANY {
+        let area = cover::area(&lines, pen.width_pt);
+        // There is none of lines that need too large a grid.
+        if !area.0.is_empty() && area.0.len() < count {
+            return scene.fill_in(area, pen.color, clip);
+        }
+    }
     for line in lines {
         scene.stroke(Path::polyline(line), pen.clone(), clip);
     }
@@ -121,14 +117,13 @@ fn without_ripples(line: &[Point]) -> Vec<Point> {
     }
 }
 
-/// The length of `line`, pt.
 pub fn length(line: &[Point]) -> f64 {
     let pairs = line.windows(2);
     let ways = pairs.map(|pair| (pair[1].x - pair[0].x).hypot(pair[1].y - pair[0].y));
     ways.sum()
 }
 
-/// `style` as it is told apart on the line that consists of `pieces`: a thin solid one in place of dashes that fill their gaps.
+/// `style` for the line that consists of `pieces`: thin and solid where its dashes would fill their own gaps.
 pub fn told_apart(pieces: &[Vec<Point>], style: Style) -> Style {
     if fills_its_gaps(pieces, style.dash_pt) {
         style.solid()

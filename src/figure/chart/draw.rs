@@ -5,33 +5,30 @@ use super::legend::Legend;
 use super::ticks::Ticks;
 use super::{Chart, Circles, Panel, Series};
 use super::{curve, slope};
-use crate::figure::page::clip::clipped;
 use crate::figure::page::ink::{self, BLACK, Frame, LABEL_PT, MARK_PT, at, pen};
 use crate::figure::page::letters;
+use crate::figure::page::line::clipped;
 use crate::figure::page::scene::{Path, Point, Scene};
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
-/// Fewer marks than these in a panel are all drawn, and of more at most so many.
+/// The most marks in a panel.
 const MOST_MARKS: f64 = 10_000.0;
-/// Width of axes, ticks and error bars, pt.
 const FRAME_PT: f64 = 0.5;
 /// Length of a tick with a label and of one without, pt.
 const TICK: f64 = 3.0;
 const MINOR_TICK: f64 = 1.7;
-/// Half the width of the ends of an error bar, pt.
 const BAR_END: f64 = 1.7;
 /// An error bar from end to end that the lowest of the marks covers, pt.
 const COVERED_PT: f64 = 2.8;
 
 impl Chart {
-    /// The chart on its page.
     pub fn scene(&self) -> Scene {
         let bare = Layout::new(self, 0.0);
         self.as_seen(&bare).placed(bare)
     }
 
-    /// The chart without what could not be told apart in the places of `layout`: points that stand upon each other, and
+    /// The chart without what nobody could distinguish in the places of `layout`: points that stand upon each other, and
     /// dashes of a line that fills its own gaps.
     fn as_seen(&self, layout: &Layout) -> Self {
         let mut seen = self.clone();
@@ -49,7 +46,7 @@ impl Chart {
         seen
     }
 
-    /// The chart in its places, of which `bare` leaves no room for a legend above the panels.
+    /// The chart in its places; `bare` leaves no room for a legend above the panels.
     fn placed(&self, bare: Layout) -> Scene {
         let known = if self.lacks_errors() { "known " } else { "" };
         let errors = self.errors.words();
@@ -99,7 +96,7 @@ impl Chart {
         scene.write(title, *size, at(middle, layout.title_at()), 0.5);
     }
 
-    /// Whether there are marks of something measured of which no error is known.
+    /// Whether something measured has marks without a known error.
     fn lacks_errors(&self) -> bool {
         let mut series = self.panels.iter().flat_map(|panel| &panel.series);
         series.any(|series| {
@@ -127,7 +124,6 @@ impl Chart {
     }
 }
 
-/// The error bar of a point.
 struct Bar {
     x: f64,
     top: f64,
@@ -233,14 +229,14 @@ impl Panel {
     }
 }
 
-/// Leaves those of `items`, which may be none, of which `is_kept` says so.
+/// Keeps the `items` that `is_kept` marks; there may be no items.
 fn retain<Item>(items: &mut Vec<Item>, is_kept: &[bool]) {
     let mut kept = is_kept.iter();
     items.retain(|_| kept.next() == Some(&true));
 }
 
 /// The parts in `frame` of the circle of that radius (pt), as lines: it may be far larger than the page.
-fn arcs(middle: Point, radius_pt: f64, frame: &Frame) -> Vec<Vec<Point>> {
+pub(super) fn arcs(middle: Point, radius_pt: f64, frame: &Frame) -> Vec<Vec<Point>> {
     /// How far the lines are off it, pt, and how many there are at most.
     const OFF_PT: f64 = 0.02;
     const MOST: f64 = 1e5;
@@ -281,7 +277,6 @@ fn each_tick(ticks: &Ticks, mut draw: impl FnMut(f64, f64)) {
     ticks.minor.iter().for_each(|&at| draw(at, MINOR_TICK));
 }
 
-/// The marks of a series with their error bars.
 fn draw_points(series: &Series, placed: &Placed, scene: &mut Scene) {
     let Some(mark) = series.style.mark else {
         return;

@@ -23,18 +23,12 @@ const HEIGHTS: [f64; 3] = [140.0, 88.0, 66.0];
 /// Many decades need a higher panel.
 const LOG: f64 = 1.25;
 
-/// A panel in its place.
 #[derive(Clone, Debug)]
 pub struct Placed {
-    /// Its frame.
     pub frame: Frame,
-    /// From values to the page, across.
     pub x: Scale,
-    /// From values to the page, up.
     pub y: Scale,
-    /// Its ticks at the left.
     pub ticks: Ticks,
-    /// Title of its axis, and the size of its letters, pt.
     pub title: (String, f64),
 }
 
@@ -42,15 +36,11 @@ pub struct Placed {
 /// these move down.
 #[derive(Clone, Debug)]
 pub struct Layout {
-    /// The panels, from the top.
     pub panels: Vec<Placed>,
-    /// The ticks below.
     pub ticks: Ticks,
-    /// Title of the axis below, and the size of its letters, pt.
     pub title: (String, f64),
     /// Where the titles of the axes at the left have their baseline, pt.
     pub titles_at: f64,
-    /// Height of the page, pt.
     pub height_pt: f64,
 }
 
@@ -116,13 +106,11 @@ impl Layout {
         }
     }
 
-    /// The baseline of the labels below, pt.
     pub fn labels_at(&self) -> f64 {
         let bottom = self.panels.last().map_or(0.0, |panel| panel.frame.bottom);
         bottom + GAP + 1.5 + ink::height(LABEL_PT)
     }
 
-    /// The baseline of the title below, pt.
     pub fn title_at(&self) -> f64 {
         self.labels_at() + TITLE_BELOW + ink::height(TITLE_PT)
     }

@@ -8,9 +8,7 @@ use crate::figure::page::scene::{Path, Pen, Point, Scene};
 /// Length of the line of an entry, and its distance from the name, pt.
 const KEY: f64 = 17.0;
 const AFTER_KEY: f64 = 3.5;
-/// Height of a row, pt.
 const ROW: f64 = 9.6;
-/// Between two entries beside each other, pt.
 const BETWEEN: f64 = 11.0;
 /// Between the legend and the panel's frame, and what must be free around it, pt.
 const INSET: f64 = 4.5;
@@ -18,7 +16,6 @@ const FREE: f64 = 2.5;
 /// The part of a panel's width that a legend inside may take.
 const SHARE: f64 = 0.62;
 
-/// The legend of a chart.
 #[derive(Clone, Debug)]
 pub struct Legend {
     entries: Vec<Entry>,
@@ -62,7 +59,6 @@ impl Legend {
         Self { entries }
     }
 
-    /// The legend of `chart`.
     pub fn of(chart: &Chart, remark: Option<&str>) -> Self {
         let series = chart.panels.iter().flat_map(|panel| &panel.series);
         let series = series.map(|series| (series.name.as_str(), &series.style));
@@ -134,7 +130,6 @@ impl Legend {
         corners.into_iter().find(is_free)
     }
 
-    /// Draws it in a corner.
     pub fn draw_in(&self, corner: &Frame, scene: &mut Scene) {
         scene.fill(corner.outline(), WHITE);
         let label = ink::height(LABEL_PT);

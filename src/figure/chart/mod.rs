@@ -15,27 +15,20 @@ use crate::figure::page::ink::{BLACK, Mark, grey};
 use crate::figure::page::scene::{Color, Pen};
 use ticks::{Ticks, power_of_ten};
 
-/// A figure with axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// Title for readers of the file.
     pub title: String,
-    /// Width of the page, pt.
     pub width_pt: f64,
-    /// The axis below the panels.
     pub x: Axis,
     /// The panels, from the top; one at least.
     pub panels: Vec<Panel>,
     /// Whether a unit is as long on both axes; then there is one panel.
     pub is_true_to_scale: bool,
-    /// What the errors of its points are.
     pub errors: Errors,
 }
 
-/// What errors are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Errors {
-    /// Those that come with measured data.
     #[default]
     OfData,
     /// Those of reading a number off a run: they do not hold what the scheme does to the run.
@@ -43,7 +36,6 @@ pub enum Errors {
 }
 
 impl Errors {
-    /// What the legend calls them.
     pub fn words(self) -> &'static str {
         match self {
             Self::OfData => "errors",
@@ -52,14 +44,12 @@ impl Errors {
     }
 }
 
-/// An axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Axis {
     /// What is measured on it, as markup.
     pub name: String,
     /// Its unit, as markup; empty for a pure number.
     pub unit: String,
-    /// Whether equal distances are equal factors.
     pub is_log: bool,
     /// From where to where it goes; `None`: as the data need it.
     pub range: Option<(f64, f64)>,
@@ -69,12 +59,9 @@ pub struct Axis {
     pub flat_below: f64,
 }
 
-/// Curves and points over one stretch of the axis below.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
-    /// The axis at its left.
     pub y: Axis,
-    /// What is drawn in it, from the back to the front.
     pub series: Vec<Series>,
     /// The slope of a triangle to be drawn where no curve is: for two logarithmic axes.
     pub slope: Option<f64>,
@@ -82,17 +69,13 @@ pub struct Panel {
     pub circles: Circles,
 }
 
-/// Circles about the origin.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Circles {
-    /// Their name in the legend, as markup.
     pub name: String,
-    /// Their radii, in the unit of the axes.
     pub radii: Vec<f64>,
 }
 
 impl Circles {
-    /// How they are drawn.
     pub fn style() -> Style {
         Style {
             color: grey(165),
@@ -102,7 +85,6 @@ impl Circles {
     }
 }
 
-/// A curve, or points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
     /// Its name in the legend, as markup; empty for none.
@@ -111,22 +93,17 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
     /// One standard error of each point's second number; empty where there are none, NaN where one is not known.
     pub errors: Vec<f64>,
-    /// The same of each point's first number.
     pub errors_across: Vec<f64>,
-    /// How it is drawn.
     pub style: Style,
 }
 
-/// How a series is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
-    /// Its colour.
     pub color: Color,
     /// Width of its line, pt; 0 for points alone.
     pub width_pt: f64,
     /// Lengths of strokes and gaps, pt; empty for a solid line.
     pub dash_pt: &'static [f64],
-    /// What is at its points.
     pub mark: Option<Mark>,
     /// Whether its points are drawn behind all lines.
     pub is_behind: bool,
@@ -147,7 +124,7 @@ impl Default for Style {
     }
 }
 
-/// So many curves, or series of points, are told apart.
+/// The number of curves, or series of points, that can be distinguished.
 pub const KINDS_OF_LINE: usize = 6;
 
 /// Colours that people with any colour vision tell apart (Okabe and Ito, 2008), in the order in which their greys, too, are
@@ -160,7 +137,6 @@ const COLORS: [Color; KINDS_OF_LINE] = [
     Color([0, 158, 115]),
     Color([204, 121, 167]),
 ];
-/// Strokes and gaps, pt.
 const DASHES: [&[f64]; KINDS_OF_LINE] = [
     &[],
     &[3.2, 1.6],
@@ -188,9 +164,7 @@ impl Style {
             color: COLORS[index % COLORS.len()],
             dash_pt: DASHES[index % DASHES.len()],
             width_pt: if index == 0 { 0.7 } else { 0.85 },
-            mark: None,
-            is_behind: false,
-            is_dots: false,
+            ..Self::default()
         }
     }
 
@@ -200,9 +174,7 @@ impl Style {
             color: COLORS[1],
             width_pt: 0.8,
             dash_pt: DASHES[1],
-            mark: None,
-            is_behind: false,
-            is_dots: false,
+            ..Self::default()
         }
     }
 
@@ -214,18 +186,12 @@ impl Style {
         }
     }
 
-    /// Points, for the series `index` of several.
     pub fn points(index: usize) -> Self {
         Self {
-            color: match index {
-                0 => BLACK,
-                index => COLORS[index % COLORS.len()],
-            },
+            color: COLORS[index % COLORS.len()],
             width_pt: 0.0,
-            dash_pt: &[],
             mark: Some(MARKS[index % MARKS.len()]),
-            is_behind: false,
-            is_dots: false,
+            ..Self::default()
         }
     }
 
@@ -283,7 +249,7 @@ impl Style {
         }
     }
 
-    /// The same as a thin solid line, where its dashes could not be told apart.
+    /// The same as a thin solid line, for lines too dense to dash.
     pub fn solid(self) -> Self {
         /// Of its width.
         const THIN: f64 = 0.4;
@@ -294,7 +260,6 @@ impl Style {
         }
     }
 
-    /// The pen of its line.
     pub fn pen(&self) -> Pen {
         Pen {
             width_pt: self.width_pt,
@@ -305,8 +270,13 @@ impl Style {
     }
 }
 
+/// The farthest that an axis reaches: the distance of its ends is still finite.
+const FARTHEST: f64 = 1e306;
+/// The room beyond the data, of their span, and where that is rounding, of their size.
+const MARGIN: f64 = 0.045;
+const AROUND: f64 = 0.1;
+
 impl Axis {
-    /// An axis of this name and unit, as the data need it.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -333,11 +303,6 @@ impl Axis {
     /// From where to where the axis goes for these `values`; those that it cannot show are passed over. Without a value: any
     /// stretch.
     pub fn range_of(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
-        /// The farthest that an axis reaches: its ends are still told apart by a finite number.
-        const FARTHEST: f64 = 1e306;
-        /// The room beyond the data, of their span, and where that is rounding, of their size.
-        const MARGIN: f64 = 0.045;
-        const AROUND: f64 = 0.1;
         /// Values that differ by less than this part of themselves, or of the quantity's own size, differ by rounding.
         const ROUNDING: f64 = 1e-10;
         if let Some(range) = self.range {
@@ -354,18 +319,7 @@ impl Axis {
             return if self.is_log { (0.1, 10.0) } else { (0.0, 1.0) };
         };
         if self.is_log {
-            let (low, high) = (low.max(1.0 / FARTHEST), high.max(1.0 / FARTHEST));
-            let decades = libm::log10(high / low);
-            let margin = if decades > 0.1 {
-                MARGIN * decades
-            } else {
-                AROUND
-            };
-            let factor = libm::exp10(margin);
-            return (
-                (low / factor).max(0.1 / FARTHEST),
-                (high * factor).min(10.0 * FARTHEST),
-            );
+            return decades_around(low, high);
         }
         let largest = low.abs().max(high.abs());
         let span = high - low;
@@ -384,4 +338,20 @@ impl Axis {
         let middle = 0.5 * low + 0.5 * high;
         (middle - half, middle + half)
     }
+}
+
+/// A logarithmic axis for values from `low` to `high`, with some room.
+fn decades_around(low: f64, high: f64) -> (f64, f64) {
+    let (low, high) = (low.max(1.0 / FARTHEST), high.max(1.0 / FARTHEST));
+    let decades = libm::log10(high / low);
+    let margin = if decades > 0.1 {
+        MARGIN * decades
+    } else {
+        AROUND
+    };
+    let factor = libm::exp10(margin);
+    (
+        (low / factor).max(0.1 / FARTHEST),
+        (high * factor).min(10.0 * FARTHEST),
+    )
 }

@@ -10,7 +10,6 @@ use crate::text::number::significant;
 const LENGTHS: [f64; 4] = [0.24, 0.18, 0.13, 0.09];
 /// Places that are tried along each side of the panel.
 const PLACES: usize = 24;
-/// What must be free around it, pt.
 const FREE: f64 = 5.0;
 /// Lowest and highest triangle that is drawn, pt.
 const HEIGHTS: (f64, f64) = (5.0, 0.6);
@@ -89,7 +88,6 @@ impl Triangle {
         super::ticks::with_minus(&significant(self.slope, 2))
     }
 
-    /// The triangle with its numbers.
     fn frame(&self) -> Frame {
         let label = ink::height(LABEL_PT) + 2.0;
         let (top, bottom) = (self.left.y.min(self.right.y), self.left.y.max(self.right.y));

@@ -21,21 +21,16 @@ const MOST: f64 = 8.0;
 /// Relative differences below this are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// A tick with a label.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// Its value.
     pub at: f64,
-    /// What is written at it, as markup.
     pub label: String,
 }
 
-/// The ticks of one axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ticks {
     /// Those with a label, from the least to the greatest.
     pub major: Vec<Tick>,
-    /// Those without.
     pub minor: Vec<f64>,
     /// The labels are in units of ten to this power.
     pub power: i32,
@@ -157,7 +152,6 @@ impl Ticks {
         }
     }
 
-    /// Ticks at 1, 2 and 5 times the powers of ten.
     fn of_rungs(low: f64, high: f64) -> Self {
         let begin = ladder::rung_below(low);
         let rungs = (begin..).map(|rung| (rung, ladder::rung(rung)));
@@ -188,7 +182,6 @@ impl Ticks {
     }
 }
 
-/// The whole numbers from `low` to `high`, rounding forgiven.
 fn between(low: f64, high: f64) -> (i64, i64) {
     (
         (low - ROUNDING).ceil() as i64,

@@ -9,19 +9,18 @@ use crate::figure::{chords, dense, quantity, size};
 use crate::run::Truth;
 use std::sync::Arc;
 
-/// Columns of the runs over time, a panel each; `curve` is the number of the first of them among those that were played.
+/// Columns of the runs over time, a panel each.
 pub(super) fn over_time(
     title: String,
     runs: &[Run],
     columns: &[Plotted],
     drawn: &[Drawn],
-    curve: usize,
     request: &Request,
 ) -> Chart {
     let ends = drawn.iter().map(|drawn| drawn.course.end_s);
     let end_s = ends.fold(0.0, f64::max);
     let range = (end_s > request.from_s).then_some((request.from_s, end_s));
-    let panel = |(place, column): (usize, &Plotted)| Panel {
+    let panel = |column: &Plotted| Panel {
         y: Axis {
             size: size::of(runs, column.name()),
             flat_below: size::flat_below(column.name()),
@@ -31,15 +30,15 @@ pub(super) fn over_time(
             .iter()
             .map(|drawn| Series {
                 name: drawn.name.clone(),
-                points: drawn.course.curves[curve + place].points(),
+                points: drawn.course.points(*column),
                 style: drawn.style.clone(),
                 ..Series::default()
             })
             .collect(),
         ..Panel::default()
     };
-    let mut panels: Vec<Panel> = columns.iter().enumerate().map(panel).collect();
-    // Many swings beside each other are told apart by thin lines alone.
+    let mut panels: Vec<Panel> = columns.iter().map(panel).collect();
+    // Only thin lines show many swings beside each other.
     for panel in &mut panels {
         for series in &mut panel.series {
             if series.points.len() > 600 && columns.len() > 1 {
@@ -60,7 +59,6 @@ pub(super) fn over_time(
     }
 }
 
-/// The paths from above.
 pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Request) -> Chart {
     let series = drawn.iter().map(|drawn| {
         let (name, style) = chords::as_drawn(drawn, &drawn.course.above);
@@ -104,7 +102,6 @@ pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Requ
     }
 }
 
-/// Whether a path from above is solid black.
 pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<Dense> {
     let layout = Layout::new(chart, 0.0);
     let placed = layout.panels.first()?;

@@ -3,39 +3,21 @@
 //! The ink is put into a grid of square cells, the boundary of the inked cells is followed, and its steps are made straight
 //! again. The grid is finer than the dots of a printer, and what it cannot tell apart is one area.
 
+use super::line::simplified;
 use super::scene::{Path, Point, Segment};
-use super::simplify::simplified;
 
-/// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one is taken where the finer one gives too many points.
+/// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one where the finer one gives too many points.
 const CELLS_PT: [f64; 2] = [0.06, 0.12];
 /// Points of an outline beyond which the grid is made coarser: a file of 800 kB.
 const MANY: usize = 100_000;
-/// Cells of a grid at most.
 const MOST_CELLS: f64 = 32e6;
 /// How far an outline may leave the middles of the cells' sides, in cells.
 const SMOOTH: f64 = 1.0;
-/// An outline of so many sides of cells is a dot that cannot be seen.
+/// An outline of no more sides of cells than this is a dot that cannot be seen.
 const SMALLEST: usize = 8;
 
 /// The outline of the ink of lines with round corners and ends, `width_pt` wide; inked is what it winds about.
 pub fn area(lines: &[Vec<Point>], width_pt: f64) -> Path {
-    if !is_steep(lines) {
-        return area_of_level(lines, width_pt);
-    }
-    let turned = |p: &Point| Point { x: p.y, y: p.x };
-    let lines = lines.iter().map(|line| line.iter().map(turned).collect());
-    area_of_level(&lines.collect::<Vec<_>>(), width_pt).mapped(|p| turned(&p))
-}
-
-/// Whether the lines go up and down farther than to the left and right.
-fn is_steep(lines: &[Vec<Point>]) -> bool {
-    let pairs = lines.iter().flat_map(|line| line.windows(2));
-    let ways = pairs.map(|pair| (pair[1].y - pair[0].y).abs() - (pair[1].x - pair[0].x).abs());
-    ways.sum::<f64>() > 0.0
-}
-
-/// [`area`] of lines that are level rather than steep, which takes less time: cells of one row lie beside each other in memory.
-fn area_of_level(lines: &[Vec<Point>], width_pt: f64) -> Path {
     let mut area = Path::default();
     for cell_pt in CELLS_PT {
         let Some(mut grid) = Grid::inked(lines, cell_pt, width_pt) else {
@@ -52,7 +34,6 @@ fn area_of_level(lines: &[Vec<Point>], width_pt: f64) -> Path {
 
 /// Cells in rows from the top, with an empty one at each edge.
 pub struct Grid {
-    /// The place of the upper left corner, pt.
     origin: Point,
     cell_pt: f64,
     columns: usize,
@@ -70,7 +51,6 @@ impl Grid {
         Some(grid)
     }
 
-    /// The area of the inked cells, pt².
     pub fn area_pt2(&self) -> f64 {
         let inked = self.is_inked.iter().filter(|inked| **inked).count();
         inked as f64 * self.cell_pt * self.cell_pt
@@ -143,7 +123,7 @@ impl Grid {
         }
     }
 
-    /// Inks all cells whose middle is at most `radius` (in cells) from that of an inked one.
+    /// Inks all cells whose middle is at most `radius` (in cells) from the middle of an inked one.
     fn widen(&mut self, radius: f64) {
         let blank = vec![false; self.is_inked.len()];
         let traced = std::mem::replace(&mut self.is_inked, blank);
@@ -317,27 +297,6 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn a_circle_is_a_ring_of_two_outlines() {
-        let place = |i: usize| {
-            let turn = i as f64 / 200.0 * std::f64::consts::TAU;
-            Point {
-                x: 50.0 + 30.0 * libm::cos(turn),
-                y: 50.0 + 30.0 * libm::sin(turn),
-            }
-        };
-        let ring = area(&[(0..=200).map(place).collect()], 2.0);
-        let outlines = ring
-            .0
-            .iter()
-            .filter(|segment| **segment == Segment::Close)
-            .count();
-        assert_eq!(outlines, 2);
-        assert!((60..400).contains(&ring.0.len()), "{}", ring.0.len());
-        assert_eq!(winding(&ring, 50.0, 50.0), 0);
-        assert_eq!(winding(&ring, 50.0, 20.0), 1);
     }
 
     #[test]

@@ -3,53 +3,38 @@
 use super::letters::{self, Label};
 use super::scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment, Words};
 
-/// Size of the titles of axes, pt.
 pub const TITLE_PT: f64 = 8.0;
-/// Size of the labels of ticks and of the legend, pt.
 pub const LABEL_PT: f64 = 7.0;
-/// Radius of a mark, pt.
 pub const MARK_PT: f64 = 1.6;
 
-/// Black.
 pub const BLACK: Color = Color([0; 3]);
-/// The paper.
 pub const WHITE: Color = Color([255; 3]);
 
-/// Grey: 0 is black, 255 white.
 pub const fn grey(level: u8) -> Color {
     Color([level; 3])
 }
 
-/// The place `x`, `y`, pt.
 pub const fn at(x: f64, y: f64) -> Point {
     Point { x, y }
 }
 
-/// A rectangle on the page, pt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Left edge.
     pub left: f64,
-    /// Upper edge.
     pub top: f64,
-    /// Right edge.
     pub right: f64,
-    /// Lower edge.
     pub bottom: f64,
 }
 
 impl Frame {
-    /// Its width, pt.
     pub fn width(&self) -> f64 {
         self.right - self.left
     }
 
-    /// Its height, pt.
     pub fn height(&self) -> f64 {
         self.bottom - self.top
     }
 
-    /// The same with edges `by` farther out, pt.
     pub fn grown(&self, by: f64) -> Self {
         Self {
             left: self.left - by,
@@ -59,12 +44,10 @@ impl Frame {
         }
     }
 
-    /// Whether `point` is inside.
     pub fn holds(&self, point: Point) -> bool {
         (self.left..=self.right).contains(&point.x) && (self.top..=self.bottom).contains(&point.y)
     }
 
-    /// Whether some of `other` is inside.
     pub fn meets(&self, other: &Self) -> bool {
         self.left < other.right
             && other.left < self.right
@@ -72,12 +55,10 @@ impl Frame {
             && other.top < self.bottom
     }
 
-    /// Upper left and lower right corner.
     pub fn corners(&self) -> [Point; 2] {
         [at(self.left, self.top), at(self.right, self.bottom)]
     }
 
-    /// Its outline.
     pub fn outline(&self) -> Path {
         let corners = [
             at(self.left, self.top),
@@ -89,7 +70,6 @@ impl Frame {
     }
 }
 
-/// A circle.
 pub fn circle(middle: Point, radius_pt: f64) -> Path {
     /// Distance of the control points of a quarter of a circle, in radii.
     const BEND: f64 = 0.552_285;
@@ -105,7 +85,6 @@ pub fn circle(middle: Point, radius_pt: f64) -> Path {
     ])
 }
 
-/// A sharp solid line of this width.
 pub fn pen(width_pt: f64, color: Color) -> Pen {
     Pen {
         width_pt,
@@ -115,26 +94,16 @@ pub fn pen(width_pt: f64, color: Color) -> Pen {
     }
 }
 
-/// What marks the points of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// A filled circle.
     Dot,
-    /// A filled square.
     Square,
-    /// A filled triangle.
     Triangle,
-    /// An empty diamond.
     Diamond,
-    /// An empty circle.
     Ring,
-    /// An empty triangle on its tip.
     Tip,
-    /// An upright cross turned by an eighth.
     Cross,
-    /// An upright cross.
     Plus,
-    /// A small dot.
     Speck,
 }
 
@@ -145,7 +114,6 @@ impl Mark {
     }
 }
 
-/// The length of `markup` at this size, pt.
 pub fn width(markup: &str, size_pt: f64) -> f64 {
     letters::label(markup, size_pt).width_pt
 }
@@ -156,7 +124,6 @@ pub fn height(size_pt: f64) -> f64 {
 }
 
 impl Scene {
-    /// An empty page.
     pub fn new(width_pt: f64, height_pt: f64, title: &str) -> Self {
         Self {
             width_pt,
@@ -166,22 +133,18 @@ impl Scene {
         }
     }
 
-    /// Fills `path`.
     pub fn fill(&mut self, path: Path, color: Color) {
         self.put(path, Paint::Fill(color), None);
     }
 
-    /// Fills `path`, cut off outside of `clip`.
     pub fn fill_in(&mut self, path: Path, color: Color, clip: Option<&Frame>) {
         self.put(path, Paint::Fill(color), clip.map(Frame::corners));
     }
 
-    /// Draws the line of `path`, cut off outside of `clip`.
     pub fn stroke(&mut self, path: Path, pen: Pen, clip: Option<&Frame>) {
         self.put(path, Paint::Stroke(pen), clip.map(Frame::corners));
     }
 
-    /// Draws a straight line.
     pub fn line(&mut self, ends: [Point; 2], width_pt: f64, color: Color) {
         self.stroke(Path::polyline(ends), pen(width_pt, color), None);
     }
@@ -215,7 +178,6 @@ impl Scene {
         self.items.push(item.mapped(to));
     }
 
-    /// Puts a mark at `middle`.
     pub fn mark(&mut self, mark: Mark, middle: Point, color: Color) {
         let r = MARK_PT;
         let polygon = |points: &[(f64, f64)]| {

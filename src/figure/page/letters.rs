@@ -18,33 +18,24 @@ pub const CAP_HEIGHT: f64 = 0.656;
 /// From this many characters on a text is cut before it is measured: no page is that wide.
 const LONGEST: usize = 2000;
 
-/// A text as it is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Label {
     /// Its outline, to be filled by the non-zero rule, pt; the origin is the left end of its baseline, y down.
     pub path: Path,
     /// From the origin to where a text behind it would begin, pt.
     pub width_pt: f64,
-    /// How far it reaches above the baseline, pt.
     pub ascent_pt: f64,
-    /// How far it reaches below the baseline, pt.
     pub descent_pt: f64,
     /// The text without markup: superscripts as characters or behind `^`, subscripts behind `_`.
     pub words: String,
-    /// Its letters, in the order in which they are drawn.
     pub letters: Vec<Placed>,
 }
 
-/// A letter of a text, where it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// The letter.
     pub letter: char,
-    /// Whether it is slanted.
     pub is_italic: bool,
-    /// Its place on its baseline, pt.
     pub origin: Point,
-    /// Its size, pt.
     pub size_pt: f64,
 }
 

@@ -15,7 +15,6 @@ const PAGES: Ref = Ref::new(2);
 const PAGE: Ref = Ref::new(3);
 const CONTENT: Ref = Ref::new(4);
 const INFORMATION: Ref = Ref::new(5);
-/// The level of compression, from 0 to 10.
 const COMPRESSION: u8 = 9;
 
 /// A page whose places are whole hundredths of a point.
@@ -42,7 +41,6 @@ pub fn written(scene: &Scene) -> Vec<u8> {
     pdf.finish()
 }
 
-/// The drawing, not compressed.
 fn content(scene: &Scene, fonts: &Fonts) -> Vec<u8> {
     let mut content = Content::new();
     // The origin goes to the upper left corner, y down.

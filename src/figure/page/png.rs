@@ -7,13 +7,11 @@ use tiny_skia::{
 };
 
 use super::svg::MITER_LIMIT;
-use super::unwritable::Unwritable;
-use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment, Unwritable};
 use crate::text::printable::printable;
 
-/// The most dots of a picture.
 const MOST_DOTS: f64 = 1e8;
-/// The most dots that are drawn together: a large picture is drawn in bands, of which each takes 40 MB.
+/// The most dots that are drawn together: a large picture is drawn in bands of 40 MB each.
 const DOTS_OF_BAND: u32 = 8_000_000;
 
 /// A page whose places are whole hundredths of a point, with this many dots per inch.
@@ -43,13 +41,8 @@ fn in_bands(
     (width, height): (u32, u32),
     dots_per_inch: f64,
 ) -> Result<Vec<u8>, ::png::EncodingError> {
-    let is_grey = scene.items.iter().all(|item| {
-        let (Paint::Fill(Color([red, green, blue]))
-        | Paint::Stroke(Pen {
-            color: Color([red, green, blue]),
-            ..
-        })) = item.paint;
-        red == green && green == blue
+    let is_grey = scene.items.iter().all(|item| match &item.paint {
+        Paint::Fill(color) | Paint::Stroke(Pen { color, .. }) => is_grey(*color),
     });
     let mut file = Vec::new();
     let mut encoder = ::png::Encoder::new(&mut file, width, height);
@@ -73,16 +66,9 @@ fn in_bands(
     for top in (0..height).step_by(band as usize) {
         let sheet = Pixmap::new(width, band.min(height - top));
         let sheet = sheet.ok_or(::png::EncodingError::LimitsExceeded)?;
-        let scale = (dots_per_inch / 72.0) as f32;
-        let mut easel = Easel {
-            sheet,
-            transform: Transform::from_row(scale, 0.0, 0.0, scale, 0.0, -(top as f32)),
-            clip: None,
-        };
-        easel.sheet.fill(tiny_skia::Color::WHITE);
-        scene.items.iter().for_each(|item| easel.draw(item));
+        let sheet = drawn(scene, sheet, top, dots_per_inch);
         let parts = if is_grey { 1 } else { 3 };
-        for row in easel.sheet.data().chunks_exact(4 * width as usize) {
+        for row in sheet.data().chunks_exact(4 * width as usize) {
             let dots = row.chunks_exact(4).flat_map(|dot| &dot[..parts]);
             rows.write_all(&dots.copied().collect::<Vec<u8>>())?;
         }
@@ -92,10 +78,26 @@ fn in_bands(
     Ok(file)
 }
 
+fn is_grey(Color([red, green, blue]): Color) -> bool {
+    red == green && green == blue
+}
+
+/// `sheet` with its part of the page, `top` dots below the page's upper edge.
+fn drawn(scene: &Scene, sheet: Pixmap, top: u32, dots_per_inch: f64) -> Pixmap {
+    let scale = (dots_per_inch / 72.0) as f32;
+    let mut easel = Easel {
+        sheet,
+        transform: Transform::from_row(scale, 0.0, 0.0, scale, 0.0, -(top as f32)),
+        clip: None,
+    };
+    easel.sheet.fill(tiny_skia::Color::WHITE);
+    scene.items.iter().for_each(|item| easel.draw(item));
+    easel.sheet
+}
+
 /// The paper while it is drawn on.
 struct Easel {
     sheet: Pixmap,
-    /// From places on the page to dots of the sheet.
     transform: Transform,
     /// The rectangle of the last item that was cut off, and its mask: many items in turn have the same.
     clip: Option<([Point; 2], Mask)>,

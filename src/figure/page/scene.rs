@@ -5,27 +5,20 @@
 
 use super::letters::Placed;
 
-/// A place on the page, pt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// From the left edge, pt.
     pub x: f64,
-    /// From the upper edge, pt.
     pub y: f64,
 }
 
-/// One piece of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Segment {
-    /// Begins a new line at a point.
     Move(Point),
-    /// A straight line to a point.
     Line(Point),
     /// A parabola: its control point, its end.
     Quadratic(Point, Point),
     /// A cubic curve: its two control points, its end.
     Cubic(Point, Point, Point),
-    /// A straight line back to where this line began.
     Close,
 }
 
@@ -54,7 +47,6 @@ impl Path {
         path
     }
 
-    /// Straight lines from point to point.
     pub fn polyline(points: impl IntoIterator<Item = Point>) -> Self {
         let segment = |(index, point)| match index {
             0 => Segment::Move(point),
@@ -87,16 +79,12 @@ impl Path {
     }
 }
 
-/// An opaque colour: red, green, blue.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Color(pub [u8; 3]);
 
-/// How a line is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pen {
-    /// Width of the line, pt.
     pub width_pt: f64,
-    /// Its colour.
     pub color: Color,
     /// Lengths of strokes and gaps in turn, pt; empty for a solid line.
     pub dash_pt: Vec<f64>,
@@ -111,36 +99,26 @@ impl Pen {
     }
 }
 
-/// How a path becomes visible.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Paint {
     /// Its inside, by the non-zero rule.
     Fill(Color),
-    /// Its line.
     Stroke(Pen),
 }
 
-/// One path on the page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
-    /// The path.
     pub path: Path,
-    /// How it is drawn.
     pub paint: Paint,
     /// What it is cut off at: upper left and lower right corner; `None` for the page.
     pub clip: Option<[Point; 2]>,
-    /// The words, where the path is a text.
     pub words: Option<Words>,
 }
 
-/// A text whose outline is a path.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Words {
-    /// The text in one line.
     pub text: String,
-    /// Its letters.
     pub letters: Vec<Placed>,
-    /// Whether it is written upwards.
     pub is_upward: bool,
 }
 
@@ -156,16 +134,12 @@ impl Item {
     }
 }
 
-/// A page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Width of the page, pt.
     pub width_pt: f64,
-    /// Height of the page, pt.
     pub height_pt: f64,
     /// Its title, for readers of the file; it is not drawn.
     pub title: String,
-    /// What is on it, from the back to the front.
     pub items: Vec<Item>,
 }
 

@@ -1,6 +1,6 @@
 //! A page as SVG 1.1: paths alone, no font, no script, no style sheet.
 
-use std::fmt::Write;
+use std::fmt::Write; // which cannot fail on a `String`
 
 use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
 use crate::figure::PT_PER_MM;
@@ -12,42 +12,21 @@ pub const MITER_LIMIT: f64 = 4.0;
 /// A page whose places are whole hundredths of a point. The words of a text are its label for readers of the screen.
 pub fn written(scene: &Scene) -> String {
     let mut out = String::new();
-    let (width, height) = (scene.width_pt, scene.height_pt);
-    put(
-        &mut out,
-        format_args!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" role=\"img\">\n",
-            number(width / PT_PER_MM),
-            number(height / PT_PER_MM),
-            number(width),
-            number(height)
-        ),
+    let (width, height) = (number(scene.width_pt), number(scene.height_pt));
+    let sides_mm = [scene.width_pt, scene.height_pt].map(|pt| number(pt / PT_PER_MM));
+    let _ = writeln!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {width} {height}\" role=\"img\">",
+        sides_mm[0], sides_mm[1]
     );
-    put(
-        &mut out,
-        format_args!("<title>{}</title>\n", escaped(&scene.title)),
-    );
-    put(
-        &mut out,
-        format_args!(
-            "<path fill=\"#fff\" d=\"M0 0h{}v{}H0z\"/>\n",
-            number(width),
-            number(height)
-        ),
-    );
+    let _ = writeln!(out, "<title>{}</title>", escaped(&scene.title));
+    let _ = writeln!(out, "<path fill=\"#fff\" d=\"M0 0h{width}v{height}H0z\"/>");
     for clip in clips(scene) {
-        let [from, to] = clip;
-        put(
-            &mut out,
-            format_args!(
-                "<clipPath id=\"{}\"><path d=\"M{} {}H{}V{}H{}z\"/></clipPath>\n",
-                name(&clip),
-                number(from.x),
-                number(from.y),
-                number(to.x),
-                number(to.y),
-                number(from.x)
-            ),
+        let name = name(&clip);
+        let [left, top, right, bottom] = [clip[0].x, clip[0].y, clip[1].x, clip[1].y].map(number);
+        let _ = writeln!(
+            out,
+            "<clipPath id=\"{name}\"><path d=\"M{left} {top}H{right}V{bottom}H{left}z\"/></clipPath>"
         );
     }
     for group in scene.groups() {
@@ -55,11 +34,6 @@ pub fn written(scene: &Scene) -> String {
     }
     out += "</svg>\n";
     out
-}
-
-/// Writing to a `String` cannot fail.
-fn put(out: &mut String, arguments: std::fmt::Arguments<'_>) {
-    let _ = out.write_fmt(arguments);
 }
 
 /// The rectangles that something is cut off at, each once.
@@ -90,41 +64,35 @@ fn put_group(out: &mut String, items: &[Item]) {
     };
     *out += "<g";
     if let Some(clip) = &first.clip {
-        put(out, format_args!(" clip-path=\"url(#{})\"", name(clip)));
+        let _ = write!(out, " clip-path=\"url(#{})\"", name(clip));
     }
     match &first.paint {
-        Paint::Fill(color) => put(out, format_args!(" fill=\"{}\"", hex(*color))),
+        Paint::Fill(color) => {
+            let _ = write!(out, " fill=\"{}\"", hex(*color));
+        }
         Paint::Stroke(pen) => put_pen(out, pen),
     }
     *out += ">\n";
     for item in items {
         *out += "<path";
         if let Some(words) = &item.words {
-            put(
-                out,
-                format_args!(" role=\"img\" aria-label=\"{}\"", escaped(&words.text)),
-            );
+            let words = escaped(&words.text);
+            let _ = write!(out, " role=\"img\" aria-label=\"{words}\"");
         }
-        put(out, format_args!(" d=\"{}\"/>\n", data(&item.path)));
+        let _ = writeln!(out, " d=\"{}\"/>", data(&item.path));
     }
     *out += "</g>\n";
 }
 
 fn put_pen(out: &mut String, pen: &Pen) {
-    put(
+    let (color, width) = (hex(pen.color), number(pen.width_pt));
+    let _ = write!(
         out,
-        format_args!(
-            " fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"",
-            hex(pen.color),
-            number(pen.width_pt)
-        ),
+        " fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\""
     );
     if !pen.dash_pt.is_empty() {
         let lengths: Vec<String> = pen.dash_pt.iter().copied().map(number).collect();
-        put(
-            out,
-            format_args!(" stroke-dasharray=\"{}\"", lengths.join(" ")),
-        );
+        let _ = write!(out, " stroke-dasharray=\"{}\"", lengths.join(" "));
     }
     if pen.is_round {
         *out += " stroke-linejoin=\"round\"";

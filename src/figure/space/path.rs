@@ -9,7 +9,6 @@ use crate::figure::page::scene::{Color, Pen, Point, Scene};
 use crate::figure::request::Drawn;
 use nalgebra::Vector3;
 
-/// Degrees of depth.
 const DEPTHS: usize = 6;
 /// Width of the nearest and of the farthest line, pt, and the part of white in the farthest.
 const WIDTHS: (f64, f64) = (0.95, 0.5);
@@ -18,7 +17,6 @@ const FARTHEST_WHITE: f64 = 0.58;
 /// A path, or its shadow on the floor: places on the page and their depths, in pieces.
 type Pieces = Vec<Vec<(Point, f64)>>;
 
-/// Lines that are drawn together.
 struct Layer {
     pieces: Vec<Vec<Point>>,
     pen: Pen,
@@ -124,7 +122,6 @@ fn by_degree(
     pieces
 }
 
-/// `color` with that part of white in it.
 fn paler(color: Color, white: f64) -> Color {
     let mixed = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
     Color(color.0.map(mixed))

@@ -26,7 +26,6 @@ pub(super) struct Ahead {
 }
 
 impl Pictures {
-    /// Of the run that begins at `step`, whose traced point is `reach` (m) from the pivot.
     pub fn new(step: &Step, reach: f64) -> Self {
         let mut pictures = Self {
             now: moment(step),
@@ -41,7 +40,6 @@ impl Pictures {
         pictures
     }
 
-    /// Takes in `step`, which was taken last.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         self.now = moment(step);
@@ -70,7 +68,6 @@ impl Pictures {
         }
     }
 
-    /// Stands where `step` is, which the pictures have already.
     pub fn stand_at(&mut self, step: &Step) {
         self.now = moment(step);
         self.last_whole.take_if(|(at, _)| *at >= step.number());
@@ -115,14 +112,12 @@ impl Pictures {
         }
     }
 
-    /// The furthest step that the run has reached.
     pub fn furthest(&self) -> u64 {
         let ahead = self.ahead.as_ref().map_or(0, |ahead| ahead.step);
         ahead.max(self.followed_to)
     }
 }
 
-/// What the pictures need of `step`.
 fn moment(step: &Step) -> Moment {
     Moment {
         time_s: step.time_s(),

@@ -50,7 +50,6 @@ impl Playback {
         self.go_on_to(step);
     }
 
-    /// Goes to the run's destination and then, as fast as it can, on to `step`.
     fn go_on_to(&mut self, step: u64) {
         self.arrive();
         if step > self.run.furthest() {
@@ -113,7 +112,6 @@ impl Playback {
         self.hurries = self.run.destination().is_some();
     }
 
-    /// The cost of `steps`.
     fn cost(&self, steps: u64) -> u64 {
         steps.saturating_mul(self.run.cost_of_a_step())
     }

@@ -4,7 +4,6 @@ use crate::physics::State;
 use crate::run::Sample;
 use nalgebra::Vector3;
 
-/// The curves that are recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Curve {
     /// x of the traced point, world frame, m.
@@ -18,28 +17,19 @@ pub enum Curve {
 }
 
 impl Curve {
-    /// Every curve, in the order in which blocks hold them.
     pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::Z, Self::Tilt];
 
-    /// The curves of the traced point.
     pub const OF_POINT: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// The curve of this [name](Self::name).
     pub fn of_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|curve| curve.name() == name)
     }
 
     /// The name of its numbers in a CSV and among the readouts.
     pub fn column(self) -> &'static str {
-        match self {
-            Self::X => "x_m",
-            Self::Y => "y_m",
-            Self::Z => "z_m",
-            Self::Tilt => "tilt_deg",
-        }
+        self.named().2
     }
 
-    /// What it is called where it is drawn.
     pub fn name(self) -> &'static str {
         self.named().0
     }
@@ -49,7 +39,6 @@ impl Curve {
         self.named().1
     }
 
-    /// Its value at `sample`, in its unit.
     pub fn at(self, sample: &Sample) -> f64 {
         match self {
             Self::X => sample.position.x,
@@ -59,7 +48,6 @@ impl Curve {
         }
     }
 
-    /// A stored value of it in its unit.
     fn of_stored(self, stored: f64) -> f64 {
         match self {
             Self::X | Self::Y | Self::Z => stored,
@@ -67,7 +55,6 @@ impl Curve {
         }
     }
 
-    /// Stored extremes of it in its unit.
     pub(in crate::observe) fn in_its_unit(self, stored: Extent) -> Extent {
         Extent {
             min: self.of_stored(stored.min),
@@ -75,21 +62,18 @@ impl Curve {
         }
     }
 
-    /// Name and unit.
-    fn named(self) -> (&'static str, &'static str) {
+    fn named(self) -> (&'static str, &'static str, &'static str) {
         match self {
-            Self::X => ("x", "m"),
-            Self::Y => ("y", "m"),
-            Self::Z => ("z", "m"),
-            Self::Tilt => ("tilt", "deg"),
+            Self::X => ("x", "m", "x_m"),
+            Self::Y => ("y", "m", "y_m"),
+            Self::Z => ("z", "m", "z_m"),
+            Self::Tilt => ("tilt", "deg", "tilt_deg"),
         }
     }
 }
 
-/// The values of one moment that the pictures need.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// Time, s.
     pub time_s: f64,
     /// The traced point, world frame, m.
     pub position: Vector3<f64>,
@@ -98,7 +82,6 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// The values of `state`; the traced point is at `traced` (body frame, m).
     pub fn new(state: &State, traced: &Vector3<f64>) -> Self {
         Self {
             time_s: state.time_s,
@@ -107,12 +90,10 @@ impl Moment {
         }
     }
 
-    /// Whether the traced point and the axle stand anywhere.
     pub fn is_finite(&self) -> bool {
         self.values().iter().all(|value| value.is_finite())
     }
 
-    /// What `curve` has, in its unit.
     pub fn value(&self, curve: Curve) -> f64 {
         curve.of_stored(self.values()[curve as usize])
     }
@@ -125,39 +106,14 @@ impl Moment {
     }
 }
 
-/// A moment as it is stored.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Recorded {
-    /// Time, s.
-    pub time_s: f64,
-    /// The stored value of each curve.
-    values: [f64; 4],
-    /// 1 for each curve that has turned here: gone up after it had gone down, or down after it had gone up; 0 for the others.
-    turned: [u32; 4],
-}
-
-impl Recorded {
-    #[inline]
-    pub fn new(moment: &Moment, turned: [u32; 4]) -> Self {
-        Self {
-            time_s: moment.time_s,
-            values: moment.values(),
-            turned,
-        }
-    }
-}
-
-/// The smallest and largest value of a stretch.
+/// The least and the largest value of a stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
-    /// Smallest.
     pub min: f64,
-    /// Largest.
     pub max: f64,
 }
 
 impl Extent {
-    /// The extent of one value.
     pub fn of(value: f64) -> Self {
         Self {
             min: value,
@@ -165,18 +121,9 @@ impl Extent {
         }
     }
 
-    /// The extent of both.
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            min: self.min.min(other.min),
-            max: self.max.max(other.max),
-        }
-    }
-
-    /// The extent of both, whose values are finite: one instruction for each, which [`f64::min`], with its care for what is
-    /// no number, is not.
+    /// The extent of both. Not by [`f64::min`], which takes several instructions for what is no number.
     #[inline]
-    fn with(self, other: Self) -> Self {
+    pub fn and(self, other: Self) -> Self {
         let Self { min, max } = self;
         Self {
             min: if other.min < min { other.min } else { min },
@@ -185,25 +132,20 @@ impl Extent {
     }
 }
 
-/// A stretch of the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
     /// Time of its first moment, s.
     pub begin_s: f64,
     /// Time of its last moment, s.
     pub end_s: f64,
-    /// How many moments it has.
     moments: u64,
-    /// Extremes of the stored value of each curve.
-    pub(super) extents: [Extent; 4],
+    pub extents: [Extent; 4],
     /// How often each curve has turned: gone up after it had gone down, or down after it had gone up.
-    turns: [u32; 4],
-    /// The traced point at its last moment, world frame, m.
-    pub end: Vector3<f64>,
+    pub turned: [u32; 4],
+    pub last: [f64; 4],
 }
 
 impl Block {
-    /// The extremes of `curve`, in its unit.
     pub fn extent(&self, curve: Curve) -> Extent {
         curve.in_its_unit(self.stored(curve))
     }
@@ -213,75 +155,41 @@ impl Block {
         self.extents[curve as usize]
     }
 
-    /// How many moments it has.
     pub fn moments(&self) -> u64 {
         self.moments
     }
 
     /// How often `curve` turns in it, up or down: twice in a swing.
     pub fn turns(&self, curve: Curve) -> u32 {
-        self.turns[curve as usize]
+        self.turned[curve as usize]
     }
 
-    /// The block of one moment.
+    /// The traced point at its last moment, world frame, m.
+    pub fn end(&self) -> Vector3<f64> {
+        let [x, y, z, _] = self.last;
+        Vector3::new(x, y, z)
+    }
+
     #[inline]
-    pub(super) fn of(moment: &Recorded) -> Self {
-        let [x, y, z, _] = moment.values;
+    pub(super) fn of(time_s: f64, values: [f64; 4], turned: [u32; 4]) -> Self {
         Self {
-            begin_s: moment.time_s,
-            end_s: moment.time_s,
+            begin_s: time_s,
+            end_s: time_s,
             moments: 1,
-            extents: moment.values.map(Extent::of),
-            turns: moment.turned,
-            end: Vector3::new(x, y, z),
+            extents: values.map(Extent::of),
+            turned,
+            last: values,
         }
     }
 
-    /// The block of consecutive `moments`, whose values are finite; `None` of none.
     #[inline]
-    pub(super) fn of_all<'a>(mut moments: impl Iterator<Item = &'a Recorded>) -> Option<Self> {
-        let first = moments.next()?;
-        let (mut least, mut greatest) = (first.values, first.values);
-        let (mut turns, mut count, mut last) = (first.turned, 1, first);
-        for moment in moments {
-            for curve in 0..4 {
-                let value = moment.values[curve];
-                least[curve] = if value < least[curve] {
-                    value
-                } else {
-                    least[curve]
-                };
-                greatest[curve] = if value > greatest[curve] {
-                    value
-                } else {
-                    greatest[curve]
-                };
-                turns[curve] += moment.turned[curve];
-            }
-            (count, last) = (count + 1, moment);
-        }
-        Some(Self {
-            begin_s: first.time_s,
-            moments: count,
-            extents: std::array::from_fn(|curve| Extent {
-                min: least[curve],
-                max: greatest[curve],
-            }),
-            turns,
-            ..Self::of(last)
-        })
-    }
-
-    /// Both as one; `later` begins where this one ends.
-    #[inline]
-    pub(super) fn and(&self, later: &Self) -> Self {
+    pub fn and(self, later: Self) -> Self {
         Self {
             begin_s: self.begin_s,
-            end_s: later.end_s,
             moments: self.moments + later.moments,
-            extents: std::array::from_fn(|curve| self.extents[curve].with(later.extents[curve])),
-            turns: std::array::from_fn(|curve| self.turns[curve] + later.turns[curve]),
-            end: later.end,
+            extents: std::array::from_fn(|curve| self.extents[curve].and(later.extents[curve])),
+            turned: std::array::from_fn(|curve| self.turned[curve] + later.turned[curve]),
+            ..later
         }
     }
 }

@@ -1,167 +1,123 @@
-//! The pieces of one size.
+//! The blocks of one size.
 
 use super::block::Block;
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// The most pieces of one size that reach back to the start.
 pub(super) const WHOLE: usize = 16_384;
+/// How many are kept once there are more, for each one that a block of the next size has. With more of them a step would
+/// take longer: they would not stay in the processor's nearer caches.
+const RECENT: usize = 1024;
 
-/// A part of the run that is stored as one: a moment, or a block of several.
-pub(super) trait Piece: Copy {
-    /// How many pieces of its size are kept once there are more than [`WHOLE`].
-    const RECENT: usize;
-    /// How many of them make a piece of the next size.
-    const IN_NEXT: u64;
-
-    /// Time of its first moment, s.
-    fn begin_s(&self) -> f64;
-
-    /// Time of its last moment, s.
-    fn end_s(&self) -> f64;
-
-    /// The same as a block.
-    fn block(&self) -> Block;
-}
-
-/// The pieces of one size, in order and without gaps. The first of the run has the number 0; the oldest may be dropped.
+/// The blocks of one size, in order and without gaps. The first of the run has the number 0; the oldest may be dropped.
 #[derive(Clone, Debug)]
-pub(super) struct Level<P> {
-    pieces: VecDeque<P>,
-    /// How many older pieces of this size have been dropped.
+pub(super) struct Level {
+    blocks: VecDeque<Block>,
     dropped: u64,
+    pub moments: u64,
+    /// How many of them make a block of the next size; a power of two.
+    pub in_next: u64,
 }
 
-impl<P> Default for Level<P> {
-    fn default() -> Self {
+impl Level {
+    pub fn new(moments: u64) -> Self {
         Self {
-            pieces: VecDeque::new(),
+            blocks: VecDeque::new(),
             dropped: 0,
+            moments,
+            in_next: if moments == 1 { 4 } else { 2 },
         }
     }
-}
 
-impl<P: Piece> Level<P> {
-    /// Appends `piece`. Returns whether it completes one of the next size.
     #[inline]
-    pub fn push(&mut self, piece: P) -> bool {
-        match (self.is_whole(), self.pieces.len()) {
-            (true, WHOLE) => self.keep_recent(),
-            (false, stored) if stored == P::RECENT => {
-                self.pieces.pop_front();
-                self.dropped += 1;
-            }
-            _ => {}
+    pub fn push(&mut self, block: Block) {
+        let recent = RECENT * self.in_next as usize;
+        let stored = self.blocks.len();
+        if self.dropped == 0 && stored == WHOLE {
+            self.keep_recent(recent - 1);
+        } else if self.dropped > 0 && stored == recent {
+            self.blocks.pop_front();
+            self.dropped += 1;
         }
-        self.pieces.push_back(piece);
-        self.count().is_multiple_of(P::IN_NEXT)
+        self.blocks.push_back(block);
     }
 
-    /// Drops the oldest pieces of the [`WHOLE`], so many that the piece to come makes them [`RECENT`](Piece::RECENT).
     #[cold]
-    fn keep_recent(&mut self) {
-        let excess = WHOLE + 1 - P::RECENT;
-        self.pieces.drain(..excess);
+    fn keep_recent(&mut self, kept: usize) {
+        let excess = WHOLE - kept;
+        self.blocks.drain(..excess);
         // A smaller memory is gone through in the processor's nearer caches.
-        self.pieces.shrink_to(P::RECENT);
+        self.blocks.shrink_to(kept + 1);
         self.dropped += excess as u64;
     }
 
-    /// The newest `count` pieces.
+    /// The block of the next size that the newest blocks make, where they just make one.
     #[inline]
-    pub fn newest(&self, count: u64) -> impl Iterator<Item = &P> {
-        let begin = self.pieces.len().saturating_sub(count as usize);
-        self.pieces.range(begin..)
+    pub fn completed(&self) -> Option<Block> {
+        if self.count() & (self.in_next - 1) != 0 {
+            return None;
+        }
+        self.newest(self.in_next).copied().reduce(Block::and)
     }
 
-    /// The newest pieces, which are in no piece of the next size yet.
     #[inline]
-    pub fn waiting(&self) -> impl Iterator<Item = &P> {
-        self.newest(self.count() % P::IN_NEXT)
-    }
-}
-
-impl<P> Level<P> {
-    /// How many pieces are stored.
-    #[cfg(test)]
-    pub fn stored(&self) -> usize {
-        self.pieces.len()
+    fn newest(&self, count: u64) -> impl Iterator<Item = &Block> {
+        let begin = self.blocks.len().saturating_sub(count as usize);
+        self.blocks.range(begin..)
     }
 
-    fn is_whole(&self) -> bool {
-        self.dropped == 0
+    /// The newest blocks, which are in no block of the next size yet.
+    pub fn waiting(&self) -> impl Iterator<Item = &Block> {
+        self.newest(self.count() & (self.in_next - 1))
     }
-}
 
-/// The pieces of one size, whichever it is.
-pub(super) trait Pieces {
-    /// How many there have been.
-    fn count(&self) -> u64;
+    #[inline]
+    pub fn count(&self) -> u64 {
+        self.dropped + self.blocks.len() as u64
+    }
 
-    /// How many of them make a piece of the next size.
-    fn in_next(&self) -> u64;
+    pub fn dropped(&self) -> u64 {
+        self.dropped
+    }
 
-    /// Whether they can be cut back to `count`: those that will then be [waiting](Level::waiting) must not have been
+    pub fn moments_in_next(&self) -> u64 {
+        self.moments * self.in_next
+    }
+
+    /// Whether it can be cut back to `count` blocks: those that will then be [waiting](Self::waiting) must not have been
     /// dropped.
-    fn can_be_cut_to(&self, count: u64) -> bool;
-
-    /// Removes those from number `count` on.
-    fn cut_to(&mut self, count: u64);
-
-    /// Whether the one of this number and all later ones are stored, as far as there are any.
-    fn has_from(&self, number: u64) -> bool;
-
-    /// Whether all moments from `time_s` (s) on are in stored pieces, but for the newest, which may be in none yet.
-    fn reaches(&self, time_s: f64) -> bool;
-
-    /// The numbers of the stored ones that have a moment from `since_s` to `until_s` (s).
-    fn between(&self, since_s: f64, until_s: f64) -> Range<u64>;
-
-    /// The one of this number, if it is stored.
-    fn get(&self, number: u64) -> Option<Block>;
-}
-
-impl<P: Piece> Pieces for Level<P> {
-    #[inline]
-    fn count(&self) -> u64 {
-        self.dropped + self.pieces.len() as u64
-    }
-
-    fn in_next(&self) -> u64 {
-        P::IN_NEXT
-    }
-
-    fn can_be_cut_to(&self, count: u64) -> bool {
-        let waiting = count % P::IN_NEXT;
+    pub fn can_be_cut_to(&self, count: u64) -> bool {
+        let waiting = count & (self.in_next - 1);
         waiting == 0 || count - waiting >= self.dropped
     }
 
-    fn cut_to(&mut self, count: u64) {
+    pub fn cut_to(&mut self, count: u64) {
         let kept = count.saturating_sub(self.dropped);
-        self.pieces.truncate(kept as usize);
+        self.blocks.truncate(kept as usize);
         self.dropped = self.dropped.min(count);
     }
 
-    fn has_from(&self, number: u64) -> bool {
-        self.is_whole() || (!self.pieces.is_empty() && self.dropped <= number)
+    /// Whether the block of this number and all later ones are stored, as far as there are any.
+    pub fn has_from(&self, number: u64) -> bool {
+        self.dropped == 0 || (!self.blocks.is_empty() && self.dropped <= number)
     }
 
-    fn reaches(&self, time_s: f64) -> bool {
-        let front = self.pieces.front();
-        self.is_whole() || front.is_some_and(|piece| piece.begin_s() <= time_s)
+    /// Whether all moments from `time_s` (s) on are in stored blocks, but for the newest, which may be in none yet.
+    pub fn reaches(&self, time_s: f64) -> bool {
+        let front = self.blocks.front();
+        self.dropped == 0 || front.is_some_and(|block| block.begin_s <= time_s)
     }
 
-    fn between(&self, since_s: f64, until_s: f64) -> Range<u64> {
-        let first = self.pieces.partition_point(|piece| piece.end_s() < since_s);
+    /// The numbers of the stored blocks that have a moment from `since_s` to `until_s` (s).
+    pub fn between(&self, since_s: f64, until_s: f64) -> Range<u64> {
+        let first = self.blocks.partition_point(|block| block.end_s < since_s);
         let end = self
-            .pieces
-            .partition_point(|piece| piece.begin_s() <= until_s)
-            .max(first);
-        self.dropped + first as u64..self.dropped + end as u64
+            .blocks
+            .partition_point(|block| block.begin_s <= until_s);
+        self.dropped + first as u64..self.dropped + end.max(first) as u64
     }
 
-    fn get(&self, number: u64) -> Option<Block> {
-        let place = number.checked_sub(self.dropped)?;
-        self.pieces.get(place as usize).map(P::block)
+    pub fn get(&self, number: u64) -> Option<&Block> {
+        self.blocks.get(number.checked_sub(self.dropped)? as usize)
     }
 }

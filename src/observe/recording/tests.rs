@@ -1,5 +1,4 @@
-use super::level::{Piece, WHOLE};
-use super::stretch::FINEST;
+use super::level::WHOLE;
 use super::*;
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -44,7 +43,7 @@ proptest! {
         let [since, until] = [ends.0, ends.1].map(|share| (share * length as f64).floor());
         let column = |time_s: f64| (time_s / length as f64 * columns as f64) as usize;
         let single: Vec<_> = recording.between(since, until).collect();
-        let joined: Vec<_> = recording.in_columns(since, until, column).collect();
+        let joined: Vec<_> = recording.in_columns(since, until, Some(column)).collect();
         let is_inside = |block: &Block| column(block.begin_s) == column(block.end_s);
         let mut rest = single.iter();
         for block in &joined {
@@ -166,8 +165,22 @@ fn a_stretch_long_ago_has_more_blocks_than_a_part_of_all() {
 fn memory_is_bounded() {
     let mut recording = Recording::default();
     (0..1_000_000).for_each(|step| recording.push(&moment(step, 0.0)));
-    let stored: Vec<usize> = recording.levels.stored().collect();
-    assert_eq!(stored[0], Recorded::RECENT);
-    let blocks: usize = stored[1..].iter().sum();
-    assert!(blocks <= Block::RECENT * 8 + 2 * WHOLE, "{blocks} blocks");
+    let stored = |level: &Level| level.count() - level.dropped();
+    let stored: Vec<u64> = recording.levels.iter().map(stored).collect();
+    assert_eq!(stored[0], 4096);
+    let larger: u64 = stored[1..].iter().sum();
+    assert!(larger <= 2048 * 8 + 2 * WHOLE as u64, "{larger} blocks");
+    // The smallest that there are cover the run without a gap.
+    let blocks: Vec<_> = recording.finest().collect();
+    assert!(blocks[0].begin_s == 0.0 && blocks[blocks.len() - 1].end_s == 999_999.0);
+    assert!(
+        blocks
+            .windows(2)
+            .all(|pair| pair[0].end_s + 1.0 == pair[1].begin_s)
+    );
+    assert!(
+        blocks[blocks.len() - 4000..]
+            .iter()
+            .all(|block| block.moments() == 1)
+    );
 }

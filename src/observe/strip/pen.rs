@@ -7,33 +7,28 @@ use crate::observe::recording::{Block, Curve, Extent};
 /// Columns on either side over which the turns of a curve are counted to tell whether its swings can be drawn one by one.
 const NEIGHBOURS: usize = 6;
 
-/// From so many turns in a column on, swings cannot be drawn one by one: a swing has two turns, and needs five columns.
+/// With more turns in a column than this, swings cannot be drawn one by one: a swing has two turns and needs five columns.
 const MOST_TURNS: f64 = 0.4;
 
 /// The part of a band's width by which slow motion may carry the curve in two swings.
 const MOST_CARRIED: f64 = 0.5;
 
-/// What has been drawn in one column.
 #[derive(Clone, Copy, Debug, Default)]
 struct Drawn {
     /// The extremes of the lines from block to block, in the curve's unit; [`Pen::finish`] adds those of the blocks.
     extent: Option<Extent>,
-    /// The extremes of blocks, as they are stored.
     stored: Option<Extent>,
     turns: f64,
     /// How often the tilt turns, which swings with every nutation; the curve itself does not turn where slow motion is
     /// faster than its swings.
     turns_of_tilt: f64,
-    /// The extremes of the tilt, as they are stored.
     tilt: Option<Extent>,
 }
 
-/// Makes `all` include `extent`.
 fn include(all: &mut Option<Extent>, extent: Extent) {
     *all = Some(all.map_or(extent, |old| old.and(extent)));
 }
 
-/// Draws a curve block by block.
 pub(super) struct Pen<'a> {
     columns: Vec<Drawn>,
     curve: Curve,
@@ -115,16 +110,11 @@ impl<'a> Pen<'a> {
         let is_drawn = |drawn: &Drawn| drawn.extent.is_some();
         let first = self.columns.iter().position(is_drawn).unwrap_or(0);
         let last = self.columns.iter().rposition(is_drawn).unwrap_or(0);
-        // Near an end of the curve there are turns on one side only: what holds further inside is taken to hold there.
-        let inside = |index: usize, away: usize| {
-            index
-                .max((first + away).min(last))
-                .min(last.saturating_sub(away).max(first))
-        };
+        let ends = (first, last);
         let all = 0..self.columns.len();
         let turns: Vec<_> = all
             .clone()
-            .map(|index| self.turns(inside(index, NEIGHBOURS)))
+            .map(|index| self.turns(inside(index, NEIGHBOURS, ends)))
             .collect();
         // A swing has two turns: half of one on either side.
         let reach = |index: usize| ((1.0 / turns[index]).ceil() as usize).min(NEIGHBOURS);
@@ -132,33 +122,13 @@ impl<'a> Pen<'a> {
             .clone()
             .map(|index| self.extent_about(index, reach(index)))
             .collect();
-        let middle = |index: usize| {
-            let swing: Option<Extent> = swings[index];
-            swing.map_or(0.0, |swing| 0.5 * (swing.min + swing.max))
-        };
-        let is_fast = |index: usize| {
-            if turns[index] <= MOST_TURNS {
-                return false;
-            }
-            // Where slow motion carries the curve further in two swings than it swings, before and after, it is drawn as
-            // it is.
-            let away = (4.0 / turns[index]).ceil() as usize;
-            let here = inside(index, 2 * away);
-            let carried = [
-                here.saturating_sub(away).max(first),
-                (here + away).min(last),
-            ]
-            .map(|other| (middle(other) - middle(here)).abs());
-            swings[index].is_some_and(|swing| {
-                carried.into_iter().fold(f64::INFINITY, f64::min)
-                    < MOST_CARRIED * (swing.max - swing.min)
-            })
-        };
-        let fast: Vec<_> = all.map(is_fast).collect();
+        let fast: Vec<_> = all
+            .map(|index| is_fast(index, turns[index], &swings, ends))
+            .collect();
         let column = |(index, drawn): (usize, &Drawn)| {
             let extent = drawn.extent?;
             // As most of the columns about it are, lest line and band take turns.
-            let about = self.about(inside(index, NEIGHBOURS), NEIGHBOURS);
+            let about = self.about(inside(index, NEIGHBOURS, ends), NEIGHBOURS);
             let (count, bands) = about.fold((0, 0), |(count, bands), (column, _)| {
                 (count + 1, bands + usize::from(fast[column]))
             });
@@ -173,7 +143,6 @@ impl<'a> Pen<'a> {
         self.columns.iter().enumerate().map(column).collect()
     }
 
-    /// The extremes of the columns up to `reach` from the column `index`.
     fn extent_about(&self, index: usize, reach: usize) -> Option<Extent> {
         let extents = self
             .about(index, reach)
@@ -182,7 +151,32 @@ impl<'a> Pen<'a> {
     }
 }
 
-/// The mean of the lowest and that of the highest values of `extents` up to `reach` from `index`.
+/// The column `index`, or the one `away` columns inside of the nearer of the curve's `ends`: near an end there are turns on
+/// one side only.
+fn inside(index: usize, away: usize, (first, last): (usize, usize)) -> usize {
+    index
+        .max((first + away).min(last))
+        .min(last.saturating_sub(away).max(first))
+}
+
+/// Whether a curve with these `turns` in a column about the column `index` is too fast to be drawn swing by swing; `swings`
+/// are its extremes over a swing about each column. Where slow motion carries it further in two swings than it swings,
+/// before and after, it is drawn as it is.
+fn is_fast(index: usize, turns: f64, swings: &[Option<Extent>], ends: (usize, usize)) -> bool {
+    if turns <= MOST_TURNS {
+        return false;
+    }
+    let middle = |index: usize| swings[index].map_or(0.0, |swing| 0.5 * (swing.min + swing.max));
+    let away = (4.0 / turns).ceil() as usize;
+    let here = inside(index, 2 * away, ends);
+    let before = here.saturating_sub(away).max(ends.0);
+    let after = (here + away).min(ends.1);
+    let carried = [before, after].map(|other| (middle(other) - middle(here)).abs());
+    let carried = carried[0].min(carried[1]);
+    swings[index].is_some_and(|swing| carried < MOST_CARRIED * (swing.max - swing.min))
+}
+
+/// The mean lowest and the mean highest value of `extents` up to `reach` from `index`.
 fn mean(extents: &[Option<Extent>], index: usize, reach: usize) -> Option<Extent> {
     let about = extents
         .iter()
@@ -218,7 +212,6 @@ fn join(columns: &mut [Drawn], from: (usize, Extent), to: (usize, Extent)) {
     }
 }
 
-/// The pair of values, one from each extent, with the smallest distance.
 fn nearest(from: Extent, to: Extent) -> (f64, f64) {
     if from.max < to.min {
         (from.max, to.min)

@@ -3,7 +3,7 @@
 use super::{Beside, RUN_FILE};
 use crate::analysis::Readouts;
 use crate::analysis::cost::is_affordable;
-use crate::figure::course::{Recorded, Recorder, Wanted};
+use crate::figure::course::{Course, Recorder, Wanted};
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Known, Request, Run};
 use crate::figure::{COLUMN_PT, Scene};
@@ -87,7 +87,7 @@ pub fn recorder(scenario: &Arc<Scenario>, beside: Option<&Beside>) -> Recorder {
 pub fn figures(
     scenario: &Arc<Scenario>,
     readouts: &Readouts,
-    recorded: Recorded,
+    recorded: Course,
     beside: Option<&Beside>,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<Drawing>>, String> {

@@ -331,7 +331,7 @@ impl<'a> Subject<'a> {
         trail.draw(dots);
         if let Some(overlay) = self.run.overlay() {
             let exact = overlay.recording().since(0.0);
-            for (x, y) in exact.map(|block| scene.dot(&block.end)) {
+            for (x, y) in exact.map(|block| scene.dot(&block.end())) {
                 dots.set(x, y, Ink::Faint(Role::Exact));
             }
         }
@@ -346,10 +346,10 @@ impl<'a> Subject<'a> {
                 continue;
             };
             let places = recording.since(f64::NEG_INFINITY);
-            dots.dashed(places.map(|block| scene.dot(&block.end)), path, ink);
+            dots.dashed(places.map(|block| scene.dot(&block.end())), path, ink);
             let mut until_now = recording.between(self.state.time_s, self.state.time_s);
             if let Some(now) = until_now.next() {
-                scene.line(&Vector3::zeros(), &now.end, Stroke::Dotted(axle), ink);
+                scene.line(&Vector3::zeros(), &now.end(), Stroke::Dotted(axle), ink);
             }
         }
     }

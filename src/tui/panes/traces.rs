@@ -5,7 +5,6 @@ mod axis;
 mod content;
 mod curve;
 mod groups;
-mod pointing;
 mod points;
 mod pushes;
 mod range;
@@ -50,10 +49,8 @@ const BAND_BESIDE: [&str; 2] = ["fast", "band"];
 const HELD: [&str; 3] = ["zoom, held for a second each", "zoom, held", "held"];
 /// What follows the name of what was measured where it is shown less what the run says.
 const LESS_RUN: &str = " less run";
-/// Columns of a strip's name beside it.
 const NAME: u16 = 5;
 
-/// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::TRACES,
     title: "over time",
@@ -87,26 +84,18 @@ const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Home], Action::WholeView, "whole", "show the run again as at first: no cursor, no zoom"),
 ];
 
-/// The traces of a run.
 pub struct Traces<'a> {
-    /// The run.
     pub run: &'a LiveRun,
-    /// The run before, faint under it.
     pub ghost: Option<&'a Ghost>,
     /// The run that was pinned as the reference, unless it is the present one.
     pub pinned: Option<&'a Ghost>,
-    /// The measured data beside the run.
     pub measured: Option<&'a Beside>,
-    /// How it is looked at.
     pub view: &'a View,
-    /// The time that the strip of the fast motion shows.
     pub detail: &'a Detail,
-    /// The numbers at the cursor, where there is one.
     pub cursor: Option<&'a Sample>,
 }
 
 impl<'a> Traces<'a> {
-    /// The traces of the run in `lab`.
     pub fn of(lab: &'a Lab) -> Self {
         Self {
             run: lab.player().run(),
@@ -166,7 +155,6 @@ impl Traces<'_> {
         }
     }
 
-    /// One strip with its name and its values.
     fn strip<'s>(
         &'s self,
         content: Content,
@@ -340,7 +328,7 @@ impl Traces<'_> {
             draw(&mut dots, &exact, scale, Stroke::Dashed, ink);
         }
         let ink = Ink::Strong(Self::role(content));
-        // The dots of a filled band and the dashes of the exact motion are told apart where dots are small.
+        // The dots of a filled band and the dashes of the exact motion look different only where dots are small.
         let (across, down) = dots.in_a_cell();
         let has_dashes = self.run.overlay().is_some();
         let stroke = if has_dashes && across * down <= 2 {

@@ -1,16 +1,13 @@
 //! What is written at a tick.
 
-/// The minus sign of a label.
 const MINUS: char = '\u{2212}';
 /// The longest row of zeros that an offset has.
 const MOST_ZEROS: i32 = 12;
 
-/// Ten to this power, as markup.
 pub fn power_of_ten(power: i32) -> String {
     format!("10^{{{}}}", with_minus(&power.to_string()))
 }
 
-/// `number` with a minus sign in place of a hyphen.
 pub fn with_minus(number: &str) -> String {
     number.replace('-', &MINUS.to_string())
 }
@@ -23,7 +20,6 @@ pub(super) struct Numbers {
 }
 
 impl Numbers {
-    /// The number nearest to the exact multiple.
     pub(super) fn value(self, count: i64) -> f64 {
         let text = format!(
             "{}e{}",

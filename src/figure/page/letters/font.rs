@@ -24,7 +24,6 @@ struct Glyph {
 }
 
 impl Font {
-    /// The font of those of `letters` that `style` has.
     pub fn of(style: &Style, letters: &BTreeSet<char>) -> Self {
         let known = letters
             .iter()
@@ -42,12 +41,11 @@ impl Font {
         place.map_or(0, |place| place as u16 + 1)
     }
 
-    /// The letters with their glyphs.
     pub fn letters(&self) -> impl Iterator<Item = (u16, char)> + '_ {
         (1..).zip(self.letters.iter().copied())
     }
 
-    /// From each glyph's origin to that of the next letter, thousandths of the size.
+    /// From each glyph's origin to the next letter's origin, thousandths of the size.
     pub fn advances(&self) -> impl Iterator<Item = f32> + '_ {
         self.glyphs.iter().map(|glyph| f32::from(glyph.advance))
     }
@@ -65,7 +63,6 @@ impl Font {
         })
     }
 
-    /// The font as a file.
     pub fn file(&self) -> Vec<u8> {
         let (mut outlines, mut places) = (Vec::new(), Vec::new());
         for glyph in &self.glyphs {
@@ -199,7 +196,6 @@ impl Glyph {
     }
 }
 
-/// A font file of these tables.
 fn file<const N: usize>(tables: [([u8; 4], Vec<u8>); N]) -> Vec<u8> {
     let largest = N.ilog2() as u16; // of the powers of two up to N
     let range = 16 << largest;

@@ -6,11 +6,11 @@ use super::table::{self, ITALIC, REGULAR, UNITS};
 use super::{Label, Placed};
 use crate::figure::{Path, Point};
 
-/// Size of a sub- or superscript, as a share of that of the text it belongs to.
+/// Size of a sub- or superscript, as a share of its text's size.
 const SCRIPT: f64 = 0.7;
-/// How far the baseline of a subscript lies below that of its text, as a share of the text's size.
+/// How far a subscript's baseline lies below its text's baseline, as a share of the text's size.
 const BELOW: f64 = 0.18;
-/// How far the baseline of a superscript lies above that of its text, as a share of the text's size.
+/// How far a superscript's baseline lies above its text's baseline, as a share of the text's size.
 const ABOVE: f64 = 0.36;
 /// Advance of the box that stands for a letter which the table does not have, thousandths of the size.
 pub const BOX: f64 = 600.0;
@@ -36,15 +36,13 @@ struct Before {
     overhang_pt: f64,
 }
 
-/// A label that is being written.
 pub struct Setter {
     label: Label,
     /// Where the next letter begins, pt.
     x_pt: f64,
     size_pt: f64,
-    /// Below that of the whole label, pt.
+    /// Below the baseline of the whole label, pt.
     baseline_pt: f64,
-    /// Whether the next letter is slanted.
     pub is_italic: bool,
     scripts: Vec<Script>,
     before: Option<Before>,
@@ -53,7 +51,6 @@ pub struct Setter {
 }
 
 impl Setter {
-    /// Begins a label of this size.
     pub fn new(size_pt: f64) -> Self {
         Self {
             label: Label::default(),
@@ -115,7 +112,6 @@ impl Setter {
         });
     }
 
-    /// Whether a script has been begun and not ended.
     pub fn is_in_script(&self) -> bool {
         !self.scripts.is_empty()
     }

@@ -14,13 +14,11 @@ pub const UNITS: f64 = 1000.0;
 /// A letter: lengths are thousandths of its size, y down from the baseline.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Letter {
-    /// From its origin to that of the next letter.
+    /// From its origin to the next letter's origin.
     pub advance: f64,
-    /// Its outline, filled by the non-zero rule.
     pub outline: Path,
 }
 
-/// The letters of one style.
 pub struct Style {
     lines: BTreeMap<u32, &'static str>,
     left_class: BTreeMap<u32, u32>,
@@ -28,7 +26,6 @@ pub struct Style {
     kerning: BTreeMap<(u32, u32), f64>,
 }
 
-/// Upright letters.
 pub static REGULAR: LazyLock<Style> = LazyLock::new(|| {
     Style::new(
         include_str!("regular.txt"),

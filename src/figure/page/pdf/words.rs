@@ -13,15 +13,13 @@ use std::collections::BTreeSet;
 /// The objects of the first font; each takes this many.
 const FIRST: i32 = 6;
 const OBJECTS: i32 = 5;
-/// Lengths in an outline and in a line of letters that are taken to be the same, thousandths of the size.
+/// Lengths in an outline and in a line of letters that differ by less than this count as the same, thousandths of the size.
 const SAME: f64 = 0.5;
 /// Angle of the slanted letters, degrees, as the font they are from has it.
 const SLANT_DEG: f32 = -14.0;
 
-/// The fonts of a page: upright and slanted.
 pub struct Fonts([OfPage; 2]);
 
-/// A font of a page.
 struct OfPage {
     /// `None` where no letter is of it.
     font: Option<Font>,
@@ -31,7 +29,6 @@ struct OfPage {
 }
 
 impl Fonts {
-    /// The fonts of the letters on `scene`.
     pub fn of(scene: &Scene) -> Self {
         let words = || scene.items.iter().filter_map(|item| item.words.as_ref());
         Self([false, true].map(|is_italic| {
@@ -65,7 +62,6 @@ impl Fonts {
         }
     }
 
-    /// Writes the fonts into the file.
     pub fn write(&self, pdf: &mut Pdf, packed: impl Fn(&[u8]) -> Vec<u8>) {
         for (id, of_page, font) in self.used() {
             of_page.write(id, font, pdf, &packed);

@@ -44,7 +44,7 @@ impl Subject<'_> {
         let (mut way, mut joined) = (vec![now], 0);
         let mut head = None;
         for block in blocks.iter().rev() {
-            let at = scene.dot(&block.end);
+            let at = scene.dot(&block.end());
             let longest = trail::longest_line(scene.plane.size, block.end_s >= recent);
             let last = way[way.len() - 1];
             let apart = (at.0 - last.0).abs().max((at.1 - last.1).abs());

@@ -13,7 +13,6 @@ const APART: usize = 2;
 /// What follows the first label, or the last of two.
 const UNIT: &str = " s";
 
-/// A text, and the cell in which it begins.
 pub type Placed = (usize, String);
 
 /// The labels of the time axis of `strip` on `width` cells, in order: round times, each in the middle under its own.

@@ -11,7 +11,6 @@ use crate::tui::theme::Role;
 /// Digits after the point of a value at the cursor.
 const DECIMALS: usize = 6;
 
-/// What a strip shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Content {
     /// A curve that every run has.
@@ -20,7 +19,6 @@ pub(super) enum Content {
     Measured(usize),
 }
 
-/// The curves that every run has.
 pub(super) fn of_every_run() -> impl Iterator<Item = Content> + Clone {
     Curve::ALL.into_iter().map(Content::Curve)
 }
@@ -61,7 +59,6 @@ impl Traces<'_> {
         self.view.residuals && !is_detail && self.index(content).is_some()
     }
 
-    /// Name and unit of what `content` shows.
     pub(super) fn named(&self, content: Content) -> (String, &'static str) {
         let quantity = match content {
             Content::Curve(curve) => return (curve.name().to_owned(), curve.unit()),
@@ -74,7 +71,6 @@ impl Traces<'_> {
         })
     }
 
-    /// The colour of the curve of `content`.
     pub(super) fn role(content: Content) -> Role {
         match content {
             Content::Curve(Curve::X) => Role::X,

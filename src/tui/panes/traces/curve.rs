@@ -14,7 +14,6 @@ const ROUNDING: f64 = 1e-4;
 /// Cells after which long and short dashes repeat.
 const LONG_AND_SHORT: usize = 6;
 
-/// Which dots of a curve are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
     /// All of them, and a band is filled with a few.
@@ -29,7 +28,27 @@ pub enum Stroke {
     LongAndShort,
 }
 
-/// Draws `columns` on `dots`.
+impl Stroke {
+    /// Whether the column `x` of dots is drawn where a cell is `across` dots wide.
+    fn keeps(self, x: usize, across: usize) -> bool {
+        match self {
+            Self::Full | Self::Edges => true,
+            Self::Dashed => (x / across).is_multiple_of(2),
+            Self::LongAndShort => !matches!(x / across % LONG_AND_SHORT, 3 | 5),
+            Self::Dotted => x.is_multiple_of(across.max(2)),
+        }
+    }
+
+    /// From one dot to the next in a steep piece, where a cell is `down` dots high: a dotted curve has two in each cell,
+    /// counted from the cell's top. A level piece is seen at any height.
+    fn rows_apart(self, down: usize) -> usize {
+        match self {
+            Self::Dotted => (down / 2).max(1),
+            _ => 1,
+        }
+    }
+}
+
 pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: Stroke, ink: Ink) {
     let (across, down) = dots.in_a_cell();
     let height = dots.height();
@@ -51,18 +70,7 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
         let row = scale.from_top(value) * height as f64 + ROUNDING;
         row.clamp(0.0, height as f64 - 1.0) as usize
     };
-    let keeps = |x: usize| match stroke {
-        Stroke::Full | Stroke::Edges => true,
-        Stroke::Dashed => (x / across).is_multiple_of(2),
-        Stroke::LongAndShort => !matches!(x / across % LONG_AND_SHORT, 3 | 5),
-        Stroke::Dotted => x.is_multiple_of(across.max(2)),
-    };
-    // A steep piece of a dotted curve has two dots in each cell, counted from the cell's top. A level piece is seen at
-    // any height.
-    let apart = match stroke {
-        Stroke::Dotted => (down / 2).max(1),
-        _ => 1,
-    };
+    let apart = stroke.rows_apart(down);
     let mut before: Option<(usize, usize)> = None;
     for (x, column) in columns.iter().enumerate() {
         let extent = |column: &Column| column.band.unwrap_or(column.extent);
@@ -73,7 +81,10 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
         let band = extent(&column);
         let (top, bottom) = (row(band.max), row(band.min));
         let mut set = |from: usize, to: usize| {
-            for y in (from..=to).step_by(apart).filter(|_| keeps(x)) {
+            for y in (from..=to)
+                .step_by(apart)
+                .filter(|_| stroke.keeps(x, across))
+            {
                 dots.set(x as f64, y as f64, ink);
             }
         };

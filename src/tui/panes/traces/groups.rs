@@ -4,7 +4,7 @@ use super::content::{Content, of_every_run};
 use super::{ALL, NAME, STRIP, Traces, axis};
 use crate::observe::recording::Curve;
 use crate::observe::strip::Strip;
-use ratatui::layout::Rect;
+use ratatui::layout::{Margin, Position, Rect};
 
 /// From this width on the values stand beside the strips, and not on a line above each.
 const BESIDE_FROM: u16 = 48;
@@ -22,7 +22,6 @@ pub(super) struct Group {
 }
 
 impl Traces<'_> {
-    /// Columns for the values beside the strips.
     pub(super) fn beside(&self, inside: Rect) -> u16 {
         if inside.width < BESIDE_FROM {
             return 0;
@@ -38,7 +37,6 @@ impl Traces<'_> {
         self.name_columns() + widest.unwrap_or(0) + 1
     }
 
-    /// Columns for the names beside the strips.
     fn name_columns(&self) -> u16 {
         let names = self.measured_contents().into_iter();
         let names = names.map(|content| self.named(content).0.len() as u16 + 1);
@@ -125,7 +123,6 @@ impl Traces<'_> {
         contents.iter().map(place).collect()
     }
 
-    /// How many shares of the height a strip has.
     fn weight(&self, content: Content) -> u16 {
         match self.points(content) {
             Some(_) => WITH_POINTS,
@@ -191,5 +188,23 @@ impl Traces<'_> {
     /// Whether `strip` shows less time than the others: the fast motion.
     pub(super) fn is_detail(&self, strip: &Strip) -> bool {
         strip.window_s < ALL * self.view.window_s
+    }
+
+    /// The time that the cell `at` of the screen shows where the traces are drawn on `area`, s; `None` beside the strips.
+    pub fn time_s(&self, area: Rect, at: Position) -> Option<f64> {
+        let inside = area.inner(Margin::new(1, 1));
+        if !inside.contains(at) {
+            return None;
+        }
+        let beside = self.beside(inside);
+        let groups = self.groups(inside, beside);
+        let group = groups.iter().find(|group| group.area.contains(at))?;
+        let cell = (at.x - inside.x).checked_sub(beside)?;
+        let across = self.view.marker.dots().0;
+        Some(
+            group
+                .strip
+                .time_s(cell as usize * across + (across - 1) / 2),
+        )
     }
 }

@@ -9,9 +9,7 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// The mark of the time in which a push acts.
 const BAR: &str = "═";
-/// The word at it.
 const WORD: &str = "push";
 /// The mark of the time that the strip of the fast motion shows.
 const ZOOM_BAR: &str = "▀";

@@ -3,7 +3,6 @@
 use crate::observe::recording::{Curve, Recording};
 use crate::observe::strip::{Blocks, Column, Strip};
 
-/// The recordings that have been drawn on a strip.
 pub(super) struct Shared<'a> {
     pub strip: &'a Strip,
     seen: Vec<(&'a Recording, Blocks)>,
@@ -17,7 +16,7 @@ impl<'a> Shared<'a> {
         }
     }
 
-    /// `curve` of `recording` in each column, as [`Strip::columns`] has it.
+    /// `curve` of `recording` in each column, as [`Blocks::columns`] has it.
     pub fn columns(
         &mut self,
         recording: &'a Recording,

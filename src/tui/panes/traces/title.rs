@@ -1,4 +1,4 @@
-//! The title of the traces: what is drawn, and how the runs beside the run are told from it.
+//! The title of the traces: what is drawn, and how the other runs differ from the run.
 
 use super::{ALL, ROW, Traces};
 use crate::text::number::decimal;

@@ -12,7 +12,6 @@ use ratatui::style::Style;
 /// What marks the time of an edit, and the time where the run stands.
 const EDIT: char = ':';
 const PEN: char = '│';
-/// What marks the cursor.
 const CURSOR: char = '┃';
 
 impl Traces<'_> {
