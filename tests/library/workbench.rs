@@ -463,7 +463,7 @@ fn a_notice_goes_with_time_and_at_the_next_key() {
     stage
         .shows_no("the traces show")
         .press("f↑")
-        .shows("the upper strip shows tilt");
+        .shows("the upper strip shows");
     stage
         .press("o")
         .shows_no("move the cursor here")
