@@ -1,11 +1,10 @@
-//! Every key of the table, in every pane and on screens of three sizes: the frames stay whole, and what is said below them
-//! is not cut off within a word.
+//! Every key of the table, in every pane and on screens of four sizes: the frames stay whole, nothing stands outside of
+//! them, and what is said below them is not cut off within a word.
 
 use crate::support::stage::Stage;
 use gyrolab::lab::Mode;
 use gyrolab::lab::view::Pane;
-use gyrolab::lab::view::markers::Marker;
-use gyrolab::tui::keymap::{BINDINGS, Key};
+use gyrolab::tui::keymap::{BINDINGS, Binding, Key};
 use gyrolab::tui::panes::{self, hint};
 use ratatui::layout::Rect;
 use std::time::Duration;
@@ -16,6 +15,14 @@ const SAID: Duration = Duration::from_secs(30);
 /// The screen as columns of rows.
 struct Picture {
     rows: Vec<Vec<char>>,
+}
+
+/// A frame, all four of its sides on the screen.
+struct Frame {
+    left: usize,
+    right: usize,
+    top: usize,
+    bottom: usize,
 }
 
 impl Picture {
@@ -44,22 +51,38 @@ impl Picture {
             .unwrap_or(' ')
     }
 
-    /// Where a frame is broken.
-    fn broken_frame(&self) -> Option<String> {
+    /// The frames, or where one is broken.
+    fn frames(&self) -> Result<Vec<Frame>, String> {
+        let mut frames = Vec::new();
         for (y, row) in self.rows.iter().enumerate() {
-            for x in (0..row.len()).filter(|x| row[*x] == '┌') {
-                let Some(right) = (x + 1..row.len()).find(|right| row[*right] == '┐') else {
-                    return Some(format!("the frame at {x}, {y} has no right corner"));
-                };
-                let bottom = (y + 1..).find(|bottom| self.at(x, *bottom) != '│')?;
-                let is_side = |row: usize| "│▲▼".contains(self.at(right, row));
-                let is_whole = self.at(x, bottom) == '└' && self.at(right, bottom) == '┘';
-                if !is_whole || !(y + 1..bottom).all(is_side) {
-                    return Some(format!("the frame at {x}, {y} is broken above {bottom}"));
+            for (x, _) in row.iter().enumerate().filter(|(_, sign)| **sign == '┌') {
+                let right = (x + 1..row.len()).find(|right| matches!(row[*right], '┐' | '┌'));
+                let right = right.filter(|right| row[*right] == '┐');
+                let right = right.ok_or(format!("the frame at {x}, {y} has no right corner"))?;
+                let mut rows = y + 1..self.rows.len();
+                let bottom = rows.find(|bottom| self.at(x, *bottom) != '│');
+                let bottom = bottom.unwrap_or(self.rows.len());
+                let corners = (self.at(x, bottom), self.at(right, bottom));
+                if corners != ('└', '┘') {
+                    return Err(format!(
+                        "the frame at {x}, {y} ends in {corners:?} at row {bottom}"
+                    ));
                 }
+                if let Some(gap) = (y + 1..bottom).find(|row| !"│▲▼".contains(self.at(right, *row)))
+                {
+                    return Err(format!(
+                        "the right side of the frame at {x}, {y} is broken in row {gap}"
+                    ));
+                }
+                frames.push(Frame {
+                    left: x,
+                    right,
+                    top: y,
+                    bottom,
+                });
             }
         }
-        None
+        Ok(frames)
     }
 
     /// All words, with one blank between two of them, without frames.
@@ -78,19 +101,86 @@ impl Picture {
 /// What is wrong with the picture of `stage`.
 fn trouble(stage: &Stage) -> Option<String> {
     let picture = Picture::of(stage);
+    let is_ascii = stage.lab.view().marker == gyrolab::lab::view::markers::Marker::Ascii;
     let is_plain = stage.lab.on_top().mode == Mode::Lab && !hint::has_message(&stage.lab);
-    if is_plain {
-        let title = picture.rows.first();
-        if title.is_none_or(|row| row.iter().all(|sign| *sign == ' ')) {
-            return Some("there is no title".to_owned());
-        }
-        if stage.lab.view().marker != Marker::Ascii
-            && let Some(broken) = picture.broken_frame()
-        {
-            return Some(broken);
+    if is_plain
+        && picture
+            .rows
+            .first()
+            .is_none_or(|row| row.iter().all(|sign| *sign == ' '))
+    {
+        return Some("there is no title".to_owned());
+    }
+    if !is_ascii && is_plain {
+        let frames = match picture.frames() {
+            Ok(frames) => frames,
+            Err(broken) => return Some(broken),
+        };
+        let end = frames.iter().map(|frame| frame.bottom).max().unwrap_or(0);
+        for y in 1..=end {
+            let outside = (0..picture.rows[y].len()).find(|x| {
+                let is_in = |frame: &Frame| {
+                    (frame.left..=frame.right).contains(x)
+                        && (frame.top..=frame.bottom).contains(&y)
+                };
+                picture.at(*x, y) != ' ' && !frames.iter().any(is_in)
+            });
+            if let Some(x) = outside {
+                return Some(format!(
+                    "{:?} at {x}, {y} is outside of the frames",
+                    picture.at(x, y)
+                ));
+            }
         }
     }
-    said_trouble(stage, &picture)
+    footer_trouble(stage, &picture).or_else(|| said_trouble(stage, &picture))
+}
+
+/// Where the last line has something else than keys of the table, each with its word.
+fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
+    if stage.lab.view().bare {
+        return None; // no line of keys
+    }
+    let last: String = picture
+        .rows
+        .get(stage.size.height as usize - 1)?
+        .iter()
+        .collect();
+    let rows = || {
+        let of_panes = panes::PANES.iter().flat_map(|pane| pane.keys);
+        BINDINGS.iter().chain(of_panes)
+    };
+    let words = |row: &Binding| {
+        let otherwise = match row.footer {
+            "pause" => "go on",
+            "next phase" => "next step",
+            "why sideways" => "phases",
+            "take it" => "change",
+            always => always,
+        };
+        let key = row.keys[0];
+        // Where there is little room a key stands without its word.
+        [
+            format!("{key} {}", row.footer),
+            format!("{key} {otherwise}"),
+            key.to_string(),
+        ]
+    };
+    let esc = ["Esc close", "Esc clear", "Esc to the page"].map(str::to_owned);
+    let mut items: Vec<_> = rows().flat_map(words).chain(esc).collect();
+    items.sort_by_key(|item| std::cmp::Reverse(item.len()));
+    let mut left = last.trim();
+    while !left.is_empty() {
+        let item = items.iter().find_map(|item| {
+            let rest = left.strip_prefix(item.as_str())?;
+            (rest.is_empty() || rest.starts_with(' ')).then_some(rest)
+        });
+        match item {
+            Some(rest) => left = rest.trim_start(),
+            None => return Some(format!("{left:?} in the line of keys")),
+        }
+    }
+    None
 }
 
 /// Where the message is neither shown whole nor cut off between dots.
@@ -179,6 +269,11 @@ fn a_teachers_screen_stays_whole_whatever_is_pressed() {
 #[test]
 fn a_small_screen_stays_whole_whatever_is_pressed() {
     press_everything((80, 24));
+}
+
+#[test]
+fn a_wide_screen_stays_whole_whatever_is_pressed() {
+    press_everything((120, 40));
 }
 
 #[test]

@@ -677,6 +677,19 @@ fn a_lesson_is_played_to_its_end() {
 }
 
 #[test]
+#[ignore = "takes ten million steps: seconds"]
+fn a_condition_of_a_task_that_never_holds_is_told_at_its_line() {
+    let task = WHOLE.lines().position(|line| line == "go_to = 10").unwrap() + 1;
+    let told = not_good("go_to = 10", "run_until = \"t_s < 0\"");
+    assert!(
+        told.starts_with(&format!(
+            "a.md:{task}: run_until: did not hold on any of 10,000,000 steps"
+        )),
+        "{told}"
+    );
+}
+
+#[test]
 fn a_check_without_a_task_is_about_the_lab_block() {
     let task = "```task\nopen = \"method-2\"\ngo_to = 10\n```";
     let told = not_good(task, "");

@@ -696,7 +696,7 @@ fn edits_of_time_step_and_scheme_do_not_touch_the_truth() {
 #[test]
 fn going_back_in_time_and_forward_again_gives_the_same() {
     let mut dice = Dice(24);
-    for _ in 0..20 {
+    for _ in 0..60 {
         let told = random(&mut dice);
         let growth = integrated(&told).1;
         let scenario = told.scenario("report");
@@ -741,7 +741,7 @@ fn exact_scheme_off(told: &Told, time_step_s: f64) -> f64 {
 #[test]
 fn the_scheme_exact_gives_the_truth_whatever_its_time_step() {
     let mut dice = Dice(25);
-    let random = (0..20).map(|_| ("random", random(&mut dice)));
+    let random = (0..60).map(|_| ("random", random(&mut dice)));
     for (name, told) in degenerate().into_iter().chain(random) {
         let growth = integrated(&told).1;
         for time_step_s in [1.0, 0.37, 0.1, 0.01] {

@@ -733,4 +733,21 @@ proptest! {
         }
     }
 
+
+    #[test]
+    fn no_pane_draws_outside_itself(
+        width in 0u16..90, height in 0u16..40, seconds in 0.0..3.0f64, keys in "[tm]{0,4}", preset in 0..PRESETS.len()
+    ) {
+        let mut stage = Stage::open(PRESETS[preset].name, &[], SMALL);
+        stage.wait(seconds).press(&keys);
+        let around = Rect::new(0, 0, width + 6, height + 6);
+        let inside = Rect::new(3, 3, width, height);
+        for pane in gyrolab::tui::panes::IDS {
+            let mut buffer = Buffer::filled(around, ratatui::buffer::Cell::new("#"));
+            screen::draw_pane(&stage.lab, pane, inside, &mut buffer);
+            for position in around.positions().filter(|position| !inside.contains(*position)) {
+                prop_assert_eq!(buffer[position].symbol(), "#", "{:?} at {:?}", pane, position);
+            }
+        }
+    }
 }
