@@ -199,6 +199,17 @@ fn way_of(name: &str) -> Option<&'static [&'static str]> {
     WAYS.into_iter().find(|way| way.contains(&name))
 }
 
+/// Whether a file can have only one of the dotted keys `one` and `other`, since both tell the momentum at the start.
+pub fn exclude_each_other(one: &str, other: &str) -> bool {
+    let names = [one, other].map(|key| key.split('.').nth(1).unwrap_or_default());
+    let is_of_start = [one, other].iter().all(|key| key.starts_with("start."));
+    let ways = names.map(way_of);
+    let are_spins = names.iter().all(|name| SPIN[..2].contains(name));
+    is_of_start
+        && ways.iter().all(Option::is_some)
+        && (ways[0] != ways[1] || are_spins && names[0] != names[1])
+}
+
 /// Removes from the file's `table` what a new value at `key` replaces: the other ways to give the momentum, or the other
 /// spin.
 pub(super) fn make_room(table: &mut Table, key: &str) {

@@ -345,6 +345,19 @@ fn wrong_keys_values_and_readouts_are_refused_before_anything_runs() {
             &["motion.steps", "twice"],
         ),
         (
+            &[
+                "cusps",
+                "--vary",
+                "start.momentum_Js.2=1,2",
+                "--vary",
+                "start.spin_rpm=10,20",
+            ],
+            &[
+                "start.spin_rpm",
+                "so does start.momentum_Js.2: a start has one of them",
+            ],
+        ),
+        (
             &["cusps", "--vary", vary, "--measure", "tilt"],
             &["gyrolab: --measure tilt: is no readout: did you mean tilt_deg?"],
         ),

@@ -5,6 +5,7 @@ use super::file::VaryFile;
 use crate::analysis::readouts::{self, READOUTS, Readout, Source};
 use crate::scenario::Problem;
 use crate::scenario::dotted::overlap;
+use crate::scenario::start::exclude_each_other;
 use toml::Value;
 
 /// The axes that `files` ask for.
@@ -18,9 +19,14 @@ pub(super) fn axes(files: &[VaryFile], problems: &mut Vec<Problem>) -> Vec<Axis>
         let place = format!("vary.{index}");
         match Axis::new(file, &place) {
             Ok(axis) => {
-                if let Some(other) = axes.iter().find(|other| overlap(&other.key, &axis.key)) {
+                let clashes = |other: &&Axis| {
+                    overlap(&other.key, &axis.key) || exclude_each_other(&other.key, &axis.key)
+                };
+                if let Some(other) = axes.iter().find(clashes) {
                     let rule = if other.key == axis.key {
                         "varies twice".to_owned()
+                    } else if exclude_each_other(&other.key, &axis.key) {
+                        format!("varies, and so does {}: a start has one of them", other.key)
                     } else {
                         format!("varies, and so does {}, which writes into it", other.key)
                     };
