@@ -2,15 +2,11 @@
 //! as it is; those below show x, y and z over a longer time, so that slow motion is.
 
 mod axis;
-mod content;
+mod border;
 mod curve;
 mod groups;
+mod plot;
 mod points;
-mod pushes;
-mod range;
-mod shared;
-mod title;
-mod uprights;
 
 use super::{PaneRow, Width, frame, write};
 use crate::lab::Lab;
@@ -21,19 +17,15 @@ use crate::observe::detail::Detail;
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::marks::Marks;
-use crate::observe::scale::Scale;
-use crate::observe::strip::Column;
 use crate::run::Sample;
-use crate::tui::dots::{Dots, Ink};
+use crate::tui::dots::Dots;
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
-use content::Content;
-use curve::{Stroke, THINNEST_BAND, draw};
-use groups::Group;
+use plot::Plot;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Margin, Rect};
+use ratatui::style::Style;
 use ratatui::widgets::Widget;
-use shared::Shared;
 
 /// Fewest rows of a strip: its label and one row of dots.
 const STRIP: u16 = 2;
@@ -50,6 +42,10 @@ const HELD: [&str; 3] = ["zoom, held for a second each", "zoom, held", "held"];
 /// What follows the name of what was measured where it is shown less what the run says.
 const LESS_RUN: &str = " less run";
 const NAME: u16 = 5;
+/// What marks the time of an edit, and the time where the run stands.
+const EDIT: char = ':';
+const PEN: char = '│';
+const CURSOR: char = '┃';
 
 pub const ROW: PaneRow = PaneRow {
     id: Pane::TRACES,
@@ -111,238 +107,180 @@ impl<'a> Traces<'a> {
 
 impl Widget for Traces<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let theme = &self.view.theme;
-        let title = self.title(area.width.saturating_sub(4) as usize);
-        let inside = frame(&title, area, self.view.focus == ROW.id, theme, buf);
-        if inside.width == 0 {
-            return;
-        }
-        let beside = self.beside(inside);
-        let groups = self.groups(inside, beside);
+        let inside = area.inner(Margin::new(1, 1));
         let marks = Marks::of(self.run.scenario());
+        let (beside, groups) = if inside.is_empty() {
+            (0, Vec::new())
+        } else {
+            let beside = self.beside(inside);
+            (beside, self.groups(inside, beside))
+        };
+        let plots = groups
+            .iter()
+            .flat_map(|group| self.plots(group, beside, &marks));
+        let plots: Vec<_> = plots.collect();
+        let has_band = plots.iter().any(|plot| plot.has_band);
+        let title = self.title(has_band, area.width.saturating_sub(4) as usize);
+        let theme = &self.view.theme;
+        frame(&title, area, self.view.focus == ROW.id, theme, buf);
+        for plot in &plots {
+            self.strip(plot, &marks, buf);
+        }
+        let line = |y| Rect {
+            x: inside.x + beside,
+            y,
+            width: inside.width - beside,
+            height: 1,
+        };
         for group in &groups {
-            self.group(group, &marks, buf);
+            let axis = line(group.area.bottom().saturating_sub(1));
+            for (at, label) in axis::times(&group.strip, axis.width as usize) {
+                write(axis, (at as u16, 0), &label, theme.style(Role::Quiet), buf);
+            }
         }
         if let Some(last) = groups.last() {
-            let border = Rect {
-                x: inside.x + beside,
-                width: inside.width - beside,
-                y: area.bottom() - 1,
-                height: 1,
-            };
-            let zoomed = groups.iter().find(|group| self.is_detail(&group.strip));
+            let zoomed = groups.iter().find(|group| group.is_zoom);
             let zoomed = zoomed.map(|group| &group.strip);
-            self.below(&marks, zoomed, &last.strip, border, buf);
+            self.below(&marks, zoomed, &last.strip, line(area.bottom() - 1), buf);
         }
     }
 }
 
 impl Traces<'_> {
-    fn group(&self, group: &Group, marks: &Marks, buf: &mut Buffer) {
-        let mut columns = Shared::on(&group.strip);
-        for &(content, place) in &group.strips {
-            self.strip(content, group, marks, &mut columns, place, buf);
-        }
-        let axis = Rect {
-            x: group.area.x + group.beside,
-            width: group.area.width - group.beside,
-            y: group.area.bottom().saturating_sub(1),
-            height: 1,
-        };
-        let style = self.view.theme.style(Role::Quiet);
-        for (at, label) in axis::times(&group.strip, axis.width as usize) {
-            write(axis, (at as u16, 0), &label, style, buf);
-        }
-    }
-
-    fn strip<'s>(
-        &'s self,
-        content: Content,
-        group: &'s Group,
-        marks: &Marks,
-        columns: &mut Shared<'s>,
-        area: Rect,
-        buf: &mut Buffer,
-    ) {
-        let is_detail = self.is_detail(&group.strip);
-        let is_residual = self.is_residual(content, is_detail);
-        let scale = if is_residual {
-            self.residual_scale(content)
+    fn strip(&self, plot: &Plot, marks: &Marks, buf: &mut Buffer) {
+        let at_cursor = self.at_cursor(plot);
+        let (name, unit) = self.named(plot.content);
+        let style = self.view.theme.style(plot.content.role());
+        let after = write(plot.area, (0, 0), &name, style, buf);
+        let is_beside = plot.sheet.x > plot.area.x;
+        if is_beside {
+            self.label_beside(plot, unit, buf);
         } else {
-            self.scale(content, is_detail.then_some(&group.strip))
-        };
-        let mut run = self.columns_of_run(content, columns, &marks.edits);
-        if is_detail {
-            without_bands(&mut run);
+            let value = at_cursor.as_ref().map(|(_, value)| value.as_str());
+            self.label_above(plot, unit, value, after, buf);
         }
-        let (across, down) = self.view.marker.dots();
-        let rows = f64::from(area.height) * down as f64;
-        // A band of large dots hides the curve as soon as it is one dot high.
-        let thinnest = across.min(THINNEST_BAND) as f64;
-        let has_band = run.iter().flatten().filter_map(|column| column.band);
-        let has_band = has_band
-            .map(|band| scale.from_top(band.min) - scale.from_top(band.max))
-            .any(|share| share * rows >= thinnest);
-        let sheet = if group.beside > 0 {
-            self.beside_strip(content, group, &scale, has_band, area, buf)
-        } else {
-            self.above_strip(content, group, &scale, has_band, area, buf)
-        };
-        if is_residual {
-            self.draw_zero(&scale, sheet, buf);
-        } else {
-            self.curves(content, &run, columns, &scale, sheet, buf);
+        let mut dots = Dots::new(plot.sheet, self.view.marker);
+        if plot.is_residual {
+            self.draw_zero(plot, &mut dots);
         }
-        self.draw_points(content, &group.strip, &scale, is_residual, sheet, buf);
-        self.cursor(content, group, sheet, buf);
-        self.pen(&group.strip, sheet, buf);
-        self.edits(marks, &group.strip, sheet, buf);
-    }
-
-    /// Writes the name of `content` at the upper left of `area`; gives the column after it, and the unit.
-    fn name(&self, content: Content, area: Rect, buf: &mut Buffer) -> (u16, &'static str) {
-        let (name, unit) = self.named(content);
-        let style = self.view.theme.style(Self::role(content));
-        (write(area, (0, 0), &name, style, buf), unit)
-    }
-
-    /// The name of a strip and its values, beside it; gives the area of its curves.
-    fn beside_strip(
-        &self,
-        content: Content,
-        group: &Group,
-        scale: &Scale,
-        has_band: bool,
-        area: Rect,
-        buf: &mut Buffer,
-    ) -> Rect {
-        let (_, unit) = self.name(content, area, buf);
-        let is_detail = self.is_detail(&group.strip);
+        for (columns, stroke, ink) in &plot.curves {
+            curve::draw(&mut dots, columns, &plot.scale, *stroke, *ink);
+        }
+        dots.render(&self.view.theme, buf);
+        self.draw_points(plot, buf);
+        if let Some((column, value)) = at_cursor {
+            self.cursor(column, value.as_str(), is_beside, plot.sheet, buf);
+        }
         let quiet = self.view.theme.style(Role::Quiet);
-        let further = match (is_detail, self.detail.is_snapshot) {
-            (true, true) => [unit, ZOOM, HELD[2]],
-            (true, false) => [unit, ZOOM, ""],
-            (false, _) if self.is_residual(content, is_detail) => [unit, "less", "run"],
-            (false, _) if has_band => [unit, BAND_BESIDE[0], BAND_BESIDE[1]],
-            (false, _) => [unit, "", ""],
+        let across = self.view.marker.dots().0;
+        let column = |time_s: f64| plot.strip.column(time_s).map(|column| column / across);
+        if let Some(now) = column(self.run.now().time_s) {
+            upright(now as u16 + 1, PEN, quiet, plot.sheet, buf);
+        }
+        for edit in marks.edits.iter().filter_map(|edit_s| column(*edit_s)) {
+            upright(edit as u16, EDIT, quiet, plot.sheet, buf);
+        }
+    }
+
+    /// What stands beside a strip besides its name: its unit, what it shows, and its values.
+    fn label_beside(&self, plot: &Plot, unit: &str, buf: &mut Buffer) {
+        let quiet = self.view.theme.style(Role::Quiet);
+        let further = match plot {
+            Plot { is_zoom: true, .. } if self.detail.is_snapshot => [unit, ZOOM, HELD[2]],
+            Plot { is_zoom: true, .. } => [unit, ZOOM, ""],
+            Plot {
+                is_residual: true, ..
+            } => [unit, "less", "run"],
+            Plot { has_band: true, .. } => [unit, BAND_BESIDE[0], BAND_BESIDE[1]],
+            _ => [unit, "", ""],
         };
+        let area = plot.area;
         for (text, y) in further.into_iter().zip(1..area.height) {
             write(area, (0, y), text, quiet, buf);
         }
-        for (row, label) in axis::values(scale, area.height as usize) {
-            let x = group.beside.saturating_sub(1 + label.len() as u16);
+        let beside = plot.sheet.x - area.x;
+        for (row, label) in axis::values(&plot.scale, area.height as usize) {
+            let x = beside.saturating_sub(1 + label.len() as u16);
             write(area, (x, row as u16), &label, quiet, buf);
-            write(area, (group.beside - 1, row as u16), "┤", quiet, buf);
-        }
-        Rect {
-            x: area.x + group.beside,
-            width: area.width - group.beside,
-            ..area
+            write(area, (beside - 1, row as u16), "┤", quiet, buf);
         }
     }
 
-    /// The name of a strip and its values on a line above it; gives the area of its curves.
-    fn above_strip(
+    /// What stands on the line above a strip from the column `after` on: its range of values, or the value at the cursor.
+    fn label_above(
         &self,
-        content: Content,
-        group: &Group,
-        scale: &Scale,
-        has_band: bool,
-        area: Rect,
-        buf: &mut Buffer,
-    ) -> Rect {
-        let (mut after, unit) = self.name(content, area, buf);
-        let is_detail = self.is_detail(&group.strip);
-        let theme = &self.view.theme;
-        let quiet = theme.style(Role::Quiet);
-        if self.is_residual(content, is_detail) {
-            after = write(area, (after, 0), LESS_RUN, quiet, buf);
-        }
-        let room = area.width.saturating_sub(after) as usize;
-        let value = self.at_cursor(content, &group.strip);
-        let (text, style) = match value {
-            Some((_, value)) => {
-                let value = format!(" {value}");
-                let rest = room.saturating_sub(value.len() + " ()".len());
-                if let Some(range) = scale.in_words_within(rest) {
-                    let x = after + value.len() as u16;
-                    write(area, (x, 0), &format!(" ({range})"), quiet, buf);
-                }
-                (value, theme.style(Role::Focus))
-            }
-            None => {
-                let rest = room.saturating_sub(unit.len() + 2);
-                let range = scale.in_words_within(rest).unwrap_or_default();
-                let range = format!(" {range} {unit}");
-                let words: &[&str] = match (is_detail, self.detail.is_snapshot) {
-                    (false, _) if has_band => &BAND,
-                    (false, _) => &[],
-                    (true, false) => &[ZOOM],
-                    (true, true) => &HELD,
-                };
-                let fits = |word: &&&str| range.chars().count() + word.len() < room;
-                let word = words.iter().find(fits).copied().unwrap_or_default();
-                (format!("{range} {word}"), quiet)
-            }
-        };
-        write(area, (after, 0), &text, style, buf);
-        Rect {
-            y: area.y + 1,
-            height: area.height.saturating_sub(1),
-            ..area
-        }
-    }
-
-    fn curves<'s>(
-        &'s self,
-        content: Content,
-        run: &[Option<Column>],
-        shared: &mut Shared<'s>,
-        scale: &Scale,
-        area: Rect,
+        plot: &Plot,
+        unit: &str,
+        value: Option<&str>,
+        mut after: u16,
         buf: &mut Buffer,
     ) {
-        let mut dots = Dots::new(area, self.view.marker);
-        let is_detail = self.is_detail(shared.strip);
-        let without_bands = |mut columns: Vec<Option<Column>>| {
-            if is_detail {
-                without_bands(&mut columns);
+        let theme = &self.view.theme;
+        let quiet = theme.style(Role::Quiet);
+        if plot.is_residual {
+            after = write(plot.area, (after, 0), LESS_RUN, quiet, buf);
+        }
+        let room = plot.area.width.saturating_sub(after) as usize;
+        if let Some(value) = value {
+            let after = write(
+                plot.area,
+                (after, 0),
+                &format!(" {value}"),
+                theme.style(Role::Focus),
+                buf,
+            );
+            let rest = room.saturating_sub(value.len() + "  ()".len());
+            if let Some(range) = plot.scale.in_words_within(rest) {
+                write(plot.area, (after, 0), &format!(" ({range})"), quiet, buf);
             }
-            columns
+            return;
+        }
+        let rest = room.saturating_sub(unit.len() + 2);
+        let range = plot.scale.in_words_within(rest).unwrap_or_default();
+        let range = format!(" {range} {unit}");
+        let words: &[&str] = match (plot.is_zoom, self.detail.is_snapshot) {
+            (true, true) => &HELD,
+            (true, false) => &[ZOOM],
+            (false, _) if plot.has_band => &BAND,
+            (false, _) => &[],
         };
-        if let (Some(ghost), Some((recording, curve))) = (self.ghost, self.recorded_before(content))
-        {
-            let before = shared.columns(recording, curve, &ghost.marks().edits);
-            let before = without_bands(before);
-            draw(&mut dots, &before, scale, Stroke::Dotted, Ink::Ghost);
+        let fits = |word: &&&str| range.chars().count() + word.len() < room;
+        let word = words.iter().find(fits).copied().unwrap_or_default();
+        write(
+            plot.area,
+            (after, 0),
+            &format!("{range} {word}"),
+            quiet,
+            buf,
+        );
+    }
+
+    /// The cursor: a line, and the value there where that does not stand above the strip.
+    fn cursor(&self, column: u16, value: &str, is_beside: bool, sheet: Rect, buf: &mut Buffer) {
+        let style = self.view.theme.style(Role::Focus);
+        upright(column, CURSOR, style, sheet, buf);
+        if is_beside {
+            let width = value.len() as u16;
+            let right = column + 2;
+            let at = if right + width <= sheet.width {
+                right
+            } else {
+                column.saturating_sub(width + 1)
+            };
+            write(sheet, (at, 0), value, style, buf);
         }
-        if let (Some(pinned), Content::Curve(curve)) = (self.pinned, content) {
-            let kept = shared.columns(pinned.recording(), curve, &pinned.marks().edits);
-            let kept = without_bands(kept);
-            let ink = Ink::Faint(Role::Pinned);
-            draw(&mut dots, &kept, scale, Stroke::LongAndShort, ink);
-        }
-        if let (Some(overlay), Content::Curve(curve)) = (self.run.overlay(), content) {
-            let exact = without_bands(shared.columns(overlay.recording(), curve, &[]));
-            let ink = Ink::Faint(Role::Exact);
-            draw(&mut dots, &exact, scale, Stroke::Dashed, ink);
-        }
-        let ink = Ink::Strong(Self::role(content));
-        // The dots of a filled band and the dashes of the exact motion look different only where dots are small.
-        let (across, down) = dots.in_a_cell();
-        let has_dashes = self.run.overlay().is_some();
-        let stroke = if has_dashes && across * down <= 2 {
-            Stroke::Edges
-        } else {
-            Stroke::Full
-        };
-        draw(&mut dots, run, scale, stroke, ink);
-        dots.render(&self.view.theme, buf);
     }
 }
 
-/// Makes bands of `columns` lines: where swings are shown one by one, few columns are no reason for a band.
-fn without_bands(columns: &mut [Option<Column>]) {
-    let columns = columns.iter_mut().flatten();
-    columns.for_each(|column| column.band = None);
+/// A line from top to bottom behind everything else.
+fn upright(column: u16, sign: char, style: Style, area: Rect, buf: &mut Buffer) {
+    if column >= area.width {
+        return;
+    }
+    for y in area.top()..area.bottom() {
+        let cell = buf.cell_mut((area.x + column, y));
+        if let Some(cell) = cell.filter(|cell| cell.symbol() == " ") {
+            cell.set_char(sign).set_style(style);
+        }
+    }
 }

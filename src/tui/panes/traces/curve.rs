@@ -1,11 +1,10 @@
 //! A curve of a strip as dots: a line, or a band where its swings are too fast to be drawn one by one.
 
+use super::plot::THINNEST_BAND;
 use crate::observe::scale::Scale;
 use crate::observe::strip::Column;
 use crate::tui::dots::{Dots, Ink};
-
-/// A band whose edges are nearer to one another than this, in dots, has no room for a gap: it is drawn as a thick line.
-pub const THINNEST_BAND: usize = 2;
+use std::ops::RangeInclusive;
 
 /// A value this part of a dot above the edge between two dots counts as below it: a value on the edge, such as a constant
 /// in the middle of its strip, would else go up and down with its rounding.
@@ -51,70 +50,59 @@ impl Stroke {
 
 pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: Stroke, ink: Ink) {
     let (across, down) = dots.in_a_cell();
-    let height = dots.height();
-    // Large dots would hide the edges.
-    let fill = match ink {
-        Ink::Strong(role) if across * down <= 2 => Ink::Under(role),
-        _ => ink,
-    };
-    if height == 0 {
+    let height = dots.height() as f64;
+    if height == 0.0 {
         return;
     }
-    // `None` above and below the strip.
-    let inside = |value: f64| {
-        let row = scale.from_top(value) * height as f64 + ROUNDING;
-        let bottom = height as f64;
-        (row >= 0.0 && row < bottom + 2.0 * ROUNDING).then(|| row.min(bottom - 1.0) as usize)
-    };
-    let row = |value: f64| {
-        let row = scale.from_top(value) * height as f64 + ROUNDING;
-        row.clamp(0.0, height as f64 - 1.0) as usize
-    };
-    let apart = stroke.rows_apart(down);
+    let place = |value: f64| scale.from_top(value) * height + ROUNDING;
+    let row = |value: f64| place(value).clamp(0.0, height - 1.0) as usize;
+    let is_inside = |value: f64| (0.0..height + 2.0 * ROUNDING).contains(&place(value));
     let mut before: Option<(usize, usize)> = None;
     for (x, column) in columns.iter().enumerate() {
-        let extent = |column: &Column| column.band.unwrap_or(column.extent);
-        let Some(column) = column.filter(|column| scale.meets(extent(column))) else {
-            before = None;
+        let last = before.take();
+        let Some(column) = column else {
             continue;
         };
-        let band = extent(&column);
-        let (top, bottom) = (row(band.max), row(band.min));
-        let mut set = |from: usize, to: usize| {
-            for y in (from..=to)
-                .step_by(apart)
-                .filter(|_| stroke.keeps(x, across))
-            {
+        let band = column.band.unwrap_or(column.extent);
+        if !scale.meets(band) {
+            continue;
+        }
+        let mut set = |(from, to): (usize, usize)| {
+            let rows = (from..=to).step_by(stroke.rows_apart(down));
+            for y in rows.filter(|_| stroke.keeps(x, across)) {
                 dots.set(x as f64, y as f64, ink);
             }
         };
+        let (top, bottom) = (row(band.max), row(band.min));
         if column.band.is_none() || bottom < top + THINNEST_BAND {
-            set(row(column.extent.max), row(column.extent.min));
-            before = None;
+            set((row(column.extent.max), row(column.extent.min)));
             continue;
         }
         // An edge beyond the strip is not drawn: the band goes on there.
-        let (top_before, bottom_before) = before.unwrap_or((top, bottom));
-        if inside(band.max).is_some() {
-            let (from, to) = toward(top, top_before);
-            set(from, to);
+        let (last_top, last_bottom) = last.unwrap_or((top, bottom));
+        if is_inside(band.max) {
+            set(toward(top, last_top));
         }
-        if inside(band.min).is_some() {
-            let (from, to) = toward(bottom, bottom_before);
-            set(from, to);
+        if is_inside(band.min) {
+            set(toward(bottom, last_bottom));
         }
         if stroke == Stroke::Full {
-            for y in (top..=bottom).filter(|y| is_filled(x, *y)) {
-                dots.set(x as f64, y as f64, fill);
-            }
+            fill(dots, x, top..=bottom, ink);
         }
         before = Some((top, bottom));
     }
 }
 
-/// Whether a dot between the edges of a band is drawn: one of four, on slanting lines that are seen to be no curves.
-fn is_filled(x: usize, y: usize) -> bool {
-    (x + 2 * y).is_multiple_of(4)
+/// Sets one of four dots between the edges of a band, on slanting lines that are seen to be no curves.
+fn fill(dots: &mut Dots, x: usize, rows: RangeInclusive<usize>, ink: Ink) {
+    let (across, down) = dots.in_a_cell();
+    let ink = match ink {
+        Ink::Strong(role) if across * down <= 2 => Ink::Under(role), // large dots would hide the edges
+        _ => ink,
+    };
+    for y in rows.filter(|y| (x + 2 * y).is_multiple_of(4)) {
+        dots.set(x as f64, y as f64, ink);
+    }
 }
 
 /// The rows from `row` to the one next to `before`, so that an edge has no gap.

@@ -1,0 +1,325 @@
+//! A strip as it is drawn: what it shows, of which time and values, and its curves.
+
+use super::groups::Group;
+use super::points;
+use super::{Traces, curve::Stroke};
+use crate::lab::measured::Shown;
+use crate::observe::ghost::Ghost;
+use crate::observe::marks::Marks;
+use crate::observe::recording::{Curve, Extent, Recording};
+use crate::observe::scale::Scale;
+use crate::observe::strip::{Blocks, Column, Strip};
+use crate::text::number::fixed;
+use crate::tui::dots::Ink;
+use crate::tui::theme::Role;
+use ratatui::layout::Rect;
+
+/// Digits after the point of a value at the cursor.
+const DECIMALS: usize = 6;
+/// Least range of z, as a share of the distance between pivot and traced point: a smaller swing is drawn small.
+const Z_LEAST: f64 = 0.05;
+/// Least range of the tilt, degrees. Below it there is only rounding error, and the labels would have too many digits.
+const TILT_LEAST: f64 = 0.02;
+/// Least range of other quantities, as a share of their size.
+const SHARE_LEAST: f64 = 1e-3;
+/// Least reach of x and y, as a share of the distance between pivot and traced point.
+const PLANE_LEAST: f64 = 1e-4;
+/// A band whose edges are nearer to one another than this, in dots, has no room for a gap: it is drawn as a thick line.
+pub(super) const THINNEST_BAND: usize = 2;
+
+/// What a strip shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Content {
+    /// A curve that every run has.
+    Curve(Curve),
+    /// The quantity of this index among the measured ones, where it is none of those curves.
+    Measured(usize),
+}
+
+impl Content {
+    pub fn of_every_run() -> [Self; 4] {
+        Curve::ALL.map(Self::Curve)
+    }
+
+    pub fn role(self) -> Role {
+        match self {
+            Self::Curve(Curve::X) => Role::X,
+            Self::Curve(Curve::Y) => Role::Y,
+            Self::Curve(Curve::Z) => Role::Z,
+            Self::Curve(Curve::Tilt) | Self::Measured(_) => Role::Path,
+        }
+    }
+}
+
+/// Whose curve it is, in the order in which they are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Whose {
+    Before,
+    Pinned,
+    Exact,
+    Run,
+}
+
+const ALL: [Whose; 4] = [Whose::Before, Whose::Pinned, Whose::Exact, Whose::Run];
+
+pub(super) struct Plot {
+    pub content: Content,
+    pub strip: Strip,
+    /// Whether it shows less time than the others: the fast motion.
+    pub is_zoom: bool,
+    /// Whether it shows what was measured less what the run says.
+    pub is_residual: bool,
+    pub scale: Scale,
+    /// The curves, the run's last; none of residuals.
+    pub curves: Vec<(Vec<Option<Column>>, Stroke, Ink)>,
+    /// Whether the run's curve is in part a band.
+    pub has_band: bool,
+    /// All of the strip, and the part that its curves have.
+    pub area: Rect,
+    pub sheet: Rect,
+}
+
+impl Traces<'_> {
+    /// The strips of `group`, with `beside` columns for their values, or else a line above each.
+    pub(super) fn plots(&self, group: &Group, beside: u16, marks: &Marks) -> Vec<Plot> {
+        let plot = |&(content, area): &(Content, Rect)| {
+            let is_residual =
+                self.view.residuals && !group.is_zoom && self.index(content).is_some();
+            let above = u16::from(beside == 0);
+            Plot {
+                content,
+                strip: group.strip,
+                is_zoom: group.is_zoom,
+                is_residual,
+                scale: if is_residual {
+                    self.magnified(points::residual_scale(self.points(content)), 0.0)
+                } else {
+                    self.scale(content, group.is_zoom.then_some(&group.strip))
+                },
+                curves: Vec::new(),
+                has_band: false,
+                area,
+                sheet: Rect {
+                    x: area.x + beside,
+                    y: area.y + above,
+                    width: area.width - beside,
+                    height: area.height.saturating_sub(above),
+                },
+            }
+        };
+        let mut plots: Vec<_> = group.strips.iter().map(plot).collect();
+        for whose in ALL {
+            self.add_curves(whose, marks, &mut plots);
+        }
+        plots
+    }
+
+    /// Adds the curves of `whose` to `plots`, which show the same time.
+    fn add_curves<'s>(&'s self, whose: Whose, marks: &Marks, plots: &mut [Plot]) {
+        // The recording that was placed on the columns last: most plots are of the same.
+        let mut placed: Option<(&'s Recording, Blocks)> = None;
+        for plot in plots.iter_mut().filter(|plot| !plot.is_residual) {
+            let Some((recording, curve)) = self.recorded(whose, plot.content) else {
+                continue;
+            };
+            let placed = match &mut placed {
+                Some((last, blocks)) if std::ptr::eq(*last, recording) => blocks,
+                other => &mut other.insert((recording, plot.strip.blocks(recording))).1,
+            };
+            let mut columns = placed.columns(curve, self.cuts(whose, marks));
+            if plot.is_zoom {
+                // Where swings are shown one by one, few columns are no reason for a band.
+                let shown = columns.iter_mut().flatten();
+                shown.for_each(|column| column.band = None);
+            }
+            if whose == Whose::Run {
+                self.end_at_run(plot, &mut columns);
+                plot.has_band = self.has_band(plot, &columns);
+            }
+            let (stroke, ink) = self.look(whose, plot.content);
+            plot.curves.push((columns, stroke, ink));
+        }
+    }
+
+    /// Leaves out what was recorded beyond where the run stands: what follows the run may have been further.
+    fn end_at_run(&self, plot: &Plot, columns: &mut [Option<Column>]) {
+        if let Content::Measured(_) = plot.content {
+            let shown = plot.strip.shown(plot.strip.begin_s, self.run.now().time_s);
+            columns
+                .iter_mut()
+                .skip(shown.end)
+                .for_each(|column| *column = None);
+        }
+    }
+
+    fn has_band(&self, plot: &Plot, columns: &[Option<Column>]) -> bool {
+        let (across, down) = self.view.marker.dots();
+        let rows = f64::from(plot.area.height) * down as f64;
+        // A band of large dots hides the curve as soon as it is one dot high.
+        let thinnest = across.min(THINNEST_BAND) as f64;
+        let place = |value| plot.scale.from_top(value) * rows;
+        let mut bands = columns.iter().flatten().filter_map(|column| column.band);
+        bands.any(|band| place(band.min) - place(band.max) >= thinnest)
+    }
+
+    fn look(&self, whose: Whose, content: Content) -> (Stroke, Ink) {
+        let (across, down) = self.view.marker.dots();
+        match whose {
+            Whose::Before => (Stroke::Dotted, Ink::Ghost),
+            Whose::Pinned => (Stroke::LongAndShort, Ink::Faint(Role::Pinned)),
+            Whose::Exact => (Stroke::Dashed, Ink::Faint(Role::Exact)),
+            // The dots of a filled band and the dashes of the exact motion look different only where dots are small.
+            Whose::Run if self.run.overlay().is_some() && across * down <= 2 => {
+                (Stroke::Edges, Ink::Strong(content.role()))
+            }
+            Whose::Run => (Stroke::Full, Ink::Strong(content.role())),
+        }
+    }
+
+    /// The recording that has what `content` shows of `whose` motion, where that is shown, and which of its curves it is.
+    fn recorded(&self, whose: Whose, content: Content) -> Option<(&Recording, Curve)> {
+        match (whose, content) {
+            (Whose::Run, Content::Curve(curve)) => Some((self.run.recording(), curve)),
+            (Whose::Run, Content::Measured(index)) => self.measured?.recorded(index),
+            (Whose::Before, Content::Curve(curve)) => Some((self.ghost?.recording(), curve)),
+            (Whose::Before, Content::Measured(index)) => {
+                self.ghost.and(self.measured)?.recorded_before(index)
+            }
+            (Whose::Pinned, Content::Curve(curve)) => Some((self.pinned?.recording(), curve)),
+            (Whose::Exact, Content::Curve(curve)) => Some((self.run.overlay()?.recording(), curve)),
+            (Whose::Pinned | Whose::Exact, Content::Measured(_)) => None,
+        }
+    }
+
+    /// The times that no line of a curve crosses, s.
+    fn cuts<'s>(&'s self, whose: Whose, marks: &'s Marks) -> &'s [f64] {
+        let edits = |ghost: Option<&'s Ghost>| ghost.map_or(&[][..], |ghost| &ghost.marks().edits);
+        match whose {
+            Whose::Run => &marks.edits,
+            Whose::Before => edits(self.ghost),
+            Whose::Pinned => edits(self.pinned),
+            Whose::Exact => &[],
+        }
+    }
+
+    /// What was measured, the curves that every run has before the others.
+    pub(super) fn measured_contents(&self) -> Vec<Content> {
+        let quantities = self
+            .measured
+            .map_or(0, |beside| beside.quantities().count());
+        let others = (0..quantities).map(Content::Measured);
+        let others = others.filter(|content| self.recorded(Whose::Run, *content).is_some());
+        let curves = Content::of_every_run().into_iter();
+        let curves = curves.filter(|content| self.index(*content).is_some());
+        curves.chain(others).collect()
+    }
+
+    /// The index of what `content` shows among the measured quantities.
+    fn index(&self, content: Content) -> Option<usize> {
+        match content {
+            Content::Measured(index) => Some(index),
+            Content::Curve(curve) => {
+                let mut quantities = self.measured?.quantities();
+                quantities.position(|quantity| quantity.name == curve.column())
+            }
+        }
+    }
+
+    /// The measured values of what `content` shows; none where it was not measured.
+    pub(super) fn points(&self, content: Content) -> Option<&[Shown]> {
+        let index = self.index(content)?;
+        let curves = &self.measured?.compared.curves;
+        curves.get(index).map(Vec::as_slice)
+    }
+
+    /// The name and the unit of `content`.
+    pub(super) fn named(&self, content: Content) -> (String, &'static str) {
+        match content {
+            Content::Curve(curve) => (curve.name().to_owned(), curve.unit()),
+            Content::Measured(index) => {
+                let mut quantities = self
+                    .measured
+                    .into_iter()
+                    .flat_map(|beside| beside.quantities());
+                let quantity = quantities.nth(index);
+                quantity.map_or_else(Default::default, |quantity| {
+                    (quantity.words(), quantity.unit())
+                })
+            }
+        }
+    }
+
+    /// What was recorded of `content` at a step at `time_s`.
+    fn value_at(&self, content: Content, time_s: f64) -> Option<f64> {
+        let (recording, curve) = self.recorded(Whose::Run, content)?;
+        let block = recording.between(time_s, time_s).last()?;
+        (block.moments() == 1).then(|| block.extent(curve).max)
+    }
+
+    /// The column (of cells) of the cursor on `plot`, and the value there with its unit, where it is known.
+    pub(super) fn at_cursor(&self, plot: &Plot) -> Option<(u16, String)> {
+        let cursor = self.cursor?;
+        let column = plot.strip.column(cursor.time_s)? / self.view.marker.dots().0;
+        let value = match plot.content {
+            Content::Curve(curve) => Some(curve.at(cursor)),
+            Content::Measured(_) => self.value_at(plot.content, cursor.time_s),
+        };
+        let unit = self.named(plot.content).1;
+        let words = value.map(|value| format!("{} {unit}", fixed(value, DECIMALS)));
+        Some((column as u16, words.unwrap_or_default()))
+    }
+
+    /// The range of values of a strip, magnified as the view wants it: of the whole run, or of the time of `strip` alone.
+    pub(super) fn scale(&self, content: Content, strip: Option<&Strip>) -> Scale {
+        let now = self.run.now();
+        let about = match (self.cursor, content) {
+            (Some(cursor), Content::Curve(curve)) => curve.at(cursor),
+            (None, Content::Curve(curve)) => now.value(curve),
+            (_, Content::Measured(_)) => self.value_at(content, now.time_s).unwrap_or(0.0),
+        };
+        self.magnified(self.whole_scale(content, strip), about)
+    }
+
+    fn magnified(&self, scale: Scale, about: f64) -> Scale {
+        if self.view.magnified > 1.0 {
+            scale.zoomed(self.view.magnified, about)
+        } else {
+            scale
+        }
+    }
+
+    /// The same without magnification: x and y of the whole run share one about 0, the others have their own.
+    fn whole_scale(&self, content: Content, strip: Option<&Strip>) -> Scale {
+        let extent = self.extent(content, strip);
+        let size = extent.max.abs().max(extent.min.abs());
+        let arm_m = self.run.scenario().arm_m();
+        let least = match content {
+            Content::Curve(Curve::X | Curve::Y) if strip.is_none() => {
+                let [x, y] =
+                    [Curve::X, Curve::Y].map(|curve| self.extent(Content::Curve(curve), None));
+                let both = x.and(y);
+                let reach = both.max.max(-both.min);
+                return Scale::about_zero(reach.max(PLANE_LEAST * arm_m));
+            }
+            Content::Curve(Curve::X | Curve::Y) => PLANE_LEAST * arm_m,
+            Content::Curve(Curve::Z) => Z_LEAST * arm_m,
+            Content::Curve(Curve::Tilt) => TILT_LEAST,
+            Content::Measured(_) => (SHARE_LEAST * size).max(f64::MIN_POSITIVE),
+        };
+        Scale::around(extent, least)
+    }
+
+    /// The extent of all that the strip of `content` shows. The exact motion, the run before and the pinned one count as a
+    /// whole, so that the scale stays while the run catches up with them.
+    fn extent(&self, content: Content, strip: Option<&Strip>) -> Extent {
+        let recordings = ALL
+            .into_iter()
+            .filter_map(|whose| self.recorded(whose, content));
+        let extents = recordings.filter_map(|(recording, curve)| match strip {
+            Some(strip) => recording.extent_between(strip.begin_s, strip.end_s(), curve),
+            None => recording.whole().map(|block| block.extent(curve)),
+        });
+        let extents = extents.chain(points::extent(self.points(content), strip));
+        extents.reduce(Extent::and).unwrap_or(Extent::of(0.0))
+    }
+}
