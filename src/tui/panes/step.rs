@@ -15,8 +15,8 @@ use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, View};
 use crate::physics::workings::{Phase, Quantity, Value};
 use crate::scenario::Scenario;
-use crate::text::number::shortest;
-use crate::text::wrap::{columns, wrapped};
+use crate::text::number::{rounded, shortest, significant};
+use crate::text::wrap::columns;
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
 use numbers::Format;
@@ -24,7 +24,7 @@ use page::{Line, Section};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use table::{TableView, is_summed};
-pub use words::{Words, of as words_of};
+use words::of as words_of;
 
 /// From this height on all phases are listed above the page.
 const LISTED_FROM: u16 = 24;
@@ -99,19 +99,21 @@ fn title(lab: &Lab) -> String {
 /// What is to be done where there is no step to take apart.
 fn nothing_yet(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let playback = &lab.player().playback;
-    let texts: [&str; 2] = match playback.step_number() {
-        0 => [
+    let texts: [&str; 2] = if playback.step_number() == 0 {
+        [
             "No time step has been taken yet.",
             "Press . to take the first: it is then shown here phase by phase, each with its formula and its numbers.",
-        ],
-        _ if !playback.is_busy() => [
-            "This time step would take too long to compute again.",
-            "Press . to take the next: it is then shown here phase by phase.",
-        ],
-        _ => [
+        ]
+    } else if playback.is_busy() {
+        [
             "The run goes on.",
             "Press space to stop it: the time step taken last is then shown here phase by phase.",
-        ],
+        ]
+    } else {
+        [
+            "This time step would take too long to compute again.",
+            "Press . to take the next: it is then shown here phase by phase.",
+        ]
     };
     let sections = texts.map(|text| Section::text(0, text, area.width.into(), 0, Role::Text));
     page::draw(&sections, area, &lab.view().theme, buf);
@@ -130,14 +132,15 @@ impl PhasePage<'_> {
     /// Its sections, for `room` lines.
     fn sections(&self, room: usize) -> Vec<Section> {
         let words = words_of(self.phase.name);
-        let text = |rank, text: &str, role| Section::text(rank, text, self.width, 0, role);
+        let text = |rank, text, indent, role| Section::text(rank, text, self.width, indent, role);
         let mut sections = Vec::new();
         if room >= LISTED_FROM.into() {
             sections.push(self.list());
         }
-        sections.push(text(8, &self.part(), Role::Quiet));
-        sections.push(text(2, words.happens, Role::Text).apart());
-        sections.push(Section::text(1, self.phase.formula, self.width, 2, Role::Focus).apart());
+        let part = self.part();
+        sections.push(text(8, &part, 0, Role::Quiet));
+        sections.push(text(2, words.happens, 0, Role::Text).apart());
+        sections.push(text(1, self.phase.formula, 2, Role::Focus).apart());
         sections.extend(self.quantities());
         sections.push(self.labelled(4, "changes", words.changes).apart());
         sections.push(self.labelled(6, "in 3-D", words.seen));
@@ -152,74 +155,57 @@ impl PhasePage<'_> {
     fn list(&self) -> Section {
         let mut lines = vec![Line::default()];
         let mut at = 0;
-        for (index, phase) in self.explained.workings.phases().enumerate() {
-            let is_present = index + 1 == self.number;
-            let mark = if is_present { "►" } else { " " };
-            let text = format!("{mark}{} {}  ", index + 1, phase.name);
-            if at + columns(text.trim_end()) > self.width {
+        for (phase, number) in self.explained.workings.phases().zip(1..) {
+            let (mark, role) = if number == self.number {
+                ("►", Role::Focus)
+            } else {
+                (" ", Role::Quiet)
+            };
+            let text = format!("{mark}{number} {}  ", phase.name);
+            let width = columns(&text);
+            if at + width > self.width + 2 {
                 lines.push(Line::default());
                 at = 0;
             }
-            let role = if is_present { Role::Focus } else { Role::Quiet };
-            let width = columns(&text);
             if let Some(line) = lines.last_mut() {
                 line.pieces.push((at, text, role));
             }
             at += width;
         }
-        Section {
-            rank: 9,
-            lines,
-            ..Section::default()
-        }
+        Section::new(9, lines)
     }
 
     /// The times of the step, and the part of it to which the phase belongs.
     fn part(&self) -> String {
         let (before, after) = &self.explained.states;
-        let time = |time_s: f64| crate::text::number::significant(time_s, 9);
+        let [from, to] = [before, after].map(|state| significant(state.time_s, 9));
+        let whole = format!("from t = {from} s to {to} s");
         let parts = &self.explained.workings.parts;
         let mut phases = 0;
         let part = parts.iter().position(|part| {
             phases += part.phases.len();
             phases >= self.number
         });
-        let whole = format!(
-            "from t = {} s to {} s",
-            time(before.time_s),
-            time(after.time_s)
-        );
-        match part.filter(|_| parts.len() > 1) {
-            None => whole,
-            Some(part) => {
-                let length_s = shortest(crate::text::number::rounded(parts[part].length_s, 6));
-                format!(
-                    "{whole}, part {} of {}, which is {length_s} s long",
-                    part + 1,
-                    parts.len()
-                )
-            }
-        }
+        let Some(part) = part.filter(|_| parts.len() > 1) else {
+            return whole;
+        };
+        let (number, count) = (part + 1, parts.len());
+        let length_s = shortest(rounded(parts[part].length_s, 6));
+        format!("{whole}, part {number} of {count}, which is {length_s} s long")
     }
 
     /// A section of `text` after `label`.
     fn labelled(&self, rank: u8, label: &str, text: &str) -> Section {
-        if text.is_empty() {
-            return Section::default();
-        }
         let column = label.len() + 2;
-        let lines = wrapped(text, self.width.saturating_sub(column));
-        let mut section = Section {
-            rank,
-            lines: lines
-                .into_iter()
-                .map(|line| Line::of(column, line, Role::Text))
-                .collect(),
-            ..Section::default()
-        };
+        let mut section =
+            Section::text(rank, text, self.width.saturating_sub(column), 0, Role::Text);
+        for piece in section.lines.iter_mut().flat_map(|line| &mut line.pieces) {
+            piece.0 = column;
+        }
         if let Some(first) = section.lines.first_mut() {
             first.pieces.push((0, format!("{label}:"), Role::Quiet));
         }
+        section.lines.retain(|_| !text.is_empty());
         section
     }
 
@@ -228,46 +214,35 @@ impl PhasePage<'_> {
         let all = &self.phase.quantities;
         let format = Format::of_vectors(self.width);
         let adds_up = self.sum().is_some();
-        let is_vector =
-            |quantity: &&Quantity| matches!(quantity.value, Value::Vector(_) | Value::Matrix(_));
         // While points are added up, the quantities that are made of the full sums are less important.
         let is_aside = |quantity: &Quantity| adds_up && is_made_of_sums(self.phase, quantity);
-        let heads = if all.iter().filter(is_vector).all(is_aside) {
-            ASIDE
-        } else {
-            5
-        };
+        let has_heads =
+            |quantity: &&Quantity| matches!(quantity.value, Value::Vector(_) | Value::Matrix(_));
+        let is_headed = all.iter().filter(has_heads).all(is_aside);
+        let mut heads = Some(numbers::heads(if is_headed { ASIDE } else { 5 }, format).apart());
         let mut sections = Vec::new();
-        let mut has_heads = false;
         for (index, quantity) in all.iter().enumerate() {
-            let is_last = index + 1 == all.len();
-            match &quantity.value {
-                Value::Table(table) if table.points.is_empty() => continue,
-                Value::Table(_) => {
-                    sections.push(Section {
-                        table: Some(index),
-                        lines: self.table(index, 0),
-                        ..Section::default().apart()
-                    });
-                    continue;
-                }
-                Value::Vector(_) | Value::Matrix(_) if !has_heads => {
-                    has_heads = true;
-                    sections.push(numbers::heads(heads, format).apart());
-                }
-                _ => {}
+            if let Value::Table(table) = &quantity.value {
+                sections.extend((!table.points.is_empty()).then(|| Section {
+                    table: Some(index),
+                    ..Section::new(0, self.table(index, 0)).apart()
+                }));
+                continue;
             }
+            if has_heads(&quantity) {
+                sections.extend(heads.take());
+            }
+            let is_last = index + 1 == all.len();
             let rank = match quantity.symbol {
                 _ if is_aside(quantity) => ASIDE,
                 _ if is_last => 0,
                 "S" => 7,
                 _ => 3,
             };
-            sections.push(Section {
+            sections.push(Section::new(
                 rank,
-                lines: numbers::lines(quantity, format, is_last),
-                ..Section::default()
-            });
+                numbers::lines(quantity, format, is_last),
+            ));
         }
         sections
     }
@@ -315,7 +290,7 @@ fn is_made_of_sums(phase: &Phase, quantity: &Quantity) -> bool {
 }
 
 /// The name of the point of this index; a point of the rim has its number on the rim.
-pub fn name_of(scenario: &Scenario, point: usize) -> String {
+fn name_of(scenario: &Scenario, point: usize) -> String {
     match scenario.point_name(point) {
         Some(name) => name,
         None if point < SHORT => format!("rim {point}"),

@@ -35,10 +35,8 @@ pub struct Format {
 impl Format {
     /// For `count` numbers side by side on `width` columns.
     pub fn new(width: usize, count: usize) -> Self {
-        let cell = width / count.max(1);
-        let digits = cell
-            .saturating_sub(AROUND)
-            .clamp(*DIGITS.start(), *DIGITS.end());
+        let digits = (width / count.max(1)).saturating_sub(AROUND);
+        let digits = digits.clamp(*DIGITS.start(), *DIGITS.end());
         Self {
             cell: digits + AROUND,
             digits,
@@ -56,10 +54,8 @@ impl Format {
     pub fn aligned(self, numbers: &[f64]) -> Vec<String> {
         let sizes = numbers.iter().map(|number| number.abs());
         let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
-        numbers
-            .iter()
-            .map(|number| format!("{:>1$}", self.one(*number, largest), self.cell))
-            .collect()
+        let text = |number: &f64| format!("{:>1$}", self.one(*number, largest), self.cell);
+        numbers.iter().map(text).collect()
     }
 
     /// `number` beside others of which `largest` is the largest.
@@ -106,10 +102,8 @@ pub fn lines(quantity: &Quantity, format: Format, is_result: bool) -> Vec<Line> 
             cells = vec![format!("{text:>0$}", format.cell)];
         }
     }
-    let rows = cells.chunks(across);
-    let mut lines: Vec<_> = rows
-        .map(|cells| Line::of(SYMBOL, cells.concat(), role))
-        .collect();
+    let line = |cells: &[String]| Line::of(SYMBOL, cells.concat(), role);
+    let mut lines: Vec<_> = cells.chunks(across).map(line).collect();
     let unit = SYMBOL + across * format.cell + 1;
     let unit = (unit, unit_of(quantity), Role::Quiet);
     lines[0].pieces.push(unit);
@@ -136,7 +130,7 @@ fn unit_of(quantity: &Quantity) -> String {
 /// The heads of the columns of vectors and matrices.
 pub fn heads(rank: u8, format: Format) -> Section {
     let heads = ["x", "y", "z"].map(|head| format!("{head:>0$}", format.cell));
-    Section::line(rank, Line::of(SYMBOL, heads.concat(), Role::Quiet))
+    Section::new(rank, vec![Line::of(SYMBOL, heads.concat(), Role::Quiet)])
 }
 
 #[cfg(test)]

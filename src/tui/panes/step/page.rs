@@ -39,26 +39,21 @@ impl Line {
 }
 
 impl Section {
+    pub fn new(rank: u8, lines: Vec<Line>) -> Self {
+        Self {
+            rank,
+            lines,
+            ..Self::default()
+        }
+    }
+
     /// `text` in as many lines of `width` columns as it takes; those after the first begin in the column `indent`.
     pub fn text(rank: u8, text: &str, width: usize, indent: usize, role: Role) -> Self {
         let lines = wrapped(text, width.saturating_sub(indent)).into_iter();
         let column = |line: usize| if line == 0 { 0 } else { indent };
         let lines = lines.enumerate();
-        Self {
-            rank,
-            lines: lines
-                .map(|(at, text)| Line::of(column(at), text, role))
-                .collect(),
-            ..Self::default()
-        }
-    }
-
-    pub fn line(rank: u8, line: Line) -> Self {
-        Self {
-            rank,
-            lines: vec![line],
-            ..Self::default()
-        }
+        let lines = lines.map(|(at, text)| Line::of(column(at), text, role));
+        Self::new(rank, lines.collect())
     }
 
     /// The same with an empty line before it where there is room.
@@ -87,10 +82,11 @@ pub fn fit(sections: &mut Vec<Section>, room: usize) {
 
 /// Puts an empty line before each section that wants one, if `room` holds all of them.
 pub fn spread(sections: &mut [Section], room: usize) {
-    let wanted = |section: &&mut Section| section.is_apart;
-    let count = sections.iter_mut().skip(1).filter(wanted).count();
-    if height(sections) + count <= room {
-        for section in sections.iter_mut().skip(1).filter(wanted) {
+    let height = height(sections);
+    let others = sections.iter_mut().skip(1);
+    let apart: Vec<_> = others.filter(|section| section.is_apart).collect();
+    if height + apart.len() <= room {
+        for section in apart {
             section.lines.insert(0, Line::default());
         }
     }
@@ -100,8 +96,7 @@ pub fn draw(sections: &[Section], area: Rect, theme: &Theme, buf: &mut Buffer) {
     let lines = sections.iter().flat_map(|section| &section.lines);
     for (line, place) in lines.zip(area.rows()) {
         for (column, text, role) in &line.pieces {
-            let column = u16::try_from(*column).unwrap_or(u16::MAX);
-            write(place, (column, 0), text, theme.style(*role), buf);
+            write(place, (*column as u16, 0), text, theme.style(*role), buf);
         }
         if line.is_chosen {
             buf.set_style(place, theme.style(Role::Selected));

@@ -64,14 +64,15 @@ impl TableView<'_> {
 
     /// How many rows are added up: the last of them is the chosen one.
     fn chosen(&self) -> Option<usize> {
-        let rows = self.sum.as_ref().map(|(rows, _)| *rows);
-        rows.map(|rows| rows.min(self.table.points.len()))
+        self.sum.as_ref().map(|(rows, _)| *rows)
     }
 
     /// The lines of the rows `shown`.
     fn rows(&self, groups: &[Range<usize>], shown: Range<usize>) -> Vec<Line> {
-        let texts = groups.iter().map(|group| self.texts(group, &shown));
-        let texts: Vec<_> = texts.collect();
+        let texts: Vec<_> = groups
+            .iter()
+            .map(|group| self.texts(group, &shown))
+            .collect();
         let mut lines = Vec::with_capacity(shown.len() * groups.len());
         for (at, row) in shown.enumerate() {
             let role = match self.chosen() {
@@ -81,14 +82,13 @@ impl TableView<'_> {
             let name = (self.name)(self.table.points[row]);
             let mut name = shortened(&name, NAME - 1).into_owned();
             for (index, (group, texts)) in groups.iter().zip(&texts).enumerate() {
-                let cells: String = texts.iter().map(|column| column[at].as_str()).collect();
                 let mut line = Line::of(0, std::mem::take(&mut name), role);
                 if self.has_mass_aside(group) {
                     let mass = significant(self.table.row(row)[0], MASS_DIGITS);
                     line = line.and(NAME - 1, format!("{mass:>MASS$}"), role);
                 }
                 line.is_chosen = index == 0 && self.chosen() == Some(row + 1);
-                lines.push(line.and(self.begin(group), cells, role));
+                lines.push(line.and(self.begin(group), side_by_side(texts, at), role));
             }
         }
         lines
@@ -140,26 +140,22 @@ impl TableView<'_> {
     fn heads(&self, groups: &[Range<usize>]) -> Vec<Line> {
         let mut lines = Vec::new();
         for group in groups {
-            let format = self.format(group);
+            let cell = self.format(group).cell;
             let columns = &self.table.columns[group.clone()];
-            let side_by_side = |texts: &mut dyn Iterator<Item = &'static str>| -> String {
-                texts
-                    .map(|text| format!("{text:>0$}", format.cell))
-                    .collect()
-            };
-            let symbols = side_by_side(&mut columns.iter().map(|(symbol, _)| *symbol));
+            let symbols = columns.iter().map(|(symbol, _)| format!("{symbol:>cell$}"));
+            let symbols = symbols.collect::<String>();
             let mut line = Line::of(self.begin(group), symbols, Role::Quiet);
             if self.has_mass_aside(group) {
                 let mass = self.table.columns[0].1;
                 line = line.and(NAME - 1, format!("{mass:>MASS$}"), Role::Quiet);
             }
-            let units = side_by_side(&mut columns.iter().map(|(_, unit)| *unit));
             if columns.iter().all(|(_, unit)| *unit == columns[0].1) {
                 let unit = format!("in {}", columns[0].1);
                 lines.push(line.and(0, unit, Role::Quiet));
             } else {
-                lines.push(line);
-                lines.push(Line::of(self.begin(group), units, Role::Quiet));
+                let units = columns.iter().map(|(_, unit)| format!("{unit:>cell$}"));
+                let units = units.collect::<String>();
+                lines.extend([line, Line::of(self.begin(group), units, Role::Quiet)]);
             }
         }
         lines
@@ -187,12 +183,10 @@ impl TableView<'_> {
                 let line = Line::of(0, "sum", Role::Focus);
                 lines.push(line.and(NAME, blank + &sums, Role::Heading));
             }
-            _ => {
-                for begin in columns.clone().step_by(FEW) {
-                    let group = begin..(begin + FEW).min(columns.end);
-                    lines.extend(self.added(group, rows.saturating_sub(1), sums));
-                }
-            }
+            _ => lines.extend(columns.clone().step_by(FEW).flat_map(|begin| {
+                let group = begin..(begin + FEW).min(columns.end);
+                self.added(group, rows.saturating_sub(1), sums)
+            })),
         }
         lines
     }
@@ -207,12 +201,10 @@ impl TableView<'_> {
             .map(|(symbol, _)| format!("{symbol:>0$}", format.cell));
         let heads = Line::of(SYMBOL, heads.collect::<String>(), Role::Quiet);
         let unit = SYMBOL + group.len() * format.cell + 1;
-        let both: Vec<_> = group
-            .map(|column| format.aligned(&[adds[column], sums[column]]))
-            .collect();
+        let both = group.map(|column| format.aligned(&[adds[column], sums[column]]));
+        let both: Vec<_> = both.collect();
         let line = |at: usize, name, role| {
-            let cells: String = both.iter().map(|pair| pair[at].as_str()).collect();
-            let line = Line::of(0, name, Role::Focus).and(SYMBOL, cells, role);
+            let line = Line::of(0, name, Role::Focus).and(SYMBOL, side_by_side(&both, at), role);
             line.and(unit, columns[0].1, Role::Quiet)
         };
         [
@@ -221,6 +213,11 @@ impl TableView<'_> {
             line(1, "sum", Role::Heading),
         ]
     }
+}
+
+/// The cells of the row `at` of some `columns` of texts.
+fn side_by_side(columns: &[Vec<String>], at: usize) -> String {
+    columns.iter().map(|column| column[at].as_str()).collect()
 }
 
 /// The columns of `table` whose sums mean something.

@@ -60,17 +60,19 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 fn reason(explained: &Explained) -> &'static str {
-    let Some(part) = explained.workings.parts.last() else {
+    let (before, after) = &explained.states;
+    let parts = &explained.workings.parts;
+    let Some(part) = parts.last().filter(|_| before.momentum != after.momentum) else {
         return NONE;
     };
     let loads = &part.loads;
     let is_down = |force: &nalgebra::Vector3<f64>| force.xy() == Vector2::zeros() && force.z <= 0.0;
-    let (before, after) = &explained.states;
-    match () {
-        () if before.momentum == after.momentum => NONE,
-        () if !loads.friction.is_none() => RUBBED,
-        () if loads.gravity >= 0.0 && loads.pushes.iter().all(|push| is_down(&push.force)) => DOWN,
-        () => ANY,
+    if !loads.friction.is_none() {
+        RUBBED
+    } else if loads.gravity >= 0.0 && loads.pushes.iter().all(|push| is_down(&push.force)) {
+        DOWN
+    } else {
+        ANY
     }
 }
 
@@ -96,12 +98,9 @@ fn vectors(explained: &Explained, width: usize) -> Vec<Section> {
         (2, last(explained, &["dL"])),
         (1, last(explained, &["new L"])),
     ];
-    let section = |(rank, quantity): (u8, Option<&Quantity>)| Section {
-        rank,
-        lines: quantity.map_or_else(Vec::new, |quantity| {
-            numbers::lines(quantity, format, rank == 1)
-        }),
-        ..Section::default()
+    let section = |(rank, quantity): (u8, Option<&Quantity>)| {
+        let lines = quantity.map(|quantity| numbers::lines(quantity, format, rank == 1));
+        Section::new(rank, lines.unwrap_or_default())
     };
     std::iter::once(numbers::heads(5, format))
         .chain(all.map(section))
@@ -132,38 +131,43 @@ impl Picture {
         }
     }
 
+    fn dot(&self, at: Vector2<f64>) -> (f64, f64) {
+        self.plane.dot((at.x, at.y))
+    }
+
     fn line(&mut self, from: Vector2<f64>, to: Vector2<f64>, ink: Ink) {
-        let [from, to] = [from, to].map(|at| self.plane.dot((at.x, at.y)));
+        let (from, to) = (self.dot(from), self.dot(to));
         self.dots.line(from, to, ink);
     }
 
     fn sign(&mut self, at: Vector2<f64>, sign: &'static str, role: Role) {
-        self.signs.push((self.plane.dot((at.x, at.y)), sign, role));
+        self.signs.push((self.dot(at), sign, role));
     }
 
     /// A line from one place along another, with its name at its tip.
     fn arrow(&mut self, from: Vector2<f64>, along: Vector2<f64>, name: &'static str, role: Role) {
-        self.line(from, from + along, Ink::Strong(role));
+        let tip = from + along;
+        self.line(from, tip, Ink::Strong(role));
         // A head of two strokes.
         let plane = self.plane;
-        let back = -along.normalize()
-            * (0.16 * along.norm()).min(0.12 * plane.size.1 as f64 / plane.scale.1);
+        let head = (0.16 * along.norm()).min(0.12 * plane.size.1 as f64 / plane.scale.1);
+        let back = -along.normalize() * head;
         for (sin, cos) in [0.5_f64, -0.5].map(f64::sin_cos) {
             let stroke = Vector2::new(back.x * cos - back.y * sin, back.x * sin + back.y * cos);
-            self.line(from + along, from + along + stroke, Ink::Strong(role));
+            self.line(tip, tip + stroke, Ink::Strong(role));
         }
         let cell = plane.in_cell.0 as f64 / plane.scale.0;
-        self.sign(from + along + along.normalize() * (1.3 * cell), name, role);
+        self.sign(tip + along.normalize() * (1.3 * cell), name, role);
     }
 
     fn draw(&self, area: Rect, view: &View, buf: &mut Buffer) {
         self.dots.render(&view.theme, buf);
         let (across, down) = self.plane.in_cell;
+        let cell = |dot: f64, dots: usize, last: u16| {
+            ((dot / dots as f64).floor().max(0.0) as u16).min(last)
+        };
         for ((x, y), sign, role) in &self.signs {
             let last = area.width.saturating_sub(sign.chars().count() as u16);
-            let cell = |dot: f64, dots: usize, last: u16| {
-                ((dot / dots as f64).floor().max(0.0) as u16).min(last)
-            };
             let place = (
                 cell(*x, across, last),
                 cell(*y, down, area.height.saturating_sub(1)),
