@@ -1,7 +1,6 @@
 //! The help: keys and words, searched by typing; Enter does the key that is selected.
 
 mod entries;
-mod glossary;
 
 use super::{frame_on_top, write};
 use crate::lab::view::Pane;

@@ -3,9 +3,8 @@
 //! With the focus it is an editor: the values above, one on each line, one of them selected; the readouts to watch
 //! below.
 
-mod edited;
-mod fitting;
 mod lines;
+mod listed;
 
 use super::{PaneRow, Width, frame, shortened, write};
 use crate::lab::action::Action;
@@ -18,11 +17,13 @@ use crate::text::wrap::columns;
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::layout::{split_columns, split_rows};
 use crate::tui::theme::Role;
-use edited::{around_selected, edited_lines, key_lines, needed, title};
-use fitting::{by_group, fitting, read_lines, shown, without_dashes};
 use lines::{
     COLUMN, Line, PREDICTED, VALUE_END, body_lines, derived_lines, fewer_digits, further_lines,
     heading, motion_lines, now_lines, start_lines,
+};
+use listed::{
+    around_selected, by_group, edited_lines, fitting, key_lines, needed, read_lines, shown, title,
+    without_dashes,
 };
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

@@ -62,9 +62,15 @@ pub(super) fn value(rank: u8, label: &'static str, value: String, unit: &'static
     }
 }
 
-/// A number with `digits` decimals, or as many as there is room for beside its label.
-fn number(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'static str) -> Line {
-    value(rank, label, fixed(label, Some(number), digits), unit)
+/// A number, which may not be known (yet), with `digits` decimals, or as many as there is room for beside its label.
+fn number(
+    rank: u8,
+    label: &'static str,
+    number: impl Into<Option<f64>>,
+    digits: usize,
+    unit: &'static str,
+) -> Line {
+    value(rank, label, fixed(label, number.into(), digits), unit)
 }
 
 /// As [`number`], of a quantity of the size `size`. A small number that would lose its digits has an exponent.
@@ -150,22 +156,20 @@ fn friction_line(friction: &Friction) -> Option<Line> {
         (friction.spin_quadratic, "N m s2"),
         (friction.swing_viscous, "N m s"),
     ];
-    let acting: Vec<_> = coefficients
-        .into_iter()
-        .filter(|(size, _)| *size > 0.0)
-        .collect();
-    match acting[..] {
-        [] => None,
-        [(size, unit)] => Some(value(2, "friction", in_pane(size), unit)),
-        ref all => Some(value(2, "friction", all.len().to_string(), "kinds")),
-    }
+    let acting = coefficients.into_iter().filter(|(size, _)| *size > 0.0);
+    let (value_of_it, unit) = match acting.clone().count() {
+        0 => return None,
+        1 => acting.map(|(size, unit)| (in_pane(size), unit)).next()?,
+        count => (count.to_string(), "kinds"),
+    };
+    Some(value(2, "friction", value_of_it, unit))
 }
 
 pub(super) fn motion_lines(scenario: &Scenario, motion: &Motion) -> Vec<Line> {
-    let pushes = match (scenario.pushes.len(), scenario.pushes.first()) {
-        (0, _) => "none".to_owned(),
-        (1, Some(push)) => format!("{} N", decimals_of(push.force.norm(), 0)),
-        (more, _) => more.to_string(),
+    let (rank, pushes) = match &scenario.pushes[..] {
+        [] => (5, "none".to_owned()),
+        [push] => (2, format!("{} N", decimals_of(push.force.norm(), 0))),
+        more => (2, more.len().to_string()),
     };
     let mut lines = vec![
         heading("motion"),
@@ -173,26 +177,18 @@ pub(super) fn motion_lines(scenario: &Scenario, motion: &Motion) -> Vec<Line> {
         value(3, "scheme", motion.scheme.name.to_owned(), ""),
         given(4, "gravity", motion.gravity, 3, "m/s2"),
         value(6, "steps", scenario.steps.to_string(), ""),
-        value(
-            if scenario.pushes.is_empty() { 5 } else { 2 },
-            "push",
-            pushes,
-            "",
-        ),
+        value(rank, "push", pushes, ""),
     ];
     lines.extend(friction_line(&scenario.friction));
-    if let (1, Some(push)) = (scenario.pushes.len(), scenario.pushes.first()) {
-        let (when, unit) = match push.window {
-            Window::Steps { first, count } => (
-                format!("{first} to {}", (first - 1).saturating_add(count)),
-                "step",
-            ),
-            Window::Time { from_s, for_s } => {
-                let (from, to) = (in_pane(from_s), in_pane(from_s + for_s));
-                (format!("{from} to {to}"), "s")
+    if let [push] = &scenario.pushes[..] {
+        let ([from, to], unit) = match push.window {
+            Window::Steps { first, count } => {
+                let last = (first - 1).saturating_add(count);
+                ([first, last].map(|step| step.to_string()), "step")
             }
+            Window::Time { from_s, for_s } => ([from_s, from_s + for_s].map(in_pane), "s"),
         };
-        lines.push(value(3, "acts", when, unit));
+        lines.push(value(3, "acts", format!("{from} to {to}"), unit));
     }
     lines
 }
@@ -205,7 +201,7 @@ pub(super) fn now_lines(reading: &Reading) -> Vec<Line> {
     let of_body = |number: f64| reading.readouts.health.is_a_rotation.then_some(number);
     let axis = |label, role, metres: f64| Line {
         label_role: role,
-        ..measured(0, label, of_body(metres), 4, "m")
+        ..number(0, label, of_body(metres), 4, "m")
     };
     let mut lines = vec![
         heading("now"),
@@ -216,13 +212,13 @@ pub(super) fn now_lines(reading: &Reading) -> Vec<Line> {
     lines.extend(watched_lines(reading));
     let after_nutation = lines.len() - 1;
     let predicted = reading.readouts.number("predicted_nutation_period_s");
-    lines.insert(after_nutation, measured(1, PREDICTED, predicted, 5, "s"));
+    lines.insert(after_nutation, number(1, PREDICTED, predicted, 5, "s"));
     lines.extend([
         sized(3, "|L|", momentum, momentum, 3, "J s"),
         sized(4, "Lz", sample.momentum.z, momentum, 3, "J s"),
         match of_body(sample.energy) {
             Some(energy) => sized(4, "energy", energy, kinetic.max(energy.abs()), 2, "J"),
-            None => measured(4, "energy", None, 2, "J"),
+            None => number(4, "energy", None, 2, "J"),
         },
     ]);
     lines
@@ -231,13 +227,12 @@ pub(super) fn now_lines(reading: &Reading) -> Vec<Line> {
 /// The readouts that are shown too where there is room: the extremes so far, and how the wheel turns.
 pub(super) fn further_lines(reading: &Reading) -> Vec<Line> {
     let readouts = &reading.readouts;
-    let told = |rank, label, name, digits, unit| {
-        measured(rank, label, readouts.number(name), digits, unit)
-    };
+    let told =
+        |rank, label, name, digits, unit| number(rank, label, readouts.number(name), digits, unit);
     let of_body = |rank, label, name, digits, unit| {
-        let number = readouts.number(name);
-        let number = number.filter(|_| readouts.health.is_a_rotation);
-        measured(rank, label, number, digits, unit)
+        let known = readouts.number(name);
+        let known = known.filter(|_| readouts.health.is_a_rotation);
+        number(rank, label, known, digits, unit)
     };
     vec![
         heading("so far"),
@@ -260,54 +255,35 @@ pub(super) fn further_lines(reading: &Reading) -> Vec<Line> {
 /// The readouts to watch while values are edited; the last is the energy's drift.
 pub(super) fn watched_lines(reading: &Reading) -> [Line; 5] {
     let readouts = &reading.readouts;
-    let precession = reading.precession_deg_per_s();
-    let predicted = readouts.number("predicted_precession_rad_per_s");
+    let health = &readouts.health;
     let nutation = match readouts.nutation_is_resolved() {
         Some(false) => "nutation?", // strobed: the line below the panes says whose swing it is
         _ => "nutation",
     };
-    let health = &readouts.health;
+    let period_s = readouts.number("measured_nutation_period_s");
     let tilt = health.is_a_rotation.then_some(readouts.sample.tilt_deg);
-    let drift = readouts.health.energy_drift;
-    let energy_unit = readouts.health.energy_unit;
     // An axle that passes through the vertical has no precession. Any other has none so far.
-    let has_none = readouts
-        .theory
-        .as_ref()
-        .is_some_and(|theory| theory.axis == Axis::Z && theory.path == Path::ThroughVertical);
+    let theory = readouts.theory.as_ref();
+    let has_none =
+        theory.is_some_and(|theory| theory.axis == Axis::Z && theory.path == Path::ThroughVertical);
     let rate = |rank, label, rate: Option<f64>| match rate {
         None if has_none => value(rank, label, "none".to_owned(), ""),
-        rate => measured(rank, label, rate, 3, "deg/s"),
+        rate => number(rank, label, rate, 3, "deg/s"),
     };
-    let (drift, unit) = match drift {
-        Some(_) if !readouts.health.is_a_rotation => ("-".to_owned(), short_unit(energy_unit)),
+    let predicted = readouts.number("predicted_precession_rad_per_s");
+    let energy_unit = health.energy_unit;
+    let (drift, unit) = match health.energy_drift {
+        Some(_) if !health.is_a_rotation => ("-".to_owned(), short_unit(energy_unit)),
         Some(drift) => (signed("E drift", drift, 4), short_unit(energy_unit)),
         None => (short_no_drift(energy_unit).to_owned(), ""),
     };
     [
-        measured(0, "tilt", tilt, 3, "deg"),
-        rate(0, "precession", precession),
+        number(0, "tilt", tilt, 3, "deg"),
+        rate(0, "precession", reading.precession_deg_per_s()),
         rate(1, PREDICTED, predicted.map(f64::to_degrees)),
-        measured(
-            1,
-            nutation,
-            readouts.number("measured_nutation_period_s"),
-            5,
-            "s",
-        ),
+        number(1, nutation, period_s, 5, "s"),
         value(2, "E drift", drift, unit),
     ]
-}
-
-/// A number that may not be known (yet).
-fn measured(
-    rank: u8,
-    label: &'static str,
-    number: Option<f64>,
-    digits: usize,
-    unit: &'static str,
-) -> Line {
-    value(rank, label, fixed(label, number, digits), unit)
 }
 
 /// `number` beside `label` with `digits` decimals, or fewer; a dash where there is none.
@@ -320,16 +296,10 @@ fn fixed(label: &str, number: Option<f64>, digits: usize) -> String {
 
 /// As [`fixed`], with its sign.
 fn signed(label: &str, number: f64, digits: usize) -> String {
-    let is_zero = decimals_of(number, digits)
-        .trim_matches(['-', '0', '.'])
-        .is_empty();
+    let is_zero = decimals_of(number, digits).parse() == Ok(0.0);
     let number = if is_zero { 0.0 } else { number }; // no -0.0000
-    fitted(
-        label,
-        digits,
-        |digits| format!("{number:+.digits$}"),
-        number,
-    )
+    let decimals = |digits| format!("{number:+.digits$}");
+    fitted(label, digits, decimals, number)
 }
 
 /// `number` with the most decimals for which `format` leaves a blank after `label`, or with an exponent.
