@@ -5,7 +5,6 @@
 
 mod arrows;
 mod body;
-mod phase;
 mod way;
 
 use super::{PaneRow, Width, frame, round_title, write};
@@ -27,6 +26,7 @@ use crate::tui::layout::split_rows;
 use crate::tui::scene::{self, Scene, Stroke};
 use crate::tui::theme::Role;
 use crate::tui::trail::{Around, Trail};
+use arrows::Shown;
 use body::{Shape, Sign};
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
@@ -131,7 +131,7 @@ struct Subject<'a> {
     /// That of this torque and friction's together: the direction of dL.
     change: Option<Vector3<f64>>,
     /// The phase that the step pane is at, where that is on the screen.
-    shown_phase: Option<phase::Shown<'a>>,
+    shown_phase: Option<Shown<'a>>,
 }
 
 impl<'a> Subject<'a> {
@@ -159,7 +159,7 @@ impl<'a> Subject<'a> {
             shape,
             torque,
             change,
-            shown_phase: phase::Shown::of(pane.explained, pane.view),
+            shown_phase: Shown::of(pane.explained, pane.view),
         }
     }
 

@@ -1,10 +1,15 @@
-//! The arrows of the scene, and the line that says what their letters mean.
+//! The arrows of the scene, and the line that says what their letters mean. Where the step pane is shown, only the arrows
+//! that its phase is about, the axis of its turn, and the body as it stood before the step.
 
+use super::body::Sign;
 use super::{CHANGE, Label, MOMENTUM, Subject, write};
-use crate::physics::observables;
+use crate::lab::explained::{Explained, table_of};
+use crate::lab::view::View;
+use crate::physics::workings::{Phase, Value};
+use crate::physics::{State, observables};
 use crate::text::wrap::columns;
 use crate::tui::dots::Ink;
-use crate::tui::scene::{Over, Scene};
+use crate::tui::scene::{Over, Scene, Stroke};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
@@ -18,17 +23,26 @@ const TORQUE: f64 = 0.5;
 const PUSH: f64 = 0.4;
 /// The most pushes that are drawn at one time.
 const MOST_PUSHES: usize = 20;
+/// How far the axis of a turn goes beyond the body on both sides, as a share of its size.
+const AXIS: f64 = 1.0;
+/// Directions that differ by less than this, rad, are drawn as one.
+const SEEN: f64 = 0.03;
 
-/// How the arrow of this letter is drawn.
-fn look(letter: &str) -> (Role, Over) {
+/// What a letter means, at length, in short and as the letter alone; and how its arrow is drawn.
+fn meaning(letter: &str) -> (Words, Over) {
     match letter {
         // The axle is whole where it is seen upright.
-        "g" => (Role::Push, Over::BehindRod),
-        "Ω" => (Role::Y, Over::Arrow),
+        "g" => ((["g weight", "g weight", "g"], Role::Push), Over::BehindRod),
+        "Ω" => ((["Ω angular velocity", "Ω", "Ω"], Role::Y), Over::Arrow),
+        "u" => (
+            (["u axis of the turn", "u axis", "u"], Role::Y),
+            Over::Farther,
+        ),
         // These are short and cross the rim, which would hide them.
-        "τ" | "dL" => (Role::X, Over::Everything),
-        "F" => (Role::Push, Over::Everything),
-        _ => (Role::Z, Over::Farther),
+        "τ" => ((["τ torque", "τ torque", "τ"], Role::X), Over::Everything),
+        "dL" => ((["dL = τ dt", "dL", "dL"], Role::X), Over::Everything),
+        "F" => ((["F push", "F push", "F"], Role::Push), Over::Everything),
+        _ => ((["L angular momentum", "L", "L"], Role::Z), Over::Farther),
     }
 }
 
@@ -39,7 +53,7 @@ impl Subject<'_> {
             if !self.draws(letter) {
                 continue;
             }
-            let (tip, (role, over)) = (from + along, look(letter));
+            let (tip, ((_, role), over)) = (from + along, meaning(letter));
             scene.arrow(&from, &tip, Ink::Strong(role), over);
             // L goes on beyond the tip of Ω, where no letter can be read, and dL is on the side to which the torque points.
             let place = match self.torque.filter(|_| letter == "Ω") {
@@ -138,32 +152,24 @@ impl Subject<'_> {
     }
 
     fn arrows_in_words(&self, is_pushed: bool) -> Vec<Words> {
-        let is_rubbed = !self.run.simulation().loads().friction.is_none();
-        let torque = match self.torque {
-            Some(_) => ["τ torque", "τ torque", "τ"],
-            None => ["no torque", "no torque", ""],
+        let loads = self.run.simulation().loads();
+        let is_rubbed = !loads.friction.is_none();
+        let letters = ["L", "Ω", "g", "τ", "dL", "F"].into_iter();
+        let words = |letter| {
+            let (words, role) = meaning(letter).0;
+            let words = match letter {
+                "g" if loads.gravity == 0.0 => ["no weight", "", ""],
+                "τ" if self.torque.is_none() => ["no torque", "no torque", ""],
+                "dL" if self.change.is_none() => ["L stays", "", ""],
+                "dL" if is_rubbed => ["dL with friction", "dL", "dL"],
+                _ => words,
+            };
+            (words, role)
         };
-        let change = match self.change {
-            Some(_) if is_rubbed => ["dL with friction", "dL", "dL"],
-            Some(_) => ["dL = τ dt", "dL", "dL"],
-            None => ["L stays", "", ""],
-        };
-        let weight = if self.run.simulation().loads().gravity == 0.0 {
-            ["no weight", "", ""]
-        } else {
-            ["g weight", "g weight", "g"]
-        };
-        let mut words = vec![
-            (["L angular momentum", "L", "L"], Role::Z),
-            (["Ω angular velocity", "Ω", "Ω"], Role::Y),
-            (weight, Role::Push),
-            (torque, Role::X),
-            (change, Role::X),
-        ];
-        if is_pushed {
-            words.push((["F push", "F push", "F"], Role::Push));
-        }
-        words
+        letters
+            .filter(|letter| is_pushed || *letter != "F")
+            .map(words)
+            .collect()
     }
 
     /// What is drawn besides the arrows.
@@ -210,4 +216,157 @@ fn in_lines(words: impl Iterator<Item = (&'static str, Role)>, width: usize) -> 
         free = free.saturating_sub(length);
     }
     lines
+}
+
+#[derive(Clone, Copy)]
+pub struct Shown<'a> {
+    explained: &'a Explained,
+    phase: &'a Phase,
+    /// The point that was added last to the sum of the table, or chosen in it.
+    point: Option<usize>,
+}
+
+impl<'a> Shown<'a> {
+    /// The phase on the page of the step pane of `view`, if that is on the screen.
+    pub fn of(explained: Option<&'a Explained>, view: &View) -> Option<Self> {
+        let explained = explained.filter(|_| view.shows_step())?;
+        let (phase, ..) = explained.phase(view.page)?;
+        let row = view.sum_to.and_then(|rows| rows.checked_sub(1));
+        let points = table_of(phase).map(|table| &table.points);
+        Some(Self {
+            explained,
+            phase,
+            point: row
+                .zip(points)
+                .and_then(|(row, points)| points.get(row).copied()),
+        })
+    }
+
+    /// The letters of the arrows that the phase is about.
+    fn letters(&self) -> &'static [&'static str] {
+        match self.phase.name {
+            "inertia" => &[],
+            "angular velocity" => &["Ω", "L"],
+            "torque" => &["τ", "g", "F"],
+            "new momentum" | "kick" => &["L", "dL", "new L"],
+            "free motion" | "friction" => &["L"],
+            name if name.starts_with("slope") => &["Ω", "τ"],
+            _ => &["u"],
+        }
+    }
+
+    /// Whether the body is drawn as it stood before the step too.
+    fn has_before(&self) -> bool {
+        match self.phase.name {
+            "angular velocity" | "axis and angle" | "torque" | "new momentum" | "kick"
+            | "friction" => false,
+            name => !name.starts_with("slope"),
+        }
+    }
+
+    /// The direction of the last vector of this `symbol` in the step up to this phase.
+    fn direction(&self, symbol: &str) -> Option<Vector3<f64>> {
+        let is_later = |phase: &&Phase| !std::ptr::eq(*phase, self.phase);
+        let phases = self.explained.workings.phases().rev().skip_while(is_later);
+        let mut quantities = phases.flat_map(|phase| phase.quantities.iter().rev());
+        let found = quantities.find(|quantity| quantity.symbol == symbol)?;
+        match found.value {
+            Value::Vector(vector) => vector.try_normalize(f64::MIN_POSITIVE),
+            _ => None,
+        }
+    }
+
+    /// Whether friction has a part in dL, which is not along τ then.
+    fn is_rubbed(&self) -> bool {
+        let mut parts = self.explained.workings.parts.iter();
+        parts.any(|part| !part.loads.friction.is_none())
+    }
+
+    fn before(&self) -> &State {
+        &self.explained.states.0
+    }
+}
+
+impl Subject<'_> {
+    /// Whether the arrow of this letter is drawn. Where the step pane is shown, only those are that its phase is about.
+    fn draws(&self, letter: &str) -> bool {
+        let shown = self.shown_phase.as_ref();
+        shown.is_none_or(|shown| shown.letters().contains(&letter))
+    }
+
+    /// The direction of `letter` in the numbers of the phase, or else `now`.
+    fn direction(&self, letter: &str, now: Option<Vector3<f64>>) -> Option<Vector3<f64>> {
+        let shown = self.shown_phase.as_ref();
+        shown.and_then(|shown| shown.direction(letter)).or(now)
+    }
+
+    /// The axis of the turn, and the body before it.
+    pub(super) fn phase(&self, scene: &mut Scene) -> Vec<Label> {
+        let mut labels = Vec::new();
+        let Some(shown) = &self.shown_phase else {
+            return labels;
+        };
+        if let Some(axis) = shown.direction("u").filter(|_| self.draws("u")) {
+            let end = axis * (AXIS * MOMENTUM * self.arm);
+            scene.line(&-end, &end, Stroke::Thin, Ink::Strong(Role::Y));
+            labels.push(("u", Role::Y, end * 1.04));
+        }
+        if shown.has_before() {
+            self.body_before(shown.before(), scene);
+        }
+        if let Some(point) = shown.point {
+            let points = self.run.scenario().body.mechanics.points();
+            let Some(point) = points.get(point) else {
+                return labels;
+            };
+            let before = shown.before().orientation * point.at;
+            let (from, to) = match shown.phase.name {
+                "inertia" => (Vector3::zeros(), before),
+                _ => (before, self.state.orientation * point.at),
+            };
+            scene.line(&from, &to, Stroke::Thin, Ink::Strong(Role::Focus));
+            labels.push(("@", Role::Focus, to));
+        }
+        labels
+    }
+
+    /// The masses where they were before the step.
+    pub(super) fn signs_of_phase(&self, scene: &Scene) -> Vec<Sign> {
+        let shown = self.shown_phase.as_ref().filter(|shown| shown.has_before());
+        shown.map_or_else(Vec::new, |shown| self.masses_before(shown.before(), scene))
+    }
+
+    /// The direction of the new L, if the phase makes one that is seen to differ from the old.
+    fn new_momentum(&self) -> Option<Vector3<f64>> {
+        let shown = self.shown_phase.as_ref().filter(|_| self.draws("dL"))?;
+        let (old, new) = (shown.direction("L")?, shown.direction("new L")?);
+        Some(new).filter(|new| (new - old).norm() > SEEN)
+    }
+
+    /// What the letters of the phase mean.
+    fn phase_legend(&self) -> Option<Vec<Words>> {
+        let shown = self.shown_phase.as_ref()?;
+        let words = |letter: &&str| match *letter {
+            "dL" if shown.is_rubbed() => (["dL, its direction", "dL, direction", "dL"], Role::X),
+            "dL" => (
+                ["dL along τ, its direction", "dL, direction", "dL"],
+                Role::X,
+            ),
+            letter => meaning(letter).0,
+        };
+        let has = |letter: &&&str| match **letter {
+            "F" => !self.run.simulation().loads().pushes.is_empty(),
+            "u" => shown.direction("u").is_some(),
+            "new L" => false, // the arrow says it
+            _ => true,
+        };
+        let mut words: Vec<_> = shown.letters().iter().filter(has).map(words).collect();
+        if shown.has_before() {
+            words.push((["° dotted: before the step", "° before", "°"], Role::Quiet));
+        }
+        if shown.point.is_some() {
+            words.push((["@ the point", "@ point", "@"], Role::Focus));
+        }
+        Some(words)
+    }
 }
