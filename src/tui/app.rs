@@ -3,6 +3,7 @@
 use crate::lab::{Lab, Request};
 use crate::storage::session::Session;
 use crate::teach::Class;
+use crate::tui::decoder::Typed;
 use crate::tui::mouse::Pointer;
 use crate::tui::pacing::Pacing;
 use crate::tui::press::press;
@@ -110,32 +111,25 @@ fn handle(
     session: Option<&Session>,
 ) -> io::Result<ControlFlow<()>> {
     let request = match event {
-        Event::Key(key) => press(key, lab),
-        Event::Paste(text) => {
+        Event::Typed(Typed::Key(key)) => press(key, lab),
+        Event::Typed(Typed::Paste(text)) => {
             lab.paste(&text);
             None
         }
-        Event::Mouse(mouse) => pointer.act(mouse, screen.size()?, lab),
+        Event::Typed(Typed::Mouse(mouse)) => pointer.act(mouse, screen.size()?, lab),
         Event::Suspend => Some(Request::Suspend),
-        Event::Resized => {
-            // A screen that was smaller for a moment has lost a part of its content, even if it has its old size again.
-            screen.forget()?;
-            screen::fit(lab, screen.size()?);
-            None
-        }
+        // A screen that was smaller for a moment has lost a part of its content, even if it has its old size again.
+        Event::Resized => Some(Request::Redraw),
         Event::Resumed => {
             screen.resume()?;
-            screen::fit(lab, screen.size()?);
-            None
+            Some(Request::Redraw)
         }
     };
     if matches!(request, Some(Request::Quit | Request::Suspend)) {
         keep(lab, session); // what was pressed just before it came with it
     }
-    let Some(request) = request else {
-        return Ok(ControlFlow::Continue(()));
-    };
-    match do_in_class(request, lab, class, screen.size()?) {
+    let size = screen.size()?;
+    match request.and_then(|request| do_in_class(request, lab, class, size)) {
         None | Some(Request::Lesson(_) | Request::Answer(_)) => {
             return Ok(ControlFlow::Continue(()));
         }

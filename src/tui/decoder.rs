@@ -55,8 +55,7 @@ struct Paste {
 #[derive(Debug, PartialEq, Eq)]
 enum Found {
     Unfinished,
-    Key(Key),
-    Mouse(Mouse),
+    Typed(Typed),
     /// Finished, but no key that the lab uses.
     Nothing,
     Paste,
@@ -120,8 +119,7 @@ impl Decoder {
         self.pending.push(byte);
         match found(&self.pending) {
             Found::Unfinished => return,
-            Found::Key(key) => self.typed.push_back(Typed::Key(key)),
-            Found::Mouse(mouse) => self.typed.push_back(Typed::Mouse(mouse)),
+            Found::Typed(typed) => self.typed.push_back(typed),
             Found::Nothing => {}
             Found::Paste => self.paste = Some(Paste::default()),
             Found::Broken => {
@@ -190,7 +188,7 @@ fn is_body(pending: &[u8], byte: u8) -> bool {
 fn found(bytes: &[u8]) -> Found {
     match bytes {
         [ESC, rest @ ..] => after_escape(rest),
-        [byte @ 0..0x80] => Found::Key(key_of(*byte)),
+        [byte @ 0..0x80] => known(Some(key_of(*byte))),
         bytes => character(bytes),
     }
 }
@@ -204,10 +202,7 @@ fn character(bytes: &[u8]) -> Found {
         _ => return Found::Broken,
     };
     match std::str::from_utf8(bytes) {
-        Ok(text) => text
-            .chars()
-            .next()
-            .map_or(Found::Nothing, |c| Found::Key(Key::Char(c))),
+        Ok(text) => known(text.chars().next().map(Key::Char)),
         Err(error) if error.error_len().is_none() && bytes.len() < length => Found::Unfinished,
         Err(_) => Found::Broken,
     }
@@ -237,7 +232,7 @@ fn after_escape(rest: &[u8]) -> Found {
 }
 
 fn known(key: Option<Key>) -> Found {
-    key.map_or(Found::Nothing, Found::Key)
+    key.map_or(Found::Nothing, |key| Found::Typed(Typed::Key(key)))
 }
 
 /// A string that a terminal sends unasked: it ends with `ESC \` or a bell, and is ignored.
@@ -259,7 +254,8 @@ fn control_sequence(rest: &[u8]) -> Found {
         [b'[', _] | [b'M', ..] => Found::Nothing,
         [.., 0x20..0x40] => Found::Unfinished,
         [b'<', parameters @ .., last @ (b'M' | b'm')] => {
-            mouse(parameters, *last == b'M').map_or(Found::Nothing, Found::Mouse)
+            let mouse = mouse(parameters, *last == b'M').map(Typed::Mouse);
+            mouse.map_or(Found::Nothing, Found::Typed)
         }
         [parameters @ .., last @ 0x40..0x7f] => meaning(parameters, *last),
         _ => Found::Broken,
@@ -317,24 +313,19 @@ fn has_control(modifiers: u32) -> bool {
 }
 
 fn lettered(letter: u8, modifiers: u32) -> Option<Key> {
-    let shift = has_shift(modifiers);
-    Some(match letter {
-        b'A' if shift => Key::ShiftUp,
-        b'B' if shift => Key::ShiftDown,
-        b'C' if shift => Key::ShiftRight,
-        b'D' if shift => Key::ShiftLeft,
-        b'A' => Key::Up,
-        b'B' => Key::Down,
-        b'C' => Key::Right,
-        b'D' => Key::Left,
-        b'H' => Key::Home,
-        b'F' => Key::End,
-        b'Z' => Key::BackTab,
-        // rxvt with Shift.
-        b'a' => Key::ShiftUp,
-        b'b' => Key::ShiftDown,
-        b'c' => Key::ShiftRight,
-        b'd' => Key::ShiftLeft,
+    Some(match (letter, has_shift(modifiers)) {
+        // rxvt sends small letters with Shift.
+        (b'A', true) | (b'a', _) => Key::ShiftUp,
+        (b'B', true) | (b'b', _) => Key::ShiftDown,
+        (b'C', true) | (b'c', _) => Key::ShiftRight,
+        (b'D', true) | (b'd', _) => Key::ShiftLeft,
+        (b'A', false) => Key::Up,
+        (b'B', false) => Key::Down,
+        (b'C', false) => Key::Right,
+        (b'D', false) => Key::Left,
+        (b'H', _) => Key::Home,
+        (b'F', _) => Key::End,
+        (b'Z', _) => Key::BackTab,
         _ => return None,
     })
 }

@@ -8,8 +8,6 @@
 use crate::storage::at_exit::{self, Release};
 use crate::tui::decoder::Typed;
 use crate::tui::keyboard::{self, Keyboard};
-use crate::tui::keymap::Key;
-use crate::tui::mouse::Mouse;
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
@@ -78,9 +76,7 @@ fn drawn_of(size: Size) -> Rect {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    Key(Key),
-    Paste(String),
-    Mouse(Mouse),
+    Typed(Typed),
     Resized,
     Suspend,
     /// The program has been resumed, and the screen may hold anything.
@@ -188,24 +184,17 @@ impl Screen {
         self.keyboard.wait(wait)?;
         listen_without_thread();
         let typed = std::iter::from_fn(|| self.keyboard.take_typed()).take(MOST_EVENTS);
-        let mut events: Vec<_> = typed
-            .map(|typed| match typed {
-                Typed::Key(key) => Event::Key(key),
-                Typed::Paste(text) => Event::Paste(text),
-                Typed::Mouse(mouse) => Event::Mouse(mouse),
-            })
-            .collect();
         let signals = [
             (&RESIZED, Event::Resized),
             (&SUSPEND, Event::Suspend),
             (&RESUMED, Event::Resumed),
         ];
-        for (signal, event) in signals {
-            if signal.swap(false, Ordering::Relaxed) {
-                events.push(event);
-            }
-        }
-        Ok(events)
+        let signals = signals.into_iter();
+        let came = signals.filter(|(signal, _)| signal.swap(false, Ordering::Relaxed));
+        Ok(typed
+            .map(Event::Typed)
+            .chain(came.map(|(_, event)| event))
+            .collect())
     }
 }
 

@@ -212,32 +212,39 @@ impl Traces<'_> {
         plot: &Plot,
         unit: &str,
         value: Option<&str>,
-        mut after: u16,
+        after: u16,
         buf: &mut Buffer,
     ) {
         let theme = &self.view.theme;
         let quiet = theme.style(Role::Quiet);
-        if plot.is_residual {
-            after = write(plot.area, (after, 0), LESS_RUN, quiet, buf);
-        }
-        let room = plot.area.width.saturating_sub(after) as usize;
-        if let Some(value) = value {
-            let after = write(
-                plot.area,
-                (after, 0),
-                &format!(" {value}"),
-                theme.style(Role::Focus),
-                buf,
-            );
-            let rest = room.saturating_sub(value.len() + "  ()".len());
-            if let Some(range) = plot.scale.in_words_within(rest) {
-                write(plot.area, (after, 0), &format!(" ({range})"), quiet, buf);
-            }
+        let line = plot.area;
+        let less_run = if plot.is_residual { LESS_RUN } else { "" };
+        let after = write(line, (after, 0), less_run, quiet, buf);
+        let room = line.width.saturating_sub(after) as usize;
+        let Some(value) = value else {
+            let words = self.range_in_words(plot, unit, room);
+            write(line, (after, 0), &words, quiet, buf);
             return;
+        };
+        let after = write(
+            line,
+            (after, 0),
+            &format!(" {value}"),
+            theme.style(Role::Focus),
+            buf,
+        );
+        let rest = room.saturating_sub(value.len() + "  ()".len());
+        if let Some(range) = plot.scale.in_words_within(rest) {
+            write(line, (after, 0), &format!(" ({range})"), quiet, buf);
         }
-        let rest = room.saturating_sub(unit.len() + 2);
-        let range = plot.scale.in_words_within(rest).unwrap_or_default();
-        let range = format!(" {range} {unit}");
+    }
+
+    /// The range of values of a strip, and what it shows, in `room` columns.
+    fn range_in_words(&self, plot: &Plot, unit: &str, room: usize) -> String {
+        let range = plot
+            .scale
+            .in_words_within(room.saturating_sub(unit.len() + 2));
+        let range = format!(" {} {unit}", range.unwrap_or_default());
         let words: &[&str] = match (plot.is_zoom, self.detail.is_snapshot) {
             (true, true) => &HELD,
             (true, false) => &[ZOOM],
@@ -246,13 +253,7 @@ impl Traces<'_> {
         };
         let fits = |word: &&&str| range.chars().count() + word.len() < room;
         let word = words.iter().find(fits).copied().unwrap_or_default();
-        write(
-            plot.area,
-            (after, 0),
-            &format!("{range} {word}"),
-            quiet,
-            buf,
-        );
+        format!("{range} {word}")
     }
 
     /// The cursor: a line, and the value there where that does not stand above the strip.

@@ -82,19 +82,7 @@ impl Traces<'_> {
         border: Rect,
         buf: &mut Buffer,
     ) {
-        let across = self.view.marker.dots().0;
-        let mut pushed = vec![false; border.width as usize];
-        let reach_s = self
-            .run
-            .now()
-            .time_s
-            .max(self.ghost.map_or(0.0, Ghost::end_s));
-        let shown = |&(begin_s, end_s): &(f64, f64)| strip.shown(begin_s, end_s.min(reach_s));
-        for column in marks.pushes.iter().flat_map(shown) {
-            if let Some(cell) = pushed.get_mut(column / across) {
-                *cell = true;
-            }
-        }
+        let mut pushed = self.pushed(marks, strip, border.width);
         let style = self.view.theme.style(Role::Push);
         let mut put = |x: usize, text, style: Style| write(border, (x as u16, 0), text, style, buf);
         for x in (0..pushed.len()).filter(|x| pushed[*x]) {
@@ -109,6 +97,7 @@ impl Traces<'_> {
         let Some(zoomed) = zoomed.filter(|zoomed| !zoomed.is_empty()) else {
             return;
         };
+        let across = self.view.marker.dots().0;
         let cells = zoomed.start / across..(zoomed.end - 1) / across + 1;
         let style = self
             .view
@@ -120,6 +109,24 @@ impl Traces<'_> {
         if let Some(x) = word(&pushed, cells, 0) {
             put(x, ZOOM, style);
         }
+    }
+
+    /// Which of `width` cells of `strip` show times at which a push acts, up to where there is something to see.
+    fn pushed(&self, marks: &Marks, strip: &Strip, width: u16) -> Vec<bool> {
+        let across = self.view.marker.dots().0;
+        let reach_s = self
+            .run
+            .now()
+            .time_s
+            .max(self.ghost.map_or(0.0, Ghost::end_s));
+        let shown = |&(begin_s, end_s): &(f64, f64)| strip.shown(begin_s, end_s.min(reach_s));
+        let mut pushed = vec![false; width as usize];
+        for column in marks.pushes.iter().flat_map(shown) {
+            if let Some(cell) = pushed.get_mut(column / across) {
+                *cell = true;
+            }
+        }
+        pushed
     }
 }
 

@@ -112,10 +112,8 @@ impl Traces<'_> {
         let first = Content::Curve(self.detail.curve);
         let measured = self.measured_contents();
         let mut by_worth = measured.clone();
-        for content in [first]
-            .into_iter()
-            .chain([Curve::X, Curve::Z, Curve::Tilt, Curve::Y].map(Content::Curve))
-        {
+        let curves = [self.detail.curve, Curve::X, Curve::Z, Curve::Tilt, Curve::Y];
+        for content in curves.map(Content::Curve) {
             if !by_worth.contains(&content) {
                 by_worth.push(content);
             }
