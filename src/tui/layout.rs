@@ -305,27 +305,26 @@ fn columns(area: Rect, rows: &[&PaneRow]) -> Vec<(Pane, Rect)> {
     };
     let round = (rest / (round_columns + wides).max(1)).min(widest);
     let wide = (rest - round * round_columns) / wides.max(1);
-    let mut places: Vec<(Pane, Rect)> = Vec::with_capacity(rows.len());
     let mut right = area;
-    for row in rows {
+    let mut below = None;
+    let place = |row: &&PaneRow| {
+        let is_round = row.width == Width::Round;
+        if let Some(place) = below.take().filter(|_| is_round) {
+            return (row.id, place);
+        }
         let width = match row.width {
             Width::Wide => wide,
             Width::Round => round,
             Width::Fixed => row.least.0,
         };
         let [column, others] = split_columns(right, width);
-        if row.width != Width::Round || !is_stacked {
-            places.push((row.id, column));
-            right = others;
-            continue;
+        right = others;
+        if !is_round || !is_stacked {
+            return (row.id, column);
         }
         let [upper, lower] = split_rows(column, column.height / 2);
-        if places.iter().any(|(_, place)| *place == upper) {
-            places.push((row.id, lower));
-            right = others;
-        } else {
-            places.push((row.id, upper));
-        }
-    }
-    places
+        below = Some(lower);
+        (row.id, upper)
+    };
+    rows.iter().map(place).collect()
 }

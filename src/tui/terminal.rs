@@ -100,7 +100,7 @@ impl Screen {
         guard()?;
         // crossterm's own reading of NO_COLOR would take the reversed selection away too; the theme honours it.
         style::force_color_output(true);
-        let taken = take_over().and_then(|()| {
+        let screen = take_over().and_then(|()| {
             let sent = Rc::default();
             let backend = CrosstermBackend::new(Counted {
                 writer: BufWriter::with_capacity(1 << 16, stdout()?),
@@ -108,19 +108,13 @@ impl Screen {
             });
             let viewport = Viewport::Fixed(drawn_of(backend.size()?));
             let terminal = Terminal::with_options(backend, TerminalOptions { viewport })?;
-            Ok((terminal, Keyboard::new()?, sent))
-        });
-        match taken {
-            Ok((terminal, keyboard, sent)) => Ok(Self {
+            Ok(Self {
                 terminal: ManuallyDrop::new(terminal),
-                keyboard,
+                keyboard: Keyboard::new()?,
                 sent,
-            }),
-            Err(error) => {
-                give_back();
-                Err(error)
-            }
-        }
+            })
+        });
+        screen.inspect_err(|_| give_back())
     }
 
     /// Draws a frame; only what differs from the previous one is sent. Returns how many bytes that were.

@@ -164,48 +164,34 @@ mod tests {
         assert_eq!(of(9), [text(1, "0.5"), text(4, "0.0"), text(7, "-0.5")]);
     }
 
+    /// The values beside `rows` rows of a strip from `low` to `high`, the highest first, with as much between each two.
+    fn ladder(low: f64, high: f64, rows: usize) {
+        let placed = values(&Scale { low, high }, rows);
+        for pair in placed.windows(2) {
+            assert!(pair[1].0 > pair[0].0 + 1, "{rows} rows: {placed:?}");
+        }
+        let numbers = placed.iter().map(|(_, text)| text.parse::<f64>().unwrap());
+        let numbers: Vec<_> = numbers.collect();
+        if let [first, second, _, ..] = numbers[..] {
+            let apart = first - second;
+            for pair in numbers.windows(2) {
+                let is_even = (pair[0] - pair[1] - apart).abs() < 1e-9;
+                assert!(is_even, "{rows} rows: {numbers:?}");
+            }
+            assert!(first + apart > high - 1e-9, "{rows} rows: {numbers:?}");
+        }
+    }
+
     #[test]
     fn values_are_on_a_ladder_without_a_gap() {
-        for (low, high) in [
-            (29.0, 37.0),
-            (35.0, 60.0),
-            (0.6, 0.95),
-            (29.998_75, 30.001_25),
-        ] {
-            let scale = Scale { low, high };
-            for rows in 7..40 {
-                let placed = values(&scale, rows);
-                let numbers: Vec<f64> = placed
-                    .iter()
-                    .map(|(_, text)| text.parse().unwrap())
-                    .collect();
-                if let [first, second, ..] = numbers[..]
-                    && numbers.len() > 2
-                {
-                    for pair in numbers.windows(2) {
-                        let apart = pair[0] - pair[1];
-                        assert!(
-                            (apart - (first - second)).abs() < 1e-9,
-                            "{rows} rows: {numbers:?}"
-                        );
-                    }
-                    assert!(
-                        first + (first - second) > high - 1e-9,
-                        "{rows} rows: {numbers:?}"
-                    );
-                }
-                for pair in placed.windows(2) {
-                    assert!(pair[1].0 > pair[0].0 + 1, "{rows} rows: {placed:?}");
-                }
-            }
+        for rows in 7..40 {
+            ladder(29.0, 37.0, rows);
+            ladder(35.0, 60.0, rows);
+            ladder(0.6, 0.95, rows);
+            ladder(29.998_75, 30.001_25, rows);
         }
-        let labels: Vec<_> = values(
-            &Scale {
-                low: 29.0,
-                high: 37.0,
-            },
-            12,
-        );
+        let (low, high) = (29.0, 37.0);
+        let labels = values(&Scale { low, high }, 12);
         let labels: Vec<_> = labels.iter().map(|(_, label)| label.as_str()).collect();
         assert_eq!(labels, ["36", "34", "32", "30"]);
     }

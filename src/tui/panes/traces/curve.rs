@@ -60,13 +60,11 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
     let mut before: Option<(usize, usize)> = None;
     for (x, column) in columns.iter().enumerate() {
         let last = before.take();
-        let Some(column) = column else {
+        let band = |column: &Column| column.band.unwrap_or(column.extent);
+        let Some(column) = column.filter(|column| scale.meets(band(column))) else {
             continue;
         };
-        let band = column.band.unwrap_or(column.extent);
-        if !scale.meets(band) {
-            continue;
-        }
+        let band = band(&column);
         let mut set = |(from, to): (usize, usize)| {
             let rows = (from..=to).step_by(stroke.rows_apart(down));
             for y in rows.filter(|_| stroke.keeps(x, across)) {
@@ -78,8 +76,8 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
             set((row(column.extent.max), row(column.extent.min)));
             continue;
         }
-        // An edge beyond the strip is not drawn: the band goes on there.
         let (last_top, last_bottom) = last.unwrap_or((top, bottom));
+        // An edge beyond the strip is not drawn: the band goes on there.
         if is_inside(band.max) {
             set(toward(top, last_top));
         }

@@ -134,10 +134,9 @@ impl Traces<'_> {
             room -= if fits { least(content) } else { 0 };
             fits
         });
-        let others = measured
-            .into_iter()
-            .filter(|content| matches!(content, Content::Measured(_)));
-        let mut lower: Vec<_> = Content::of_every_run().into_iter().chain(others).collect();
+        let is_other = |content: &Content| matches!(content, Content::Measured(_));
+        let mut lower = Content::of_every_run().to_vec();
+        lower.extend(measured.into_iter().filter(is_other));
         if !has_zoom {
             lower.sort_by_key(|content| *content != first); // stable
         }
