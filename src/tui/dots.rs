@@ -1,4 +1,5 @@
-//! A canvas of dots on which panes draw curves, whichever characters show the dots.
+//! A canvas of dots on which panes draw curves, whichever characters show the dots: how many of these fit in a cell of the
+//! screen, and which characters show them.
 
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::Theme;
@@ -6,7 +7,94 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// The layer of a dot. Layers differ not in colour alone: see [`Marker::strong`] and [`Marker::faint`].
+impl Marker {
+    /// Dots in a cell, across and down.
+    pub fn dots(self) -> (usize, usize) {
+        match self {
+            Self::Braille => (2, 4),
+            Self::HalfBlock => (1, 2),
+            Self::Dot | Self::Ascii => (1, 1),
+        }
+    }
+
+    /// Width over height of one dot, in cells twice as high as wide.
+    pub fn dot_aspect(self) -> f64 {
+        let (across, down) = self.dots();
+        0.5 * down as f64 / across as f64
+    }
+
+    /// The bit of the dot at `x`, `y` of a cell.
+    pub fn bit(self, x: usize, y: usize) -> u8 {
+        /// Rows of the Braille patterns' bits, left and right (Unicode, block U+2800).
+        const BRAILLE: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+        match self {
+            Self::Braille => BRAILLE[y % 4][x % 2],
+            _ => 1 << (y % 2),
+        }
+    }
+
+    /// The character of a cell with these `bits` in a layer, strong, faint, under or ghost.
+    fn sign(self, layer: usize, bits: u8) -> char {
+        match (self, layer) {
+            (Self::Braille, _) => char::from_u32(0x2800 + u32::from(bits)).unwrap_or(' '),
+            (Self::HalfBlock, 0) => half_block(bits),
+            (Self::Dot, 0) => '•',
+            (Self::Ascii, 0) => '*',
+            (Self::Ascii, 1 | 2) => '.',
+            (Self::Ascii, _) => ',',
+            (_, 1 | 2) => '·',
+            (_, _) => '°',
+        }
+    }
+}
+
+fn half_block(bits: u8) -> char {
+    match bits & 3 {
+        1 => '▀',
+        2 => '▄',
+        _ => '█',
+    }
+}
+
+/// `symbol` in ASCII, for terminals whose locale is not UTF-8: a stand-in of the same width.
+pub fn ascii(symbol: &str) -> &'static str {
+    match symbol {
+        "─" => "-",
+        "█" | "▀" | "━" | "┃" | "┏" | "┓" | "┗" | "┛" => "#",
+        "…" => ".",
+        "│" => "|",
+        "┌" | "┐" | "└" | "┘" | "├" | "┤" => "+",
+        "×" => "x",
+        "═" => "=",
+        "°" => ",",
+        "▲" => "^",
+        "▼" => "v",
+        "·" | "•" => ".",
+        "■" => "#",
+        "►" => ">",
+        "◄" => "<",
+        "Ω" => "W",
+        "τ" => "T",
+        "–" | "—" | "−" | "⁻" => "-",
+        // Of the formulas of a time step.
+        "Σ" => "S",
+        "Δ" => "D",
+        "←" => "<",
+        "→" => ">",
+        "ᵀ" | "′" => "'",
+        "¹" | "₁" => "1",
+        "²" | "₂" => "2",
+        "³" | "₃" => "3",
+        "₄" => "4",
+        "₀" => "0",
+        "½" => "h",
+        "α" => "a",
+        "β" => "b",
+        _ => "?",
+    }
+}
+
+/// The layer of a dot. Layers differ not in colour alone: where dots are large, their characters differ too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
     /// The run's own motion. It hides the layers under it; the dashes of the exact motion hide it.
@@ -160,13 +248,6 @@ impl Dots {
         }
     }
 
-    /// Sets every dot of column `x` from row `top` to row `bottom`.
-    pub fn column(&mut self, x: usize, top: usize, bottom: usize, ink: Ink) {
-        for y in top..=bottom.min(self.height().saturating_sub(1)) {
-            self.set(x as f64, y as f64, ink);
-        }
-    }
-
     /// Draws the dots on the screen; cells without dots are left as they are.
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
         for (cell, position) in self.cells.iter().zip(self.area.positions()) {
@@ -177,13 +258,9 @@ impl Dots {
             let is_exact = cell.bits[1] != 0 && cell.roles[1] == Role::Exact;
             let layer = if is_exact { 1 } else { uppermost };
             let (bits, role) = (cell.bits[layer], cell.roles[layer]);
-            let symbol = match layer {
-                0 => self.marker.strong(bits),
-                1 | 2 => self.marker.faint(bits),
-                _ => self.marker.ghost(bits),
-            };
             if let Some(target) = buf.cell_mut(position) {
-                target.set_char(symbol).set_style(theme.style(role));
+                let sign = self.marker.sign(layer, bits);
+                target.set_char(sign).set_style(theme.style(role));
             }
         }
     }

@@ -11,7 +11,7 @@
 //! - [`keyboard`] takes the terminal's bytes, [`decoder`] makes keys of them; [`mouse`] says what is done where it points.
 //! - [`keymap`] is the one table of keys, [`press`](mod@press) carries out what a key stands for.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
-//!   places those are, [`theme`] and [`markers`] what colours and dots look like, [`dots`] sets the dots,
+//!   places those are, [`theme`] what colours look like, [`dots`] sets dots and says what they look like,
 //!   [`points`] what was measured, [`trail`] a path that fades, [`scene`] lines in space; [`plane`] takes metres to dots and cells.
 //! - [`recorder`] draws the lab into memory.
 
@@ -22,7 +22,6 @@ pub mod keyboard;
 pub mod keymap;
 pub mod labels;
 pub mod layout;
-pub mod markers;
 pub mod mouse;
 pub mod pacing;
 pub mod panes;

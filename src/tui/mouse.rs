@@ -2,10 +2,7 @@
 
 use super::keymap::Mode;
 use super::layout::Layout;
-use super::panes::browser;
-use super::panes::chrome;
-use super::panes::timeline::Timeline;
-use super::panes::traces::Traces;
+use super::panes::{browser, chrome, timeline::Timeline, traces::Traces};
 use super::press::press;
 use super::screen;
 use crate::lab::action::{Action, Direction, LessonKey};

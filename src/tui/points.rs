@@ -161,7 +161,6 @@ impl Points {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::view::theme::Background;
 
     const AREA: Rect = Rect {
         x: 0,
@@ -171,15 +170,11 @@ mod tests {
     };
 
     fn drawn(points: &Points, behind: &str) -> Vec<String> {
-        let theme = Theme {
-            colour: false,
-            background: Background::Dark,
-        };
         let mut buf = Buffer::empty(AREA);
         for y in 0..AREA.height {
-            buf.set_string(0, y, behind, theme.style(Role::Text));
+            buf.set_string(0, y, behind, Theme::PLAIN.style(Role::Text));
         }
-        points.render(&theme, &mut buf);
+        points.render(&Theme::PLAIN, &mut buf);
         let lines = buf.content.chunks(AREA.width.into());
         let text = |line: &[ratatui::buffer::Cell]| {
             let line: String = line.iter().map(ratatui::buffer::Cell::symbol).collect();

@@ -1,21 +1,13 @@
 //! The whole picture: every pane in its place, and on top what has been opened.
 
-use super::panes;
-use super::panes::browser;
-use super::panes::chrome;
-use super::panes::form::FormPane;
-use super::panes::help;
-use super::panes::hint;
-use super::panes::lesson;
-use super::panes::measured;
-use super::panes::timeline;
+use super::panes::{self, browser, chrome, form::FormPane, help, hint, lesson, measured, timeline};
 use crate::lab::Lab;
 use crate::lab::action::Direction;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, Part};
+use crate::tui::dots;
 use crate::tui::keymap::Mode;
 use crate::tui::layout::{Layout, Said, split_rows};
-use crate::tui::markers;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Rect};
@@ -137,7 +129,7 @@ fn to_ascii(area: Rect, buf: &mut Buffer) {
     for position in area.positions() {
         let cell = buf.cell_mut(position);
         if let Some(cell) = cell.filter(|cell| !cell.symbol().is_ascii()) {
-            let ascii = markers::ascii(cell.symbol());
+            let ascii = dots::ascii(cell.symbol());
             cell.set_symbol(ascii);
         }
     }

@@ -214,7 +214,7 @@ fn is_in_area(x: usize, y: usize, age: Age) -> bool {
 mod tests {
     use super::*;
     use crate::lab::view::markers::Marker;
-    use crate::lab::view::theme::{Background, Theme};
+    use crate::lab::view::theme::Theme;
     use crate::observe::recording::Moment;
     use ratatui::buffer::Buffer;
     use ratatui::layout::Rect;
@@ -223,14 +223,10 @@ mod tests {
 
     /// How many dots there are in each column of cells of what `trail` draws.
     fn drawn(trail: &Trail, mut dots: Dots) -> Vec<u32> {
-        let theme = Theme {
-            colour: false,
-            background: Background::Dark,
-        };
         trail.draw(&mut dots);
         let area = Rect::new(0, 0, WIDTH, 10);
         let mut buf = Buffer::empty(area);
-        dots.render(&theme, &mut buf);
+        dots.render(&Theme::PLAIN, &mut buf);
         let in_cell = |x, y| {
             let sign = buf[(x, y)].symbol().chars().next().unwrap_or(' ');
             u32::from(sign)

@@ -24,6 +24,12 @@ impl Background {
 }
 
 impl Theme {
+    /// No colours.
+    pub const PLAIN: Self = Self {
+        colour: false,
+        background: Background::Dark,
+    };
+
     pub fn colour_choice(&self) -> &'static str {
         if self.colour { "always" } else { "never" }
     }

@@ -37,16 +37,14 @@ pub fn place(lab: &Lab, layout: &Layout) -> Rect {
     if needed <= place.height || place.is_empty() {
         return place;
     }
-    let (is_bare, own) = (lab.view().bare, place.union(layout.health).height);
-    let most = match (is_bare, layout.is_cramped) {
+    let own = place.union(layout.health).height;
+    let most = match (lab.view().bare, layout.is_cramped) {
         (true, _) => place.height + 1,
         (false, true) => own.max(MOST_LINES),
         (false, false) => own,
     };
-    let height = needed
-        .min(most)
-        .min(place.bottom().saturating_sub(2))
-        .max(place.height);
+    let most = most.min(place.bottom().saturating_sub(2));
+    let height = needed.min(most).max(place.height);
     Rect {
         y: place.bottom() - height,
         height,
@@ -88,17 +86,8 @@ const NOT_KEPT: &str = "session not kept";
 
 /// What stands in the line of hints. That the session is not kept stands there as long as it is so.
 fn said(lab: &Lab) -> (String, Role) {
-    let is_quiet = lab.on_top().count.is_none() && lab.notice().is_none();
-    let (text, role) = said_of_run(lab);
-    match lab.on_top().notice.trouble() {
-        None => (text, role),
-        Some(trouble) if is_quiet => (trouble.to_owned(), Role::Warning),
-        Some(_) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), role),
-    }
-}
-
-fn said_of_run(lab: &Lab) -> (String, Role) {
-    match (lab.on_top().count, lab.notice()) {
+    let on_top = lab.on_top();
+    let (text, role) = match (on_top.count, lab.notice()) {
         (Some(MOST_COUNTED), _) => (
             format!("{MOST_COUNTED} is the most that is counted: now the key; Esc forgets it"),
             Role::Focus,
@@ -108,6 +97,13 @@ fn said_of_run(lab: &Lab) -> (String, Role) {
             Role::Focus,
         ),
         (None, Some(notice)) => (notice, Role::Focus),
-        (None, None) => (lab.note().into_owned(), Role::Text),
+        (None, None) => match on_top.notice.trouble() {
+            Some(trouble) => return (trouble.to_owned(), Role::Warning),
+            None => (lab.note().into_owned(), Role::Text),
+        },
+    };
+    match on_top.notice.trouble() {
+        Some(_) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), role),
+        None => (text, role),
     }
 }

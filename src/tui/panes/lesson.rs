@@ -250,15 +250,9 @@ fn styled(look: Look, theme: &Theme) -> Style {
 mod tests {
     use super::*;
     use crate::lab::sheet::Words;
-    use crate::lab::view::theme::Background;
-
-    const THEME: Theme = Theme {
-        colour: false,
-        background: Background::Dark,
-    };
 
     fn texts(paragraph: &Paragraph, width: u16) -> Vec<String> {
-        let lines = lines_of(paragraph, width, &THEME);
+        let lines = lines_of(paragraph, width, &Theme::PLAIN);
         let text = |line: &Line| {
             let pieces = line.pieces.iter().map(|(text, _)| text.as_str());
             " ".repeat(line.x as usize) + &pieces.collect::<String>()
@@ -301,7 +295,7 @@ mod tests {
                 words(" sleeps", Look::Plain),
             ],
         };
-        let lines = lines_of(&paragraph, 10, &THEME);
+        let lines = lines_of(&paragraph, 10, &Theme::PLAIN);
         let pieces: Vec<Vec<(&str, bool)>> = lines
             .iter()
             .map(|line| {

@@ -6,7 +6,6 @@ mod border;
 mod curve;
 mod groups;
 mod plot;
-mod points;
 
 use super::{PaneRow, Width, frame, write};
 use crate::lab::Lab;
@@ -18,8 +17,9 @@ use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::marks::Marks;
 use crate::run::Sample;
-use crate::tui::dots::Dots;
+use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::{Binding, Key, Mode, row};
+use crate::tui::points::{Ends, Points};
 use crate::tui::theme::Role;
 use plot::Plot;
 use ratatui::buffer::Buffer;
@@ -254,6 +254,48 @@ impl Traces<'_> {
         let fits = |word: &&&str| range.chars().count() + word.len() < room;
         let word = words.iter().find(fits).copied().unwrap_or_default();
         format!("{range} {word}")
+    }
+
+    /// The line of the residual 0.
+    fn draw_zero(&self, plot: &Plot, dots: &mut Dots) {
+        let row = plot.scale.from_top(0.0) * dots.height() as f64;
+        for x in (0..dots.width()).step_by(dots.in_a_cell().0) {
+            dots.set(x as f64, row, Ink::Faint(Role::Quiet));
+        }
+    }
+
+    /// The points of `plot`: those that the run has not reached are faint; as residuals they do not show.
+    fn draw_points(&self, plot: &Plot, buf: &mut Buffer) {
+        let (strip, sheet) = (&plot.strip, plot.sheet);
+        let all = self.points(plot.content).unwrap_or_default();
+        let begin = all.partition_point(|point| point.time_s < strip.begin_s);
+        let end = all.partition_point(|point| point.time_s <= strip.end_s());
+        let across = self.view.marker.dots().0;
+        let height = f64::from(sheet.height);
+        let row = |value: f64| plot.scale.from_top(value) * height;
+        let mut points = Points::new(sheet, self.view.marker);
+        for point in &all[begin..end.max(begin)] {
+            let value = if plot.is_residual {
+                point.residual()
+            } else {
+                Some(point.value)
+            };
+            let (Some(value), Some(column)) = (value, strip.column(point.time_s)) else {
+                continue;
+            };
+            let ends = |sigma: f64| -> Ends { (row(value + sigma), row(value - sigma)) };
+            let role = if point.model.is_some() {
+                Role::Measured
+            } else {
+                Role::Quiet
+            };
+            // The lowest value stands on the last row.
+            let at = row(value);
+            let at = if at == height { at - 1.0 } else { at };
+            let at = ((column / across) as f64, at);
+            points.add(at, None, point.sigma.map(ends), role);
+        }
+        points.render(&self.view.theme, buf);
     }
 
     /// The cursor: a line, and the value there where that does not stand above the strip.

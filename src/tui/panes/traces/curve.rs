@@ -116,7 +116,7 @@ fn toward(row: usize, before: usize) -> (usize, usize) {
 mod tests {
     use super::*;
     use crate::lab::view::markers::Marker;
-    use crate::lab::view::theme::{Background, Theme};
+    use crate::lab::view::theme::Theme;
     use crate::observe::recording::Extent;
     use crate::tui::theme::Role;
     use ratatui::buffer::Buffer;
@@ -129,11 +129,7 @@ mod tests {
         let ink = Ink::Strong(Role::Text);
         draw(&mut dots, columns, scale, stroke, ink);
         let mut buf = Buffer::empty(area);
-        let theme = Theme {
-            colour: false,
-            background: Background::Dark,
-        };
-        dots.render(&theme, &mut buf);
+        dots.render(&Theme::PLAIN, &mut buf);
         [0, 1].map(|y| (0..20).map(|x| buf[(x, y)].symbol()).collect())
     }
 

@@ -1,7 +1,6 @@
 //! A strip as it is drawn: what it shows, of which time and values, and its curves.
 
 use super::groups::Group;
-use super::points;
 use super::{Traces, curve::Stroke};
 use crate::lab::measured::Shown;
 use crate::observe::ghost::Ghost;
@@ -24,6 +23,8 @@ const TILT_LEAST: f64 = 0.02;
 const SHARE_LEAST: f64 = 1e-3;
 /// Least reach of x and y, as a share of the distance between pivot and traced point.
 const PLANE_LEAST: f64 = 1e-4;
+/// The least range of residuals, where nothing has been compared yet.
+const RESIDUAL_LEAST: f64 = 1e-9;
 /// A band whose edges are nearer to one another than this, in dots, has no room for a gap: it is drawn as a thick line.
 pub(super) const THINNEST_BAND: usize = 2;
 
@@ -92,7 +93,7 @@ impl Traces<'_> {
                 is_zoom: group.is_zoom,
                 is_residual,
                 scale: if is_residual {
-                    self.magnified(points::residual_scale(self.points(content)), 0.0)
+                    self.magnified(residual_scale(self.points(content)), 0.0)
                 } else {
                     self.scale(content, group.is_zoom.then_some(&group.strip))
                 },
@@ -319,7 +320,25 @@ impl Traces<'_> {
             Some(strip) => recording.extent_between(strip.begin_s, strip.end_s(), curve),
             None => recording.whole().map(|block| block.extent(curve)),
         });
-        let extents = extents.chain(points::extent(self.points(content), strip));
+        let extents = extents.chain(extent_of(self.points(content), strip));
         extents.reduce(Extent::and).unwrap_or(Extent::of(0.0))
     }
+}
+
+/// The range of values that `points` need: those in the time of `strip`, or all.
+fn extent_of(points: Option<&[Shown]>, strip: Option<&Strip>) -> Option<Extent> {
+    let is_shown = |point: &&Shown| strip.is_none_or(|strip| strip.column(point.time_s).is_some());
+    let extent = |point: &Shown| {
+        let sigma = point.sigma.unwrap_or(0.0);
+        Extent::of(point.value - sigma).and(Extent::of(point.value + sigma))
+    };
+    let points = points?.iter().filter(is_shown);
+    points.map(extent).reduce(Extent::and)
+}
+
+/// The range of the residuals of `points`, about 0.
+fn residual_scale(points: Option<&[Shown]>) -> Scale {
+    let reach = |point: &Shown| point.residual().unwrap_or(0.0).abs() + point.sigma.unwrap_or(0.0);
+    let points = points.unwrap_or_default().iter();
+    Scale::about_zero(points.map(reach).fold(RESIDUAL_LEAST, f64::max))
 }
