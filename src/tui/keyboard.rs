@@ -60,12 +60,12 @@ impl Keyboard {
                 0 => self.decoder.deadline().map_or(end, |due| due.min(end)),
                 _ => now,
             };
-            let came = self.poll(until.saturating_duration_since(now))?;
-            if came.typed {
+            let (typed, woken) = self.poll(until.saturating_duration_since(now))?;
+            if typed {
                 self.read()?;
             }
-            let has_all = self.decoder.ready() > 0 && !came.typed;
-            if has_all || came.woken || Instant::now() >= end {
+            let has_all = self.decoder.ready() > 0 && !typed;
+            if has_all || woken || Instant::now() >= end {
                 break;
             }
         }
@@ -73,7 +73,8 @@ impl Keyboard {
         Ok(())
     }
 
-    fn poll(&mut self, wait: Duration) -> io::Result<Came> {
+    /// Waits at most `wait`: whether something was typed, and whether the wait was ended by a signal or by [`wake`].
+    fn poll(&mut self, wait: Duration) -> io::Result<(bool, bool)> {
         let stdin = io::stdin();
         let mut both = [
             PollFd::new(&stdin, PollFlags::IN),
@@ -85,12 +86,7 @@ impl Keyboard {
         };
         match poll(&mut both, Some(&wait)) {
             Ok(_) => {}
-            Err(Errno::INTR) => {
-                return Ok(Came {
-                    woken: true,
-                    ..Came::default()
-                });
-            }
+            Err(Errno::INTR) => return Ok((false, true)),
             Err(error) => return Err(error.into()),
         }
         let [terminal, bell] = both.map(|one| one.revents());
@@ -101,10 +97,7 @@ impl Keyboard {
         if woken {
             while matches!(self.bell.read(&mut [0; 64]), Ok(64)) {}
         }
-        Ok(Came {
-            typed: !terminal.is_empty(),
-            woken,
-        })
+        Ok((!terminal.is_empty(), woken))
     }
 
     /// Reads bytes after a poll has reported some.
@@ -121,12 +114,6 @@ impl Keyboard {
             Err(error) => Err(error.into()),
         }
     }
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Came {
-    typed: bool,
-    woken: bool,
 }
 
 fn gone() -> io::Error {

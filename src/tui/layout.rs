@@ -127,6 +127,14 @@ impl Layout {
         }
     }
 
+    /// Where `pane` stands, if it has a place.
+    pub fn place_of(&self, pane: Pane) -> Option<Rect> {
+        let mut panes = self.panes.iter();
+        panes
+            .find(|(other, _)| *other == pane)
+            .map(|(_, place)| *place)
+    }
+
     /// The panes that stand side by side on `area`, with the lines of the whole lab around them, while none fills it.
     pub fn side_by_side(area: Rect, view: &View) -> Vec<Pane> {
         let unfilled = View {

@@ -105,8 +105,7 @@ impl Pointer {
         match self.held {
             None => {}
             Some(Held::Cursor) => {
-                let traces = layout.panes.iter().find(|(pane, _)| *pane == Pane::TRACES);
-                if let Some(&(_, place)) = traces {
+                if let Some(place) = layout.place_of(Pane::TRACES) {
                     read_off(place, at, lab);
                 }
             }

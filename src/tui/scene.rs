@@ -113,8 +113,13 @@ impl Scene {
     }
 
     pub fn line(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, stroke: Stroke, ink: Ink) {
-        let ends = [from, to].map(|end| (self.dot(end), self.camera.depth(end)));
-        self.line_of_dots(ends, stroke, ink);
+        self.line_of_dots(self.ends(from, to, 0.0), stroke, ink);
+    }
+
+    /// The dots of the ends of a line, with their depths less `nearer` (of the scene's reach).
+    fn ends(&self, from: &Vector3<f64>, to: &Vector3<f64>, nearer: f64) -> [((f64, f64), f64); 2] {
+        let depth = |end| self.camera.depth(end) - nearer * self.reach;
+        [from, to].map(|end| (self.dot(end), depth(end)))
     }
 
     /// A line between two dots with their depths.
@@ -163,8 +168,7 @@ impl Scene {
 
     /// A line with a filled head at its tip, which is seen on a small sheet too.
     pub fn arrow(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink, over: Over) {
-        let nearer = over.nearer() * self.reach;
-        let ends = [from, tip].map(|end| (self.dot(end), self.camera.depth(end) - nearer));
+        let ends = self.ends(from, tip, over.nearer());
         self.line_of_dots(ends, Stroke::Thin, ink);
         let [(begin, _), (end, depth)] = ends;
         let (x, y) = (begin.0 - end.0, begin.1 - end.1);
@@ -209,9 +213,7 @@ impl Scene {
     /// A heavy line that is in front of what lies along it: arrows along the axle do not cover it. What crosses it in front
     /// leaves no gap in it, so that it is seen as one line.
     pub fn rod(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, ink: Ink) {
-        let nearer = IN_FRONT * self.reach;
-        let ends = [from, to].map(|end| (self.dot(end), self.camera.depth(end) - nearer));
-        self.line_of_dots(ends, Stroke::Heavy, ink);
+        self.line_of_dots(self.ends(from, to, IN_FRONT), Stroke::Heavy, ink);
     }
 
     /// Sets the dots that are to be seen, and takes away those beside and behind them that were set before: in a cell with a
@@ -244,10 +246,8 @@ impl Scene {
         self.specks.sort_by(|a, b| b.depth.total_cmp(&a.depth));
         for speck in &self.specks {
             let nearest = if speck.is_parted { &nearest } else { &at_dot };
-            let is_seen = self
-                .plane
-                .place(speck.at)
-                .is_some_and(|(x, y)| speck.depth <= nearest[y * width + x] + BEHIND * self.reach);
+            let place = self.plane.place(speck.at).map(|(x, y)| y * width + x);
+            let is_seen = place.is_some_and(|at| speck.depth <= nearest[at] + BEHIND * self.reach);
             if is_seen {
                 dots.set(speck.at.0, speck.at.1, speck.ink);
             }

@@ -29,8 +29,7 @@ pub fn refit(lab: &mut Lab, size: Rect) {
 /// Scrolls the page of the lesson, on a screen of this size.
 pub fn scroll_page(lab: &mut Lab, direction: Direction, size: Rect) {
     let layout = layout(lab, true, size);
-    let place = layout.panes.iter().find(|(pane, _)| *pane == Pane::LESSON);
-    if let Some(&(_, place)) = place {
+    if let Some(place) = layout.place_of(Pane::LESSON) {
         lesson::scroll(lab, direction, place);
     }
 }

@@ -46,12 +46,9 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     ];
     let title = &lab.player().run().scenario().file.title;
     let least = title.chars().count().min(LEAST_TITLE);
-    let found = details
-        .iter()
-        .map(|details| (details, details.chars().count()))
-        .find(|(_, length)| length + least <= room);
-    if let Some((details, length)) = found {
-        let title = shortened(title, room - length);
+    let fits = |details: &&String| details.chars().count() + least <= room;
+    if let Some(details) = details.iter().find(fits) {
+        let title = shortened(title, room - details.chars().count());
         let x = write(left, (1, 0), &title, theme.style(Role::Heading), buf);
         write(left, (x, 0), details, theme.style(Role::Quiet), buf);
     }
@@ -86,10 +83,8 @@ fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
         format!("t {t} s step {step} {moves}"),
     ];
     let fits = |clock: &&String| clock.chars().count() <= width;
-    match clocks.iter().find(fits) {
-        Some(clock) => clock.clone(),
-        None => shortened(&clocks[2], width).into_owned(),
-    }
+    let clock = clocks.iter().find(fits).unwrap_or(&clocks[2]);
+    shortened(clock, width).into_owned()
 }
 
 /// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.
@@ -163,11 +158,8 @@ struct Item {
 impl Item {
     /// Columns of the key and its word.
     fn length(&self) -> u16 {
-        let word = match self.word {
-            "" => 0,
-            word => 1 + word.len(),
-        };
-        (self.key.to_string().len() + word) as u16
+        let blank = usize::from(!self.word.is_empty());
+        (self.key.to_string().len() + blank + self.word.len()) as u16
     }
 }
 

@@ -176,9 +176,8 @@ impl<'a> Subject<'a> {
         let way = self.way(&scene);
         let signs = self.signs(&way, &scene);
         let labels = labels.iter().rev();
-        let labels: Vec<_> = labels
-            .map(|(name, role, at)| (*name, *role, scene.cell(at)))
-            .collect();
+        let labels = labels.map(|(name, role, at)| (*name, *role, scene.cell(at)));
+        let labels: Vec<_> = labels.collect();
         scene.draw(&mut dots);
         way.join(&mut dots);
         dots.render(theme, buf);
@@ -214,23 +213,18 @@ impl<'a> Subject<'a> {
         let end = |side: f64| move |&(radius, z): &(f64, f64)| z * cos + side * radius * sin.abs();
         let lowest = circles.iter().map(end(-1.0)).fold(0.0, f64::min);
         let highest = circles.iter().map(end(1.0)).fold(0.0, f64::max);
-        let widest = circles
-            .iter()
-            .fold(0.0, |most, (radius, _)| radius.max(most));
+        let widest = circles.iter().map(|circle| circle.0).fold(0.0, f64::max);
         let zoom = self.view.zoom.three_d;
-        let half = (
-            MARGIN * widest / zoom,
-            MARGIN * 0.5 * (highest - lowest) / zoom,
-        );
+        let half = [widest, 0.5 * (highest - lowest)].map(|half| MARGIN * half / zoom);
         let middle = if zoom > 1.0 {
             let (right, up) = self.view.camera.project(&self.wheel());
-            (Zoom::middle(right, half.0), Zoom::middle(up, half.1))
+            (Zoom::middle(right, half[0]), Zoom::middle(up, half[1]))
         } else {
             (0.0, 0.5 * (lowest + highest))
         };
         scene::Shown {
             middle,
-            half,
+            half: half.into(),
             reach: self.reach,
         }
     }
