@@ -66,20 +66,25 @@ fn text(buf: &Buffer) -> String {
 fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: Marker) -> String {
     let mut view = view(run, marker);
     view.window_s = window_s.unwrap_or(view.window_s);
-    let view = &view;
-    let detail = &undivided(run, view);
-    drawn(
-        Traces {
-            run,
-            ghost,
-            pinned: None,
-            measured: None,
-            view,
-            detail,
-            cursor: None,
-        },
-        STRIPS,
-    )
+    let detail = undivided(run, &view);
+    let pane = Traces {
+        ghost,
+        ..traces_of(run, &view, &detail)
+    };
+    drawn(pane, STRIPS)
+}
+
+/// The strips of `run` alone.
+fn traces_of<'a>(run: &'a LiveRun, view: &'a View, detail: &'a Detail) -> Traces<'a> {
+    Traces {
+        run,
+        ghost: None,
+        pinned: None,
+        measured: None,
+        view,
+        detail,
+        cursor: None,
+    }
 }
 
 /// No strip of its own for the fast motion: all strips show the same time.
@@ -112,6 +117,18 @@ fn pane_above<'a>(run: &'a LiveRun, view: &'a View) -> FromAbove<'a> {
         measured: None,
         view,
         reading: None,
+    }
+}
+
+/// The scene in space of `run` alone.
+fn in_space<'a>(run: &'a LiveRun, view: &'a View) -> ThreeD<'a> {
+    ThreeD {
+        run,
+        view,
+        reading: None,
+        explained: None,
+        ghost: None,
+        pinned: None,
     }
 }
 
@@ -267,20 +284,7 @@ fn fast_and_slow_motion_are_both_seen() {
         swing_s: None,
         is_snapshot: false,
     };
-    let panes = |size| {
-        drawn(
-            Traces {
-                run: &now,
-                ghost: None,
-                pinned: None,
-                measured: None,
-                view,
-                detail,
-                cursor: None,
-            },
-            size,
-        )
-    };
+    let panes = |size| drawn(traces_of(&now, view, detail), size);
     insta::assert_snapshot!("fast_and_slow_27x19", panes((27, 19)));
     insta::assert_snapshot!("fast_and_slow_100x45", panes((100, 45)));
 }
@@ -311,16 +315,7 @@ fn divided(now: &LiveRun, marker: Marker, buf: &mut Buffer) {
     let wanted = Wanted::following(view.window_s);
     let readouts = LiveRun::new(Arc::clone(now.scenario())).readouts();
     let detail = &Detail::new(now, &readouts, &wanted, None);
-    let pane = Traces {
-        run: now,
-        ghost: None,
-        pinned: None,
-        measured: None,
-        view,
-        detail,
-        cursor: None,
-    };
-    pane.render(buf.area, buf);
+    traces_of(now, view, detail).render(buf.area, buf);
 }
 
 #[test]
@@ -392,37 +387,14 @@ fn a_push_that_acts_is_an_arrow() {
         let above = from_above(&now, None, Marker::Braille);
         insta::assert_snapshot!(format!("push_{name}_from_above"), above);
         let view = &view(&now, Marker::Braille);
-        let scene = drawn(
-            ThreeD {
-                run: &now,
-                view,
-                reading: None,
-                explained: None,
-                ghost: None,
-                pinned: None,
-            },
-            ROUND,
-        );
+        let scene = drawn(in_space(&now, view), ROUND);
         assert!(scene.contains('F'), "{scene}");
         insta::assert_snapshot!(format!("push_{name}_3d"), scene);
     }
     let over = run("wobble-push", &[], "", 201);
     assert!(!from_above(&over, None, Marker::Braille).contains('F'));
     let view = &view(&over, Marker::Braille);
-    assert!(
-        !drawn(
-            ThreeD {
-                run: &over,
-                view,
-                reading: None,
-                explained: None,
-                ghost: None,
-                pinned: None,
-            },
-            ROUND
-        )
-        .contains('F')
-    );
+    assert!(!drawn(in_space(&over, view), ROUND).contains('F'));
 }
 
 /// The dots of the picture of a pane, column and row, without its frame.
@@ -524,15 +496,7 @@ fn the_nearer_mass_is_drawn_over_the_farther_one() {
     let mut view = view(&run, Marker::Braille);
     (view.camera.yaw_deg, view.camera.pitch_deg) = (0.0, 0.0);
     let scene = |view: &View| {
-        let pane = ThreeD {
-            run: &run,
-            view,
-            reading: None,
-            explained: None,
-            ghost: None,
-            pinned: None,
-        };
-        let picture = drawn(pane, (60, 24));
+        let picture = drawn(in_space(&run, view), (60, 24));
         // The legend has these signs too.
         let above_legend = picture.split("L angular momentum").next();
         above_legend.unwrap_or_default().to_owned()
@@ -754,23 +718,9 @@ proptest! {
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {
-                0 => Traces { run, ghost, pinned: None, measured: None, view, detail, cursor: None }.render(inside, &mut buf),
-                1 => FromAbove {
-                    run,
-                    ghost,
-                    pinned: None, measured: None,
-                    view,
-                    reading,
-                }
-                .render(inside, &mut buf),
-                _ => ThreeD {
-                    run,
-                    view,
-                    reading,
-                    explained: None,
-                    ghost: None,
-                    pinned: None,
-                }.render(inside, &mut buf),
+                0 => Traces { ghost, ..traces_of(run, view, detail) }.render(inside, &mut buf),
+                1 => FromAbove { ghost, reading, ..pane_above(run, view) }.render(inside, &mut buf),
+                _ => ThreeD { reading, ..in_space(run, view) }.render(inside, &mut buf),
             }
             for position in around.positions().filter(|position| !inside.contains(*position)) {
                 prop_assert_eq!(buf[position].symbol(), "#", "{:?} of pane {}", position, pane);
@@ -789,7 +739,7 @@ proptest! {
         typed.chars().for_each(|c| form.type_char(c));
         (0..left).for_each(|_| form.edit_field(FieldEdit::Left));
         (form.complaint, form.info) = (complaint, vec![typed.clone(); infos]);
-        let theme = &Theme { colour: false, background: Background::Dark };
+        let theme = &Theme::PLAIN;
         let mut values = list("motion.time_step_s");
         values.shift(selected - 16);
         let mut now = run("wobble-push", &[], "", 3);
