@@ -76,9 +76,10 @@ fn keys(files: usize, others: usize, width: usize) -> String {
         format!("{KEYS}; {files}"),
         format!("/ filters, Enter opens; {files}"),
     ];
-    let fits = |form: &&String| form.len() <= width;
-    let fitting = forms.iter().find(fits);
-    fitting.map_or(KEYS, String::as_str).to_owned()
+    let mut forms = forms.into_iter();
+    forms
+        .find(|form| form.len() <= width)
+        .unwrap_or(KEYS.to_owned())
 }
 
 fn filter_line(browser: &Browser, is_typed: bool, theme: &Theme, area: Rect, buf: &mut Buffer) {
@@ -145,19 +146,14 @@ fn preview(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
 /// `name` without the `folder` in which it is, which the frame names.
 fn below<'a>(name: &'a str, folder: Option<&Path>) -> &'a str {
     let folder = folder.and_then(Path::to_str);
-    let rest = folder
-        .and_then(|folder| name.strip_prefix(folder))
-        .map(|rest| rest.trim_start_matches('/'));
+    let rest = folder.and_then(|folder| name.strip_prefix(folder));
+    let rest = rest.map(|rest| rest.trim_start_matches('/'));
     rest.filter(|rest| !rest.is_empty()).unwrap_or(name)
 }
 
 fn described(scenario: &Scenario, width: usize) -> Vec<(String, Role)> {
     let file = &scenario.file;
-    let look_at = file
-        .view
-        .as_ref()
-        .and_then(|view| view.look_at.as_deref())
-        .unwrap_or_default();
+    let look_at = file.view.as_ref().and_then(|view| view.look_at.as_deref());
     let motion = &scenario.motion;
     let run = format!(
         "{} scheme, {} steps of {} s",
@@ -166,17 +162,14 @@ fn described(scenario: &Scenario, width: usize) -> Vec<(String, Role)> {
     let paragraphs = [
         (file.title.as_str(), Role::Heading),
         (file.about.as_deref().unwrap_or_default(), Role::Text),
-        (look_at, Role::Text),
+        (look_at.unwrap_or_default(), Role::Text),
         (run.as_str(), Role::Quiet),
         (file.source.as_deref().unwrap_or_default(), Role::Quiet),
     ];
     let mut lines = Vec::new();
     for (text, role) in paragraphs.into_iter().filter(|(text, _)| !text.is_empty()) {
-        lines.extend(
-            wrapped(&printable(&text.replace('\n', " ")), width)
-                .into_iter()
-                .map(|line| (line, role)),
-        );
+        let text = wrapped(&printable(&text.replace('\n', " ")), width);
+        lines.extend(text.into_iter().map(|line| (line, role)));
         lines.push((String::new(), Role::Text));
     }
     lines
@@ -184,9 +177,7 @@ fn described(scenario: &Scenario, width: usize) -> Vec<(String, Role)> {
 
 fn refused(problem: &str, width: usize) -> Vec<(String, Role)> {
     let begin = ("cannot be opened".to_owned(), Role::Warning);
-    let lines = problem
-        .lines()
-        .flat_map(|line| wrapped(line, width))
-        .map(|line| (line, Role::Text));
+    let lines = problem.lines().flat_map(|line| wrapped(line, width));
+    let lines = lines.map(|line| (line, Role::Text));
     std::iter::once(begin).chain(lines).collect()
 }

@@ -48,23 +48,25 @@ fn fitting(beside: &Beside, end_s: f64, room: usize) -> (String, String, Vec<Str
     let sum = &beside.compared.sum;
     let name = file_name(&beside.name);
     let [long, short] = counted(beside, sum, end_s);
-    let [all, mut short_parts] = [parts(sum, false), parts(sum, true)];
-    let mut forms = vec![(long.clone(), all), (long, short_parts.clone())];
-    forms.push((short.clone(), short_parts.clone()));
-    while short_parts.pop().is_some() {
-        forms.push((short.clone(), short_parts.clone()));
+    let (all, mut in_short): (Vec<_>, Vec<_>) = parts(sum).into_iter().map(<_>::from).unzip();
+    let mut forms = vec![(long.clone(), all), (long, in_short.clone())];
+    forms.push((short.clone(), in_short.clone()));
+    while in_short.pop().is_some() {
+        forms.push((short.clone(), in_short.clone()));
     }
-    let length = |counts: &str, parts: &[String]| {
+    let length = |(counts, parts): &(String, Vec<String>)| {
         let parts = parts.iter().map(|part| columns(SEPARATOR) + columns(part));
         columns(counts) + parts.sum::<usize>()
     };
     let (whole, least) = (columns(&name), columns(&name).min(LEAST_NAME));
-    let fits = |form: &(String, Vec<String>), name| length(&form.0, &form.1) + name <= room;
-    let found = forms.iter().take(3).position(|form| fits(form, whole));
-    let found = found.or_else(|| forms.iter().position(|form| fits(form, least)));
-    let (counts, parts) = forms.swap_remove(found.unwrap_or(forms.len() - 1));
-    let rest = room.saturating_sub(length(&counts, &parts)).max(least);
-    (shortened(&name, rest).into_owned(), counts, parts)
+    let found = forms
+        .iter()
+        .take(3)
+        .position(|form| length(form) + whole <= room);
+    let found = found.or_else(|| forms.iter().position(|form| length(form) + least <= room));
+    let form = forms.swap_remove(found.unwrap_or(forms.len() - 1));
+    let rest = room.saturating_sub(length(&form)).max(least);
+    (shortened(&name, rest).into_owned(), form.0, form.1)
 }
 
 /// The name of data, or of a file without its folders.
@@ -85,63 +87,48 @@ fn points(count: usize) -> String {
 /// Where data go on after `end_s`, the end of the run, it says so, and the key that plays the run up to there.
 fn counted(beside: &Beside, sum: &Sum, end_s: f64) -> [String; 2] {
     let names: Vec<_> = beside.quantities().map(Quantity::words).collect();
-    let (names, all) = (names.join(", "), points(sum.points));
+    let (names, all, reached) = (names.join(", "), points(sum.points), sum.compared);
     let last_s = beside.last_s().filter(|&last_s| last_s > end_s);
-    match sum.compared {
-        reached
-            if let Some(last_s) = last_s
-                && reached < sum.points =>
-        {
-            let last_s = shortest(last_s);
-            [
-                format!(
-                    "({names}: {reached} of {all}, they go on after the run: g and {last_s} s play it to there)"
-                ),
-                format!("({reached} of {all}: g, {last_s} s)"),
-            ]
-        }
-        0 => [format!("({names}: {all})"), format!("({all})")],
-        reached if reached == sum.points => [format!("({names}: {all})"), format!("({all})")],
-        reached => [
-            format!("({names}: {all}, {reached} reached so far)"),
-            format!("({reached} of {all})"),
+    let [long, short] = match last_s.map(shortest) {
+        Some(last_s) if reached < sum.points => [
+            format!(
+                "{reached} of {all}, they go on after the run: g and {last_s} s play it to there"
+            ),
+            format!("{reached} of {all}: g, {last_s} s"),
         ],
-    }
+        _ if reached == 0 || reached == sum.points => [all.clone(), all],
+        _ => [
+            format!("{all}, {reached} reached so far"),
+            format!("{reached} of {all}"),
+        ],
+    };
+    [format!("({names}: {long})"), format!("({short})")]
 }
 
-/// How far the data are from the run, the most important first: at length, or in short.
-fn parts(sum: &Sum, in_short: bool) -> Vec<String> {
+/// How far the data are from the run, the most important first: each at length and in short.
+fn parts(sum: &Sum) -> Vec<[String; 2]> {
     if sum.compared == 0 {
-        return vec!["none of them reached yet".to_owned()];
+        return vec![["none of them reached yet"; 2].map(str::to_owned)];
     }
     let mut parts = Vec::new();
     if sum.weighed > 0 {
-        let chi = short(sum.chi_squared);
-        parts.push(match (sum.weighed < sum.compared, in_short) {
-            (false, _) => format!("chi² {chi}"),
-            (true, true) => format!("chi² {chi} at {}", sum.weighed),
-            (true, false) => format!("chi² {chi} at the {} with an uncertainty", sum.weighed),
+        let (chi, weighed) = (format!("chi² {}", short(sum.chi_squared)), sum.weighed);
+        parts.push(if weighed < sum.compared {
+            let at_length = format!("{chi} at the {weighed} with an uncertainty");
+            [at_length, format!("{chi} at {weighed}")]
+        } else {
+            [chi.clone(), chi]
         });
     }
     if let Some(largest) = sum.largest {
-        let (sigmas, words) = (short(largest.sigmas), largest.quantity.words());
-        parts.push(if in_short {
-            format!("largest {sigmas} sigma")
-        } else {
-            format!(
-                "largest {sigmas} sigma ({words} at {} s)",
-                short(largest.time_s)
-            )
-        });
+        let (time, words) = (short(largest.time_s), largest.quantity.words());
+        let largest = format!("largest {} sigma", short(largest.sigmas));
+        parts.push([format!("{largest} ({words} at {time} s)"), largest]);
     }
     for (quantity, scatter) in &sum.scatter {
-        let (words, off) = (quantity.words(), short(*scatter));
-        let unit = quantity.unit();
-        parts.push(if in_short {
-            format!("{words} off {off} {unit}")
-        } else {
-            format!("{words} off by {off} {unit} (rms)")
-        });
+        let (words, off, unit) = (quantity.words(), short(*scatter), quantity.unit());
+        let at_length = format!("{words} off by {off} {unit} (rms)");
+        parts.push([at_length, format!("{words} off {off} {unit}")]);
     }
     parts
 }
