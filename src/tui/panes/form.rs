@@ -64,23 +64,20 @@ impl FormPane<'_> {
     /// The lines that fit in `height`: first the selected field and a line of the complaint, then the other fields, the
     /// rest of the complaint, the keys and the information.
     fn lines(&self, width: u16, height: usize) -> Vec<Line<'_>> {
-        let form = self.form;
+        let (form, width) = (self.form, usize::from(width));
         let mut room = height;
         let reserved = usize::from(form.complaint.is_some() && height > 1);
         room -= reserved;
         let fields = taken(&mut room, form.fields.len());
         room += reserved;
-        let complaint = self.complaint(width, room.min(MOST_COMPLAINT));
+        let complaint = form.complaint.iter();
+        let most = room.min(MOST_COMPLAINT);
+        let complaint = complaint.flat_map(|text| wrapped_to(text, width, most));
+        let complaint: Vec<_> = complaint.collect();
         room -= complaint.len();
-        let keys = wrapped(form.keys, width as usize).len();
-        let keys = match taken(&mut room, keys) {
-            0 => Vec::new(),
-            taken => wrapped_to(form.keys, width as usize, taken),
-        };
-        let info = form
-            .info
-            .iter()
-            .flat_map(|text| wrapped(text, width as usize));
+        let keys = wrapped(form.keys, width).len();
+        let keys = wrapped_to(form.keys, width, taken(&mut room, keys));
+        let info = form.info.iter().flat_map(|text| wrapped(text, width));
         let mut info: Vec<_> = info.collect();
         info.truncate(taken(&mut room, info.len()));
         // The selected field is among those that are shown.
@@ -89,17 +86,10 @@ impl FormPane<'_> {
         let mut lines: Vec<_> = fields.map(|(at, field)| Line::Field(at, field)).collect();
         let quiet = |text: &str| Line::Text(text.to_owned(), Role::Quiet);
         lines.extend(info.iter().map(|text| quiet(text)));
-        let complaint = complaint.into_iter();
-        lines.extend(complaint.map(|text| Line::Text(text, Role::Warning)));
+        let warning = |text| Line::Text(text, Role::Warning);
+        lines.extend(complaint.into_iter().map(warning));
         lines.extend(keys.iter().map(|text| quiet(text)));
         lines
-    }
-
-    fn complaint(&self, width: u16, height: usize) -> Vec<String> {
-        match &self.form.complaint {
-            Some(complaint) if height > 0 => wrapped_to(complaint, width as usize, height),
-            _ => Vec::new(),
-        }
     }
 
     /// The labels in one column, and the texts beside it.

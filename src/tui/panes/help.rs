@@ -105,10 +105,7 @@ struct Line {
 fn first_shown(lines: &[Line], selected: usize, height: usize) -> usize {
     let of_it = |line: &Line| line.entry == Some(selected);
     let begin = lines.iter().position(of_it).unwrap_or(0);
-    let length = lines[begin.min(lines.len())..]
-        .iter()
-        .take_while(|line| of_it(line))
-        .count();
+    let length = lines.iter().filter(|line| of_it(line)).count();
     let above = height.saturating_sub(length) / 2;
     let most = lines.len().saturating_sub(height);
     begin.saturating_sub(above).min(most)
@@ -164,10 +161,8 @@ fn text_of(entry: &Entry, grouped: bool) -> String {
 
 /// The name of `entry`, and its `text` in lines that begin in `column`.
 fn beside(entry: &Entry, text: &str, column: usize, width: usize) -> Vec<Pieces> {
-    let text = wrapped(text, width.saturating_sub(column));
-    let text = text
-        .into_iter()
-        .map(|text| vec![(column, text, Role::Text)]);
+    let text = wrapped(text, width.saturating_sub(column)).into_iter();
+    let text = text.map(|text| vec![(column, text, Role::Text)]);
     let mut lines: Vec<Pieces> = text.collect();
     if let Some(first) = lines.first_mut() {
         first.push((NAMES, entry.name(), Role::Focus));

@@ -191,10 +191,11 @@ pub(super) fn shortened(text: &str, width: usize) -> Cow<'_, str> {
 /// As [`wrapped`], in no more than `height` lines; dots stand for what does not fit.
 pub(super) fn wrapped_to(text: &str, width: usize, height: usize) -> Vec<String> {
     let mut lines = wrapped(text, width);
-    if lines.len() > height && height > 0 {
-        let rest = lines.split_off(height - 1).join(" ");
+    if lines.len() > height {
+        let rest = lines.split_off(height.saturating_sub(1)).join(" ");
         lines.push(shortened(&rest, width).into_owned());
     }
+    lines.truncate(height);
     lines
 }
 

@@ -150,13 +150,12 @@ impl Parameters<'_> {
         if count == 0 {
             return self.edited_above_read(list, area, buf);
         }
-        let read = match list.name.as_str() {
-            "" => {
-                let mut read = derived_lines(self.scenario);
-                read.extend(shown(self.view, now_lines(self.reading)));
-                read
-            }
-            name => self.found(name, usize::MAX),
+        let read = if list.name.is_empty() {
+            let mut read = derived_lines(self.scenario);
+            read.extend(shown(self.view, now_lines(self.reading)));
+            read
+        } else {
+            self.found(&list.name, usize::MAX)
         };
         let edited = edited_lines(list);
         let height = area.height.saturating_sub(1) as usize;
@@ -204,7 +203,7 @@ impl Parameters<'_> {
         let mut place = area;
         let notes = list
             .selected()
-            .map(|value| key_lines(value, area.width as usize));
+            .map(|value| key_lines(value, area.width.into()));
         for note in notes.into_iter().flatten().rev() {
             if place.height > 1 {
                 let [above, last] = split_rows(place, place.height - 1);

@@ -19,9 +19,8 @@ pub(super) fn title(list: Option<&ValueList>, is_searched: bool) -> String {
         return ROW.title.to_owned();
     };
     let shown = list.shown();
-    let at = shown
-        .iter()
-        .position(|(index, _)| *index == list.selected_index());
+    let mut indices = shown.iter().map(|(index, _)| *index);
+    let at = indices.position(|index| index == list.selected_index());
     let at = at.map_or(0, |at| at + 1);
     match (list.name.as_str(), is_searched, shown.len()) {
         (name, true, count) => format!("/{name}_ {at} of {count}"),
@@ -148,10 +147,8 @@ pub(super) fn by_group(lines: &[Line], height: usize) -> Option<Vec<&[Line]>> {
         end += group.len();
     }
     columns.push(&lines[begin..]);
-    columns
-        .iter()
-        .all(|lines| lines.len() <= height)
-        .then_some(columns)
+    let fits = columns.iter().all(|lines| lines.len() <= height);
+    fits.then_some(columns)
 }
 
 /// The lines for which there is room, the least important left out.
