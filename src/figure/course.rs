@@ -1,8 +1,8 @@
 //! The numbers of a figure, from a run that is stepped through: once more, or while something else is read off it.
 
-use super::kind::Plotted;
 use super::path::{self, Path};
 use crate::analysis::{Beside, Health};
+use crate::export::Column;
 use crate::export::stream::{self, Ended};
 use crate::observe::recording::{Block, Extent, Recording};
 use crate::physics::State;
@@ -21,7 +21,7 @@ const PARTS: f64 = 8192.0;
 
 #[derive(Clone, Debug)]
 pub struct Wanted {
-    pub columns: Vec<Plotted>,
+    pub columns: Vec<&'static Column>,
     pub path: bool,
     pub from_s: f64,
     pub to_s: Option<f64>,
@@ -77,13 +77,13 @@ impl Course {
         })
     }
 
-    fn place(&self, column: Plotted) -> Option<usize> {
+    fn place(&self, column: &Column) -> Option<usize> {
         let mut columns = self.wanted.columns.iter();
-        columns.position(|it| it.name() == column.name())
+        columns.position(|it| it.name == column.name)
     }
 
     /// `column` part by part, in the order of time.
-    pub fn parts(&self, column: Plotted) -> Vec<Part> {
+    pub fn parts(&self, column: &Column) -> Vec<Part> {
         let Some(place) = self.place(column) else {
             return Vec::new();
         };
@@ -112,7 +112,7 @@ impl Course {
     }
 
     /// The points of `column`, every extreme among them.
-    pub fn points(&self, column: Plotted) -> Vec<[f64; 2]> {
+    pub fn points(&self, column: &Column) -> Vec<[f64; 2]> {
         let mut points: Vec<[f64; 2]> = Vec::new();
         for Part {
             times_s: [begin_s, end_s],
@@ -281,7 +281,7 @@ pub fn exact(
     let is_counted = wanted
         .columns
         .iter()
-        .any(|column| column.name() == "azimuth_deg");
+        .any(|column| column.name == "azimuth_deg");
     let begin_s = if is_counted {
         0.0
     } else {
@@ -342,7 +342,7 @@ mod tests {
     fn played(from_s: f64, to_s: f64) -> (Vec<f64>, usize, f64) {
         let scenario = Document::open("wobble-push").unwrap().scenario().unwrap();
         let wanted = Wanted {
-            columns: vec![Plotted::find("z_m").unwrap()],
+            columns: vec![Column::find("z_m").unwrap()],
             path: true,
             from_s,
             to_s: Some(to_s),
@@ -351,7 +351,7 @@ mod tests {
             ControlFlow::Continue(())
         });
         let course = course.unwrap();
-        let points = course.points(Plotted::find("z_m").unwrap());
+        let points = course.points(Column::find("z_m").unwrap());
         let times = points
             .iter()
             .map(|point| (point[0] * 1e6).round() / 1e6)
@@ -378,7 +378,7 @@ mod tests {
         let mut document = Document::open("wobble-push").unwrap();
         document.set("motion.steps=50000").unwrap();
         let scenario = Arc::new(document.scenario().unwrap());
-        let column = Plotted::find("z_m").unwrap();
+        let column = Column::find("z_m").unwrap();
         let wanted = Wanted {
             columns: vec![column],
             path: false,

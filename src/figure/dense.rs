@@ -4,11 +4,11 @@ use super::chart::Chart;
 use super::chart::curve;
 use super::chart::layout::{Layout, Placed};
 use super::course::{Course, Part};
-use super::kind::Plotted;
 use super::page::cover::Grid;
 use super::page::scene::Point;
 use super::path::Path;
 use super::request::{Drawn, Request};
+use crate::export::Column;
 use crate::observe::recording::Extent;
 use crate::text::ladder;
 use crate::text::number::{shortest, significant};
@@ -54,7 +54,7 @@ const SWINGS: f64 = 20.0;
 /// Whether a curve of a chart, which shows `columns` of `drawn`, is solid black.
 pub(super) fn warning(
     chart: &Chart,
-    columns: &[Plotted],
+    columns: &[&'static Column],
     drawn: &[Drawn],
     request: &Request,
 ) -> Option<Dense> {

@@ -2,13 +2,13 @@
 
 use super::chart::legend::longest_name;
 use super::chart::{Axis, Chart, Errors, Panel, Series, Style};
-use super::kind::Plotted;
 use super::of_runs::charts::both_ranges;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
 use super::quantity;
 use super::request::{Figure, Known, Request, Run};
 use super::size;
+use crate::export::Column;
 use crate::measured::{self, Curve, Measured, Point, at_times, places, residuals as held_against};
 use crate::run::Clock;
 use crate::scenario::Scenario;
@@ -31,7 +31,7 @@ const BESIDE_POINTS: f64 = 0.015;
 /// Where the data are no series, or the numbers of a run stop being finite.
 pub(super) fn over_time(
     chart: &mut Chart,
-    columns: &[Plotted],
+    columns: &[&'static Column],
     runs: &[Run],
     request: &Request,
     known: &Known,
@@ -42,7 +42,7 @@ pub(super) fn over_time(
     let series = series(measured)?;
     let mut drawn_on = Vec::new();
     for (index, column) in columns.iter().enumerate().take(chart.panels.len()) {
-        let is_this = |curve: &Curve| curve.quantity.name == column.name();
+        let is_this = |curve: &Curve| curve.quantity.name == column.name;
         let Some(place) = series.curves.iter().position(is_this) else {
             continue;
         };

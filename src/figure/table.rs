@@ -1,6 +1,6 @@
 //! A CSV that is no run: the table of a comparison, of a sweep, or of a fit.
 
-use crate::export::comments::above_run_file;
+use crate::export::layout::above_run_file;
 use crate::scenario::csv::{self, Csv};
 use crate::scenario::head::Head;
 use crate::scenario::{Problem, Problems};

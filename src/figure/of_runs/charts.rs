@@ -1,9 +1,9 @@
 //! The charts of runs: their curves over time, their paths from above.
 
+use crate::export::Column;
 use crate::figure::chart::layout::Layout;
 use crate::figure::chart::{Axis, Chart, Circles, Errors, Panel, Series};
 use crate::figure::dense::Dense;
-use crate::figure::kind::Plotted;
 use crate::figure::request::{Drawn, Request, Run};
 use crate::figure::{chords, dense, quantity, size};
 use crate::run::Truth;
@@ -13,18 +13,18 @@ use std::sync::Arc;
 pub(super) fn over_time(
     title: String,
     runs: &[Run],
-    columns: &[Plotted],
+    columns: &[&'static Column],
     drawn: &[Drawn],
     request: &Request,
 ) -> Chart {
     let ends = drawn.iter().map(|drawn| drawn.course.end_s);
     let end_s = ends.fold(0.0, f64::max);
     let range = (end_s > request.from_s).then_some((request.from_s, end_s));
-    let panel = |column: &Plotted| Panel {
+    let panel = |column: &&Column| Panel {
         y: Axis {
-            size: size::of(runs, column.name()),
-            flat_below: size::flat_below(column.name()),
-            ..quantity::axis(column.name())
+            size: size::of(runs, column.name),
+            flat_below: size::flat_below(column.name),
+            ..quantity::axis(column.name)
         },
         series: drawn
             .iter()
