@@ -68,10 +68,10 @@ impl LayoutFile {
     /// # Errors
     /// When a column does not exist or is named twice, or when no time can lie between the two ends.
     pub fn check(mut self) -> Result<Layout, LayoutError> {
-        self.every.take_if(|every| every.get() == 1);
         // No run is longer, and TOML has no larger number.
         let most = NonZeroU64::new(i64::MAX as u64).unwrap_or(NonZeroU64::MAX);
-        self.every = self.every.map(|every| every.min(most));
+        let every = self.every.filter(|every| every.get() > 1);
+        self.every = every.map(|every| every.min(most));
         for (key, bound) in [("from_s", self.from_s), ("to_s", self.to_s)] {
             if let Some(seconds) = bound.filter(|seconds| !seconds.is_finite() || *seconds < 0.0) {
                 let rule = format!("{seconds:?} must be a time in seconds, 0 or more");

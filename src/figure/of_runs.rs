@@ -55,52 +55,52 @@ pub fn figures(
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<Figure>>, String> {
     let nothing = Known::default();
-    let known = match runs {
-        [_] => known,
-        _ => &nothing,
-    };
-    let mut figures: Vec<Option<Figure>> = vec![None; requests.len()];
-    for (first, request) in requests.iter().enumerate() {
-        if figures[first].is_some() {
-            continue;
-        }
+    let known = if runs.len() == 1 { known } else { &nothing };
+    let mut figures = Vec::new();
+    let mut all_played: Vec<(&Request, Played)> = Vec::new();
+    for request in requests {
+        check_range(runs, request)?;
+        let alike = all_played.iter().position(|(it, _)| it.is_alike(request));
         if let Kind::Residuals = &request.kind {
-            let Some(figure) = residuals(runs, request, known, &mut watch)? else {
+            let names = names(runs, request);
+            let residuals =
+                measured::residuals(title(runs), runs, &names, request, known, &mut watch)?;
+            let Some(figure) = residuals else {
                 return Ok(None);
             };
-            figures[first] = Some(figure);
+            figures.push(figure);
             continue;
         }
-        let alike = |other: &(usize, &Request)| request.is_alike(other.1, runs);
-        let group: Vec<_> = requests.iter().enumerate().filter(alike).collect();
-        let kinds: Vec<&Kind> = group.iter().map(|(_, request)| &request.kind).collect();
-        let Some(played) = play(runs, request, &kinds, known, &mut watch)? else {
-            return Ok(None);
+        let place = match alike {
+            Some(place) => place,
+            None => {
+                let alike = requests.iter().filter(|it| it.is_alike(request));
+                let wanted = wanted(request, alike.map(|it| &it.kind));
+                let Some(played) = play(runs, request, &wanted, known, &mut watch)? else {
+                    return Ok(None);
+                };
+                all_played.push((request, played));
+                all_played.len() - 1
+            }
         };
-        for (index, request) in group {
-            figures[index] = Some(draw(runs, request, known, &played)?);
-        }
+        figures.push(draw(runs, request, known, &all_played[place].1)?);
     }
-    Ok(Some(figures.into_iter().flatten().collect()))
+    Ok(Some(figures))
 }
 
 fn play(
     runs: &[Run],
     request: &Request,
-    kinds: &[&Kind],
+    wanted: &Wanted,
     known: &Known,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Played>, String> {
-    check_range(runs, request)?;
-    let wanted = wanted(request, kinds);
-    let is_over_time = kinds.iter().any(|kind| matches!(kind, Kind::OverTime(_)));
     let mut broke = None;
     let (mut drawn, mut warnings) = (Vec::new(), Vec::new());
-    let named = names(runs, request.is_beside(), longest_name(request.width_pt));
-    for (index, (run, name)) in runs.iter().zip(named).enumerate() {
+    for (index, (run, name)) in runs.iter().zip(names(runs, request)).enumerate() {
         let recorded = known.recorded.as_ref();
-        let recorded = recorded.and_then(|all| all.part(&run.scenario, &wanted));
-        let course = recorded.or_else(|| course::play(&run.scenario, &wanted, &mut watch));
+        let recorded = recorded.and_then(|all| all.part(&run.scenario, wanted));
+        let course = recorded.or_else(|| course::play(&run.scenario, wanted, &mut watch));
         let Some(course) = course else {
             return Ok(None);
         };
@@ -108,7 +108,8 @@ fn play(
             broke.get_or_insert_with(|| format!("{}: {error}", run.named));
         }
         let faults = || not_believed(run, &course, request.exact);
-        warnings.extend(faults().or_else(|| few_a_swing(run).filter(|_| is_over_time)));
+        warnings
+            .extend(faults().or_else(|| few_a_swing(run).filter(|_| !wanted.columns.is_empty())));
         drawn.push(Drawn {
             name,
             style: Style::curve(index),
@@ -119,17 +120,15 @@ fn play(
     if request.exact {
         let is_exact = |run: &Run| is_exact(&run.scenario);
         warnings.extend(runs.iter().any(is_exact).then(|| IS_EXACT.to_owned()));
-        let Some(truths) = play_truths(runs, request, &wanted, watch) else {
+        let Some(truths) = play_truths(runs, request, wanted, watch) else {
             return Ok(None);
         };
         drawn.extend(truths);
     }
     warnings.extend(look_alike(&drawn));
     if drawn.iter().all(|drawn| drawn.course.is_empty) {
-        return Err(match broke {
-            Some(error) => error,
-            None => "there is no step of the run in that stretch of time".to_owned(),
-        });
+        let none = || "there is no step of the run in that stretch of time".to_owned();
+        return Err(broke.unwrap_or_else(none));
     }
     Ok(Some(Played {
         drawn,
@@ -147,9 +146,10 @@ fn play_truths(
 ) -> Option<Vec<Drawn>> {
     let truths = (runs.len()..).zip(truths(runs, longest_name(request.width_pt)));
     let drawn = truths.map(|(place, (run, name))| {
-        let style = match place {
-            1 => Style::exact(),
-            place => Style::curve(place),
+        let style = if place == 1 {
+            Style::exact()
+        } else {
+            Style::curve(place)
         };
         Some(Drawn {
             name,
@@ -180,8 +180,9 @@ fn draw(runs: &[Run], request: &Request, known: &Known, played: &Played) -> Resu
             chart.scene()
         }
         Kind::Above => {
-            let mut chart = charts::above(title, runs, drawn, request);
-            warnings.extend(measured::above(&mut chart, runs, request)?);
+            let (measured, none) = measured::above(runs, request)?;
+            warnings.extend(none);
+            let chart = charts::above(title, runs, drawn, measured, request);
             dense = charts::path_warning(&chart, drawn, request);
             warnings.extend(chords::warning(drawn, |course| &course.above));
             chart.scene()
@@ -202,32 +203,18 @@ fn draw(runs: &[Run], request: &Request, known: &Known, played: &Played) -> Resu
     })
 }
 
-/// The figure of what was measured less what `runs` say.
-fn residuals(
-    runs: &[Run],
-    request: &Request,
-    known: &Known,
-    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Result<Option<Figure>, String> {
-    check_range(runs, request)?;
-    let named = names(runs, request.is_beside(), longest_name(request.width_pt));
-    let named = runs.iter().zip(named);
-    let named: Vec<_> = named
-        .map(|(run, name)| (Arc::clone(&run.scenario), name))
-        .collect();
-    measured::residuals(title(runs), &named, request, known, watch)
-}
-
-fn wanted(request: &Request, kinds: &[&Kind]) -> Wanted {
-    let columns = kinds.iter().flat_map(|kind| kind.columns());
-    Wanted {
-        columns: columns.copied().collect(),
-        path: kinds
-            .iter()
-            .any(|kind| matches!(kind, Kind::Above | Kind::ThreeD)),
+fn wanted<'a>(request: &Request, kinds: impl Iterator<Item = &'a Kind>) -> Wanted {
+    let mut wanted = Wanted {
+        columns: Vec::new(),
+        path: false,
         from_s: request.from_s,
         to_s: request.to_s,
+    };
+    for kind in kinds {
+        wanted.columns.extend(kind.columns());
+        wanted.path |= matches!(kind, Kind::Above | Kind::ThreeD);
     }
+    wanted
 }
 
 fn check_range(runs: &[Run], request: &Request) -> Result<(), String> {
@@ -275,21 +262,21 @@ fn not_believed(run: &Run, course: &Course, exact: bool) -> Option<String> {
         run.scenario.motion.scheme.name,
         shortest(run.scenario.motion.time_step_s),
     );
+    let what = if health.point_holds() == Some(true) {
+        format!("the nutation of {of}: {swing}, as in the exact motion")
+    } else {
+        format!(
+            "{of}: its traced point is up to {} m ({} % of its arm) off the exact motion",
+            short(most_m),
+            short(100.0 * most_m / health.arm_m),
+        )
+    };
     let beside = if exact {
         String::new()
     } else {
         format!("; {EXACT_BESIDE}")
     };
-    Some(match health.point_holds() {
-        Some(true) => {
-            format!("do not believe the nutation of {of}: {swing}, as in the exact motion{beside}")
-        }
-        _ => format!(
-            "do not believe {of}: its traced point is up to {} m ({} % of its arm) off the exact motion{beside}",
-            short(most_m),
-            short(100.0 * most_m / health.arm_m),
-        ),
-    })
+    Some(format!("do not believe {what}{beside}"))
 }
 
 /// A nutation with fewer time steps than these is not seen in the lines from one to the next.
@@ -342,11 +329,8 @@ const IS_EXACT: &str =
 fn truths(runs: &[Run], room_pt: f64) -> Vec<(&Run, String)> {
     let motion = |run: &Run| {
         let mut file = run.scenario.file.clone();
-        (
-            file.motion.scheme,
-            file.motion.time_step_s,
-            file.motion.steps,
-        ) = (None, 0.0, 0);
+        let motion = &mut file.motion;
+        (motion.scheme, motion.time_step_s, motion.steps) = (None, 0.0, 0);
         (file.title, file.about, file.source) = (String::new(), None, None);
         (file.view, file.gyrolab) = (None, None);
         file.expected.clear();
@@ -364,12 +348,12 @@ fn truths(runs: &[Run], room_pt: f64) -> Vec<(&Run, String)> {
     };
     let count = distinct.len();
     distinct.retain(|run| !is_drawn(run));
-    let name = |run: &Run| match count {
-        1 => "exact".to_owned(),
-        _ => {
-            let title = format!("{}, exact", run.scenario.file.title);
-            letters::shortened(&title, super::page::ink::LABEL_PT, room_pt)
+    let name = |run: &Run| {
+        if count == 1 {
+            return "exact".to_owned();
         }
+        let title = format!("{}, exact", run.scenario.file.title);
+        letters::shortened(&title, super::page::ink::LABEL_PT, room_pt)
     };
     distinct.iter().map(|run| (*run, name(run))).collect()
 }

@@ -1,7 +1,7 @@
 //! What a figure of runs is to show, what it is drawn from, and what it then is.
 
 use super::chart::Style;
-use super::course::{Course, Wanted};
+use super::course::Course;
 use super::dense::Dense;
 use super::kind::Kind;
 use super::page::scene::Scene;
@@ -45,26 +45,13 @@ pub(super) struct Drawn {
 
 impl Request {
     /// Whether both are drawn from the same numbers of the runs under the same names.
-    pub(super) fn is_alike(&self, other: &Self, runs: &[Run]) -> bool {
-        let alike = |it: &Self| {
-            let stretch = Wanted {
-                columns: Vec::new(),
-                path: false,
-                from_s: it.from_s,
-                to_s: it.to_s,
-            };
-            let ends_s = runs.iter().map(|run| stretch.end_s(&run.scenario));
-            let is_of_runs = !matches!(it.kind, Kind::Residuals);
-            (
-                it.from_s,
-                ends_s.collect::<Vec<_>>(),
-                it.width_pt,
-                it.exact,
-                it.is_beside(),
-                is_of_runs,
-            )
+    pub(super) fn is_alike(&self, other: &Self) -> bool {
+        let of_runs = |it: &Self| {
+            let is_of_data = matches!(it.kind, Kind::Residuals);
+            let stretch = (it.from_s, it.to_s);
+            (stretch, it.width_pt, it.exact, it.is_beside(), is_of_data)
         };
-        alike(self) == alike(other)
+        of_runs(self) == of_runs(other)
     }
 
     /// Whether something is drawn beside the runs, so that a single run needs a name.
@@ -85,6 +72,16 @@ pub struct Figure {
 }
 
 impl Figure {
+    /// A picture of which there is nothing to say.
+    pub fn of(scene: Scene) -> Self {
+        Self {
+            scene,
+            warnings: Vec::new(),
+            dense: None,
+            broke: None,
+        }
+    }
+
     /// All that its reader should know of it, each a sentence without its end.
     pub fn told(&self) -> impl Iterator<Item = String> + '_ {
         let dense = self.dense.iter().map(ToString::to_string);

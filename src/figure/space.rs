@@ -55,7 +55,7 @@ pub(super) fn scene(
     let width_pt = request.width_pt;
     let mut space = Space {
         view: camera(runs).view(),
-        ranges: ranges(drawn, size::of(runs, "z_m")),
+        ranges: ranges(drawn, &size::axis(runs, "z_m")),
         side_pt: 0.5 * width_pt,
     };
     // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
@@ -106,17 +106,10 @@ fn camera(runs: &[Run]) -> Camera {
     }
 }
 
-fn ranges(drawn: &[Drawn], size: f64) -> [(f64, f64); 3] {
+fn ranges(drawn: &[Drawn], size: &Axis) -> [(f64, f64); 3] {
     let range = |index: usize| {
-        let values = drawn
-            .iter()
-            .flat_map(|drawn| drawn.course.path.points.iter());
-        let axis = Axis {
-            size,
-            flat_below: size::flat_below("z_m"),
-            ..Axis::default()
-        };
-        axis.range_of(values.map(|point| point[index]))
+        let paths = drawn.iter().flat_map(|drawn| &drawn.course.path.points);
+        size.range_of(paths.map(|point| point[index]))
     };
     let [x, y, z] = [0, 1, 2].map(range);
     let half = 0.5 * (x.1 - x.0).max(y.1 - y.0);

@@ -24,14 +24,17 @@ pub enum Subject {
         scenario: toml::Table,
     },
     /// What was measured, and what a fitted model says of it.
-    Fit {
-        /// The columns that say where each value was measured: the time, or settings.
-        settings: Vec<String>,
-        /// The run file of the fitted scenario.
-        run_file: String,
-        /// What was found for the free keys.
-        found: Vec<Found>,
-    },
+    Fit(Fit),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// The columns that say where each value was measured: the time, or settings.
+    pub settings: Vec<String>,
+    /// The run file of the fitted scenario.
+    pub run_file: String,
+    /// What was found for the free keys.
+    pub found: Vec<Found>,
 }
 
 /// A fitted key, as the header of a fit's CSV has it.
@@ -134,12 +137,12 @@ fn subject(header: &str, names: &[&str]) -> Option<(Subject, String)> {
     }
     let table = table?;
     if let Some(settings) = settings_of_fit(names) {
-        let fit = Subject::Fit {
+        let fit = Fit {
             settings,
             run_file: header.to_owned(),
             found: found(header),
         };
-        return Some((fit, title(&table)));
+        return Some((Subject::Fit(fit), title(&table)));
     }
     let vary = table.get("vary")?.as_array()?;
     let keys = vary.iter().filter_map(|vary| vary.get("key")?.as_str());

@@ -2,7 +2,7 @@
 
 use super::axis::{Scale, widest};
 use super::ticks::Ticks;
-use super::{Axis, Chart, Panel};
+use super::{Chart, Panel};
 use crate::figure::COLUMN_PT;
 use crate::figure::page::ink::{self, Frame, LABEL_PT, TITLE_PT};
 
@@ -48,7 +48,8 @@ impl Layout {
     /// The places of the parts of `chart`, `above` pt below the upper edge of the page.
     pub fn new(chart: &Chart, above: f64) -> Self {
         let label = ink::height(LABEL_PT);
-        let x_range = x_range(chart);
+        let all = chart.panels.iter().flat_map(|panel| &panel.series);
+        let x_range = chart.x.range_of(all.flat_map(|series| series.reach(0)));
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
         let top = above + EDGE + 0.5 * label;
         let gap = label + PANEL_GAP;
@@ -66,11 +67,7 @@ impl Layout {
                 height = width / span * (y_ranges[0].1 - y_ranges[0].0);
             }
         }
-        let x = Scale {
-            range: x_range,
-            is_log: chart.x.is_log,
-            places: (left, right),
-        };
+        let x = Scale::of(&chart.x, x_range, (left, right));
         let below = x.ticks_below(&chart.x);
         let place = |(index, (panel, ticks)): (usize, (&Panel, Ticks))| {
             let top = top + index as f64 * (height + gap);
@@ -81,7 +78,7 @@ impl Layout {
                 bottom: top + height,
             };
             Placed {
-                y: upright(&panel.y, y_ranges[index], frame.bottom, frame.top),
+                y: Scale::of(&panel.y, y_ranges[index], (frame.bottom, frame.top)),
                 x,
                 title: fitted(panel.y.title(&ticks), height + 0.7 * gap),
                 frame,
@@ -143,46 +140,21 @@ fn panel_height(chart: &Chart) -> f64 {
     (height * wide).max(longest.fold(0.0, f64::max).min(most))
 }
 
-fn x_range(chart: &Chart) -> (f64, f64) {
-    let points = chart.panels.iter().flat_map(|panel| &panel.series);
-    let values = points.flat_map(|series| series.points.iter().map(|point| point[0]));
-    chart.x.range_of(values)
-}
-
 fn y_range(panel: &Panel) -> (f64, f64) {
-    let values = panel.series.iter().flat_map(|series| {
-        let error = |index: usize| series.errors.get(index).copied().filter(|e| e.is_finite());
-        let points = series.points.iter().enumerate();
-        points.flat_map(move |(index, point)| {
-            let error = error(index).unwrap_or(0.0);
-            [point[1] - error, point[1], point[1] + error]
-        })
-    });
+    let values = panel.series.iter().flat_map(|series| series.reach(1));
     panel.y.range_of(values)
-}
-
-fn upright(axis: &Axis, range: (f64, f64), bottom: f64, top: f64) -> Scale {
-    Scale {
-        range,
-        is_log: axis.is_log,
-        places: (bottom, top),
-    }
 }
 
 fn ticks_of(chart: &Chart, ranges: &[(f64, f64)], height: f64) -> Vec<Ticks> {
     let panels = chart.panels.iter().zip(ranges);
-    let ticks =
-        panels.map(|(panel, &range)| upright(&panel.y, range, height, 0.0).ticks_beside(&panel.y));
+    let ticks = panels
+        .map(|(panel, &range)| Scale::of(&panel.y, range, (height, 0.0)).ticks_beside(&panel.y));
     ticks.collect()
 }
 
 /// Where the panels end at the right, so that half of the last label has room.
 fn right_edge(chart: &Chart, range: (f64, f64), left: f64, right: f64) -> f64 {
-    let scale = Scale {
-        range,
-        is_log: chart.x.is_log,
-        places: (left, right),
-    };
+    let scale = Scale::of(&chart.x, range, (left, right));
     let ticks = scale.ticks_below(&chart.x);
     let over = ticks.major.last().map_or(0.0, |tick| {
         let end = scale.place(tick.at) + 0.5 * ink::width(&tick.label, LABEL_PT);
