@@ -238,20 +238,22 @@ pub(super) fn folder_of(path: &Path) -> &Path {
         .unwrap_or(Path::new("."))
 }
 
+impl Destination {
+    fn out(&mut self) -> &mut dyn Write {
+        match self {
+            Self::Stdout(out) => out,
+            Self::Stream(out, _) => out,
+            Self::File { temporary, .. } => temporary.as_file_mut(),
+        }
+    }
+}
+
 impl Write for Destination {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::Stdout(out) => out.write(bytes),
-            Self::Stream(out, _) => out.write(bytes),
-            Self::File { temporary, .. } => temporary.as_file_mut().write(bytes),
-        }
+        self.out().write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match self {
-            Self::Stdout(out) => out.flush(),
-            Self::Stream(out, _) => out.flush(),
-            Self::File { temporary, .. } => temporary.as_file_mut().flush(),
-        }
+        self.out().flush()
     }
 }

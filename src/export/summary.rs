@@ -60,10 +60,6 @@ impl Summary {
             format!("{} of {step} s", sample.step)
         };
         let steps = self.steps.clone().unwrap_or_else(steps);
-        let vector = |at: &Vector3<f64>, digits: usize, unit: &str| {
-            let [x, y, z] = [at.x, at.y, at.z].map(|part| fixed(part, digits));
-            format!("{x}, {y}, {z} {unit}")
-        };
         let [now, low, high] = [
             sample.tilt_deg,
             extremes.lowest_tilt_deg,
@@ -76,8 +72,8 @@ impl Summary {
             ("scheme", scheme),
             ("steps", steps),
             ("t", format!("{} s", shortest(sample.time_s))),
-            ("x, y, z", vector(&sample.position, 9, "m")),
-            ("L", vector(&sample.momentum, 6, "J s")),
+            ("x, y, z", vector(&sample.position, 9) + " m"),
+            ("L", vector(&sample.momentum, 6) + " J s"),
             ("tilt", format!("{now} degrees; {low} to {high} in the run")),
             ("z", format!("{lowest} to {highest} m in the run")),
             ("azimuth", format!("{azimuth} degrees")),
@@ -177,19 +173,9 @@ impl Summary {
             let why = "without a load the axle goes round L, and no spin is too small to stand";
             return vec![("theory", motion), ("steady", why.to_owned())];
         }
-        let rate = |rate: Option<f64>| rate.map_or("none".to_owned(), |rate| fixed(rate, 6));
-        let steady = match (theory.slow_precession, theory.fast_precession) {
-            (None, None) => {
-                "none at this tilt: the top is too slow for a steady precession".to_owned()
-            }
-            (slow, fast) => {
-                let [slow, fast] = [slow, fast].map(rate);
-                format!("precession of {slow} (slow) or {fast} (fast) rad/s at this tilt")
-            }
-        };
         vec![
             ("theory", motion),
-            ("steady", steady + &on(" about", axis)),
+            ("steady", steady(theory)),
             ("upright", self.upright(theory)),
         ]
     }
@@ -270,6 +256,23 @@ pub fn steps_in_words(scenario: &Scenario, steps: u64) -> String {
             )
         }
     }
+}
+
+/// The steady precessions at the present tilt.
+fn steady(theory: &Theory) -> String {
+    let about = on(" about", &theory.axis);
+    let (slow, fast) = (theory.slow_precession, theory.fast_precession);
+    if slow.or(fast).is_none() {
+        return format!("none at this tilt: the top is too slow for a steady precession{about}");
+    }
+    let rate = |rate: Option<f64>| rate.map_or("none".to_owned(), |rate| fixed(rate, 6));
+    let [slow, fast] = [slow, fast].map(rate);
+    format!("precession of {slow} (slow) or {fast} (fast) rad/s at this tilt{about}")
+}
+
+fn vector(at: &Vector3<f64>, digits: usize) -> String {
+    let [x, y, z] = [at.x, at.y, at.z].map(|part| fixed(part, digits));
+    format!("{x}, {y}, {z}")
 }
 
 /// `word` and the axis where that is another than +z, else nothing.

@@ -43,17 +43,6 @@ pub struct Course {
     pub health: Option<Health>,
 }
 
-/// A column in a part of the time.
-#[derive(Clone, Copy, Debug)]
-pub struct Part {
-    /// Its first and last time, s.
-    pub times_s: [f64; 2],
-    pub extent: Extent,
-    last: f64,
-    /// How often the curve turned up or down.
-    pub turns: u32,
-}
-
 impl Wanted {
     pub fn end_s(&self, scenario: &Scenario) -> f64 {
         let end_s = Clock::end_s(scenario);
@@ -82,12 +71,24 @@ impl Course {
         columns.position(|it| it.name == column.name)
     }
 
-    /// `column` part by part, in the order of time.
-    pub fn parts(&self, column: &Column) -> Vec<Part> {
-        let Some(place) = self.place(column) else {
+    /// The recording that has `column`, and its place there.
+    fn recording(&self, column: &Column) -> Option<(&Recording, usize)> {
+        let place = self.place(column)?;
+        Some((&self.curves[place / TOGETHER], place % TOGETHER))
+    }
+
+    /// How often `column` turned up or down.
+    pub(super) fn turns(&self, column: &Column) -> u32 {
+        let whole = self.recording(column);
+        let whole = whole.and_then(|(curves, place)| Some(curves.whole()?.turned[place]));
+        whole.unwrap_or(0)
+    }
+
+    /// The points of `column`, every extreme among them.
+    pub fn points(&self, column: &Column) -> Vec<[f64; 2]> {
+        let Some((curves, place)) = self.recording(column) else {
             return Vec::new();
         };
-        let curves = &self.curves[place / TOGETHER];
         let Some(whole) = curves.whole() else {
             return Vec::new();
         };
@@ -100,36 +101,25 @@ impl Course {
                 _ => blocks.push(block),
             }
         }
-        let curve = place % TOGETHER;
-        let parts = blocks.iter().map(|block| Part {
-            times_s: [block.begin_s, block.end_s],
-            extent: block.extents[curve],
-            last: block.last[curve],
-            turns: block.turned[curve],
-        });
-        let are_finite = |part: &Part| (part.extent.min + part.extent.max + part.last).is_finite();
-        parts.filter(are_finite).collect()
-    }
-
-    /// The points of `column`, every extreme among them.
-    pub fn points(&self, column: &Column) -> Vec<[f64; 2]> {
         let mut points: Vec<[f64; 2]> = Vec::new();
-        for Part {
-            times_s: [begin_s, end_s],
-            extent: Extent { min, max },
-            last,
-            ..
-        } in self.parts(column)
-        {
+        for block in blocks {
+            let (Extent { min, max }, last) = (block.extents[place], block.last[place]);
+            if !(min + max + last).is_finite() {
+                continue;
+            }
             let before = points.last().map_or(min, |point| point[1]);
             let (early, late) = if max - before < before - min {
                 (max, min)
             } else {
                 (min, max)
             };
-            let middle_s = 0.5 * (begin_s + end_s);
+            let middle_s = 0.5 * (block.begin_s + block.end_s);
             let middle = (late != last).then_some([middle_s, late]);
-            let part = [Some([begin_s, early]), middle, Some([end_s, last])];
+            let part = [
+                Some([block.begin_s, early]),
+                middle,
+                Some([block.end_s, last]),
+            ];
             for point in part.into_iter().flatten() {
                 if points.last() != Some(&point) {
                     points.push(point);
@@ -250,9 +240,7 @@ pub fn play(
         recorder.follow(step);
         beside.hold(step.after());
     };
-    let ended = stream::play::<io::Sink>(&mut simulation, last, None, each, |step, last| {
-        watch(step, last)
-    });
+    let ended = stream::play::<io::Sink>(&mut simulation, last, None, each, &mut watch);
     let broke = match ended {
         Ok((Ended::Stopped, _)) => return None,
         Ok((Ended::NotFinite(error), _)) => Some(error),
@@ -278,10 +266,8 @@ pub fn exact(
 ) -> Option<Course> {
     let mut truth = Truth::new(Arc::clone(scenario));
     // The azimuth is counted on from the start, and nothing else needs what came before.
-    let is_counted = wanted
-        .columns
-        .iter()
-        .any(|column| column.name == "azimuth_deg");
+    let mut columns = wanted.columns.iter();
+    let is_counted = columns.any(|column| column.name == "azimuth_deg");
     let begin_s = if is_counted {
         0.0
     } else {
@@ -289,10 +275,8 @@ pub fn exact(
     };
     let end_s = wanted.end_s(scenario);
     truth.state_at(begin_s);
-    let period_s = truth
-        .motion()
-        .closed_form()
-        .and_then(LagrangeTop::nutation_period);
+    let closed = truth.motion().closed_form();
+    let period_s = closed.and_then(LagrangeTop::nutation_period);
     let fine_s = period_s.map_or(f64::INFINITY, |period_s| period_s / A_PERIOD);
     let apart_s = fine_s.min(scenario.motion.time_step_s);
     let count = ((end_s - begin_s) / apart_s).ceil().clamp(LEAST, MOST) as u64;

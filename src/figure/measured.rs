@@ -55,15 +55,7 @@ pub(super) fn over_time(
         if request.to_s.is_none() {
             range.1 = times().fold(range.1, f64::max);
         }
-        // The error bar of a point on the frame would lie on it.
-        let room = BESIDE_POINTS * (range.1 - range.0);
-        let (least, most) = (range.0 + room, range.1 - room);
-        if times().any(|time_s| time_s < least) {
-            range.0 -= room;
-        }
-        if times().any(|time_s| time_s > most) {
-            range.1 += room;
-        }
+        make_room(range, times);
     }
     let count = times().count();
     for (index, it) in added {
@@ -82,6 +74,18 @@ pub(super) fn over_time(
             columns.join(",")
         )
     }))
+}
+
+/// Widens the `range` of an axis where one of `times` would stand on the frame: its error bar would lie on it.
+fn make_room<Times: Iterator<Item = f64>>(range: &mut (f64, f64), times: impl Fn() -> Times) {
+    let room = BESIDE_POINTS * (range.1 - range.0);
+    let (least, most) = (range.0 + room, range.1 - room);
+    if times().any(|time_s| time_s < least) {
+        range.0 -= room;
+    }
+    if times().any(|time_s| time_s > most) {
+        range.1 += room;
+    }
 }
 
 /// The places from above, or what is to be said where the data do not tell any.

@@ -95,27 +95,17 @@ fn play(
     known: &Known,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Played>, String> {
+    let Some(mut drawn) = play_runs(runs, request, wanted, known, &mut watch) else {
+        return Ok(None);
+    };
     let mut broke = None;
-    let (mut drawn, mut warnings) = (Vec::new(), Vec::new());
-    for (index, (run, name)) in runs.iter().zip(names(runs, request)).enumerate() {
-        let recorded = known.recorded.as_ref();
-        let recorded = recorded.and_then(|all| all.part(&run.scenario, wanted));
-        let course = recorded.or_else(|| course::play(&run.scenario, wanted, &mut watch));
-        let Some(course) = course else {
-            return Ok(None);
-        };
+    let mut warnings = Vec::new();
+    for (run, Drawn { course, .. }) in runs.iter().zip(&drawn) {
         if let Some(error) = course.broke {
             broke.get_or_insert_with(|| format!("{}: {error}", run.named));
         }
-        let faults = || not_believed(run, &course, request.exact);
-        warnings
-            .extend(faults().or_else(|| few_a_swing(run).filter(|_| !wanted.columns.is_empty())));
-        drawn.push(Drawn {
-            name,
-            style: Style::curve(index),
-            course,
-            is_exact: false,
-        });
+        let few = || few_a_swing(run).filter(|_| !wanted.columns.is_empty());
+        warnings.extend(not_believed(run, course, request.exact).or_else(few));
     }
     if request.exact {
         let is_exact = |run: &Run| is_exact(&run.scenario);
@@ -137,6 +127,29 @@ fn play(
     }))
 }
 
+/// Plays `runs` as far as nothing is known of them; `None` where `watch` said no.
+fn play_runs(
+    runs: &[Run],
+    request: &Request,
+    wanted: &Wanted,
+    known: &Known,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Option<Vec<Drawn>> {
+    let named = runs.iter().zip(names(runs, request)).enumerate();
+    let drawn = named.map(|(index, (run, name))| {
+        let recorded = known.recorded.as_ref();
+        let recorded = recorded.and_then(|all| all.part(&run.scenario, wanted));
+        let course = recorded.or_else(|| course::play(&run.scenario, wanted, &mut watch))?;
+        Some(Drawn {
+            name,
+            style: Style::curve(index),
+            course,
+            is_exact: false,
+        })
+    });
+    drawn.collect()
+}
+
 /// Plays the exact motions beside `runs`; `None` where `watch` said no.
 fn play_truths(
     runs: &[Run],
@@ -146,10 +159,9 @@ fn play_truths(
 ) -> Option<Vec<Drawn>> {
     let truths = (runs.len()..).zip(truths(runs, longest_name(request.width_pt)));
     let drawn = truths.map(|(place, (run, name))| {
-        let style = if place == 1 {
-            Style::exact()
-        } else {
-            Style::curve(place)
+        let style = match place {
+            1 => Style::exact(),
+            place => Style::curve(place),
         };
         Some(Drawn {
             name,

@@ -35,8 +35,8 @@ const TITLE_GAP: f64 = 3.0;
 /// z is said to be stretched from this factor on.
 const SEEN: f64 = 1.1;
 
-/// Ways around the box.
-const SIDES: [f64; 2] = [-0.5, 0.5];
+/// Lengths of the box's sides.
+const SIZES: [f64; 3] = [1.0, 1.0, TALL];
 
 struct Space {
     view: View,
@@ -53,20 +53,7 @@ pub(super) fn scene(
     request: &Request,
 ) -> (Scene, Option<Dense>) {
     let width_pt = request.width_pt;
-    let mut space = Space {
-        view: camera(runs).view(),
-        ranges: ranges(drawn, &size::axis(runs, "z_m")),
-        side_pt: 0.5 * width_pt,
-    };
-    // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
-    for _ in 0..4 {
-        let (left, _, right, _) = extent(&space.draw(&[], &[]));
-        let over = right - left - (width_pt - 2.0 * EDGE);
-        space.side_pt = (space.side_pt - over / 1.45).max(0.1 * width_pt);
-        if over.abs() < 0.2 {
-            break;
-        }
-    }
+    let space = Space::fitted(runs, drawn, width_pt);
     let (names, mut styles): (Vec<_>, Vec<_>) = drawn
         .iter()
         .map(|drawn| chords::as_drawn(drawn, &drawn.course.path))
@@ -81,9 +68,9 @@ pub(super) fn scene(
     let (left, top, right, bottom) = extent(&items);
     let above = legend.height_above(width_pt) + EDGE;
     let shift = at(0.5 * (width_pt - left - right), above - top);
-    let moved = std::mem::take(&mut items.items).into_iter();
-    let moved = moved.map(|item| item.mapped(|p| at(p.x + shift.x, p.y + shift.y)));
-    items.items = moved.collect();
+    for item in &mut items.items {
+        *item = item.clone().mapped(|p| at(p.x + shift.x, p.y + shift.y));
+    }
     items.title = title.to_owned();
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + EDGE;
@@ -132,6 +119,25 @@ fn extent(scene: &Scene) -> (f64, f64, f64, f64) {
 }
 
 impl Space {
+    /// The space in which the box and its labels are as wide as the page.
+    fn fitted(runs: &[Run], drawn: &[Drawn], width_pt: f64) -> Self {
+        let mut space = Self {
+            view: camera(runs).view(),
+            ranges: ranges(drawn, &size::axis(runs, "z_m")),
+            side_pt: 0.5 * width_pt,
+        };
+        // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
+        for _ in 0..4 {
+            let (left, _, right, _) = extent(&space.draw(&[], &[]));
+            let over = right - left - (width_pt - 2.0 * EDGE);
+            space.side_pt = (space.side_pt - over / 1.45).max(0.1 * width_pt);
+            if over.abs() < 0.2 {
+                break;
+            }
+        }
+        space
+    }
+
     /// How much longer z is drawn than x and y, where that is to be seen, as markup.
     fn stretched(&self) -> Option<String> {
         let [x, _, z] = self.ranges.map(|(low, high)| high - low);
@@ -145,11 +151,7 @@ impl Space {
 
     /// A place in the box: from −1/2 to 1/2 along each side, but for its height.
     fn boxed(&self, point: &[f64; 3]) -> Vector3<f64> {
-        let share = |index: usize| {
-            let (low, high) = self.ranges[index];
-            (point[index] - low) / (high - low) - 0.5
-        };
-        Vector3::new(share(0), share(1), TALL * share(2))
+        Vector3::from_fn(|axis, _| SIZES[axis] * (self.share(axis, point[axis]) - 0.5))
     }
 
     /// Where a place in the box stands on the page, pt.
@@ -185,20 +187,22 @@ impl Space {
 
     /// The ends of the edge along which the axis runs.
     fn edge(&self, axis: usize) -> [Vector3<f64>; 2] {
-        let (x, y, floor) = (self.near(0), self.near(1), -0.5 * TALL);
-        match axis {
-            0 => SIDES.map(|side| Vector3::new(side, y, floor)),
-            1 => SIDES.map(|side| Vector3::new(x, side, floor)),
-            _ => {
-                // The one farther to the left of the two uprights between a near and a far side.
-                let uprights = [(x, -y), (-x, y)].map(|(x, y)| Vector3::new(x, y, 0.0));
-                let left = uprights
-                    .into_iter()
-                    .min_by(|a, b| self.place(a).x.total_cmp(&self.place(b).x));
-                let foot = left.unwrap_or_default();
-                SIDES.map(|side| Vector3::new(foot.x, foot.y, TALL * side))
-            }
+        let (x, y) = (self.near(0), self.near(1));
+        let mut foot = Vector3::new(x, y, -0.5 * TALL);
+        if axis == 2 {
+            // The one farther to the left of the two uprights between a near and a far side.
+            let [a, b] = [(x, -y), (-x, y)].map(|(x, y)| Vector3::new(x, y, 0.0));
+            foot = if self.place(&b).x < self.place(&a).x {
+                b
+            } else {
+                a
+            };
         }
+        [-0.5, 0.5].map(|side| {
+            let mut end = foot;
+            end[axis] = side * SIZES[axis];
+            end
+        })
     }
 
     /// Where the value `share` of the way along an edge stands.
@@ -237,39 +241,34 @@ impl Space {
 
     /// The far sides: their grids, and their outlines.
     fn walls(&self, ticks: &[Ticks; 3], scene: &mut Scene) {
-        let (x, y, top) = (self.near(0), self.near(1), 0.5 * TALL);
-        let mut line = |a: [f64; 3], b: [f64; 3], width: f64, level: u8| {
-            let ends = [a, b].map(|[x, y, z]| self.place(&Vector3::new(x, y, z)));
+        /// Along which sides the grid of each axis runs.
+        const ALONG: [[usize; 2]; 3] = [[1, 2], [0, 2], [1, 0]];
+        let far = Vector3::new(-self.near(0), -self.near(1), -0.5 * TALL);
+        let mut line = |from: Vector3<f64>, along: usize, width: f64, level: u8| {
+            let ends = [-0.5, 0.5].map(|side| {
+                let mut end = from;
+                end[along] = side * SIZES[along];
+                self.place(&end)
+            });
             scene.line(ends, width, grey(level));
         };
         for (axis, ticks) in ticks.iter().enumerate() {
             for tick in &ticks.major {
-                let share = self.share(axis, tick.at) - 0.5;
-                let [first, second] = match axis {
-                    0 => [
-                        [[share, -0.5, -top], [share, 0.5, -top]],
-                        [[share, -y, -top], [share, -y, top]],
-                    ],
-                    1 => [
-                        [[-0.5, share, -top], [0.5, share, -top]],
-                        [[-x, share, -top], [-x, share, top]],
-                    ],
-                    _ => {
-                        let z = share * TALL;
-                        [[[-x, -0.5, z], [-x, 0.5, z]], [[-0.5, -y, z], [0.5, -y, z]]]
-                    }
-                };
-                line(first[0], first[1], 0.35, 215);
-                line(second[0], second[1], 0.35, 215);
+                let mut from = far;
+                from[axis] = SIZES[axis] * (self.share(axis, tick.at) - 0.5);
+                for along in ALONG[axis] {
+                    line(from, along, 0.35, 215);
+                }
             }
         }
-        let corner = [-x, -y];
-        for z in [-top, top] {
-            line([corner[0], corner[1], z], [x, -y, z], 0.4, 140);
-            line([corner[0], corner[1], z], [-x, y, z], 0.4, 140);
+        let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+        let across = |axis: &Vector3<f64>| far - axis * (2.0 * far.dot(axis));
+        for corner in [far, across(&z)] {
+            line(corner, 0, 0.4, 140);
+            line(corner, 1, 0.4, 140);
         }
-        for (x, y) in [(-x, -y), (x, -y), (-x, y)] {
-            line([x, y, -top], [x, y, top], 0.4, 140);
+        for corner in [far, across(&x), across(&y)] {
+            line(corner, 2, 0.4, 140);
         }
     }
 

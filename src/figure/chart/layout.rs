@@ -51,22 +51,9 @@ impl Layout {
         let all = chart.panels.iter().flat_map(|panel| &panel.series);
         let x_range = chart.x.range_of(all.flat_map(|series| series.reach(0)));
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
+        let (left, right, height) = sides(chart, x_range, &y_ranges);
         let top = above + EDGE + 0.5 * label;
         let gap = label + PANEL_GAP;
-        let mut height = panel_height(chart);
-        let mut right = chart.width_pt - EDGE - 1.0;
-        let mut left = EDGE;
-        // Which ticks there are depends on the room, and the room on their labels: three rounds settle both.
-        for _ in 0..3 {
-            let ticks = ticks_of(chart, &y_ranges, height);
-            let widest = ticks.iter().map(widest).fold(0.0, f64::max);
-            left = EDGE + title_height() + TITLE_GAP + widest + GAP;
-            right = right.min(right_edge(chart, x_range, left, right));
-            if chart.is_true_to_scale {
-                let (width, span) = (right - left, x_range.1 - x_range.0);
-                height = width / span * (y_ranges[0].1 - y_ranges[0].0);
-            }
-        }
         let x = Scale::of(&chart.x, x_range, (left, right));
         let below = x.ticks_below(&chart.x);
         let place = |(index, (panel, ticks)): (usize, (&Panel, Ticks))| {
@@ -86,13 +73,8 @@ impl Layout {
             }
         };
         let ticks = ticks_of(chart, &y_ranges, height);
-        let panels: Vec<_> = chart
-            .panels
-            .iter()
-            .zip(ticks)
-            .enumerate()
-            .map(place)
-            .collect();
+        let panels = chart.panels.iter().zip(ticks).enumerate();
+        let panels: Vec<_> = panels.map(place).collect();
         let bottom = panels.last().map_or(top, |panel| panel.frame.bottom);
         Self {
             title: fitted(chart.x.title(&below), chart.width_pt - 2.0 * EDGE),
@@ -111,6 +93,24 @@ impl Layout {
     pub fn title_at(&self) -> f64 {
         self.labels_at() + TITLE_BELOW + ink::height(TITLE_PT)
     }
+}
+
+/// Where the panels begin and end, and how high each is, pt.
+fn sides(chart: &Chart, x_range: (f64, f64), y_ranges: &[(f64, f64)]) -> (f64, f64, f64) {
+    let mut height = panel_height(chart);
+    let (mut left, mut right) = (EDGE, chart.width_pt - EDGE - 1.0);
+    // Which ticks there are depends on the room, and the room on their labels: three rounds settle both.
+    for _ in 0..3 {
+        let ticks = ticks_of(chart, y_ranges, height);
+        let widest = ticks.iter().map(widest).fold(0.0, f64::max);
+        left = EDGE + title_height() + TITLE_GAP + widest + GAP;
+        right = right.min(right_edge(chart, x_range, left, right));
+        if chart.is_true_to_scale {
+            let (width, span) = (right - left, x_range.1 - x_range.0);
+            height = width / span * (y_ranges[0].1 - y_ranges[0].0);
+        }
+    }
+    (left, right, height)
 }
 
 /// Height of a title with what hangs below its baseline, pt.

@@ -11,6 +11,7 @@ pub mod legend;
 pub mod slope;
 pub mod ticks;
 
+use crate::figure::extent;
 use crate::figure::page::ink::{BLACK, Mark, grey};
 use crate::figure::page::scene::{Color, Pen};
 use ticks::{Ticks, power_of_ten};
@@ -318,9 +319,11 @@ impl Axis {
             Some(size) => format!(" + {size}"),
             None => format!(" − {offset}"),
         });
-        let power = (ticks.power != 0).then(|| power_of_ten(ticks.power));
-        let unit = [power.as_deref().unwrap_or_default(), &self.unit].join(" ");
-        match unit.trim() {
+        let power = match ticks.power {
+            0 => String::new(),
+            power => power_of_ten(power),
+        };
+        match format!("{power} {}", self.unit).trim() {
             "" => format!("{}{offset}", self.name),
             unit => format!("{}{offset} ({unit})", self.name),
         }
@@ -337,11 +340,7 @@ impl Axis {
         let is_shown = |value: &f64| value.is_finite() && (!self.is_log || *value > 0.0);
         let values = values.filter(is_shown);
         let values = values.map(|value| value.clamp(-FARTHEST, FARTHEST));
-        let extent = values.fold(None, |extent: Option<(f64, f64)>, value| {
-            let (low, high) = extent.unwrap_or((value, value));
-            Some((low.min(value), high.max(value)))
-        });
-        let Some((low, high)) = extent else {
+        let Some((low, high)) = extent(values) else {
             return if self.is_log { (0.1, 10.0) } else { (0.0, 1.0) };
         };
         if self.is_log {

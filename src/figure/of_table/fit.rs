@@ -4,6 +4,7 @@ use super::{Rows, from_left, grouped, numbers, within_room};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::ticks::{power_of_ten, with_minus};
 use crate::figure::chart::{Axis, Panel, Series, Style};
+use crate::figure::extent;
 use crate::figure::page::letters;
 use crate::figure::quantity;
 use crate::figure::table::{Fit, Found, Table};
@@ -76,18 +77,14 @@ impl Drawing<'_> {
 
     /// What the legend says of the model: the value of each free key.
     fn model(&self) -> Vec<String> {
-        let lines = self.fit.found.iter().enumerate().map(|(index, found)| {
-            let model = if index == 0 { "model: " } else { "" };
-            let value = stated(found);
-            let said = format!("{model}{}", self.said(&found.key, &value));
+        let mut lines = Vec::new();
+        for found in &self.fit.found {
+            let model = if lines.is_empty() { "model: " } else { "" };
+            let said = format!("{model}{}", self.said(&found.key, &stated(found)));
             let value = significant(found.value, DIGITS);
-            within_room(
-                said,
-                &format!("{model}{} = {value}", found.key),
-                self.room_pt,
-            )
-        });
-        let mut lines: Vec<_> = lines.collect();
+            let plain = format!("{model}{} = {value}", found.key);
+            lines.push(within_room(said, &plain, self.room_pt));
+        }
         if lines.is_empty() {
             lines.push("model".to_owned());
         }
@@ -126,19 +123,13 @@ fn along<'a>(table: &Table, settings: &'a [String]) -> Result<(&'a str, Vec<f64>
         sorted.dedup();
         sorted.len()
     };
-    let numbers = settings.iter().filter_map(|name| {
+    let numbers = settings.iter().rev().filter_map(|name| {
         let numbers = table.numbers(name)?;
         let is_whole = numbers.iter().all(|number| number.is_finite());
         is_whole.then_some((name.as_str(), numbers))
     });
     // Of columns with as many, the first.
-    let most = numbers.reduce(|most, next| {
-        if count(&next.1) > count(&most.1) {
-            next
-        } else {
-            most
-        }
-    });
+    let most = numbers.max_by_key(|(_, numbers)| count(numbers));
     most.ok_or_else(|| "no column that says where its values were measured is a number".to_owned())
 }
 
@@ -146,8 +137,7 @@ fn along<'a>(table: &Table, settings: &'a [String]) -> Result<(&'a str, Vec<f64>
 fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
     let scenario = Document::parse("", run_file).ok()?.scenario().ok()?;
     let quantity = Quantity::find(name)?;
-    let end = x.iter().copied().fold(0.0, f64::max);
-    let begin = x.iter().copied().fold(end, f64::min);
+    let (begin, end) = extent(x.iter().copied())?;
     let time = |index: u32| begin + (end - begin) * (f64::from(index) / f64::from(POINTS));
     let times_s: Vec<f64> = (0..=POINTS).map(time).collect();
     let point = |row| Point {
@@ -252,12 +242,8 @@ impl Drawing<'_> {
         } else {
             ("residual", quantity::axis(name).unit)
         };
-        let x = || all().map(|&row| self.x[row]);
-        let ends = (
-            x().fold(f64::INFINITY, f64::min),
-            x().fold(f64::NEG_INFINITY, f64::max),
-        );
-        let mut series = vec![Series::level(ends)];
+        let ends = extent(all().map(|&row| self.x[row]));
+        let mut series: Vec<_> = ends.map(Series::level).into_iter().collect();
         for (index, (_, rows)) in groups.iter().enumerate() {
             let mut left = self.series(column, rows)?;
             if are_stated {

@@ -6,6 +6,7 @@ mod curves;
 use super::{from_left, numbers, within_room};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::{Axis, Panel, Series, Style};
+use crate::figure::extent;
 use crate::figure::quantity;
 use crate::figure::table::Table;
 use columns::{Part, Quantity, Role};
@@ -39,20 +40,11 @@ pub(super) fn drawn(
         let values = table.numbers(key)?;
         Some((key, values))
     });
-    let Some((key, along)) = along else {
-        return Err(format!(
-            "none of the varied keys is a number: {}",
-            varied.join(", ")
-        ));
-    };
+    let none = || format!("none of the varied keys is a number: {}", varied.join(", "));
+    let (key, along) = along.ok_or_else(none)?;
     let curves = curves::curves(swept, key);
     if curves.len() > MOST_SERIES {
-        let others: Vec<_> = varied.iter().filter(|it| *it != key).cloned().collect();
-        return Err(format!(
-            "{} curves would stand beside each other, and {MOST_SERIES} can be told apart: vary {} at fewer values, or name the key with the most values last, which makes it the horizontal axis",
-            curves.len(),
-            others.join(", ")
-        ));
+        return Err(too_many_curves(curves.len(), varied, key));
     }
     let quantities = columns::quantities(table, varied, columns);
     if columns.is_empty() && quantities.len() > MOST_PANELS {
@@ -81,6 +73,14 @@ pub(super) fn drawn(
         ..quantity::axis_in(scenario, key)
     };
     Ok((x, panels))
+}
+
+fn too_many_curves(count: usize, varied: &[String], along: &str) -> String {
+    let others: Vec<_> = varied.iter().filter(|key| *key != along).cloned().collect();
+    format!(
+        "{count} curves would stand beside each other, and {MOST_SERIES} can be told apart: vary {} at fewer values, or name the key with the most values last, which makes it the horizontal axis",
+        others.join(", ")
+    )
 }
 
 fn too_many(quantities: &[Quantity]) -> String {
@@ -127,54 +127,42 @@ fn lines_with_gaps<'a>(
     with_gaps.collect()
 }
 
-/// What is said of lines of theory that have gaps, and of runs that failed.
+/// What is said of lines of theory that have gaps, of runs that gave no number or one that its axis cannot show, and of runs
+/// that failed.
 pub(super) fn gaps(table: &Table, columns: &[&str], varied: &[String]) -> Vec<String> {
     let rows = rows_run(table, varied);
-    let gaps = lines_with_gaps(table, columns, varied);
-    let gaps = gaps.into_iter().map(|(name, missing)| {
-        format!(
-            "the line of {name} has gaps: in {missing} of {} rows theory states no value, for a reason that gyrolab man numbers gives",
-            rows.len()
-        )
-    });
-    let unmeasured = unmeasured(table, columns, varied, &rows);
-    let failed = table.count() - rows.len();
-    let failed = (failed > 0).then(|| {
-        format!(
-            "the runs of {failed} of {} rows failed: they have no points",
-            table.count()
-        )
-    });
-    gaps.chain(unmeasured).chain(failed).collect()
-}
-
-/// What is said of `rows` whose run did give no number, or one that its axis cannot show.
-fn unmeasured(table: &Table, columns: &[&str], varied: &[String], rows: &[usize]) -> Vec<String> {
-    let quantities = columns::quantities(table, varied, columns);
-    let parts = quantities.iter().flatten();
-    let parts = parts.filter(|part| part.role != Role::Theory);
-    let told = parts.filter_map(|part| {
-        let values = table.numbers(&part.name)?;
-        let count = |is: &dyn Fn(f64) -> bool| rows.iter().filter(|row| is(values[**row])).count();
-        let missing = count(&|value| !value.is_finite());
-        let zeros = count(&|value| value == 0.0);
+    let (run, all) = (rows.len(), table.count());
+    let mut told = Vec::new();
+    for (name, missing) in lines_with_gaps(table, columns, varied) {
+        told.push(format!(
+            "the line of {name} has gaps: in {missing} of {run} rows theory states no value, for a reason that gyrolab man numbers gives"
+        ));
+    }
+    for part in columns::quantities(table, varied, columns).iter().flatten() {
+        let (name, values) = (&part.name, table.numbers(&part.name).unwrap_or_default());
+        if part.role == Role::Theory || values.is_empty() {
+            continue;
+        }
+        let count = |is: fn(f64) -> bool| rows.iter().filter(|row| is(values[**row])).count();
+        let missing = count(|value| !value.is_finite());
+        let zeros = count(|value| value == 0.0);
         if missing > 0 {
-            return Some(format!(
-                "there is no {} in {missing} of {} rows: no point is drawn for them",
-                part.name,
-                rows.len()
+            told.push(format!(
+                "there is no {name} in {missing} of {run} rows: no point is drawn for them"
+            ));
+        } else if zeros > 0 && spans_decades(values.into_iter(), DECADES) {
+            told.push(format!(
+                "in {zeros} of {run} rows {name} is 0, which a logarithmic axis does not show"
             ));
         }
-        let is_log = spans_decades(values.into_iter(), DECADES);
-        (zeros > 0 && is_log).then(|| {
-            format!(
-                "in {zeros} of {} rows {} is 0, which a logarithmic axis does not show",
-                rows.len(),
-                part.name
-            )
-        })
-    });
-    told.collect()
+    }
+    if run < all {
+        let failed = all - run;
+        told.push(format!(
+            "the runs of {failed} of {all} rows failed: they have no points"
+        ));
+    }
+    told
 }
 
 /// What is drawn, and over what.
@@ -311,12 +299,7 @@ impl Drawing<'_> {
 
 /// Whether no value is below 0, and the greatest is at least `times` the least above 0.
 fn spans_decades(values: impl Iterator<Item = f64>, times: f64) -> bool {
-    let extent = values
-        .filter(|value| value.is_finite() && *value != 0.0)
-        .fold(None, |extent: Option<(f64, f64)>, value| {
-            let (low, high) = extent.unwrap_or((value, value));
-            Some((low.min(value), high.max(value)))
-        });
+    let extent = extent(values.filter(|value| value.is_finite() && *value != 0.0));
     extent.is_some_and(|(low, high)| low > 0.0 && high / low >= times)
 }
 

@@ -62,6 +62,17 @@ impl Setter {
         }
     }
 
+    /// What comes between the letter before and the next one, pt.
+    fn gap(&mut self, style: &table::Style, letter: char) -> f64 {
+        match self.before.take() {
+            Some(before) if before.is_italic == self.is_italic => {
+                self.size_pt / UNITS * style.kerning(before.letter, letter)
+            }
+            Some(before) if !letter.is_whitespace() => before.overhang_pt,
+            _ => 0.0,
+        }
+    }
+
     /// Sets a letter, or a box where the table has none.
     pub fn letter(&mut self, letter: char) {
         let style = if self.is_italic { &*ITALIC } else { &*REGULAR };
@@ -70,13 +81,7 @@ impl Setter {
         let drawn = slanted.or_else(|| REGULAR.letter(letter));
         let drawn = drawn.unwrap_or_else(missing);
         let scale = self.size_pt / UNITS;
-        self.x_pt += match self.before.take() {
-            Some(before) if before.is_italic == self.is_italic => {
-                scale * style.kerning(before.letter, letter)
-            }
-            Some(before) if !letter.is_whitespace() => before.overhang_pt,
-            _ => 0.0,
-        };
+        self.x_pt += self.gap(style, letter);
         let origin = Point {
             x: self.x_pt,
             y: self.baseline_pt,
