@@ -80,19 +80,13 @@ impl Destination {
         if Self::is_for_stdout(path) {
             return Ok(Self::Stdout(io::stdout()));
         }
-        let mut options = OpenOptions::new();
-        let is_stream = match (descriptor(path), fs::metadata(path)) {
-            (Some(_), _) => {
-                options.append(true); // do not overwrite earlier output
-                true
-            }
-            (None, Ok(there)) => !there.is_file() && !there.is_dir(),
-            (None, Err(_)) => false,
-        };
-        if !is_stream {
+        let is_descriptor = descriptor(path).is_some();
+        if !is_descriptor && !Self::may_wait(path) {
             return Self::open_file(path, replace);
         }
-        let opened = options.write(true).open(path);
+        // What a descriptor already leads to is not overwritten.
+        let mut options = OpenOptions::new();
+        let opened = options.append(is_descriptor).write(true).open(path);
         let opened = opened.map_err(|error| DestinationError::refused(path, error))?;
         Ok(Self::Stream(opened, path.to_owned()))
     }

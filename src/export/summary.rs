@@ -110,7 +110,7 @@ impl Summary {
         measured: Option<Measured>,
         is_strobed: bool,
     ) -> String {
-        const FAR_APART: &str = "strobed, the steps are too far apart to see it";
+        const FAR_APART: &str = "the steps are too far apart to see it";
         let readouts = &self.readouts;
         let axis = readouts.theory.as_ref().map(|theory| theory.axis);
         let about = on(" about", &axis.unwrap_or(Axis::Z));
@@ -129,7 +129,7 @@ impl Summary {
         let measured = match measured.filter(is_finite) {
             Some(Measured { value, .. }) if is_strobed => {
                 let shown = significant(value, 3);
-                format!("{FAR_APART}, and show {shown} {unit}{about_z}")
+                format!("strobed: {FAR_APART}, and show {shown} {unit}{about_z}")
             }
             Some(Measured {
                 value, uncertainty, ..
@@ -137,7 +137,7 @@ impl Summary {
                 let (value, uncertainty) = (fixed(value, 6), exponent(uncertainty, 1));
                 format!("{value} +- {uncertainty} {unit} measured{about_z}")
             }
-            None if is_strobed => format!("none measured{about_z}: {FAR_APART}"),
+            None if is_strobed => format!("none measured{about_z}: strobed, {FAR_APART}"),
             None => format!("none measured{about_z}"),
         };
         format!("{theory}, {measured}")

@@ -43,6 +43,17 @@ pub struct Course {
     pub health: Option<Health>,
 }
 
+/// A column in a part of the time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    /// Its first and last time, s.
+    pub times_s: [f64; 2],
+    pub extent: Extent,
+    last: f64,
+    /// How often the curve turned up or down.
+    pub turns: u32,
+}
+
 impl Wanted {
     pub fn end_s(&self, scenario: &Scenario) -> f64 {
         let end_s = Clock::end_s(scenario);
@@ -71,55 +82,36 @@ impl Course {
         columns.position(|it| it.name == column.name)
     }
 
-    /// The recording that has `column`, and its place there.
-    fn recording(&self, column: &Column) -> Option<(&Recording, usize)> {
-        let place = self.place(column)?;
-        Some((&self.curves[place / TOGETHER], place % TOGETHER))
-    }
-
-    /// How often `column` turned up or down.
-    pub(super) fn turns(&self, column: &Column) -> u32 {
-        let whole = self.recording(column);
-        let whole = whole.and_then(|(curves, place)| Some(curves.whole()?.turned[place]));
-        whole.unwrap_or(0)
+    /// `column` part by part, in the order of time.
+    pub(super) fn parts(&self, column: &Column) -> Vec<Part> {
+        let Some(place) = self.place(column) else {
+            return Vec::new();
+        };
+        let blocks = in_parts(&self.curves[place / TOGETHER]);
+        let curve = place % TOGETHER;
+        let parts = blocks.iter().map(|block| Part {
+            times_s: [block.begin_s, block.end_s],
+            extent: block.extents[curve],
+            last: block.last[curve],
+            turns: block.turned[curve],
+        });
+        let are_finite = |part: &Part| (part.extent.min + part.extent.max + part.last).is_finite();
+        parts.filter(are_finite).collect()
     }
 
     /// The points of `column`, every extreme among them.
     pub fn points(&self, column: &Column) -> Vec<[f64; 2]> {
-        let Some((curves, place)) = self.recording(column) else {
-            return Vec::new();
-        };
-        let Some(whole) = curves.whole() else {
-            return Vec::new();
-        };
-        let length_s = (whole.end_s - whole.begin_s).max(f64::MIN_POSITIVE);
-        let part = |time_s: f64| (PARTS * ((time_s - whole.begin_s) / length_s)) as u64;
-        let mut blocks: Vec<Block> = Vec::new();
-        for block in curves.finest() {
-            match blocks.last_mut() {
-                Some(last) if part(last.begin_s) == part(block.end_s) => *last = last.and(block),
-                _ => blocks.push(block),
-            }
-        }
         let mut points: Vec<[f64; 2]> = Vec::new();
-        for block in blocks {
-            let (Extent { min, max }, last) = (block.extents[place], block.last[place]);
-            if !(min + max + last).is_finite() {
-                continue;
-            }
+        for part in self.parts(column) {
+            let ([begin_s, end_s], Extent { min, max }) = (part.times_s, part.extent);
             let before = points.last().map_or(min, |point| point[1]);
             let (early, late) = if max - before < before - min {
                 (max, min)
             } else {
                 (min, max)
             };
-            let middle_s = 0.5 * (block.begin_s + block.end_s);
-            let middle = (late != last).then_some([middle_s, late]);
-            let part = [
-                Some([block.begin_s, early]),
-                middle,
-                Some([block.end_s, last]),
-            ];
+            let middle = (late != part.last).then_some([0.5 * (begin_s + end_s), late]);
+            let part = [Some([begin_s, early]), middle, Some([end_s, part.last])];
             for point in part.into_iter().flatten() {
                 if points.last() != Some(&point) {
                     points.push(point);
@@ -128,6 +120,23 @@ impl Course {
         }
         points
     }
+}
+
+/// The blocks of `curves`, those of one part of the time together.
+fn in_parts(curves: &Recording) -> Vec<Block> {
+    let mut blocks: Vec<Block> = Vec::new();
+    let Some(whole) = curves.whole() else {
+        return blocks;
+    };
+    let length_s = (whole.end_s - whole.begin_s).max(f64::MIN_POSITIVE);
+    let part = |time_s: f64| (PARTS * ((time_s - whole.begin_s) / length_s)) as u64;
+    for block in curves.finest() {
+        match blocks.last_mut() {
+            Some(last) if part(last.begin_s) == part(block.end_s) => *last = last.and(block),
+            _ => blocks.push(block),
+        }
+    }
+    blocks
 }
 
 #[derive(Clone, Debug)]

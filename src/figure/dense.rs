@@ -2,13 +2,14 @@
 
 use super::chart::Chart;
 use super::chart::curve;
-use super::chart::layout::Layout;
-use super::course::Course;
+use super::chart::layout::{Layout, Placed};
+use super::course::{Course, Part};
 use super::page::cover::Grid;
 use super::page::scene::Point;
 use super::path::Path;
 use super::request::{Drawn, Request};
 use crate::export::Column;
+use crate::observe::recording::Extent;
 use crate::text::ladder;
 use crate::text::number::{shortest, significant};
 use std::fmt;
@@ -42,6 +43,12 @@ impl fmt::Display for Dense {
     }
 }
 
+/// Parts of a panel's width that are looked at, pt.
+const PART_PT: f64 = 1.0;
+/// Such a part is black where its lines are as wide as it is, and reach over so much of the panel's height.
+const HIGH: f64 = 0.05;
+/// A curve is black where more than this share of its parts is, a path where this share of its places is inside of the ink.
+const MOST: f64 = 0.5;
 const SWINGS: f64 = 20.0;
 
 /// What is said where a curve of a chart, which shows `columns` of `drawn`, is solid black.
@@ -53,37 +60,44 @@ pub(super) fn warning(
 ) -> Option<Dense> {
     let layout = Layout::new(chart, 0.0);
     let panels = columns.iter().zip(chart.panels.iter().zip(&layout.panels));
-    let black = panels.flat_map(|(column, (panel, placed))| {
+    let all = panels.flat_map(|(column, (panel, placed))| {
         let series = drawn.iter().zip(&panel.series);
-        let black = series.filter(|(_, series)| {
-            let lines = placed.pieces(series);
-            black_pt2(&lines, series.style.width_pt).is_some()
-        });
-        black.map(|(drawn, _)| drawn.course.turns(column))
+        series.map(|(drawn, series)| {
+            swings_of_black(&drawn.course.parts(column), series.style.width_pt, placed)
+        })
     });
     // What shows the most swings shows those of the other curves too.
-    let turns = black.max()?;
+    let turns = all.flatten().max()?;
     let (_, end_s) = layout.panels.first()?.x.range;
     // The axis may begin before the run, so that a measured point at 0 has room.
-    let begin_s = request.from_s;
-    let window_s = 2.0 * SWINGS * (end_s - begin_s) / turns as f64;
+    let window_s = 2.0 * SWINGS * (end_s - request.from_s) / turns as f64;
     let what = format!("about {} swings", turns / 2);
-    Some(proposal(begin_s, window_s, request, what))
+    Some(proposal(window_s, request, what))
 }
 
-/// The area of the places of that side (pt) that `lines` pass, pt², where most of them are inside of the ink; `None` where
-/// lines can be told apart.
-fn black_pt2(lines: &[Vec<Point>], place_pt: f64) -> Option<f64> {
-    /// From the edge of the ink, places.
-    const INSIDE: usize = 3;
-    const MOST: f64 = 0.5;
-    let grid = Grid::inked(lines, place_pt, 0.0)?;
-    let area_pt2 = grid.area_pt2();
-    (grid.area_inside_pt2(INSIDE) >= MOST * area_pt2).then_some(area_pt2)
+/// How often a curve, which has these `parts`, turns where its line makes most of its panel black.
+fn swings_of_black(parts: &[Part], width_pt: f64, placed: &Placed) -> Option<u64> {
+    let columns = (placed.frame.width() / PART_PT).ceil() as usize;
+    let mut black: Vec<(u32, Option<Extent>)> = vec![(0, None); columns + 1];
+    for part in parts {
+        let time_s = 0.5 * (part.times_s[0] + part.times_s[1]);
+        let column = (placed.x.place(time_s) - placed.frame.left) / PART_PT;
+        let (turns, extent) = &mut black[(column.max(0.0) as usize).min(columns)];
+        *turns += part.turns;
+        *extent = Some(extent.map_or(part.extent, |extent| extent.and(part.extent)));
+    }
+    let all = black.iter().map(|(turns, _)| u64::from(*turns)).sum();
+    let high = HIGH * (placed.y.range.1 - placed.y.range.0);
+    black.retain(|(turns, extent)| {
+        let is_high = extent.is_some_and(|extent| extent.max - extent.min >= high);
+        f64::from(*turns) * width_pt >= PART_PT && is_high
+    });
+    (black.len() as f64 > MOST * columns as f64).then_some(all)
 }
 
-/// Side of the places of a path that are looked at, pt.
+/// Side of the places of a path that are looked at, pt, and how many places from the edge of the ink make its inside.
 const PLACE_PT: f64 = 0.5;
+const INSIDE: usize = 3;
 /// About the width of a path's line, pt, and the part of the black places that the lines of a proposed stretch are to cover.
 const LINE_PT: f64 = 0.9;
 const LOOSE: f64 = 0.3;
@@ -111,19 +125,23 @@ fn path_warning(lines: &[Vec<Point>], path: &Path, end_s: f64, request: &Request
     if path.points.len() < 2000 {
         return None;
     }
-    let area_pt2 = black_pt2(lines, PLACE_PT)?;
+    let grid = Grid::inked(lines, PLACE_PT, 0.0)?;
+    let area_pt2 = grid.area_pt2();
+    if grid.area_inside_pt2(INSIDE) < MOST * area_pt2 {
+        return None;
+    }
     let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();
     let share = (LOOSE * area_pt2 / (path.times * length_pt * LINE_PT)).min(0.5);
     let window_s = share * (end_s - request.from_s);
     let what = "its turns".to_owned();
-    Some(proposal(request.from_s, window_s, request, what))
+    Some(proposal(window_s, request, what))
 }
 
-fn proposal(from_s: f64, window_s: f64, request: &Request, what: String) -> Dense {
+fn proposal(window_s: f64, request: &Request, what: String) -> Dense {
     Dense {
         what,
         width_mm: (request.width_pt / super::PT_PER_MM).round(),
-        from_s,
-        to_s: from_s + ladder::at_or_below(window_s),
+        from_s: request.from_s,
+        to_s: request.from_s + ladder::at_or_below(window_s),
     }
 }

@@ -2,15 +2,15 @@
 
 use super::chart::legend::longest_name;
 use super::chart::{Axis, Chart, Panel, Series, Style};
+use super::names::names;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
 use super::quantity;
-use super::request::{Figure, Known, Request, Run};
+use super::request::{Figure, Job, Request, Run};
 use crate::export::Column;
 use crate::measured::{
     self, Curve, Measured, Point, Residual, at_times, places, residuals as held_against,
 };
-use crate::run::Clock;
 use crate::text::number::shortest;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -28,12 +28,11 @@ const BESIDE_POINTS: f64 = 0.015;
 /// # Errors
 /// Where the data are no series, or the numbers of a run stop being finite.
 pub(super) fn over_time(
+    job: &Job<'_>,
     chart: &mut Chart,
     columns: &[&'static Column],
-    runs: &[Run],
-    request: &Request,
-    known: &Known,
 ) -> Result<Option<String>, String> {
+    let request = job.request;
     let Some(measured) = &request.measured else {
         return Ok(None);
     };
@@ -42,8 +41,8 @@ pub(super) fn over_time(
     for (index, column) in columns.iter().enumerate() {
         let mut curves = series.curves.iter();
         if let Some(place) = curves.position(|curve| curve.quantity.name == column.name) {
-            let points = turned(series, place, runs, known)?;
-            added.push((index, drawn(series, &points, request)));
+            let points = turned(job, series, place)?;
+            added.push((index, drawn(job, series, &points)));
         }
     }
     let times = || {
@@ -92,17 +91,14 @@ fn make_room<Times: Iterator<Item = f64>>(range: &mut (f64, f64), times: impl Fn
 ///
 /// # Errors
 /// Where the data are no series.
-pub(super) fn above(
-    runs: &[Run],
-    request: &Request,
-) -> Result<(Option<Series>, Option<String>), String> {
-    let (Some(measured), Some(run)) = (&request.measured, runs.first()) else {
+pub(super) fn above(job: &Job<'_>) -> Result<(Option<Series>, Option<String>), String> {
+    let (Some(measured), Some(run)) = (&job.request.measured, job.runs.first()) else {
         return Ok((None, None));
     };
     let scenario = &run.scenario;
     let traced = scenario.body.mechanics.points()[scenario.trace].at;
     let mut shown = places(series(measured)?, &traced);
-    shown.retain(|place| is_wanted(place.time_s, request));
+    shown.retain(|place| job.has(place.time_s));
     if shown.is_empty() {
         let origin = &measured.origin;
         return Ok((
@@ -117,7 +113,7 @@ pub(super) fn above(
         sigmas.map(|sigma| sigma.unwrap_or(f64::NAN)).collect()
     };
     let places = Series {
-        name: name(measured, shown.len(), request),
+        name: name(measured, shown.len(), job.request),
         points: shown.iter().map(|place| [place.at.x, place.at.y]).collect(),
         errors: [errors(0), errors(1)],
         style: Style::measured(shown.len()),
@@ -126,12 +122,11 @@ pub(super) fn above(
 }
 
 /// What is said where the runs end before the last point of a figure.
-pub(super) fn beyond_runs(runs: &[Run], request: &Request) -> Option<String> {
-    let measured = request.measured.as_ref()?;
+pub(super) fn beyond_runs(job: &Job<'_>) -> Option<String> {
+    let measured = job.request.measured.as_ref()?;
     let series = measured.series().ok()?;
-    let ends = runs.iter().map(|run| Clock::end_s(&run.scenario));
-    let end_s = ends.fold(0.0, f64::max);
-    let is_beyond = |time_s: &&f64| **time_s > end_s && is_wanted(**time_s, request);
+    let end_s = job.end_s();
+    let is_beyond = |time_s: &&f64| **time_s > end_s && job.has(**time_s);
     let last_s = shortest(*series.times_s.iter().rfind(is_beyond)?);
     Some(format!(
         "the run ends at {} s, before the last point of {} at {last_s} s: --duration {last_s} draws the run up to there",
@@ -149,76 +144,72 @@ pub(super) fn in_space(request: &Request) -> Option<String> {
     ))
 }
 
-/// The figure of what was measured less what each of `runs`, called `names`, says.
+/// The figure of what was measured less what each of the runs says.
 ///
 /// # Errors
 /// Where there is nothing measured, or the numbers of a run stop being finite.
 pub(super) fn residuals(
-    title: String,
-    runs: &[Run],
-    names: &[String],
-    request: &Request,
-    known: &Known,
+    job: &Job<'_>,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Figure>, String> {
+    let &Job { runs, request, .. } = job;
     let Some(measured) = &request.measured else {
         return Err("residuals are of measured data: --measured FILE".to_owned());
     };
     let series = series(measured)?;
-    let ends = runs.iter().map(|run| Clock::end_s(&run.scenario));
     let last_s = series.times_s.last().copied().unwrap_or(0.0);
-    let end_s = request.to_s.unwrap_or(ends.fold(last_s, f64::max));
+    let end_s = request.to_s.unwrap_or(job.end_s().max(last_s));
     let margin_s = MARGIN * (end_s - request.from_s);
     let range = (request.from_s - margin_s, end_s + margin_s);
-    let panel = |curve: &Curve| {
-        let axis = quantity::axis(curve.quantity.name);
-        Panel {
-            y: Axis::new(format!("{}, measured − run", axis.name), axis.unit),
-            series: vec![Series::level(range)],
-            slope: None,
-        }
-    };
-    let mut panels: Vec<Panel> = series.curves.iter().map(panel).collect();
+    let mut panels: Vec<Panel> = series
+        .curves
+        .iter()
+        .map(|curve| empty(curve, range))
+        .collect();
     let shown = series
         .curves
         .iter()
-        .map(|curve| drawn(series, &curve.points, request));
+        .map(|curve| drawn(job, series, &curve.points));
     let count = shown.map(|shown| shown.points.len()).sum();
-    for (index, (run, run_name)) in runs.iter().zip(names).enumerate() {
-        let Some(model) = said(series, run, known, &mut watch)? else {
+    for (index, (run, run_name)) in runs.iter().zip(names(job)).enumerate() {
+        let Some(model) = said(job, series, run, &mut watch)? else {
             return Ok(None);
         };
         let (name, style) = match runs {
             [_] => (name(measured, count, request), Style::measured(0)),
-            _ => (run_name.clone(), Style::points(index)),
+            _ => (run_name, Style::points(index)),
         };
         for ((panel, curve), model) in panels.iter_mut().zip(&series.curves).zip(&model) {
             let points = beside(curve, model, Residual::value);
             panel.series.push(Series {
                 name: name.clone(),
                 style: style.clone(),
-                ..drawn(series, &points, request)
+                ..drawn(job, series, &points)
             });
         }
     }
-    let chart = Chart {
-        title,
-        width_pt: request.width_pt,
-        x: quantity::axis("t_s").within(range),
-        panels,
-        ..Chart::default()
-    };
+    let chart = job.chart(quantity::axis("t_s").within(range), panels);
     Ok(Some(Figure::of(chart.scene())))
+}
+
+/// The panel of the residuals of `curve` with the line of zero alone.
+fn empty(curve: &Curve, range: (f64, f64)) -> Panel {
+    let axis = quantity::axis(curve.quantity.name);
+    Panel {
+        y: Axis::new(format!("{}, measured − run", axis.name), axis.unit),
+        series: vec![Series::level(range)],
+        slope: None,
+    }
 }
 
 /// What `run` says of each curve of `series`; `None` where `watch` stopped it.
 fn said(
+    job: &Job<'_>,
     series: &measured::Series,
     run: &Run,
-    known: &Known,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<Vec<f64>>>, String> {
-    if let Some(said) = &known.said {
+    if let Some(said) = &job.known.said {
         return Ok(Some(said.clone()));
     }
     let watch = RefCell::new(watch);
@@ -256,15 +247,11 @@ fn name(measured: &Measured, count: usize, request: &Request) -> String {
     letters::shortened(&name, LABEL_PT, longest_name(request.width_pt))
 }
 
-fn is_wanted(time_s: f64, request: &Request) -> bool {
-    time_s >= request.from_s && request.to_s.is_none_or(|to_s| time_s <= to_s)
-}
-
 /// `points` in the stretch of time that is drawn, with their errors: NaN where none is stated.
-fn drawn(series: &measured::Series, points: &[Point], request: &Request) -> Series {
+fn drawn(job: &Job<'_>, series: &measured::Series, points: &[Point]) -> Series {
     let time_s = |point: &Point| series.times_s[point.row];
     let points = points.iter();
-    let points = points.filter(|point| is_wanted(time_s(point), request));
+    let points = points.filter(|point| job.has(time_s(point)));
     let (points, errors) = points
         .map(|point| {
             (
@@ -281,17 +268,12 @@ fn drawn(series: &measured::Series, points: &[Point], request: &Request) -> Seri
 }
 
 /// The points of the curve at `place`: of directions each with the number of full turns at which it is nearest to the first of
-/// `runs`.
-fn turned(
-    series: &measured::Series,
-    place: usize,
-    runs: &[Run],
-    known: &Known,
-) -> Result<Vec<Point>, String> {
+/// the runs.
+fn turned(job: &Job<'_>, series: &measured::Series, place: usize) -> Result<Vec<Point>, String> {
     let curve = &series.curves[place];
-    match runs.first() {
+    match job.runs.first() {
         Some(run) if curve.quantity.is_direction => {
-            let said = said(series, run, known, |_, _| ControlFlow::Continue(()))?;
+            let said = said(job, series, run, |_, _| ControlFlow::Continue(()))?;
             let model = said.unwrap_or_default();
             Ok(beside(curve, &model[place], |pair| pair.measured))
         }

@@ -3,14 +3,15 @@
 use super::chart::legend::longest_name;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
-use super::request::{Request, Run};
+use super::request::{Job, Run};
 use crate::text::number::significant;
 
 /// What of a run may differ from the others.
 type Of<'a> = &'a dyn Fn(&Run) -> String;
 
-/// A name for each of `runs`, as markup with room in the legend; empty where there is nothing to tell apart.
-pub(super) fn names(runs: &[Run], request: &Request) -> Vec<String> {
+/// A name for each of the runs, as markup with room in the legend; empty where there is nothing to tell apart.
+pub(super) fn names(job: &Job<'_>) -> Vec<String> {
+    let &Job { runs, request, .. } = job;
     let room_pt = longest_name(request.width_pt);
     let differs = |of: Of<'_>| runs.iter().any(|run| of(run) != of(&runs[0]));
     let title = |run: &Run| run.scenario.file.title.clone();

@@ -11,7 +11,7 @@ use super::kind::Kind;
 use super::measured;
 use super::names::names;
 use super::page::letters;
-use super::request::Drawn;
+use super::request::{Drawn, Job};
 pub use super::request::{Figure, Known, Request, Run};
 use super::space;
 use crate::analysis::health::LEAST_SWING_DEG;
@@ -59,43 +59,41 @@ pub fn figures(
     let mut figures = Vec::new();
     let mut all_played: Vec<(&Request, Played)> = Vec::new();
     for request in requests {
-        check_range(runs, request)?;
-        let alike = all_played.iter().position(|(it, _)| it.is_alike(request));
+        let job = Job {
+            runs,
+            request,
+            known,
+        };
+        check_range(&job)?;
         if let Kind::Residuals = &request.kind {
-            let names = names(runs, request);
-            let residuals =
-                measured::residuals(title(runs), runs, &names, request, known, &mut watch)?;
-            let Some(figure) = residuals else {
+            let Some(figure) = measured::residuals(&job, &mut watch)? else {
                 return Ok(None);
             };
             figures.push(figure);
             continue;
         }
-        let place = match alike {
-            Some(place) => place,
-            None => {
-                let alike = requests.iter().filter(|it| it.is_alike(request));
-                let wanted = wanted(request, alike.map(|it| &it.kind));
-                let Some(played) = play(runs, request, &wanted, known, &mut watch)? else {
-                    return Ok(None);
-                };
-                all_played.push((request, played));
-                all_played.len() - 1
-            }
-        };
-        figures.push(draw(runs, request, known, &all_played[place].1)?);
+        if !all_played.iter().any(|(it, _)| it.is_alike(request)) {
+            let alike = requests.iter().filter(|it| it.is_alike(request));
+            let wanted = wanted(request, alike.map(|it| &it.kind));
+            let Some(played) = play(&job, &wanted, &mut watch)? else {
+                return Ok(None);
+            };
+            all_played.push((request, played));
+        }
+        for (_, played) in all_played.iter().filter(|(it, _)| it.is_alike(request)) {
+            figures.push(draw(&job, played)?);
+        }
     }
     Ok(Some(figures))
 }
 
 fn play(
-    runs: &[Run],
-    request: &Request,
+    job: &Job<'_>,
     wanted: &Wanted,
-    known: &Known,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Played>, String> {
-    let Some(mut drawn) = play_runs(runs, request, wanted, known, &mut watch) else {
+    let &Job { runs, request, .. } = job;
+    let Some(mut drawn) = play_runs(job, wanted, &mut watch) else {
         return Ok(None);
     };
     let mut broke = None;
@@ -110,7 +108,7 @@ fn play(
     if request.exact {
         let is_exact = |run: &Run| is_exact(&run.scenario);
         warnings.extend(runs.iter().any(is_exact).then(|| IS_EXACT.to_owned()));
-        let Some(truths) = play_truths(runs, request, wanted, watch) else {
+        let Some(truths) = play_truths(job, wanted, watch) else {
             return Ok(None);
         };
         drawn.extend(truths);
@@ -127,45 +125,41 @@ fn play(
     }))
 }
 
-/// Plays `runs` as far as nothing is known of them; `None` where `watch` said no.
+/// Plays the runs as far as nothing is known of them; `None` where `watch` said no.
 fn play_runs(
-    runs: &[Run],
-    request: &Request,
+    job: &Job<'_>,
     wanted: &Wanted,
-    known: &Known,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Option<Vec<Drawn>> {
-    let named = runs.iter().zip(names(runs, request)).enumerate();
+    let named = job.runs.iter().zip(names(job)).enumerate();
     let drawn = named.map(|(index, (run, name))| {
-        let recorded = known.recorded.as_ref();
+        let recorded = job.known.recorded.as_ref();
         let recorded = recorded.and_then(|all| all.part(&run.scenario, wanted));
-        let course = recorded.or_else(|| course::play(&run.scenario, wanted, &mut watch))?;
         Some(Drawn {
             name,
             style: Style::curve(index),
-            course,
+            course: recorded.or_else(|| course::play(&run.scenario, wanted, &mut watch))?,
             is_exact: false,
         })
     });
     drawn.collect()
 }
 
-/// Plays the exact motions beside `runs`; `None` where `watch` said no.
+/// Plays the exact motions beside the runs; `None` where `watch` said no.
 fn play_truths(
-    runs: &[Run],
-    request: &Request,
+    job: &Job<'_>,
     wanted: &Wanted,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Option<Vec<Drawn>> {
-    let truths = (runs.len()..).zip(truths(runs, longest_name(request.width_pt)));
+    let room_pt = longest_name(job.request.width_pt);
+    let truths = (job.runs.len()..).zip(truths(job.runs, room_pt));
     let drawn = truths.map(|(place, (run, name))| {
-        let style = match place {
-            1 => Style::exact(),
-            place => Style::curve(place),
-        };
         Some(Drawn {
             name,
-            style,
+            style: match place {
+                1 => Style::exact(),
+                place => Style::curve(place),
+            },
             course: course::exact(&run.scenario, wanted, &mut watch)?,
             is_exact: true,
         })
@@ -173,37 +167,35 @@ fn play_truths(
     drawn.collect()
 }
 
-/// The figure that `request` asks for.
+/// The figure that the request asks for.
 ///
 /// # Errors
 /// When what was measured cannot be drawn so.
-fn draw(runs: &[Run], request: &Request, known: &Known, played: &Played) -> Result<Figure, String> {
-    let (title, drawn) = (title(runs), &played.drawn);
+fn draw(job: &Job<'_>, played: &Played) -> Result<Figure, String> {
+    let drawn = &played.drawn;
     let mut warnings = played.warnings.clone();
     let dense;
-    let scene = match &request.kind {
+    let scene = match &job.request.kind {
         Kind::OverTime(columns) => {
-            let mut chart = charts::over_time(title, runs, columns, drawn, request);
-            warnings.extend(measured::over_time(
-                &mut chart, columns, runs, request, known,
-            )?);
-            warnings.extend(measured::beyond_runs(runs, request));
-            dense = dense::warning(&chart, columns, drawn, request);
+            let mut chart = charts::over_time(job, columns, drawn);
+            warnings.extend(measured::over_time(job, &mut chart, columns)?);
+            warnings.extend(measured::beyond_runs(job));
+            dense = dense::warning(&chart, columns, drawn, job.request);
             chart.scene()
         }
         Kind::Above => {
-            let (measured, none) = measured::above(runs, request)?;
+            let (measured, none) = measured::above(job)?;
             warnings.extend(none);
-            let chart = charts::above(title, runs, drawn, measured, request);
-            dense = charts::path_warning(&chart, drawn, request);
+            let chart = charts::above(job, drawn, measured);
+            dense = charts::path_warning(&chart, drawn, job.request);
             warnings.extend(chords::warning(drawn, |course| &course.above));
             chart.scene()
         }
         Kind::ThreeD | Kind::Residuals => {
             let scene;
-            (scene, dense) = space::scene(&title, runs, drawn, request);
+            (scene, dense) = space::scene(job, drawn);
             warnings.extend(chords::warning(drawn, |course| &course.path));
-            warnings.extend(measured::in_space(request));
+            warnings.extend(measured::in_space(job.request));
             scene
         }
     };
@@ -229,34 +221,20 @@ fn wanted<'a>(request: &Request, kinds: impl Iterator<Item = &'a Kind>) -> Wante
     wanted
 }
 
-fn check_range(runs: &[Run], request: &Request) -> Result<(), String> {
-    let from_s = request.from_s;
-    if let Some(to_s) = request.to_s.filter(|to_s| *to_s <= from_s) {
-        let (from, to) = (shortest(from_s), shortest(to_s));
+fn check_range(job: &Job<'_>) -> Result<(), String> {
+    let (from_s, end_s) = (job.request.from_s, job.end_s());
+    let from = shortest(from_s);
+    if let Some(to_s) = job.request.to_s.filter(|to_s| *to_s <= from_s) {
+        let to = shortest(to_s);
         return Err(format!("--from {from} is not before --to {to}"));
     }
-    let ends = runs
-        .iter()
-        .map(|run| crate::run::Clock::end_s(&run.scenario));
-    let end_s = ends.fold(0.0, f64::max);
     if from_s >= end_s {
-        let (from, end) = (shortest(from_s), shortest(end_s));
+        let end = shortest(end_s);
         return Err(format!(
             "--from {from} is not before the end of the run, {end} s"
         ));
     }
     Ok(())
-}
-
-fn title(runs: &[Run]) -> String {
-    let mut titles: Vec<&str> = Vec::new();
-    for run in runs {
-        let title = run.scenario.file.title.as_str();
-        if !titles.contains(&title) {
-            titles.push(title);
-        }
-    }
-    titles.join("; ")
 }
 
 /// What draws the exact motion beside the runs, on the command line.

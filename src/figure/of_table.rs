@@ -26,14 +26,7 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
     let (x, panels) = match &table.subject {
         Subject::Comparison => comparison::drawn(table, columns, width_pt)?,
         Subject::Fit(fit) => fit::drawn(table, fit, columns, width_pt)?,
-        Subject::Sweep { varied, scenario } => {
-            let swept = sweep::Swept {
-                table,
-                varied,
-                scenario,
-            };
-            sweep::drawn(&swept, columns, width_pt)?
-        }
+        Subject::Sweep(swept) => sweep::drawn(table, swept, columns, width_pt)?,
     };
     Ok(Chart {
         title: table.title.clone(),
@@ -41,14 +34,14 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
         x,
         panels,
         is_true_to_scale: false,
-        are_read_off: matches!(table.subject, Subject::Sweep { .. }),
+        are_read_off: matches!(table.subject, Subject::Sweep(_)),
     })
 }
 
 /// What the reader of that chart should know of it, each a sentence without its end.
 pub fn warnings(table: &Table, columns: &[&str]) -> Vec<String> {
     match &table.subject {
-        Subject::Sweep { varied, .. } => sweep::gaps(table, columns, varied),
+        Subject::Sweep(swept) => sweep::gaps(table, columns, &swept.varied),
         Subject::Comparison => comparison::missing(table, columns),
         Subject::Fit(_) => Vec::new(),
     }

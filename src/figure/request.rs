@@ -1,11 +1,12 @@
 //! What a figure of runs is to show, what it is drawn from, and what it then is.
 
-use super::chart::Style;
+use super::chart::{Axis, Chart, Panel, Style};
 use super::course::Course;
 use super::dense::Dense;
 use super::kind::Kind;
 use super::page::scene::Scene;
 use crate::measured::Measured;
+use crate::run::Clock;
 use crate::scenario::Scenario;
 use std::sync::Arc;
 
@@ -41,6 +42,50 @@ pub(super) struct Drawn {
     pub style: Style,
     pub course: Course,
     pub is_exact: bool,
+}
+
+/// Runs, what a figure of them is to show, and what is known of them.
+#[derive(Clone, Copy)]
+pub(super) struct Job<'a> {
+    pub runs: &'a [Run],
+    pub request: &'a Request,
+    pub known: &'a Known,
+}
+
+impl Job<'_> {
+    /// The end of the longest run, s.
+    pub fn end_s(&self) -> f64 {
+        let ends = self.runs.iter().map(|run| Clock::end_s(&run.scenario));
+        ends.fold(0.0, f64::max)
+    }
+
+    /// Whether `time_s` is in the stretch that is drawn.
+    pub fn has(&self, time_s: f64) -> bool {
+        let to_s = self.request.to_s;
+        time_s >= self.request.from_s && to_s.is_none_or(|to_s| time_s <= to_s)
+    }
+
+    /// The titles of the runs, each once.
+    pub fn title(&self) -> String {
+        let mut titles: Vec<&str> = Vec::new();
+        for run in self.runs {
+            let title = run.scenario.file.title.as_str();
+            if !titles.contains(&title) {
+                titles.push(title);
+            }
+        }
+        titles.join("; ")
+    }
+
+    pub fn chart(&self, x: Axis, panels: Vec<Panel>) -> Chart {
+        Chart {
+            title: self.title(),
+            width_pt: self.request.width_pt,
+            x,
+            panels,
+            ..Chart::default()
+        }
+    }
 }
 
 impl Request {

@@ -14,7 +14,7 @@ use super::dense::{self, Dense};
 use super::page::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
 use super::page::scene::{Color, Pen, Point, Scene};
 use super::quantity;
-use super::request::{Drawn, Request, Run};
+use super::request::{Drawn, Job, Run};
 use super::size;
 use crate::observe::camera::{Camera, View};
 use crate::text::number::significant;
@@ -46,14 +46,9 @@ struct Space {
 }
 
 /// The figure of paths in space; and of one that is solid black, what it is and which stretch of time is not.
-pub(super) fn scene(
-    title: &str,
-    runs: &[Run],
-    drawn: &[Drawn],
-    request: &Request,
-) -> (Scene, Option<Dense>) {
-    let width_pt = request.width_pt;
-    let space = Space::fitted(runs, drawn, width_pt);
+pub(super) fn scene(job: &Job<'_>, drawn: &[Drawn]) -> (Scene, Option<Dense>) {
+    let width_pt = job.request.width_pt;
+    let space = Space::fitted(job.runs, drawn, width_pt);
     let (names, mut styles): (Vec<_>, Vec<_>) = drawn
         .iter()
         .map(|drawn| chords::as_drawn(drawn, &drawn.course.path))
@@ -71,11 +66,11 @@ pub(super) fn scene(
     for item in &mut items.items {
         *item = item.clone().mapped(|p| at(p.x + shift.x, p.y + shift.y));
     }
-    items.title = title.to_owned();
+    items.title = job.title();
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + EDGE;
     legend.draw_above(width_pt, EDGE, &mut items);
-    let dense = dense::of_paths(drawn, request, |course| {
+    let dense = dense::of_paths(drawn, job.request, |course| {
         let lines = course.path.lines(|at| space.place(&space.boxed(at)));
         (lines, &course.path)
     });
@@ -244,31 +239,29 @@ impl Space {
         /// Along which sides the grid of each axis runs.
         const ALONG: [[usize; 2]; 3] = [[1, 2], [0, 2], [1, 0]];
         let far = Vector3::new(-self.near(0), -self.near(1), -0.5 * TALL);
-        let mut line = |from: Vector3<f64>, along: usize, width: f64, level: u8| {
-            let ends = [-0.5, 0.5].map(|side| {
-                let mut end = from;
-                end[along] = side * SIZES[along];
-                self.place(&end)
-            });
-            scene.line(ends, width, grey(level));
+        let opposite = |mut place: Vector3<f64>, axis: usize| {
+            place[axis] = -place[axis];
+            place
+        };
+        let mut line = |ends: [Vector3<f64>; 2], width: f64, level: u8| {
+            scene.line(ends.map(|end| self.place(&end)), width, grey(level));
         };
         for (axis, ticks) in ticks.iter().enumerate() {
             for tick in &ticks.major {
-                let mut from = far;
-                from[axis] = SIZES[axis] * (self.share(axis, tick.at) - 0.5);
                 for along in ALONG[axis] {
-                    line(from, along, 0.35, 215);
+                    let mut from = far;
+                    from[axis] = SIZES[axis] * (self.share(axis, tick.at) - 0.5);
+                    from[along] = -0.5 * SIZES[along];
+                    line([from, opposite(from, along)], 0.35, 215);
                 }
             }
         }
-        let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
-        let across = |axis: &Vector3<f64>| far - axis * (2.0 * far.dot(axis));
-        for corner in [far, across(&z)] {
-            line(corner, 0, 0.4, 140);
-            line(corner, 1, 0.4, 140);
+        for corner in [far, opposite(far, 2)] {
+            line([corner, opposite(corner, 0)], 0.4, 140);
+            line([corner, opposite(corner, 1)], 0.4, 140);
         }
-        for corner in [far, across(&x), across(&y)] {
-            line(corner, 2, 0.4, 140);
+        for foot in [far, opposite(far, 0), opposite(far, 1)] {
+            line([foot, opposite(foot, 2)], 0.4, 140);
         }
     }
 

@@ -17,14 +17,17 @@ const MOST_VALUES: usize = 4_000_000;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
     Comparison,
-    Sweep {
-        /// The keys that were varied; the last runs fastest.
-        varied: Vec<String>,
-        /// The scenario, in which the keys have their names.
-        scenario: toml::Table,
-    },
+    Sweep(Sweep),
     /// What was measured, and what a fitted model says of it.
     Fit(Fit),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// The keys that were varied; the last runs fastest.
+    pub varied: Vec<String>,
+    /// The scenario, in which the keys have their names.
+    pub scenario: toml::Table,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -153,7 +156,7 @@ fn subject(header: &str, names: &[&str]) -> Option<(Subject, String)> {
         own => own,
     };
     let scenario = of_scenario.cloned().unwrap_or_default();
-    Some((Subject::Sweep { varied, scenario }, title))
+    Some((Subject::Sweep(Sweep { varied, scenario }), title))
 }
 
 /// What was found by the fit in whose CSV this is the `header`; nothing where that does not tell.

@@ -4,24 +4,19 @@ use crate::export::Column;
 use crate::figure::chart::layout::Layout;
 use crate::figure::chart::{Chart, Panel, Series, Style};
 use crate::figure::dense::Dense;
-use crate::figure::request::{Drawn, Request, Run};
+use crate::figure::request::{Drawn, Job, Request, Run};
 use crate::figure::{chords, dense, quantity, size};
 use crate::run::Truth;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Columns of the runs over time, a panel each.
-pub(super) fn over_time(
-    title: String,
-    runs: &[Run],
-    columns: &[&'static Column],
-    drawn: &[Drawn],
-    request: &Request,
-) -> Chart {
+pub(super) fn over_time(job: &Job<'_>, columns: &[&'static Column], drawn: &[Drawn]) -> Chart {
+    let from_s = job.request.from_s;
     let ends = drawn.iter().map(|drawn| drawn.course.end_s);
     let end_s = ends.fold(0.0, f64::max);
     let mut x = quantity::axis("t_s");
-    x.range = (end_s > request.from_s).then_some((request.from_s, end_s));
+    x.range = (end_s > from_s).then_some((from_s, end_s));
     let panel = |column: &&Column| {
         let curve = |drawn: &Drawn| {
             let points = drawn.course.points(column);
@@ -33,28 +28,16 @@ pub(super) fn over_time(
             Series::new(&drawn.name, points, style)
         };
         Panel {
-            y: size::axis(runs, column.name),
+            y: size::axis(job.runs, column.name),
             series: drawn.iter().map(curve).collect(),
             slope: None,
         }
     };
-    Chart {
-        title,
-        width_pt: request.width_pt,
-        x,
-        panels: columns.iter().map(panel).collect(),
-        ..Chart::default()
-    }
+    job.chart(x, columns.iter().map(panel).collect())
 }
 
 /// The paths of the runs from above, and the places that were `measured`.
-pub(super) fn above(
-    title: String,
-    runs: &[Run],
-    drawn: &[Drawn],
-    measured: Option<Series>,
-    request: &Request,
-) -> Chart {
+pub(super) fn above(job: &Job<'_>, drawn: &[Drawn], measured: Option<Series>) -> Chart {
     let path = |drawn: &Drawn| {
         let path = &drawn.course.above;
         let (name, style) = chords::as_drawn(drawn, path);
@@ -62,21 +45,18 @@ pub(super) fn above(
         Series::new(name, points.collect(), style)
     };
     let mut series: Vec<_> = drawn.iter().map(path).chain(measured).collect();
-    let [x, y] = both_ranges(&series, runs);
-    if let (true, [run]) = (request.exact, runs) {
-        series.extend(limits(run, request.width_pt / (x.1 - x.0)));
+    let [x, y] = both_ranges(&series, job.runs);
+    if let (true, [run]) = (job.request.exact, job.runs) {
+        series.extend(limits(run, job.request.width_pt / (x.1 - x.0)));
     }
+    let panel = Panel {
+        y: quantity::axis("y_m").within(y),
+        series,
+        slope: None,
+    };
     Chart {
-        title,
-        width_pt: request.width_pt,
-        x: quantity::axis("x_m").within(x),
-        panels: vec![Panel {
-            y: quantity::axis("y_m").within(y),
-            series,
-            slope: None,
-        }],
         is_true_to_scale: true,
-        ..Chart::default()
+        ..job.chart(quantity::axis("x_m").within(x), vec![panel])
     }
 }
 

@@ -8,7 +8,7 @@ use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::{Axis, Panel, Series, Style};
 use crate::figure::extent;
 use crate::figure::quantity;
-use crate::figure::table::Table;
+use crate::figure::table::{Sweep, Table};
 use columns::{Part, Quantity, Role};
 use curves::{Curve, Setting};
 
@@ -17,24 +17,14 @@ const MOST_PANELS: usize = 7;
 /// The most series of one quantity that can be distinguished.
 const MOST_SERIES: usize = 12;
 
-/// A sweep: its rows, the keys that were varied, and the scenario in which these have their names.
-pub(super) struct Swept<'a> {
-    pub table: &'a Table,
-    pub varied: &'a [String],
-    pub scenario: &'a toml::Table,
-}
-
 /// The axis of what was varied, and a panel for each quantity.
 pub(super) fn drawn(
-    swept: &Swept<'_>,
+    table: &Table,
+    swept: &Sweep,
     columns: &[&str],
     width_pt: f64,
 ) -> Result<(Axis, Vec<Panel>), String> {
-    let &Swept {
-        table,
-        varied,
-        scenario,
-    } = swept;
+    let varied = &swept.varied[..];
     // The key that runs fastest and is a number goes to the right; the others make curves.
     let along = varied.iter().rev().find_map(|key| {
         let values = table.numbers(key)?;
@@ -42,7 +32,7 @@ pub(super) fn drawn(
     });
     let none = || format!("none of the varied keys is a number: {}", varied.join(", "));
     let (key, along) = along.ok_or_else(none)?;
-    let curves = curves::curves(swept, key);
+    let curves = curves::curves(table, swept, key);
     if curves.len() > MOST_SERIES {
         return Err(too_many_curves(curves.len(), varied, key));
     }
@@ -70,7 +60,7 @@ pub(super) fn drawn(
     first.series.extend(drawing.failed(&quantities)?);
     let x = Axis {
         is_log: spans_decades(along.iter().copied(), 30.0) && is_geometric(&along),
-        ..quantity::axis_in(scenario, key)
+        ..quantity::axis_in(&swept.scenario, key)
     };
     Ok((x, panels))
 }

@@ -4,6 +4,7 @@ use super::{Space, TALL, round_pen};
 use crate::figure::chart::Style;
 use crate::figure::chart::axis::Scale;
 use crate::figure::chart::curve;
+use crate::figure::extent;
 use crate::figure::page::ink::grey;
 use crate::figure::page::scene::{Color, Pen, Point, Scene};
 use crate::figure::request::Drawn;
@@ -32,16 +33,12 @@ impl Space {
             let boxed = self.boxed(at);
             (self.place(&boxed), self.view.depth(&boxed))
         };
-        let paths: Vec<Pieces> = drawn
-            .iter()
-            .map(|drawn| drawn.course.path.lines(placed))
-            .collect();
-        let depths = || paths.iter().flatten().flatten().map(|(_, depth)| *depth);
+        let paths = drawn.iter().map(|drawn| drawn.course.path.lines(placed));
+        let paths: Vec<Pieces> = paths.collect();
+        let depths = paths.iter().flatten().flatten().map(|(_, depth)| *depth);
+        let (near, far) = extent(depths).unwrap_or_default();
         let share = Scale {
-            range: (
-                depths().fold(f64::NEG_INFINITY, f64::max),
-                depths().fold(f64::INFINITY, f64::min),
-            ),
+            range: (far, near),
             is_log: false,
             places: (0.0, DEPTHS as f64),
         };

@@ -1,13 +1,13 @@
 //! The curves of a sweep: its rows by what else was varied, and what each is called; and the lines of theory, one for all
 //! curves of which it says the same.
 
-use super::Swept;
 use crate::figure::COLUMN_PT;
 use crate::figure::chart::Style;
 use crate::figure::chart::ticks::with_minus;
 use crate::figure::of_table::{Rows, grouped, within_room};
 use crate::figure::page::letters;
 use crate::figure::quantity;
+use crate::figure::table::{Sweep, Table};
 use crate::text::number::shortest;
 
 /// The key whose values are names.
@@ -36,47 +36,38 @@ pub(super) struct Setting {
 }
 
 /// The curves of a sweep, of whose keys `along` is on the axis below.
-pub(super) fn curves(swept: &Swept<'_>, along: &str) -> Vec<Curve> {
-    let &Swept {
-        table,
-        varied,
-        scenario,
-    } = swept;
-    let others: Vec<_> = varied.iter().filter(|key| *key != along).collect();
-    let columns: Vec<_> = others
-        .iter()
-        .map(|key| table.texts(key).unwrap_or_default())
+pub(super) fn curves(table: &Table, swept: &Sweep, along: &str) -> Vec<Curve> {
+    let others = swept.varied.iter().filter(|key| *key != along);
+    let others: Vec<(&String, Vec<&str>)> = others
+        .filter_map(|key| Some((key, table.texts(key)?)))
         .collect();
-    let settings = |row: usize| {
-        let each = others.iter().zip(&columns).map(|(key, texts)| {
-            let value = texts.get(row).copied().unwrap_or_default();
-            Setting::new(scenario, key, value)
-        });
-        each.collect::<Vec<_>>()
-    };
     let values = |row: usize| {
-        let texts = columns.iter().filter_map(|texts| texts.get(row).copied());
-        texts.collect::<Vec<_>>().join("\n")
+        let texts: Vec<_> = others.iter().map(|(_, texts)| texts[row]).collect();
+        texts.join("\n")
     };
     let values: Vec<String> = (0..table.count()).map(values).collect();
     let groups = grouped(&values).into_iter().enumerate();
-    groups
-        .map(|(index, (_, rows))| Curve {
+    let curve = |(index, (_, rows)): (usize, (String, Rows))| {
+        let setting = |(key, texts): &(&String, Vec<&str>)| {
+            Setting::new(&swept.scenario, key, texts[rows[0]])
+        };
+        Curve {
             index,
-            settings: settings(rows[0]),
+            settings: others.iter().map(setting).collect(),
             rows,
-        })
-        .collect()
+        }
+    };
+    groups.map(curve).collect()
 }
 
 /// What a curve with these `settings` is called, as markup no longer than `room_pt`; `word` stands before.
 pub(super) fn name(word: &str, settings: &[Setting], room_pt: f64) -> String {
-    let joined = |said: Vec<String>| {
-        let word = (!word.is_empty()).then(|| word.to_owned());
-        word.into_iter().chain(said).collect::<Vec<_>>().join(", ")
+    let joined = |of: fn(&Setting) -> &str| {
+        let word = Some(word).filter(|word| !word.is_empty());
+        let said = word.into_iter().chain(settings.iter().map(of));
+        said.collect::<Vec<_>>().join(", ")
     };
-    let markup = joined(settings.iter().map(|it| it.markup.clone()).collect());
-    let plain = joined(settings.iter().map(|it| it.plain.clone()).collect());
+    let (markup, plain) = (joined(|it| &it.markup), joined(|it| &it.plain));
     within_room(markup, &plain, room_pt)
 }
 
