@@ -8,7 +8,7 @@ use super::{one_on_stdout, print};
 use crate::analysis::compare::{ComparisonRow, Table, compare as table_of};
 use crate::analysis::cost;
 use crate::export::Destination;
-use crate::export::comments::commented;
+use crate::export::layout::commented;
 use crate::physics::{SchemeInfo, scheme};
 use crate::run::{Clock, EnergyScale, Truth};
 use crate::scenario::Scenario;

@@ -4,8 +4,7 @@
 use super::manual::topics::names_and_commands;
 use super::{command, print};
 use crate::analysis::readouts::READOUTS;
-use crate::export::columns::{COLUMNS, Column, OPTIONAL_COLUMNS};
-use crate::export::points::POINT_COLUMNS;
+use crate::export::columns::{COLUMNS, Column, OPTIONAL_COLUMNS, POINT_COLUMNS};
 use crate::figure::kind;
 use crate::measured::shipped::SHIPPED;
 use crate::scenario::keys::{Effect, KEYS, Key, Kind};
@@ -172,7 +171,7 @@ fn shipped(list: &'static [Shipped]) -> Vec<(String, &'static str)> {
 
 fn columns() -> Vec<(String, &'static str)> {
     let mut columns = named(COLUMNS, |column| (column.name, column.about));
-    columns.extend(named(&OPTIONAL_COLUMNS, |column| {
+    columns.extend(named(OPTIONAL_COLUMNS, |column| {
         (column.name, column.about)
     }));
     let of_points = named(POINT_COLUMNS, |column| (column.name, column.about));

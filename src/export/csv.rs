@@ -2,10 +2,9 @@
 //! memory does not grow with the run.
 
 use super::Layout;
-use super::columns::{COLUMNS, Cell, Value};
-use super::comments::commented;
-use super::layout::Shape;
-use super::points::{NamedPoint, PlacedPoint};
+use super::columns::{Cell, Column, Row};
+use super::layout::commented;
+use super::points::NamedPoint;
 use crate::run::Sample;
 use crate::scenario::Scenario;
 use std::io::{self, BufWriter, Write};
@@ -41,9 +40,10 @@ impl<W: Write> CsvWriter<W> {
         let names = layout.names().join(&delimiter.to_string());
         writeln!(out, "{mark}{above}{run_file}{names}")?;
         let delimiter = delimiter as u8;
-        let points = match layout.shape() {
-            Shape::Points(_) => NamedPoint::all_of(scenario, |name| field(name, delimiter)),
-            _ => Vec::new(),
+        let points = if layout.file().points {
+            NamedPoint::all_of(scenario, |name| field(name, delimiter))
+        } else {
+            Vec::new()
         };
         Ok(Self {
             rows: Rows {
@@ -66,21 +66,15 @@ impl<W: Write> CsvWriter<W> {
     /// Adds the row of `sample`, or its rows where every point has one. The caller
     /// has asked the layout whether there is one.
     pub fn write(&mut self, sample: &Sample) -> io::Result<()> {
-        let rows = &mut self.rows;
-        match self.layout.shape() {
-            Shape::Whole => rows.add(COLUMNS.iter().map(|column| column.cell(sample))),
-            Shape::Columns(columns) => {
-                let scenario = &self.scenario;
-                rows.add(columns.iter().map(|column| column.cell(scenario, sample)))
-            }
-            Shape::Points(columns) => {
-                for point in &self.points {
-                    let placed = PlacedPoint::new(point, sample);
-                    rows.add(columns.iter().map(|column| column.cell(&placed)))?;
-                }
-                Ok(())
-            }
+        let columns = self.layout.columns();
+        let row = Row::new(&self.scenario, sample);
+        if !self.layout.file().points {
+            return self.rows.add(columns, &row);
         }
+        self.points.iter().try_for_each(|point| {
+            let point = point.placed(sample);
+            self.rows.add(columns, &Row { point, ..row })
+        })
     }
 
     pub fn count(&self) -> u64 {
@@ -107,18 +101,16 @@ struct Rows<W: Write> {
 
 impl<W: Write> Rows<W> {
     /// Writes one row. Numbers have the digits that the csv crate gives them with serde.
-    fn add<'a>(&mut self, cells: impl Iterator<Item = Cell<'a>>) -> io::Result<()> {
+    fn add(&mut self, columns: &[&Column], row: &Row<'_>) -> io::Result<()> {
         let line = &mut self.line;
         line.clear();
         let (mut digits, mut whole) = (ryu::Buffer::new(), itoa::Buffer::new());
-        for cell in cells {
+        for column in columns {
             let begin = line.len();
-            match cell {
+            match (column.cell)(row) {
                 Cell::Text(text) => line.extend_from_slice(text.as_bytes()),
-                Cell::Number(Value::Whole(count)) => {
-                    line.extend_from_slice(whole.format(count).as_bytes());
-                }
-                Cell::Number(Value::Number(number)) => {
+                Cell::Whole(count) => line.extend_from_slice(whole.format(count).as_bytes()),
+                Cell::Number(number) => {
                     line.extend_from_slice(digits.format(number).as_bytes());
                     if let Some(decimal) = self.decimal
                         && let Some(point) = line[begin..].iter_mut().find(|c| **c == b'.')

@@ -80,19 +80,13 @@ impl Destination {
         if Self::is_for_stdout(path) {
             return Ok(Self::Stdout(io::stdout()));
         }
-        let mut options = OpenOptions::new();
-        let is_stream = match (descriptor(path), fs::metadata(path)) {
-            (Some(_), _) => {
-                options.append(true); // do not overwrite earlier output
-                true
-            }
-            (None, Ok(there)) => !there.is_file() && !there.is_dir(),
-            (None, Err(_)) => false,
-        };
-        if !is_stream {
+        let is_descriptor = descriptor(path).is_some();
+        if !is_descriptor && !Self::may_wait(path) {
             return Self::open_file(path, replace);
         }
-        let opened = options.write(true).open(path);
+        // What a descriptor already leads to is not overwritten.
+        let mut options = OpenOptions::new();
+        let opened = options.append(is_descriptor).write(true).open(path);
         let opened = opened.map_err(|error| DestinationError::refused(path, error))?;
         Ok(Self::Stream(opened, path.to_owned()))
     }
@@ -238,20 +232,22 @@ pub(super) fn folder_of(path: &Path) -> &Path {
         .unwrap_or(Path::new("."))
 }
 
+impl Destination {
+    fn out(&mut self) -> &mut dyn Write {
+        match self {
+            Self::Stdout(out) => out,
+            Self::Stream(out, _) => out,
+            Self::File { temporary, .. } => temporary.as_file_mut(),
+        }
+    }
+}
+
 impl Write for Destination {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::Stdout(out) => out.write(bytes),
-            Self::Stream(out, _) => out.write(bytes),
-            Self::File { temporary, .. } => temporary.as_file_mut().write(bytes),
-        }
+        self.out().write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match self {
-            Self::Stdout(out) => out.flush(),
-            Self::Stream(out, _) => out.flush(),
-            Self::File { temporary, .. } => temporary.as_file_mut().flush(),
-        }
+        self.out().flush()
     }
 }

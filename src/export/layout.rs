@@ -3,9 +3,7 @@
 //! Whatever is not the default stands above the run file in the CSV's header, as TOML in TOML's comments, such as
 //! `# # every = 10`: the CSV runs again as any other, and can be recomputed as it was written.
 
-use super::columns::{COLUMNS, Chosen};
-use super::comments::{above_run_file, commented};
-use super::points::{POINT_COLUMNS, PointColumn};
+use super::columns::{COLUMNS, Column, POINT_COLUMNS};
 use crate::run::{Clock, Step};
 use crate::scenario::Scenario;
 use crate::scenario::problem::nearest;
@@ -35,21 +33,19 @@ pub struct LayoutFile {
 }
 
 /// Which rows and columns a CSV has, and how its numbers are written. The default is every row and every column.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Layout {
     file: LayoutFile,
-    shape: Shape,
+    columns: Vec<&'static Column>,
 }
 
-#[derive(Clone, Debug, Default)]
-pub(super) enum Shape {
-    /// A step, with every column.
-    #[default]
-    Whole,
-    /// A step, with these columns.
-    Columns(Vec<Chosen>),
-    /// A point at a step, with these columns.
-    Points(Vec<&'static PointColumn>),
+impl Default for Layout {
+    fn default() -> Self {
+        Self {
+            file: LayoutFile::default(),
+            columns: COLUMNS.iter().collect(),
+        }
+    }
 }
 
 /// Why there is no such layout.
@@ -72,10 +68,10 @@ impl LayoutFile {
     /// # Errors
     /// When a column does not exist or is named twice, or when no time can lie between the two ends.
     pub fn check(mut self) -> Result<Layout, LayoutError> {
-        self.every.take_if(|every| every.get() == 1);
         // No run is longer, and TOML has no larger number.
         let most = NonZeroU64::new(i64::MAX as u64).unwrap_or(NonZeroU64::MAX);
-        self.every = self.every.map(|every| every.min(most));
+        let every = self.every.filter(|every| every.get() > 1);
+        self.every = every.map(|every| every.min(most));
         for (key, bound) in [("from_s", self.from_s), ("to_s", self.to_s)] {
             if let Some(seconds) = bound.filter(|seconds| !seconds.is_finite() || *seconds < 0.0) {
                 let rule = format!("{seconds:?} must be a time in seconds, 0 or more");
@@ -89,25 +85,24 @@ impl LayoutFile {
             let rule = format!("{to_s} s is before the first row's time, {from_s} s");
             return Err(LayoutError { key: "to_s", rule });
         }
-        let shape = match (&self.columns, self.points) {
-            (None, false) => Shape::Whole,
-            (None, true) => Shape::Points(POINT_COLUMNS.iter().collect()),
-            (Some(names), false) => Shape::Columns(chosen(names, &Chosen::names(), Chosen::find)?),
-            (Some(names), true) => {
-                let known = POINT_COLUMNS.iter().map(|column| column.name);
-                Shape::Points(chosen(names, &known, PointColumn::find)?)
-            }
+        let columns = match (&self.columns, self.points) {
+            (None, false) => COLUMNS.iter().collect(),
+            (None, true) => POINT_COLUMNS.iter().collect(),
+            (Some(names), false) => chosen(names, &Column::all())?,
+            (Some(names), true) => chosen(names, &POINT_COLUMNS.iter())?,
         };
-        Ok(Layout { file: self, shape })
+        Ok(Layout {
+            file: self,
+            columns,
+        })
     }
 }
 
-/// The columns that `names` name.
-fn chosen<C>(
+/// The columns of `all` that `names` name.
+fn chosen(
     names: &[String],
-    known: &(impl Iterator<Item = &'static str> + Clone),
-    find: impl Fn(&str) -> Option<C>,
-) -> Result<Vec<C>, LayoutError> {
+    all: &(impl Iterator<Item = &'static Column> + Clone),
+) -> Result<Vec<&'static Column>, LayoutError> {
     let wrong = |rule: String| LayoutError {
         key: "columns",
         rule,
@@ -119,8 +114,9 @@ fn chosen<C>(
         if names[..index].contains(name) {
             return Err(wrong(format!("{} is named twice", printable(name))));
         }
-        find(name).ok_or_else(|| {
-            let near = nearest(name, known.clone());
+        let found = all.clone().find(|column| column.name == name);
+        found.ok_or_else(|| {
+            let near = nearest(name, all.clone().map(|column| column.name));
             wrong(format!("no column named {}: {near}", printable(name)))
         })
     };
@@ -151,16 +147,12 @@ impl Layout {
         self.file.every.map_or(1, NonZeroU64::get)
     }
 
-    pub(super) fn shape(&self) -> &Shape {
-        &self.shape
+    pub(super) fn columns(&self) -> &[&'static Column] {
+        &self.columns
     }
 
     pub fn names(&self) -> Vec<&'static str> {
-        match &self.shape {
-            Shape::Whole => COLUMNS.iter().map(|column| column.name).collect(),
-            Shape::Columns(columns) => columns.iter().map(|column| column.name()).collect(),
-            Shape::Points(columns) => columns.iter().map(|column| column.name).collect(),
-        }
+        self.columns.iter().map(|column| column.name).collect()
     }
 
     /// Whether `step` has a row, in a run whose last step is `last`. The steps 0, every, twice every and so on and the last
@@ -212,4 +204,15 @@ impl Layout {
             })?;
         file.check()
     }
+}
+
+/// The comments above the run file, without their marks. `header` is the header of a CSV whose lines have lost their `# `.
+pub fn above_run_file(header: &str) -> String {
+    let comments = header.lines().map_while(|line| line.strip_prefix('#'));
+    comments.flat_map(|line| [line, "\n"]).collect()
+}
+
+/// `text` with `# ` before every line, as the run file is written above the rows.
+pub fn commented(text: &str) -> String {
+    text.lines().flat_map(|line| ["# ", line, "\n"]).collect()
 }

@@ -4,6 +4,7 @@ use crate::analysis::theory::{Axis, Path, Theory};
 use crate::analysis::{Measured, Readouts, remarks};
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, exponent, fixed, shortest, significant};
+use nalgebra::Vector3;
 use serde::Serialize;
 use std::fmt;
 use std::time::Duration;
@@ -18,14 +19,8 @@ pub struct Summary {
     steps: Option<String>,
 }
 
-/// A measured value and the theoretical one.
-struct Comparison {
-    unit: &'static str,
-    measured: Option<Measured>,
-    predicted: Option<f64>,
-    /// Whether the steps are too far apart to see it.
-    is_strobed: bool,
-}
+/// A line of the summary: what it is about, and what it says.
+type Line = (&'static str, String);
 
 impl Summary {
     /// The summary of a run that has `readouts` at its end and spent the time `wall` on stepping.
@@ -48,81 +43,114 @@ impl Summary {
         }
     }
 
-    fn write_state(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn state(&self) -> Vec<Line> {
         let Readouts {
             sample,
             extremes,
             health,
             ..
         } = &self.readouts;
-        let (at, momentum) = (&sample.position, &sample.momentum);
+        let scheme = &self.readouts.scheme;
+        let scheme = match &self.readouts.scheme_kind {
+            Some(kind) => format!("{scheme} ({kind})"),
+            None => (*scheme).to_owned(),
+        };
         let steps = || {
             let step = shortest(self.readouts.time_step_s);
             format!("{} of {step} s", sample.step)
         };
         let steps = self.steps.clone().unwrap_or_else(steps);
-        writeln!(f, "  steps         {steps}")?;
-        writeln!(f, "  t             {} s", shortest(sample.time_s))?;
-        let [x, y, z] = [at.x, at.y, at.z].map(|metres| fixed(metres, 9));
-        writeln!(f, "  x, y, z       {x}, {y}, {z} m")?;
-        let [x, y, z] = [momentum.x, momentum.y, momentum.z].map(|part| fixed(part, 6));
-        writeln!(f, "  L             {x}, {y}, {z} J s")?;
         let [now, low, high] = [
             sample.tilt_deg,
             extremes.lowest_tilt_deg,
             extremes.highest_tilt_deg,
         ]
         .map(|tilt| fixed(tilt, 6));
-        writeln!(
-            f,
-            "  tilt          {now} degrees; {low} to {high} in the run"
-        )?;
-        let [low, high] = [extremes.lowest_z_m, extremes.highest_z_m].map(|z| fixed(z, 9));
-        writeln!(f, "  z             {low} to {high} m in the run")?;
+        let [lowest, highest] = [extremes.lowest_z_m, extremes.highest_z_m].map(|z| fixed(z, 9));
         let azimuth = fixed(sample.azimuth_deg, 6);
-        writeln!(f, "  azimuth       {azimuth} degrees")?;
-        let drift = remarks::energy_in_full(health);
-        writeln!(f, "  energy drift  {drift}")?;
-        match &self.readouts.health.slowing {
-            Some(slowing) => writeln!(f, "  friction      {slowing}"),
-            None => Ok(()),
-        }
+        let mut lines = vec![
+            ("scheme", scheme),
+            ("steps", steps),
+            ("t", format!("{} s", shortest(sample.time_s))),
+            ("x, y, z", vector(&sample.position, 9) + " m"),
+            ("L", vector(&sample.momentum, 6) + " J s"),
+            ("tilt", format!("{now} degrees; {low} to {high} in the run")),
+            ("z", format!("{lowest} to {highest} m in the run")),
+            ("azimuth", format!("{azimuth} degrees")),
+            ("energy drift", remarks::energy_in_full(health)),
+        ];
+        let slowing = health.slowing.as_ref();
+        lines.extend(slowing.map(|slowing| ("friction", slowing.to_string())));
+        lines
     }
 
-    fn write_rates(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn rates(&self) -> Vec<Line> {
         let readouts = &self.readouts;
         // Under friction no motion goes on as theory has it.
         let theory = readouts.theory.filter(|theory| !theory.is_of_a_moment);
-        let precession = Comparison {
-            unit: "rad/s",
-            measured: readouts.precession,
-            predicted: theory.and_then(|theory| theory.precession),
-            is_strobed: false,
-        };
-        let nutation = Comparison {
-            unit: "s",
-            measured: readouts.nutation,
-            predicted: theory.and_then(|theory| theory.nutation_period_s),
-            is_strobed: readouts.nutation_is_resolved() == Some(false),
-        };
+        let predicted = theory.and_then(|theory| theory.precession);
         let path = readouts.theory.as_ref().map(|theory| theory.path);
-        let why = match (precession.predicted, path) {
+        let why = match (predicted, path) {
             (None, Some(Path::ThroughVertical)) => ": the axle passes through the vertical",
             _ => "",
         };
-        let precession = precession.in_words(readouts);
-        writeln!(f, "  precession    {precession}{why}")?;
-        writeln!(f, "  nutation      {}", nutation.in_words(readouts))
+        let precession = self.compared("rad/s", predicted, readouts.precession, false) + why;
+        let period = theory.and_then(|theory| theory.nutation_period_s);
+        let is_strobed = readouts.nutation_is_resolved() == Some(false);
+        let nutation = self.compared("s", period, readouts.nutation, is_strobed);
+        vec![("precession", precession), ("nutation", nutation)]
     }
 
-    fn write_theory(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (kappa, theory) = match (self.readouts.kappa, &self.readouts.theory) {
-            (None, _) => return writeln!(f, "  theory        none: the body is lopsided"),
-            (Some(kappa), None) => {
-                let (kappa, why) = (fixed(kappa, 4), "pushed off its axle, or too long a run");
-                return writeln!(f, "  theory        kappa {kappa}; none now: {why}");
+    /// A value by theory and as it was measured: "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s measured", with the axis
+    /// where theory refers to another than +z. `is_strobed` says whether the steps are too far apart to see it.
+    fn compared(
+        &self,
+        unit: &str,
+        predicted: Option<f64>,
+        measured: Option<Measured>,
+        is_strobed: bool,
+    ) -> String {
+        const FAR_APART: &str = "the steps are too far apart to see it";
+        let readouts = &self.readouts;
+        let axis = readouts.theory.as_ref().map(|theory| theory.axis);
+        let about = on(" about", &axis.unwrap_or(Axis::Z));
+        let about_z = if about.is_empty() { "" } else { " about +z" };
+        let theory = match predicted {
+            Some(value) => format!("{} {unit} by theory{about}", fixed(value, 6)),
+            None if readouts.health.slowing.is_some() => {
+                "none by theory, as friction changes it".to_owned()
             }
-            (Some(kappa), Some(theory)) => (fixed(kappa, 4), theory),
+            None if readouts.kappa.is_none() => {
+                "none by theory, which is of symmetric bodies".to_owned()
+            }
+            None => format!("none by theory{about}"),
+        };
+        let is_finite = |it: &Measured| it.value.is_finite() && it.uncertainty.is_finite();
+        let measured = match measured.filter(is_finite) {
+            Some(Measured { value, .. }) if is_strobed => {
+                let shown = significant(value, 3);
+                format!("strobed: {FAR_APART}, and show {shown} {unit}{about_z}")
+            }
+            Some(Measured {
+                value, uncertainty, ..
+            }) => {
+                let (value, uncertainty) = (fixed(value, 6), exponent(uncertainty, 1));
+                format!("{value} +- {uncertainty} {unit} measured{about_z}")
+            }
+            None if is_strobed => format!("none measured{about_z}: strobed, {FAR_APART}"),
+            None => format!("none measured{about_z}"),
+        };
+        format!("{theory}, {measured}")
+    }
+
+    fn theory(&self) -> Vec<Line> {
+        let Some(kappa) = self.readouts.kappa else {
+            return vec![("theory", "none: the body is lopsided".to_owned())];
+        };
+        let kappa = fixed(kappa, 4);
+        let Some(theory) = &self.readouts.theory else {
+            let why = "pushed off its axle, or too long a run";
+            return vec![("theory", format!("kappa {kappa}; none now: {why}"))];
         };
         let Theory { path, axis, .. } = theory;
         let ceased = if theory.is_of_a_moment {
@@ -132,49 +160,32 @@ impl Summary {
         };
         let (low, high) = theory.tilt_range_deg;
         let [low, high] = [low, high].map(|tilt| fixed(tilt, 4));
-        let from = match axis {
-            Axis::Z => String::new(),
-            axis => format!(" from {axis}"),
-        };
+        let from = on(" from", axis);
         // The extremes above are those of the whole run.
         let since = match self.readouts.since {
             0 | 1 => "",
             _ => ", since the forces last changed",
         };
-        writeln!(
-            f,
-            "  theory        {ceased}kappa {kappa}; path: {path}, tilt {low} to {high} degrees{from}{since}"
-        )?;
+        let motion = format!(
+            "{ceased}kappa {kappa}; path: {path}, tilt {low} to {high} degrees{from}{since}"
+        );
         if *axis == Axis::Momentum {
             let why = "without a load the axle goes round L, and no spin is too small to stand";
-            return writeln!(f, "  steady        {why}");
+            return vec![("theory", motion), ("steady", why.to_owned())];
         }
-        let about = about(axis);
-        let rate = |rate: Option<f64>| rate.map_or("none".to_owned(), |rate| fixed(rate, 6));
-        let steady = match (theory.slow_precession, theory.fast_precession) {
-            (None, None) => {
-                "none at this tilt: the top is too slow for a steady precession".to_owned()
-            }
-            (slow, fast) => {
-                let [slow, fast] = [slow, fast].map(rate);
-                format!("precession of {slow} (slow) or {fast} (fast) rad/s at this tilt")
-            }
-        };
-        writeln!(f, "  steady        {steady}{about}")?;
-        self.write_upright(f, theory, &about)
+        vec![
+            ("theory", motion),
+            ("steady", steady(theory)),
+            ("upright", self.upright(theory)),
+        ]
     }
 
     /// Whether the axle would sleep upright.
-    fn write_upright(
-        &self,
-        f: &mut fmt::Formatter<'_>,
-        theory: &Theory,
-        about: &str,
-    ) -> fmt::Result {
+    fn upright(&self, theory: &Theory) -> String {
         let spin = self.readouts.spin;
         let Some(limit) = theory.sleeping_limit else {
-            let why = "without spin too: the forces pull the axle up";
-            return writeln!(f, "  upright       stands{about} {why}");
+            let about = on(" about", &theory.axis);
+            return format!("stands{about} without spin too: the forces pull the axle up");
         };
         let sleeps = if spin.abs() > limit {
             "it would"
@@ -186,20 +197,27 @@ impl Summary {
             axis => format!("along {axis} it sleeps"),
         };
         let [limit, spin] = [limit, spin].map(|momentum| fixed(momentum, 3));
-        writeln!(
-            f,
-            "  upright       {along} with L.axle above {limit} J s; with {spin} {sleeps}"
-        )
+        format!("{along} with L.axle above {limit} J s; with {spin} {sleeps}")
     }
 
-    fn write_health(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let health = &self.readouts.health;
-        writeln!(f, "  a time step   {}", remarks::step_in_full(health))?;
-        writeln!(f, "  lag           {}", remarks::lag_in_full(health))?;
-        match remarks::constants_in_full(health) {
-            Some(constants) => writeln!(f, "  L             {constants}"),
-            None => Ok(()),
+    fn health(&self) -> Vec<Line> {
+        let readouts = &self.readouts;
+        let health = &readouts.health;
+        let mut lines = vec![
+            ("a time step", remarks::step_in_full(health)),
+            ("lag", remarks::lag_in_full(health)),
+        ];
+        lines.extend(remarks::constants_in_full(health).map(|constants| ("L", constants)));
+        let edits = readouts.sample.segment;
+        if edits > 0 {
+            lines.push(("edits", format!("{edits} of time step, scheme or gravity")));
         }
+        let number =
+            |name, write: fn(f64) -> String| readouts.number(name).map_or(NONE.to_owned(), write);
+        let wall = number("wall_s", |wall| fixed(wall, 3));
+        let rate = number("steps_per_second", |rate| exponent(rate, 3));
+        lines.push(("wall time", format!("{wall} s, {rate} steps a second")));
+        lines
     }
 }
 
@@ -240,56 +258,28 @@ pub fn steps_in_words(scenario: &Scenario, steps: u64) -> String {
     }
 }
 
-impl Comparison {
-    /// "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s measured", with the axis where theory refers to another than +z.
-    fn in_words(&self, readouts: &Readouts) -> String {
-        let unit = self.unit;
-        let axis = readouts
-            .theory
-            .as_ref()
-            .map_or(Axis::Z, |theory| theory.axis);
-        let about = about(&axis);
-        let about_z = match axis {
-            Axis::Z => "",
-            _ => " about +z",
-        };
-        let theory = match self.predicted {
-            Some(value) => format!("{} {unit} by theory{about}", fixed(value, 6)),
-            None if readouts.health.slowing.is_some() => {
-                "none by theory, as friction changes it".to_owned()
-            }
-            None if readouts.kappa.is_none() => {
-                "none by theory, which is of symmetric bodies".to_owned()
-            }
-            None => format!("none by theory{about}"),
-        };
-        let measured = match self.measured {
-            Some(Measured {
-                value, uncertainty, ..
-            }) if value.is_finite() && uncertainty.is_finite() => {
-                if self.is_strobed {
-                    let shown = significant(value, 3);
-                    return format!(
-                        "{theory}, strobed: the steps are too far apart to see it, and show {shown} {unit}{about_z}"
-                    );
-                }
-                let (value, uncertainty) = (fixed(value, 6), exponent(uncertainty, 1));
-                format!("{value} +- {uncertainty} {unit} measured{about_z}")
-            }
-            _ if self.is_strobed => {
-                format!("none measured{about_z}: strobed, the steps are too far apart to see it")
-            }
-            _ => format!("none measured{about_z}"),
-        };
-        format!("{theory}, {measured}")
+/// The steady precessions at the present tilt.
+fn steady(theory: &Theory) -> String {
+    let about = on(" about", &theory.axis);
+    let (slow, fast) = (theory.slow_precession, theory.fast_precession);
+    if slow.or(fast).is_none() {
+        return format!("none at this tilt: the top is too slow for a steady precession{about}");
     }
+    let rate = |rate: Option<f64>| rate.map_or("none".to_owned(), |rate| fixed(rate, 6));
+    let [slow, fast] = [slow, fast].map(rate);
+    format!("precession of {slow} (slow) or {fast} (fast) rad/s at this tilt{about}")
 }
 
-/// " about AXIS" where the axis is another than +z, else empty.
-fn about(axis: &Axis) -> String {
+fn vector(at: &Vector3<f64>, digits: usize) -> String {
+    let [x, y, z] = [at.x, at.y, at.z].map(|part| fixed(part, digits));
+    format!("{x}, {y}, {z}")
+}
+
+/// `word` and the axis where that is another than +z, else nothing.
+fn on(word: &str, axis: &Axis) -> String {
     match axis {
         Axis::Z => String::new(),
-        axis => format!(" about {axis}"),
+        axis => format!("{word} {axis}"),
     }
 }
 
@@ -297,33 +287,11 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let readouts = &self.readouts;
         writeln!(f, "{}", readouts.title)?;
-        match &readouts.scheme_kind {
-            Some(kind) => writeln!(f, "  scheme        {} ({kind})", readouts.scheme)?,
-            None => writeln!(f, "  scheme        {}", readouts.scheme)?,
+        let parts = [self.state(), self.rates(), self.theory(), self.health()];
+        for (name, said) in parts.into_iter().flatten() {
+            writeln!(f, "  {name:<14}{said}")?;
         }
-        self.write_state(f)?;
-        self.write_rates(f)?;
-        self.write_theory(f)?;
-        self.write_health(f)?;
-        if readouts.sample.segment > 0 {
-            writeln!(
-                f,
-                "  edits         {} of time step, scheme or gravity",
-                readouts.sample.segment
-            )?;
-        }
-        let number =
-            |name, write: fn(f64) -> String| readouts.number(name).map_or(NONE.to_owned(), write);
-        writeln!(
-            f,
-            "  wall time     {} s, {} steps a second",
-            number("wall_s", |wall| fixed(wall, 3)),
-            number("steps_per_second", |rate| exponent(rate, 3))
-        )?;
-        write!(
-            f,
-            "\n{}",
-            readouts.health.sentence(readouts.advice.as_ref())
-        )
+        let sentence = readouts.health.sentence(readouts.advice.as_ref());
+        write!(f, "\n{sentence}")
     }
 }

@@ -42,15 +42,12 @@ pub(super) fn points_a_turn(path: &[[f64; 3]]) -> Option<f64> {
 
 /// The longest way along one of the axes from one end of `path` to the other, m.
 fn width(path: &[[f64; 3]]) -> f64 {
-    let none = [(f64::INFINITY, f64::NEG_INFINITY); 3];
-    let ends = path.iter().fold(none, |ends, point| {
-        [0, 1, 2].map(|axis| {
-            let (low, high): (f64, f64) = ends[axis];
-            (low.min(point[axis]), high.max(point[axis]))
-        })
+    let far = Vector3::repeat(f64::INFINITY);
+    let (low, high) = path.iter().fold((far, -far), |(low, high), at| {
+        let at = Vector3::from(*at);
+        (low.inf(&at), high.sup(&at))
     });
-    let widths = ends.into_iter().map(|(low, high)| high - low);
-    widths.fold(0.0, f64::max)
+    (high - low).max()
 }
 
 /// What is drawn, as its `path` is drawn: of a run with too few points to look round these alone, and its name says so.

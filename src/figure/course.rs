@@ -1,8 +1,8 @@
 //! The numbers of a figure, from a run that is stepped through: once more, or while something else is read off it.
 
-use super::kind::Plotted;
 use super::path::{self, Path};
 use crate::analysis::{Beside, Health};
+use crate::export::Column;
 use crate::export::stream::{self, Ended};
 use crate::observe::recording::{Block, Extent, Recording};
 use crate::physics::State;
@@ -21,7 +21,7 @@ const PARTS: f64 = 8192.0;
 
 #[derive(Clone, Debug)]
 pub struct Wanted {
-    pub columns: Vec<Plotted>,
+    pub columns: Vec<&'static Column>,
     pub path: bool,
     pub from_s: f64,
     pub to_s: Option<f64>,
@@ -45,7 +45,7 @@ pub struct Course {
 
 /// A column in a part of the time.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
+pub(super) struct Part {
     /// Its first and last time, s.
     pub times_s: [f64; 2],
     pub extent: Extent,
@@ -77,29 +77,17 @@ impl Course {
         })
     }
 
-    fn place(&self, column: Plotted) -> Option<usize> {
+    fn place(&self, column: &Column) -> Option<usize> {
         let mut columns = self.wanted.columns.iter();
-        columns.position(|it| it.name() == column.name())
+        columns.position(|it| it.name == column.name)
     }
 
     /// `column` part by part, in the order of time.
-    pub fn parts(&self, column: Plotted) -> Vec<Part> {
+    pub(super) fn parts(&self, column: &Column) -> Vec<Part> {
         let Some(place) = self.place(column) else {
             return Vec::new();
         };
-        let curves = &self.curves[place / TOGETHER];
-        let Some(whole) = curves.whole() else {
-            return Vec::new();
-        };
-        let length_s = (whole.end_s - whole.begin_s).max(f64::MIN_POSITIVE);
-        let part = |time_s: f64| (PARTS * ((time_s - whole.begin_s) / length_s)) as u64;
-        let mut blocks: Vec<Block> = Vec::new();
-        for block in curves.finest() {
-            match blocks.last_mut() {
-                Some(last) if part(last.begin_s) == part(block.end_s) => *last = last.and(block),
-                _ => blocks.push(block),
-            }
-        }
+        let blocks = in_parts(&self.curves[place / TOGETHER]);
         let curve = place % TOGETHER;
         let parts = blocks.iter().map(|block| Part {
             times_s: [block.begin_s, block.end_s],
@@ -112,24 +100,18 @@ impl Course {
     }
 
     /// The points of `column`, every extreme among them.
-    pub fn points(&self, column: Plotted) -> Vec<[f64; 2]> {
+    pub fn points(&self, column: &Column) -> Vec<[f64; 2]> {
         let mut points: Vec<[f64; 2]> = Vec::new();
-        for Part {
-            times_s: [begin_s, end_s],
-            extent: Extent { min, max },
-            last,
-            ..
-        } in self.parts(column)
-        {
+        for part in self.parts(column) {
+            let ([begin_s, end_s], Extent { min, max }) = (part.times_s, part.extent);
             let before = points.last().map_or(min, |point| point[1]);
             let (early, late) = if max - before < before - min {
                 (max, min)
             } else {
                 (min, max)
             };
-            let middle_s = 0.5 * (begin_s + end_s);
-            let middle = (late != last).then_some([middle_s, late]);
-            let part = [Some([begin_s, early]), middle, Some([end_s, last])];
+            let middle = (late != part.last).then_some([0.5 * (begin_s + end_s), late]);
+            let part = [Some([begin_s, early]), middle, Some([end_s, part.last])];
             for point in part.into_iter().flatten() {
                 if points.last() != Some(&point) {
                     points.push(point);
@@ -138,6 +120,23 @@ impl Course {
         }
         points
     }
+}
+
+/// The blocks of `curves`, those of one part of the time together.
+fn in_parts(curves: &Recording) -> Vec<Block> {
+    let mut blocks: Vec<Block> = Vec::new();
+    let Some(whole) = curves.whole() else {
+        return blocks;
+    };
+    let length_s = (whole.end_s - whole.begin_s).max(f64::MIN_POSITIVE);
+    let part = |time_s: f64| (PARTS * ((time_s - whole.begin_s) / length_s)) as u64;
+    for block in curves.finest() {
+        match blocks.last_mut() {
+            Some(last) if part(last.begin_s) == part(block.end_s) => *last = last.and(block),
+            _ => blocks.push(block),
+        }
+    }
+    blocks
 }
 
 #[derive(Clone, Debug)]
@@ -250,9 +249,7 @@ pub fn play(
         recorder.follow(step);
         beside.hold(step.after());
     };
-    let ended = stream::play::<io::Sink>(&mut simulation, last, None, each, |step, last| {
-        watch(step, last)
-    });
+    let ended = stream::play::<io::Sink>(&mut simulation, last, None, each, &mut watch);
     let broke = match ended {
         Ok((Ended::Stopped, _)) => return None,
         Ok((Ended::NotFinite(error), _)) => Some(error),
@@ -278,10 +275,8 @@ pub fn exact(
 ) -> Option<Course> {
     let mut truth = Truth::new(Arc::clone(scenario));
     // The azimuth is counted on from the start, and nothing else needs what came before.
-    let is_counted = wanted
-        .columns
-        .iter()
-        .any(|column| column.name() == "azimuth_deg");
+    let mut columns = wanted.columns.iter();
+    let is_counted = columns.any(|column| column.name == "azimuth_deg");
     let begin_s = if is_counted {
         0.0
     } else {
@@ -289,10 +284,8 @@ pub fn exact(
     };
     let end_s = wanted.end_s(scenario);
     truth.state_at(begin_s);
-    let period_s = truth
-        .motion()
-        .closed_form()
-        .and_then(LagrangeTop::nutation_period);
+    let closed = truth.motion().closed_form();
+    let period_s = closed.and_then(LagrangeTop::nutation_period);
     let fine_s = period_s.map_or(f64::INFINITY, |period_s| period_s / A_PERIOD);
     let apart_s = fine_s.min(scenario.motion.time_step_s);
     let count = ((end_s - begin_s) / apart_s).ceil().clamp(LEAST, MOST) as u64;
@@ -342,7 +335,7 @@ mod tests {
     fn played(from_s: f64, to_s: f64) -> (Vec<f64>, usize, f64) {
         let scenario = Document::open("wobble-push").unwrap().scenario().unwrap();
         let wanted = Wanted {
-            columns: vec![Plotted::find("z_m").unwrap()],
+            columns: vec![Column::find("z_m").unwrap()],
             path: true,
             from_s,
             to_s: Some(to_s),
@@ -351,7 +344,7 @@ mod tests {
             ControlFlow::Continue(())
         });
         let course = course.unwrap();
-        let points = course.points(Plotted::find("z_m").unwrap());
+        let points = course.points(Column::find("z_m").unwrap());
         let times = points
             .iter()
             .map(|point| (point[0] * 1e6).round() / 1e6)
@@ -378,7 +371,7 @@ mod tests {
         let mut document = Document::open("wobble-push").unwrap();
         document.set("motion.steps=50000").unwrap();
         let scenario = Arc::new(document.scenario().unwrap());
-        let column = Plotted::find("z_m").unwrap();
+        let column = Column::find("z_m").unwrap();
         let wanted = Wanted {
             columns: vec![column],
             path: false,

@@ -4,11 +4,11 @@ use super::chart::Chart;
 use super::chart::curve;
 use super::chart::layout::{Layout, Placed};
 use super::course::{Course, Part};
-use super::kind::Plotted;
 use super::page::cover::Grid;
 use super::page::scene::Point;
 use super::path::Path;
 use super::request::{Drawn, Request};
+use crate::export::Column;
 use crate::observe::recording::Extent;
 use crate::text::ladder;
 use crate::text::number::{shortest, significant};
@@ -47,14 +47,14 @@ impl fmt::Display for Dense {
 const PART_PT: f64 = 1.0;
 /// Such a part is black where its lines are as wide as it is, and reach over so much of the panel's height.
 const HIGH: f64 = 0.05;
-/// A curve is black where more than this share of its parts is.
+/// A curve is black where more than this share of its parts is, a path where this share of its places is inside of the ink.
 const MOST: f64 = 0.5;
 const SWINGS: f64 = 20.0;
 
-/// Whether a curve of a chart, which shows `columns` of `drawn`, is solid black.
+/// What is said where a curve of a chart, which shows `columns` of `drawn`, is solid black.
 pub(super) fn warning(
     chart: &Chart,
-    columns: &[Plotted],
+    columns: &[&'static Column],
     drawn: &[Drawn],
     request: &Request,
 ) -> Option<Dense> {
@@ -63,21 +63,16 @@ pub(super) fn warning(
     let all = panels.flat_map(|(column, (panel, placed))| {
         let series = drawn.iter().zip(&panel.series);
         series.map(|(drawn, series)| {
-            swings_of_black(&drawn.course.parts(*column), series.style.width_pt, placed)
+            swings_of_black(&drawn.course.parts(column), series.style.width_pt, placed)
         })
     });
     // What shows the most swings shows those of the other curves too.
     let turns = all.flatten().max()?;
     let (_, end_s) = layout.panels.first()?.x.range;
     // The axis may begin before the run, so that a measured point at 0 has room.
-    let begin_s = request.from_s;
-    let window_s = 2.0 * SWINGS * (end_s - begin_s) / turns as f64;
-    Some(proposal(
-        begin_s,
-        window_s,
-        request,
-        format!("about {} swings", turns / 2),
-    ))
+    let window_s = 2.0 * SWINGS * (end_s - request.from_s) / turns as f64;
+    let what = format!("about {} swings", turns / 2);
+    Some(proposal(window_s, request, what))
 }
 
 /// How often a curve, which has these `parts`, turns where its line makes most of its panel black.
@@ -138,19 +133,15 @@ fn path_warning(lines: &[Vec<Point>], path: &Path, end_s: f64, request: &Request
     let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();
     let share = (LOOSE * area_pt2 / (path.times * length_pt * LINE_PT)).min(0.5);
     let window_s = share * (end_s - request.from_s);
-    Some(proposal(
-        request.from_s,
-        window_s,
-        request,
-        "its turns".to_owned(),
-    ))
+    let what = "its turns".to_owned();
+    Some(proposal(window_s, request, what))
 }
 
-fn proposal(from_s: f64, window_s: f64, request: &Request, what: String) -> Dense {
+fn proposal(window_s: f64, request: &Request, what: String) -> Dense {
     Dense {
         what,
         width_mm: (request.width_pt / super::PT_PER_MM).round(),
-        from_s,
-        to_s: from_s + ladder::at_or_below(window_s),
+        from_s: request.from_s,
+        to_s: request.from_s + ladder::at_or_below(window_s),
     }
 }

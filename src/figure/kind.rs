@@ -1,28 +1,19 @@
 //! The kinds of figures of a run, by the names of the lab's panes and of a CSV's columns.
 
 use crate::analysis::readouts;
-use crate::export::columns::{COLUMNS, Column};
-use crate::measured::quantity::QUANTITIES;
-use crate::measured::{Quantity, Series};
+use crate::export::Column;
+use crate::measured::Series;
 use crate::observe::recording::Curve;
-use crate::run::Sample;
-use crate::scenario::Scenario;
 use crate::scenario::problem;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
 
 #[derive(Clone, Debug)]
 pub enum Kind {
-    OverTime(Vec<Plotted>),
+    OverTime(Vec<&'static Column>),
     /// What was measured less what the run says, a panel for each quantity.
     Residuals,
     Above,
     ThreeD,
-}
-
-#[derive(Clone, Copy, Debug)]
-pub enum Plotted {
-    Column(&'static Column),
-    Measurable(&'static Quantity),
 }
 
 pub const RESIDUALS: &str = "residuals";
@@ -30,40 +21,17 @@ pub const RESIDUALS: &str = "residuals";
 /// The names that stand alone; a list of columns is the other way to name a figure.
 pub const NAMES: [&str; 4] = [TRACES, ABOVE, THREE_D, RESIDUALS];
 
-impl Plotted {
-    pub fn find(name: &str) -> Option<Self> {
-        let measurable = || Quantity::find(name).map(Self::Measurable);
-        Column::find(name).map(Self::Column).or_else(measurable)
-    }
-
-    fn names() -> impl Iterator<Item = &'static str> + Clone {
-        let others = QUANTITIES.iter().filter(|quantity| !quantity.is_column());
-        let columns = COLUMNS.iter().map(|column| column.name);
-        columns.chain(others.map(|quantity| quantity.name))
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Column(column) => column.name,
-            Self::Measurable(quantity) => quantity.name,
-        }
-    }
-
-    pub fn value(self, scenario: &Scenario, sample: &Sample) -> f64 {
-        match self {
-            Self::Column(column) => column.value(sample).number(),
-            Self::Measurable(quantity) => quantity.of_sample(scenario, sample),
-        }
-    }
+fn find(name: &str) -> Option<&'static Column> {
+    Column::all().find(|column| column.name == name)
 }
 
 impl Kind {
     pub fn traces() -> Self {
-        let column = |curve: Curve| Plotted::find(curve.column());
-        Self::OverTime(Curve::OF_POINT.into_iter().filter_map(column).collect())
+        let columns = Curve::OF_POINT.iter().map(|curve| curve.column());
+        Self::OverTime(columns.filter_map(find).collect())
     }
 
-    pub fn columns(&self) -> &[Plotted] {
+    pub fn columns(&self) -> &[&'static Column] {
         match self {
             Self::OverTime(columns) => columns,
             Self::Above | Self::ThreeD | Self::Residuals => &[],
@@ -73,7 +41,7 @@ impl Kind {
     pub fn name(&self) -> String {
         match self {
             Self::OverTime(columns) => {
-                let names: Vec<_> = columns.iter().map(|column| column.name()).collect();
+                let names: Vec<_> = columns.iter().map(|column| column.name).collect();
                 names.join(",")
             }
             Self::Above => ABOVE.to_owned(),
@@ -85,7 +53,7 @@ impl Kind {
     /// What was measured in `series`, over time.
     pub fn measured(series: &Series) -> Self {
         let names = series.curves.iter().map(|curve| curve.quantity.name);
-        Self::OverTime(names.filter_map(Plotted::find).collect())
+        Self::OverTime(names.filter_map(find).collect())
     }
 
     /// The kind of that name: `traces`, `above`, `3d`, `residuals`, or columns with commas between them.
@@ -115,26 +83,22 @@ impl Kind {
     }
 }
 
-fn column(name: &str) -> Result<Plotted, String> {
+fn column(name: &str) -> Result<&'static Column, String> {
     if name.is_empty() {
         return Err("lacks a name: traces, above, 3d, residuals, or columns of the CSV with commas between them".to_owned());
     }
     if NAMES.contains(&name) {
         return Err("is a figure of its own: no columns can stand beside it".to_owned());
     }
-    let known = NAMES.into_iter().chain(Plotted::names());
-    Plotted::find(name).ok_or_else(|| match readouts::find(name) {
-        Some(_) => {
-            let columns: Vec<_> = Plotted::names().collect();
-            format!(
-                "is a readout, one number of a run, and no column: a sweep's table is drawn by its readouts; over time there is {}",
-                columns.join(", ")
-            )
-        }
-        None => {
-            let near = problem::nearest(name, known);
-            format!("is no kind of figure (traces, above, 3d, residuals) and no column of the CSV: {near}")
-        }
+    let columns = || Column::all().map(|column| column.name);
+    find(name).ok_or_else(|| if readouts::find(name).is_some() {
+        format!(
+            "is a readout, one number of a run, and no column: a sweep's table is drawn by its readouts; over time there is {}",
+            columns().collect::<Vec<_>>().join(", ")
+        )
+    } else {
+        let near = problem::nearest(name, NAMES.into_iter().chain(columns()));
+        format!("is no kind of figure (traces, above, 3d, residuals) and no column of the CSV: {near}")
     })
 }
 
@@ -142,21 +106,11 @@ fn column(name: &str) -> Result<Plotted, String> {
 mod tests {
     use super::*;
 
-    fn columns(kind: &Kind) -> Vec<&str> {
-        match kind {
-            Kind::OverTime(columns) => columns.iter().map(|column| column.name()).collect(),
-            Kind::Above | Kind::ThreeD | Kind::Residuals => Vec::new(),
-        }
-    }
-
     #[test]
     fn kinds_have_the_names_of_panes_and_columns() {
-        assert_eq!(
-            columns(&Kind::named("traces").unwrap()),
-            ["x_m", "y_m", "z_m"]
-        );
+        assert_eq!(Kind::named("traces").unwrap().name(), "x_m,y_m,z_m");
         let two = Kind::named("tilt_deg, energy_J").unwrap();
-        assert_eq!(columns(&two), ["tilt_deg", "energy_J"]);
+        assert_eq!(two.name(), "tilt_deg,energy_J");
         assert!(matches!(Kind::named("above"), Ok(Kind::Above)));
         assert!(matches!(Kind::named("3d"), Ok(Kind::ThreeD)));
     }

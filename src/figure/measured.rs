@@ -1,22 +1,20 @@
 //! What was measured, drawn with runs: points with error bars over time and from above, and their residuals.
 
 use super::chart::legend::longest_name;
-use super::chart::{Axis, Chart, Errors, Panel, Series, Style};
-use super::kind::Plotted;
-use super::of_runs::charts::both_ranges;
+use super::chart::{Axis, Chart, Panel, Series, Style};
+use super::names::names;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
 use super::quantity;
-use super::request::{Figure, Known, Request, Run};
-use super::size;
-use crate::measured::{self, Curve, Measured, Point, at_times, places, residuals as held_against};
-use crate::run::Clock;
-use crate::scenario::Scenario;
+use super::request::{Figure, Job, Request, Run};
+use crate::export::Column;
+use crate::measured::{
+    self, Curve, Measured, Point, Residual, at_times, places, residuals as held_against,
+};
 use crate::text::number::shortest;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Arc;
 
 /// The room before the first and after the last residual, of the time between them.
 const MARGIN: f64 = 0.02;
@@ -30,51 +28,43 @@ const BESIDE_POINTS: f64 = 0.015;
 /// # Errors
 /// Where the data are no series, or the numbers of a run stop being finite.
 pub(super) fn over_time(
+    job: &Job<'_>,
     chart: &mut Chart,
-    columns: &[Plotted],
-    runs: &[Run],
-    request: &Request,
-    known: &Known,
+    columns: &[&'static Column],
 ) -> Result<Option<String>, String> {
+    let request = job.request;
     let Some(measured) = &request.measured else {
         return Ok(None);
     };
     let series = series(measured)?;
-    let mut drawn_on = Vec::new();
-    for (index, column) in columns.iter().enumerate().take(chart.panels.len()) {
-        let is_this = |curve: &Curve| curve.quantity.name == column.name();
-        let Some(place) = series.curves.iter().position(is_this) else {
-            continue;
-        };
-        let curve = &series.curves[place];
-        let points = if curve.quantity.is_direction {
-            turned(series, place, runs, known)?
-        } else {
-            curve.points.clone()
-        };
-        let shown = drawn(series, &points, request);
-        if let (Some(range), None) = (&mut chart.x.range, request.to_s) {
-            let last = shown.last().map_or(range.1, |(at, _)| at[0]);
-            range.1 = range.1.max(last);
+    let mut added = Vec::new();
+    for (index, column) in columns.iter().enumerate() {
+        let mut curves = series.curves.iter();
+        if let Some(place) = curves.position(|curve| curve.quantity.name == column.name) {
+            let points = turned(job, series, place)?;
+            added.push((index, drawn(job, series, &points)));
         }
-        drawn_on.push((index, shown));
     }
-    let times = drawn_on.iter().flat_map(|(_, shown)| shown);
+    let times = || {
+        added
+            .iter()
+            .flat_map(|(_, it)| it.points.iter().map(|at| at[0]))
+    };
     if let Some(range) = &mut chart.x.range {
-        make_room(range, times.map(|(at, _)| at[0]));
+        if request.to_s.is_none() {
+            range.1 = times().fold(range.1, f64::max);
+        }
+        make_room(range, times);
     }
-    let count = drawn_on.iter().map(|(_, shown)| shown.len()).sum();
-    for (index, shown) in drawn_on {
-        let (points, errors): (Vec<_>, Vec<_>) = shown.into_iter().unzip();
+    let count = times().count();
+    for (index, it) in added {
         chart.panels[index].series.push(Series {
             name: name(measured, count, request),
-            style: Style::measured(points.len()),
-            points,
-            errors,
-            ..Series::default()
+            style: Style::measured(it.points.len()),
+            ..it
         });
     }
-    let columns: Vec<_> = names(series).collect();
+    let columns: Vec<_> = series.curves.iter().map(|it| it.quantity.name).collect();
     Ok((count == 0).then(|| {
         format!(
             "no point of {} is in this figure: it has {}; --kind {} shows them",
@@ -86,71 +76,57 @@ pub(super) fn over_time(
 }
 
 /// Widens the `range` of an axis where one of `times` would stand on the frame: its error bar would lie on it.
-fn make_room((begin, end): &mut (f64, f64), times: impl Iterator<Item = f64>) {
-    let room = BESIDE_POINTS * (*end - *begin);
-    let (least, most) = (*begin + room, *end - room);
-    let ends = times.fold((false, false), |(first, last), time| {
-        (first || time < least, last || time > most)
-    });
-    if ends.0 {
-        *begin -= room;
+fn make_room<Times: Iterator<Item = f64>>(range: &mut (f64, f64), times: impl Fn() -> Times) {
+    let room = BESIDE_POINTS * (range.1 - range.0);
+    let (least, most) = (range.0 + room, range.1 - room);
+    if times().any(|time_s| time_s < least) {
+        range.0 -= room;
     }
-    if ends.1 {
-        *end += room;
+    if times().any(|time_s| time_s > most) {
+        range.1 += room;
     }
 }
 
-/// Adds the places from above. Returns what is to be said where the data do not tell any.
+/// The places from above, or what is to be said where the data do not tell any.
 ///
 /// # Errors
 /// Where the data are no series.
-pub(super) fn above(
-    chart: &mut Chart,
-    runs: &[Run],
-    request: &Request,
-) -> Result<Option<String>, String> {
-    let (Some(measured), Some(run)) = (&request.measured, runs.first()) else {
-        return Ok(None);
+pub(super) fn above(job: &Job<'_>) -> Result<(Option<Series>, Option<String>), String> {
+    let (Some(measured), Some(run)) = (&job.request.measured, job.runs.first()) else {
+        return Ok((None, None));
     };
     let scenario = &run.scenario;
     let traced = scenario.body.mechanics.points()[scenario.trace].at;
-    let all = places(series(measured)?, &traced);
-    let shown: Vec<_> = all
-        .iter()
-        .filter(|place| is_wanted(place.time_s, request))
-        .collect();
+    let mut shown = places(series(measured)?, &traced);
+    shown.retain(|place| job.has(place.time_s));
     if shown.is_empty() {
         let origin = &measured.origin;
-        return Ok(Some(format!(
-            "no point of {origin} is in this figure: from above are x_m and y_m, or tilt_deg and azimuth_deg of a point on the axle"
-        )));
+        return Ok((
+            None,
+            Some(format!(
+                "no point of {origin} is in this figure: from above are x_m and y_m, or tilt_deg and azimuth_deg of a point on the axle"
+            )),
+        ));
     }
     let errors = |part: usize| {
         let sigmas = shown.iter().map(|place| place.sigmas[part]);
         sigmas.map(|sigma| sigma.unwrap_or(f64::NAN)).collect()
     };
-    let added = Series {
-        name: name(measured, shown.len(), request),
+    let places = Series {
+        name: name(measured, shown.len(), job.request),
         points: shown.iter().map(|place| [place.at.x, place.at.y]).collect(),
-        errors: errors(1),
-        errors_across: errors(0),
+        errors: [errors(0), errors(1)],
         style: Style::measured(shown.len()),
     };
-    if let [panel] = &mut chart.panels[..] {
-        panel.series.push(added);
-        let (x, y) = both_ranges(&panel.series, size::of(runs, "x_m"));
-        (chart.x.range, panel.y.range) = (Some(x), Some(y));
-    }
-    Ok(None)
+    Ok((Some(places), None))
 }
 
 /// What is said where the runs end before the last point of a figure.
-pub(super) fn beyond_runs(runs: &[Run], request: &Request) -> Option<String> {
-    let measured = request.measured.as_ref()?;
+pub(super) fn beyond_runs(job: &Job<'_>) -> Option<String> {
+    let measured = job.request.measured.as_ref()?;
     let series = measured.series().ok()?;
-    let ends = runs.iter().map(|run| Clock::end_s(&run.scenario));
-    let end_s = ends.fold(0.0, f64::max);
-    let is_beyond = |time_s: &&f64| **time_s > end_s && is_wanted(**time_s, request);
+    let end_s = job.end_s();
+    let is_beyond = |time_s: &&f64| **time_s > end_s && job.has(**time_s);
     let last_s = shortest(*series.times_s.iter().rfind(is_beyond)?);
     Some(format!(
         "the run ends at {} s, before the last point of {} at {last_s} s: --duration {last_s} draws the run up to there",
@@ -168,111 +144,93 @@ pub(super) fn in_space(request: &Request) -> Option<String> {
     ))
 }
 
-/// The figure of what was measured less what each of `runs`, which have names, says.
+/// The figure of what was measured less what each of the runs says.
 ///
 /// # Errors
 /// Where there is nothing measured, or the numbers of a run stop being finite.
 pub(super) fn residuals(
-    title: String,
-    runs: &[(Arc<Scenario>, String)],
-    request: &Request,
-    known: &Known,
-    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+    job: &Job<'_>,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Figure>, String> {
+    let &Job { runs, request, .. } = job;
     let Some(measured) = &request.measured else {
         return Err("residuals are of measured data: --measured FILE".to_owned());
     };
     let series = series(measured)?;
-    let watch = RefCell::new(watch);
-    let ends = runs.iter().map(|(scenario, _)| Clock::end_s(scenario));
     let last_s = series.times_s.last().copied().unwrap_or(0.0);
-    let end_s = request.to_s.unwrap_or(ends.fold(last_s, f64::max));
-    let axis = |curve: &Curve| {
-        let axis = quantity::axis(curve.quantity.name);
-        Axis::new(format!("{}, measured − run", axis.name), axis.unit)
-    };
+    let end_s = request.to_s.unwrap_or(job.end_s().max(last_s));
     let margin_s = MARGIN * (end_s - request.from_s);
     let range = (request.from_s - margin_s, end_s + margin_s);
-    let zero = || Series {
-        points: vec![[range.0, 0.0], [range.1, 0.0]],
-        style: Style::theory(0, 0),
-        ..Series::default()
-    };
-    let panel = |curve: &Curve| Panel {
-        y: axis(curve),
-        series: vec![zero()],
-        ..Panel::default()
-    };
-    let mut panels: Vec<Panel> = series.curves.iter().map(panel).collect();
-    let all = series.curves.iter().flat_map(|curve| &curve.points);
-    let count = all
-        .filter(|point| is_wanted(series.times_s[point.row], request))
-        .count();
-    for (index, (scenario, name)) in runs.iter().enumerate() {
-        let go_on = || watch.borrow_mut()(0, scenario.steps).is_continue();
-        let said = match &known.said {
-            Some(said) => Some(said.clone()),
-            None => at_times(series, scenario, &go_on).map_err(|error| error.to_string())?,
-        };
-        let Some(model) = said else {
+    let mut panels: Vec<Panel> = series
+        .curves
+        .iter()
+        .map(|curve| empty(curve, range))
+        .collect();
+    let shown = series
+        .curves
+        .iter()
+        .map(|curve| drawn(job, series, &curve.points));
+    let count = shown.map(|shown| shown.points.len()).sum();
+    for (index, (run, run_name)) in runs.iter().zip(names(job)).enumerate() {
+        let Some(model) = said(job, series, run, &mut watch)? else {
             return Ok(None);
         };
-        let style = match runs.len() {
-            1 => Style::measured(0),
-            _ => Style::points(index),
+        let (name, style) = match runs {
+            [_] => (name(measured, count, request), Style::measured(0)),
+            _ => (run_name, Style::points(index)),
         };
         for ((panel, curve), model) in panels.iter_mut().zip(&series.curves).zip(&model) {
-            let points = less_run(curve, model);
-            let (points, errors) = drawn(series, &points, request).into_iter().unzip();
+            let points = beside(curve, model, Residual::value);
             panel.series.push(Series {
-                name: match runs.len() {
-                    1 => self::name(measured, count, request),
-                    _ => name.clone(),
-                },
-                points,
-                errors,
+                name: name.clone(),
                 style: style.clone(),
-                ..Series::default()
+                ..drawn(job, series, &points)
             });
         }
     }
-    let chart = Chart {
-        title,
-        width_pt: request.width_pt,
-        x: Axis {
-            range: Some(range),
-            ..quantity::axis("t_s")
-        },
-        panels,
-        is_true_to_scale: false,
-        errors: Errors::OfData,
-    };
-    Ok(Some(Figure {
-        scene: chart.scene(),
-        warnings: Vec::new(),
-        dense: None,
-        broke: None,
-    }))
+    let chart = job.chart(quantity::axis("t_s").within(range), panels);
+    Ok(Some(Figure::of(chart.scene())))
 }
 
-/// The points of `curve` less what the run says of each, `model`.
-fn less_run(curve: &Curve, model: &[f64]) -> Vec<Point> {
-    let held = held_against(Some(curve.quantity), &curve.points, model);
-    let less = held.iter().map(|held| Point {
-        row: held.row,
-        value: held.value(),
-        sigma: held.sigma,
-    });
-    less.collect()
+/// The panel of the residuals of `curve` with the line of zero alone.
+fn empty(curve: &Curve, range: (f64, f64)) -> Panel {
+    let axis = quantity::axis(curve.quantity.name);
+    Panel {
+        y: Axis::new(format!("{}, measured − run", axis.name), axis.unit),
+        series: vec![Series::level(range)],
+        slope: None,
+    }
+}
+
+/// What `run` says of each curve of `series`; `None` where `watch` stopped it.
+fn said(
+    job: &Job<'_>,
+    series: &measured::Series,
+    run: &Run,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Vec<Vec<f64>>>, String> {
+    if let Some(said) = &job.known.said {
+        return Ok(Some(said.clone()));
+    }
+    let watch = RefCell::new(watch);
+    let go_on = || watch.borrow_mut()(0, run.scenario.steps).is_continue();
+    at_times(series, &run.scenario, &go_on).map_err(|error| error.to_string())
+}
+
+/// The points of `curve` with what `value` makes of each and of what the run says of it, `model`.
+fn beside(curve: &Curve, model: &[f64], value: impl Fn(&Residual) -> f64) -> Vec<Point> {
+    let pairs = held_against(Some(curve.quantity), &curve.points, model);
+    let point = |pair: &Residual| Point {
+        row: pair.row,
+        value: value(pair),
+        sigma: pair.sigma,
+    };
+    pairs.iter().map(point).collect()
 }
 
 fn series(measured: &Measured) -> Result<&measured::Series, String> {
     let series = measured.series();
     series.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))
-}
-
-fn names(series: &measured::Series) -> impl Iterator<Item = &'static str> + '_ {
-    series.curves.iter().map(|curve| curve.quantity.name)
 }
 
 /// The name of the data in the legend, as markup, with the `count` of the points that the figure has of them.
@@ -289,53 +247,36 @@ fn name(measured: &Measured, count: usize, request: &Request) -> String {
     letters::shortened(&name, LABEL_PT, longest_name(request.width_pt))
 }
 
-fn is_wanted(time_s: f64, request: &Request) -> bool {
-    time_s >= request.from_s && request.to_s.is_none_or(|to_s| time_s <= to_s)
+/// `points` in the stretch of time that is drawn, with their errors: NaN where none is stated.
+fn drawn(job: &Job<'_>, series: &measured::Series, points: &[Point]) -> Series {
+    let time_s = |point: &Point| series.times_s[point.row];
+    let points = points.iter();
+    let points = points.filter(|point| job.has(time_s(point)));
+    let (points, errors) = points
+        .map(|point| {
+            (
+                [time_s(point), point.value],
+                point.sigma.unwrap_or(f64::NAN),
+            )
+        })
+        .unzip();
+    Series {
+        points,
+        errors: [Vec::new(), errors],
+        ..Series::default()
+    }
 }
 
-/// `points` in the stretch of time that is drawn, each with its error: NaN where none is stated.
-fn drawn(series: &measured::Series, points: &[Point], request: &Request) -> Vec<([f64; 2], f64)> {
-    let at = |point: &Point| {
-        let time_s = series.times_s[point.row];
-        ([time_s, point.value], point.sigma.unwrap_or(f64::NAN))
-    };
-    let all = points.iter().map(at);
-    all.filter(|(at, _)| is_wanted(at[0], request)).collect()
-}
-
-/// The directions of the curve at `place`, each with the number of full turns at which it is nearest to the first of `runs`.
-fn turned(
-    series: &measured::Series,
-    place: usize,
-    runs: &[Run],
-    known: &Known,
-) -> Result<Vec<Point>, String> {
+/// The points of the curve at `place`: of directions each with the number of full turns at which it is nearest to the first of
+/// the runs.
+fn turned(job: &Job<'_>, series: &measured::Series, place: usize) -> Result<Vec<Point>, String> {
     let curve = &series.curves[place];
-    let Some(run) = runs.first() else {
-        return Ok(curve.points.clone());
-    };
-    let said = known.said.as_ref().and_then(|said| said.get(place));
-    let model = match said {
-        Some(said) => Some(said.clone()),
-        None => {
-            let alone = measured::Series {
-                curves: vec![curve.clone()],
-                ..series.clone()
-            };
-            let model = at_times(&alone, &run.scenario, &|| true);
-            let model = model.map_err(|error| error.to_string())?;
-            model.and_then(|model| model.into_iter().next())
+    match job.runs.first() {
+        Some(run) if curve.quantity.is_direction => {
+            let said = said(job, series, run, |_, _| ControlFlow::Continue(()))?;
+            let model = said.unwrap_or_default();
+            Ok(beside(curve, &model[place], |pair| pair.measured))
         }
-    };
-    let held = held_against(
-        Some(curve.quantity),
-        &curve.points,
-        &model.unwrap_or_default(),
-    );
-    let turned = held.iter().map(|held| Point {
-        row: held.row,
-        value: held.measured,
-        sigma: held.sigma,
-    });
-    Ok(turned.collect())
+        _ => Ok(curve.points.clone()),
+    }
 }

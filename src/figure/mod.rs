@@ -32,4 +32,10 @@ pub const PT_PER_MM: f64 = 72.0 / 25.4;
 /// Width of a column of a journal's page, 86 mm, pt.
 pub const COLUMN_PT: f64 = 86.0 * PT_PER_MM;
 
+/// The least and the greatest of `values`; `None` where there is none.
+fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let ends = values.map(|value| (value, value));
+    ends.reduce(|(low, high), (value, _)| (low.min(value), high.max(value)))
+}
+
 pub use page::{Color, Format, Item, Paint, Path, Pen, Point, Scene, Segment, Unwritable, write};

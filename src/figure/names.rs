@@ -1,16 +1,18 @@
 //! What runs are called beside each other: by what differs.
 
+use super::chart::legend::longest_name;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
-use super::request::Run;
+use super::request::{Job, Run};
 use crate::text::number::significant;
 
 /// What of a run may differ from the others.
 type Of<'a> = &'a dyn Fn(&Run) -> String;
 
-/// A name for each of `runs`, as markup no longer than `room_pt`; empty where there is nothing to tell apart. `among_others`
-/// says whether something else is drawn beside a single run.
-pub(super) fn names(runs: &[Run], among_others: bool, room_pt: f64) -> Vec<String> {
+/// A name for each of the runs, as markup with room in the legend; empty where there is nothing to tell apart.
+pub(super) fn names(job: &Job<'_>) -> Vec<String> {
+    let &Job { runs, request, .. } = job;
+    let room_pt = longest_name(request.width_pt);
     let differs = |of: Of<'_>| runs.iter().any(|run| of(run) != of(&runs[0]));
     let title = |run: &Run| run.scenario.file.title.clone();
     let scheme = |run: &Run| run.scenario.motion.scheme.name.to_owned();
@@ -23,31 +25,22 @@ pub(super) fn names(runs: &[Run], among_others: bool, room_pt: f64) -> Vec<Strin
     let is_alike = parts.iter().all(|(differs, _)| !differs);
     let name = |run: &Run| -> String {
         if is_alike {
-            return match (runs.len(), among_others) {
+            return match (runs.len(), request.is_beside()) {
                 (1, false) => String::new(),
                 (1, true) => letters::escape(&scheme(run)),
                 _ => letters::shortened(&run.named, LABEL_PT, room_pt),
             };
         }
+        let differing = parts[..2].iter().filter(|(differs, _)| *differs);
+        let words: Vec<_> = differing.map(|(_, of)| of(run)).collect();
         // The step comes as markup, and keeps its room; the title is cut.
-        let step = if parts[2].0 {
-            time_step(run)
-        } else {
-            String::new()
+        let step = match (parts[2].0, words.is_empty()) {
+            (false, _) => String::new(),
+            (true, true) => time_step(run),
+            (true, false) => format!(", {}", time_step(run)),
         };
-        let words: Vec<_> = parts[..2]
-            .iter()
-            .filter(|(differs, _)| *differs)
-            .map(|(_, of)| of(run))
-            .collect();
-        let comma = if words.is_empty() || step.is_empty() {
-            ""
-        } else {
-            ", "
-        };
-        let rest = room_pt - super::page::ink::width(&format!("{comma}{step}"), LABEL_PT);
-        let words = letters::shortened(&words.join(", "), LABEL_PT, rest);
-        format!("{words}{comma}{step}")
+        let rest = room_pt - super::page::ink::width(&step, LABEL_PT);
+        letters::shortened(&words.join(", "), LABEL_PT, rest) + &step
     };
     runs.iter().map(name).collect()
 }

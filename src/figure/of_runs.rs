@@ -11,7 +11,7 @@ use super::kind::Kind;
 use super::measured;
 use super::names::names;
 use super::page::letters;
-use super::request::Drawn;
+use super::request::{Drawn, Job};
 pub use super::request::{Figure, Known, Request, Run};
 use super::space;
 use crate::analysis::health::LEAST_SWING_DEG;
@@ -55,81 +55,68 @@ pub fn figures(
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<Figure>>, String> {
     let nothing = Known::default();
-    let known = match runs {
-        [_] => known,
-        _ => &nothing,
-    };
-    let mut figures: Vec<Option<Figure>> = vec![None; requests.len()];
-    for (first, request) in requests.iter().enumerate() {
-        if figures[first].is_some() {
-            continue;
-        }
+    let known = if runs.len() == 1 { known } else { &nothing };
+    let mut figures = Vec::new();
+    let mut all_played: Vec<(&Request, Played)> = Vec::new();
+    for request in requests {
+        let job = Job {
+            runs,
+            request,
+            known,
+        };
+        check_range(&job)?;
         if let Kind::Residuals = &request.kind {
-            let Some(figure) = residuals(runs, request, known, &mut watch)? else {
+            let Some(figure) = measured::residuals(&job, &mut watch)? else {
                 return Ok(None);
             };
-            figures[first] = Some(figure);
+            figures.push(figure);
             continue;
         }
-        let alike = |other: &(usize, &Request)| request.is_alike(other.1, runs);
-        let group: Vec<_> = requests.iter().enumerate().filter(alike).collect();
-        let kinds: Vec<&Kind> = group.iter().map(|(_, request)| &request.kind).collect();
-        let Some(played) = play(runs, request, &kinds, known, &mut watch)? else {
-            return Ok(None);
-        };
-        for (index, request) in group {
-            figures[index] = Some(draw(runs, request, known, &played)?);
+        if !all_played.iter().any(|(it, _)| it.is_alike(request)) {
+            let alike = requests.iter().filter(|it| it.is_alike(request));
+            let wanted = wanted(request, alike.map(|it| &it.kind));
+            let Some(played) = play(&job, &wanted, &mut watch)? else {
+                return Ok(None);
+            };
+            all_played.push((request, played));
+        }
+        for (_, played) in all_played.iter().filter(|(it, _)| it.is_alike(request)) {
+            figures.push(draw(&job, played)?);
         }
     }
-    Ok(Some(figures.into_iter().flatten().collect()))
+    Ok(Some(figures))
 }
 
 fn play(
-    runs: &[Run],
-    request: &Request,
-    kinds: &[&Kind],
-    known: &Known,
+    job: &Job<'_>,
+    wanted: &Wanted,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Played>, String> {
-    check_range(runs, request)?;
-    let wanted = wanted(request, kinds);
-    let is_over_time = kinds.iter().any(|kind| matches!(kind, Kind::OverTime(_)));
+    let &Job { runs, request, .. } = job;
+    let Some(mut drawn) = play_runs(job, wanted, &mut watch) else {
+        return Ok(None);
+    };
     let mut broke = None;
-    let (mut drawn, mut warnings) = (Vec::new(), Vec::new());
-    let named = names(runs, request.is_beside(), longest_name(request.width_pt));
-    for (index, (run, name)) in runs.iter().zip(named).enumerate() {
-        let recorded = known.recorded.as_ref();
-        let recorded = recorded.and_then(|all| all.part(&run.scenario, &wanted));
-        let course = recorded.or_else(|| course::play(&run.scenario, &wanted, &mut watch));
-        let Some(course) = course else {
-            return Ok(None);
-        };
+    let mut warnings = Vec::new();
+    for (run, Drawn { course, .. }) in runs.iter().zip(&drawn) {
         if let Some(error) = course.broke {
             broke.get_or_insert_with(|| format!("{}: {error}", run.named));
         }
-        let faults = || not_believed(run, &course, request.exact);
-        warnings.extend(faults().or_else(|| few_a_swing(run).filter(|_| is_over_time)));
-        drawn.push(Drawn {
-            name,
-            style: Style::curve(index),
-            course,
-            is_exact: false,
-        });
+        let few = || few_a_swing(run).filter(|_| !wanted.columns.is_empty());
+        warnings.extend(not_believed(run, course, request.exact).or_else(few));
     }
     if request.exact {
         let is_exact = |run: &Run| is_exact(&run.scenario);
         warnings.extend(runs.iter().any(is_exact).then(|| IS_EXACT.to_owned()));
-        let Some(truths) = play_truths(runs, request, &wanted, watch) else {
+        let Some(truths) = play_truths(job, wanted, watch) else {
             return Ok(None);
         };
         drawn.extend(truths);
     }
     warnings.extend(look_alike(&drawn));
     if drawn.iter().all(|drawn| drawn.course.is_empty) {
-        return Err(match broke {
-            Some(error) => error,
-            None => "there is no step of the run in that stretch of time".to_owned(),
-        });
+        let none = || "there is no step of the run in that stretch of time".to_owned();
+        return Err(broke.unwrap_or_else(none));
     }
     Ok(Some(Played {
         drawn,
@@ -138,22 +125,41 @@ fn play(
     }))
 }
 
-/// Plays the exact motions beside `runs`; `None` where `watch` said no.
-fn play_truths(
-    runs: &[Run],
-    request: &Request,
+/// Plays the runs as far as nothing is known of them; `None` where `watch` said no.
+fn play_runs(
+    job: &Job<'_>,
     wanted: &Wanted,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Option<Vec<Drawn>> {
-    let truths = (runs.len()..).zip(truths(runs, longest_name(request.width_pt)));
-    let drawn = truths.map(|(place, (run, name))| {
-        let style = match place {
-            1 => Style::exact(),
-            place => Style::curve(place),
-        };
+    let named = job.runs.iter().zip(names(job)).enumerate();
+    let drawn = named.map(|(index, (run, name))| {
+        let recorded = job.known.recorded.as_ref();
+        let recorded = recorded.and_then(|all| all.part(&run.scenario, wanted));
         Some(Drawn {
             name,
-            style,
+            style: Style::curve(index),
+            course: recorded.or_else(|| course::play(&run.scenario, wanted, &mut watch))?,
+            is_exact: false,
+        })
+    });
+    drawn.collect()
+}
+
+/// Plays the exact motions beside the runs; `None` where `watch` said no.
+fn play_truths(
+    job: &Job<'_>,
+    wanted: &Wanted,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Option<Vec<Drawn>> {
+    let room_pt = longest_name(job.request.width_pt);
+    let truths = (job.runs.len()..).zip(truths(job.runs, room_pt));
+    let drawn = truths.map(|(place, (run, name))| {
+        Some(Drawn {
+            name,
+            style: match place {
+                1 => Style::exact(),
+                place => Style::curve(place),
+            },
             course: course::exact(&run.scenario, wanted, &mut watch)?,
             is_exact: true,
         })
@@ -161,36 +167,35 @@ fn play_truths(
     drawn.collect()
 }
 
-/// The figure that `request` asks for.
+/// The figure that the request asks for.
 ///
 /// # Errors
 /// When what was measured cannot be drawn so.
-fn draw(runs: &[Run], request: &Request, known: &Known, played: &Played) -> Result<Figure, String> {
-    let (title, drawn) = (title(runs), &played.drawn);
+fn draw(job: &Job<'_>, played: &Played) -> Result<Figure, String> {
+    let drawn = &played.drawn;
     let mut warnings = played.warnings.clone();
     let dense;
-    let scene = match &request.kind {
+    let scene = match &job.request.kind {
         Kind::OverTime(columns) => {
-            let mut chart = charts::over_time(title, runs, columns, drawn, request);
-            warnings.extend(measured::over_time(
-                &mut chart, columns, runs, request, known,
-            )?);
-            warnings.extend(measured::beyond_runs(runs, request));
-            dense = dense::warning(&chart, columns, drawn, request);
+            let mut chart = charts::over_time(job, columns, drawn);
+            warnings.extend(measured::over_time(job, &mut chart, columns)?);
+            warnings.extend(measured::beyond_runs(job));
+            dense = dense::warning(&chart, columns, drawn, job.request);
             chart.scene()
         }
         Kind::Above => {
-            let mut chart = charts::above(title, runs, drawn, request);
-            warnings.extend(measured::above(&mut chart, runs, request)?);
-            dense = charts::path_warning(&chart, drawn, request);
+            let (measured, none) = measured::above(job)?;
+            warnings.extend(none);
+            let chart = charts::above(job, drawn, measured);
+            dense = charts::path_warning(&chart, drawn, job.request);
             warnings.extend(chords::warning(drawn, |course| &course.above));
             chart.scene()
         }
         Kind::ThreeD | Kind::Residuals => {
             let scene;
-            (scene, dense) = space::scene(&title, runs, drawn, request);
+            (scene, dense) = space::scene(job, drawn);
             warnings.extend(chords::warning(drawn, |course| &course.path));
-            warnings.extend(measured::in_space(request));
+            warnings.extend(measured::in_space(job.request));
             scene
         }
     };
@@ -202,62 +207,34 @@ fn draw(runs: &[Run], request: &Request, known: &Known, played: &Played) -> Resu
     })
 }
 
-/// The figure of what was measured less what `runs` say.
-fn residuals(
-    runs: &[Run],
-    request: &Request,
-    known: &Known,
-    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Result<Option<Figure>, String> {
-    check_range(runs, request)?;
-    let named = names(runs, request.is_beside(), longest_name(request.width_pt));
-    let named = runs.iter().zip(named);
-    let named: Vec<_> = named
-        .map(|(run, name)| (Arc::clone(&run.scenario), name))
-        .collect();
-    measured::residuals(title(runs), &named, request, known, watch)
-}
-
-fn wanted(request: &Request, kinds: &[&Kind]) -> Wanted {
-    let columns = kinds.iter().flat_map(|kind| kind.columns());
-    Wanted {
-        columns: columns.copied().collect(),
-        path: kinds
-            .iter()
-            .any(|kind| matches!(kind, Kind::Above | Kind::ThreeD)),
+fn wanted<'a>(request: &Request, kinds: impl Iterator<Item = &'a Kind>) -> Wanted {
+    let mut wanted = Wanted {
+        columns: Vec::new(),
+        path: false,
         from_s: request.from_s,
         to_s: request.to_s,
+    };
+    for kind in kinds {
+        wanted.columns.extend(kind.columns());
+        wanted.path |= matches!(kind, Kind::Above | Kind::ThreeD);
     }
+    wanted
 }
 
-fn check_range(runs: &[Run], request: &Request) -> Result<(), String> {
-    let from_s = request.from_s;
-    if let Some(to_s) = request.to_s.filter(|to_s| *to_s <= from_s) {
-        let (from, to) = (shortest(from_s), shortest(to_s));
+fn check_range(job: &Job<'_>) -> Result<(), String> {
+    let (from_s, end_s) = (job.request.from_s, job.end_s());
+    let from = shortest(from_s);
+    if let Some(to_s) = job.request.to_s.filter(|to_s| *to_s <= from_s) {
+        let to = shortest(to_s);
         return Err(format!("--from {from} is not before --to {to}"));
     }
-    let ends = runs
-        .iter()
-        .map(|run| crate::run::Clock::end_s(&run.scenario));
-    let end_s = ends.fold(0.0, f64::max);
     if from_s >= end_s {
-        let (from, end) = (shortest(from_s), shortest(end_s));
+        let end = shortest(end_s);
         return Err(format!(
             "--from {from} is not before the end of the run, {end} s"
         ));
     }
     Ok(())
-}
-
-fn title(runs: &[Run]) -> String {
-    let mut titles: Vec<&str> = Vec::new();
-    for run in runs {
-        let title = run.scenario.file.title.as_str();
-        if !titles.contains(&title) {
-            titles.push(title);
-        }
-    }
-    titles.join("; ")
 }
 
 /// What draws the exact motion beside the runs, on the command line.
@@ -275,21 +252,21 @@ fn not_believed(run: &Run, course: &Course, exact: bool) -> Option<String> {
         run.scenario.motion.scheme.name,
         shortest(run.scenario.motion.time_step_s),
     );
+    let what = if health.point_holds() == Some(true) {
+        format!("the nutation of {of}: {swing}, as in the exact motion")
+    } else {
+        format!(
+            "{of}: its traced point is up to {} m ({} % of its arm) off the exact motion",
+            short(most_m),
+            short(100.0 * most_m / health.arm_m),
+        )
+    };
     let beside = if exact {
         String::new()
     } else {
         format!("; {EXACT_BESIDE}")
     };
-    Some(match health.point_holds() {
-        Some(true) => {
-            format!("do not believe the nutation of {of}: {swing}, as in the exact motion{beside}")
-        }
-        _ => format!(
-            "do not believe {of}: its traced point is up to {} m ({} % of its arm) off the exact motion{beside}",
-            short(most_m),
-            short(100.0 * most_m / health.arm_m),
-        ),
-    })
+    Some(format!("do not believe {what}{beside}"))
 }
 
 /// A nutation with fewer time steps than these is not seen in the lines from one to the next.
@@ -342,11 +319,8 @@ const IS_EXACT: &str =
 fn truths(runs: &[Run], room_pt: f64) -> Vec<(&Run, String)> {
     let motion = |run: &Run| {
         let mut file = run.scenario.file.clone();
-        (
-            file.motion.scheme,
-            file.motion.time_step_s,
-            file.motion.steps,
-        ) = (None, 0.0, 0);
+        let motion = &mut file.motion;
+        (motion.scheme, motion.time_step_s, motion.steps) = (None, 0.0, 0);
         (file.title, file.about, file.source) = (String::new(), None, None);
         (file.view, file.gyrolab) = (None, None);
         file.expected.clear();
@@ -364,12 +338,12 @@ fn truths(runs: &[Run], room_pt: f64) -> Vec<(&Run, String)> {
     };
     let count = distinct.len();
     distinct.retain(|run| !is_drawn(run));
-    let name = |run: &Run| match count {
-        1 => "exact".to_owned(),
-        _ => {
-            let title = format!("{}, exact", run.scenario.file.title);
-            letters::shortened(&title, super::page::ink::LABEL_PT, room_pt)
+    let name = |run: &Run| {
+        if count == 1 {
+            return "exact".to_owned();
         }
+        let title = format!("{}, exact", run.scenario.file.title);
+        letters::shortened(&title, super::page::ink::LABEL_PT, room_pt)
     };
     distinct.iter().map(|run| (*run, name(run))).collect()
 }

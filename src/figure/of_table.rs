@@ -5,7 +5,7 @@ mod comparison;
 mod fit;
 mod sweep;
 
-use super::chart::{Chart, Errors};
+use super::chart::Chart;
 use super::page::ink::{self, LABEL_PT};
 use super::page::letters;
 use super::table::{Subject, Table};
@@ -25,22 +25,8 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
     }
     let (x, panels) = match &table.subject {
         Subject::Comparison => comparison::drawn(table, columns, width_pt)?,
-        Subject::Fit {
-            settings,
-            run_file,
-            found,
-        } => {
-            let fit = fit::Fitted::new(settings, run_file, found, width_pt);
-            fit::drawn(table, &fit, columns)?
-        }
-        Subject::Sweep { varied, scenario } => {
-            let swept = sweep::Swept {
-                table,
-                varied,
-                scenario,
-            };
-            sweep::drawn(&swept, columns, width_pt)?
-        }
+        Subject::Fit(fit) => fit::drawn(table, fit, columns, width_pt)?,
+        Subject::Sweep(swept) => sweep::drawn(table, swept, columns, width_pt)?,
     };
     Ok(Chart {
         title: table.title.clone(),
@@ -48,19 +34,16 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
         x,
         panels,
         is_true_to_scale: false,
-        errors: match &table.subject {
-            Subject::Sweep { .. } => Errors::OfReading,
-            Subject::Comparison | Subject::Fit { .. } => Errors::OfData,
-        },
+        are_read_off: matches!(table.subject, Subject::Sweep(_)),
     })
 }
 
 /// What the reader of that chart should know of it, each a sentence without its end.
 pub fn warnings(table: &Table, columns: &[&str]) -> Vec<String> {
     match &table.subject {
-        Subject::Sweep { varied, .. } => sweep::gaps(table, columns, varied),
+        Subject::Sweep(swept) => sweep::gaps(table, columns, &swept.varied),
         Subject::Comparison => comparison::missing(table, columns),
-        Subject::Fit { .. } => Vec::new(),
+        Subject::Fit(_) => Vec::new(),
     }
 }
 
@@ -77,6 +60,14 @@ fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
     } else {
         letters::shortened(plain, LABEL_PT, room_pt)
     }
+}
+
+/// Those of `rows` that have a place along the axis below, from left to right.
+fn from_left(rows: &Rows, along: &[f64]) -> Rows {
+    let rows = rows.iter().copied();
+    let mut rows: Rows = rows.filter(|&row| along[row].is_finite()).collect();
+    rows.sort_by(|&a, &b| along[a].total_cmp(&along[b]));
+    rows
 }
 
 /// The rows of each text, in the order in which the texts come first.

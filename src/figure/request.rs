@@ -1,11 +1,12 @@
 //! What a figure of runs is to show, what it is drawn from, and what it then is.
 
-use super::chart::Style;
-use super::course::{Course, Wanted};
+use super::chart::{Axis, Chart, Panel, Style};
+use super::course::Course;
 use super::dense::Dense;
 use super::kind::Kind;
 use super::page::scene::Scene;
 use crate::measured::Measured;
+use crate::run::Clock;
 use crate::scenario::Scenario;
 use std::sync::Arc;
 
@@ -43,28 +44,59 @@ pub(super) struct Drawn {
     pub is_exact: bool,
 }
 
+/// Runs, what a figure of them is to show, and what is known of them.
+#[derive(Clone, Copy)]
+pub(super) struct Job<'a> {
+    pub runs: &'a [Run],
+    pub request: &'a Request,
+    pub known: &'a Known,
+}
+
+impl Job<'_> {
+    /// The end of the longest run, s.
+    pub fn end_s(&self) -> f64 {
+        let ends = self.runs.iter().map(|run| Clock::end_s(&run.scenario));
+        ends.fold(0.0, f64::max)
+    }
+
+    /// Whether `time_s` is in the stretch that is drawn.
+    pub fn has(&self, time_s: f64) -> bool {
+        let to_s = self.request.to_s;
+        time_s >= self.request.from_s && to_s.is_none_or(|to_s| time_s <= to_s)
+    }
+
+    /// The titles of the runs, each once.
+    pub fn title(&self) -> String {
+        let mut titles: Vec<&str> = Vec::new();
+        for run in self.runs {
+            let title = run.scenario.file.title.as_str();
+            if !titles.contains(&title) {
+                titles.push(title);
+            }
+        }
+        titles.join("; ")
+    }
+
+    pub fn chart(&self, x: Axis, panels: Vec<Panel>) -> Chart {
+        Chart {
+            title: self.title(),
+            width_pt: self.request.width_pt,
+            x,
+            panels,
+            ..Chart::default()
+        }
+    }
+}
+
 impl Request {
     /// Whether both are drawn from the same numbers of the runs under the same names.
-    pub(super) fn is_alike(&self, other: &Self, runs: &[Run]) -> bool {
-        let alike = |it: &Self| {
-            let stretch = Wanted {
-                columns: Vec::new(),
-                path: false,
-                from_s: it.from_s,
-                to_s: it.to_s,
-            };
-            let ends_s = runs.iter().map(|run| stretch.end_s(&run.scenario));
-            let is_of_runs = !matches!(it.kind, Kind::Residuals);
-            (
-                it.from_s,
-                ends_s.collect::<Vec<_>>(),
-                it.width_pt,
-                it.exact,
-                it.is_beside(),
-                is_of_runs,
-            )
+    pub(super) fn is_alike(&self, other: &Self) -> bool {
+        let of_runs = |it: &Self| {
+            let is_of_data = matches!(it.kind, Kind::Residuals);
+            let stretch = (it.from_s, it.to_s);
+            (stretch, it.width_pt, it.exact, it.is_beside(), is_of_data)
         };
-        alike(self) == alike(other)
+        of_runs(self) == of_runs(other)
     }
 
     /// Whether something is drawn beside the runs, so that a single run needs a name.
@@ -85,6 +117,16 @@ pub struct Figure {
 }
 
 impl Figure {
+    /// A picture of which there is nothing to say.
+    pub fn of(scene: Scene) -> Self {
+        Self {
+            scene,
+            warnings: Vec::new(),
+            dense: None,
+            broke: None,
+        }
+    }
+
     /// All that its reader should know of it, each a sentence without its end.
     pub fn told(&self) -> impl Iterator<Item = String> + '_ {
         let dense = self.dense.iter().map(ToString::to_string);

@@ -1,26 +1,28 @@
 //! How large the quantities of a run are by their nature: a difference far below that is rounding.
 
+use super::chart::Axis;
+use super::quantity;
 use super::request::Run;
 use crate::physics::observables;
 use crate::scenario::Scenario;
 use crate::scenario::start;
 
-/// The greatest of the sizes of the column or quantity `name` in `runs`, in its unit; 0 where none is known.
-pub(super) fn of(runs: &[Run], name: &str) -> f64 {
+/// The axis of the column `name` of `runs`, which shows no differences that are rounding. Drawn as high as the page, an error
+/// of the scheme in the eighth digit of a position or an angle looks like a motion.
+pub(super) fn axis(runs: &[Run], name: &str) -> Axis {
     let sizes = runs.iter().map(|run| of_run(&run.scenario, name));
-    sizes.filter(|size| size.is_finite()).fold(0.0, f64::max)
-}
-
-/// The part of its size below which a difference of the column or quantity `name` is drawn flat. Drawn as high as the page, an
-/// error of the scheme in the eighth digit of a position or an angle looks like a motion.
-pub(super) fn flat_below(name: &str) -> f64 {
-    match name {
-        "x_m" | "y_m" | "z_m" | "tilt_deg" | "azimuth_deg" => 1e-7,
-        _ => 0.0,
+    Axis {
+        size: sizes.filter(|size| size.is_finite()).fold(0.0, f64::max),
+        flat_below: match name {
+            "x_m" | "y_m" | "z_m" | "tilt_deg" | "azimuth_deg" => 1e-7,
+            _ => 0.0,
+        },
+        ..quantity::axis(name)
     }
 }
 
-/// That of a run of `scenario`: the traced point's arm, one radian, or what the start has of the quantity.
+/// The size of the column `name` in a run of `scenario`: the traced point's arm, one radian, or the value at the start; 0
+/// where none is known.
 fn of_run(scenario: &Scenario, name: &str) -> f64 {
     let (body, state) = (&scenario.body.mechanics, &scenario.start);
     let rate = || observables::angular_velocity(body, state).norm();

@@ -14,7 +14,7 @@ use super::dense::{self, Dense};
 use super::page::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
 use super::page::scene::{Color, Pen, Point, Scene};
 use super::quantity;
-use super::request::{Drawn, Request, Run};
+use super::request::{Drawn, Job, Run};
 use super::size;
 use crate::observe::camera::{Camera, View};
 use crate::text::number::significant;
@@ -35,8 +35,8 @@ const TITLE_GAP: f64 = 3.0;
 /// z is said to be stretched from this factor on.
 const SEEN: f64 = 1.1;
 
-/// Ways around the box.
-const SIDES: [f64; 2] = [-0.5, 0.5];
+/// Lengths of the box's sides.
+const SIZES: [f64; 3] = [1.0, 1.0, TALL];
 
 struct Space {
     view: View,
@@ -46,27 +46,9 @@ struct Space {
 }
 
 /// The figure of paths in space; and of one that is solid black, what it is and which stretch of time is not.
-pub(super) fn scene(
-    title: &str,
-    runs: &[Run],
-    drawn: &[Drawn],
-    request: &Request,
-) -> (Scene, Option<Dense>) {
-    let width_pt = request.width_pt;
-    let mut space = Space {
-        view: camera(runs).view(),
-        ranges: ranges(drawn, size::of(runs, "z_m")),
-        side_pt: 0.5 * width_pt,
-    };
-    // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
-    for _ in 0..4 {
-        let (left, _, right, _) = extent(&space.draw(&[], &[]));
-        let over = right - left - (width_pt - 2.0 * EDGE);
-        space.side_pt = (space.side_pt - over / 1.45).max(0.1 * width_pt);
-        if over.abs() < 0.2 {
-            break;
-        }
-    }
+pub(super) fn scene(job: &Job<'_>, drawn: &[Drawn]) -> (Scene, Option<Dense>) {
+    let width_pt = job.request.width_pt;
+    let space = Space::fitted(job.runs, drawn, width_pt);
     let (names, mut styles): (Vec<_>, Vec<_>) = drawn
         .iter()
         .map(|drawn| chords::as_drawn(drawn, &drawn.course.path))
@@ -81,14 +63,14 @@ pub(super) fn scene(
     let (left, top, right, bottom) = extent(&items);
     let above = legend.height_above(width_pt) + EDGE;
     let shift = at(0.5 * (width_pt - left - right), above - top);
-    let moved = std::mem::take(&mut items.items).into_iter();
-    let moved = moved.map(|item| item.mapped(|p| at(p.x + shift.x, p.y + shift.y)));
-    items.items = moved.collect();
-    items.title = title.to_owned();
+    for item in &mut items.items {
+        *item = item.clone().mapped(|p| at(p.x + shift.x, p.y + shift.y));
+    }
+    items.title = job.title();
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + EDGE;
     legend.draw_above(width_pt, EDGE, &mut items);
-    let dense = dense::of_paths(drawn, request, |course| {
+    let dense = dense::of_paths(drawn, job.request, |course| {
         let lines = course.path.lines(|at| space.place(&space.boxed(at)));
         (lines, &course.path)
     });
@@ -106,17 +88,10 @@ fn camera(runs: &[Run]) -> Camera {
     }
 }
 
-fn ranges(drawn: &[Drawn], size: f64) -> [(f64, f64); 3] {
+fn ranges(drawn: &[Drawn], size: &Axis) -> [(f64, f64); 3] {
     let range = |index: usize| {
-        let values = drawn
-            .iter()
-            .flat_map(|drawn| drawn.course.path.points.iter());
-        let axis = Axis {
-            size,
-            flat_below: size::flat_below("z_m"),
-            ..Axis::default()
-        };
-        axis.range_of(values.map(|point| point[index]))
+        let paths = drawn.iter().flat_map(|drawn| &drawn.course.path.points);
+        size.range_of(paths.map(|point| point[index]))
     };
     let [x, y, z] = [0, 1, 2].map(range);
     let half = 0.5 * (x.1 - x.0).max(y.1 - y.0);
@@ -139,6 +114,25 @@ fn extent(scene: &Scene) -> (f64, f64, f64, f64) {
 }
 
 impl Space {
+    /// The space in which the box and its labels are as wide as the page.
+    fn fitted(runs: &[Run], drawn: &[Drawn], width_pt: f64) -> Self {
+        let mut space = Self {
+            view: camera(runs).view(),
+            ranges: ranges(drawn, &size::axis(runs, "z_m")),
+            side_pt: 0.5 * width_pt,
+        };
+        // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
+        for _ in 0..4 {
+            let (left, _, right, _) = extent(&space.draw(&[], &[]));
+            let over = right - left - (width_pt - 2.0 * EDGE);
+            space.side_pt = (space.side_pt - over / 1.45).max(0.1 * width_pt);
+            if over.abs() < 0.2 {
+                break;
+            }
+        }
+        space
+    }
+
     /// How much longer z is drawn than x and y, where that is to be seen, as markup.
     fn stretched(&self) -> Option<String> {
         let [x, _, z] = self.ranges.map(|(low, high)| high - low);
@@ -152,11 +146,7 @@ impl Space {
 
     /// A place in the box: from −1/2 to 1/2 along each side, but for its height.
     fn boxed(&self, point: &[f64; 3]) -> Vector3<f64> {
-        let share = |index: usize| {
-            let (low, high) = self.ranges[index];
-            (point[index] - low) / (high - low) - 0.5
-        };
-        Vector3::new(share(0), share(1), TALL * share(2))
+        Vector3::from_fn(|axis, _| SIZES[axis] * (self.share(axis, point[axis]) - 0.5))
     }
 
     /// Where a place in the box stands on the page, pt.
@@ -192,20 +182,22 @@ impl Space {
 
     /// The ends of the edge along which the axis runs.
     fn edge(&self, axis: usize) -> [Vector3<f64>; 2] {
-        let (x, y, floor) = (self.near(0), self.near(1), -0.5 * TALL);
-        match axis {
-            0 => SIDES.map(|side| Vector3::new(side, y, floor)),
-            1 => SIDES.map(|side| Vector3::new(x, side, floor)),
-            _ => {
-                // The one farther to the left of the two uprights between a near and a far side.
-                let uprights = [(x, -y), (-x, y)].map(|(x, y)| Vector3::new(x, y, 0.0));
-                let left = uprights
-                    .into_iter()
-                    .min_by(|a, b| self.place(a).x.total_cmp(&self.place(b).x));
-                let foot = left.unwrap_or_default();
-                SIDES.map(|side| Vector3::new(foot.x, foot.y, TALL * side))
-            }
+        let (x, y) = (self.near(0), self.near(1));
+        let mut foot = Vector3::new(x, y, -0.5 * TALL);
+        if axis == 2 {
+            // The one farther to the left of the two uprights between a near and a far side.
+            let [a, b] = [(x, -y), (-x, y)].map(|(x, y)| Vector3::new(x, y, 0.0));
+            foot = if self.place(&b).x < self.place(&a).x {
+                b
+            } else {
+                a
+            };
         }
+        [-0.5, 0.5].map(|side| {
+            let mut end = foot;
+            end[axis] = side * SIZES[axis];
+            end
+        })
     }
 
     /// Where the value `share` of the way along an edge stands.
@@ -244,39 +236,32 @@ impl Space {
 
     /// The far sides: their grids, and their outlines.
     fn walls(&self, ticks: &[Ticks; 3], scene: &mut Scene) {
-        let (x, y, top) = (self.near(0), self.near(1), 0.5 * TALL);
-        let mut line = |a: [f64; 3], b: [f64; 3], width: f64, level: u8| {
-            let ends = [a, b].map(|[x, y, z]| self.place(&Vector3::new(x, y, z)));
-            scene.line(ends, width, grey(level));
+        /// Along which sides the grid of each axis runs.
+        const ALONG: [[usize; 2]; 3] = [[1, 2], [0, 2], [1, 0]];
+        let far = Vector3::new(-self.near(0), -self.near(1), -0.5 * TALL);
+        let opposite = |mut place: Vector3<f64>, axis: usize| {
+            place[axis] = -place[axis];
+            place
+        };
+        let mut line = |ends: [Vector3<f64>; 2], width: f64, level: u8| {
+            scene.line(ends.map(|end| self.place(&end)), width, grey(level));
         };
         for (axis, ticks) in ticks.iter().enumerate() {
             for tick in &ticks.major {
-                let share = self.share(axis, tick.at) - 0.5;
-                let [first, second] = match axis {
-                    0 => [
-                        [[share, -0.5, -top], [share, 0.5, -top]],
-                        [[share, -y, -top], [share, -y, top]],
-                    ],
-                    1 => [
-                        [[-0.5, share, -top], [0.5, share, -top]],
-                        [[-x, share, -top], [-x, share, top]],
-                    ],
-                    _ => {
-                        let z = share * TALL;
-                        [[[-x, -0.5, z], [-x, 0.5, z]], [[-0.5, -y, z], [0.5, -y, z]]]
-                    }
-                };
-                line(first[0], first[1], 0.35, 215);
-                line(second[0], second[1], 0.35, 215);
+                for along in ALONG[axis] {
+                    let mut from = far;
+                    from[axis] = SIZES[axis] * (self.share(axis, tick.at) - 0.5);
+                    from[along] = -0.5 * SIZES[along];
+                    line([from, opposite(from, along)], 0.35, 215);
+                }
             }
         }
-        let corner = [-x, -y];
-        for z in [-top, top] {
-            line([corner[0], corner[1], z], [x, -y, z], 0.4, 140);
-            line([corner[0], corner[1], z], [-x, y, z], 0.4, 140);
+        for corner in [far, opposite(far, 2)] {
+            line([corner, opposite(corner, 0)], 0.4, 140);
+            line([corner, opposite(corner, 1)], 0.4, 140);
         }
-        for (x, y) in [(-x, -y), (x, -y), (-x, y)] {
-            line([x, y, -top], [x, y, top], 0.4, 140);
+        for foot in [far, opposite(far, 0), opposite(far, 1)] {
+            line([foot, opposite(foot, 2)], 0.4, 140);
         }
     }
 

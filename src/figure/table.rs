@@ -1,6 +1,6 @@
 //! A CSV that is no run: the table of a comparison, of a sweep, or of a fit.
 
-use crate::export::comments::above_run_file;
+use crate::export::layout::above_run_file;
 use crate::scenario::csv::{self, Csv};
 use crate::scenario::head::Head;
 use crate::scenario::{Problem, Problems};
@@ -17,21 +17,27 @@ const MOST_VALUES: usize = 4_000_000;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
     Comparison,
-    Sweep {
-        /// The keys that were varied; the last runs fastest.
-        varied: Vec<String>,
-        /// The scenario, in which the keys have their names.
-        scenario: toml::Table,
-    },
+    Sweep(Sweep),
     /// What was measured, and what a fitted model says of it.
-    Fit {
-        /// The columns that say where each value was measured: the time, or settings.
-        settings: Vec<String>,
-        /// The run file of the fitted scenario.
-        run_file: String,
-        /// What was found for the free keys.
-        found: Vec<Found>,
-    },
+    Fit(Fit),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// The keys that were varied; the last runs fastest.
+    pub varied: Vec<String>,
+    /// The scenario, in which the keys have their names.
+    pub scenario: toml::Table,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// The columns that say where each value was measured: the time, or settings.
+    pub settings: Vec<String>,
+    /// The run file of the fitted scenario.
+    pub run_file: String,
+    /// What was found for the free keys.
+    pub found: Vec<Found>,
 }
 
 /// A fitted key, as the header of a fit's CSV has it.
@@ -134,12 +140,12 @@ fn subject(header: &str, names: &[&str]) -> Option<(Subject, String)> {
     }
     let table = table?;
     if let Some(settings) = settings_of_fit(names) {
-        let fit = Subject::Fit {
+        let fit = Fit {
             settings,
             run_file: header.to_owned(),
             found: found(header),
         };
-        return Some((fit, title(&table)));
+        return Some((Subject::Fit(fit), title(&table)));
     }
     let vary = table.get("vary")?.as_array()?;
     let keys = vary.iter().filter_map(|vary| vary.get("key")?.as_str());
@@ -150,7 +156,7 @@ fn subject(header: &str, names: &[&str]) -> Option<(Subject, String)> {
         own => own,
     };
     let scenario = of_scenario.cloned().unwrap_or_default();
-    Some((Subject::Sweep { varied, scenario }, title))
+    Some((Subject::Sweep(Sweep { varied, scenario }), title))
 }
 
 /// What was found by the fit in whose CSV this is the `header`; nothing where that does not tell.

@@ -67,7 +67,9 @@ impl Lab {
     pub fn number(&self, name: &str) -> Option<f64> {
         let readouts = &self.player.reading.readouts;
         match find(name).ok()?.of(self.player.run()) {
-            Source::Column(column) => Some(column.value(&readouts.sample).number()),
+            Source::Column(column) => {
+                Some(column.value(self.player.run().scenario(), &readouts.sample))
+            }
             Source::Readout(readout) => readout.of(readouts).number(),
             Source::Gravity => Some(self.player.motion().gravity),
             Source::TimeStep => Some(self.player.motion().time_step_s),
@@ -150,12 +152,9 @@ impl Now<'_> {
     pub fn value(&mut self, source: &Source) -> Option<f64> {
         match source {
             Source::Column(column) => {
-                let sample = || self.run.simulation().sample();
-                Some(
-                    column
-                        .value(self.sample.get_or_insert_with(sample))
-                        .number(),
-                )
+                let run = self.run.simulation();
+                let sample = self.sample.get_or_insert_with(|| run.sample());
+                Some(column.value(run.scenario(), sample))
             }
             Source::Readout(readout) => readout.of(self.readouts(readout.source)).number(),
             Source::Gravity => Some(self.run.simulation().motion().gravity),

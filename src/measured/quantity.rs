@@ -1,9 +1,8 @@
 //! What can be measured on one run over its time: quantities that it has at every step.
 
 use crate::analysis::readouts::{self, Readout};
-use crate::export::columns::{Column, OPTIONAL_COLUMNS, OptionalColumn};
-use crate::run::{Sample, Step};
-use crate::scenario::Scenario;
+use crate::export::Column;
+use crate::run::Step;
 use crate::text::unit::Unit;
 
 pub const TIME: &str = "t_s";
@@ -18,30 +17,12 @@ pub struct Quantity {
     pub name: &'static str,
     /// Whether it is an angle that can be measured only up to whole turns.
     pub is_direction: bool,
-    read: Read,
-}
-
-#[derive(Debug)]
-enum Read {
-    /// A column of the run's CSV.
-    Column,
-    /// A column that the CSV has where it is asked for.
-    Optional(&'static OptionalColumn),
 }
 
 const fn column(name: &'static str) -> Quantity {
     Quantity {
         name,
         is_direction: false,
-        read: Read::Column,
-    }
-}
-
-const fn optional(column: &'static OptionalColumn) -> Quantity {
-    Quantity {
-        name: column.name,
-        is_direction: false,
-        read: Read::Optional(column),
     }
 }
 
@@ -62,8 +43,8 @@ pub static QUANTITIES: [Quantity; 14] = [
         ..column("azimuth_deg")
     },
     column("energy_J"),
-    optional(&OPTIONAL_COLUMNS[0]),
-    optional(&OPTIONAL_COLUMNS[1]),
+    column("spin_rpm"),
+    column("L_axle_Js"),
 ];
 
 impl Quantity {
@@ -89,25 +70,10 @@ impl Quantity {
 
     /// Its value after `step`, in the unit of its name.
     pub fn of(&self, step: &Step) -> f64 {
-        match self.read {
-            Read::Optional(column) => column.of(step.scenario(), step.after()),
-            Read::Column => self.of_sample(step.scenario(), &step.sample()),
-        }
-    }
-
-    /// Its value at `sample`, which is of a run of `scenario`, in the unit of its name.
-    pub fn of_sample(&self, scenario: &Scenario, sample: &Sample) -> f64 {
-        match self.read {
-            Read::Column => {
-                Column::find(self.name).map_or(f64::NAN, |column| column.value(sample).number())
-            }
-            Read::Optional(column) => column.value(scenario, sample),
-        }
-    }
-
-    /// Whether every CSV of a run has it as a column.
-    pub fn is_column(&self) -> bool {
-        matches!(self.read, Read::Column)
+        let column = Column::all().find(|column| column.name == self.name);
+        column.map_or(f64::NAN, |column| {
+            column.value(step.scenario(), &step.sample())
+        })
     }
 }
 

@@ -4,7 +4,7 @@
 mod against;
 
 use crate::analysis::{Monitor, compare, cost};
-use crate::export::comments::{above_run_file, commented};
+use crate::export::layout::{above_run_file, commented};
 use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Layout};
 use crate::physics::SchemeInfo;

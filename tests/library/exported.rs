@@ -3,8 +3,8 @@
 use crate::support::scenarios::preset;
 use gyrolab::analysis::compare;
 use gyrolab::export::columns::COLUMNS;
-use gyrolab::export::comments::commented;
 use gyrolab::export::layout::LayoutFile;
+use gyrolab::export::layout::commented;
 use gyrolab::export::{CsvWriter, Layout, stream};
 use gyrolab::physics::SchemeInfo;
 use gyrolab::run::Simulation;

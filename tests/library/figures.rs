@@ -1,7 +1,7 @@
 //! Figures of runs and of tables: what stands on the page, and where.
 
 use crate::support::scenarios::preset;
-use gyrolab::figure::chart::{Axis, Chart, Errors, Panel, Series, Style};
+use gyrolab::figure::chart::{Axis, Chart, Panel, Series, Style};
 use gyrolab::figure::course::{Course, Recorder, Wanted};
 use gyrolab::figure::kind::Kind;
 use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
@@ -892,8 +892,7 @@ proptest! {
         let series = (0..names.0).map(|index| Series {
             name: gyrolab::figure::page::letters::shortened(&names.1, 7.0, gyrolab::figure::chart::legend::longest_name(width_mm * 72.0 / 25.4) - 6.0) + &index.to_string(),
             points: points.clone(),
-            errors: errors.iter().map(|error| error.abs()).collect(),
-            errors_across: Vec::new(),
+            errors: [Vec::new(), errors.iter().map(|error| error.abs()).collect()],
             style: if index % 2 == 0 { Style::curve(index) } else { Style::marked_line(index) },
         });
         let chart = Chart {
@@ -902,7 +901,7 @@ proptest! {
             x: Axis { is_log: logs.0, ..Axis::new("*t*", "s") },
             panels: vec![Panel { y: Axis { is_log: logs.1, ..Axis::new("*x*", "m") }, series: series.collect(), slope, ..Panel::default() }],
             is_true_to_scale: false,
-            errors: Errors::OfReading,
+            are_read_off: true,
         };
         let scene = chart.scene();
         if let Err(why) = is_tidy(&scene) {

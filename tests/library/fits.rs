@@ -594,7 +594,7 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
         marked.map(|series| series.points.len()).sum()
     };
     assert_eq!((points(values), points(residuals)), (16, 16));
-    let errors = &values.series[2].errors;
+    let errors = &values.series[2].errors[1];
     let is_stated = |error: &f64| (2.0..2.5).contains(error);
     assert!(!errors.is_empty() && errors.iter().all(is_stated));
     assert!(residuals.y.unit.contains('σ'));

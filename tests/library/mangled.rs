@@ -232,10 +232,10 @@ fn first_samples(scenario: Scenario, steps: u64) -> Vec<Sample> {
     samples
 }
 
-fn check_samples(samples: &[Sample]) -> Result<(), TestCaseError> {
+fn check_samples(scenario: &Scenario, samples: &[Sample]) -> Result<(), TestCaseError> {
     for sample in samples {
         for column in COLUMNS {
-            let number = column.value(sample).number();
+            let number = column.value(scenario, sample);
             prop_assert!(
                 number.is_finite(),
                 "step {}: {} = {number}",
@@ -274,15 +274,18 @@ fn check_round_trip(scenario: &Scenario, samples: &[Sample]) -> Result<(), TestC
     prop_assert_eq!(&again.file, &file);
     prop_assert_eq!(again.to_toml(), text);
     let steps = samples.len() as u64 - 1;
-    prop_assert_eq!(bits(&first_samples(again, steps)), bits(samples));
+    prop_assert_eq!(
+        bits(scenario, &first_samples(again, steps)),
+        bits(scenario, samples)
+    );
     Ok(())
 }
 
-fn bits(samples: &[Sample]) -> Vec<u64> {
+fn bits(scenario: &Scenario, samples: &[Sample]) -> Vec<u64> {
     let of = |sample| {
         COLUMNS
             .iter()
-            .map(move |column| column.value(sample).number().to_bits())
+            .map(move |column| column.value(scenario, sample).to_bits())
     };
     samples.iter().flat_map(of).collect()
 }
@@ -293,7 +296,7 @@ fn every_preset_survives_its_round_trip() {
         for text in [preset.text.to_owned(), with_more(preset.text)] {
             let scenario = load(&text).unwrap_or_else(|problems| panic!("{problems}"));
             let samples = first_samples(scenario.clone(), 50);
-            check_samples(&samples).unwrap();
+            check_samples(&scenario, &samples).unwrap();
             check_round_trip(&scenario, &samples).unwrap();
         }
     }
@@ -308,7 +311,7 @@ proptest! {
             Err(problems) => check_refusal(&problems)?,
             Ok(scenario) => {
                 let samples = first_samples(scenario.clone(), 300);
-                check_samples(&samples)?;
+                check_samples(&scenario, &samples)?;
                 check_round_trip(&scenario, &samples[..samples.len().min(20)])?;
             }
         }
@@ -333,7 +336,7 @@ proptest! {
         let set = keys.iter().try_for_each(|key| document.set(&format!("{key}={value}")));
         match set.and_then(|()| document.scenario()) {
             Err(problems) => check_refusal(&problems)?,
-            Ok(scenario) => check_samples(&first_samples(scenario, 50))?,
+            Ok(scenario) => check_samples(&scenario, &first_samples(scenario.clone(), 50))?,
         }
     }
 }

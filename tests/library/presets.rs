@@ -72,7 +72,7 @@ fn every_preset_does_what_it_expects() {
         for entry in expected {
             simulation.step_to(entry.at_step).expect("finite");
             let column = Column::find(&entry.readout).expect("a column");
-            let value = column.value(&simulation.sample()).number();
+            let value = column.value(simulation.scenario(), &simulation.sample());
             let off = (value - entry.value).abs();
             println!(
                 "{} {} at step {}: off by {off:.1e}",

@@ -77,11 +77,17 @@ fn the_table_is_whole_and_its_names_say_their_units() {
 
 #[test]
 fn a_column_of_the_csv_is_the_readout_of_its_name() {
-    let (readouts, rows) = played(&preset("wobble-push", &[]));
+    let scenario = preset("wobble-push", &[]);
+    let (readouts, rows) = played(&scenario);
     let last = rows.last().unwrap();
     for column in COLUMNS.iter().filter(|column| column.name != "step") {
         let number = readouts.number(column.name);
-        assert_eq!(number, Some(column.value(last).number()), "{}", column.name);
+        assert_eq!(
+            number,
+            Some(column.value(&scenario, last)),
+            "{}",
+            column.name
+        );
     }
     assert_eq!(readouts.number("steps"), Some(2300.0));
     assert_eq!(readouts.number("title"), None);

@@ -35,7 +35,7 @@ fn the_first_row_whose_running_maximum_is_above_the_limit() {
     let mut run = Simulation::new(Arc::new(preset("wobble-push", &[])));
     let mut highest = f64::NEG_INFINITY;
     let first = loop {
-        highest = highest.max(tilt.value(&run.sample()).number());
+        highest = highest.max(tilt.value(run.scenario(), &run.sample()));
         if highest > 50.0 {
             break run.step_number();
         }

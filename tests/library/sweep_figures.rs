@@ -79,7 +79,7 @@ fn a_sweep_shows_measured_points_with_bars_on_the_predicted_line() {
     assert_eq!(panel.series.len(), 2);
     assert_eq!(panel.series[0].style.mark, Some(Mark::Cross));
     assert_eq!(panel.series[1].style.width_pt, 0.0);
-    assert_eq!(panel.series[1].errors[..2], [0.01, 0.02]);
+    assert_eq!(panel.series[1].errors[1][..2], [0.01, 0.02]);
     let scene = chart.scene();
     is_tidy(&scene).unwrap();
     says(

@@ -2,8 +2,7 @@
 
 use super::WIDTH;
 use crate::cli::info;
-use crate::export::columns::{COLUMNS, OPTIONAL_COLUMNS};
-use crate::export::points::POINT_COLUMNS;
+use crate::export::columns::{COLUMNS, OPTIONAL_COLUMNS, POINT_COLUMNS};
 use crate::text::wrap::{columns, wrapped};
 use clap::Command;
 use std::fmt;
@@ -75,7 +74,7 @@ type Table = (&'static str, fn() -> Result<String, fmt::Error>);
 const TABLES: [Table; 6] = [
     ("{COLUMNS}", || Ok(list(COLUMNS, |it| (it.name, it.about)))),
     ("{COLUMNS ON REQUEST}", || {
-        Ok(list(&OPTIONAL_COLUMNS, |it| (it.name, it.about)))
+        Ok(list(OPTIONAL_COLUMNS, |it| (it.name, it.about)))
     }),
     ("{COLUMNS OF POINTS}", || {
         Ok(list(POINT_COLUMNS, |it| (it.name, it.about)))

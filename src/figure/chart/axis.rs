@@ -16,6 +16,14 @@ pub struct Scale {
 }
 
 impl Scale {
+    pub fn of(axis: &Axis, range: (f64, f64), places: (f64, f64)) -> Self {
+        Self {
+            range,
+            is_log: axis.is_log,
+            places,
+        }
+    }
+
     /// Where `value` stands, pt; far outside, or not finite, where it cannot be shown.
     pub fn place(&self, value: f64) -> f64 {
         let (low, high) = self.range;

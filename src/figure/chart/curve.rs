@@ -1,8 +1,7 @@
 //! The line of a series on the page, without the points that nobody could see.
 
-use super::draw::arcs;
 use super::layout::Placed;
-use super::{Circles, Series, Style};
+use super::{Series, Style};
 use crate::figure::page::cover::{self, Grid};
 use crate::figure::page::ink::{Frame, at};
 use crate::figure::page::line::{clipped, simplified};
@@ -31,7 +30,11 @@ impl Placed {
         at(self.x.place(point[0]), self.y.place(point[1]))
     }
 
+    /// Draws the line of `series`, if it has one.
     pub fn draw_line(&self, series: &Series, scene: &mut Scene) {
+        if series.style.width_pt == 0.0 {
+            return;
+        }
         let pieces = self.pieces(series);
         draw_curve(&pieces, &series.style.pen(), Some(&self.frame), scene);
     }
@@ -46,35 +49,16 @@ impl Placed {
         }
     }
 
-    pub fn has_circle_in(&self, frame: &Frame, circles: &Circles) -> bool {
-        let middle = self.place(&[0.0, 0.0]);
-        let mut radii = circles.radii.iter();
-        radii.any(|radius| !arcs(middle, self.x.place(*radius) - middle.x, frame).is_empty())
-    }
-
+    /// Whether something of `series` is in `frame`.
     pub fn has_in(&self, frame: &Frame, series: &Series) -> bool {
-        if series.style.width_pt > 0.0 {
-            let places = series.points.iter().map(|point| self.place(point));
-            if !clipped(places, frame).is_empty() {
-                return true;
-            }
-        }
-        let ends = series.points.iter().enumerate().map(|(index, point)| {
-            let error = series.errors.get(index).copied().filter(|e| e.is_finite());
-            [-1.0, 1.0].map(|sign| point[1] + sign * error.unwrap_or(0.0))
-        });
-        let bars = series.points.iter().zip(ends).map(|(point, ends)| {
-            let bar = ends.map(|end| self.place(&[point[0], end]));
-            clipped(bar.into_iter(), frame)
-        });
-        let across = series.points.iter().zip(&series.errors_across);
-        let mut across = across.map(|(point, &error)| {
-            let error = if error.is_finite() { error } else { 0.0 };
-            let bar = [-1.0, 1.0].map(|sign| self.place(&[point[0] + sign * error, point[1]]));
-            clipped(bar.into_iter(), frame)
-        });
-        series.style.mark.is_some()
-            && (bars.into_iter().any(|bar| !bar.is_empty()) || across.any(|bar| !bar.is_empty()))
+        let is_in = |points: &[[f64; 2]]| {
+            let places = points.iter().map(|point| self.place(point));
+            !clipped(places, frame).is_empty()
+        };
+        let mut bars =
+            (0..series.points.len()).flat_map(|index| [0, 1].map(|axis| series.ends(index, axis)));
+        (series.style.width_pt > 0.0 && is_in(&series.points))
+            || (series.style.mark.is_some() && bars.any(|bar| is_in(&bar)))
     }
 }
 

@@ -3,14 +3,12 @@
 use super::layout::{EDGE, GAP, Layout, Placed};
 use super::legend::Legend;
 use super::ticks::Ticks;
-use super::{Chart, Circles, Panel, Series};
+use super::{Chart, Panel, Series};
 use super::{curve, slope};
-use crate::figure::page::ink::{self, BLACK, Frame, LABEL_PT, MARK_PT, at, pen};
+use crate::figure::page::ink::{self, BLACK, LABEL_PT, MARK_PT, at, pen};
 use crate::figure::page::letters;
-use crate::figure::page::line::clipped;
-use crate::figure::page::scene::{Path, Point, Scene};
+use crate::figure::page::scene::{Point, Scene};
 use std::collections::HashSet;
-use std::f64::consts::{PI, TAU};
 
 /// The most marks in a panel.
 const MOST_MARKS: f64 = 10_000.0;
@@ -48,17 +46,7 @@ impl Chart {
 
     /// The chart in its places; `bare` leaves no room for a legend above the panels.
     fn placed(&self, bare: Layout) -> Scene {
-        let known = if self.lacks_errors() { "known " } else { "" };
-        let errors = self.errors.words();
-        let remark = match self.bars_hidden(&bare) {
-            (0, _) => None,
-            (hidden, all) if hidden == all => Some(format!("{known}{errors} smaller than marks")),
-            _ => Some(format!(
-                "{known}{errors} smaller than marks where no bar is drawn"
-            )),
-        };
-        let remark =
-            remark.map(|remark| letters::shortened(&remark, LABEL_PT, self.width_pt - 2.0 * EDGE));
+        let remark = self.remark(&bare);
         let legend = Legend::of(self, remark.as_deref());
         let corner = legend.free_corner(self, &bare);
         let layout = match corner {
@@ -101,35 +89,43 @@ impl Chart {
         let mut series = self.panels.iter().flat_map(|panel| &panel.series);
         series.any(|series| {
             let mark = series.style.mark.filter(|mark| mark.is_of_measured());
-            let mut points = series.points.iter().zip(&series.errors);
+            let mut points = series.points.iter().zip(&series.errors[1]);
             let is_unknown = points.any(|(point, error)| point[1].is_finite() && error.is_nan());
-            mark.is_some() && (series.errors.is_empty() || is_unknown)
+            mark.is_some() && (series.errors[1].is_empty() || is_unknown)
         })
     }
 
-    /// How many error bars are too small to be drawn, and how many there are.
-    fn bars_hidden(&self, layout: &Layout) -> (usize, usize) {
+    /// What the legend says of error bars that are too small to be drawn.
+    fn remark(&self, layout: &Layout) -> Option<String> {
         let panels = self.panels.iter().zip(&layout.panels);
-        let series = panels
-            .flat_map(|(panel, placed)| panel.series.iter().map(move |series| (series, placed)));
-        series.fold((0, 0), |(hidden, all), (series, placed)| {
-            let bars: Vec<bool> = placed.bars(series).map(|bar| bar.is_hidden).collect();
-            let across = placed.bars_across(series).count();
-            let is_hidden = |hidden: &&bool| **hidden;
-            (
-                hidden + bars.iter().filter(is_hidden).count(),
-                all + bars.len() + across,
-            )
-        })
+        let bars = panels.flat_map(|(panel, placed)| {
+            let bars = move |series| [0, 1].map(|axis| placed.bars(series, axis));
+            panel.series.iter().flat_map(bars).flatten()
+        });
+        let (hidden, drawn): (Vec<_>, Vec<_>) = bars.partition(is_covered);
+        if hidden.is_empty() {
+            return None;
+        }
+        let known = if self.lacks_errors() { "known " } else { "" };
+        let of = if self.are_read_off {
+            " of reading the run"
+        } else {
+            ""
+        };
+        let rest = if drawn.is_empty() {
+            ""
+        } else {
+            " where no bar is drawn"
+        };
+        let remark = format!("{known}errors{of} smaller than marks{rest}");
+        let room = self.width_pt - 2.0 * EDGE;
+        Some(letters::shortened(&remark, LABEL_PT, room))
     }
 }
 
-struct Bar {
-    x: f64,
-    top: f64,
-    bottom: f64,
-    /// Whether the mark would cover it.
-    is_hidden: bool,
+/// Whether a mark would cover an error bar.
+fn is_covered(&[a, b]: &[Point; 2]) -> bool {
+    (a.x - b.x).abs() + (a.y - b.y).abs() < COVERED_PT
 }
 
 impl Placed {
@@ -149,75 +145,40 @@ impl Placed {
         };
         let is_kept: Vec<bool> = series.points.iter().map(&mut is_kept).collect();
         retain(&mut series.points, &is_kept);
-        retain(&mut series.errors, &is_kept);
-        retain(&mut series.errors_across, &is_kept);
+        let errors = series.errors.iter_mut();
+        errors.for_each(|errors| retain(errors, &is_kept));
     }
 
-    /// The error bars of `series` whose point is in the panel.
-    fn bars<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = Bar> + 'a {
-        let points = series.points.iter().zip(&series.errors);
-        let points = points
-            .filter(|(point, error)| error.is_finite() && self.frame.holds(self.place(point)));
-        points.map(|(point, error)| {
-            let y = |sign: f64| self.y.place(point[1] + sign * error);
-            let limit = |y: f64| {
-                if y.is_finite() {
-                    y.clamp(self.frame.top, self.frame.bottom)
-                } else {
-                    self.frame.bottom
-                }
-            };
-            let (top, bottom) = (limit(y(1.0)), limit(y(-1.0)));
-            Bar {
-                x: self.x.place(point[0]),
-                is_hidden: bottom - top < COVERED_PT,
-                top,
-                bottom,
-            }
+    /// The ends of the error bars along an axis of those points of `series` that are in the panel, cut off at its frame.
+    fn bars<'a>(
+        &'a self,
+        series: &'a Series,
+        axis: usize,
+    ) -> impl Iterator<Item = [Point; 2]> + 'a {
+        let points = series.points.iter().zip(&series.errors[axis]).enumerate();
+        let shown = points
+            .filter(|(_, (point, error))| error.is_finite() && self.frame.holds(self.place(point)));
+        shown.map(move |(index, _)| {
+            let ends = series.ends(index, axis);
+            ends.map(|end| self.frame.nearest(self.place(&end)))
         })
-    }
-
-    /// The level error bars of `series` that its marks do not cover: their ends, and at which height.
-    fn bars_across<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = (f64, f64, f64)> + 'a {
-        let points = series.points.iter().zip(&series.errors_across);
-        let points = points
-            .filter(|(point, error)| error.is_finite() && self.frame.holds(self.place(point)));
-        let bars = points.map(|(point, error)| {
-            let x = |sign: f64| {
-                let x = self.x.place(point[0] + sign * error);
-                x.clamp(self.frame.left, self.frame.right)
-            };
-            (x(-1.0), x(1.0), self.y.place(point[1]))
-        });
-        bars.filter(|(left, right, _)| right - left >= COVERED_PT)
     }
 }
 
 impl Panel {
     fn draw(&self, placed: &Placed, layout: &Layout, scene: &mut Scene) {
         let frame = &placed.frame;
-        let to_page = |radius: f64| placed.x.place(radius) - placed.x.place(0.0);
-        for &radius in &self.circles.radii {
-            let middle = placed.place(&[0.0, 0.0]);
-            for arc in arcs(middle, to_page(radius), frame) {
-                scene.stroke(Path::polyline(arc), Circles::style().pen(), Some(frame));
-            }
-        }
-        let points = |is_behind: bool, scene: &mut Scene| {
+        let part = |is_behind: bool| {
             let series = self.series.iter();
-            let series = series.filter(|series| series.style.is_behind == is_behind);
-            series.for_each(|series| draw_points(series, placed, scene));
+            series.filter(move |series| series.style.is_behind == is_behind)
         };
-        points(true, scene);
-        for series in self
-            .series
-            .iter()
-            .filter(|series| series.style.width_pt > 0.0)
-        {
+        for series in part(true) {
+            draw_points(series, placed, scene);
             placed.draw_line(series, scene);
         }
+        part(false).for_each(|series| placed.draw_line(series, scene));
         draw_frame(placed, layout, scene);
-        points(false, scene);
+        part(false).for_each(|series| draw_points(series, placed, scene));
         let (title, size) = &placed.title;
         let middle = at(layout.titles_at, 0.5 * (frame.top + frame.bottom));
         scene.write_up(title, *size, middle);
@@ -235,46 +196,28 @@ fn retain<Item>(items: &mut Vec<Item>, is_kept: &[bool]) {
     items.retain(|_| kept.next() == Some(&true));
 }
 
-/// The parts in `frame` of the circle of that radius (pt), as lines: it may be far larger than the page.
-pub(super) fn arcs(middle: Point, radius_pt: f64, frame: &Frame) -> Vec<Vec<Point>> {
-    /// How far the lines are off it, pt, and how many there are at most.
-    const OFF_PT: f64 = 0.02;
-    const MOST: f64 = 1e5;
-    let count = (PI * (0.5 * radius_pt / OFF_PT).sqrt())
-        .ceil()
-        .clamp(8.0, MOST);
-    let places = (0..=count as u32).map(|number| {
-        let angle = TAU * f64::from(number) / count;
-        let (x, y) = (libm::cos(angle), libm::sin(angle));
-        at(middle.x + radius_pt * x, middle.y + radius_pt * y)
-    });
-    clipped(places, frame)
-}
-
 /// The frame and its ticks, on all four sides, inwards.
 fn draw_frame(placed: &Placed, layout: &Layout, scene: &mut Scene) {
     let frame = &placed.frame;
     scene.stroke(frame.outline(), pen(FRAME_PT, BLACK), None);
-    let mut upright = |x: f64, length: f64| {
-        let (top, bottom) = (frame.top, frame.bottom);
-        scene.line([at(x, bottom), at(x, bottom - length)], FRAME_PT, BLACK);
-        scene.line([at(x, top), at(x, top + length)], FRAME_PT, BLACK);
-    };
-    let x = |value: f64| placed.x.place(value);
-    each_tick(&layout.ticks, |value, length| upright(x(value), length));
-    let mut level = |y: f64, length: f64| {
-        let (left, right) = (frame.left, frame.right);
-        scene.line([at(left, y), at(left + length, y)], FRAME_PT, BLACK);
-        scene.line([at(right, y), at(right - length, y)], FRAME_PT, BLACK);
-    };
-    let y = |value: f64| placed.y.place(value);
-    each_tick(&placed.ticks, |value, length| level(y(value), length));
+    for (value, length) in lengths(&layout.ticks) {
+        let x = placed.x.place(value);
+        for (edge, inwards) in [(frame.bottom, -length), (frame.top, length)] {
+            scene.line([at(x, edge), at(x, edge + inwards)], FRAME_PT, BLACK);
+        }
+    }
+    for (value, length) in lengths(&placed.ticks) {
+        let y = placed.y.place(value);
+        for (edge, inwards) in [(frame.left, length), (frame.right, -length)] {
+            scene.line([at(edge, y), at(edge + inwards, y)], FRAME_PT, BLACK);
+        }
+    }
 }
 
-/// Gives the value and the length on paper (pt) of each of `ticks` to `draw`.
-fn each_tick(ticks: &Ticks, mut draw: impl FnMut(f64, f64)) {
-    ticks.major.iter().for_each(|tick| draw(tick.at, TICK));
-    ticks.minor.iter().for_each(|&at| draw(at, MINOR_TICK));
+/// The value of each tick and its length on paper, pt.
+fn lengths(ticks: &Ticks) -> impl Iterator<Item = (f64, f64)> {
+    let major = ticks.major.iter().map(|tick| (tick.at, TICK));
+    major.chain(ticks.minor.iter().map(|&at| (at, MINOR_TICK)))
 }
 
 fn draw_points(series: &Series, placed: &Placed, scene: &mut Scene) {
@@ -282,22 +225,14 @@ fn draw_points(series: &Series, placed: &Placed, scene: &mut Scene) {
         return;
     };
     let color = series.style.color;
-    for (left, right, y) in placed.bars_across(series) {
-        let mut line = |a: (f64, f64), b: (f64, f64)| {
-            scene.line([at(a.0, a.1), at(b.0, b.1)], FRAME_PT, color);
-        };
-        line((left, y), (right, y));
-        line((left, y - BAR_END), (left, y + BAR_END));
-        line((right, y - BAR_END), (right, y + BAR_END));
-    }
-    for bar in placed.bars(series).filter(|bar| !bar.is_hidden) {
-        let mut line = |a: (f64, f64), b: (f64, f64)| {
-            scene.line([at(a.0, a.1), at(b.0, b.1)], FRAME_PT, color);
-        };
-        let (x, top, bottom) = (bar.x, bar.top, bar.bottom);
-        line((x, top), (x, bottom));
-        line((x - BAR_END, top), (x + BAR_END, top));
-        line((x - BAR_END, bottom), (x + BAR_END, bottom));
+    for (axis, (dx, dy)) in [(0.0, BAR_END), (BAR_END, 0.0)].into_iter().enumerate() {
+        for bar in placed.bars(series, axis).filter(|bar| !is_covered(bar)) {
+            scene.line(bar, FRAME_PT, color);
+            for end in bar {
+                let across = [at(end.x - dx, end.y - dy), at(end.x + dx, end.y + dy)];
+                scene.line(across, FRAME_PT, color);
+            }
+        }
     }
     let places = series.points.iter().map(|point| placed.place(point));
     for place in places.filter(|place| placed.frame.holds(*place)) {

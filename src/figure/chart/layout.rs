@@ -2,7 +2,7 @@
 
 use super::axis::{Scale, widest};
 use super::ticks::Ticks;
-use super::{Axis, Chart, Panel};
+use super::{Chart, Panel};
 use crate::figure::COLUMN_PT;
 use crate::figure::page::ink::{self, Frame, LABEL_PT, TITLE_PT};
 
@@ -48,29 +48,13 @@ impl Layout {
     /// The places of the parts of `chart`, `above` pt below the upper edge of the page.
     pub fn new(chart: &Chart, above: f64) -> Self {
         let label = ink::height(LABEL_PT);
-        let x_range = x_range(chart);
+        let all = chart.panels.iter().flat_map(|panel| &panel.series);
+        let x_range = chart.x.range_of(all.flat_map(|series| series.reach(0)));
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
+        let (left, right, height) = sides(chart, x_range, &y_ranges);
         let top = above + EDGE + 0.5 * label;
         let gap = label + PANEL_GAP;
-        let mut height = panel_height(chart);
-        let mut right = chart.width_pt - EDGE - 1.0;
-        let mut left = EDGE;
-        // Which ticks there are depends on the room, and the room on their labels: three rounds settle both.
-        for _ in 0..3 {
-            let ticks = ticks_of(chart, &y_ranges, height);
-            let widest = ticks.iter().map(widest).fold(0.0, f64::max);
-            left = EDGE + title_height() + TITLE_GAP + widest + GAP;
-            right = right.min(right_edge(chart, x_range, left, right));
-            if chart.is_true_to_scale {
-                let (width, span) = (right - left, x_range.1 - x_range.0);
-                height = width / span * (y_ranges[0].1 - y_ranges[0].0);
-            }
-        }
-        let x = Scale {
-            range: x_range,
-            is_log: chart.x.is_log,
-            places: (left, right),
-        };
+        let x = Scale::of(&chart.x, x_range, (left, right));
         let below = x.ticks_below(&chart.x);
         let place = |(index, (panel, ticks)): (usize, (&Panel, Ticks))| {
             let top = top + index as f64 * (height + gap);
@@ -81,7 +65,7 @@ impl Layout {
                 bottom: top + height,
             };
             Placed {
-                y: upright(&panel.y, y_ranges[index], frame.bottom, frame.top),
+                y: Scale::of(&panel.y, y_ranges[index], (frame.bottom, frame.top)),
                 x,
                 title: fitted(panel.y.title(&ticks), height + 0.7 * gap),
                 frame,
@@ -89,13 +73,8 @@ impl Layout {
             }
         };
         let ticks = ticks_of(chart, &y_ranges, height);
-        let panels: Vec<_> = chart
-            .panels
-            .iter()
-            .zip(ticks)
-            .enumerate()
-            .map(place)
-            .collect();
+        let panels = chart.panels.iter().zip(ticks).enumerate();
+        let panels: Vec<_> = panels.map(place).collect();
         let bottom = panels.last().map_or(top, |panel| panel.frame.bottom);
         Self {
             title: fitted(chart.x.title(&below), chart.width_pt - 2.0 * EDGE),
@@ -114,6 +93,24 @@ impl Layout {
     pub fn title_at(&self) -> f64 {
         self.labels_at() + TITLE_BELOW + ink::height(TITLE_PT)
     }
+}
+
+/// Where the panels begin and end, and how high each is, pt.
+fn sides(chart: &Chart, x_range: (f64, f64), y_ranges: &[(f64, f64)]) -> (f64, f64, f64) {
+    let mut height = panel_height(chart);
+    let (mut left, mut right) = (EDGE, chart.width_pt - EDGE - 1.0);
+    // Which ticks there are depends on the room, and the room on their labels: three rounds settle both.
+    for _ in 0..3 {
+        let ticks = ticks_of(chart, y_ranges, height);
+        let widest = ticks.iter().map(widest).fold(0.0, f64::max);
+        left = EDGE + title_height() + TITLE_GAP + widest + GAP;
+        right = right.min(right_edge(chart, x_range, left, right));
+        if chart.is_true_to_scale {
+            let (width, span) = (right - left, x_range.1 - x_range.0);
+            height = width / span * (y_ranges[0].1 - y_ranges[0].0);
+        }
+    }
+    (left, right, height)
 }
 
 /// Height of a title with what hangs below its baseline, pt.
@@ -143,46 +140,21 @@ fn panel_height(chart: &Chart) -> f64 {
     (height * wide).max(longest.fold(0.0, f64::max).min(most))
 }
 
-fn x_range(chart: &Chart) -> (f64, f64) {
-    let points = chart.panels.iter().flat_map(|panel| &panel.series);
-    let values = points.flat_map(|series| series.points.iter().map(|point| point[0]));
-    chart.x.range_of(values)
-}
-
 fn y_range(panel: &Panel) -> (f64, f64) {
-    let values = panel.series.iter().flat_map(|series| {
-        let error = |index: usize| series.errors.get(index).copied().filter(|e| e.is_finite());
-        let points = series.points.iter().enumerate();
-        points.flat_map(move |(index, point)| {
-            let error = error(index).unwrap_or(0.0);
-            [point[1] - error, point[1], point[1] + error]
-        })
-    });
+    let values = panel.series.iter().flat_map(|series| series.reach(1));
     panel.y.range_of(values)
-}
-
-fn upright(axis: &Axis, range: (f64, f64), bottom: f64, top: f64) -> Scale {
-    Scale {
-        range,
-        is_log: axis.is_log,
-        places: (bottom, top),
-    }
 }
 
 fn ticks_of(chart: &Chart, ranges: &[(f64, f64)], height: f64) -> Vec<Ticks> {
     let panels = chart.panels.iter().zip(ranges);
-    let ticks =
-        panels.map(|(panel, &range)| upright(&panel.y, range, height, 0.0).ticks_beside(&panel.y));
+    let ticks = panels
+        .map(|(panel, &range)| Scale::of(&panel.y, range, (height, 0.0)).ticks_beside(&panel.y));
     ticks.collect()
 }
 
 /// Where the panels end at the right, so that half of the last label has room.
 fn right_edge(chart: &Chart, range: (f64, f64), left: f64, right: f64) -> f64 {
-    let scale = Scale {
-        range,
-        is_log: chart.x.is_log,
-        places: (left, right),
-    };
+    let scale = Scale::of(&chart.x, range, (left, right));
     let ticks = scale.ticks_below(&chart.x);
     let over = ticks.major.last().map_or(0.0, |tick| {
         let end = scale.place(tick.at) + 0.5 * ink::width(&tick.label, LABEL_PT);

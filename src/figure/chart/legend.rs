@@ -1,7 +1,7 @@
 //! Which line is what: in a corner of the panel where nothing is drawn, or above the panels.
 
 use super::layout::{EDGE, Layout};
-use super::{Chart, Circles, Style};
+use super::{Chart, Style};
 use crate::figure::page::ink::{self, Frame, LABEL_PT, WHITE, at};
 use crate::figure::page::scene::{Path, Pen, Point, Scene};
 
@@ -62,11 +62,7 @@ impl Legend {
     pub fn of(chart: &Chart, remark: Option<&str>) -> Self {
         let series = chart.panels.iter().flat_map(|panel| &panel.series);
         let series = series.map(|series| (series.name.as_str(), &series.style));
-        let circles = chart.panels.iter().map(|panel| &panel.circles);
-        let circles = circles.filter(|circles| !circles.radii.is_empty());
-        let style = Circles::style();
-        let circles = circles.map(|circles| (circles.name.as_str(), &style));
-        Self::new(series.chain(circles), remark)
+        Self::new(series, remark)
     }
 
     /// The rows in which it stands above the panels, within `room` pt.
@@ -91,11 +87,7 @@ impl Legend {
     /// The height that it needs above the picture on a page of that width, pt.
     pub fn height_above(&self, width_pt: f64) -> f64 {
         let rows = self.rows(width_pt - 2.0 * EDGE).len();
-        if rows == 0 {
-            0.0
-        } else {
-            rows as f64 * ROW + 1.0
-        }
+        rows as f64 * ROW + rows.min(1) as f64
     }
 
     /// A corner of the panel, where there is one panel, in which nothing is drawn.
@@ -125,7 +117,6 @@ impl Legend {
             let around = corner.grown(FREE);
             let mut series = panel.series.iter();
             series.all(|series| !placed.has_in(&around, series))
-                && !placed.has_circle_in(&around, &panel.circles)
         };
         corners.into_iter().find(is_free)
     }

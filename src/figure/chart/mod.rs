@@ -11,11 +11,12 @@ pub mod legend;
 pub mod slope;
 pub mod ticks;
 
+use crate::figure::extent;
 use crate::figure::page::ink::{BLACK, Mark, grey};
 use crate::figure::page::scene::{Color, Pen};
 use ticks::{Ticks, power_of_ten};
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
     pub title: String,
     pub width_pt: f64,
@@ -24,24 +25,8 @@ pub struct Chart {
     pub panels: Vec<Panel>,
     /// Whether a unit is as long on both axes; then there is one panel.
     pub is_true_to_scale: bool,
-    pub errors: Errors,
-}
-
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Errors {
-    #[default]
-    OfData,
-    /// Those of reading a number off a run: they do not hold what the scheme does to the run.
-    OfReading,
-}
-
-impl Errors {
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::OfData => "errors",
-            Self::OfReading => "errors of reading the run",
-        }
-    }
+    /// Whether its errors are those of reading a number off a run: they do not hold what the scheme does to the run.
+    pub are_read_off: bool,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -65,24 +50,6 @@ pub struct Panel {
     pub series: Vec<Series>,
     /// The slope of a triangle to be drawn where no curve is: for two logarithmic axes.
     pub slope: Option<f64>,
-    /// Lines that are drawn faintly behind the series.
-    pub circles: Circles,
-}
-
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Circles {
-    pub name: String,
-    pub radii: Vec<f64>,
-}
-
-impl Circles {
-    pub fn style() -> Style {
-        Style {
-            color: grey(165),
-            width_pt: 0.4,
-            ..Style::default()
-        }
-    }
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -91,10 +58,55 @@ pub struct Series {
     pub name: String,
     /// Its points in order; the line is interrupted where one is not finite.
     pub points: Vec<[f64; 2]>,
-    /// One standard error of each point's second number; empty where there are none, NaN where one is not known.
-    pub errors: Vec<f64>,
-    pub errors_across: Vec<f64>,
+    /// One standard error of each point's first and of its second number; empty where there are none, NaN where one is not
+    /// known.
+    pub errors: [Vec<f64>; 2],
     pub style: Style,
+}
+
+impl Series {
+    pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>, style: Style) -> Self {
+        Self {
+            name: name.into(),
+            points,
+            errors: Default::default(),
+            style,
+        }
+    }
+
+    /// A line of the legend without a curve.
+    pub fn named(name: String) -> Self {
+        let style = Style {
+            width_pt: 0.0,
+            ..Style::default()
+        };
+        Self::new(name, Vec::new(), style)
+    }
+
+    /// The line of zero across `range`.
+    pub fn level((begin, end): (f64, f64)) -> Self {
+        let points = vec![[begin, 0.0], [end, 0.0]];
+        Self::new("", points, Style::theory(0, 0))
+    }
+
+    /// The ends of the error bar of a point along the axis x (0) or y (1); without an error, the point.
+    pub fn ends(&self, index: usize, axis: usize) -> [[f64; 2]; 2] {
+        let error = self.errors[axis].get(index).copied();
+        let error = error.filter(|error| error.is_finite()).unwrap_or(0.0);
+        [error, -error].map(|error| {
+            let mut end = self.points[index];
+            end[axis] += error;
+            end
+        })
+    }
+
+    /// The numbers of the points along an axis, and those of the ends of their error bars.
+    pub fn reach(&self, axis: usize) -> impl Iterator<Item = f64> {
+        (0..self.points.len()).flat_map(move |index| {
+            let [high, low] = self.ends(index, axis);
+            [high, low, self.points[index]].map(|point| point[axis])
+        })
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +117,7 @@ pub struct Style {
     /// Lengths of strokes and gaps, pt; empty for a solid line.
     pub dash_pt: &'static [f64],
     pub mark: Option<Mark>,
-    /// Whether its points are drawn behind all lines.
+    /// Whether it is drawn behind all others.
     pub is_behind: bool,
     /// Whether its line is a dot at each of its points, which are not joined.
     pub is_dots: bool,
@@ -171,10 +183,8 @@ impl Style {
     /// The exact motion: dashed, on top of the run.
     pub fn exact() -> Self {
         Self {
-            color: COLORS[1],
             width_pt: 0.8,
-            dash_pt: DASHES[1],
-            ..Self::default()
+            ..Self::curve(1)
         }
     }
 
@@ -205,6 +215,16 @@ impl Style {
             width_pt: 0.0,
             mark: Some(Mark::Ring),
             is_behind: are_many,
+            ..Self::default()
+        }
+    }
+
+    /// A faint line behind the others, for a limit.
+    pub fn limit() -> Self {
+        Self {
+            color: grey(165),
+            width_pt: 0.4,
+            is_behind: true,
             ..Self::default()
         }
     }
@@ -285,6 +305,13 @@ impl Axis {
         }
     }
 
+    pub fn within(self, range: (f64, f64)) -> Self {
+        Self {
+            range: Some(range),
+            ..self
+        }
+    }
+
     /// Name, offset and unit, as it is written along the axis with these ticks.
     pub fn title(&self, ticks: &Ticks) -> String {
         let offset = ticks.offset.as_deref();
@@ -292,9 +319,11 @@ impl Axis {
             Some(size) => format!(" + {size}"),
             None => format!(" − {offset}"),
         });
-        let power = (ticks.power != 0).then(|| power_of_ten(ticks.power));
-        let unit = [power.as_deref().unwrap_or_default(), &self.unit].join(" ");
-        match unit.trim() {
+        let power = match ticks.power {
+            0 => String::new(),
+            power => power_of_ten(power),
+        };
+        match format!("{power} {}", self.unit).trim() {
             "" => format!("{}{offset}", self.name),
             unit => format!("{}{offset} ({unit})", self.name),
         }
@@ -311,11 +340,7 @@ impl Axis {
         let is_shown = |value: &f64| value.is_finite() && (!self.is_log || *value > 0.0);
         let values = values.filter(is_shown);
         let values = values.map(|value| value.clamp(-FARTHEST, FARTHEST));
-        let extent = values.fold(None, |extent: Option<(f64, f64)>, value| {
-            let (low, high) = extent.unwrap_or((value, value));
-            Some((low.min(value), high.max(value)))
-        });
-        let Some((low, high)) = extent else {
+        let Some((low, high)) = extent(values) else {
             return if self.is_log { (0.1, 10.0) } else { (0.0, 1.0) };
         };
         if self.is_log {

@@ -1,6 +1,7 @@
 //! The triangle that shows a slope between two logarithmic axes.
 
 use super::Panel;
+use super::axis::Scale;
 use super::layout::Placed;
 use crate::figure::page::ink::{self, Frame, LABEL_PT, at, grey, pen};
 use crate::figure::page::scene::{Path, Point, Scene};
@@ -26,35 +27,37 @@ pub fn draw(panel: &Panel, placed: &Placed, taken: Option<&Frame>, scene: &mut S
     let Some(slope) = panel.slope.filter(|slope| slope.is_finite()) else {
         return;
     };
-    let found = LENGTHS
+    let inside = placed.frame.grown(-FREE);
+    let is_free = |triangle: &Triangle| {
+        let around = triangle.frame().grown(FREE);
+        around.corners().iter().all(|corner| inside.holds(*corner))
+            && taken.is_none_or(|taken| !taken.meets(&around))
+            && !panel
+                .series
+                .iter()
+                .any(|series| placed.has_in(&around, series))
+    };
+    let mut triangles = LENGTHS
         .iter()
-        .find_map(|length| find(panel, placed, taken, slope, *length));
-    if let Some(triangle) = found {
+        .flat_map(|length| triangles(placed, slope, *length));
+    if let Some(triangle) = triangles.find(is_free) {
         triangle.draw(scene);
     }
 }
 
-fn find(
-    panel: &Panel,
-    placed: &Placed,
-    taken: Option<&Frame>,
-    slope: f64,
-    length: f64,
-) -> Option<Triangle> {
+/// The triangles of that slope and that part of the panel's width, from below at the right, where curves of errors leave room.
+fn triangles(placed: &Placed, slope: f64, length: f64) -> impl Iterator<Item = Triangle> {
     let frame = placed.frame;
     let width = length * frame.width();
     // As steep as the line: the axes' decades may differ in length.
-    let decade = |scale: &super::axis::Scale| {
+    let decade = |scale: &Scale| {
         (scale.places.1 - scale.places.0).abs() / libm::log(scale.range.1 / scale.range.0)
     };
     let height = slope * width * decade(&placed.y) / decade(&placed.x);
-    if !(HEIGHTS.0..=HEIGHTS.1 * frame.height()).contains(&height.abs()) {
-        return None;
-    }
+    let is_drawn = (HEIGHTS.0..=HEIGHTS.1 * frame.height()).contains(&height.abs());
     let steps = || (0..PLACES).map(|step| (step as f64 + 0.5) / PLACES as f64);
-    // From below at the right, where curves of errors leave room.
-    let places = steps().flat_map(|down| steps().map(move |across| (down, across)));
-    let triangles = places.map(|(down, across)| {
+    let places = steps().flat_map(move |down| steps().map(move |across| (down, across)));
+    places.filter(move |_| is_drawn).map(move |(down, across)| {
         let left = at(
             frame.left + across * (frame.width() - width),
             frame.bottom - down * (frame.height() - height.abs()) - height.min(0.0).abs(),
@@ -64,19 +67,7 @@ fn find(
             right: at(left.x + width, left.y - height),
             slope,
         }
-    });
-    let is_free = |triangle: &Triangle| {
-        let around = triangle.frame().grown(FREE);
-        let inside = frame.grown(-FREE);
-        inside.holds(at(around.left, around.top))
-            && inside.holds(at(around.right, around.bottom))
-            && taken.is_none_or(|taken| !taken.meets(&around))
-            && panel
-                .series
-                .iter()
-                .all(|series| !placed.has_in(&around, series))
-    };
-    triangles.into_iter().find(is_free)
+    })
 }
 
 impl Triangle {

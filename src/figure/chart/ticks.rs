@@ -4,12 +4,7 @@
 //! 0.30000000000000004. Large and small numbers leave a power of ten to the axis's title, and numbers that differ in far
 //! digits only leave an offset to it.
 
-mod label;
-
-pub use label::{power_of_ten, with_minus};
-
 use crate::text::ladder;
-use label::Numbers;
 
 /// Numbers from this power of ten on leave a power to the title, and those up to the other.
 const LARGE: i32 = 4;
@@ -20,6 +15,10 @@ const OFFSET: f64 = 2e-6;
 const MOST: f64 = 8.0;
 /// Relative differences below this are rounding.
 const ROUNDING: f64 = 1e-9;
+
+const MINUS: char = '\u{2212}';
+/// The longest row of zeros that an offset has.
+const MOST_ZEROS: i32 = 12;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
@@ -83,8 +82,7 @@ impl Ticks {
     /// The ticks whose step is the number on that rung of the ladder.
     fn with_step(low: f64, high: f64, rung: i64) -> Self {
         let step = ladder::rung(rung);
-        let digit = [1, 2, 5][rung.rem_euclid(3) as usize];
-        let decade = rung.div_euclid(3) as i32;
+        let numbers = Numbers::of_rung(rung);
         let largest = low.abs().max(high.abs());
         let counts = between(low / step, high / step);
         let is_offset = step < OFFSET * largest;
@@ -94,12 +92,11 @@ impl Ticks {
             leading_power(largest)
         };
         let base = if is_offset { counts.0 } else { 0 };
-        let numbers = Numbers { digit, decade };
         let major = (counts.0..=counts.1).map(|count| Tick {
             at: numbers.value(count),
             label: numbers.label(count - base, power),
         });
-        let parts = if digit == 2 { 4 } else { 5 };
+        let parts = if numbers.digit == 2 { 4 } else { 5 };
         let fine = between(
             low / step * f64::from(parts),
             high / step * f64::from(parts),
@@ -160,21 +157,14 @@ impl Ticks {
             .filter(|(_, at)| *at >= low * (1.0 - ROUNDING))
             .collect();
         let power = leading_power(high);
-        let label = |rung: i64| {
-            let digit = [1, 2, 5][rung.rem_euclid(3) as usize];
-            let decade = rung.div_euclid(3) as i32;
-            Numbers { digit, decade }.label(1, power)
-        };
+        let major = rungs.iter().map(|&(rung, at)| Tick {
+            at,
+            label: Numbers::of_rung(rung).label(1, power),
+        });
         let minor = (floor(libm::log10(low))..=floor(libm::log10(high))).flat_map(parts_of_decade);
         let is_inside = |at: &f64| (low..=high).contains(at);
         Self {
-            major: rungs
-                .iter()
-                .map(|&(rung, at)| Tick {
-                    at,
-                    label: label(rung),
-                })
-                .collect(),
+            major: major.collect(),
             minor: minor.filter(is_inside).collect(),
             power,
             offset: None,
@@ -183,10 +173,7 @@ impl Ticks {
 }
 
 fn between(low: f64, high: f64) -> (i64, i64) {
-    (
-        (low - ROUNDING).ceil() as i64,
-        (high + ROUNDING).floor() as i64,
-    )
+    (ceil(low), floor(high))
 }
 
 fn ceil(number: f64) -> i64 {
@@ -221,6 +208,66 @@ fn decade(power: i32) -> Tick {
     Tick {
         at: ladder::rung(3 * i64::from(power)),
         label,
+    }
+}
+
+pub fn power_of_ten(power: i32) -> String {
+    format!("10^{{{}}}", with_minus(&power.to_string()))
+}
+
+pub fn with_minus(number: &str) -> String {
+    number.replace('-', &MINUS.to_string())
+}
+
+/// The whole multiples of 1, 2 or 5 (`digit`) times ten to the power `decade`.
+#[derive(Clone, Copy)]
+struct Numbers {
+    digit: i64,
+    decade: i32,
+}
+
+impl Numbers {
+    /// The multiples of the number on that rung of the ladder.
+    fn of_rung(rung: i64) -> Self {
+        Self {
+            digit: [1, 2, 5][rung.rem_euclid(3) as usize],
+            decade: rung.div_euclid(3) as i32,
+        }
+    }
+
+    fn value(self, count: i64) -> f64 {
+        let text = format!(
+            "{}e{}",
+            i128::from(count) * i128::from(self.digit),
+            self.decade
+        );
+        text.parse().unwrap_or_default()
+    }
+
+    /// The multiple in full; of the order of ten to a `power` beyond [`MOST_ZEROS`], as a multiple of that.
+    fn offset(self, count: i64, power: i32) -> String {
+        if power.abs() <= MOST_ZEROS {
+            return self.label(count, 0);
+        }
+        format!("{}·{}", self.label(count, power), power_of_ten(power))
+    }
+
+    /// The multiple in units of ten to `power`, with all of its digits and no more.
+    fn label(self, count: i64, power: i32) -> String {
+        let exponent = self.decade - power;
+        let whole = i128::from(count) * i128::from(self.digit);
+        let text = match u32::try_from(exponent) {
+            Ok(zeros) if whole != 0 => format!("{whole}{}", "0".repeat(zeros as usize)),
+            Ok(_) => "0".to_owned(),
+            Err(_) => {
+                let decimals = exponent.unsigned_abs() as usize;
+                let digits = format!("{:0>width$}", whole.abs(), width = decimals + 1);
+                let (before, after) = digits.split_at(digits.len() - decimals);
+                let sign = if whole < 0 { "-" } else { "" };
+                format!("{sign}{before}.{after}")
+            }
+        };
+        with_minus(&text)
     }
 }
 

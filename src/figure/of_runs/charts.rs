@@ -1,104 +1,62 @@
 //! The charts of runs: their curves over time, their paths from above.
 
+use crate::export::Column;
 use crate::figure::chart::layout::Layout;
-use crate::figure::chart::{Axis, Chart, Circles, Errors, Panel, Series};
+use crate::figure::chart::{Chart, Panel, Series, Style};
 use crate::figure::dense::Dense;
-use crate::figure::kind::Plotted;
-use crate::figure::request::{Drawn, Request, Run};
+use crate::figure::request::{Drawn, Job, Request, Run};
 use crate::figure::{chords, dense, quantity, size};
 use crate::run::Truth;
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Columns of the runs over time, a panel each.
-pub(super) fn over_time(
-    title: String,
-    runs: &[Run],
-    columns: &[Plotted],
-    drawn: &[Drawn],
-    request: &Request,
-) -> Chart {
+pub(super) fn over_time(job: &Job<'_>, columns: &[&'static Column], drawn: &[Drawn]) -> Chart {
+    let from_s = job.request.from_s;
     let ends = drawn.iter().map(|drawn| drawn.course.end_s);
     let end_s = ends.fold(0.0, f64::max);
-    let range = (end_s > request.from_s).then_some((request.from_s, end_s));
-    let panel = |column: &Plotted| Panel {
-        y: Axis {
-            size: size::of(runs, column.name()),
-            flat_below: size::flat_below(column.name()),
-            ..quantity::axis(column.name())
-        },
-        series: drawn
-            .iter()
-            .map(|drawn| Series {
-                name: drawn.name.clone(),
-                points: drawn.course.points(*column),
-                style: drawn.style.clone(),
-                ..Series::default()
-            })
-            .collect(),
-        ..Panel::default()
-    };
-    let mut panels: Vec<Panel> = columns.iter().map(panel).collect();
-    // Only thin lines show many swings beside each other.
-    for panel in &mut panels {
-        for series in &mut panel.series {
-            if series.points.len() > 600 && columns.len() > 1 {
-                series.style.width_pt *= 0.75;
+    let mut x = quantity::axis("t_s");
+    x.range = (end_s > from_s).then_some((from_s, end_s));
+    let panel = |column: &&Column| {
+        let curve = |drawn: &Drawn| {
+            let points = drawn.course.points(column);
+            let mut style = drawn.style.clone();
+            // Only thin lines show many swings beside each other.
+            if points.len() > 600 && columns.len() > 1 {
+                style.width_pt *= 0.75;
             }
+            Series::new(&drawn.name, points, style)
+        };
+        Panel {
+            y: size::axis(job.runs, column.name),
+            series: drawn.iter().map(curve).collect(),
+            slope: None,
         }
-    }
-    Chart {
-        title,
-        width_pt: request.width_pt,
-        x: Axis {
-            range,
-            ..quantity::axis("t_s")
-        },
-        panels,
-        is_true_to_scale: false,
-        errors: Errors::OfData,
-    }
+    };
+    job.chart(x, columns.iter().map(panel).collect())
 }
 
-pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Request) -> Chart {
-    let series = drawn.iter().map(|drawn| {
-        let (name, style) = chords::as_drawn(drawn, &drawn.course.above);
-        Series {
-            name,
-            points: drawn
-                .course
-                .above
-                .points
-                .iter()
-                .map(|at| [at[0], at[1]])
-                .collect(),
-            style,
-            ..Series::default()
-        }
-    });
-    let series: Vec<_> = series.collect();
-    let circles = match (request.exact, runs) {
-        (true, [run]) => circles(run),
-        _ => Circles::default(),
+/// The paths of the runs from above, and the places that were `measured`.
+pub(super) fn above(job: &Job<'_>, drawn: &[Drawn], measured: Option<Series>) -> Chart {
+    let path = |drawn: &Drawn| {
+        let path = &drawn.course.above;
+        let (name, style) = chords::as_drawn(drawn, path);
+        let points = path.points.iter().map(|at| [at[0], at[1]]);
+        Series::new(name, points.collect(), style)
     };
-    let (x, y) = both_ranges(&series, size::of(runs, "x_m"));
+    let mut series: Vec<_> = drawn.iter().map(path).chain(measured).collect();
+    let [x, y] = both_ranges(&series, job.runs);
+    if let (true, [run]) = (job.request.exact, job.runs) {
+        series.extend(limits(run, job.request.width_pt / (x.1 - x.0)));
+    }
+    let panel = Panel {
+        y: quantity::axis("y_m").within(y),
+        series,
+        slope: None,
+    };
     Chart {
-        title,
-        width_pt: request.width_pt,
-        x: Axis {
-            range: Some(x),
-            ..quantity::axis("x_m")
-        },
-        panels: vec![Panel {
-            y: Axis {
-                range: Some(y),
-                ..quantity::axis("y_m")
-            },
-            series,
-            slope: None,
-            circles,
-        }],
         is_true_to_scale: true,
-        errors: Errors::OfData,
+        ..job.chart(quantity::axis("x_m").within(x), vec![panel])
     }
 }
 
@@ -111,9 +69,9 @@ pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) ->
     })
 }
 
-/// The radii of the circles between which the exact motion of the traced point stays, from above, m; none where pushes or
-/// edits change the motion, or it has no closed form.
-fn circles(run: &Run) -> Circles {
+/// The circles between which the exact motion of the traced point stays, from above; none where pushes or edits change the
+/// motion, or it has no closed form. A metre is `pt_per_m` long on the page.
+fn limits(run: &Run, pt_per_m: f64) -> Vec<Series> {
     const SAME: f64 = 0.01;
     let scenario = &run.scenario;
     let at = scenario.body.mechanics.points()[scenario.trace].at;
@@ -123,49 +81,47 @@ fn circles(run: &Run) -> Circles {
     let is_steady = scenario.pushes.is_empty() && scenario.edits.is_empty();
     let is_heavy = scenario.motion.gravity > 0.0;
     let Some(motion) = closed.filter(|_| is_steady && is_on_axle && is_heavy) else {
-        return Circles::default();
+        return Vec::new();
     };
     let (low, high) = motion.tilt_range();
     let radius = |tilt: f64| at.norm() * libm::sin(tilt);
     let (inner, outer) = (radius(low), radius(high));
-    if (outer - inner).abs() <= SAME * outer.max(inner) {
-        return Circles {
-            name: "radius of exact".to_owned(),
-            radii: vec![0.5 * (inner + outer)],
-        };
-    }
-    Circles {
-        name: "limits of exact".to_owned(),
-        radii: vec![inner, outer],
-    }
+    let (name, radii) = if (outer - inner).abs() <= SAME * outer.max(inner) {
+        ("radius of exact", vec![0.5 * (inner + outer)])
+    } else {
+        ("limits of exact", vec![inner, outer])
+    };
+    let circle = |radius| Series::new(name, circle(radius, pt_per_m), Style::limit());
+    radii.into_iter().map(circle).collect()
 }
 
-/// The stretches of both axes of paths of that `size`, m: one is never less than half of the other, so that a path along a
-/// line has a picture too.
-pub(in crate::figure) fn both_ranges(series: &[Series], size: f64) -> ((f64, f64), (f64, f64)) {
+/// A circle about the origin, as straight lines: it may be far larger than the page.
+fn circle(radius_m: f64, pt_per_m: f64) -> Vec<[f64; 2]> {
+    /// How far the lines are off it, pt, and how many there are at most.
+    const OFF_PT: f64 = 0.02;
+    const MOST: f64 = 1e5;
+    let count = PI * (0.5 * radius_m * pt_per_m / OFF_PT).sqrt();
+    let count = count.ceil().clamp(8.0, MOST);
+    let places = (0..=count as u32).map(|number| {
+        let angle = TAU * f64::from(number) / count;
+        [radius_m * libm::cos(angle), radius_m * libm::sin(angle)]
+    });
+    places.collect()
+}
+
+/// The stretches of both axes of paths: one is never less than half of the other, so that a path along a line has a picture
+/// too.
+fn both_ranges(series: &[Series], runs: &[Run]) -> [(f64, f64); 2] {
     const LEAST: f64 = 0.5;
-    let range = |index: usize| {
-        let values = series.iter().flat_map(|series| {
-            let errors = [&series.errors_across, &series.errors][index];
-            let error = |place: usize| errors.get(place).copied().filter(|it| it.is_finite());
-            let points = series.points.iter().enumerate();
-            points.flat_map(move |(place, point)| {
-                let error = error(place).unwrap_or(0.0);
-                [point[index] - error, point[index] + error]
-            })
-        });
-        let axis = Axis {
-            size,
-            flat_below: size::flat_below("x_m"),
-            ..Axis::default()
-        };
-        axis.range_of(values)
-    };
-    let (x, y) = (range(0), range(1));
-    let least = LEAST * (x.1 - x.0).max(y.1 - y.0);
-    let widened = |(low, high): (f64, f64)| {
+    let size = size::axis(runs, "x_m");
+    let ranges = [0, 1].map(|axis| {
+        let values = series.iter().flat_map(|series| series.reach(axis));
+        size.range_of(values)
+    });
+    let longest = ranges.iter().map(|(low, high)| high - low);
+    let least = LEAST * longest.fold(0.0, f64::max);
+    ranges.map(|(low, high)| {
         let missing = (least - (high - low)).max(0.0);
         (low - 0.5 * missing, high + 0.5 * missing)
-    };
-    (widened(x), widened(y))
+    })
 }

@@ -1,9 +1,9 @@
 //! Errors of schemes over their time steps, with their slopes.
 
-use super::{grouped, numbers};
+use super::{Rows, from_left, grouped, numbers};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::ticks;
-use crate::figure::chart::{Axis, Circles, Panel, Series, Style};
+use crate::figure::chart::{Axis, Panel, Series, Style};
 use crate::figure::page::ink::{self, LABEL_PT};
 use crate::figure::page::letters;
 use crate::figure::quantity;
@@ -17,90 +17,78 @@ pub(super) fn drawn(
     width_pt: f64,
 ) -> Result<(Axis, Vec<Panel>), String> {
     let steps = numbers(table, "time_step_s")?;
-    let schemes = table.texts("scheme").unwrap_or_default();
-    let groups = grouped(&schemes);
+    let groups = grouped(&table.texts("scheme").unwrap_or_default());
     let columns = or_error(columns);
     let panel = |name: &&str| -> Result<Panel, String> {
         let values = numbers(table, name)?;
         let mut best: Option<(usize, f64)> = None;
-        let series = groups.iter().enumerate().map(|(index, (scheme, rows))| {
-            let points = sorted(rows.iter().map(|&row| [steps[row], values[row]]));
+        let curve = |(index, (scheme, rows)): (usize, &(String, Rows))| {
+            let rows = from_left(rows, &steps);
+            let points: Vec<_> = rows.iter().map(|&row| [steps[row], values[row]]).collect();
             let slope = slope(&points);
-            if let Some((count, slope)) = slope
-                && best.is_none_or(|best| (count, slope) > best)
-            {
-                best = Some((count, slope));
-            }
-            // Panels beside each other share their names.
-            let slope = slope.filter(|_| columns.len() == 1);
-            let slope = slope.map(|(_, slope)| format!(", slope {}", significant(slope, 2)));
-            let slope = ticks::with_minus(&slope.unwrap_or_default());
-            let room = longest_name(width_pt) - ink::width(&slope, LABEL_PT);
-            let is_shown = points.iter().any(|point| point[1] > 0.0);
-            Series {
-                name: if !is_shown {
-                    String::new()
-                } else {
-                    letters::shortened(scheme, LABEL_PT, room) + &slope
-                },
-                points,
-                errors: Vec::new(),
-                errors_across: Vec::new(),
-                style: Style::marked_line(index),
-            }
-        });
-        let series: Vec<_> = series.collect();
+            best = slope
+                .filter(|it| best.is_none_or(|best| *it > best))
+                .or(best);
+            let name = if points.iter().any(|point| point[1] > 0.0) {
+                // Panels beside each other share their names.
+                named(scheme, slope.filter(|_| columns.len() == 1), width_pt)
+            } else {
+                String::new()
+            };
+            Series::new(name, points, Style::marked_line(index))
+        };
+        let series = groups.iter().enumerate().map(curve).collect();
         Ok(Panel {
-            y: Axis {
-                is_log: true,
-                ..of_comparison(name)
-            },
+            y: logarithmic(of_comparison(name)),
             series,
             slope: best.map(|(_, slope)| slope),
-            circles: Circles::default(),
         })
     };
     let panels = columns.iter().map(panel).collect::<Result<Vec<_>, _>>()?;
-    let x = Axis {
+    Ok((logarithmic(quantity::axis("time_step_s")), panels))
+}
+
+fn logarithmic(axis: Axis) -> Axis {
+    Axis {
         is_log: true,
-        ..quantity::axis("time_step_s")
-    };
-    Ok((x, panels))
+        ..axis
+    }
 }
 
-/// What is said of time steps that have no point: a run that breaks down has no error.
+/// A scheme and the slope of its errors, as markup.
+fn named(scheme: &str, slope: Option<(usize, f64)>, width_pt: f64) -> String {
+    let slope = slope.map(|(_, slope)| format!(", slope {}", significant(slope, 2)));
+    let slope = ticks::with_minus(&slope.unwrap_or_default());
+    let room = longest_name(width_pt) - ink::width(&slope, LABEL_PT);
+    letters::shortened(scheme, LABEL_PT, room) + &slope
+}
+
+/// What is said of time steps that have no point: a run that breaks down has no error, and a logarithmic axis shows no 0.
 pub(super) fn missing(table: &Table, columns: &[&str]) -> Vec<String> {
-    let schemes = table.texts("scheme").unwrap_or_default();
-    let groups = grouped(&schemes);
-    let columns = or_error(columns).iter();
-    let columns: Vec<_> = columns
-        .filter_map(|name| Some((*name, table.numbers(name)?)))
-        .collect();
-    let of_scheme = |(scheme, rows): &(String, Vec<usize>)| -> Vec<String> {
-        let of_column = |(name, values): &(&str, Vec<f64>)| {
-            let values: Vec<f64> = rows.iter().map(|row| values[*row]).collect();
-            without_point(&format!("{scheme} have no point of {name}"), &values)
-        };
-        columns.iter().flat_map(of_column).collect()
-    };
-    groups.iter().flat_map(of_scheme).collect()
-}
-
-/// What is said of those of `values` that a logarithmic axis does not show, or that are no numbers; `words` say of what.
-fn without_point(words: &str, values: &[f64]) -> Vec<String> {
-    let told = |is: fn(&&f64) -> bool, why: &str| {
-        let (count, all) = (values.iter().filter(is).count(), values.len());
-        (count > 0).then(|| format!("{count} of {all} time steps of {words}: {why}"))
-    };
-    let zeros = told(
-        |value| **value == 0.0,
-        "it is 0, which a logarithmic axis does not show",
-    );
-    let none = told(
-        |value| !value.is_finite(),
-        "there is no number for them, as where a run breaks down",
-    );
-    zeros.into_iter().chain(none).collect()
+    let mut told = Vec::new();
+    for (scheme, rows) in grouped(&table.texts("scheme").unwrap_or_default()) {
+        for name in or_error(columns) {
+            let values = table.numbers(name).unwrap_or_default();
+            let mut tell = |is: fn(f64) -> bool, why: &str| {
+                let values = rows.iter().filter_map(|&row| values.get(row));
+                let (count, all) = (values.filter(|value| is(**value)).count(), rows.len());
+                told.extend((count > 0).then(|| {
+                    format!(
+                        "{count} of {all} time steps of {scheme} have no point of {name}: {why}"
+                    )
+                }));
+            };
+            tell(
+                |value| value == 0.0,
+                "it is 0, which a logarithmic axis does not show",
+            );
+            tell(
+                |value| !value.is_finite(),
+                "there is no number for them, as where a run breaks down",
+            );
+        }
+    }
+    told
 }
 
 /// The columns that are drawn where `columns` were asked for.
@@ -147,13 +135,6 @@ fn slope(points: &[[f64; 2]]) -> Option<(usize, f64)> {
     let longest = even.into_iter().rev().max_by_key(ExactSizeIterator::len)?;
     let whole = slope(&[points[longest.start], points[longest.end]]);
     Some((longest.len(), (whole * 10.0).round() / 10.0))
-}
-
-/// `points` in the order of their first numbers.
-fn sorted(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
-    let mut points: Vec<_> = points.filter(|point| point[0].is_finite()).collect();
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    points
 }
 
 #[cfg(test)]

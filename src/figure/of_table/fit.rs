@@ -1,12 +1,13 @@
 //! What was measured, on the model that was fitted to it; below, what is left of it.
 
-use super::{Rows, grouped, numbers, within_room};
+use super::{Rows, from_left, grouped, numbers, within_room};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::ticks::{power_of_ten, with_minus};
 use crate::figure::chart::{Axis, Panel, Series, Style};
+use crate::figure::extent;
 use crate::figure::page::letters;
 use crate::figure::quantity;
-use crate::figure::table::{Found, Table};
+use crate::figure::table::{Fit, Found, Table};
 use crate::measured::quantity::TIME;
 use crate::measured::{self, Curve, Point, Quantity};
 use crate::scenario::Document;
@@ -18,33 +19,51 @@ const POINTS: u32 = 1500;
 /// The most runs under several settings that can be distinguished.
 const MOST_GROUPS: usize = 6;
 
-/// What was fitted, and what was found.
-pub(super) struct Fitted<'a> {
-    settings: &'a [String],
-    run_file: &'a str,
-    found: &'a [Found],
+/// What is drawn.
+struct Drawing<'a> {
+    table: &'a Table,
+    fit: &'a Fit,
     /// The run file, in which the keys have their names.
     scenario: toml::Table,
     /// The longest name in the legend, pt.
     room_pt: f64,
+    /// The column over which it is drawn, and its numbers.
+    along: &'a str,
+    x: Vec<f64>,
 }
 
-impl<'a> Fitted<'a> {
-    pub(super) fn new(
-        settings: &'a [String],
-        run_file: &'a str,
-        found: &'a [Found],
-        width_pt: f64,
-    ) -> Self {
-        Self {
-            settings,
-            run_file,
-            found,
-            scenario: run_file.parse().unwrap_or_default(),
-            room_pt: longest_name(width_pt),
+/// The axis of the time or of a setting, and for each quantity a panel with its values and one with what is left of them.
+pub(super) fn drawn(
+    table: &Table,
+    fit: &Fit,
+    columns: &[&str],
+    width_pt: f64,
+) -> Result<(Axis, Vec<Panel>), String> {
+    let (along, x) = along(table, &fit.settings)?;
+    let drawing = Drawing {
+        table,
+        fit,
+        scenario: fit.run_file.parse().unwrap_or_default(),
+        room_pt: longest_name(width_pt),
+        along,
+        x,
+    };
+    let mut panels = Vec::new();
+    for (name, rows) in grouped(&table.texts("quantity").unwrap_or_default()) {
+        if columns.is_empty() || columns.contains(&name.as_str()) {
+            let groups = drawing.groups(rows);
+            panels.push(drawing.values(&name, &groups)?);
+            panels.push(drawing.residuals(&name, &groups)?);
         }
     }
+    if panels.is_empty() {
+        Err("none of these is a quantity that was fitted".to_owned())
+    } else {
+        Ok((quantity::axis(along), panels))
+    }
+}
 
+impl Drawing<'_> {
     /// `key` with what stands for its value, such as "*z* of weight = 0.1555 m".
     fn said(&self, key: &str, value: &str) -> String {
         let axes = key
@@ -56,27 +75,23 @@ impl<'a> Fitted<'a> {
         said.trim_end().to_owned()
     }
 
-    fn within_room(&self, markup: String, plain: &str) -> String {
-        within_room(markup, plain, self.room_pt)
-    }
-
     /// What the legend says of the model: the value of each free key.
     fn model(&self) -> Vec<String> {
-        let lines = self.found.iter().enumerate().map(|(index, found)| {
-            let model = if index == 0 { "model: " } else { "" };
-            let value = stated(found);
-            let said = format!("{model}{}", self.said(&found.key, &value));
+        let mut lines = Vec::new();
+        for found in &self.fit.found {
+            let model = if lines.is_empty() { "model: " } else { "" };
+            let said = format!("{model}{}", self.said(&found.key, &stated(found)));
             let value = significant(found.value, DIGITS);
-            self.within_room(said, &format!("{model}{} = {value}", found.key))
-        });
-        let mut lines: Vec<_> = lines.collect();
+            let plain = format!("{model}{} = {value}", found.key);
+            lines.push(within_room(said, &plain, self.room_pt));
+        }
         if lines.is_empty() {
             lines.push("model".to_owned());
         }
         let scheme = self.scenario.get("motion").and_then(|it| it.get("scheme"));
         if let Some(scheme) = scheme.and_then(toml::Value::as_str) {
             let said = format!("scheme: {}", letters::escape(scheme));
-            lines.push(self.within_room(said, scheme));
+            lines.push(within_room(said, scheme, self.room_pt));
         }
         lines
     }
@@ -100,39 +115,6 @@ fn stated(found: &Found) -> String {
     }
 }
 
-/// The axis of the time or of a setting, and for each quantity a panel with its values and one with what is left of them.
-pub(super) fn drawn(
-    table: &Table,
-    fit: &Fitted<'_>,
-    columns: &[&str],
-) -> Result<(Axis, Vec<Panel>), String> {
-    let quantities = table.texts("quantity").unwrap_or_default();
-    let (along, x) = along(table, fit.settings)?;
-    let mut panels = Vec::new();
-    for (name, rows) in grouped(&quantities) {
-        if !columns.is_empty() && !columns.contains(&name.as_str()) {
-            continue;
-        }
-        let mut groups = groups(table, fit, along, &rows);
-        if groups.len() > MOST_GROUPS {
-            groups = vec![(String::new(), rows.clone())];
-        }
-        let curve = if along == TIME {
-            curve(fit.run_file, &name, &x)
-        } else {
-            None
-        };
-        let drawing = Drawing { table, fit, x: &x };
-        panels.push(drawing.values(&name, &groups, curve.as_deref())?);
-        panels.push(drawing.residuals(&name, &groups)?);
-    }
-    if panels.is_empty() {
-        Err("none of these is a quantity that was fitted".to_owned())
-    } else {
-        Ok((quantity::axis(along), panels))
-    }
-}
-
 /// The column over which a fit is drawn, the one with the most different numbers, and these.
 fn along<'a>(table: &Table, settings: &'a [String]) -> Result<(&'a str, Vec<f64>), String> {
     let count = |numbers: &[f64]| {
@@ -141,53 +123,21 @@ fn along<'a>(table: &Table, settings: &'a [String]) -> Result<(&'a str, Vec<f64>
         sorted.dedup();
         sorted.len()
     };
-    let numbers = settings.iter().filter_map(|name| {
+    let numbers = settings.iter().rev().filter_map(|name| {
         let numbers = table.numbers(name)?;
         let is_whole = numbers.iter().all(|number| number.is_finite());
         is_whole.then_some((name.as_str(), numbers))
     });
     // Of columns with as many, the first.
-    let most = numbers.reduce(|most, next| {
-        if count(&next.1) > count(&most.1) {
-            next
-        } else {
-            most
-        }
-    });
+    let most = numbers.max_by_key(|(_, numbers)| count(numbers));
     most.ok_or_else(|| "no column that says where its values were measured is a number".to_owned())
-}
-
-/// `rows` by what else was set, each with its values as its name.
-fn groups(table: &Table, fit: &Fitted<'_>, along: &str, rows: &Rows) -> Vec<(String, Rows)> {
-    let others = fit.settings.iter().filter(|name| *name != along);
-    let columns: Vec<(&str, Vec<&str>)> = others
-        .filter_map(|name| Some((name.as_str(), table.texts(name)?)))
-        .collect();
-    // What is the same in every row tells no two apart.
-    let differs = |texts: &Vec<&str>| rows.iter().any(|&row| texts[row] != texts[rows[0]]);
-    let named = |row: &usize| {
-        let parts = columns.iter().filter(|(_, texts)| differs(texts));
-        let (said, values): (Vec<_>, Vec<_>) = parts
-            .map(|(key, texts)| {
-                let value = texts[*row].trim_end_matches(".0");
-                (fit.said(key, &letters::escape(value)), value)
-            })
-            .unzip();
-        fit.within_room(said.join(", "), &values.join(", "))
-    };
-    let names: Vec<String> = rows.iter().map(named).collect();
-    let groups = grouped(&names).into_iter();
-    groups
-        .map(|(name, places)| (name, places.into_iter().map(|place| rows[place]).collect()))
-        .collect()
 }
 
 /// The fitted run's own curve of the quantity `name` over the times that `x` spans.
 fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
     let scenario = Document::parse("", run_file).ok()?.scenario().ok()?;
     let quantity = Quantity::find(name)?;
-    let end = x.iter().copied().fold(0.0, f64::max);
-    let begin = x.iter().copied().fold(end, f64::min);
+    let (begin, end) = extent(x.iter().copied())?;
     let time = |index: u32| begin + (end - begin) * (f64::from(index) / f64::from(POINTS));
     let times_s: Vec<f64> = (0..=POINTS).map(time).collect();
     let point = |row| Point {
@@ -205,129 +155,107 @@ fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
     };
     let values = measured::at_times(&series, &Arc::new(scenario), &|| true);
     let values = values.ok()??.pop()?;
-    let times_s = series.times_s.iter();
-    Some(
-        times_s
-            .zip(values)
-            .map(|(&time_s, value)| [time_s, value])
-            .collect(),
-    )
-}
-
-/// What is drawn, and over what.
-struct Drawing<'a> {
-    table: &'a Table,
-    fit: &'a Fitted<'a>,
-    x: &'a [f64],
+    let pairs = series.times_s.iter().zip(values);
+    Some(pairs.map(|(&time_s, value)| [time_s, value]).collect())
 }
 
 impl Drawing<'_> {
-    /// The numbers of `column` in `rows`, from left to right, and their errors.
-    fn points(
-        &self,
-        column: &str,
-        errors: &str,
-        rows: &Rows,
-    ) -> Result<(Vec<[f64; 2]>, Vec<f64>), String> {
-        let (values, errors) = (numbers(self.table, column)?, numbers(self.table, errors)?);
-        let mut rows = rows.clone();
-        rows.sort_by(|&a, &b| self.x[a].total_cmp(&self.x[b]));
-        let points = rows.iter().map(|&row| [self.x[row], values[row]]).collect();
-        Ok((points, rows.iter().map(|&row| errors[row]).collect()))
+    /// `rows` by what else was set, each with its values as its name; all of them where that are too many.
+    fn groups(&self, rows: Rows) -> Vec<(String, Rows)> {
+        let others = self.fit.settings.iter().filter(|name| *name != self.along);
+        let columns: Vec<(&str, Vec<&str>)> = others
+            .filter_map(|name| Some((name.as_str(), self.table.texts(name)?)))
+            .collect();
+        // What is the same in every row tells no two apart.
+        let differs = |texts: &Vec<&str>| rows.iter().any(|&row| texts[row] != texts[rows[0]]);
+        let named = |row: &usize| {
+            let parts = columns.iter().filter(|(_, texts)| differs(texts));
+            let (said, values): (Vec<_>, Vec<_>) = parts
+                .map(|(key, texts)| {
+                    let value = texts[*row].trim_end_matches(".0");
+                    (self.said(key, &letters::escape(value)), value)
+                })
+                .unzip();
+            within_room(said.join(", "), &values.join(", "), self.room_pt)
+        };
+        let names: Vec<String> = rows.iter().map(named).collect();
+        let mut groups = grouped(&names);
+        if groups.len() > MOST_GROUPS {
+            return vec![(String::new(), rows)];
+        }
+        let places = groups.iter_mut().flat_map(|(_, places)| places);
+        places.for_each(|place| *place = rows[*place]);
+        groups
+    }
+
+    /// The numbers of `column` in `rows`, from left to right, with the errors of what was measured.
+    fn series(&self, column: &str, rows: &Rows) -> Result<Series, String> {
+        let values = numbers(self.table, column)?;
+        let errors = numbers(self.table, "uncertainty")?;
+        let rows = from_left(rows, &self.x);
+        Ok(Series {
+            points: rows.iter().map(|&row| [self.x[row], values[row]]).collect(),
+            errors: [Vec::new(), rows.iter().map(|&row| errors[row]).collect()],
+            ..Series::default()
+        })
     }
 
     /// The panel of the values on the model.
-    fn values(
-        &self,
-        name: &str,
-        groups: &[(String, Rows)],
-        curve: Option<&[[f64; 2]]>,
-    ) -> Result<Panel, String> {
-        let mut panel = Panel {
-            y: quantity::axis(name),
-            ..Panel::default()
-        };
-        let is_alone = groups.len() == 1;
-        let mut said = self.fit.model().into_iter();
+    fn values(&self, name: &str, groups: &[(String, Rows)]) -> Result<Panel, String> {
+        let curve = (self.along == TIME).then(|| curve(&self.fit.run_file, name, &self.x));
+        let curve = curve.flatten();
+        let mut series = Vec::new();
+        let mut said = self.model().into_iter();
         for (index, (group, rows)) in groups.iter().enumerate() {
-            let (points, _) = self.points("model", "uncertainty", rows)?;
-            panel.series.push(Series {
-                errors_across: Vec::new(),
-                name: said.next().filter(|_| index == 0).unwrap_or_default(),
-                points: curve.map_or(points, <[_]>::to_vec),
-                errors: Vec::new(),
-                style: Style {
-                    dash_pt: &[],
-                    ..Style::theory(index, 0)
-                },
-            });
+            let points = self.series("model", rows)?.points;
+            let style = Style {
+                dash_pt: &[],
+                ..Style::theory(index, 0)
+            };
+            let model = curve.clone().unwrap_or(points);
+            series.push(Series::new(said.next().unwrap_or_default(), model, style));
             // The values of further keys, each on a line of the legend without a curve.
-            let more = said.by_ref().take_while(|_| index == 0);
-            panel.series.extend(more.map(|name| Series {
-                name,
-                style: Style {
-                    width_pt: 0.0,
-                    ..Style::default()
+            series.extend(said.by_ref().map(Series::named));
+            series.push(Series {
+                name: match groups {
+                    [_] => "measured".to_owned(),
+                    _ => group.clone(),
                 },
-                ..Series::default()
-            }));
-            let (points, errors) = self.points("measured", "uncertainty", rows)?;
-            panel.series.push(Series {
-                errors_across: Vec::new(),
-                name: if is_alone {
-                    "measured".to_owned()
-                } else {
-                    group.clone()
-                },
-                points,
-                errors,
                 style: Style::points(index),
+                ..self.series("measured", rows)?
             });
         }
-        Ok(panel)
+        Ok(Panel {
+            y: quantity::axis(name),
+            series,
+            slope: None,
+        })
     }
 
     /// The panel of what is left, in units of the uncertainties where all are stated.
     fn residuals(&self, name: &str, groups: &[(String, Rows)]) -> Result<Panel, String> {
-        let all = groups.iter().flat_map(|(_, rows)| rows.iter().copied());
+        let all = || groups.iter().flat_map(|(_, rows)| rows);
         let errors = numbers(self.table, "uncertainty")?;
-        let are_stated = all.clone().all(|row| errors[row].is_finite());
+        let are_stated = all().all(|&row| errors[row].is_finite());
         let (column, unit) = if are_stated {
             ("residual_sigmas", letters::escape("σ"))
         } else {
             ("residual", quantity::axis(name).unit)
         };
-        let ends = all
-            .map(|row| self.x[row])
-            .fold(None, |ends: Option<(f64, f64)>, x| {
-                let (low, high) = ends.unwrap_or((x, x));
-                Some((low.min(x), high.max(x)))
-            });
-        let mut panel = Panel {
-            y: Axis::new("residual", unit),
-            ..Panel::default()
-        };
-        if let Some((low, high)) = ends {
-            panel.series.push(Series {
-                points: vec![[low, 0.0], [high, 0.0]],
-                style: Style::theory(0, 0),
-                ..Series::default()
-            });
-        }
+        let ends = extent(all().map(|&row| self.x[row]));
+        let mut series: Vec<_> = ends.map(Series::level).into_iter().collect();
         for (index, (_, rows)) in groups.iter().enumerate() {
-            let (points, errors) = self.points(column, "uncertainty", rows)?;
-            panel.series.push(Series {
-                errors_across: Vec::new(),
-                name: String::new(),
-                errors: if are_stated {
-                    vec![1.0; points.len()]
-                } else {
-                    errors
-                },
-                points,
-                style: Style::points(index),
-            });
+            let mut left = self.series(column, rows)?;
+            if are_stated {
+                left.errors[1].fill(1.0);
+            }
+            left.style = Style::points(index);
+            series.push(left);
         }
-        Ok(panel)
+        Ok(Panel {
+            y: Axis::new("residual", unit),
+            series,
+            slope: None,
+        })
     }
 }

@@ -5,6 +5,7 @@
 
 use super::line::simplified;
 use super::scene::{Path, Point, Segment};
+use crate::figure::extent;
 
 /// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one where the finer one gives too many points.
 const CELLS_PT: [f64; 2] = [0.06, 0.12];
@@ -61,12 +62,8 @@ impl Grid {
         // Ink to the left without a gap, up to the cell; the same to the top gives squares.
         let mut sides = vec![0_u16; self.is_inked.len()];
         let mut count = 0;
-        for (here, _) in self
-            .is_inked
-            .iter()
-            .enumerate()
-            .filter(|(_, inked)| **inked)
-        {
+        let cells = self.is_inked.iter().enumerate();
+        for (here, _) in cells.filter(|(_, inked)| **inked) {
             let side = |back: usize| here.checked_sub(back).map_or(0, |before| sides[before]);
             let (left, above) = (side(1), side(self.columns));
             let side = 1 + left.min(above).min(side(self.columns + 1));
@@ -152,12 +149,8 @@ impl Grid {
     /// Whether the cell right of and below the corner of cells is inked.
     fn at(&self, x: isize, y: isize) -> bool {
         let is_inside = x >= 0 && y >= 0 && (x as usize) < self.columns;
-        is_inside
-            && self
-                .is_inked
-                .get(y as usize * self.columns + x as usize)
-                .copied()
-                .unwrap_or(false)
+        let cell = || self.is_inked.get(y as usize * self.columns + x as usize);
+        is_inside && cell() == Some(&true)
     }
 
     /// All outlines, with the ink to their right. Each runs to the right somewhere, along the upper side of an inked cell. The
@@ -165,21 +158,12 @@ impl Grid {
     fn outlines(&self) -> Path {
         let mut path = Path::default();
         let mut is_done = vec![false; self.is_inked.len()];
-        let rows = || self.is_inked.chunks(self.columns);
-        let beginnings = rows()
-            .zip(rows().skip(1))
-            .enumerate()
-            .flat_map(|(above, pair)| {
-                let (upper, lower) = pair;
-                let begins = move |column: &usize| lower[*column] && !upper[*column];
-                (0..lower.len())
-                    .filter(begins)
-                    .map(move |column| (column, above + 1))
-            });
-        for (column, row) in beginnings {
-            if is_done[row * self.columns + column] {
+        for start in self.columns..self.is_inked.len() {
+            let begins = self.is_inked[start] && !self.is_inked[start - self.columns];
+            if !begins || is_done[start] {
                 continue;
             }
+            let (column, row) = (start % self.columns, start / self.columns);
             let outline = self.outline((column as isize, row as isize), &mut is_done);
             if outline.len() <= SMALLEST {
                 continue;
@@ -232,9 +216,7 @@ impl Grid {
 
 /// The least and the greatest of `numbers`; `None` where there is none, or one is not finite.
 fn range(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    let start = (f64::INFINITY, f64::NEG_INFINITY);
-    let (low, high) = numbers.fold(start, |(low, high), n| (low.min(n), high.max(n)));
-    (low <= high && (high - low).is_finite()).then_some((low, high))
+    extent(numbers).filter(|(low, high)| (high - low).is_finite())
 }
 
 #[cfg(test)]

@@ -144,7 +144,7 @@ fn hundredths_of(point: Point) -> Point {
     }
 }
 
-fn hundredths(pt: f64) -> f64 {
+pub fn hundredths(pt: f64) -> f64 {
     libm::round(pt * 100.0) / 100.0 + 0.0
 }
 

@@ -48,6 +48,14 @@ impl Frame {
         (self.left..=self.right).contains(&point.x) && (self.top..=self.bottom).contains(&point.y)
     }
 
+    /// The place in the frame that is nearest to `point`; the lower end where that is no number.
+    pub fn nearest(&self, point: Point) -> Point {
+        at(
+            point.x.min(self.right).max(self.left),
+            point.y.min(self.bottom).max(self.top),
+        )
+    }
+
     pub fn meets(&self, other: &Self) -> bool {
         self.left < other.right
             && other.left < self.right
@@ -134,15 +142,15 @@ impl Scene {
     }
 
     pub fn fill(&mut self, path: Path, color: Color) {
-        self.put(path, Paint::Fill(color), None);
+        self.fill_in(path, color, None);
     }
 
     pub fn fill_in(&mut self, path: Path, color: Color, clip: Option<&Frame>) {
-        self.put(path, Paint::Fill(color), clip.map(Frame::corners));
+        self.put(path, Paint::Fill(color), clip, None);
     }
 
     pub fn stroke(&mut self, path: Path, pen: Pen, clip: Option<&Frame>) {
-        self.put(path, Paint::Stroke(pen), clip.map(Frame::corners));
+        self.put(path, Paint::Stroke(pen), clip, None);
     }
 
     pub fn line(&mut self, ends: [Point; 2], width_pt: f64, color: Color) {
@@ -180,23 +188,22 @@ impl Scene {
 
     pub fn mark(&mut self, mark: Mark, middle: Point, color: Color) {
         let r = MARK_PT;
-        let polygon = |points: &[(f64, f64)]| {
-            Path::polygon(points.iter().map(|&(x, y)| at(middle.x + x, middle.y + y)))
+        let place = |(x, y): (f64, f64)| at(middle.x + x, middle.y + y);
+        let mut lines = |ends: [[(f64, f64); 2]; 2]| {
+            let ends = ends.map(|ends| ends.map(place));
+            ends.into_iter()
+                .for_each(|ends| self.line(ends, 0.5, color));
         };
+        let polygon = |corners: &[(f64, f64)]| Path::polygon(corners.iter().copied().map(place));
+        let (x, y) = (1.2 * r, 0.9 * r);
         let (path, is_filled) = match mark {
             Mark::Cross => {
-                for sign in [-1.0, 1.0] {
-                    let ends = [-r, r].map(|x| at(middle.x + 1.1 * x, middle.y + 1.1 * sign * x));
-                    self.line(ends, 0.5, color);
-                }
-                return;
+                let d = 1.1 * r;
+                return lines([[(-d, d), (d, -d)], [(-d, -d), (d, d)]]);
             }
             Mark::Plus => {
-                for (x, y) in [(1.4 * r, 0.0), (0.0, 1.4 * r)] {
-                    let ends = [-1.0, 1.0].map(|end| at(middle.x + end * x, middle.y + end * y));
-                    self.line(ends, 0.5, color);
-                }
-                return;
+                let d = 1.4 * r;
+                return lines([[(-d, 0.0), (d, 0.0)], [(0.0, -d), (0.0, d)]]);
             }
             Mark::Speck => (circle(middle, 0.5 * r), true),
             Mark::Dot => (circle(middle, r), true),
@@ -205,33 +212,26 @@ impl Scene {
                 let r = 0.92 * r;
                 (polygon(&[(-r, -r), (r, -r), (r, r), (-r, r)]), true)
             }
-            Mark::Triangle => {
-                let (x, y) = (1.2 * r, 0.9 * r);
-                (polygon(&[(0.0, -1.3 * r), (x, y), (-x, y)]), true)
-            }
-            Mark::Tip => {
-                let (x, y) = (1.2 * r, -0.9 * r);
-                (polygon(&[(0.0, 1.3 * r), (x, y), (-x, y)]), false)
-            }
+            Mark::Triangle => (polygon(&[(0.0, -1.3 * r), (x, y), (-x, y)]), true),
+            Mark::Tip => (polygon(&[(0.0, 1.3 * r), (x, -y), (-x, -y)]), false),
             Mark::Diamond => {
                 let r = 1.35 * r;
                 (polygon(&[(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)]), false)
             }
         };
         if is_filled {
-            self.fill(path, color);
-        } else {
-            self.fill(path.clone(), WHITE);
-            self.stroke(path, pen(0.6, color), None);
+            return self.fill(path, color);
         }
+        self.fill(path.clone(), WHITE);
+        self.stroke(path, pen(0.6, color), None);
     }
 
-    fn put(&mut self, path: Path, paint: Paint, clip: Option<[Point; 2]>) {
+    fn put(&mut self, path: Path, paint: Paint, clip: Option<&Frame>, words: Option<Words>) {
         self.items.push(Item {
             path,
             paint,
-            clip,
-            words: None,
+            clip: clip.map(Frame::corners),
+            words,
         });
     }
 }

@@ -5,6 +5,7 @@ mod words;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 
+use super::format::hundredths;
 use super::svg::MITER_LIMIT;
 use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
 use crate::text::printable::printable;
@@ -63,9 +64,9 @@ fn put_group(content: &mut Content, items: &[Item], fonts: &Fonts) {
         content.rect(from.x as f32, from.y as f32, width as f32, height as f32);
         content.clip_nonzero().end_path();
     }
-    match &first.paint {
-        Paint::Fill(color) => put_fill(content, *color),
-        Paint::Stroke(pen) => put_pen(content, pen),
+    put_color(content, &first.paint);
+    if let Paint::Stroke(pen) = &first.paint {
+        put_pen(content, pen);
     }
     for item in items {
         if let Some(words) = &item.words {
@@ -87,18 +88,18 @@ fn put_group(content: &mut Content, items: &[Item], fonts: &Fonts) {
     content.restore_state();
 }
 
-fn put_fill(content: &mut Content, color: Color) {
-    match shares(color) {
-        [red, green, blue] if red == green && green == blue => content.set_fill_gray(red),
-        [red, green, blue] => content.set_fill_rgb(red, green, blue),
+fn put_color(content: &mut Content, paint: &Paint) {
+    let color = paint.color();
+    let [red, green, blue] = shares(color);
+    match (paint, color.is_grey()) {
+        (Paint::Fill(_), true) => content.set_fill_gray(red),
+        (Paint::Fill(_), false) => content.set_fill_rgb(red, green, blue),
+        (Paint::Stroke(_), true) => content.set_stroke_gray(red),
+        (Paint::Stroke(_), false) => content.set_stroke_rgb(red, green, blue),
     };
 }
 
 fn put_pen(content: &mut Content, pen: &Pen) {
-    match shares(pen.color) {
-        [red, green, blue] if red == green && green == blue => content.set_stroke_gray(red),
-        [red, green, blue] => content.set_stroke_rgb(red, green, blue),
-    };
     content.set_line_width(pen.width_pt as f32);
     if !pen.dash_pt.is_empty() {
         content.set_dash_pattern(pen.dash_pt.iter().map(|length| *length as f32), 0.0);
@@ -134,14 +135,13 @@ fn put_path(content: &mut Content, path: &Path) {
 }
 
 fn put_cubic(content: &mut Content, points: [Point; 3]) -> &mut Content {
-    let [[x1, y1], [x2, y2], [x3, y3]] = points.map(|p| [p.x as f32, p.y as f32]);
-    content.cubic_to(x1, y1, x2, y2, x3, y3)
+    let [a, b, to] = points.map(|p| (p.x as f32, p.y as f32));
+    content.cubic_to(a.0, a.1, b.0, b.1, to.0, to.1)
 }
 
 /// The control point of a cubic curve that is the parabola with this one, in hundredths.
 fn two_thirds(end: Point, control: Point) -> Point {
-    let between =
-        |from: f64, to: f64| libm::round((from + (to - from) * 2.0 / 3.0) * 100.0) / 100.0;
+    let between = |from: f64, to: f64| hundredths(from + (to - from) * 2.0 / 3.0);
     Point {
         x: between(end.x, control.x),
         y: between(end.y, control.y),

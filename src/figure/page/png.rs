@@ -41,9 +41,7 @@ fn in_bands(
     (width, height): (u32, u32),
     dots_per_inch: f64,
 ) -> Result<Vec<u8>, ::png::EncodingError> {
-    let is_grey = scene.items.iter().all(|item| match &item.paint {
-        Paint::Fill(color) | Paint::Stroke(Pen { color, .. }) => is_grey(*color),
-    });
+    let is_grey = scene.items.iter().all(|item| item.paint.color().is_grey());
     let mut file = Vec::new();
     let mut encoder = ::png::Encoder::new(&mut file, width, height);
     encoder.set_color(if is_grey {
@@ -78,10 +76,6 @@ fn in_bands(
     Ok(file)
 }
 
-fn is_grey(Color([red, green, blue]): Color) -> bool {
-    red == green && green == blue
-}
-
 /// `sheet` with its part of the page, `top` dots below the page's upper edge.
 fn drawn(scene: &Scene, sheet: Pixmap, top: u32, dots_per_inch: f64) -> Pixmap {
     let scale = (dots_per_inch / 72.0) as f32;
@@ -111,25 +105,24 @@ impl Easel {
         self.set_clip(item.clip);
         let mask = item.clip.and(self.clip.as_ref()).map(|(_, mask)| mask);
         let transform = self.transform;
+        let (sheet, ink) = (&mut self.sheet, ink(item.paint.color()));
         match &item.paint {
-            Paint::Fill(color) => {
-                self.sheet
-                    .fill_path(&path, &ink(*color), FillRule::Winding, transform, mask);
-            }
-            Paint::Stroke(pen) => {
-                self.sheet
-                    .stroke_path(&path, &ink(pen.color), &stroke(pen), transform, mask);
-            }
+            Paint::Fill(_) => sheet.fill_path(&path, &ink, FillRule::Winding, transform, mask),
+            Paint::Stroke(pen) => sheet.stroke_path(&path, &ink, &stroke(pen), transform, mask),
         }
     }
 
     fn set_clip(&mut self, wanted: Option<[Point; 2]>) {
-        let Some(corners) =
-            wanted.filter(|_| wanted != self.clip.as_ref().map(|(corners, _)| *corners))
-        else {
+        let Some([from, to]) = wanted else {
             return;
         };
-        let [from, to] = corners;
+        if self
+            .clip
+            .as_ref()
+            .is_some_and(|(corners, _)| wanted == Some(*corners))
+        {
+            return;
+        }
         let rectangle = [
             from,
             Point { x: to.x, ..from },
@@ -141,7 +134,7 @@ impl Easel {
             if let Some(path) = outline(&Path::polygon(rectangle)) {
                 mask.fill_path(&path, FillRule::Winding, true, self.transform);
             }
-            (corners, mask)
+            ([from, to], mask)
         });
     }
 }
@@ -153,13 +146,12 @@ fn outline(path: &Path) -> Option<tiny_skia::Path> {
         match *segment {
             Segment::Move(to) => builder.move_to(to.x as f32, to.y as f32),
             Segment::Line(to) => builder.line_to(to.x as f32, to.y as f32),
-            Segment::Quadratic(control, to) => {
-                builder.quad_to(control.x as f32, control.y as f32, to.x as f32, to.y as f32);
+            Segment::Quadratic(a, to) => {
+                builder.quad_to(a.x as f32, a.y as f32, to.x as f32, to.y as f32);
             }
-            Segment::Cubic(first, second, to) => {
-                let [[x1, y1], [x2, y2], [x3, y3]] =
-                    [first, second, to].map(|p| [p.x as f32, p.y as f32]);
-                builder.cubic_to(x1, y1, x2, y2, x3, y3);
+            Segment::Cubic(a, b, to) => {
+                let [a, b, to] = [a, b, to].map(|p| (p.x as f32, p.y as f32));
+                builder.cubic_to(a.0, a.1, b.0, b.1, to.0, to.1);
             }
             Segment::Close => builder.close(),
         }
@@ -178,12 +170,8 @@ fn ink(Color([red, green, blue]): Color) -> Ink<'static> {
 fn stroke(pen: &Pen) -> Stroke {
     // An odd number of lengths is gone through twice, as in SVG and PDF.
     let twice = 1 + pen.dash_pt.len() % 2;
-    let dash = pen
-        .dash_pt
-        .repeat(twice)
-        .into_iter()
-        .map(|length| length as f32)
-        .collect();
+    let dash = pen.dash_pt.repeat(twice).into_iter();
+    let dash = dash.map(|length| length as f32).collect();
     Stroke {
         width: pen.width_pt as f32,
         miter_limit: MITER_LIMIT as f32,

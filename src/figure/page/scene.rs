@@ -82,6 +82,13 @@ impl Path {
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Color(pub [u8; 3]);
 
+impl Color {
+    pub fn is_grey(self) -> bool {
+        let Self([red, green, blue]) = self;
+        red == green && green == blue
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pen {
     pub width_pt: f64,
@@ -104,6 +111,14 @@ pub enum Paint {
     /// Its inside, by the non-zero rule.
     Fill(Color),
     Stroke(Pen),
+}
+
+impl Paint {
+    pub fn color(&self) -> Color {
+        match self {
+            Self::Fill(color) | Self::Stroke(Pen { color, .. }) => *color,
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]

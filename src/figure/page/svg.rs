@@ -49,12 +49,8 @@ fn clips(scene: &Scene) -> Vec<[Point; 2]> {
 
 /// The name of a rectangle says where it is: where two figures are put into one document, equal names mean the same.
 fn name(clip: &[Point; 2]) -> String {
-    let parts = clip
-        .iter()
-        .flat_map(|p| [p.x, p.y])
-        .map(number)
-        .collect::<Vec<_>>();
-    format!("clip_{}", parts.join("_"))
+    let parts = clip.iter().flat_map(|p| [p.x, p.y]).map(number);
+    format!("clip_{}", parts.collect::<Vec<_>>().join("_"))
 }
 
 /// Items that are drawn and cut off alike.
@@ -67,9 +63,7 @@ fn put_group(out: &mut String, items: &[Item]) {
         let _ = write!(out, " clip-path=\"url(#{})\"", name(clip));
     }
     match &first.paint {
-        Paint::Fill(color) => {
-            let _ = write!(out, " fill=\"{}\"", hex(*color));
-        }
+        Paint::Fill(color) => *out += &format!(" fill=\"{}\"", hex(*color)),
         Paint::Stroke(pen) => put_pen(out, pen),
     }
     *out += ">\n";
@@ -107,13 +101,20 @@ fn data(path: &Path) -> String {
     let mut data = Data::default();
     for segment in &path.0 {
         match *segment {
-            Segment::Move(to) => data.begin(to),
+            Segment::Move(to) => {
+                data.at = [0, 0];
+                data.step('M', &[to], &[0, 1]);
+                data.start = data.at;
+            }
             Segment::Line(to) if hundredths(to.y) == data.at[1] => data.step('h', &[to], &[0]),
             Segment::Line(to) if hundredths(to.x) == data.at[0] => data.step('v', &[to], &[1]),
             Segment::Line(to) => data.step('l', &[to], &[0, 1]),
             Segment::Quadratic(control, to) => data.step('q', &[control, to], &[0, 1]),
             Segment::Cubic(first, second, to) => data.step('c', &[first, second, to], &[0, 1]),
-            Segment::Close => data.close(),
+            Segment::Close => {
+                data.step('z', &[], &[]);
+                data.at = data.start;
+            }
         }
     }
     data.text
@@ -130,47 +131,24 @@ struct Data {
 }
 
 impl Data {
-    fn begin(&mut self, to: Point) {
-        self.at = [hundredths(to.x), hundredths(to.y)];
-        self.start = self.at;
-        self.text.push('M');
-        self.command = 'M';
-        self.numbers(&[self.at[0], self.at[1]]);
-    }
-
     /// A command with the steps from where the line is to `points`, of which the last is where it goes; `axes` are those
     /// of x (0) and y (1) that the command takes.
     fn step(&mut self, command: char, points: &[Point], axes: &[usize]) {
-        let places: Vec<[i64; 2]> = points
-            .iter()
-            .map(|p| [hundredths(p.x), hundredths(p.y)])
-            .collect();
-        let steps = places
-            .iter()
-            .flat_map(|place| axes.iter().map(|&axis| place[axis] - self.at[axis]));
-        let steps: Vec<i64> = steps.collect();
-        if command != self.command {
+        if command != self.command || axes.is_empty() || command == 'M' {
             self.text.push(command);
             self.command = command;
         }
-        self.numbers(&steps);
-        self.at = places.last().copied().unwrap_or(self.at);
-    }
-
-    fn close(&mut self) {
-        self.text.push('z');
-        self.command = 'z';
-        self.at = self.start;
-    }
-
-    /// Numbers of hundredths, with a blank where one would run into the next.
-    fn numbers(&mut self, hundredths: &[i64]) {
-        for &value in hundredths {
-            let number = number(value as f64 / 100.0);
-            if self.text.ends_with(|c: char| c.is_ascii_digit()) && !number.starts_with('-') {
-                self.text.push(' ');
+        let from = self.at;
+        for point in points {
+            self.at = [hundredths(point.x), hundredths(point.y)];
+            for &axis in axes {
+                let number = number((self.at[axis] - from[axis]) as f64 / 100.0);
+                // A blank where one number would run into the next.
+                if self.text.ends_with(|c: char| c.is_ascii_digit()) && !number.starts_with('-') {
+                    self.text.push(' ');
+                }
+                self.text += &number;
             }
-            self.text += &number;
         }
     }
 }

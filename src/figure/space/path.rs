@@ -4,6 +4,7 @@ use super::{Space, TALL, round_pen};
 use crate::figure::chart::Style;
 use crate::figure::chart::axis::Scale;
 use crate::figure::chart::curve;
+use crate::figure::extent;
 use crate::figure::page::ink::grey;
 use crate::figure::page::scene::{Color, Pen, Point, Scene};
 use crate::figure::request::Drawn;
@@ -17,12 +18,6 @@ const FARTHEST_WHITE: f64 = 0.58;
 /// A path, or its shadow on the floor: places on the page and their depths, in pieces.
 type Pieces = Vec<Vec<(Point, f64)>>;
 
-struct Layer {
-    pieces: Vec<Vec<Point>>,
-    pen: Pen,
-    is_dots: bool,
-}
-
 impl Space {
     /// The paths, the farthest parts first, and their shadows behind them.
     pub(super) fn paths(&self, drawn: &[Drawn], styles: &[Style], scene: &mut Scene) {
@@ -31,73 +26,50 @@ impl Space {
                 let boxed = self.boxed(at);
                 self.place(&Vector3::new(boxed.x, boxed.y, -0.5 * TALL))
             };
-            let shadow = Layer {
-                pieces: drawn.course.above.lines(on_floor),
-                pen: round_pen(0.45, grey(198)),
-                is_dots: style.is_dots,
-            };
-            shadow.draw(scene);
+            let shadow = drawn.course.above.lines(on_floor);
+            draw(&shadow, &round_pen(0.45, grey(198)), style, scene);
         }
         let placed = |at: &[f64; 3]| {
             let boxed = self.boxed(at);
             (self.place(&boxed), self.view.depth(&boxed))
         };
-        let paths: Vec<Pieces> = drawn
-            .iter()
-            .map(|drawn| drawn.course.path.lines(placed))
-            .collect();
-        for layer in layers(&paths, drawn, styles) {
-            layer.draw(scene);
-        }
-    }
-}
-
-/// The parts of `paths` by their depth, the farthest first.
-fn layers(paths: &[Pieces], drawn: &[Drawn], styles: &[Style]) -> Vec<Layer> {
-    let depths = || paths.iter().flatten().flatten().map(|(_, depth)| *depth);
-    let (near, far) = (
-        depths().fold(f64::INFINITY, f64::min),
-        depths().fold(f64::NEG_INFINITY, f64::max),
-    );
-    let share = Scale {
-        range: (far, near),
-        is_log: false,
-        places: (0.0, DEPTHS as f64),
-    };
-    let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
-    let mut by_degree: Vec<_> = paths.iter().map(|path| by_degree(path, degree)).collect();
-    let mut layers = Vec::new();
-    for nearness in 0..DEPTHS {
-        let part = nearness as f64 / (DEPTHS - 1) as f64;
-        let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
-        let looks = drawn.iter().zip(styles);
-        for (by_degree, (drawn, style)) in by_degree.iter_mut().zip(looks) {
-            // A line may be thinner than it was meant to be; depth has a say as well.
-            let thin = (style.width_pt / drawn.style.width_pt).min(1.0);
-            let color = paler(style.color, FARTHEST_WHITE * (1.0 - part));
-            layers.push(Layer {
-                pieces: std::mem::take(&mut by_degree[nearness]),
-                pen: Pen {
-                    dash_pt: style.dash_pt.to_vec(),
-                    ..round_pen(thin * width, color)
-                },
-                is_dots: style.is_dots,
-            });
-        }
-    }
-    layers
-}
-
-impl Layer {
-    fn draw(&self, scene: &mut Scene) {
-        let dots;
-        let pieces = if self.is_dots {
-            dots = curve::dots(self.pieces.iter().flatten().copied());
-            &dots
-        } else {
-            &self.pieces
+        let paths = drawn.iter().map(|drawn| drawn.course.path.lines(placed));
+        let paths: Vec<Pieces> = paths.collect();
+        let depths = paths.iter().flatten().flatten().map(|(_, depth)| *depth);
+        let (near, far) = extent(depths).unwrap_or_default();
+        let share = Scale {
+            range: (far, near),
+            is_log: false,
+            places: (0.0, DEPTHS as f64),
         };
-        curve::draw_curve(pieces, &self.pen, None, scene);
+        let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
+        let by_degree: Vec<_> = paths.iter().map(|path| by_degree(path, degree)).collect();
+        for nearness in 0..DEPTHS {
+            let part = nearness as f64 / (DEPTHS - 1) as f64;
+            let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
+            let looks = drawn.iter().zip(styles);
+            for (by_degree, (drawn, style)) in by_degree.iter().zip(looks) {
+                // A line may be thinner than it was meant to be; depth has a say as well.
+                let thin = (style.width_pt / drawn.style.width_pt).min(1.0);
+                let pen = Pen {
+                    dash_pt: style.dash_pt.to_vec(),
+                    ..round_pen(
+                        thin * width,
+                        paler(style.color, FARTHEST_WHITE * (1.0 - part)),
+                    )
+                };
+                draw(&by_degree[nearness], &pen, style, scene);
+            }
+        }
+    }
+}
+
+fn draw(pieces: &[Vec<Point>], pen: &Pen, style: &Style, scene: &mut Scene) {
+    if style.is_dots {
+        let dots = curve::dots(pieces.iter().flatten().copied());
+        curve::draw_curve(&dots, pen, None, scene);
+    } else {
+        curve::draw_curve(pieces, pen, None, scene);
     }
 }
 

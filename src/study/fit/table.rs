@@ -4,7 +4,7 @@
 //! export adds to one: the CSV opens as the run that it fitted.
 
 use super::report::Report;
-use crate::export::comments::commented;
+use crate::export::layout::commented;
 use crate::figure::table::{Found, OF_FIT};
 use crate::measured::{Data, Residual};
 use crate::scenario::Scenario;

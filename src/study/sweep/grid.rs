@@ -6,7 +6,7 @@ use super::file::{Base, SweepFile};
 use super::shard::Shard;
 use crate::analysis::at_end::readouts;
 use crate::analysis::readouts::{Readout, Value as Readable};
-use crate::export::comments::commented;
+use crate::export::layout::commented;
 use crate::run::Clock;
 use crate::run::resample::resampled;
 use crate::scenario::document::Document;

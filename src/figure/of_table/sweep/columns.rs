@@ -34,11 +34,9 @@ impl Role {
     }
 }
 
-/// A quantity of a sweep: what was measured of it, and what theory says. Theory comes first: the points stand on it.
-pub(super) struct Quantity {
-    /// Its columns.
-    pub parts: Vec<Part>,
-}
+/// A quantity of a sweep, by its columns: what was measured of it, and what theory says. Theory comes first: the points stand
+/// on it.
+pub(super) type Quantity = Vec<Part>;
 
 /// A column.
 pub(super) struct Part {
@@ -76,13 +74,13 @@ pub(super) fn quantities(table: &Table, varied: &[String], columns: &[&str]) -> 
         };
         let what = what(name, &names);
         match quantities.iter_mut().find(|(other, _)| *other == what) {
-            Some((_, quantity)) => quantity.parts.push(part),
-            None => quantities.push((what, Quantity { parts: vec![part] })),
+            Some((_, quantity)) => quantity.push(part),
+            None => quantities.push((what, vec![part])),
         }
     }
     let mut quantities: Vec<_> = quantities.into_iter().map(|(_, it)| it).collect();
     for quantity in &mut quantities {
-        quantity.parts.sort_by_key(|part| part.role != Role::Theory);
+        quantity.sort_by_key(|part| part.role != Role::Theory);
     }
     quantities
 }
@@ -115,27 +113,25 @@ fn uncertainty_of(table: &Table, name: &str) -> Option<String> {
     table.names().iter().find(of_name).cloned()
 }
 
-impl Quantity {
-    /// Its axis: that of the quantity where measured numbers and theory are drawn, else that of the column.
-    pub fn axis(&self) -> Axis {
-        let is_theory = |part: &&Part| part.role == Role::Theory;
-        let named = self.parts.iter().find(|part| !is_theory(part));
-        let named = named.or_else(|| self.parts.iter().find(|part| bare(&part.name) != part.name));
-        let Some(part) = named.or(self.parts.first()) else {
-            return Axis::default();
-        };
-        let own = quantity::axis(&part.name);
-        // Words say whose number it is; the legend says so already where both stand beside each other.
-        if self.parts.len() == 1 {
-            return own;
-        }
-        let words = [MEASURED, PREDICTED].map(|word| letters::escape(word.trim_end_matches('_')));
-        let without = |word: &String| own.name.strip_prefix(&format!("{word} "));
-        let name = words.iter().find_map(without).map(str::to_owned);
-        Axis {
-            name: name.unwrap_or(own.name),
-            ..own
-        }
+/// The axis of a quantity: named by what was measured where theory stands beside it, else by the column.
+pub(super) fn axis(parts: &[Part]) -> Axis {
+    let is_theory = |part: &&Part| part.role == Role::Theory;
+    let named = parts.iter().find(|part| !is_theory(part));
+    let named = named.or_else(|| parts.iter().find(|part| bare(&part.name) != part.name));
+    let Some(part) = named.or(parts.first()) else {
+        return Axis::default();
+    };
+    let own = quantity::axis(&part.name);
+    // Words say whose number it is; the legend says so already where both stand beside each other.
+    if parts.len() == 1 {
+        return own;
+    }
+    let words = [MEASURED, PREDICTED].map(|word| letters::escape(word.trim_end_matches('_')));
+    let without = |word: &String| own.name.strip_prefix(&format!("{word} "));
+    let name = words.iter().find_map(without).map(str::to_owned);
+    Axis {
+        name: name.unwrap_or(own.name),
+        ..own
     }
 }
 
@@ -169,7 +165,7 @@ pub(super) fn theory<'a>(
 
 /// Two of the columns as an example of a choice, those that were measured before others.
 pub(super) fn example(quantities: &[Quantity]) -> String {
-    let parts = || quantities.iter().flat_map(|quantity| &quantity.parts);
+    let parts = || quantities.iter().flatten();
     let is_measured = |part: &&Part| part.role == Role::Measured;
     let measured = parts().filter(is_measured);
     let others = parts().filter(|part| !is_measured(part) && Unit::of(&part.name).is_some());

@@ -1,15 +1,21 @@
-//! The curves of a sweep: its rows by what else was varied, and what each is called.
+//! The curves of a sweep: its rows by what else was varied, and what each is called; and the lines of theory, one for all
+//! curves of which it says the same.
 
-use super::Swept;
-use crate::figure::chart::Axis;
+use crate::figure::COLUMN_PT;
+use crate::figure::chart::Style;
 use crate::figure::chart::ticks::with_minus;
 use crate::figure::of_table::{Rows, grouped, within_room};
 use crate::figure::page::letters;
 use crate::figure::quantity;
+use crate::figure::table::{Sweep, Table};
 use crate::text::number::shortest;
 
 /// The key whose values are names.
 const SCHEME: &str = "motion.scheme";
+/// Numbers that differ by no more than this part of themselves are the same.
+const SAME: f64 = 1e-6;
+/// From this many rows on a line looks smooth at the width of a column; with fewer its points are marked.
+const SMOOTH: f64 = 40.0;
 
 /// The rows of one curve.
 #[derive(Clone, Debug)]
@@ -22,86 +28,142 @@ pub(super) struct Curve {
     pub settings: Vec<Setting>,
 }
 
-/// The value of a key.
+/// A key and its value: as at an axis, "*θ*_{0} = 20°", and in full.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Setting {
-    key: String,
-    /// How the key stands at an axis.
-    axis: Axis,
-    value: String,
+    markup: String,
+    plain: String,
 }
 
 /// The curves of a sweep, of whose keys `along` is on the axis below.
-pub(super) fn curves(swept: &Swept<'_>, along: &str) -> Vec<Curve> {
-    let &Swept {
-        table,
-        varied,
-        scenario,
-    } = swept;
-    let others: Vec<_> = varied.iter().filter(|key| *key != along).collect();
-    let columns: Vec<_> = others
-        .iter()
-        .map(|key| table.texts(key).unwrap_or_default())
+pub(super) fn curves(table: &Table, swept: &Sweep, along: &str) -> Vec<Curve> {
+    let others = swept.varied.iter().filter(|key| *key != along);
+    let others: Vec<(&String, Vec<&str>)> = others
+        .filter_map(|key| Some((key, table.texts(key)?)))
         .collect();
-    let settings = |row: usize| {
-        let each = others.iter().zip(&columns).map(|(key, texts)| Setting {
-            key: (*key).clone(),
-            axis: quantity::axis_in(scenario, key),
-            value: texts.get(row).copied().unwrap_or_default().to_owned(),
-        });
-        each.collect::<Vec<_>>()
-    };
     let values = |row: usize| {
-        let texts = columns.iter().filter_map(|texts| texts.get(row).copied());
-        texts.collect::<Vec<_>>().join("\n")
+        let texts: Vec<_> = others.iter().map(|(_, texts)| texts[row]).collect();
+        texts.join("\n")
     };
     let values: Vec<String> = (0..table.count()).map(values).collect();
     let groups = grouped(&values).into_iter().enumerate();
-    groups
-        .map(|(index, (_, rows))| Curve {
+    let curve = |(index, (_, rows)): (usize, (String, Rows))| {
+        let setting = |(key, texts): &(&String, Vec<&str>)| {
+            Setting::new(&swept.scenario, key, texts[rows[0]])
+        };
+        Curve {
             index,
-            settings: settings(rows[0]),
+            settings: others.iter().map(setting).collect(),
             rows,
-        })
-        .collect()
+        }
+    };
+    groups.map(curve).collect()
 }
 
 /// What a curve with these `settings` is called, as markup no longer than `room_pt`; `word` stands before.
 pub(super) fn name(word: &str, settings: &[Setting], room_pt: f64) -> String {
-    let joined = |said: Vec<String>| {
-        let word = (!word.is_empty()).then(|| word.to_owned());
-        word.into_iter().chain(said).collect::<Vec<_>>().join(", ")
+    let joined = |of: fn(&Setting) -> &str| {
+        let word = Some(word).filter(|word| !word.is_empty());
+        let said = word.into_iter().chain(settings.iter().map(of));
+        said.collect::<Vec<_>>().join(", ")
     };
-    let markup = joined(settings.iter().map(Setting::markup).collect());
-    let plain = joined(settings.iter().map(Setting::plain).collect());
+    let (markup, plain) = (joined(|it| &it.markup), joined(|it| &it.plain));
     within_room(markup, &plain, room_pt)
 }
 
 impl Setting {
-    /// Symbol, value and unit, as at an axis: "*θ*_{0} = 20°".
-    fn markup(&self) -> String {
-        if self.key == SCHEME {
-            return letters::escape(&self.value);
+    fn new(scenario: &toml::Table, key: &str, value: &str) -> Self {
+        if key == SCHEME {
+            return Self {
+                markup: letters::escape(value),
+                plain: value.to_owned(),
+            };
         }
-        let axis = &self.axis;
-        let value = match self.value.parse() {
-            Ok(number) => with_minus(&shortest(number)),
-            Err(_) => return format!("{} = {}", axis.name, letters::escape(&self.value)),
+        let axis = quantity::axis_in(scenario, key);
+        let said = match value.parse() {
+            Ok(number) => {
+                let unit = axis.unit;
+                let space = if unit.is_empty() || unit == "°" {
+                    ""
+                } else {
+                    " "
+                };
+                format!("{}{space}{unit}", with_minus(&shortest(number)))
+            }
+            Err(_) => letters::escape(value),
         };
-        let space = if ["", "°"].contains(&&*axis.unit) {
-            ""
-        } else {
-            " "
-        };
-        format!("{} = {value}{space}{}", axis.name, axis.unit)
+        Self {
+            markup: format!("{} = {said}", axis.name),
+            plain: format!("{key} = {value}"),
+        }
+    }
+}
+
+/// A line of theory.
+pub(super) struct Line {
+    /// The first of the curves that it is for.
+    index: usize,
+    /// Its points from left to right.
+    pub points: Vec<[f64; 2]>,
+    /// What is set alike for all of them.
+    pub settings: Vec<Setting>,
+}
+
+/// The lines of what theory says of each of these curves, whose points run from left to right. A curve of which it says
+/// nothing has none.
+pub(super) fn lines<'a>(curves: impl Iterator<Item = (&'a Curve, Vec<[f64; 2]>)>) -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    for (curve, points) in curves {
+        if !points.iter().any(|point| point[1].is_finite()) {
+            continue;
+        }
+        match lines.iter_mut().find(|line| line.says(&points)) {
+            Some(line) => line.take_in(curve, points),
+            None => lines.push(Line {
+                index: curve.index,
+                points,
+                settings: curve.settings.clone(),
+            }),
+        }
+    }
+    lines
+}
+
+impl Line {
+    fn place(&self, x: f64) -> Result<usize, usize> {
+        self.points.binary_search_by(|point| point[0].total_cmp(&x))
     }
 
-    /// The whole key and its value.
-    fn plain(&self) -> String {
-        if self.key == SCHEME {
-            self.value.clone()
+    /// Whether it has the values of `points`, wherever both have one, and they do somewhere.
+    fn says(&self, points: &[[f64; 2]]) -> bool {
+        let pairs = points.iter().filter_map(|&[x, value]| {
+            let own = self.points[self.place(x).ok()?][1];
+            (own.is_finite() && value.is_finite()).then_some((own, value))
+        });
+        let is_same = |(a, b): (f64, f64)| (a - b).abs() <= SAME * a.abs().max(b.abs());
+        let mut pairs = pairs.peekable();
+        pairs.peek().is_some() && pairs.all(is_same)
+    }
+
+    /// Takes in a curve of which theory says the same, and the `points` that were missing.
+    fn take_in(&mut self, curve: &Curve, points: Vec<[f64; 2]>) {
+        self.settings.retain(|it| curve.settings.contains(it));
+        for point in points.into_iter().filter(|point| point[1].is_finite()) {
+            match self.place(point[0]) {
+                Ok(place) if self.points[place][1].is_nan() => self.points[place] = point,
+                Ok(_) => {}
+                Err(place) => self.points.insert(place, point),
+            }
+        }
+    }
+
+    /// How it is drawn on a page of that width, the theory at `place` of its panel: as a line where the rows are close, else
+    /// as marks at the rows, since theory goes another way between them than the fine strokes that join them.
+    pub fn style(&self, place: usize, width_pt: f64) -> Style {
+        if self.points.len() as f64 > SMOOTH * width_pt / COLUMN_PT {
+            Style::theory(self.index, place)
         } else {
-            format!("{} = {}", self.key, self.value)
+            Style::theory_marked(self.index, place)
         }
     }
 }

@@ -86,45 +86,46 @@ impl Font {
     }
 
     fn head(&self) -> Vec<u8> {
-        let mut head = Vec::new();
-        head.extend(0x0001_0000_u32.to_be_bytes()); // version
-        head.extend(0x0001_0000_u32.to_be_bytes()); // revision of the font
-        head.extend([0; 4]); // the sum of the file, which nobody asks for of a font within a file
-        head.extend(0x5F0F_3CF5_u32.to_be_bytes());
-        head.extend(0b11_u16.to_be_bytes()); // the baseline is at 0, and letters begin at 0
-        head.extend((UNITS as u16).to_be_bytes());
-        head.extend([0; 16]); // dates
-        head.extend(self.bounds().into_iter().flat_map(i16::to_be_bytes));
-        head.extend([0, 0, 0, 6]); // no style; legible from 6 dots on
-        head.extend([0, 2, 0, 1, 0, 0]); // from left to right; long places; the one form of outlines
-        head
+        shorts(&[
+            &[1, 0], // version
+            &[1, 0], // revision of the font
+            &[0, 0], // the sum of the file, which nobody asks for of a font within a file
+            &[0x5F0F, 0x3CF5],
+            &[0b11], // the baseline is at 0, and letters begin at 0
+            &[UNITS as u16],
+            &[0; 8], // dates
+            &self.bounds().map(|bound| bound as u16),
+            &[0, 6],    // no style; legible from 6 dots on
+            &[2, 1, 0], // from left to right; long places; the one form of outlines
+        ])
     }
 
     fn hhea(&self) -> Vec<u8> {
-        let [left, low, right, high] = self.bounds();
+        let [left, low, right, high] = self.bounds().map(|bound| bound as u16);
         let widest = self.glyphs.iter().map(|glyph| glyph.advance).max();
-        let mut hhea = Vec::new();
-        hhea.extend(0x0001_0000_u32.to_be_bytes());
-        hhea.extend([high, low, 0].into_iter().flat_map(i16::to_be_bytes));
-        hhea.extend(widest.unwrap_or(0).to_be_bytes());
-        hhea.extend([left, 0, right, 1].into_iter().flat_map(i16::to_be_bytes));
-        hhea.extend([0; 14]); // an upright cursor at 0, and what is reserved
-        hhea.extend((self.glyphs.len() as u16).to_be_bytes());
-        hhea
+        shorts(&[
+            &[1, 0, high, low, 0, widest.unwrap_or(0), left, 0, right, 1],
+            &[0; 7], // an upright cursor at 0, and what is reserved
+            &[self.glyphs.len() as u16],
+        ])
     }
 
     fn maxp(&self) -> Vec<u8> {
         let points = |glyph: &Glyph| glyph.contours.iter().map(Vec::len).sum::<usize>() as u16;
         let contours = |glyph: &Glyph| glyph.contours.len() as u16;
         let most = |count: &dyn Fn(&Glyph) -> u16| self.glyphs.iter().map(count).max().unwrap_or(0);
-        let mut maxp = 0x0001_0000_u32.to_be_bytes().to_vec();
-        let counts = [self.glyphs.len() as u16, most(&points), most(&contours)];
-        maxp.extend(counts.into_iter().flat_map(u16::to_be_bytes));
+        let count = self.glyphs.len() as u16;
         // No letters made of others, no instructions.
-        maxp.extend([0, 0, 0, 0, 0, 2]);
-        maxp.extend([0; 16]);
-        maxp
+        shorts(&[
+            &[1, 0, count, most(&points), most(&contours), 0, 0, 2],
+            &[0; 8],
+        ])
     }
+}
+
+fn shorts(parts: &[&[u16]]) -> Vec<u8> {
+    let numbers = parts.iter().copied().flatten();
+    numbers.flat_map(|number| number.to_be_bytes()).collect()
 }
 
 impl Glyph {
@@ -134,13 +135,16 @@ impl Glyph {
         for segment in &letter.outline.0 {
             match *segment {
                 Segment::Move(to) => contours.push(vec![point(to, true)]),
-                Segment::Line(to) => contours.last_mut().into_iter().for_each(|contour| {
-                    contour.push(point(to, true));
-                }),
+                Segment::Line(to) => {
+                    let contour = contours.last_mut().into_iter();
+                    contour.for_each(|contour| contour.push(point(to, true)));
+                }
                 Segment::Quadratic(control, to) => {
-                    contours.last_mut().into_iter().for_each(|contour| {
-                        contour.extend([point(control, false), point(to, true)]);
-                    });
+                    let points = [point(control, false), point(to, true)];
+                    contours
+                        .last_mut()
+                        .into_iter()
+                        .for_each(|it| it.extend(points));
                 }
                 // The table has none, and a contour is closed by itself.
                 Segment::Cubic(..) | Segment::Close => {}
@@ -151,19 +155,15 @@ impl Glyph {
                 contour.pop();
             }
         }
-        let points = || contours.iter().flatten();
-        let least = |of: &dyn Fn(&(i16, i16, bool)) -> i16| points().map(of).min().unwrap_or(0);
-        let most = |of: &dyn Fn(&(i16, i16, bool)) -> i16| points().map(of).max().unwrap_or(0);
-        let bounds = [
-            least(&|point| point.0),
-            least(&|point| point.1),
-            most(&|point| point.0),
-            most(&|point| point.1),
-        ];
+        let ends = |of: fn(&(i16, i16, bool)) -> i16| {
+            let places = || contours.iter().flatten().map(of);
+            (places().min().unwrap_or(0), places().max().unwrap_or(0))
+        };
+        let ((left, right), (low, high)) = (ends(|point| point.0), ends(|point| point.1));
         Self {
             advance: letter.advance as u16,
+            bounds: [left, low, right, high],
             contours,
-            bounds,
         }
     }
 

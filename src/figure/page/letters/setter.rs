@@ -1,7 +1,5 @@
 //! Letters set one behind another: kerning, scripts, and what a slanted letter needs to its right.
 
-use std::borrow::Cow;
-
 use super::table::{self, ITALIC, REGULAR, UNITS};
 use super::{Label, Placed};
 use crate::figure::{Path, Point};
@@ -64,6 +62,17 @@ impl Setter {
         }
     }
 
+    /// What comes between the letter before and the next one, pt.
+    fn gap(&mut self, style: &table::Style, letter: char) -> f64 {
+        match self.before.take() {
+            Some(before) if before.is_italic == self.is_italic => {
+                self.size_pt / UNITS * style.kerning(before.letter, letter)
+            }
+            Some(before) if !letter.is_whitespace() => before.overhang_pt,
+            _ => 0.0,
+        }
+    }
+
     /// Sets a letter, or a box where the table has none.
     pub fn letter(&mut self, letter: char) {
         let style = if self.is_italic { &*ITALIC } else { &*REGULAR };
@@ -72,17 +81,14 @@ impl Setter {
         let drawn = slanted.or_else(|| REGULAR.letter(letter));
         let drawn = drawn.unwrap_or_else(missing);
         let scale = self.size_pt / UNITS;
-        self.x_pt += match self.before.take() {
-            Some(before) if before.is_italic == self.is_italic => {
-                scale * style.kerning(before.letter, letter)
-            }
-            Some(before) if !letter.is_whitespace() => before.overhang_pt,
-            _ => 0.0,
+        self.x_pt += self.gap(style, letter);
+        let origin = Point {
+            x: self.x_pt,
+            y: self.baseline_pt,
         };
-        let (x, y) = (self.x_pt, self.baseline_pt);
         let outline = drawn.outline.mapped(|p| Point {
-            x: x + p.x * scale,
-            y: y + p.y * scale,
+            x: origin.x + p.x * scale,
+            y: origin.y + p.y * scale,
         });
         self.x_pt += drawn.advance * scale;
         let mut right_pt = self.x_pt;
@@ -91,15 +97,11 @@ impl Setter {
             self.label.descent_pt = self.label.descent_pt.max(point.y);
             right_pt = right_pt.max(point.x);
         }
-        let overhang_pt = if self.is_italic {
-            right_pt - self.x_pt
-        } else {
-            0.0
-        };
+        let is_slanted = f64::from(u8::from(self.is_italic));
         self.before = Some(Before {
             letter,
             is_italic: self.is_italic,
-            overhang_pt,
+            overhang_pt: is_slanted * (right_pt - self.x_pt),
         });
         self.ended = None;
         self.label.path.0.extend(outline.0);
@@ -107,7 +109,7 @@ impl Setter {
         self.label.letters.push(Placed {
             letter,
             is_italic,
-            origin: Point { x, y },
+            origin,
             size_pt: self.size_pt,
         });
     }
@@ -183,19 +185,14 @@ pub fn missing() -> table::Letter {
 }
 
 /// A script in a line of plain text: `⁻³`, `₂`, `_p`, `^(a+b)`.
-fn script_words(words: &str, is_above: bool) -> Cow<'static, str> {
-    let characters: Option<String> = words
-        .chars()
-        .map(|c| script_character(c, is_above))
-        .collect();
-    if let Some(characters) = characters {
-        return characters.into();
-    }
+fn script_words(words: &str, is_above: bool) -> String {
+    let characters = words.chars().map(|c| script_character(c, is_above));
+    let characters: Option<String> = characters.collect();
     let sign = if is_above { '^' } else { '_' };
-    match words.chars().nth(1) {
-        None => format!("{sign}{words}").into(),
-        Some(_) => format!("{sign}({words})").into(),
-    }
+    characters.unwrap_or_else(|| match words.chars().nth(1) {
+        None => format!("{sign}{words}"),
+        Some(_) => format!("{sign}({words})"),
+    })
 }
 
 /// The character for a digit or a sign as a superscript or a subscript.

@@ -102,14 +102,11 @@ impl Style {
             let code = u32::from_str_radix(fields.next()?, 16).ok()?;
             let right: f64 = fields.next()?.parse().ok()?;
             let up: f64 = fields.next()?.parse().ok()?;
-            let part = self.numbered(code)?.outline;
-            whole.0.extend(
-                part.mapped(|p| Point {
-                    x: p.x + right,
-                    y: p.y - up,
-                })
-                .0,
-            );
+            let part = self.numbered(code)?.outline.mapped(|p| Point {
+                x: p.x + right,
+                y: p.y - up,
+            });
+            whole.0.extend(part.0);
         }
         Some(whole)
     }

@@ -148,22 +148,7 @@ impl OfPage {
             .cid_to_gid_map_predefined(Name(b"Identity"));
         glyphs.widths().consecutive(0, font.advances());
         drop(glyphs);
-        let [left, low, right, high] = font.bounds().map(f32::from);
-        let flags = FontFlags::SERIF | FontFlags::SYMBOLIC;
-        pdf.font_descriptor(descriptor)
-            .name(name)
-            .flags(if self.is_italic {
-                flags | FontFlags::ITALIC
-            } else {
-                flags
-            })
-            .bbox(Rect::new(left, low, right, high))
-            .italic_angle(if self.is_italic { SLANT_DEG } else { 0.0 })
-            .ascent(high)
-            .descent(low)
-            .cap_height(CAP_HEIGHT as f32 * 1000.0)
-            .stem_v(80.0)
-            .font_file2(file);
+        self.describe(descriptor, font, pdf, file);
         let bytes = font.file();
         pdf.stream(file, &packed(&bytes))
             .filter(Filter::FlateDecode)
@@ -175,6 +160,26 @@ impl OfPage {
         let map = map.finish();
         pdf.stream(letters, &packed(map.as_slice()))
             .filter(Filter::FlateDecode);
+    }
+
+    fn describe(&self, descriptor: Ref, font: &Font, pdf: &mut Pdf, file: Ref) {
+        let [left, low, right, high] = font.bounds().map(f32::from);
+        let flags = FontFlags::SERIF | FontFlags::SYMBOLIC;
+        let (flags, angle_deg) = if self.is_italic {
+            (flags | FontFlags::ITALIC, SLANT_DEG)
+        } else {
+            (flags, 0.0)
+        };
+        pdf.font_descriptor(descriptor)
+            .name(Name(self.names.1.as_bytes()))
+            .flags(flags)
+            .bbox(Rect::new(left, low, right, high))
+            .italic_angle(angle_deg)
+            .ascent(high)
+            .descent(low)
+            .cap_height(CAP_HEIGHT as f32 * 1000.0)
+            .stem_v(80.0)
+            .font_file2(file);
     }
 }
 
