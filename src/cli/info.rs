@@ -44,15 +44,18 @@ fn preset_list() -> anyhow::Result<String> {
     let mut text = String::new();
     for Preset { name, .. } in PRESETS {
         let file = Document::open(name)?.scenario()?.file;
-        writeln!(text, "{name}: {}", file.title)?;
-        for line in file.about.unwrap_or_default().lines() {
-            writeln!(text, "    {line}")?;
-        }
-        text.push('\n');
+        text += &listed(name, &file.title, file.about.as_deref());
     }
     text.push_str("gyrolab run NAME runs one; gyrolab presets NAME prints it as TOML.\n");
     text.push_str("gyrolab sweep lists the sweeps, grids of many runs.\n");
     Ok(text)
+}
+
+/// The entry of a list: name and title, and what it is about.
+pub(super) fn listed(name: &str, title: &str, about: Option<&str>) -> String {
+    let about = about.unwrap_or_default().lines();
+    let about: String = about.map(|line| format!("    {line}\n")).collect();
+    format!("{name}: {title}\n{about}\n")
 }
 
 pub(super) fn scheme_list() -> Result<String, std::fmt::Error> {
@@ -163,11 +166,11 @@ fn checked(document: &Document) -> Result<String, Problems> {
 }
 
 fn described_sweep(sweep: &Sweep) -> String {
-    let axes = sweep.axes().iter();
+    let axes = sweep.axes.iter();
     let axes: Vec<_> = axes
         .map(|axis| format!("{} ({})", axis.key, axis.values.len()))
         .collect();
-    let (rows, measured) = (sweep.rows(), sweep.measure().len());
+    let (rows, measured) = (sweep.rows(), sweep.measure.len());
     format!(
         "good: the sweep \"{}\", rows: {rows}, over {}, readouts: {measured}",
         sweep.title(),

@@ -2,7 +2,7 @@
 //! student who hands it in.
 
 use super::args::LessonArgs;
-use super::played::{new_lab, refused, watched, write};
+use super::played::{new_lab, refused, write};
 use super::progress::{self, Interrupted, Interruption};
 use super::sessions;
 use crate::lab::Lab;
@@ -44,12 +44,9 @@ pub(super) fn answers(args: &LessonArgs, name: &str) -> anyhow::Result<ExitCode>
             printable(name)
         );
     };
-    write(args, |interruption| {
-        watched(interruption, |go_on| {
-            let lab = new_lab(args.look)?;
-            answers::answers(&lesson, &place, lab, go_on)
-                .map_err(|problem| refused(&lesson, problem))
-        })
+    write(args, |go_on| {
+        answers::answers(&lesson, &place, new_lab(args.look)?, go_on)
+            .map_err(|problem| refused(&lesson, problem))
     })
 }
 

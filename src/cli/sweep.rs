@@ -1,6 +1,7 @@
 //! `gyrolab sweep`: a grid of runs, a row each.
 
 use super::args::Changes;
+use super::info::listed;
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::scenario::change;
 use super::{print, tell};
@@ -16,7 +17,6 @@ use crate::text::number::counted;
 use crate::text::printable::{Shown, printable_lines};
 use anyhow::bail;
 use clap::Args;
-use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -79,11 +79,7 @@ fn list() -> anyhow::Result<String> {
     let mut text = String::new();
     for shipped in SWEEPS {
         let sweep = Sweep::open(&document(shipped.name)?)?;
-        writeln!(text, "{}: {}", shipped.name, sweep.title())?;
-        for line in sweep.about().unwrap_or_default().lines() {
-            writeln!(text, "    {line}")?;
-        }
-        text.push('\n');
+        text += &listed(shipped.name, sweep.title(), sweep.about());
     }
     text.push_str(
         "gyrolab sweep NAME -o FILE.csv runs one; gyrolab presets NAME prints it as TOML.\n",
@@ -121,7 +117,7 @@ fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
     } else {
         change(&mut document, &args.changes)?;
         let base = document.scenario()?;
-        (SweepFile::from_nothing(), base)
+        (SweepFile::default(), base)
     };
     let from_file = file.vary.len();
     for argument in &args.vary {
@@ -198,15 +194,14 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
         Opened::Part(part) => part,
     };
     tell_of_part(sweep, &part);
-    let mut empty = part.empty().clone();
-    let added = add_rows(sweep, &mut part, &interruption, &mut empty);
-    let (rows, all) = (part.rows(), sweep.rows());
-    tell_of_empty(&empty, sweep, &interruption);
+    let added = add_rows(sweep, &mut part, &interruption);
+    let (rows, all) = (part.rows, sweep.rows());
+    tell_of_empty(&part.empty, sweep, &interruption);
     if added.is_err() || rows < all {
         tell(format_args!(
             "gyrolab: {rows} of {} are in {}: the same command goes on behind them",
             counted(all, "row"),
-            Shown(part.path())
+            Shown(&part.path)
         ));
         added?;
         bail!(Interrupted);
@@ -218,18 +213,18 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
 
 /// Says how many rows an earlier command has left.
 fn tell_of_part(sweep: &Sweep, part: &PartFile) {
-    if part.rows() == 0 {
+    if part.rows == 0 {
         return;
     }
-    let empty = match part.empty().count() {
+    let empty = match part.empty.count {
         0 => String::new(),
         empty => format!(", {empty} of them without readouts"),
     };
     tell(format_args!(
         "gyrolab: going on behind {} of {} rows in {}{empty}",
-        part.rows(),
+        part.rows,
         sweep.rows(),
-        Shown(part.path())
+        Shown(&part.path)
     ));
 }
 
@@ -241,7 +236,7 @@ fn tell_of_rows(sweep: &Sweep, output: &Path) {
 
 /// Says how many rows hold no readouts, and of the first few which points they are, and why.
 fn tell_of_empty(empty: &EmptyRows, sweep: &Sweep, interruption: &Interruption) {
-    let count = empty.count();
+    let count = empty.count;
     if count == 0 {
         return;
     }
@@ -264,9 +259,8 @@ fn add_rows(
     sweep: &Sweep,
     part: &mut PartFile,
     interruption: &Interruption,
-    empty: &mut EmptyRows,
 ) -> Result<(), SweepFileError> {
-    let (begin, all) = (part.rows(), sweep.rows());
+    let (begin, all) = (part.rows, sweep.rows());
     let meter = Meter::counting("row");
     meter.begin(all - begin);
     let row = |row: u64, goes_on: &dyn Fn() -> bool| {
@@ -274,21 +268,12 @@ fn add_rows(
     };
     let mut added = Ok(());
     in_order(begin..all, row, |rows| {
-        let mut lines = String::new();
-        let first = part.rows();
-        let count = rows.len() as u64;
-        for (index, row) in (first..).zip(rows) {
-            lines += &row.line;
-            if row.empty.is_some() {
-                empty.add(index, row.empty);
-            }
-        }
-        added = part.add(&lines, count);
+        added = part.add(rows);
         if added.is_err() {
             return ControlFlow::Break(());
         }
         // The rows of an earlier command say nothing about the time that the others take.
-        meter.show(part.rows() - begin, all - begin);
+        meter.show(part.rows - begin, all - begin);
         interruption.go_on()
     });
     added

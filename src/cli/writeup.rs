@@ -72,7 +72,13 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let meter = interruption.meter();
     let drawings = figures(&scenario, &readouts, recorded, beside.as_ref(), meter);
     let drawings = drawings.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?;
-    let writeup = Writeup::new(scenario, readouts, broken, beside, drawings);
+    let writeup = Writeup {
+        scenario,
+        readouts,
+        broken,
+        beside,
+        drawings,
+    };
     for (name, bytes) in writeup.files()? {
         let written = fs::write(folder.path().join(name), bytes);
         written

@@ -121,7 +121,7 @@ pub(super) fn come_back(
     };
     let mut lab = new(args, DEFAULT)?;
     lab.tell(why_none);
-    Ok((lab, folder.and_then(|folder| begun(&folder))))
+    Ok((lab, folder.and_then(begun)))
 }
 
 /// Says that newer sessions are open in other labs, of the processes `owners`. A line that has died without a word keeps
@@ -137,8 +137,8 @@ fn in_use(owners: &[u32]) -> String {
     )
 }
 
-pub(super) fn begun(folder: &Path) -> Result<Session, String> {
-    Session::begin(folder).map_err(told)
+pub(super) fn begun(folder: PathBuf) -> Result<Session, String> {
+    Session::begin(&folder).map_err(told)
 }
 
 fn told(error: impl std::fmt::Display) -> String {

@@ -10,7 +10,8 @@ use crate::measured::{
 };
 use crate::run::Clock;
 use crate::scenario::dotted::overlap;
-use crate::scenario::{Document, Problem, Problems, Scenario, ScenarioFile};
+use crate::scenario::{Document, Problem, Problems, Scenario};
+use crate::study::alone;
 use crate::text::number::shortest;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -61,13 +62,7 @@ impl Model {
             }
             Data::Series(_) => {}
         }
-        let file = ScenarioFile {
-            gyrolab: None,
-            // They are about the scenario as it stands alone, and about a screen.
-            expected: Vec::new(),
-            view: None,
-            ..checked.file
-        };
+        let file = alone(checked.file);
         let (columns, data) = listed(&measured.data);
         Ok(Self {
             title: file.title.clone(),

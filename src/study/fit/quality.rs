@@ -1,5 +1,6 @@
 //! How well a model fits its data, in numbers.
 
+use super::weights::Weights;
 use crate::measured::Residual;
 use statrs::function::gamma::checked_gamma_ur;
 
@@ -39,40 +40,32 @@ pub(super) fn student(freedom: u64) -> f64 {
 }
 
 impl Quality {
-    pub(super) fn weighted(
-        chi_squared: f64,
-        degrees_of_freedom: u64,
-        residuals: &[Residual],
-    ) -> Self {
-        let half = 0.5 * degrees_of_freedom as f64;
-        let probability = match degrees_of_freedom {
-            0 => None,
-            _ => checked_gamma_ur(half, 0.5 * chi_squared).ok(),
-        };
-        let worst = residuals.iter().filter_map(Residual::in_sigmas);
-        Self {
-            chi_squared: Some(chi_squared),
-            degrees_of_freedom,
-            probability: probability.filter(|probability| probability.is_finite()),
-            worst: worst.map(f64::abs).reduce(f64::max),
+    /// How well the model fits `residuals`, the sum of whose squares, in the units of `weights`, is `sum`.
+    pub(super) fn of(sum: f64, freedom: u64, residuals: &[Residual], weights: &Weights) -> Self {
+        let mut quality = Self {
+            chi_squared: None,
+            degrees_of_freedom: freedom,
+            probability: None,
+            worst: None,
             scatter: None,
+        };
+        if weights.are_stated {
+            let probability = checked_gamma_ur(0.5 * freedom as f64, 0.5 * sum).ok();
+            let probability = probability.filter(|probability| probability.is_finite());
+            let sigmas = residuals.iter().filter_map(Residual::in_sigmas);
+            quality.chi_squared = Some(sum);
+            quality.probability = probability.filter(|_| freedom > 0);
+            quality.worst = sigmas.map(f64::abs).reduce(f64::max);
+        } else if freedom > 0 {
+            let unit = weights.sigma.first().copied().unwrap_or(1.0);
+            quality.scatter = Some(sum.sqrt() * unit / (freedom as f64).sqrt());
         }
+        quality
     }
 
     /// Whether the model fits, where that can be said: its chi^2 is not rare. Uncertainties that are too large are no reason
     /// against it.
     pub fn fits(&self) -> Option<bool> {
         self.probability.map(|probability| probability >= RARE)
-    }
-
-    /// Of data without; `size` is the root of the sum of their squared residuals, in their unit.
-    pub(super) fn unweighted(size: f64, degrees_of_freedom: u64) -> Self {
-        Self {
-            chi_squared: None,
-            degrees_of_freedom,
-            probability: None,
-            worst: None,
-            scatter: (degrees_of_freedom > 0).then(|| size / (degrees_of_freedom as f64).sqrt()),
-        }
     }
 }

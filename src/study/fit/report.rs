@@ -4,6 +4,7 @@ use super::free::shown;
 use super::model::Model;
 use super::quality::student;
 use super::search::{Fit, Fitted};
+use super::table::Numbers;
 use crate::measured::Residual;
 use crate::text::number::{NONE, short, shortest, significant, uncertain};
 use crate::text::printable::{printable, printable_lines};
@@ -95,10 +96,7 @@ impl Report<'_> {
     fn furthest(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const MOST: usize = 5;
         let mut all: Vec<(usize, &Residual)> = self.fit.residuals.iter().enumerate().collect();
-        let size = |residual: &Residual| match residual.in_sigmas() {
-            Some(sigmas) => sigmas.abs(),
-            None => residual.value().abs(),
-        };
+        let size = |residual: &Residual| residual.in_sigmas().unwrap_or(residual.value()).abs();
         all.sort_by(|a, b| size(b.1).total_cmp(&size(a.1)));
         let rows = all.iter().take(MOST).map(|(index, residual)| {
             let readout = self.model.columns[self.model.data[*index].column].readout;
@@ -110,9 +108,7 @@ impl Report<'_> {
                 residual.sigma.map(short).unwrap_or_default(),
                 significant(residual.model, 6),
                 significant(residual.value(), 3),
-                sigmas
-                    .map(|sigmas| format!("{sigmas:+.1}"))
-                    .unwrap_or_default(),
+                sigmas.map_or(String::new(), |sigmas| format!("{sigmas:+.1}")),
             ]
         });
         let head = [
@@ -144,11 +140,10 @@ impl Report<'_> {
                 "from": bound(key.free.from), "to": bound(key.free.to), "is_at_bound": key.is_held,
             })
         });
+        let each = 0..fit.keys.len();
         let matrix = |cell: &dyn Fn(usize, usize) -> Option<f64>| -> Vec<Vec<Option<f64>>> {
-            let count = fit.keys.len();
-            (0..count)
-                .map(|i| (0..count).map(|j| cell(i, j)).collect())
-                .collect()
+            let row = |i| each.clone().map(|j| cell(i, j)).collect();
+            each.clone().map(row).collect()
         };
         let covariance = matrix(&|i, j| Some(fit.solution.covariance[i][j]? * fit.variance?));
         let alike = fit.solution.alike.iter().map(|alike| {
@@ -157,18 +152,14 @@ impl Report<'_> {
             });
             parts.collect::<Vec<_>>()
         });
-        let silent = fit
-            .solution
-            .silent
-            .iter()
-            .map(|&index| &fit.keys[index].free.key);
-        let residuals = fit.residuals.iter().zip(&self.model.data).map(|(residual, datum)| {
-            json!({
-                "row": residual.row + 1,
-                "quantity": self.model.columns[datum.column].readout.name,
-                "measured": residual.measured, "uncertainty": residual.sigma, "model": residual.model,
-                "residual": residual.value(), "residual_sigmas": residual.in_sigmas(),
-            })
+        let silent = fit.solution.silent.iter();
+        let silent = silent.map(|&index| &fit.keys[index].free.key);
+        let residuals = fit.residuals.iter().zip(&self.model.data);
+        let residuals = residuals.map(|(residual, datum)| {
+            let mut row = json!(Numbers::of(residual));
+            row["row"] = json!(residual.row + 1);
+            row["quantity"] = json!(self.model.columns[datum.column].readout.name);
+            row
         });
         let freedom = quality.degrees_of_freedom;
         json!({
@@ -227,25 +218,16 @@ impl Serialize for Report<'_> {
 
 /// Rows of cells in columns that are as wide as their widest cell; the first is the head.
 fn write_table<const N: usize>(f: &mut fmt::Formatter<'_>, rows: &[[String; N]]) -> fmt::Result {
-    let width = |column: usize| {
-        rows.iter()
-            .map(|row| row[column].chars().count())
-            .max()
-            .unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..N).map(width).collect();
+    let width = |cell: &String| cell.chars().count();
+    let widest = |column: usize| rows.iter().map(|row| width(&row[column])).max();
+    let widths: Vec<usize> = (0..N).filter_map(widest).collect();
     for row in rows {
         let cells = row.iter().zip(&widths);
-        let line: String = cells
-            .map(|(cell, width)| {
-                format!(
-                    "  {}{}",
-                    printable(cell),
-                    " ".repeat(width - cell.chars().count())
-                )
-            })
-            .collect();
-        writeln!(f, "{}", line.trim_end())?;
+        let cells = cells.map(|(cell, most)| {
+            let room = " ".repeat(most - width(cell));
+            format!("  {}{room}", printable(cell))
+        });
+        writeln!(f, "{}", cells.collect::<String>().trim_end())?;
     }
     Ok(())
 }

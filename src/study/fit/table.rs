@@ -81,8 +81,9 @@ pub fn write(
     rows.flush()
 }
 
+/// The columns of a row behind its quantity.
 #[derive(Serialize)]
-struct Numbers {
+pub(super) struct Numbers {
     measured: f64,
     uncertainty: Option<f64>,
     model: f64,
@@ -91,7 +92,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    fn of(residual: &Residual) -> Self {
+    pub(super) fn of(residual: &Residual) -> Self {
         Self {
             measured: residual.measured,
             uncertainty: residual.sigma,

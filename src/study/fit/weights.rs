@@ -34,6 +34,8 @@ const PART: f64 = 0.25;
 /// The unit of unweighted residuals, of the size of the data, and a small change of them.
 const UNIT: f64 = 1e-6;
 const SMALL: f64 = 0.01;
+/// The relative change of the uncertainties at which the weights have settled.
+const SETTLED: f64 = 1e-7;
 
 /// Whether the uncertainties of `model`'s data are stated: of all, or of none.
 pub fn are_stated(model: &Model) -> Result<bool, String> {
@@ -177,10 +179,19 @@ impl Weights {
         white
     }
 
-    /// The largest relative change of an uncertainty from `before` to these.
-    pub(super) fn change_from(&self, before: &Self) -> f64 {
-        let pairs = self.sigma.iter().zip(&before.sigma);
+    /// The weights at `p`, computed anew; `None` where these have settled.
+    pub(super) fn renewed(
+        &self,
+        model: &Model,
+        p: &[f64],
+        go_on: GoOn<'_>,
+    ) -> Result<Option<Self>, Stop> {
+        if !self.count_settings {
+            return Ok(None);
+        }
+        let next = Self::at(model, p, go_on)?;
+        let pairs = next.sigma.iter().zip(&self.sigma);
         let changes = pairs.map(|(now, before)| (now / before - 1.0).abs());
-        changes.fold(0.0, f64::max)
+        Ok((changes.fold(0.0, f64::max) > SETTLED).then_some(next))
     }
 }

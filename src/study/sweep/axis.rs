@@ -2,8 +2,9 @@
 
 use super::file::VaryFile;
 use crate::scenario::document::toml_or_text;
-use crate::scenario::dotted::join;
+use crate::scenario::dotted::{join, overlap};
 use crate::scenario::keys::{self, Kind};
+use crate::scenario::start::exclude_each_other;
 use crate::scenario::{Problem, Problems};
 use crate::text::number::rounded;
 use crate::text::printable::{brief, is_steering};
@@ -43,21 +44,51 @@ impl Axis {
             let rule = "must hold at least one value";
             return Err(vec![Problem::at(at("values"), rule)]);
         }
-        let values = values.into_iter().map(|value| as_kind(kind, value));
-        let values: Vec<_> = values.collect();
+        let (key, values) = (vary.key.clone(), values.into_iter());
+        let values: Vec<_> = values.map(|value| as_kind(kind, value)).collect();
         let problem = |value| {
             let rule = fits(kind, value).err()?;
-            Some(Problem::with_value(vary.key.clone(), value, rule))
+            Some(Problem::with_value(key.clone(), value, rule))
         };
         let problems: Vec<_> = values.iter().filter_map(problem).collect();
-        if problems.is_empty() {
-            Ok(Self {
-                key: vary.key.clone(),
-                values,
-            })
-        } else {
-            Err(problems)
+        if !problems.is_empty() {
+            return Err(problems);
         }
+        Ok(Self { key, values })
+    }
+}
+
+/// The axes that `files` ask for.
+pub(super) fn axes(files: &[VaryFile], problems: &mut Vec<Problem>) -> Vec<Axis> {
+    let mut axes: Vec<Axis> = Vec::new();
+    if files.is_empty() {
+        let rule = "is missing: a sweep varies at least one key, by [[vary]] or --vary KEY=A..B:N";
+        problems.push(Problem::at("vary", rule));
+    }
+    for (index, file) in files.iter().enumerate() {
+        let place = format!("vary.{index}");
+        match Axis::new(file, &place) {
+            Ok(axis) => {
+                let clash = axes.iter().find_map(|other| clash(&axis.key, &other.key));
+                problems.extend(clash.map(|rule| Problem::at(axis.key.clone(), rule)));
+                axes.push(axis);
+            }
+            Err(mut wrong) => problems.append(&mut wrong),
+        }
+    }
+    axes
+}
+
+/// Why `key` cannot vary together with `other`.
+fn clash(key: &str, other: &str) -> Option<String> {
+    if other == key {
+        Some("varies twice".to_owned())
+    } else if exclude_each_other(other, key) {
+        Some(format!(
+            "varies, and so does {other}: a start has one of them"
+        ))
+    } else {
+        overlap(other, key).then(|| format!("varies, and so does {other}, which writes into it"))
     }
 }
 
@@ -72,14 +103,13 @@ fn kind(key: &str) -> Result<Kind, String> {
 /// Whether `value` may stand at a key of this kind. (Whether the scenario takes it shows at its point.)
 fn fits(kind: Kind, value: &Value) -> Result<(), String> {
     kind.check(value)?;
-    if value
+    let is_steered = value
         .as_str()
-        .is_some_and(|text| text.contains(is_steering))
-    {
-        Err("must be one line, without control characters".to_owned())
-    } else {
-        Ok(())
+        .is_some_and(|text| text.contains(is_steering));
+    if is_steered {
+        return Err("must be one line, without control characters".to_owned());
     }
+    Ok(())
 }
 
 /// `count` values from `from` to `to`, both among them, evenly spaced, without the last digits that only rounding makes.
@@ -149,9 +179,7 @@ pub fn parse(argument: &str) -> Result<VaryFile, String> {
     Ok(VaryFile {
         key,
         values: Some(listed(text)?),
-        from: None,
-        to: None,
-        count: None,
+        ..VaryFile::default()
     })
 }
 
