@@ -111,7 +111,7 @@ pub(super) fn readout_list() -> Result<String, std::fmt::Error> {
 pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
     for file in files {
-        let checked = if lesson::is_named_as_one(file) {
+        let checked = if file.extension().is_some_and(|extension| extension == "md") {
             lesson::checked(file)?
         } else {
             Document::read(file).and_then(|document| checked(&document))
@@ -135,17 +135,17 @@ pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
 /// What to do instead where `file`, which is not there, is the name of a preset or a lesson.
 fn hint_of_preset(file: &Path) -> Option<String> {
     let name = file.to_str().filter(|_| !file.exists())?;
-    let preset = presets::find(name).map(|_| {
-        format!(
-            "gyrolab check takes files, and {name} is a preset: gyrolab run {name} runs it, gyrolab presets {name} prints it"
-        )
-    });
-    preset.or_else(|| {
+    let (what, instead) = if presets::find(name).is_some() {
+        let instead = format!("gyrolab run {name} runs it, gyrolab presets {name} prints it");
+        ("a preset", instead)
+    } else {
         shipped::find(name)?;
-        Some(format!(
-            "gyrolab check takes files, and {name} is a shipped lesson, which is good: gyrolab lesson {name} opens it"
-        ))
-    })
+        let instead = format!("gyrolab lesson {name} opens it");
+        ("a shipped lesson, which is good", instead)
+    };
+    Some(format!(
+        "gyrolab check takes files, and {name} is {what}: {instead}"
+    ))
 }
 
 /// What is in `document`, in words: commands, or else a scenario.

@@ -72,25 +72,14 @@ fn list() -> anyhow::Result<String> {
 /// The page that is asked for; the first where none is.
 fn page_of<'a>(lesson: &'a Lesson, args: &LessonArgs) -> anyhow::Result<&'a Page> {
     let number = args.page.map_or(1, std::num::NonZeroU64::get);
-    let page = usize::try_from(number)
-        .ok()
-        .and_then(|number| lesson.page(number));
-    page.with_context(|| {
-        format!(
-            "--page {number}: {} has the pages 1 to {}",
-            lesson.name,
-            lesson.pages.len()
-        )
-    })
+    let page = usize::try_from(number).ok();
+    let page = page.and_then(|number| lesson.page(number));
+    let (name, last) = (&lesson.name, lesson.pages.len());
+    page.with_context(|| format!("--page {number}: {name} has the pages 1 to {last}"))
 }
 
 fn picture(lab: &Lab) -> String {
     crate::tui::screen::text(lab, false, PICTURE)
-}
-
-/// Whether `check` takes `file` as a lesson.
-pub(super) fn is_named_as_one(file: &Path) -> bool {
-    file.extension().is_some_and(|extension| extension == "md")
 }
 
 /// What is in the lesson `file`, in words, or what is wrong with it; it is played to its end.

@@ -11,7 +11,6 @@ use crate::teach::{Lesson, play};
 use anyhow::bail;
 use std::process::ExitCode;
 
-/// A new lab for pictures.
 pub(super) fn new_lab(look: Look) -> anyhow::Result<Lab> {
     plain_lab(DEFAULT, &Changes::default(), look.markers)
 }

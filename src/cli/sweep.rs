@@ -121,9 +121,9 @@ fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
     };
     let from_file = file.vary.len();
     for argument in &args.vary {
-        let vary = axis::parse(argument).map_err(|rule| axis::refused(argument, rule))?;
-        let same = file.vary[..from_file].iter_mut();
-        match same.into_iter().find(|other| other.key == vary.key) {
+        let vary = axis::parse(argument)?;
+        let mut of_file = file.vary[..from_file].iter_mut();
+        match of_file.find(|other| other.key == vary.key) {
             Some(same) => *same = vary,
             None => file.vary.push(vary),
         }
@@ -146,7 +146,12 @@ fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
 
 /// Says of `problem` that it is about an option, if it is; `keys` are those that vary, in their order.
 fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
-    if let Some(argument) = argument_behind(problem, keys, &args.vary) {
+    let place = problem.key.strip_prefix("vary.");
+    let number = place.and_then(|place| place.split('.').next()?.parse::<usize>().ok());
+    let key = number.and_then(|number| keys.get(number));
+    let key = key.unwrap_or(&problem.key);
+    let is_of_key = |argument: &&String| argument.split('=').next().map(str::trim) == Some(key);
+    if let Some(argument) = args.vary.iter().rev().find(is_of_key) {
         return axis::place(problem, argument);
     }
     let option = match problem.key.as_str() {
@@ -158,24 +163,6 @@ fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
     };
     problem.place = Some(option);
     problem.key.clear();
-}
-
-/// The `--vary` that `problem` is about; `keys` are those that vary, in their order.
-fn argument_behind<'a>(
-    problem: &Problem,
-    keys: &[String],
-    arguments: &'a [String],
-) -> Option<&'a str> {
-    let place = problem.key.strip_prefix("vary.");
-    let number = place.and_then(|place| place.split('.').next()?.parse::<usize>().ok());
-    let key = number
-        .and_then(|number| keys.get(number))
-        .unwrap_or(&problem.key);
-    let of_key = |argument: &&String| {
-        let name = argument.split('=').next().unwrap_or_default();
-        name.trim() == key
-    };
-    arguments.iter().rev().find(of_key).map(String::as_str)
 }
 
 /// Makes the file whole, or as much of it as there is time for.
@@ -216,19 +203,16 @@ fn tell_of_part(sweep: &Sweep, part: &PartFile) {
     if part.rows == 0 {
         return;
     }
+    let (rows, all, path) = (part.rows, sweep.rows(), Shown(&part.path));
     let empty = match part.empty.count {
         0 => String::new(),
         empty => format!(", {empty} of them without readouts"),
     };
     tell(format_args!(
-        "gyrolab: going on behind {} of {} rows in {}{empty}",
-        part.rows,
-        sweep.rows(),
-        Shown(&part.path)
+        "gyrolab: going on behind {rows} of {all} rows in {path}{empty}"
     ));
 }
 
-/// Says that all rows are in the file.
 fn tell_of_rows(sweep: &Sweep, output: &Path) {
     let rows = counted(sweep.rows(), "row");
     tell(format_args!("gyrolab: {rows} in {}", Shown(output)));
@@ -248,9 +232,9 @@ fn tell_of_empty(empty: &EmptyRows, sweep: &Sweep, interruption: &Interruption) 
     for line in &lines {
         tell(format_args!("  {}", printable_lines(line)));
     }
-    match count - lines.len() as u64 {
-        0 => {}
-        more => tell(format_args!("  and {more} more")),
+    let more = count - lines.len() as u64;
+    if more > 0 {
+        tell(format_args!("  and {more} more"));
     }
 }
 

@@ -32,7 +32,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verified {
-    /// Rows that are the same, up to the first that differs.
     pub rows: u64,
     /// The first thing that differs; `None` where all is the same.
     pub difference: Option<Difference>,

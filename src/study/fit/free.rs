@@ -20,7 +20,6 @@ pub struct Free {
     pub to: f64,
     /// A value of the size that is usual for it.
     pub scale: f64,
-    pub argument: String,
 }
 
 /// A change of a value that is 0 and has no bounds, where the table of keys names none.
@@ -80,7 +79,6 @@ impl Free {
             from,
             to,
             scale,
-            argument: argument.to_owned(),
         })
     }
 
@@ -181,20 +179,4 @@ pub(super) fn shown(bound: f64) -> String {
     } else {
         String::new()
     }
-}
-
-/// Refuses free keys that write into the same value.
-pub fn are_apart(free: &[Free]) -> Result<(), Problems> {
-    let keys: Vec<&String> = free.iter().flat_map(|free| &free.keys).collect();
-    for (index, one) in keys.iter().enumerate() {
-        if keys[..index]
-            .iter()
-            .any(|other| dotted::overlap(one, other))
-        {
-            let mut problem = Problem::at((*one).clone(), "is free twice: name it once");
-            problem.place = Some("--free".to_owned());
-            return Err(Problems::one("", problem));
-        }
-    }
-    Ok(())
 }

@@ -42,7 +42,6 @@ pub struct Minimum {
     pub slopes: DMatrix<f64>,
     /// Which parameters are held at a bound, beyond which the sum would be less.
     pub held: Vec<bool>,
-    /// How many steps were taken.
     pub steps: u64,
     pub failure: Option<Failure>,
 }
@@ -108,7 +107,6 @@ pub fn search(problem: &dyn Problem, start: &[f64], bounds: &[Bounds]) -> Result
     Err(Stop::Interrupted) // not reached: the steps are counted above
 }
 
-/// Which parameters stand at a bound and would leave it.
 fn held(p: &[f64], bounds: &[Bounds], slopes: &DMatrix<f64>, r: &DVector<f64>) -> Vec<bool> {
     let pull = slopes.tr_mul(r); // upwards where it is positive
     let is_held = |index: usize| {

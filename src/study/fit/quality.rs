@@ -1,7 +1,6 @@
 //! How well a model fits its data, in numbers.
 
 use super::weights::Weights;
-use crate::measured::Residual;
 use statrs::function::gamma::checked_gamma_ur;
 
 /// Below this probability a model does not fit; above 1 less this, the uncertainties are too large.
@@ -18,8 +17,6 @@ pub struct Quality {
     pub degrees_of_freedom: u64,
     /// The probability that a model that is right has so large a chi^2 or a larger one.
     pub probability: Option<f64>,
-    /// The largest residual in units of its uncertainty.
-    pub worst: Option<f64>,
     /// The scatter of data without uncertainties about the model, in their unit: the root of the sum of the squared residuals
     /// over the degrees of freedom.
     pub scatter: Option<f64>,
@@ -40,22 +37,19 @@ pub(super) fn student(freedom: u64) -> f64 {
 }
 
 impl Quality {
-    /// How well the model fits `residuals`, the sum of whose squares, in the units of `weights`, is `sum`.
-    pub(super) fn of(sum: f64, freedom: u64, residuals: &[Residual], weights: &Weights) -> Self {
+    /// How well a model fits: `sum` is the sum of the squared residuals in the units of `weights`.
+    pub(super) fn of(sum: f64, freedom: u64, weights: &Weights) -> Self {
         let mut quality = Self {
             chi_squared: None,
             degrees_of_freedom: freedom,
             probability: None,
-            worst: None,
             scatter: None,
         };
         if weights.are_stated {
             let probability = checked_gamma_ur(0.5 * freedom as f64, 0.5 * sum).ok();
             let probability = probability.filter(|probability| probability.is_finite());
-            let sigmas = residuals.iter().filter_map(Residual::in_sigmas);
             quality.chi_squared = Some(sum);
             quality.probability = probability.filter(|_| freedom > 0);
-            quality.worst = sigmas.map(f64::abs).reduce(f64::max);
         } else if freedom > 0 {
             let unit = weights.sigma.first().copied().unwrap_or(1.0);
             quality.scatter = Some(sum.sqrt() * unit / (freedom as f64).sqrt());

@@ -16,7 +16,6 @@ use std::fmt;
 pub struct Report<'a> {
     pub fit: &'a Fit,
     pub model: &'a Model,
-    pub scheme: &'static str,
     /// The scheme of the scenario, where the runs have another.
     pub instead_of: Option<&'static str>,
 }
@@ -50,7 +49,7 @@ impl Report<'_> {
         let other = self.instead_of.map(|own| {
             format!(
                 "The fitted runs have the scheme {}; the scenario's own is {own} (--scheme {own} fits the runs of that).",
-                self.scheme
+                self.model.scheme
             )
         });
         let remarks = other.into_iter().chain(self.fit.remarks());
@@ -163,7 +162,7 @@ impl Report<'_> {
         });
         let freedom = quality.degrees_of_freedom;
         json!({
-            "measured": self.model.measured.origin, "scenario": self.model.title, "scheme": self.scheme,
+            "measured": self.model.measured.origin, "scenario": self.model.title, "scheme": self.model.scheme,
             "keys": keys.collect::<Vec<_>>(),
             "correlation": matrix(&|i, j| fit.solution.correlation(i, j)), "covariance": covariance,
             "chi_squared": quality.chi_squared, "degrees_of_freedom": freedom,
@@ -185,7 +184,7 @@ impl fmt::Display for Report<'_> {
             "{} in {}, scheme {}: {} values, {} free\n",
             printable(&self.model.measured.origin),
             printable(&self.model.title),
-            self.scheme,
+            self.model.scheme,
             self.model.data.len(),
             self.fit.keys.len()
         )?;

@@ -150,7 +150,7 @@ fn finished(
     }
     let freedom = model.data.len().saturating_sub(solution.rank) as u64;
     let sum = minimum.residuals.norm_squared();
-    let quality = Quality::of(sum, freedom, &residuals, &weights);
+    let quality = Quality::of(sum, freedom, &weights);
     let scattered = || quality::variance(sum, freedom);
     let variance = weights.are_stated.then_some(1.0).or_else(scattered);
     let places = model.free.iter().enumerate();
@@ -236,12 +236,8 @@ impl Weighed<'_> {
             )));
         }
         let pairs = above.iter().zip(&below);
-        Ok((
-            pairs
-                .map(|(above, below)| (above - below) / width)
-                .collect(),
-            width,
-        ))
+        let slope = pairs.map(|(above, below)| (above - below) / width);
+        Ok((slope.collect(), width))
     }
 }
 
@@ -251,11 +247,8 @@ impl Problem for Weighed<'_> {
         let residuals = self.model.residuals(&values);
         let residuals: Vec<f64> = residuals.iter().map(Residual::value).collect();
         let white = self.weights.whitened(&residuals);
-        if white.norm_squared().is_finite() {
-            Ok(white)
-        } else {
-            Err(beyond())
-        }
+        are_numbers(white.norm_squared())?;
+        Ok(white)
     }
 
     fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop> {
@@ -277,11 +270,8 @@ impl Problem for Weighed<'_> {
         *self.kept() = found.iter().map(|(_, change)| *change).collect();
         let slopes = DMatrix::from_columns(&columns);
         // The decomposition of a matrix with a NaN would not end.
-        if slopes.norm_squared().is_finite() {
-            Ok(slopes)
-        } else {
-            Err(beyond())
-        }
+        are_numbers(slopes.norm_squared())?;
+        Ok(slopes)
     }
 
     fn tell(&self, step: u64, sum: f64) {
@@ -289,8 +279,11 @@ impl Problem for Weighed<'_> {
     }
 }
 
-fn beyond() -> Stop {
-    Stop::Impossible(
+fn are_numbers(sum: f64) -> Result<(), Stop> {
+    if sum.is_finite() {
+        return Ok(());
+    }
+    Err(Stop::Impossible(
         "the residuals in units of their uncertainties are beyond the range of numbers".to_owned(),
-    )
+    ))
 }

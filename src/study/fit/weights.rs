@@ -6,8 +6,7 @@
 //! minimum until nothing changes any more.
 
 use super::levenberg::Stop;
-use super::model::{GoOn, Model};
-use crate::measured::{Data, Setting};
+use super::model::{GoOn, Model, settings};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 #[derive(Clone, Debug)]
@@ -39,11 +38,8 @@ const SETTLED: f64 = 1e-7;
 
 /// Whether the uncertainties of `model`'s data are stated: of all, or of none.
 pub fn are_stated(model: &Model) -> Result<bool, String> {
-    let stated = model
-        .data
-        .iter()
-        .filter(|datum| datum.point.sigma.is_some());
-    let stated = stated.count();
+    let sigmas = model.data.iter().filter_map(|datum| datum.point.sigma);
+    let stated = sigmas.count();
     let settings_are_uncertain = uncertain_settings(model).next().is_some();
     if stated == model.data.len() {
         return Ok(true);
@@ -71,14 +67,8 @@ pub fn are_stated(model: &Model) -> Result<bool, String> {
 
 /// The settings with stated uncertainties, by their places.
 fn uncertain_settings(model: &Model) -> impl Iterator<Item = usize> {
-    let settings: &[Setting] = match &model.measured.data {
-        Data::Table(table) => &table.settings,
-        Data::Series(_) => &[],
-    };
-    let uncertain = settings
-        .iter()
-        .enumerate()
-        .filter(|(_, setting)| setting.sigmas.iter().any(Option::is_some));
+    let settings = settings(&model.measured.data).iter().enumerate();
+    let uncertain = settings.filter(|(_, setting)| setting.sigmas.iter().any(Option::is_some));
     uncertain.map(|(index, _)| index)
 }
 
@@ -103,11 +93,8 @@ impl Weights {
         if !are_stated(model).map_err(Stop::Impossible)? {
             return Ok(Self::alike(model));
         }
-        let sigma: Vec<f64> = model
-            .data
-            .iter()
-            .map(|datum| datum.point.sigma.unwrap_or(f64::NAN))
-            .collect();
+        let sigmas = model.data.iter().filter_map(|datum| datum.point.sigma);
+        let sigma: Vec<f64> = sigmas.collect(); // of all data
         let mut weights = Self {
             resolution: sigma.clone(),
             are_stated: true,

@@ -33,7 +33,6 @@ pub struct SweepRow {
     pub line: String,
     /// Why it holds no readouts; `None` where it holds some.
     pub empty: Option<String>,
-    /// Whether its run failed.
     pub has_failed: bool,
 }
 
@@ -46,7 +45,6 @@ pub struct Sweep {
     /// The keys that vary, the last fastest.
     pub axes: Vec<Axis>,
     pub measure: Vec<&'static Readout>,
-    /// Which of its points are its rows.
     pub shard: Shard,
     points: u64,
 }
@@ -195,18 +193,12 @@ impl Sweep {
     /// The values of the point behind the `row`-th row, from 0, one of each axis.
     pub fn values(&self, row: u64) -> Vec<&Value> {
         let mut rest = self.shard.range(self.points).start + row;
-        let mut values: Vec<_> = self
-            .axes
-            .iter()
-            .rev()
-            .map(|axis| {
-                let count = axis.values.len() as u64;
-                let value = &axis.values[(rest % count) as usize];
-                rest /= count;
-                value
-            })
-            .collect();
-        values.reverse();
+        let mut values = Vec::new();
+        for axis in self.axes.iter().rev() {
+            let count = axis.values.len() as u64;
+            values.insert(0, &axis.values[(rest % count) as usize]);
+            rest /= count;
+        }
         values
     }
 

@@ -31,7 +31,6 @@ const RESIDUALS: &str = "residuals";
 const SWINGS: &str = "swings";
 /// Least number of swings of a run that has this figure.
 const MANY_SWINGS: f64 = 15.0;
-/// Number of swings in it.
 const FEW_SWINGS: f64 = 8.0;
 /// Least number of steps a swing of a curve without corners.
 const SMOOTH: f64 = 40.0;

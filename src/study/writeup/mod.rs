@@ -19,7 +19,6 @@ pub use measured::Beside;
 use serde_json::{Map, Value};
 use std::sync::Arc;
 
-/// The run's rows.
 pub const CSV: &str = "run.csv";
 /// The scenario with its edits, from which the rows are computed.
 pub const RUN_FILE: &str = "run.toml";
