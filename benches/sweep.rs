@@ -80,8 +80,7 @@ fn swept(sweep: &Sweep) -> f64 {
         0..sweep.rows(),
         |row, go_on| sweep.row(row, go_on),
         |rows| {
-            let lines: String = rows.iter().map(|row| row.line.as_str()).collect();
-            part.add(&lines, rows.len() as u64).unwrap();
+            part.add(rows).unwrap();
             ControlFlow::Continue(())
         },
     );

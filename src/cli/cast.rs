@@ -66,13 +66,8 @@ pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
         colour: true,
         background: Background::Dark,
     };
-    let mut lab = lab(
-        DEFAULT,
-        &Changes::default(),
-        Some(Marker::Braille),
-        theme,
-        false,
-    )?;
+    let (marker, unchanged) = (Some(Marker::Braille), Changes::default());
+    let mut lab = lab(DEFAULT, &unchanged, marker, theme, false)?;
     let (output, interruption) = progress::open_for(&args.output, args.force)?;
     let mut cast = Cast::begin(args, &mut lab)?;
     lab.take_commands(commands);
@@ -143,14 +138,10 @@ impl Cast {
     /// Lets the lab take its steps up to now, as many as there are to take. Only a signal cuts them short.
     fn advance(&self, lab: &mut Lab, interruption: &Interruption) {
         let mut is_first = true;
-        let mut clock = || {
-            if interruption.has_come() && !std::mem::take(&mut is_first) {
-                self.now + LONGEST
-            } else {
-                self.now
-            }
-        };
-        lab.advance(&mut clock);
+        lab.advance(&mut || {
+            let is_late = !std::mem::take(&mut is_first) && interruption.has_come();
+            self.now + if is_late { LONGEST } else { Duration::ZERO }
+        });
         while lab.files().is_exporting() && !interruption.has_come() {
             thread::sleep(LOOK);
             lab.advance(&mut || self.now);

@@ -5,14 +5,13 @@ use super::progress::{self, Interrupted};
 use super::scenario::scenario_of;
 use super::values::positive;
 use super::{one_on_stdout, print};
-use crate::analysis::compare::{ComparisonRow, Table, compare as table_of};
+use crate::analysis::compare::{Table, compare as table_of};
 use crate::analysis::cost;
-use crate::export::Destination;
-use crate::export::layout::commented;
 use crate::physics::{SchemeInfo, scheme};
 use crate::run::{Clock, EnergyScale, Truth};
 use crate::scenario::Scenario;
 use crate::scenario::rescale::MOST_STEPS;
+use crate::study::verify::csv_of_comparison;
 use crate::text::number::{short, shortest};
 use anyhow::bail;
 use clap::Args;
@@ -66,7 +65,7 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let rows = table_of(&scenario, &schemes, &time_steps, interruption.meter());
     let rows = rows.ok_or(Interrupted)?;
     if let Some(output) = output {
-        write_csv(output, &scenario, &rows)?;
+        output.write_and_keep(&csv_of_comparison(&scenario, &rows)?)?;
     }
     if on_stdout {
         return Ok(ExitCode::SUCCESS);
@@ -76,7 +75,7 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         rows: &rows,
         energy_unit: EnergyScale::of(&scenario).map(|scale| scale.unit),
     };
-    let duration_s = duration_s(&scenario);
+    let duration_s = Clock::end_s(&scenario);
     let truth = kind_of_truth(&scenario, duration_s);
     let title = scenario.file.title.as_str();
     if args.json {
@@ -130,7 +129,7 @@ fn time_steps(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<f64
     // From coarse to fine, as the order is measured.
     steps.sort_by(|a, b| b.total_cmp(a));
     steps.dedup();
-    let duration = duration_s(scenario);
+    let duration = Clock::end_s(scenario);
     if let Some(&step) = steps.iter().find(|&&step| duration / step > MOST_STEPS) {
         bail!(
             "{}: --time-steps {} would be {} steps for {} s, of which {MOST_STEPS:e} can be counted: give longer time steps, or a shorter --duration",
@@ -143,25 +142,9 @@ fn time_steps(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<f64
     Ok(steps)
 }
 
-fn duration_s(scenario: &Scenario) -> f64 {
-    Clock::end_s(scenario)
-}
-
 /// By what the exact motion of `scenario` is obtained.
 fn kind_of_truth(scenario: &Scenario, duration_s: f64) -> String {
     let mut truth = Truth::new(Arc::new(scenario.clone()));
     truth.state_at(duration_s);
     truth.kind().to_string()
-}
-
-/// The table below the run file of the scenario, so that a file tells what was compared.
-fn write_csv(
-    output: Destination,
-    scenario: &Scenario,
-    rows: &[ComparisonRow],
-) -> anyhow::Result<()> {
-    let mut writer = csv::Writer::from_writer(commented(&scenario.to_toml()).into_bytes());
-    rows.iter().try_for_each(|row| writer.serialize(row))?;
-    output.write_and_keep(&writer.into_inner()?)?;
-    Ok(())
 }

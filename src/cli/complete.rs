@@ -29,47 +29,34 @@ pub(super) const VARIABLE: &str = "GYROLAB_COMPLETE";
 /// Names with what they mean, given what is typed before them (a list up to its comma, a key up to its `=`) and of them.
 type Names = fn(&str, &str) -> Vec<(String, &'static str)>;
 
-/// Command (or any), argument, the names that complete its value, and the endings of files that do.
-type Completed = (&'static str, &'static str, Names, &'static [&'static str]);
-
-const COMPLETED: &[Completed] = &[
-    (
-        "presets",
-        "name",
-        |_, _| [presets(), shipped(SWEEPS), shipped(SHIPPED)].concat(),
-        &[],
-    ),
-    (
-        "sweep",
-        "scenario",
-        |_, _| [shipped(SWEEPS), presets()].concat(),
-        &["toml", "csv"],
-    ),
-    ("lesson", "name", |_, _| shipped(LESSONS), &["md"]),
-    ("verify", "files", |_, _| Vec::new(), &["csv"]),
-    ("", "scenario", |_, _| presets(), &["toml", "csv"]),
-    ("", "runs", |_, _| presets(), &["toml", "csv"]),
-    ("", "set", settings, &[]),
-    ("", "vary", settings, &[]),
-    ("", "free", |_, begin| keys(begin, is_free, ""), &[]),
-    ("", "measured", |_, _| shipped(SHIPPED), &["csv"]),
-    ("", "columns", |_, _| columns(), &[]),
-    (
-        "",
-        "kind",
-        |_, _| [named(&kind::NAMES, |name| (name, "")), columns()].concat(),
-        &[],
-    ),
-    (
-        "",
-        "measure",
-        |_, _| named(READOUTS, |it| (it.name, it.meaning)),
-        &[],
-    ),
-    ("", "files", |_, _| Vec::new(), &["toml", "csv", "md"]),
-    ("", "commands", |_, _| Vec::new(), &["toml"]),
-    ("", "topic", |_, _| topics(), &[]),
-];
+/// The names that complete the value of the argument `arg` of `command`, and the endings of files that do; `None` where clap
+/// knows better.
+fn completing(command: &str, arg: &str) -> Option<(Names, &'static [&'static str])> {
+    let names: Names = match (command, arg) {
+        ("presets", "name") => |_, _| [presets(), shipped(SWEEPS), shipped(SHIPPED)].concat(),
+        ("sweep", "scenario") => |_, _| [shipped(SWEEPS), presets()].concat(),
+        ("lesson", "name") => |_, _| shipped(LESSONS),
+        (_, "scenario" | "runs") => |_, _| presets(),
+        (_, "set" | "vary") => settings,
+        (_, "free") => |_, begin| keys(begin, is_free, ""),
+        (_, "measured") => |_, _| shipped(SHIPPED),
+        (_, "columns") => |_, _| columns(),
+        (_, "kind") => |_, _| [named(&kind::NAMES, |name| (name, "")), columns()].concat(),
+        (_, "measure") => |_, _| named(READOUTS, |it| (it.name, it.meaning)),
+        (_, "topic") => |_, _| topics(),
+        (_, "files" | "commands") => |_, _| Vec::new(),
+        _ => return None,
+    };
+    let endings: &[_] = match (command, arg) {
+        (_, "scenario" | "runs") => &["toml", "csv"],
+        ("lesson", "name") => &["md"],
+        ("verify", "files") | (_, "measured") => &["csv"],
+        (_, "files") => &["toml", "csv", "md"],
+        (_, "commands") => &["toml"],
+        _ => &[],
+    };
+    Some((names, endings))
+}
 
 /// Answers the shell where it asks; gives whether it did.
 pub(super) fn answered() -> Result<bool, clap::Error> {
@@ -84,16 +71,11 @@ pub(super) fn answered() -> Result<bool, clap::Error> {
 /// `command` and all of its commands with what completes their values.
 pub(super) fn with_completers(command: Command) -> Command {
     let name = command.get_name().to_owned();
-    let complete = |arg: Arg| {
-        let is_of_arg = |row: &&Completed| {
-            (row.0.is_empty() || row.0 == name) && row.1 == arg.get_id().as_str()
-        };
-        match COMPLETED.iter().find(is_of_arg) {
-            Some((_, _, names, endings)) => arg.add(ArgValueCompleter::new(|current: &OsStr| {
-                completed(current, *names, endings)
-            })),
-            None => arg,
-        }
+    let complete = |arg: Arg| match completing(&name, arg.get_id().as_str()) {
+        Some((names, endings)) => arg.add(ArgValueCompleter::new(move |current: &OsStr| {
+            completed(current, names, endings)
+        })),
+        None => arg,
     };
     command.mut_args(complete).mut_subcommands(with_completers)
 }
@@ -170,16 +152,13 @@ fn shipped(list: &'static [Shipped]) -> Vec<(String, &'static str)> {
 }
 
 fn columns() -> Vec<(String, &'static str)> {
+    let of_points = named(POINT_COLUMNS, |column| (column.name, column.about));
+    let of_points = of_points.into_iter();
     let mut columns = named(COLUMNS, |column| (column.name, column.about));
     columns.extend(named(OPTIONAL_COLUMNS, |column| {
         (column.name, column.about)
     }));
-    let of_points = named(POINT_COLUMNS, |column| (column.name, column.about));
-    columns.extend(
-        of_points
-            .into_iter()
-            .filter(|(name, _)| Column::find(name).is_none()),
-    );
+    columns.extend(of_points.filter(|(name, _)| Column::find(name).is_none()));
     columns
 }
 

@@ -14,7 +14,7 @@ use crate::figure::{self, Format, PT_PER_MM, of_table};
 use crate::measured::{self, Measured};
 use crate::physics::scheme;
 use crate::text::printable::{Shown, printable};
-use anyhow::bail;
+use anyhow::{bail, ensure};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
@@ -111,13 +111,11 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
         mm(figure.scene.height_pt),
         Shown(&args.output)
     ));
-    match figure.broke {
-        Some(error) => {
-            complain(&anyhow::anyhow!(error));
-            Ok(ExitCode::FAILURE)
-        }
-        None => Ok(ExitCode::SUCCESS),
-    }
+    let Some(error) = figure.broke else {
+        return Ok(ExitCode::SUCCESS);
+    };
+    complain(&anyhow::anyhow!(error));
+    Ok(ExitCode::FAILURE)
 }
 
 enum Subject {
@@ -148,18 +146,16 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
         }
         (Some(table), _) => {
             let is_changed = args.exact
-                || args.from.is_some()
-                || args.to.is_some()
+                || args.from.or(args.to).is_some()
                 || args.measured.is_some()
                 || !args.schemes.is_empty()
                 || args.changes.is_some()
                 || args.length.is_some();
-            if is_changed {
-                bail!(
-                    "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --width and --force are for it",
-                    args.runs[0]
-                );
-            }
+            ensure!(
+                !is_changed,
+                "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --width and --force are for it",
+                args.runs[0]
+            );
             Ok(Subject::Table(table))
         }
     }
@@ -176,12 +172,9 @@ fn no_kind(args: &FigureArgs, refusal: &str) -> ! {
 fn runs(args: &FigureArgs) -> anyhow::Result<Vec<Run>> {
     let mut runs = Vec::new();
     for named in &args.runs {
-        let schemes: Vec<Option<&String>> = if args.schemes.is_empty() {
-            vec![None]
-        } else {
-            args.schemes.iter().map(Some).collect()
-        };
-        for scheme in schemes {
+        let by_scheme = args.schemes.iter().map(Some);
+        let as_it_is = args.schemes.is_empty().then_some(None);
+        for scheme in by_scheme.chain(as_it_is) {
             let mut changes = args.changes.clone();
             changes.scheme = scheme.cloned().or(changes.scheme);
             let scenario = ScenarioArgs {
@@ -208,22 +201,7 @@ fn drawn(
 ) -> anyhow::Result<Figure> {
     let (runs, kind, measured) = match subject {
         Subject::Runs(runs, kind, measured) => (runs, kind, measured),
-        Subject::Table(table) => {
-            let columns = args
-                .kind
-                .iter()
-                .flat_map(|kind| kind.split(','))
-                .map(str::trim);
-            let columns: Vec<_> = columns.collect();
-            let chart = of_table::chart(table, &columns, args.width * PT_PER_MM);
-            let chart = chart.map_err(|refusal| anyhow::anyhow!("{}: {refusal}", args.runs[0]))?;
-            return Ok(Figure {
-                scene: chart.scene(),
-                warnings: of_table::warnings(table, &columns),
-                dense: None,
-                broke: None,
-            });
-        }
+        Subject::Table(table) => return drawn_table(table, args),
     };
     let request = Request {
         kind: kind.clone(),
@@ -242,4 +220,17 @@ fn drawn(
     }
     let figure = of_runs::figure(runs, &request, interruption.meter());
     Ok(figure.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?)
+}
+
+fn drawn_table(table: &Table, args: &FigureArgs) -> anyhow::Result<Figure> {
+    let columns = args.kind.iter().flat_map(|kind| kind.split(','));
+    let columns: Vec<_> = columns.map(str::trim).collect();
+    let chart = of_table::chart(table, &columns, args.width * PT_PER_MM);
+    let chart = chart.map_err(|refusal| anyhow::anyhow!("{}: {refusal}", args.runs[0]))?;
+    Ok(Figure {
+        scene: chart.scene(),
+        warnings: of_table::warnings(table, &columns),
+        dense: None,
+        broke: None,
+    })
 }

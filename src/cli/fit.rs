@@ -7,12 +7,10 @@ use super::scenario::change;
 use super::{one_on_stdout, print_result, tell};
 use crate::export::Destination;
 use crate::measured::{self, Measured};
-use crate::physics::SchemeInfo;
-use crate::physics::scheme;
 use crate::scenario::{Document, Problem, Problems};
 use crate::study::fit::report::Report;
 use crate::study::fit::table::{self, Asked};
-use crate::study::fit::{Fit, Free, Model, NoFit, fit as fitted, free};
+use crate::study::fit::{Fit, Free, Model, NoFit, fit as fitted};
 use crate::study::verify::Unverified;
 use crate::text::number::{counted, shortest, significant};
 use crate::text::printable::{Shown, brief};
@@ -92,7 +90,7 @@ const SCHEME: &str = "exact";
 
 pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     one_on_stdout("fit", args.output.as_deref(), args.json);
-    let (model, scheme, own) = model(args)?;
+    let (model, own) = model(args)?;
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let meter = Meter::counting("run");
     let told = |step: u64, sum: f64| {
@@ -112,8 +110,7 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     let report = Report {
         fit: &found,
         model: &model,
-        scheme,
-        instead_of: own.filter(|own| *own != scheme),
+        instead_of: own.filter(|own| *own != model.scheme),
     };
     if let Some(mut output) = output {
         let path = args.output.as_deref().unwrap_or(Path::new("the output"));
@@ -132,7 +129,7 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
         let why = "the line command at its top is no command line of a fit";
         return Err(cannot(why.to_owned()));
     };
-    let (model, scheme, _) = model(&args).map_err(|problems| cannot(problems.to_string()))?;
+    let (model, _) = model(&args).map_err(|problems| cannot(problems.to_string()))?;
     let found = match fitted(&model, &|| !interruption.has_come(), &|_, _| {}) {
         Ok(found) => found,
         Err(NoFit::Interrupted) => return Err(Unverified::Stopped),
@@ -141,7 +138,6 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
     let report = Report {
         fit: &found,
         model: &model,
-        scheme,
         instead_of: None,
     };
     let mut csv = Vec::new();
@@ -149,19 +145,15 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
     Ok(csv)
 }
 
-/// What is fitted, by which scheme, and the scenario's own scheme, where no other was asked for.
-fn model(args: &FitArgs) -> Result<(Model, &'static str, Option<&'static str>), Problems> {
+/// What is fitted, and the scenario's own scheme, where no other was asked for.
+fn model(args: &FitArgs) -> Result<(Model, Option<&'static str>), Problems> {
     let measured = measured::open(&args.measured)?;
     let measured = chosen(measured, args.rows.as_ref())?;
     let (document, own) = scenario(args)?;
-    let keys = args
-        .free
-        .iter()
-        .map(|argument| Free::parse(argument, &document));
+    let keys = args.free.iter();
+    let keys = keys.map(|argument| Free::parse(argument, &document));
     let keys = keys.collect::<Result<Vec<_>, _>>()?;
-    free::are_apart(&keys)?;
-    let model = Model::new(&document, keys, measured)?;
-    Ok((model, scheme_of(&document), own))
+    Ok((Model::new(&document, keys, measured)?, own))
 }
 
 /// The scenario with all that the command line changes in it, and its own scheme, where no other was asked for.
@@ -180,17 +172,6 @@ fn scenario(args: &FitArgs) -> Result<(Document, Option<&'static str>), Problems
     Ok((document, own))
 }
 
-fn scheme_of(document: &Document) -> &'static str {
-    let name = document
-        .table()
-        .get("motion")
-        .and_then(|motion| motion.get("scheme"));
-    let name = name
-        .and_then(Value::as_str)
-        .unwrap_or(scheme::SCHEMES[0].name);
-    SchemeInfo::find(name).map_or(SCHEME, |scheme| scheme.name)
-}
-
 /// The rows of `measured` that are to be fitted.
 fn chosen(mut measured: Measured, rows: Option<&Rows>) -> Result<Measured, Problems> {
     let Some(rows) = rows else {
@@ -207,16 +188,15 @@ fn chosen(mut measured: Measured, rows: Option<&Rows>) -> Result<Measured, Probl
             "there is no row {beyond}: the data have {count}"
         )));
     }
-    measured.keep_rows(|row| {
-        let number = row + 1;
-        rows.ranges
-            .iter()
-            .any(|(first, last)| (*first..=*last).contains(&number))
-    });
-    match measured.count() {
-        0 => Err(refused("these rows hold no measured value".to_owned())),
-        _ => Ok(measured),
+    let has = |number| {
+        let mut ranges = rows.ranges.iter();
+        ranges.any(|(first, last)| (*first..=*last).contains(&number))
+    };
+    measured.keep_rows(|row| has(row + 1));
+    if measured.count() == 0 {
+        return Err(refused("these rows hold no measured value".to_owned()));
     }
+    Ok(measured)
 }
 
 /// The command line that makes the fit again.
@@ -250,7 +230,7 @@ fn write(output: impl Write, report: &Report<'_>, args: &FitArgs) -> anyhow::Res
         command: command(args),
         measured: args.measured.clone(),
         scenario: args.scenario.clone(),
-        scheme: report.scheme.to_owned(),
+        scheme: report.model.scheme.to_owned(),
         free: args.free.clone(),
         rows: args.rows.as_ref().map(|rows| rows.text.clone()),
         chi_squared: quality.chi_squared,
@@ -263,12 +243,9 @@ fn write(output: impl Write, report: &Report<'_>, args: &FitArgs) -> anyhow::Res
 
 /// The result, and where its rows are written.
 fn tell_of(report: &Report<'_>, args: &FitArgs) -> anyhow::Result<ExitCode> {
-    print_result(report, args.output.as_deref(), args.json)?;
-    if let Some(path) = args
-        .output
-        .as_deref()
-        .filter(|path| !Destination::is_for_stdout(path))
-    {
+    let output = args.output.as_deref();
+    print_result(report, output, args.json)?;
+    if let Some(path) = output.filter(|path| !Destination::is_for_stdout(path)) {
         let rows = counted(report.fit.residuals.len() as u64, "row");
         tell(format_args!("gyrolab: {rows} in {}", Shown(path)));
     }

@@ -44,15 +44,18 @@ fn preset_list() -> anyhow::Result<String> {
     let mut text = String::new();
     for Preset { name, .. } in PRESETS {
         let file = Document::open(name)?.scenario()?.file;
-        writeln!(text, "{name}: {}", file.title)?;
-        for line in file.about.unwrap_or_default().lines() {
-            writeln!(text, "    {line}")?;
-        }
-        text.push('\n');
+        text += &listed(name, &file.title, file.about.as_deref());
     }
     text.push_str("gyrolab run NAME runs one; gyrolab presets NAME prints it as TOML.\n");
     text.push_str("gyrolab sweep lists the sweeps, grids of many runs.\n");
     Ok(text)
+}
+
+/// The entry of a list: name and title, and what it is about.
+pub(super) fn listed(name: &str, title: &str, about: Option<&str>) -> String {
+    let about = about.unwrap_or_default().lines();
+    let about: String = about.map(|line| format!("    {line}\n")).collect();
+    format!("{name}: {title}\n{about}\n")
 }
 
 pub(super) fn scheme_list() -> Result<String, std::fmt::Error> {
@@ -108,7 +111,7 @@ pub(super) fn readout_list() -> Result<String, std::fmt::Error> {
 pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
     for file in files {
-        let checked = if lesson::is_named_as_one(file) {
+        let checked = if file.extension().is_some_and(|extension| extension == "md") {
             lesson::checked(file)?
         } else {
             Document::read(file).and_then(|document| checked(&document))
@@ -132,17 +135,17 @@ pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
 /// What to do instead where `file`, which is not there, is the name of a preset or a lesson.
 fn hint_of_preset(file: &Path) -> Option<String> {
     let name = file.to_str().filter(|_| !file.exists())?;
-    let preset = presets::find(name).map(|_| {
-        format!(
-            "gyrolab check takes files, and {name} is a preset: gyrolab run {name} runs it, gyrolab presets {name} prints it"
-        )
-    });
-    preset.or_else(|| {
+    let (what, instead) = if presets::find(name).is_some() {
+        let instead = format!("gyrolab run {name} runs it, gyrolab presets {name} prints it");
+        ("a preset", instead)
+    } else {
         shipped::find(name)?;
-        Some(format!(
-            "gyrolab check takes files, and {name} is a shipped lesson, which is good: gyrolab lesson {name} opens it"
-        ))
-    })
+        let instead = format!("gyrolab lesson {name} opens it");
+        ("a shipped lesson, which is good", instead)
+    };
+    Some(format!(
+        "gyrolab check takes files, and {name} is {what}: {instead}"
+    ))
 }
 
 /// What is in `document`, in words: commands, or else a scenario.
@@ -163,11 +166,11 @@ fn checked(document: &Document) -> Result<String, Problems> {
 }
 
 fn described_sweep(sweep: &Sweep) -> String {
-    let axes = sweep.axes().iter();
+    let axes = sweep.axes.iter();
     let axes: Vec<_> = axes
         .map(|axis| format!("{} ({})", axis.key, axis.values.len()))
         .collect();
-    let (rows, measured) = (sweep.rows(), sweep.measure().len());
+    let (rows, measured) = (sweep.rows(), sweep.measure.len());
     format!(
         "good: the sweep \"{}\", rows: {rows}, over {}, readouts: {measured}",
         sweep.title(),

@@ -1,7 +1,7 @@
 //! The options that say which rows and columns a CSV has.
 
 use super::refuse;
-use super::values::{IN_SECONDS, one_or_more, without_unit};
+use super::values::{IN_SECONDS, bare, one_or_more};
 use crate::export::Layout;
 use crate::export::layout::LayoutFile;
 use clap::Args;
@@ -46,11 +46,13 @@ const ROWS: &str = "Rows and columns of the CSV";
 
 /// A time from the beginning of the run on, s.
 pub(super) fn time(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if seconds >= 0.0 && f64::is_finite(seconds) => Ok(seconds),
-        _ => Err(without_unit(text, IN_SECONDS)
-            .unwrap_or_else(|| "must be a time in seconds, 0 or more".to_owned())),
-    }
+    let fits = |seconds: &f64| *seconds >= 0.0 && seconds.is_finite();
+    bare(
+        text,
+        fits,
+        IN_SECONDS,
+        "must be a time in seconds, 0 or more",
+    )
 }
 
 impl LayoutArgs {

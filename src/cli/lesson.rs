@@ -1,7 +1,7 @@
 //! `gyrolab lesson`: the list of lessons, a lesson in the lab, on paper, or to begin from; and `check` of one.
 
 use super::args::{LessonArgs, Look};
-use super::played::{new_lab, refused, watched, write};
+use super::played::{new_lab, refused, write};
 use super::{notes, print, progress, tell, workbench};
 use crate::lab::Lab;
 use crate::scenario::Problems;
@@ -32,11 +32,9 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     }
     let lesson = reading::open(name)?;
     if args.handout {
-        return write(args, |interruption| {
-            watched(interruption, |go_on| {
-                handout::handout(&lesson, new_lab(args.look)?, &picture, go_on)
-                    .map_err(|problem| refused(&lesson, problem))
-            })
+        return write(args, |go_on| {
+            handout::handout(&lesson, new_lab(args.look)?, &picture, go_on)
+                .map_err(|problem| refused(&lesson, problem))
         });
     }
     let page = page_of(&lesson, args)?;
@@ -48,13 +46,15 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
         page.number,
         lesson.pages.len()
     ));
+    print_page(&lesson, page, args.look)
+}
+
+fn print_page(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCode> {
     let interruption = progress::interruption()?;
-    let text = watched(&interruption, |go_on| {
-        let mut walk = Walk::new(&lesson, new_lab(args.look)?);
-        walk.jump(page, go_on)
-            .map_err(|problem| refused(&lesson, problem))?;
-        Ok(handout::page(page, &walk, &picture))
-    })?;
+    let mut walk = Walk::new(lesson, new_lab(look)?);
+    let walked = walk.jump(page, &mut interruption.meter());
+    walked.map_err(|problem| refused(lesson, problem))?;
+    let text = handout::page(page, &walk, &picture);
     interruption.may_act_at_once()?;
     print(&text)
 }
@@ -72,25 +72,14 @@ fn list() -> anyhow::Result<String> {
 /// The page that is asked for; the first where none is.
 fn page_of<'a>(lesson: &'a Lesson, args: &LessonArgs) -> anyhow::Result<&'a Page> {
     let number = args.page.map_or(1, std::num::NonZeroU64::get);
-    let page = usize::try_from(number)
-        .ok()
-        .and_then(|number| lesson.page(number));
-    page.with_context(|| {
-        format!(
-            "--page {number}: {} has the pages 1 to {}",
-            lesson.name,
-            lesson.pages.len()
-        )
-    })
+    let page = usize::try_from(number).ok();
+    let page = page.and_then(|number| lesson.page(number));
+    let (name, last) = (&lesson.name, lesson.pages.len());
+    page.with_context(|| format!("--page {number}: {name} has the pages 1 to {last}"))
 }
 
 fn picture(lab: &Lab) -> String {
     crate::tui::screen::text(lab, false, PICTURE)
-}
-
-/// Whether `check` takes `file` as a lesson.
-pub(super) fn is_named_as_one(file: &Path) -> bool {
-    file.extension().is_some_and(|extension| extension == "md")
 }
 
 /// What is in the lesson `file`, in words, or what is wrong with it; it is played to its end.
@@ -104,7 +93,7 @@ pub(super) fn checked(file: &Path) -> anyhow::Result<Result<String, Problems>> {
     };
     let interruption = progress::interruption()?;
     let lab = new_lab(Look::default())?;
-    let played = watched(&interruption, |go_on| Ok(play::check(&lesson, lab, go_on)))?;
+    let played = play::check(&lesson, lab, &mut interruption.meter());
     interruption.may_act_at_once()?;
     Ok(played.map(|played| {
         for problem in played.unstated {

@@ -58,17 +58,18 @@ pub fn main() -> ExitCode {
     }
     let parsed = command().try_get_matches();
     let parsed = parsed.and_then(|matches| Cli::from_arg_matches(&matches));
-    let cli = match parsed {
-        Ok(cli) => cli,
-        Err(error) => match explained(error) {
-            Ok(error) => return misused(&error),
-            Err(meant) => {
-                tell(format_args!("gyrolab: {}", printable_lines(&meant)));
-                return ExitCode::from(MISUSED);
-            }
-        },
-    };
-    match execute(cli) {
+    match parsed.map_err(explained) {
+        Ok(cli) => ended(execute(cli)),
+        Err(Ok(error)) => misused(&error),
+        Err(Err(meant)) => {
+            tell(format_args!("gyrolab: {}", printable_lines(&meant)));
+            ExitCode::from(MISUSED)
+        }
+    }
+}
+
+fn ended(result: anyhow::Result<ExitCode>) -> ExitCode {
+    match result {
         Ok(code) => code,
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) if error.is::<Interrupted>() => ExitCode::from(INTERRUPTED),
@@ -233,7 +234,6 @@ fn refuse(name: &str, kind: ErrorKind, message: &str) -> ! {
 /// What is said where stdout takes no more.
 const NO_STDOUT: &str = "cannot write to stdout";
 
-/// Prints `text` on stdout.
 fn print(text: &str) -> anyhow::Result<ExitCode> {
     let mut stdout = io::stdout().lock();
     let printed = stdout.write_all(text.as_bytes());
@@ -264,7 +264,6 @@ fn tell(text: impl Display) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Says on stderr what went wrong.
 fn complain(error: &anyhow::Error) {
     let error = format!("{error:#}");
     tell(format_args!("gyrolab: {}", printable_lines(&error)));

@@ -2,7 +2,7 @@
 //! student who hands it in.
 
 use super::args::LessonArgs;
-use super::played::{new_lab, refused, watched, write};
+use super::played::{new_lab, refused, write};
 use super::progress::{self, Interrupted, Interruption};
 use super::sessions;
 use crate::lab::Lab;
@@ -13,7 +13,7 @@ use crate::teach::predictions::Place;
 use crate::teach::{Asked, Lesson, answers, reading};
 use crate::text::printable::{printable, printable_lines};
 use crate::text::wrap::wrapped;
-use anyhow::bail;
+use anyhow::{bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -38,18 +38,12 @@ pub(super) fn answers(args: &LessonArgs, name: &str) -> anyhow::Result<ExitCode>
     });
     let newest: Option<(SystemTime, Place)> = found.max_by_key(|(written, _)| *written);
     let Some((_, place)) = newest else {
-        bail!(
-            "no session holds a prediction for {}: gyrolab lesson {} opens it",
-            printable(name),
-            printable(name)
-        );
+        let name = printable(name);
+        bail!("no session holds a prediction for {name}: gyrolab lesson {name} opens it");
     };
-    write(args, |interruption| {
-        watched(interruption, |go_on| {
-            let lab = new_lab(args.look)?;
-            answers::answers(&lesson, &place, lab, go_on)
-                .map_err(|problem| refused(&lesson, problem))
-        })
+    write(args, |go_on| {
+        answers::answers(&lesson, &place, new_lab(args.look)?, go_on)
+            .map_err(|problem| refused(&lesson, problem))
     })
 }
 
@@ -58,18 +52,18 @@ pub(super) fn answers(args: &LessonArgs, name: &str) -> anyhow::Result<ExitCode>
 pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
     let folder = folder()?;
     let interruption = progress::interruption()?;
-    let followed = match find(&folder, name)? {
-        Some(found) => found,
-        None if name.is_empty() => {
-            bail!("no lesson is open in any lab of this login: gyrolab lesson NAME opens one")
-        }
-        None => bail!(
+    let Some(found) = find(&folder, name)? else {
+        ensure!(
+            !name.is_empty(),
+            "no lesson is open in any lab of this login: gyrolab lesson NAME opens one"
+        );
+        bail!(
             "--notes {}: there is no such session with an open lesson (gyrolab sessions lists what there is)",
             printable(name)
-        ),
+        )
     };
     let line = live_line();
-    let followed = follow(&folder, &followed, &line, &interruption);
+    let followed = follow(&folder, &found, &line, &interruption);
     line.finish_and_clear();
     followed?;
     bail!(Interrupted)
@@ -81,14 +75,9 @@ fn folder() -> anyhow::Result<PathBuf> {
 
 /// The name of the session that is meant: of those with an open lesson, the one in use that was written last.
 fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
-    let open = session::list(folder)?.into_iter().filter(|session| {
-        let is_meant = if name.is_empty() {
-            session.is_in_use
-        } else {
-            session.name == name
-        };
-        is_meant && open_in(session).is_some()
-    });
+    let is_meant = |session: &Listed| session.name == name || name.is_empty() && session.is_in_use;
+    let open = session::list(folder)?.into_iter();
+    let open = open.filter(|session| is_meant(session) && open_in(session).is_some());
     let newest = open.max_by_key(|session| session.written);
     Ok(newest.map(|session| session.name))
 }
@@ -108,15 +97,14 @@ fn open_in(session: &Listed) -> Option<(String, Place)> {
 
 /// A line at the bottom of the terminal that changes; without a terminal there is none.
 fn live_line() -> ProgressBar {
-    let line = if io::stdout().is_terminal() {
-        ProgressBar::with_draw_target(None, indicatif::ProgressDrawTarget::stdout())
-    } else {
-        ProgressBar::hidden()
-    };
-    line.set_style(
-        ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar()),
-    );
-    line
+    if !io::stdout().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let line = ProgressBar::with_draw_target(None, indicatif::ProgressDrawTarget::stdout());
+    match ProgressStyle::with_template("{msg}") {
+        Ok(style) => line.with_style(style),
+        Err(_) => line,
+    }
 }
 
 /// Prints the notes of each page as it is opened, until a signal comes.
@@ -196,14 +184,13 @@ fn told(lesson: &Lesson, number: usize) -> String {
 fn times(lesson: &Lesson, place: &Place) -> String {
     let since = Duration::from_secs(clock::unix_s().saturating_sub(place.began_unix_s));
     // A session of an earlier version does not know when the lesson began.
-    let mut clock = match place.began_unix_s {
-        0 => Some(Clock::Day),
-        _ => Some(Clock::Up),
+    let first = match place.began_unix_s {
+        0 => Clock::Day,
+        _ => Clock::Up,
     };
-    let mut all = Vec::new();
-    while let Some(now) = clock {
-        all.push(now.shown(since, lesson.minutes));
-        clock = now.next(lesson.minutes);
-    }
+    let clocks = std::iter::successors(Some(first), |clock| clock.next(lesson.minutes));
+    let all: Vec<_> = clocks
+        .map(|clock| clock.shown(since, lesson.minutes))
+        .collect();
     all.join(" · ")
 }

@@ -3,7 +3,7 @@
 use super::args::{Changes, LessonArgs, Look};
 use super::new_lab::{DEFAULT, plain_lab};
 use super::print;
-use super::progress::{self, Interrupted, Interruption};
+use super::progress::{self, Interrupted};
 use crate::export::Destination;
 use crate::lab::Lab;
 use crate::scenario::{Problem, Problems};
@@ -11,7 +11,6 @@ use crate::teach::{Lesson, play};
 use anyhow::bail;
 use std::process::ExitCode;
 
-/// A new lab for pictures.
 pub(super) fn new_lab(look: Look) -> anyhow::Result<Lab> {
     plain_lab(DEFAULT, &Changes::default(), look.markers)
 }
@@ -20,21 +19,13 @@ pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
     Problems::one(lesson.origin.clone(), problem).into()
 }
 
-/// Does `what`, which asks now and then whether to go on, with progress where it takes long.
-pub(super) fn watched<T>(
-    interruption: &Interruption,
-    what: impl FnOnce(play::GoOn<'_>) -> anyhow::Result<T>,
-) -> anyhow::Result<T> {
-    what(&mut interruption.meter())
-}
-
-/// Writes what `make` makes to the file that is asked for, or prints it.
+/// Writes what `make` makes to the file that is asked for, or prints it. `make` asks now and then whether to go on.
 pub(super) fn write(
     args: &LessonArgs,
-    make: impl FnOnce(&Interruption) -> anyhow::Result<String>,
+    make: impl FnOnce(play::GoOn<'_>) -> anyhow::Result<String>,
 ) -> anyhow::Result<ExitCode> {
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
-    let text = make(&interruption);
+    let text = make(&mut interruption.meter());
     if interruption.has_come() {
         bail!(Interrupted);
     }

@@ -26,7 +26,6 @@ pub(super) struct Interruption {
 }
 
 impl Interruption {
-    /// Whether a signal has come.
     pub(super) fn has_come(&self) -> bool {
         self.has_come.load(Ordering::SeqCst)
     }
@@ -145,7 +144,6 @@ const QUIET: Duration = Duration::from_secs(1);
 
 /// What is going on, on stderr: after a second, for somebody who watches.
 pub(super) struct Meter {
-    /// What is counted.
     of: &'static str,
     begin: Instant,
     bar: OnceLock<ProgressBar>,

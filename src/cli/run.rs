@@ -5,8 +5,8 @@ use super::layout::LayoutArgs;
 use super::progress::{self, Interrupted, Interruption};
 use super::scenario::scenario_of;
 use super::{complain, one_on_stdout, print_result, tell};
-use crate::analysis::health::{Advice, advise};
-use crate::analysis::{Health, Monitor, Readouts};
+use crate::analysis::health::advise;
+use crate::analysis::{Monitor, Readouts};
 use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Summary};
 use crate::run::{Clock, Simulation, Step};
@@ -114,7 +114,8 @@ impl<W> Played<W> {
     /// while.
     pub(super) fn readouts(&mut self) -> Readouts {
         let health = self.monitor.health(self.simulation.now());
-        let advice = advice(&health, &self.simulation);
+        let is_doubtful = health.is_believed() == Some(false);
+        let advice = is_doubtful.then(|| advise(self.simulation.scenario()));
         Readouts::new(
             &self.simulation,
             &mut self.monitor,
@@ -160,9 +161,4 @@ pub(super) fn played<W: Write>(
         simulation,
         monitor: monitor.into_inner(),
     })
-}
-
-/// What would mend the run, sought only where it is not to be believed.
-fn advice(health: &Health, simulation: &Simulation) -> Option<Advice> {
-    (health.is_believed() == Some(false)).then(|| advise(simulation.scenario()))
 }

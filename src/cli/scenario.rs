@@ -7,7 +7,8 @@ use crate::scenario::{Document, Problem, Problems, Scenario};
 
 /// The scenario with all that the command line changes in it, so that its run file tells the whole run.
 pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Scenario, Problems> {
-    let mut document = changed(&args.scenario, &args.changes)?;
+    let mut document = Document::open(&args.scenario)?;
+    change(&mut document, &args.changes)?;
     if let Some(steps) = length.steps {
         document.set(&format!("motion.steps={steps}"))?;
     }
@@ -23,13 +24,6 @@ pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Sc
     let steps = Simulation::step_at(&scenario, duration).max(1);
     document.set(&format!("motion.steps={steps}"))?;
     document.scenario()
-}
-
-/// What SCENARIO names, with what the command line changes in it.
-fn changed(scenario: &str, changes: &Changes) -> Result<Document, Problems> {
-    let mut document = Document::open(scenario)?;
-    change(&mut document, changes)?;
-    Ok(document)
 }
 
 /// Changes in `document` what the command line changes.

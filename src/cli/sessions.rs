@@ -24,15 +24,12 @@ pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
     }
     let now = SystemTime::now();
     let head = ["NAME", "WRITTEN", "STEP", "IN USE", "RUN"].map(str::to_owned);
-    let rows: Vec<_> = [head]
-        .into_iter()
-        .chain(sessions.iter().map(|session| row(session, now)))
-        .collect();
+    let rows = sessions.iter().map(|session| row(session, now));
+    let rows: Vec<_> = [head].into_iter().chain(rows).collect();
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths: Vec<_> = (0..4).map(|column| width(column).unwrap_or(0)).collect();
+    let [a, b, c, d] = [0, 1, 2, 3].map(|column| width(column).unwrap_or(0));
     let mut text = String::new();
     for [name, written, step, in_use, run] in &rows {
-        let (a, b, c, d) = (widths[0], widths[1], widths[2], widths[3]);
         writeln!(
             text,
             "{name:<a$}  {written:<b$}  {step:>c$}  {in_use:<d$}  {run}"
@@ -54,11 +51,9 @@ fn within(folder: &Path) -> anyhow::Result<Confined> {
 }
 
 fn row(session: &Listed, now: SystemTime) -> [String; 5] {
-    let summary = session
-        .content
-        .as_ref()
-        .map_err(Clone::clone)
-        .and_then(|content| Lab::summary(content).map_err(|error| error.to_string()));
+    let content = session.content.as_ref().map_err(Clone::clone);
+    let summary =
+        content.and_then(|content| Lab::summary(content).map_err(|error| error.to_string()));
     let (step, run) = match summary {
         Ok(summary) => (
             summary.step.to_string(),

@@ -80,11 +80,11 @@ fn shown_here(settings: Settings) -> Settings {
         let marker = Marker::ALL.into_iter().find(|marker| marker.name() == name);
         marker.is_some_and(|marker| marker.needs_no_more_than(usual))
     };
+    let is_allowed =
+        |colour: &String| colour != "always" || !surroundings::refuses_colour(variable);
     Settings {
         marker: settings.marker.filter(can_be_shown),
-        colour: settings
-            .colour
-            .filter(|colour| colour != "always" || !surroundings::refuses_colour(variable)),
+        colour: settings.colour.filter(is_allowed),
         ..settings
     }
 }

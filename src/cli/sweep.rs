@@ -1,6 +1,7 @@
 //! `gyrolab sweep`: a grid of runs, a row each.
 
 use super::args::Changes;
+use super::info::listed;
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::scenario::change;
 use super::{print, tell};
@@ -16,7 +17,6 @@ use crate::text::number::counted;
 use crate::text::printable::{Shown, printable_lines};
 use anyhow::bail;
 use clap::Args;
-use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -79,11 +79,7 @@ fn list() -> anyhow::Result<String> {
     let mut text = String::new();
     for shipped in SWEEPS {
         let sweep = Sweep::open(&document(shipped.name)?)?;
-        writeln!(text, "{}: {}", shipped.name, sweep.title())?;
-        for line in sweep.about().unwrap_or_default().lines() {
-            writeln!(text, "    {line}")?;
-        }
-        text.push('\n');
+        text += &listed(shipped.name, sweep.title(), sweep.about());
     }
     text.push_str(
         "gyrolab sweep NAME -o FILE.csv runs one; gyrolab presets NAME prints it as TOML.\n",
@@ -121,13 +117,13 @@ fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
     } else {
         change(&mut document, &args.changes)?;
         let base = document.scenario()?;
-        (SweepFile::from_nothing(), base)
+        (SweepFile::default(), base)
     };
     let from_file = file.vary.len();
     for argument in &args.vary {
-        let vary = axis::parse(argument).map_err(|rule| axis::refused(argument, rule))?;
-        let same = file.vary[..from_file].iter_mut();
-        match same.into_iter().find(|other| other.key == vary.key) {
+        let vary = axis::parse(argument)?;
+        let mut of_file = file.vary[..from_file].iter_mut();
+        match of_file.find(|other| other.key == vary.key) {
             Some(same) => *same = vary,
             None => file.vary.push(vary),
         }
@@ -150,7 +146,12 @@ fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
 
 /// Says of `problem` that it is about an option, if it is; `keys` are those that vary, in their order.
 fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
-    if let Some(argument) = argument_behind(problem, keys, &args.vary) {
+    let place = problem.key.strip_prefix("vary.");
+    let number = place.and_then(|place| place.split('.').next()?.parse::<usize>().ok());
+    let key = number.and_then(|number| keys.get(number));
+    let key = key.unwrap_or(&problem.key);
+    let is_of_key = |argument: &&String| argument.split('=').next().map(str::trim) == Some(key);
+    if let Some(argument) = args.vary.iter().rev().find(is_of_key) {
         return axis::place(problem, argument);
     }
     let option = match problem.key.as_str() {
@@ -162,24 +163,6 @@ fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
     };
     problem.place = Some(option);
     problem.key.clear();
-}
-
-/// The `--vary` that `problem` is about; `keys` are those that vary, in their order.
-fn argument_behind<'a>(
-    problem: &Problem,
-    keys: &[String],
-    arguments: &'a [String],
-) -> Option<&'a str> {
-    let place = problem.key.strip_prefix("vary.");
-    let number = place.and_then(|place| place.split('.').next()?.parse::<usize>().ok());
-    let key = number
-        .and_then(|number| keys.get(number))
-        .unwrap_or(&problem.key);
-    let of_key = |argument: &&String| {
-        let name = argument.split('=').next().unwrap_or_default();
-        name.trim() == key
-    };
-    arguments.iter().rev().find(of_key).map(String::as_str)
 }
 
 /// Makes the file whole, or as much of it as there is time for.
@@ -198,15 +181,14 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
         Opened::Part(part) => part,
     };
     tell_of_part(sweep, &part);
-    let mut empty = part.empty().clone();
-    let added = add_rows(sweep, &mut part, &interruption, &mut empty);
-    let (rows, all) = (part.rows(), sweep.rows());
-    tell_of_empty(&empty, sweep, &interruption);
+    let added = add_rows(sweep, &mut part, &interruption);
+    let (rows, all) = (part.rows, sweep.rows());
+    tell_of_empty(&part.empty, sweep, &interruption);
     if added.is_err() || rows < all {
         tell(format_args!(
             "gyrolab: {rows} of {} are in {}: the same command goes on behind them",
             counted(all, "row"),
-            Shown(part.path())
+            Shown(&part.path)
         ));
         added?;
         bail!(Interrupted);
@@ -218,22 +200,19 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
 
 /// Says how many rows an earlier command has left.
 fn tell_of_part(sweep: &Sweep, part: &PartFile) {
-    if part.rows() == 0 {
+    if part.rows == 0 {
         return;
     }
-    let empty = match part.empty().count() {
+    let (rows, all, path) = (part.rows, sweep.rows(), Shown(&part.path));
+    let empty = match part.empty.count {
         0 => String::new(),
         empty => format!(", {empty} of them without readouts"),
     };
     tell(format_args!(
-        "gyrolab: going on behind {} of {} rows in {}{empty}",
-        part.rows(),
-        sweep.rows(),
-        Shown(part.path())
+        "gyrolab: going on behind {rows} of {all} rows in {path}{empty}"
     ));
 }
 
-/// Says that all rows are in the file.
 fn tell_of_rows(sweep: &Sweep, output: &Path) {
     let rows = counted(sweep.rows(), "row");
     tell(format_args!("gyrolab: {rows} in {}", Shown(output)));
@@ -241,7 +220,7 @@ fn tell_of_rows(sweep: &Sweep, output: &Path) {
 
 /// Says how many rows hold no readouts, and of the first few which points they are, and why.
 fn tell_of_empty(empty: &EmptyRows, sweep: &Sweep, interruption: &Interruption) {
-    let count = empty.count();
+    let count = empty.count;
     if count == 0 {
         return;
     }
@@ -253,9 +232,9 @@ fn tell_of_empty(empty: &EmptyRows, sweep: &Sweep, interruption: &Interruption) 
     for line in &lines {
         tell(format_args!("  {}", printable_lines(line)));
     }
-    match count - lines.len() as u64 {
-        0 => {}
-        more => tell(format_args!("  and {more} more")),
+    let more = count - lines.len() as u64;
+    if more > 0 {
+        tell(format_args!("  and {more} more"));
     }
 }
 
@@ -264,9 +243,8 @@ fn add_rows(
     sweep: &Sweep,
     part: &mut PartFile,
     interruption: &Interruption,
-    empty: &mut EmptyRows,
 ) -> Result<(), SweepFileError> {
-    let (begin, all) = (part.rows(), sweep.rows());
+    let (begin, all) = (part.rows, sweep.rows());
     let meter = Meter::counting("row");
     meter.begin(all - begin);
     let row = |row: u64, goes_on: &dyn Fn() -> bool| {
@@ -274,21 +252,12 @@ fn add_rows(
     };
     let mut added = Ok(());
     in_order(begin..all, row, |rows| {
-        let mut lines = String::new();
-        let first = part.rows();
-        let count = rows.len() as u64;
-        for (index, row) in (first..).zip(rows) {
-            lines += &row.line;
-            if row.empty.is_some() {
-                empty.add(index, row.empty);
-            }
-        }
-        added = part.add(&lines, count);
+        added = part.add(rows);
         if added.is_err() {
             return ControlFlow::Break(());
         }
         // The rows of an earlier command say nothing about the time that the others take.
-        meter.show(part.rows() - begin, all - begin);
+        meter.show(part.rows - begin, all - begin);
         interruption.go_on()
     });
     added

@@ -2,26 +2,36 @@
 
 use crate::tui::terminal::MOST_CELLS;
 use std::num::NonZeroU64;
+use std::str::FromStr;
 
 pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
     text.parse()
         .map_err(|_| "must be a whole number, 1 or more".to_owned())
 }
 
+/// The number `text` that `fits`, which is to be given in the unit `meant`; or what it must be.
+pub(super) fn bare<T: FromStr>(
+    text: &str,
+    fits: fn(&T) -> bool,
+    meant: &str,
+    rule: &str,
+) -> Result<T, String> {
+    let number = text.parse().ok().filter(fits);
+    number.ok_or_else(|| without_unit(text, meant).unwrap_or_else(|| rule.to_owned()))
+}
+
 pub(super) fn steps(text: &str) -> Result<u64, String> {
-    text.parse().map_err(|_| {
-        without_unit(text, IN_STEPS)
-            .unwrap_or_else(|| "must be a whole number of steps, 0 or more, in digits".to_owned())
-    })
+    let rule = "must be a whole number of steps, 0 or more, in digits";
+    bare(text, |_| true, IN_STEPS, rule)
 }
 
 pub(super) fn length(text: &str) -> Result<u64, String> {
-    match text.parse() {
-        Ok(steps) if (1..=i64::MAX as u64).contains(&steps) => Ok(steps),
-        Ok(0) | Err(_) => Err(without_unit(text, IN_STEPS)
-            .unwrap_or_else(|| "must be a whole number of steps, 1 or more, in digits".to_owned())),
-        Ok(_) => Err("is more steps than can be counted".to_owned()),
+    let rule = "must be a whole number of steps, 1 or more, in digits";
+    let steps = bare(text, |steps| *steps > 0, IN_STEPS, rule)?;
+    if i64::try_from(steps).is_err() {
+        return Err("is more steps than can be counted".to_owned());
     }
+    Ok(steps)
 }
 
 pub(super) fn frames(text: &str) -> Result<u32, String> {
@@ -40,11 +50,8 @@ pub(super) fn setting(text: &str) -> Result<String, String> {
 }
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
-        _ => Err(without_unit(text, IN_SECONDS)
-            .unwrap_or_else(|| "must be a number greater than zero".to_owned())),
-    }
+    let fits = |number: &f64| *number > 0.0 && number.is_finite();
+    bare(text, fits, IN_SECONDS, "must be a number greater than zero")
 }
 
 pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
@@ -65,7 +72,7 @@ pub(super) const IN_SECONDS: &str = "in seconds";
 const IN_STEPS: &str = "in time steps";
 
 /// What is said of a number with a unit behind it, as `20s`; the number is to be given `meant`.
-pub(super) fn without_unit(text: &str, meant: &str) -> Option<String> {
+fn without_unit(text: &str, meant: &str) -> Option<String> {
     let number = text.trim_end_matches(char::is_alphabetic).trim_end();
     let unit = text.strip_prefix(number)?.trim_start();
     let value: f64 = number.parse().ok()?;

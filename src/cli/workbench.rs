@@ -20,7 +20,7 @@ use anyhow::Context;
 use resuming::{begun, come_back, come_back_to, tell_of_session};
 use std::fs;
 use std::io::{self, IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
@@ -87,18 +87,13 @@ fn open_at(
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     let commands = args.commands.as_deref().map(command::open).transpose()?;
     let folder = sessions::folder_of(confined.as_ref());
-    let chosen = settings::read(
-        folder.as_ref().ok().map(PathBuf::as_path),
-        confined.is_some(),
-    );
+    let settings_in = folder.as_deref().ok();
+    let chosen = settings::read(settings_in, confined.is_some());
     let args = &chosen.complete(args);
     let (mut lab, session) = match args.resume.as_deref() {
         Some("") => come_back(args, confined.as_ref(), folder.clone())?,
         Some(session) => come_back_to(session, args, confined.as_ref(), folder.clone())?,
-        None => (
-            new(args, name)?,
-            folder.clone().and_then(|folder| begun(&folder)),
-        ),
+        None => (new(args, name)?, folder.clone().and_then(begun)),
     };
     chosen.tell(&mut lab);
     if let Ok(folder) = folder {

@@ -1,12 +1,13 @@
 //! `gyrolab writeup`: a run as a folder of files for a write-up.
 
 use super::args::{LengthArgs, ScenarioArgs};
-use super::progress::{self, Interrupted};
-use super::run::played;
+use super::progress::{self, Interrupted, Interruption};
+use super::run::{Played, played};
 use super::scenario::scenario_of;
 use super::{complain, tell};
 use crate::export::stream::Ended;
 use crate::export::{CsvWriter, Folder};
+use crate::figure::course::Recorder;
 use crate::measured;
 use crate::run::Step;
 use crate::scenario::{Document, Scenario};
@@ -47,7 +48,7 @@ pub(super) struct WriteupArgs {
 pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenario_of(&args.scenario, &args.length)?;
     let scenario = marked(scenario, &args.scenario.scenario);
-    let mut beside = args.measured.as_deref().map(beside).transpose()?;
+    let beside = args.measured.as_deref().map(beside).transpose()?;
     let interruption = progress::interruption()?;
     let folder = Folder::begin(&args.output, args.force)?;
     let cannot_write = || format!("cannot write {}", Shown(&args.output));
@@ -56,23 +57,8 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let mut recorder = recorder(&scenario, beside.as_ref());
     let also = |step: &Step| recorder.follow(step);
     let played = played(&scenario, Some(csv), also, &interruption);
-    let mut played = played.with_context(cannot_write)?;
-    let broken = match played.ended {
-        Ended::NotFinite(error) => Some(error),
-        Ended::Done => None,
-        Ended::Stopped => bail!(Interrupted),
-    };
-    let readouts = played.readouts();
-    if let Some(beside) = &mut beside {
-        let end_s = readouts.sample.time_s;
-        let held = beside.hold(&scenario, end_s, &|| !interruption.has_come());
-        ensure!(held.map_err(anyhow::Error::msg)?, Interrupted);
-    }
-    let recorded = recorder.end(broken);
-    let meter = interruption.meter();
-    let drawings = figures(&scenario, &readouts, recorded, beside.as_ref(), meter);
-    let drawings = drawings.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?;
-    let writeup = Writeup::new(scenario, readouts, broken, beside, drawings);
+    let played = played.with_context(cannot_write)?;
+    let writeup = written(scenario, played, recorder, beside, &interruption)?;
     for (name, bytes) in writeup.files()? {
         let written = fs::write(folder.path().join(name), bytes);
         written
@@ -91,11 +77,42 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
             printable(&others.join(", "))
         ));
     }
-    let Some(error) = broken else {
+    let Some(error) = writeup.broken else {
         return Ok(ExitCode::SUCCESS);
     };
     complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));
     Ok(ExitCode::FAILURE)
+}
+
+/// The write-up of the run of `scenario` that was `played`, and of which the `recorder` has its figures.
+fn written(
+    scenario: Arc<Scenario>,
+    mut played: Played<File>,
+    recorder: Recorder,
+    mut beside: Option<Beside>,
+    interruption: &Interruption,
+) -> anyhow::Result<Writeup> {
+    let broken = match played.ended {
+        Ended::NotFinite(error) => Some(error),
+        Ended::Done => None,
+        Ended::Stopped => bail!(Interrupted),
+    };
+    let readouts = played.readouts();
+    if let Some(beside) = &mut beside {
+        let end_s = readouts.sample.time_s;
+        let held = beside.hold(&scenario, end_s, &|| !interruption.has_come());
+        ensure!(held.map_err(anyhow::Error::msg)?, Interrupted);
+    }
+    let (recorded, meter) = (recorder.end(broken), interruption.meter());
+    let drawings = figures(&scenario, &readouts, recorded, beside.as_ref(), meter);
+    let drawings = drawings.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?;
+    Ok(Writeup {
+        scenario,
+        readouts,
+        broken,
+        beside,
+        drawings,
+    })
 }
 
 /// `scenario`; where the command line has changed its motion, its words say so, as in the lab.
@@ -106,7 +123,6 @@ fn marked(scenario: Scenario, name: &str) -> Arc<Scenario> {
     Original::of(name, &opened).marked(&scenario)
 }
 
-/// The measured data `name`, to be held against the run.
 fn beside(name: &str) -> anyhow::Result<Beside> {
     let text = measured::text(name)?.into_owned();
     let measured = measured::read(name, &text)?;

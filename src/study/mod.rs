@@ -9,3 +9,15 @@ pub mod fit;
 pub mod sweep;
 pub mod verify;
 pub mod writeup;
+
+use crate::scenario::ScenarioFile;
+
+/// `file` without its version, and without what is about the scenario as it stands alone, or about a screen.
+fn alone(file: ScenarioFile) -> ScenarioFile {
+    ScenarioFile {
+        gyrolab: None,
+        expected: Vec::new(),
+        view: None,
+        ..file
+    }
+}

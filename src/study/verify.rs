@@ -3,7 +3,8 @@
 
 mod against;
 
-use crate::analysis::{Monitor, compare, cost};
+use crate::analysis::compare::{self, ComparisonRow};
+use crate::analysis::{Monitor, cost};
 use crate::export::layout::{above_run_file, commented};
 use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Layout};
@@ -20,7 +21,7 @@ use crate::text::printable::printable;
 use crate::text::unread;
 use against::Against;
 pub use against::Difference;
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader, Write};
@@ -31,7 +32,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verified {
-    /// Rows that are the same, up to the first that differs.
     pub rows: u64,
     /// The first thing that differs; `None` where all is the same.
     pub difference: Option<Difference>,
@@ -72,6 +72,8 @@ const OF_COMPARISON: &[u8] = b"scheme,time_step_s,";
 const OF_FIT: &[u8] = b",residual,residual_sigmas";
 /// The columns of a comparison that hold times by the clock.
 const BY_THE_CLOCK: [&str; 2] = ["ns_per_step", "wall_s"];
+const OF_THE_CLOCK: &str =
+    "a comparison: ns_per_step and wall_s are times by the clock, which nothing can compute again";
 /// A run that differs and has more steps left than this is not played on for its verdict.
 const MOST_FOR_VERDICT: u64 = 2_000_000;
 /// The most values of a table that is taken as a comparison.
@@ -99,55 +101,58 @@ fn verified(
     fit: impl FnOnce(&str) -> Result<Vec<u8>, Unverified>,
     watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,
 ) -> Result<Verified, Unverified> {
-    if path.is_dir() {
-        return Err("is a folder: name a CSV in it".to_owned().into());
-    }
-    let mut file = BufReader::new(File::open(path)?);
-    let head = Head::read(&mut file)?;
+    let (head, file) = opened(path)?;
     let text = run_file(&head)?;
     let document = Document::parse(&path.display().to_string(), &text)?;
     let (mut against, mut notes) = (Against::new(&head, file), Vec::new());
-    let mut is_run = false;
+    let mut verdict = None;
     if head.names().starts_with(OF_COMPARISON) {
-        against.keys = 2;
-        against.left_out = &BY_THE_CLOCK;
+        (against.keys, against.left_out) = (2, &BY_THE_CLOCK);
         against.write_all(&comparison(&document.scenario()?, path, watch)?)?;
-        let note = "a comparison: ns_per_step and wall_s are times by the clock, which nothing can compute again";
-        notes = vec![note.to_owned()];
+        notes.push(OF_THE_CLOCK.to_owned());
     } else if head.names().ends_with(OF_FIT) {
         let header: Header = toml::from_str(&above_run_file(&text))
             .map_err(|error| format!("{} (in its header)", error.message()))?;
         against.write_all(&fit(&header.fit.command)?)?;
     } else if document.table().contains_key("vary") {
-        let sweep = Sweep::open(&document)?;
-        against.keys = sweep.axes().len();
-        let failures = play_sweep(&sweep, &mut against, watch)?;
-        let note = format!("runs that failed, and have empty rows: {failures}");
-        notes.extend((failures > 0).then_some(note));
+        play_sweep(&Sweep::open(&document)?, &mut against, watch, &mut notes)?;
     } else {
         let layout = Layout::read(&text).map_err(|error| format!("{error} (in its header)"))?;
-        against.delimiter = if layout.file().excel { b';' } else { b',' };
-        against.keys = 1;
         let scenario = Arc::new(document.scenario()?);
-        notes = play_run(&scenario, layout, &mut against, watch)?;
-        is_run = true;
+        verdict = Some(play_run(
+            &scenario,
+            layout,
+            &mut against,
+            watch,
+            &mut notes,
+        )?);
     }
     let (rows, difference) = against.end()?;
-    if let Some(verdict) = notes.last_mut().filter(|_| is_run && difference.is_some()) {
-        verdict.insert_str(0, "of the run in its header: ");
-    }
-    let own = env!("CARGO_PKG_VERSION");
-    let version = document.table().get("gyrolab").and_then(|v| v.as_str());
-    if let Some(version) = version.filter(|version| *version != own) {
-        let version = printable(version);
-        let note = format!("written by gyrolab {version}, computed again by gyrolab {own}");
-        notes.insert(0, note);
-    }
+    let of_header = difference.as_ref().map(|_| "of the run in its header: ");
+    notes.extend(verdict.map(|verdict| of_header.unwrap_or_default().to_owned() + &verdict));
+    notes.splice(0..0, other_version(&document));
     Ok(Verified {
         rows,
         difference,
         notes,
     })
+}
+
+fn opened(path: &Path) -> Result<(Head, BufReader<File>), Unverified> {
+    if path.is_dir() {
+        return Err("is a folder: name a CSV in it".to_owned().into());
+    }
+    let mut file = BufReader::new(File::open(path)?);
+    Ok((Head::read(&mut file)?, file))
+}
+
+/// Says that another version has written the file.
+fn other_version(document: &Document) -> Option<String> {
+    let own = env!("CARGO_PKG_VERSION");
+    let version = document.table().get("gyrolab")?.as_str()?;
+    let version = printable(version);
+    (version != own)
+        .then(|| format!("written by gyrolab {version}, computed again by gyrolab {own}"))
 }
 
 /// The run file in the head of a CSV that gyrolab wrote.
@@ -168,67 +173,65 @@ fn run_file(head: &Head) -> Result<String, Problems> {
     Err(Problems::one("", Problem::at("", rule)))
 }
 
-/// Plays `scenario`, and compares its rows. Gives what there is to say of the run, the verdict last.
+/// Plays `scenario`, and compares its rows. Gives the verdict on the run.
 fn play_run(
     scenario: &Arc<Scenario>,
     layout: Layout,
     against: &mut Against,
     watch: impl Fn(u64, u64) -> ControlFlow<()>,
-) -> Result<Vec<String>, Unverified> {
-    let (differs, left) = (against.differs(), Cell::new(0));
+    notes: &mut Vec<String>,
+) -> Result<String, Unverified> {
+    against.delimiter = if layout.file().excel { b';' } else { b',' };
+    against.keys = 1;
+    let (difference, mut left) = (against.difference(), 0);
     let mut csv = CsvWriter::with_layout(against, scenario, layout)?;
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let monitor = RefCell::new(Monitor::new(simulation.now()));
     let each = |step: &Step| monitor.borrow_mut().follow_ahead(step);
-    let (ended, _) = stream::play(
-        &mut simulation,
-        scenario.steps,
-        Some(&mut csv),
-        each,
-        |step, steps| {
-            monitor.borrow_mut().catch_up();
-            watch(step, steps)?;
-            left.set(steps.saturating_sub(step));
-            if differs.get() && left.get() > MOST_FOR_VERDICT {
-                return ControlFlow::Break(());
-            }
-            left.set(0);
-            ControlFlow::Continue(())
-        },
-    )?;
-    if ended == Ended::Stopped && left.get() == 0 {
+    let go_on = |step, steps: u64| {
+        monitor.borrow_mut().catch_up();
+        watch(step, steps)?;
+        if difference.get().is_some() && steps.saturating_sub(step) > MOST_FOR_VERDICT {
+            left = steps - step;
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    };
+    let steps = scenario.steps;
+    let (ended, _) = stream::play(&mut simulation, steps, Some(&mut csv), each, go_on)?;
+    if ended == Ended::Stopped && left == 0 {
         return Err(Unverified::Stopped);
     }
     csv.finish()?;
-    let mut notes = Vec::new();
     if let Ended::NotFinite(end) = ended {
         notes.push(format!("its run ends early: {end}"));
     }
-    let verdict = match left.get() {
+    Ok(match left {
         0 => monitor.into_inner().health(simulation.now()).sentence(None),
         left => format!("not judged: {left} of its steps were left to compute"),
-    };
-    notes.push(verdict);
-    Ok(notes)
+    })
 }
 
-/// Computes the rows of `sweep` on all cores, and compares them. Gives how many runs failed.
+/// Computes the rows of `sweep` on all cores, and compares them.
 fn play_sweep(
     sweep: &Sweep,
     against: &mut Against,
     watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,
-) -> Result<u64, Unverified> {
+    notes: &mut Vec<String>,
+) -> Result<(), Unverified> {
+    against.keys = sweep.axes.len();
     against.write_all(sweep.header().as_bytes())?;
-    let differs = against.differs();
+    let difference = against.difference();
+    let differs = || difference.get().is_some();
     let (done, total) = (AtomicU64::new(0), sweep.rows());
     let watched = || watch(done.load(Ordering::Relaxed), total).is_continue();
     let of = |row: u64, goes_on: &dyn Fn() -> bool| sweep.row(row, &|| goes_on() && watched());
     let (mut failures, mut written) = (0, Ok(()));
-    in_order(0..if differs.get() { 0 } else { total }, of, |rows| {
+    in_order(0..if differs() { 0 } else { total }, of, |rows| {
         for row in rows {
             failures += u64::from(row.has_failed);
             written = against.write_all(row.line.as_bytes());
-            if written.is_err() || differs.get() {
+            if written.is_err() || differs() {
                 return ControlFlow::Break(());
             }
             done.fetch_add(1, Ordering::Relaxed);
@@ -236,10 +239,13 @@ fn play_sweep(
         ControlFlow::Continue(())
     });
     written?;
-    if !differs.get() && done.into_inner() < total {
+    if !differs() && done.into_inner() < total {
         return Err(Unverified::Stopped);
     }
-    Ok(failures)
+    if failures > 0 {
+        notes.push(format!("runs that failed, and have empty rows: {failures}"));
+    }
+    Ok(())
 }
 
 /// Compares schemes and time steps again, those of the table in the file `path`, and gives the CSV.
@@ -274,11 +280,20 @@ fn comparison(
     }
     // From coarse to fine, as the order is measured.
     let time_steps: Vec<f64> = time_steps.into_values().rev().collect();
-    let table = compare::compare(scenario, &schemes, &time_steps, watch);
+    let rows = compare::compare(scenario, &schemes, &time_steps, watch);
+    Ok(csv_of_comparison(
+        scenario,
+        &rows.ok_or(Unverified::Stopped)?,
+    )?)
+}
+
+/// The CSV of a comparison: its `rows` below the run file of `scenario`.
+pub fn csv_of_comparison(scenario: &Scenario, rows: &[ComparisonRow]) -> io::Result<Vec<u8>> {
     let mut writer = ::csv::Writer::from_writer(commented(&scenario.to_toml()).into_bytes());
-    for row in table.ok_or(Unverified::Stopped)? {
+    for row in rows {
         writer.serialize(row).map_err(io::Error::other)?;
     }
-    let written = writer.into_inner();
-    Ok(written.map_err(::csv::IntoInnerError::into_error)?)
+    writer
+        .into_inner()
+        .map_err(::csv::IntoInnerError::into_error)
 }

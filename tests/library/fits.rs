@@ -366,7 +366,6 @@ fn a_key_at_its_bound_is_said_to_be() {
     let report = Report {
         fit: &fit,
         model: &model,
-        scheme: "exact",
         instead_of: Some("rk4"),
     };
     let told = report.to_string();
@@ -472,7 +471,6 @@ fn another_valley_of_an_azimuth_at_even_times_is_named() {
         let report = Report {
             fit: &fit,
             model: &model,
-            scheme: "exact",
             instead_of: None,
         };
         serde_json::to_string(&report).unwrap()
@@ -529,11 +527,10 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     let report = Report {
         fit: &fit,
         model: &model,
-        scheme: "exact",
         instead_of: None,
     };
     let asked = Asked {
-        scheme: report.scheme.to_owned(),
+        scheme: report.model.scheme.to_owned(),
         command: "gyrolab fit".to_owned(),
         measured: "heidelberg-precession".to_owned(),
         scenario: "heidelberg".to_owned(),

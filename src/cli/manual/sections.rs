@@ -2,8 +2,7 @@
 //! that table.
 
 use super::{WIDTH, topics};
-use crate::cli::complete;
-use crate::cli::{INTERRUPTED, MISUSED};
+use crate::cli::examples::part;
 use crate::lab::command::COMMANDS;
 use crate::scenario::keys::Kind;
 use crate::storage::settings;
@@ -21,9 +20,9 @@ pub(super) fn of_program() -> Result<Vec<Section>, fmt::Error> {
         ("KEYS IN THE LAB", keys()),
         ("FILES OF COMMANDS", commands()),
         ("SETTINGS", chosen()),
-        ("ENVIRONMENT", terms(ENVIRONMENT)),
-        ("FILES", terms(FILES)),
-        ("EXIT STATUS", exit_status()),
+        fixed("ENVIRONMENT"),
+        fixed("FILES"),
+        fixed("EXIT STATUS"),
         ("SEE ALSO", topics.collect()),
     ])
 }
@@ -31,17 +30,22 @@ pub(super) fn of_program() -> Result<Vec<Section>, fmt::Error> {
 pub(super) fn of_command(command: &Command) -> Result<Vec<Section>, fmt::Error> {
     let notes = topics::text(command.get_name())?;
     let notes = notes.map(|text| ("NOTES", text));
-    let exit_status = ("EXIT STATUS", exit_status());
-    Ok(notes.into_iter().chain([exit_status]).collect())
+    Ok(notes.into_iter().chain([fixed("EXIT STATUS")]).collect())
+}
+
+/// The section `title` of those that no table of the program makes.
+fn fixed(title: &'static str) -> Section {
+    let text = part(include_str!("sections.txt"), title);
+    (title, text.unwrap_or_default().to_owned())
 }
 
 /// Each term on a line, and what it means indented below.
-fn terms<T: AsRef<str>>(rows: &[(T, &str)]) -> String {
+fn terms(rows: &[(String, &str)]) -> String {
     const INDENT: &str = "      ";
-    let row = |(term, meaning): &(T, &str)| {
+    let row = |(term, meaning): &(String, &str)| {
         let meaning = wrapped(meaning, WIDTH - INDENT.len());
         let meaning = meaning.join(&format!("\n{INDENT}"));
-        let term = wrapped(term.as_ref(), WIDTH - 4).join("\n    ");
+        let term = wrapped(term, WIDTH - 4).join("\n    ");
         format!("  {term}\n{INDENT}{meaning}\n")
     };
     rows.iter().map(row).collect()
@@ -98,93 +102,3 @@ fn chosen() -> String {
          config.toml wins, and is never written; options win over both. No setting changes a number, and show reads none.",
     ) + &terms(&rows.collect::<Vec<_>>())
 }
-
-fn exit_status() -> String {
-    terms(&[
-        (
-            "0".to_owned(),
-            "Done; a reader that has gone, as head does, is no failure.",
-        ),
-        (
-            "1".to_owned(),
-            "Failed: a bad file, an output that cannot be written, numbers no longer finite, a CSV that differs.",
-        ),
-        (
-            MISUSED.to_string(),
-            "Wrong usage: an unknown option, a value that cannot be.",
-        ),
-        (
-            INTERRUPTED.to_string(),
-            "Ended by Ctrl-C, or another signal to end.",
-        ),
-    ])
-}
-
-const ENVIRONMENT: &[(&str, &str)] = &[
-    (
-        "NO_COLOR",
-        "Set to anything: no colours, unless --color always or config.toml asks for them.",
-    ),
-    (
-        "COLORFGBG",
-        "A light background, as some terminals tell it, gives the colours for one; --background wins.",
-    ),
-    (
-        "TERM",
-        "The terminal. dumb gets ASCII and no colours, linux gets half blocks.",
-    ),
-    (
-        "LC_ALL",
-        "The locale, before LC_CTYPE and LANG: one without UTF-8 gets ASCII.",
-    ),
-    ("LC_CTYPE", "See LC_ALL."),
-    ("LANG", "See LC_ALL."),
-    ("HOME", "The home folder, where the next two are not set."),
-    (
-        "XDG_STATE_HOME",
-        "Where sessions and settings.toml are kept, in its folder gyrolab; by default ~/.local/state.",
-    ),
-    (
-        "XDG_CONFIG_HOME",
-        "Where config.toml is read, in its folder gyrolab; by default ~/.config.",
-    ),
-    (
-        "SSH_CONNECTION",
-        "The port that the line with scp names after an export.",
-    ),
-    ("USER", "The user whom that line names; else LOGNAME."),
-    ("LOGNAME", "See USER."),
-    (
-        "RAYON_NUM_THREADS",
-        "On how many cores gyrolab sweep, compare, fit and verify compute; by default on all. No number depends on it.",
-    ),
-    (
-        complete::VARIABLE,
-        "The shell that asks for completions; the script of gyrolab completions sets it.",
-    ),
-];
-
-const FILES: &[(&str, &str)] = &[
-    (
-        "$XDG_STATE_HOME/gyrolab/",
-        "The sessions of the lab, which gyrolab sessions lists and --resume comes back to.",
-    ),
-    (
-        "$XDG_STATE_HOME/gyrolab/settings.toml",
-        "What was chosen in the lab; gyrolab writes it.",
-    ),
-    (
-        "$XDG_CONFIG_HOME/gyrolab/config.toml",
-        "Your own settings; gyrolab never writes it. See SETTINGS.",
-    ),
-    ("DIR/.gyrolab/", "Both of gyrolab --folder DIR."),
-    (
-        "FILE.toml",
-        "A scenario or a run file: gyrolab man scenario.",
-    ),
-    (
-        "FILE.csv",
-        "A run with its run file in the header: gyrolab man csv.",
-    ),
-    ("FILE.md", "A lesson: gyrolab lesson --template."),
-];

@@ -75,19 +75,13 @@ pub(super) fn come_back_to(
     let found = session::resume(&folder, Some(name), read)
         .with_context(|| format!("--resume {name_shown} (gyrolab sessions lists what there is)"))?;
     let passed_over = left_alone(&found.left_alone);
-    match (found.resumed, found.in_use_by.first()) {
-        (Some((session, lab)), _) => Ok((lab, Ok(session))),
-        (None, Some(process)) => {
-            bail!("--resume {name_shown}: it is open in another lab, process {process}")
-        }
-        (None, None) if passed_over.is_empty() => {
-            bail!("--resume {name_shown}: it is open in another lab")
-        }
-        (None, None) => bail!(
-            "--resume {name_shown}: {}",
-            printable(passed_over.trim_end_matches("; "))
-        ),
-    }
+    let why = match (found.resumed, found.in_use_by.first()) {
+        (Some((session, lab)), _) => return Ok((lab, Ok(session))),
+        (None, Some(process)) => format!("it is open in another lab, process {process}"),
+        (None, None) if passed_over.is_empty() => "it is open in another lab".to_owned(),
+        (None, None) => printable(passed_over.trim_end_matches("; ")).into_owned(),
+    };
+    bail!("--resume {name_shown}: {why}")
 }
 
 /// The newest session that is not in use; where there is none, a new lab that says so. What is damaged, or cannot be
@@ -121,7 +115,7 @@ pub(super) fn come_back(
     };
     let mut lab = new(args, DEFAULT)?;
     lab.tell(why_none);
-    Ok((lab, folder.and_then(|folder| begun(&folder))))
+    Ok((lab, folder.and_then(begun)))
 }
 
 /// Says that newer sessions are open in other labs, of the processes `owners`. A line that has died without a word keeps
@@ -137,8 +131,8 @@ fn in_use(owners: &[u32]) -> String {
     )
 }
 
-pub(super) fn begun(folder: &Path) -> Result<Session, String> {
-    Session::begin(folder).map_err(told)
+pub(super) fn begun(folder: PathBuf) -> Result<Session, String> {
+    Session::begin(&folder).map_err(told)
 }
 
 fn told(error: impl std::fmt::Display) -> String {

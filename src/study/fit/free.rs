@@ -20,7 +20,6 @@ pub struct Free {
     pub to: f64,
     /// A value of the size that is usual for it.
     pub scale: f64,
-    pub argument: String,
 }
 
 /// A change of a value that is 0 and has no bounds, where the table of keys names none.
@@ -51,44 +50,23 @@ impl Free {
     }
 
     fn read(argument: &str, scenario: &Document) -> Result<Self, String> {
-        let (key, bounds) = match argument.split_once('=') {
-            Some((key, bounds)) => (key.trim(), Some(bounds.trim())),
-            None => (argument, None),
-        };
-        let (from, to) = bounds.map_or(Ok((f64::NEG_INFINITY, f64::INFINITY)), ends)?;
+        let (key, bounds) = argument.split_once('=').unwrap_or((argument, ".."));
+        let (from, to) = ends(bounds)?;
         let keys: Vec<String> = key.split('+').map(|key| key.trim().to_owned()).collect();
-        let one = Self::one(&keys[0], scenario)?;
+        let (start, nudge, least) = Self::one(&keys[0], scenario)?;
         for other in &keys[1..] {
-            let start = Self::one(other, scenario)?.start;
-            if start != one.start {
+            let (start_of_other, ..) = Self::one(other, scenario)?;
+            if start_of_other != start {
                 return Err(format!(
                     "{} is {} and {other} is {}: keys that have one value must begin with it",
                     keys[0],
-                    shortest(one.start),
-                    shortest(start)
+                    shortest(start),
+                    shortest(start_of_other)
                 ));
             }
         }
-        let One {
-            start,
-            nudge,
-            least,
-        } = one;
         let from = from.max(least);
-        if from >= to {
-            return Err(format!(
-                "the bounds leave no room: it is never below {}, and the upper bound must be above that",
-                shown(from)
-            ));
-        }
-        if !(from..=to).contains(&start) {
-            return Err(format!(
-                "begins at {}, the scenario's value, outside of {}..{}: give other bounds, or begin inside by --set {key}=...",
-                shortest(start),
-                shown(from),
-                shown(to)
-            ));
-        }
+        can_begin(key.trim(), start, from, to)?;
         let width = Some(to - from).filter(|width| width.is_finite());
         let scale = match start.abs() {
             0.0 => width.unwrap_or(nudge),
@@ -101,11 +79,11 @@ impl Free {
             from,
             to,
             scale,
-            argument: argument.to_owned(),
         })
     }
 
-    fn one(key: &str, scenario: &Document) -> Result<One, String> {
+    /// The value of `key` in `scenario`, a small change of it, and the least value that it may have.
+    fn one(key: &str, scenario: &Document) -> Result<(f64, f64, f64), String> {
         let (row, kind) = keys::find(key)?;
         let Kind::Number(range) = kind else {
             return Err(not_a_number(key, kind));
@@ -125,24 +103,35 @@ impl Free {
                 }
             },
         };
-        Ok(One {
-            start,
-            nudge: match row.lab.map(|lab| lab.nudge) {
-                Some(Nudge::By(size) | Nudge::Hundredth(size)) => size,
-                _ => SMALL,
-            },
-            least: match range {
-                Range::NotNegative | Range::Positive => 0.0,
-                Range::Any | Range::Within(_) => f64::NEG_INFINITY,
-            },
-        })
+        let nudge = match row.lab.map(|lab| lab.nudge) {
+            Some(Nudge::By(size) | Nudge::Hundredth(size)) => size,
+            _ => SMALL,
+        };
+        let least = match range {
+            Range::NotNegative | Range::Positive => 0.0,
+            Range::Any | Range::Within(_) => f64::NEG_INFINITY,
+        };
+        Ok((start, nudge, least))
     }
 }
 
-struct One {
-    start: f64,
-    nudge: f64,
-    least: f64,
+/// Whether the search for `key` can begin at `start` within these bounds.
+fn can_begin(key: &str, start: f64, from: f64, to: f64) -> Result<(), String> {
+    if from >= to {
+        return Err(format!(
+            "the bounds leave no room: it is never below {}, and the upper bound must be above that",
+            shown(from)
+        ));
+    }
+    if !(from..=to).contains(&start) {
+        return Err(format!(
+            "begins at {}, the scenario's value, outside of {}..{}: give other bounds, or begin inside by --set {key}=...",
+            shortest(start),
+            shown(from),
+            shown(to)
+        ));
+    }
+    Ok(())
 }
 
 fn not_a_number(key: &str, kind: Kind) -> String {
@@ -190,20 +179,4 @@ pub(super) fn shown(bound: f64) -> String {
     } else {
         String::new()
     }
-}
-
-/// Refuses free keys that write into the same value.
-pub fn are_apart(free: &[Free]) -> Result<(), Problems> {
-    let keys: Vec<&String> = free.iter().flat_map(|free| &free.keys).collect();
-    for (index, one) in keys.iter().enumerate() {
-        if keys[..index]
-            .iter()
-            .any(|other| dotted::overlap(one, other))
-        {
-            let mut problem = Problem::at((*one).clone(), "is free twice: name it once");
-            problem.place = Some("--free".to_owned());
-            return Err(Problems::one("", problem));
-        }
-    }
-    Ok(())
 }

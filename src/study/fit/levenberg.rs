@@ -42,7 +42,6 @@ pub struct Minimum {
     pub slopes: DMatrix<f64>,
     /// Which parameters are held at a bound, beyond which the sum would be less.
     pub held: Vec<bool>,
-    /// How many steps were taken.
     pub steps: u64,
     pub failure: Option<Failure>,
 }
@@ -74,63 +73,40 @@ pub fn search(problem: &dyn Problem, start: &[f64], bounds: &[Bounds]) -> Result
     let mut p = start.to_vec();
     let mut r = problem.residuals(&p)?;
     let mut scale = DVector::zeros(p.len());
-    let (mut damping, mut growth) = (DAMPING, 2.0);
+    let mut damping = DAMPING;
     for step in 0.. {
         let slopes = problem.slopes(&p)?;
-        problem.tell(step, r.norm_squared());
+        let sum = r.norm_squared();
+        problem.tell(step, sum);
         for (scale, column) in scale.iter_mut().zip(slopes.column_iter()) {
             *scale = column.norm().max(*scale);
         }
         let held = held(&p, bounds, &slopes, &r);
         let linear = Linear::new(&slopes, &scale, &held, &r);
-        let end = |failure| {
-            Ok(Minimum {
-                p: p.clone(),
-                residuals: r.clone(),
-                slopes: slopes.clone(),
-                held: held.clone(),
-                steps: step,
-                failure,
-            })
-        };
         let gain = linear.gain();
-        if gain <= ENOUGH.max(ENOUGH_OF_SUM * r.norm_squared()) {
-            return end(None);
-        }
-        if step == MOST_STEPS {
-            return end(Some(Failure::TooManySteps));
-        }
-        loop {
-            let trial = projected(&p, &linear.step(damping), bounds);
-            let moved = DVector::from_iterator(p.len(), trial.iter().zip(&p).map(|(a, b)| a - b));
-            let foreseen = r.norm_squared() - (&r - &slopes * &moved).norm_squared();
-            let there = match problem.residuals(&trial) {
-                Ok(there) => Some(there),
-                Err(Stop::Impossible(_)) => None,
-                Err(Stop::Interrupted) => return Err(Stop::Interrupted),
-            };
-            let gained = there.as_ref().map_or(f64::NEG_INFINITY, |there| {
-                r.norm_squared() - there.norm_squared()
-            });
-            if let Some(there) = there.filter(|_| gained > 0.0) {
-                let ratio = 2.0 * (gained / foreseen).min(1.0) - 1.0;
-                damping *= (1.0 - ratio * ratio * ratio).clamp(1.0 / 3.0, 2.0);
-                growth = 2.0;
-                (p, r) = (trial, there);
-                break;
-            }
-            damping *= growth;
-            growth *= 2.0;
-            if damping > MOST_DAMPING {
-                let is_rounding = gain <= ROUNDING.max(ROUNDING * ROUNDING * r.norm_squared());
-                return end((!is_rounding).then_some(Failure::Stuck));
-            }
-        }
+        let failure = if gain <= ENOUGH.max(ENOUGH_OF_SUM * sum) {
+            None
+        } else if step == MOST_STEPS {
+            Some(Failure::TooManySteps)
+        } else if let Some(better) = linear.better(problem, &p, &r, bounds, &mut damping)? {
+            (p, r) = better;
+            continue;
+        } else {
+            let is_rounding = gain <= ROUNDING.max(ROUNDING * ROUNDING * sum);
+            (!is_rounding).then_some(Failure::Stuck)
+        };
+        return Ok(Minimum {
+            p,
+            residuals: r,
+            slopes,
+            held,
+            steps: step,
+            failure,
+        });
     }
     Err(Stop::Interrupted) // not reached: the steps are counted above
 }
 
-/// Which parameters stand at a bound and would leave it.
 fn held(p: &[f64], bounds: &[Bounds], slopes: &DMatrix<f64>, r: &DVector<f64>) -> Vec<bool> {
     let pull = slopes.tr_mul(r); // upwards where it is positive
     let is_held = |index: usize| {
@@ -148,42 +124,80 @@ fn projected(p: &[f64], step: &DVector<f64>, bounds: &[Bounds]) -> Vec<f64> {
 }
 
 /// The linear problem at one place: J δ = r for the parameters that are not held, in units of their scales.
-struct Linear {
+struct Linear<'a> {
+    slopes: &'a DMatrix<f64>,
+    scale: &'a DVector<f64>,
     /// The parameters that are not held.
     moving: Vec<usize>,
-    count: usize,
-    scale: DVector<f64>,
     singular: DVector<f64>,
     /// Uᵀ r.
     along: DVector<f64>,
     v_t: DMatrix<f64>,
 }
 
-impl Linear {
-    fn new(slopes: &DMatrix<f64>, scale: &DVector<f64>, held: &[bool], r: &DVector<f64>) -> Self {
+impl<'a> Linear<'a> {
+    fn new(
+        slopes: &'a DMatrix<f64>,
+        scale: &'a DVector<f64>,
+        held: &[bool],
+        r: &DVector<f64>,
+    ) -> Self {
         let moves = |index: &usize| !held[*index] && scale[*index] > 0.0;
         let moving: Vec<usize> = (0..held.len()).filter(moves).collect();
         let columns = moving
             .iter()
             .map(|&index| slopes.column(index) / scale[index]);
         let columns: Vec<DVector<f64>> = columns.collect();
-        let mut linear = Self {
-            count: held.len(),
-            scale: scale.clone(),
-            singular: DVector::zeros(0),
-            along: DVector::zeros(0),
-            v_t: DMatrix::zeros(0, 0),
-            moving,
-        };
+        let (mut singular, mut along) = (DVector::zeros(0), DVector::zeros(0));
+        let mut v_t = DMatrix::zeros(0, 0);
         if !columns.is_empty() && !r.is_empty() {
             let svd = DMatrix::from_columns(&columns).svd(true, true);
-            if let (Some(u), Some(v_t)) = (svd.u, svd.v_t) {
-                linear.along = u.tr_mul(r);
-                linear.v_t = v_t;
-                linear.singular = svd.singular_values;
+            if let (Some(u), Some(rows)) = (svd.u, svd.v_t) {
+                (singular, along, v_t) = (svd.singular_values, u.tr_mul(r), rows);
             }
         }
-        linear
+        Self {
+            slopes,
+            scale,
+            moving,
+            singular,
+            along,
+            v_t,
+        }
+    }
+
+    /// The place to which the longest step leads that reduces the sum, and the residuals there; `None` where there is none.
+    fn better(
+        &self,
+        problem: &dyn Problem,
+        p: &[f64],
+        r: &DVector<f64>,
+        bounds: &[Bounds],
+        damping: &mut f64,
+    ) -> Result<Option<(Vec<f64>, DVector<f64>)>, Stop> {
+        let (sum, mut growth) = (r.norm_squared(), 2.0);
+        loop {
+            let trial = projected(p, &self.step(*damping), bounds);
+            let moved = DVector::from_iterator(p.len(), trial.iter().zip(p).map(|(a, b)| a - b));
+            let foreseen = sum - (r - self.slopes * &moved).norm_squared();
+            let there = match problem.residuals(&trial) {
+                Err(Stop::Impossible(_)) => None,
+                there => Some(there?),
+            };
+            if let Some(there) = there
+                && sum - there.norm_squared() > 0.0
+            {
+                let gained = sum - there.norm_squared();
+                let ratio = 2.0 * (gained / foreseen).min(1.0) - 1.0;
+                *damping *= (1.0 - ratio * ratio * ratio).clamp(1.0 / 3.0, 2.0);
+                return Ok(Some((trial, there)));
+            }
+            *damping *= growth;
+            growth *= 2.0;
+            if *damping > MOST_DAMPING {
+                return Ok(None);
+            }
+        }
     }
 
     /// By how much the sum would fall, were the residuals linear.
@@ -196,7 +210,7 @@ impl Linear {
 
     /// The step under `damping`, in the parameters' own units.
     fn step(&self, damping: f64) -> DVector<f64> {
-        let mut step = DVector::zeros(self.count);
+        let mut step = DVector::zeros(self.scale.len());
         let damped = self.singular.zip_map(&self.along, |singular, along| {
             singular * along / (singular * singular + damping)
         });

@@ -6,28 +6,29 @@ use crate::analysis::at_end;
 use crate::analysis::readouts::{self, Readout};
 use crate::cores;
 use crate::measured::{
-    Data, Measured, Point, Quantity, Residual, Series, Table, at_times, is_within_reach, residuals,
+    Data, Measured, Point, Quantity, Residual, Series, Setting, Table, at_times, is_within_reach,
+    residuals,
 };
 use crate::run::Clock;
 use crate::scenario::dotted::overlap;
-use crate::scenario::{Document, Problem, Problems, Scenario, ScenarioFile};
+use crate::scenario::{Document, Problem, Problems, Scenario};
+use crate::study::alone;
 use crate::text::number::shortest;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Value;
 
-/// Whether to go on.
 pub type GoOn<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// A scenario, its free keys, and the data that its runs are held against.
 #[derive(Debug)]
 pub struct Model {
     base: Document,
-    /// The keys whose values are looked for.
     pub free: Vec<Free>,
     pub measured: Measured,
     pub title: String,
+    pub scheme: &'static str,
     pub columns: Vec<Measurand>,
     /// Every measured value: column by column, and in each in the order of the rows.
     pub data: Vec<Datum>,
@@ -54,23 +55,17 @@ impl Model {
     /// When the scenario is wrong, a key is free that a column sets, or the run would take too many steps to the last row.
     pub fn new(scenario: &Document, free: Vec<Free>, measured: Measured) -> Result<Self, Problems> {
         let checked = scenario.scenario()?;
-        match &measured.data {
-            Data::Table(table) => are_apart(&free, table)?,
-            Data::Series(series) if !is_within_reach(series, &checked) => {
-                return Err(too_far(&measured, series, &checked));
-            }
-            Data::Series(_) => {}
+        are_apart(&free, settings(&measured.data))?;
+        if let Data::Series(series) = &measured.data
+            && !is_within_reach(series, &checked)
+        {
+            return Err(too_far(&measured, series, &checked));
         }
-        let file = ScenarioFile {
-            gyrolab: None,
-            // They are about the scenario as it stands alone, and about a screen.
-            expected: Vec::new(),
-            view: None,
-            ..checked.file
-        };
+        let file = alone(checked.file);
         let (columns, data) = listed(&measured.data);
         Ok(Self {
             title: file.title.clone(),
+            scheme: checked.motion.scheme.name,
             base: Document::from_file(scenario.origin(), &file)?,
             free,
             measured,
@@ -84,7 +79,6 @@ impl Model {
         self.runs.load(Ordering::Relaxed)
     }
 
-    /// The scenario with these values of the free keys.
     pub fn scenario(&self, p: &[f64]) -> Result<Scenario, String> {
         checked(&self.document(p)?)
     }
@@ -280,18 +274,29 @@ fn too_far(measured: &Measured, series: &Series, scenario: &Scenario) -> Problem
     Problems::one(measured.origin.clone(), problem)
 }
 
-fn are_apart(free: &[Free], table: &Table) -> Result<(), Problems> {
-    for key in free.iter().flat_map(|free| &free.keys) {
-        let mut settings = table.settings.iter();
-        if let Some(column) = settings.find(|setting| overlap(key, &setting.key)) {
-            let rule = format!(
-                "is set by the column {} in every row: it cannot be free",
-                column.key
-            );
-            let mut problem = Problem::at(key.clone(), rule);
-            problem.place = Some("--free".to_owned());
-            return Err(Problems::one("", problem));
-        }
+/// The settings at which `data` were measured.
+pub(super) fn settings(data: &Data) -> &[Setting] {
+    match data {
+        Data::Table(table) => &table.settings,
+        Data::Series(_) => &[],
+    }
+}
+
+/// Refuses free keys that write into the same value, or into one that a column sets.
+fn are_apart(free: &[Free], settings: &[Setting]) -> Result<(), Problems> {
+    let keys: Vec<&String> = free.iter().flat_map(|free| &free.keys).collect();
+    for (index, key) in keys.iter().enumerate() {
+        let rule = if keys[..index].iter().any(|other| overlap(key, other)) {
+            "is free twice: name it once".to_owned()
+        } else if let Some(column) = settings.iter().find(|it| overlap(key, &it.key)) {
+            let column = &column.key;
+            format!("is set by the column {column} in every row: it cannot be free")
+        } else {
+            continue;
+        };
+        let mut problem = Problem::at((*key).clone(), rule);
+        problem.place = Some("--free".to_owned());
+        return Err(Problems::one("", problem));
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! How well a model fits its data, in numbers.
 
-use crate::measured::Residual;
+use super::weights::Weights;
 use statrs::function::gamma::checked_gamma_ur;
 
 /// Below this probability a model does not fit; above 1 less this, the uncertainties are too large.
@@ -17,8 +17,6 @@ pub struct Quality {
     pub degrees_of_freedom: u64,
     /// The probability that a model that is right has so large a chi^2 or a larger one.
     pub probability: Option<f64>,
-    /// The largest residual in units of its uncertainty.
-    pub worst: Option<f64>,
     /// The scatter of data without uncertainties about the model, in their unit: the root of the sum of the squared residuals
     /// over the degrees of freedom.
     pub scatter: Option<f64>,
@@ -39,40 +37,29 @@ pub(super) fn student(freedom: u64) -> f64 {
 }
 
 impl Quality {
-    pub(super) fn weighted(
-        chi_squared: f64,
-        degrees_of_freedom: u64,
-        residuals: &[Residual],
-    ) -> Self {
-        let half = 0.5 * degrees_of_freedom as f64;
-        let probability = match degrees_of_freedom {
-            0 => None,
-            _ => checked_gamma_ur(half, 0.5 * chi_squared).ok(),
-        };
-        let worst = residuals.iter().filter_map(Residual::in_sigmas);
-        Self {
-            chi_squared: Some(chi_squared),
-            degrees_of_freedom,
-            probability: probability.filter(|probability| probability.is_finite()),
-            worst: worst.map(f64::abs).reduce(f64::max),
+    /// How well a model fits: `sum` is the sum of the squared residuals in the units of `weights`.
+    pub(super) fn of(sum: f64, freedom: u64, weights: &Weights) -> Self {
+        let mut quality = Self {
+            chi_squared: None,
+            degrees_of_freedom: freedom,
+            probability: None,
             scatter: None,
+        };
+        if weights.are_stated {
+            let probability = checked_gamma_ur(0.5 * freedom as f64, 0.5 * sum).ok();
+            let probability = probability.filter(|probability| probability.is_finite());
+            quality.chi_squared = Some(sum);
+            quality.probability = probability.filter(|_| freedom > 0);
+        } else if freedom > 0 {
+            let unit = weights.sigma.first().copied().unwrap_or(1.0);
+            quality.scatter = Some(sum.sqrt() * unit / (freedom as f64).sqrt());
         }
+        quality
     }
 
     /// Whether the model fits, where that can be said: its chi^2 is not rare. Uncertainties that are too large are no reason
     /// against it.
     pub fn fits(&self) -> Option<bool> {
         self.probability.map(|probability| probability >= RARE)
-    }
-
-    /// Of data without; `size` is the root of the sum of their squared residuals, in their unit.
-    pub(super) fn unweighted(size: f64, degrees_of_freedom: u64) -> Self {
-        Self {
-            chi_squared: None,
-            degrees_of_freedom,
-            probability: None,
-            worst: None,
-            scatter: (degrees_of_freedom > 0).then(|| size / (degrees_of_freedom as f64).sqrt()),
-        }
     }
 }

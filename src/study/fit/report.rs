@@ -4,6 +4,7 @@ use super::free::shown;
 use super::model::Model;
 use super::quality::student;
 use super::search::{Fit, Fitted};
+use super::table::Numbers;
 use crate::measured::Residual;
 use crate::text::number::{NONE, short, shortest, significant, uncertain};
 use crate::text::printable::{printable, printable_lines};
@@ -15,7 +16,6 @@ use std::fmt;
 pub struct Report<'a> {
     pub fit: &'a Fit,
     pub model: &'a Model,
-    pub scheme: &'static str,
     /// The scheme of the scenario, where the runs have another.
     pub instead_of: Option<&'static str>,
 }
@@ -49,7 +49,7 @@ impl Report<'_> {
         let other = self.instead_of.map(|own| {
             format!(
                 "The fitted runs have the scheme {}; the scenario's own is {own} (--scheme {own} fits the runs of that).",
-                self.scheme
+                self.model.scheme
             )
         });
         let remarks = other.into_iter().chain(self.fit.remarks());
@@ -95,10 +95,7 @@ impl Report<'_> {
     fn furthest(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const MOST: usize = 5;
         let mut all: Vec<(usize, &Residual)> = self.fit.residuals.iter().enumerate().collect();
-        let size = |residual: &Residual| match residual.in_sigmas() {
-            Some(sigmas) => sigmas.abs(),
-            None => residual.value().abs(),
-        };
+        let size = |residual: &Residual| residual.in_sigmas().unwrap_or(residual.value()).abs();
         all.sort_by(|a, b| size(b.1).total_cmp(&size(a.1)));
         let rows = all.iter().take(MOST).map(|(index, residual)| {
             let readout = self.model.columns[self.model.data[*index].column].readout;
@@ -110,9 +107,7 @@ impl Report<'_> {
                 residual.sigma.map(short).unwrap_or_default(),
                 significant(residual.model, 6),
                 significant(residual.value(), 3),
-                sigmas
-                    .map(|sigmas| format!("{sigmas:+.1}"))
-                    .unwrap_or_default(),
+                sigmas.map_or(String::new(), |sigmas| format!("{sigmas:+.1}")),
             ]
         });
         let head = [
@@ -144,11 +139,10 @@ impl Report<'_> {
                 "from": bound(key.free.from), "to": bound(key.free.to), "is_at_bound": key.is_held,
             })
         });
+        let each = 0..fit.keys.len();
         let matrix = |cell: &dyn Fn(usize, usize) -> Option<f64>| -> Vec<Vec<Option<f64>>> {
-            let count = fit.keys.len();
-            (0..count)
-                .map(|i| (0..count).map(|j| cell(i, j)).collect())
-                .collect()
+            let row = |i| each.clone().map(|j| cell(i, j)).collect();
+            each.clone().map(row).collect()
         };
         let covariance = matrix(&|i, j| Some(fit.solution.covariance[i][j]? * fit.variance?));
         let alike = fit.solution.alike.iter().map(|alike| {
@@ -157,22 +151,18 @@ impl Report<'_> {
             });
             parts.collect::<Vec<_>>()
         });
-        let silent = fit
-            .solution
-            .silent
-            .iter()
-            .map(|&index| &fit.keys[index].free.key);
-        let residuals = fit.residuals.iter().zip(&self.model.data).map(|(residual, datum)| {
-            json!({
-                "row": residual.row + 1,
-                "quantity": self.model.columns[datum.column].readout.name,
-                "measured": residual.measured, "uncertainty": residual.sigma, "model": residual.model,
-                "residual": residual.value(), "residual_sigmas": residual.in_sigmas(),
-            })
+        let silent = fit.solution.silent.iter();
+        let silent = silent.map(|&index| &fit.keys[index].free.key);
+        let residuals = fit.residuals.iter().zip(&self.model.data);
+        let residuals = residuals.map(|(residual, datum)| {
+            let mut row = json!(Numbers::of(residual));
+            row["row"] = json!(residual.row + 1);
+            row["quantity"] = json!(self.model.columns[datum.column].readout.name);
+            row
         });
         let freedom = quality.degrees_of_freedom;
         json!({
-            "measured": self.model.measured.origin, "scenario": self.model.title, "scheme": self.scheme,
+            "measured": self.model.measured.origin, "scenario": self.model.title, "scheme": self.model.scheme,
             "keys": keys.collect::<Vec<_>>(),
             "correlation": matrix(&|i, j| fit.solution.correlation(i, j)), "covariance": covariance,
             "chi_squared": quality.chi_squared, "degrees_of_freedom": freedom,
@@ -194,7 +184,7 @@ impl fmt::Display for Report<'_> {
             "{} in {}, scheme {}: {} values, {} free\n",
             printable(&self.model.measured.origin),
             printable(&self.model.title),
-            self.scheme,
+            self.model.scheme,
             self.model.data.len(),
             self.fit.keys.len()
         )?;
@@ -227,25 +217,16 @@ impl Serialize for Report<'_> {
 
 /// Rows of cells in columns that are as wide as their widest cell; the first is the head.
 fn write_table<const N: usize>(f: &mut fmt::Formatter<'_>, rows: &[[String; N]]) -> fmt::Result {
-    let width = |column: usize| {
-        rows.iter()
-            .map(|row| row[column].chars().count())
-            .max()
-            .unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..N).map(width).collect();
+    let width = |cell: &String| cell.chars().count();
+    let widest = |column: usize| rows.iter().map(|row| width(&row[column])).max();
+    let widths: Vec<usize> = (0..N).filter_map(widest).collect();
     for row in rows {
         let cells = row.iter().zip(&widths);
-        let line: String = cells
-            .map(|(cell, width)| {
-                format!(
-                    "  {}{}",
-                    printable(cell),
-                    " ".repeat(width - cell.chars().count())
-                )
-            })
-            .collect();
-        writeln!(f, "{}", line.trim_end())?;
+        let cells = cells.map(|(cell, most)| {
+            let room = " ".repeat(most - width(cell));
+            format!("  {}{room}", printable(cell))
+        });
+        writeln!(f, "{}", cells.collect::<String>().trim_end())?;
     }
     Ok(())
 }

@@ -78,9 +78,8 @@ const CHANGE: f64 = 1e-4;
 const LARGE: f64 = 0.5;
 /// The part that is aimed at then.
 const AIM: f64 = 0.1;
-/// How often the weights are computed anew, and the change at which they have settled.
+/// How often the weights are computed anew.
 const MOST_ROUNDS: u32 = 40;
-const SETTLED: f64 = 1e-7;
 
 /// Fits the free keys of `model` to its data. `tell` hears of each step: how many, and chi^2.
 pub fn fit(model: &Model, go_on: GoOn<'_>, tell: &(dyn Fn(u64, f64) + Sync)) -> Result<Fit, NoFit> {
@@ -102,7 +101,6 @@ pub fn fit(model: &Model, go_on: GoOn<'_>, tell: &(dyn Fn(u64, f64) + Sync)) -> 
         let weighed = Weighed {
             model,
             weights: &weights,
-            bounds: &bounds,
             changes: &changes,
             go_on,
             tell: &|step, sum| tell(steps + step, sum),
@@ -112,13 +110,9 @@ pub fn fit(model: &Model, go_on: GoOn<'_>, tell: &(dyn Fn(u64, f64) + Sync)) -> 
         if let Some(failure) = minimum.failure {
             return Err(NoFit::at(model, &minimum.p, failure));
         }
-        if !weights.count_settings {
+        let Some(next) = weights.renewed(model, &minimum.p, go_on)? else {
             return finished(model, &minimum, weights, steps, go_on);
-        }
-        let next = Weights::at(model, &minimum.p, go_on)?;
-        if next.change_from(&weights) <= SETTLED {
-            return finished(model, &minimum, weights, steps, go_on);
-        }
+        };
         p.clone_from(&minimum.p);
         weights = next;
     }
@@ -156,12 +150,7 @@ fn finished(
     }
     let freedom = model.data.len().saturating_sub(solution.rank) as u64;
     let sum = minimum.residuals.norm_squared();
-    let quality = if weights.are_stated {
-        Quality::weighted(sum, freedom, &residuals)
-    } else {
-        let unit = weights.sigma.first().copied().unwrap_or(1.0);
-        Quality::unweighted(sum.sqrt() * unit, freedom)
-    };
+    let quality = Quality::of(sum, freedom, &weights);
     let scattered = || quality::variance(sum, freedom);
     let variance = weights.are_stated.then_some(1.0).or_else(scattered);
     let places = model.free.iter().enumerate();
@@ -190,7 +179,6 @@ fn finished(
 struct Weighed<'a> {
     model: &'a Model,
     weights: &'a Weights,
-    bounds: &'a [Bounds],
     /// The change of each key by which slopes are taken, in its unit.
     changes: &'a Mutex<Vec<f64>>,
     go_on: GoOn<'a>,
@@ -222,7 +210,7 @@ impl Weighed<'_> {
 
     /// The same by this change, and how far apart the two values of the key were.
     fn slope_by(&self, p: &[f64], index: usize, change: f64) -> Result<(Vec<f64>, f64), Stop> {
-        let Bounds { from, to } = self.bounds[index];
+        let Free { from, to, .. } = self.model.free[index];
         let at = |value: f64| {
             let mut there = p.to_vec();
             there[index] = value.clamp(from, to);
@@ -248,12 +236,8 @@ impl Weighed<'_> {
             )));
         }
         let pairs = above.iter().zip(&below);
-        Ok((
-            pairs
-                .map(|(above, below)| (above - below) / width)
-                .collect(),
-            width,
-        ))
+        let slope = pairs.map(|(above, below)| (above - below) / width);
+        Ok((slope.collect(), width))
     }
 }
 
@@ -263,11 +247,8 @@ impl Problem for Weighed<'_> {
         let residuals = self.model.residuals(&values);
         let residuals: Vec<f64> = residuals.iter().map(Residual::value).collect();
         let white = self.weights.whitened(&residuals);
-        if white.norm_squared().is_finite() {
-            Ok(white)
-        } else {
-            Err(beyond())
-        }
+        are_numbers(white.norm_squared())?;
+        Ok(white)
     }
 
     fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop> {
@@ -289,11 +270,8 @@ impl Problem for Weighed<'_> {
         *self.kept() = found.iter().map(|(_, change)| *change).collect();
         let slopes = DMatrix::from_columns(&columns);
         // The decomposition of a matrix with a NaN would not end.
-        if slopes.norm_squared().is_finite() {
-            Ok(slopes)
-        } else {
-            Err(beyond())
-        }
+        are_numbers(slopes.norm_squared())?;
+        Ok(slopes)
     }
 
     fn tell(&self, step: u64, sum: f64) {
@@ -301,8 +279,11 @@ impl Problem for Weighed<'_> {
     }
 }
 
-fn beyond() -> Stop {
-    Stop::Impossible(
+fn are_numbers(sum: f64) -> Result<(), Stop> {
+    if sum.is_finite() {
+        return Ok(());
+    }
+    Err(Stop::Impossible(
         "the residuals in units of their uncertainties are beyond the range of numbers".to_owned(),
-    )
+    ))
 }

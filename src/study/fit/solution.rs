@@ -22,16 +22,18 @@ pub(super) const SILENT: f64 = 1e-5;
 /// Parts of a combination below this are rounding.
 const PART: f64 = 1e-2;
 
-/// The largest of `parts` by size, the first of equal ones.
-fn largest(parts: &[f64]) -> f64 {
-    let larger = |largest: f64, part: f64| {
-        if part.abs() > largest.abs() {
-            part
-        } else {
-            largest
-        }
-    };
-    parts.iter().copied().fold(0.0, larger)
+/// The combination of the keys in the `k`-th direction: the `moving` keys that take part, with their changes in `units`, the
+/// largest of them 1.
+fn alike(v_t: &DMatrix<f64>, k: usize, moving: &[usize], units: &[f64]) -> Vec<(usize, f64)> {
+    let parts = units.iter().enumerate();
+    let parts: Vec<f64> = parts.map(|(place, unit)| v_t[(k, place)] / unit).collect();
+    // Of equal ones the first.
+    let sizes = parts.iter().copied().rev();
+    let largest = sizes.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let largest = largest.unwrap_or_default();
+    let places = (0..moving.len()).filter(|&place| v_t[(k, place)].abs() > PART);
+    let combined = places.map(|place| (moving[place], parts[place] / largest));
+    combined.collect()
 }
 
 impl Solution {
@@ -52,11 +54,9 @@ impl Solution {
         if moving.is_empty() {
             return solution;
         }
-        let columns: Vec<DVector<f64>> = moving
-            .iter()
-            .map(|&index| slopes.column(index) / norms[index])
-            .collect();
-        let svd = DMatrix::from_columns(&columns).svd(false, true);
+        let columns = moving.iter();
+        let columns = columns.map(|&index| slopes.column(index) / norms[index]);
+        let svd = DMatrix::from_columns(&columns.collect::<Vec<DVector<f64>>>()).svd(false, true);
         let Some(v_t) = svd.v_t else {
             return solution;
         };
@@ -66,27 +66,21 @@ impl Solution {
         let (seen, unseen): (Vec<usize>, Vec<usize>) =
             (0..v_t.nrows()).partition(|&k| singular(k) > least);
         solution.rank = seen.len();
-        let relative = |k: usize, place: usize| {
-            let index = moving[place];
-            v_t[(k, place)] / (norms[index] * size(index))
-        };
-        for &k in &unseen {
-            let parts: Vec<f64> = (0..moving.len()).map(|place| relative(k, place)).collect();
-            let largest = largest(&parts);
-            let places = (0..moving.len()).filter(|&place| v_t[(k, place)].abs() > PART);
-            let parts = places.map(|place| (moving[place], parts[place] / largest));
-            solution.alike.push(parts.collect());
-        }
+        let units = moving.iter().map(|&index| norms[index] * size(index));
+        let units: Vec<f64> = units.collect();
+        let alike = unseen.iter().map(|&k| alike(&v_t, k, &moving, &units));
+        solution.alike = alike.collect();
         let is_known = |place: &usize| unseen.iter().all(|&k| v_t[(k, *place)].abs() <= PART);
-        let known: Vec<usize> = (0..moving.len()).filter(is_known).collect();
-        for &i in &known {
-            for &j in &known {
-                let term = |&k: &usize| v_t[(k, i)] * v_t[(k, j)] / singular(k).powi(2);
-                let covariance = seen.iter().map(term).sum::<f64>();
-                let covariance = covariance / (norms[moving[i]] * norms[moving[j]]);
-                solution.covariance[moving[i]][moving[j]] =
-                    Some(covariance).filter(|covariance| covariance.is_finite());
-            }
+        let known = (0..moving.len()).filter(is_known);
+        for (i, j) in known
+            .clone()
+            .flat_map(|i| known.clone().map(move |j| (i, j)))
+        {
+            let term = |&k: &usize| v_t[(k, i)] * v_t[(k, j)] / singular(k).powi(2);
+            let covariance = seen.iter().map(term).sum::<f64>();
+            let covariance = covariance / (norms[moving[i]] * norms[moving[j]]);
+            solution.covariance[moving[i]][moving[j]] =
+                Some(covariance).filter(|covariance| covariance.is_finite());
         }
         solution
     }

@@ -28,7 +28,6 @@ pub struct Asked {
     pub measured: String,
     #[serde(rename = "in")]
     pub scenario: String,
-    /// The scheme of the runs that were held against the data.
     pub scheme: String,
     pub free: Vec<String>,
     /// The rows that were fitted, where these are not all.
@@ -81,8 +80,9 @@ pub fn write(
     rows.flush()
 }
 
+/// The columns of a row behind its quantity.
 #[derive(Serialize)]
-struct Numbers {
+pub(super) struct Numbers {
     measured: f64,
     uncertainty: Option<f64>,
     model: f64,
@@ -91,7 +91,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    fn of(residual: &Residual) -> Self {
+    pub(super) fn of(residual: &Residual) -> Self {
         Self {
             measured: residual.measured,
             uncertainty: residual.sigma,
@@ -106,11 +106,7 @@ impl Numbers {
 fn at_names(data: &Data) -> Vec<&str> {
     match data {
         Data::Series(_) => vec![crate::measured::quantity::TIME],
-        Data::Table(table) => table
-            .settings
-            .iter()
-            .map(|setting| setting.key.as_str())
-            .collect(),
+        Data::Table(table) => table.settings.iter().map(|it| it.key.as_str()).collect(),
     }
 }
 

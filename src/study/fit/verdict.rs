@@ -3,11 +3,14 @@
 use super::model::{Measurand, Model};
 use super::quality::{LEAST_FREEDOM, Quality, RARE, student};
 use super::search::Fit;
-use crate::measured::{Data, Point, is_counted};
+use crate::measured::{Data, Point, Residual, is_counted};
 use crate::text::number::{short, significant};
+use std::collections::BTreeSet;
 
 /// From this chi^2 a degree of freedom on, the search may have ended in a valley that is not the deepest.
 const VERY_POOR: f64 = 10.0;
+const AS_MANY: &str =
+    "Whether the model fits cannot be said: there are as many fitted values as data.";
 const ELSEWHERE: &str = " The search goes down from where it begins, and there may be a better fit elsewhere: begin at other values of the free keys by --set KEY=VALUE.";
 /// What is said instead where the data depend on no free key.
 const NOWHERE: &str =
@@ -40,17 +43,14 @@ impl Fit {
         };
         let sum = format!("chi^2 {} at {degrees}", significant(chi_squared, 3));
         match probability {
-            None => {
-                "Whether the model fits cannot be said: there are as many fitted values as data"
-                    .to_owned()
-                    + "."
-            }
+            None => AS_MANY.to_owned(),
             Some(probability) if probability < RARE => {
-                let is_very_poor = chi_squared > VERY_POOR * freedom as f64;
-                let elsewhere = match is_very_poor {
-                    false => "",
-                    true if self.solution.silent.len() == self.keys.len() => NOWHERE,
-                    true => ELSEWHERE,
+                let elsewhere = if chi_squared <= VERY_POOR * freedom as f64 {
+                    ""
+                } else if self.solution.silent.len() == self.keys.len() {
+                    NOWHERE
+                } else {
+                    ELSEWHERE
                 };
                 format!(
                     "The model does not fit: {sum}, which chance gives {}; {}.{elsewhere}",
@@ -91,42 +91,32 @@ impl Fit {
     }
 
     fn far(&self) -> String {
-        let mut off: Vec<(f64, usize)> = self
-            .residuals
-            .iter()
-            .filter_map(|residual| Some((residual.in_sigmas()?.abs(), residual.row + 1)))
-            .collect();
-        off.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let worst = off.first().map_or(0.0, |(sigmas, _)| *sigmas);
-        off.retain(|(sigmas, _)| *sigmas > FAR);
-        let mut rows: Vec<usize> = off.iter().map(|(_, row)| *row).collect();
-        rows.sort_unstable();
-        rows.dedup();
-        let more = rows.len().saturating_sub(MOST_NAMED);
-        if rows.is_empty() {
-            let worst = significant(worst, 2);
-            return match &self.residuals[..] {
+        let sigmas = |residual: &Residual| Some((residual.row + 1, residual.in_sigmas()?.abs()));
+        let all: Vec<(usize, f64)> = self.residuals.iter().filter_map(sigmas).collect();
+        let (mut rows, mut least, mut worst) = (BTreeSet::new(), f64::INFINITY, 0.0_f64);
+        for (row, sigmas) in all {
+            worst = worst.max(sigmas);
+            if sigmas > FAR {
+                rows.insert(row);
+                least = least.min(sigmas);
+            }
+        }
+        let [least, worst] = [least, worst].map(|sigmas| significant(sigmas, 2));
+        let names = rows.iter().take(MOST_NAMED).map(ToString::to_string);
+        match (&names.collect::<Vec<_>>()[..], rows.len()) {
+            ([], _) => match &self.residuals[..] {
                 [only] => format!("row {} is {worst} sigma off", only.row + 1),
                 _ => format!(
                     "no single row is more than {worst} sigma off, but together they deviate more than chance explains"
                 ),
-            };
-        }
-        let least = off.last().map_or(0.0, |(sigmas, _)| *sigmas);
-        let [least, worst] = [least, worst].map(|sigmas| significant(sigmas, 2));
-        let names: Vec<String> = rows
-            .iter()
-            .take(MOST_NAMED)
-            .map(ToString::to_string)
-            .collect();
-        match (&names[..], more) {
+            },
             ([row], _) => format!("row {row} is {worst} sigma off"),
-            ([rows @ .., last], 0) => {
+            ([rows @ .., last], ..=MOST_NAMED) => {
                 let rows = rows.join(", ");
                 format!("rows {rows} and {last} are {least} to {worst} sigma off")
             }
-            (rows, more) => {
-                let rows = rows.join(", ");
+            (rows, count) => {
+                let (rows, more) = (rows.join(", "), count - MOST_NAMED);
                 format!("rows {rows} and {more} more are {least} to {worst} sigma off")
             }
         }
@@ -135,56 +125,41 @@ impl Fit {
     /// What cannot be told apart, and other things to know about the keys; a sentence each.
     pub fn remarks(&self) -> Vec<String> {
         let key = |index: usize| self.keys[index].free.key.as_str();
-        let mut remarks = Vec::new();
-        for &index in &self.solution.silent {
-            remarks.push(format!(
-                "The data do not depend on {}: they say nothing of it.",
-                key(index)
-            ));
-        }
-        for alike in &self.solution.alike {
-            let names: Vec<&str> = alike.iter().map(|(index, _)| key(*index)).collect();
-            let changes: Vec<String> = alike
+        let solution = &self.solution;
+        let silent = solution.silent.iter().map(|&index| {
+            let key = key(index);
+            format!("The data do not depend on {key}: they say nothing of it.")
+        });
+        let alike = solution.alike.iter().map(|alike| {
+            let names: Vec<_> = alike.iter().map(|(index, _)| key(*index)).collect();
+            let changes = alike
                 .iter()
-                .map(|(index, part)| self.changed(*index, *part))
-                .collect();
-            remarks.push(format!(
+                .map(|(index, part)| self.changed(*index, *part));
+            format!(
                 "The data cannot tell {} apart: changing {} together changes no measured number.",
                 names.join(" and "),
-                changes.join(" and ")
-            ));
-        }
-        for (index, fitted) in self
-            .keys
-            .iter()
-            .enumerate()
-            .filter(|(_, fitted)| fitted.is_held)
-        {
-            let bound = significant(fitted.value, 6);
-            remarks.push(format!(
-                "{} stands at its bound {bound}: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within.",
-                key(index)
-            ));
-        }
-        for i in 0..self.keys.len() {
-            for j in 0..i {
-                let correlation = self.solution.correlation(i, j).filter(|c| c.abs() > HARDLY);
-                if let Some(correlation) = correlation {
-                    remarks.push(format!(
-                        "{} and {} are hardly told apart: their correlation is {correlation:.4}.",
-                        key(j),
-                        key(i)
-                    ));
-                }
-            }
-        }
-        if self.weights.count_settings {
-            remarks.push(
-                "The uncertainties of the settings count: each datum is weighed by both."
-                    .to_owned(),
-            );
-        }
-        remarks
+                changes.collect::<Vec<_>>().join(" and ")
+            )
+        });
+        let held = self.keys.iter().filter(|fitted| fitted.is_held).map(|fitted| {
+            format!(
+                "{} stands at its bound {}: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within.",
+                fitted.free.key,
+                significant(fitted.value, 6)
+            )
+        });
+        let pairs = (0..self.keys.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+        let close = pairs.filter_map(|(i, j)| {
+            let correlation = solution.correlation(i, j).filter(|c| c.abs() > HARDLY)?;
+            let (one, other) = (key(j), key(i));
+            Some(format!(
+                "{one} and {other} are hardly told apart: their correlation is {correlation:.4}."
+            ))
+        });
+        let settings = "The uncertainties of the settings count: each datum is weighed by both.";
+        let settings = self.weights.count_settings.then(|| settings.to_owned());
+        let remarks = silent.chain(alike).chain(held).chain(close);
+        remarks.chain(settings).collect()
     }
 
     /// What is said of an azimuth that was measured as a direction at even times, where the model turns it so far from one
@@ -223,14 +198,11 @@ impl Fit {
     /// A change of the `index`-th key by a part, such as "motion.gravity_m_per_s2 by +1 %".
     fn changed(&self, index: usize, part: f64) -> String {
         let fitted = &self.keys[index];
+        let (key, scale) = (&fitted.free.key, fitted.free.scale);
         if fitted.value == 0.0 {
-            format!(
-                "{} by {:+.2e}",
-                fitted.free.key,
-                0.01 * part * fitted.free.scale
-            )
+            format!("{key} by {:+.2e}", 0.01 * part * scale)
         } else {
-            format!("{} by {:+.2} %", fitted.free.key, part)
+            format!("{key} by {part:+.2} %")
         }
     }
 }

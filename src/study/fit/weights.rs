@@ -6,8 +6,7 @@
 //! minimum until nothing changes any more.
 
 use super::levenberg::Stop;
-use super::model::{GoOn, Model};
-use crate::measured::{Data, Setting};
+use super::model::{GoOn, Model, settings};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 #[derive(Clone, Debug)]
@@ -34,14 +33,13 @@ const PART: f64 = 0.25;
 /// The unit of unweighted residuals, of the size of the data, and a small change of them.
 const UNIT: f64 = 1e-6;
 const SMALL: f64 = 0.01;
+/// The relative change of the uncertainties at which the weights have settled.
+const SETTLED: f64 = 1e-7;
 
 /// Whether the uncertainties of `model`'s data are stated: of all, or of none.
 pub fn are_stated(model: &Model) -> Result<bool, String> {
-    let stated = model
-        .data
-        .iter()
-        .filter(|datum| datum.point.sigma.is_some());
-    let stated = stated.count();
+    let sigmas = model.data.iter().filter_map(|datum| datum.point.sigma);
+    let stated = sigmas.count();
     let settings_are_uncertain = uncertain_settings(model).next().is_some();
     if stated == model.data.len() {
         return Ok(true);
@@ -69,14 +67,8 @@ pub fn are_stated(model: &Model) -> Result<bool, String> {
 
 /// The settings with stated uncertainties, by their places.
 fn uncertain_settings(model: &Model) -> impl Iterator<Item = usize> {
-    let settings: &[Setting] = match &model.measured.data {
-        Data::Table(table) => &table.settings,
-        Data::Series(_) => &[],
-    };
-    let uncertain = settings
-        .iter()
-        .enumerate()
-        .filter(|(_, setting)| setting.sigmas.iter().any(Option::is_some));
+    let settings = settings(&model.measured.data).iter().enumerate();
+    let uncertain = settings.filter(|(_, setting)| setting.sigmas.iter().any(Option::is_some));
     uncertain.map(|(index, _)| index)
 }
 
@@ -101,11 +93,8 @@ impl Weights {
         if !are_stated(model).map_err(Stop::Impossible)? {
             return Ok(Self::alike(model));
         }
-        let sigma: Vec<f64> = model
-            .data
-            .iter()
-            .map(|datum| datum.point.sigma.unwrap_or(f64::NAN))
-            .collect();
+        let sigmas = model.data.iter().filter_map(|datum| datum.point.sigma);
+        let sigma: Vec<f64> = sigmas.collect(); // of all data
         let mut weights = Self {
             resolution: sigma.clone(),
             are_stated: true,
@@ -177,10 +166,19 @@ impl Weights {
         white
     }
 
-    /// The largest relative change of an uncertainty from `before` to these.
-    pub(super) fn change_from(&self, before: &Self) -> f64 {
-        let pairs = self.sigma.iter().zip(&before.sigma);
+    /// The weights at `p`, computed anew; `None` where these have settled.
+    pub(super) fn renewed(
+        &self,
+        model: &Model,
+        p: &[f64],
+        go_on: GoOn<'_>,
+    ) -> Result<Option<Self>, Stop> {
+        if !self.count_settings {
+            return Ok(None);
+        }
+        let next = Self::at(model, p, go_on)?;
+        let pairs = next.sigma.iter().zip(&self.sigma);
         let changes = pairs.map(|(now, before)| (now / before - 1.0).abs());
-        changes.fold(0.0, f64::max)
+        Ok((changes.fold(0.0, f64::max) > SETTLED).then_some(next))
     }
 }

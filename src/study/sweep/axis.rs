@@ -2,8 +2,9 @@
 
 use super::file::VaryFile;
 use crate::scenario::document::toml_or_text;
-use crate::scenario::dotted::join;
+use crate::scenario::dotted::{join, overlap};
 use crate::scenario::keys::{self, Kind};
+use crate::scenario::start::exclude_each_other;
 use crate::scenario::{Problem, Problems};
 use crate::text::number::rounded;
 use crate::text::printable::{brief, is_steering};
@@ -22,7 +23,6 @@ const MOST: u64 = 10_000_000;
 const DIGITS: usize = 15;
 
 impl Axis {
-    /// The axis that `vary` asks for.
     pub(super) fn new(vary: &VaryFile, place: &str) -> Result<Self, Vec<Problem>> {
         let at = |name: &str| join(place, name);
         let kind = kind(&vary.key).map_err(|rule| {
@@ -43,21 +43,50 @@ impl Axis {
             let rule = "must hold at least one value";
             return Err(vec![Problem::at(at("values"), rule)]);
         }
-        let values = values.into_iter().map(|value| as_kind(kind, value));
-        let values: Vec<_> = values.collect();
+        let (key, values) = (vary.key.clone(), values.into_iter());
+        let values: Vec<_> = values.map(|value| as_kind(kind, value)).collect();
         let problem = |value| {
             let rule = fits(kind, value).err()?;
-            Some(Problem::with_value(vary.key.clone(), value, rule))
+            Some(Problem::with_value(key.clone(), value, rule))
         };
         let problems: Vec<_> = values.iter().filter_map(problem).collect();
-        if problems.is_empty() {
-            Ok(Self {
-                key: vary.key.clone(),
-                values,
-            })
-        } else {
-            Err(problems)
+        if !problems.is_empty() {
+            return Err(problems);
         }
+        Ok(Self { key, values })
+    }
+}
+
+pub(super) fn axes(files: &[VaryFile], problems: &mut Vec<Problem>) -> Vec<Axis> {
+    let mut axes: Vec<Axis> = Vec::new();
+    if files.is_empty() {
+        let rule = "is missing: a sweep varies at least one key, by [[vary]] or --vary KEY=A..B:N";
+        problems.push(Problem::at("vary", rule));
+    }
+    for (index, file) in files.iter().enumerate() {
+        let place = format!("vary.{index}");
+        match Axis::new(file, &place) {
+            Ok(axis) => {
+                let clash = axes.iter().find_map(|other| clash(&axis.key, &other.key));
+                problems.extend(clash.map(|rule| Problem::at(axis.key.clone(), rule)));
+                axes.push(axis);
+            }
+            Err(mut wrong) => problems.append(&mut wrong),
+        }
+    }
+    axes
+}
+
+/// Why `key` cannot vary together with `other`.
+fn clash(key: &str, other: &str) -> Option<String> {
+    if other == key {
+        Some("varies twice".to_owned())
+    } else if exclude_each_other(other, key) {
+        Some(format!(
+            "varies, and so does {other}: a start has one of them"
+        ))
+    } else {
+        overlap(other, key).then(|| format!("varies, and so does {other}, which writes into it"))
     }
 }
 
@@ -72,14 +101,13 @@ fn kind(key: &str) -> Result<Kind, String> {
 /// Whether `value` may stand at a key of this kind. (Whether the scenario takes it shows at its point.)
 fn fits(kind: Kind, value: &Value) -> Result<(), String> {
     kind.check(value)?;
-    if value
+    let is_steered = value
         .as_str()
-        .is_some_and(|text| text.contains(is_steering))
-    {
-        Err("must be one line, without control characters".to_owned())
-    } else {
-        Ok(())
+        .is_some_and(|text| text.contains(is_steering));
+    if is_steered {
+        return Err("must be one line, without control characters".to_owned());
     }
+    Ok(())
 }
 
 /// `count` values from `from` to `to`, both among them, evenly spaced, without the last digits that only rounding makes.
@@ -119,40 +147,35 @@ fn as_kind(kind: Kind, value: Value) -> Value {
 }
 
 /// What `--vary` is given: `KEY=A..B:N` or `KEY=V1,V2,...`.
-pub fn parse(argument: &str) -> Result<VaryFile, String> {
-    let Some((key, text)) = argument.split_once('=') else {
-        return Err(
-            "must be KEY=A..B:N, or KEY=V1,V2,..., such as motion.time_step_s=0.01..0.1:10"
-                .to_owned(),
-        );
-    };
-    let (key, text) = (key.trim().to_owned(), text.trim());
-    let is_number = matches!(kind(&key), Ok(Kind::Number(_) | Kind::Whole(..)));
-    if let Some((from, rest)) = text.split_once("..").filter(|_| is_number) {
-        let whole = rest.split_once(':').and_then(|(to, count)| {
-            let number = |text: &str| text.trim().parse::<f64>().ok();
-            Some((number(from)?, number(to)?, count.trim().parse().ok()?))
-        });
-        let Some((from, to, count)) = whole else {
-            return Err(
-                "must be A..B:N: two numbers and how many values, both ends among them".to_owned(),
-            );
-        };
-        return Ok(VaryFile {
-            key,
-            values: None,
-            from: Some(from),
-            to: Some(to),
-            count: Some(count),
-        });
-    }
-    Ok(VaryFile {
-        key,
-        values: Some(listed(text)?),
-        from: None,
-        to: None,
-        count: None,
+pub fn parse(argument: &str) -> Result<VaryFile, Problems> {
+    read(argument).map_err(|rule| {
+        let mut problem = Problem::at("", rule);
+        place(&mut problem, argument);
+        Problems::one("", problem)
     })
+}
+
+fn read(argument: &str) -> Result<VaryFile, String> {
+    let (key, text) = argument
+        .split_once('=')
+        .ok_or("must be KEY=A..B:N, or KEY=V1,V2,..., such as motion.time_step_s=0.01..0.1:10")?;
+    let mut vary = VaryFile {
+        key: key.trim().to_owned(),
+        ..VaryFile::default()
+    };
+    let text = text.trim();
+    let is_number = matches!(kind(&vary.key), Ok(Kind::Number(_) | Kind::Whole(..)));
+    let Some((from, rest)) = text.split_once("..").filter(|_| is_number) else {
+        vary.values = Some(listed(text)?);
+        return Ok(vary);
+    };
+    let number = |text: &str| text.trim().parse::<f64>().ok();
+    let (to, count) = rest.split_once(':').unwrap_or_default();
+    (vary.from, vary.to, vary.count) = (number(from), number(to), count.trim().parse().ok());
+    if vary.from.and(vary.to).and(vary.count).is_none() {
+        return Err("must be A..B:N: two numbers and how many values, both ends among them".into());
+    }
+    Ok(vary)
 }
 
 /// The values between the commas of `text` that stand in no brackets and no quotes: each TOML, or else text.
@@ -175,17 +198,9 @@ fn listed(text: &str) -> Result<Vec<Value>, String> {
     parts.push(&text[begin..]);
     let value = |part: &&str| match (part.trim(), toml_or_text(part.trim())) {
         ("", _) => Err("has an empty place between its commas".to_owned()),
-        (_, (_, Some(mistake))) => Err(mistake),
-        (_, (value, None)) => Ok(value),
+        (_, (value, mistake)) => mistake.map_or(Ok(value), Err),
     };
     parts.iter().map(value).collect()
-}
-
-/// A refusal of the `--vary` argument.
-pub fn refused(argument: &str, rule: String) -> Problems {
-    let mut problem = Problem::at("", rule);
-    place(&mut problem, argument);
-    Problems::one("", problem)
 }
 
 /// Says of `problem` that it is about that `--vary`.
@@ -201,7 +216,7 @@ mod tests {
     use super::*;
 
     fn axis(argument: &str) -> Result<Vec<String>, String> {
-        let axis = parse(argument).and_then(|vary| {
+        let axis = read(argument).and_then(|vary| {
             Axis::new(&vary, "vary.0").map_err(|problems| problems[0].to_string())
         })?;
         Ok(axis.values.iter().map(ToString::to_string).collect())

@@ -9,17 +9,13 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// How many there are, and the first few, counted from 0, with their reasons where these are known.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EmptyRows {
-    count: u64,
+    pub count: u64,
     first: Vec<(u64, Option<String>)>,
 }
 
 impl EmptyRows {
     /// How many rows are named one by one.
     const MOST: usize = 8;
-
-    pub fn count(&self) -> u64 {
-        self.count
-    }
 
     pub fn add(&mut self, row: u64, why: Option<String>) {
         self.count += 1;

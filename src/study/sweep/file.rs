@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 /// A sweep as its file tells it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SweepFile {
     /// The version that wrote the file; only in the header of a CSV.
     pub gyrolab: Option<String>,
@@ -69,28 +69,19 @@ const VARY_KEYS: [(&str, Option<Kind>); 5] = [
     ("count", Some(Kind::Whole(0, i64::MAX))),
 ];
 
-impl SweepFile {
-    /// A sweep that varies nothing yet.
-    pub fn from_nothing() -> Self {
-        Self {
-            gyrolab: None,
-            title: None,
-            about: None,
-            source: None,
-            shard: None,
-            measure: None,
-            vary: Vec::new(),
-            scenario: Base::Written(Table::new()),
-        }
+impl Default for Base {
+    fn default() -> Self {
+        Self::Written(Table::new())
     }
+}
 
+impl SweepFile {
     /// The sweep in `document`; what its values mean is not checked.
     pub fn read(document: &Document) -> Result<Self, Problems> {
         let table = document.table();
         let mut problems = check(table, "", &KEYS);
         let mut refuse = |key: &str, rule: &str| problems.push(refused(table, "", key, rule));
-        let is_words = |value: &Value| list(value).is_some_and(|all| all.iter().all(Value::is_str));
-        if !table.get("measure").is_none_or(is_words) {
+        if !are_all(table.get("measure"), Value::is_str) {
             refuse("measure", "must be a list of names in brackets");
         }
         if !matches!(
@@ -103,30 +94,20 @@ impl SweepFile {
             );
         }
         let vary = table.get("vary");
-        if !vary.is_none_or(|vary| list(vary).is_some_and(|all| all.iter().all(Value::is_table))) {
+        if !are_all(vary, Value::is_table) {
             refuse("vary", "must be tables: write [[vary]]");
         }
-        let tables = vary.and_then(list).into_iter().flatten();
+        let tables = vary.and_then(Value::as_array).into_iter().flatten();
         for (index, table) in tables.filter_map(Value::as_table).enumerate() {
-            let path = format!("vary.{index}");
-            problems.extend(check(table, &path, &VARY_KEYS));
-            if !table.contains_key("key") {
-                let rule = "is missing: the dotted key that varies";
-                problems.push(refused(table, &path, "key", rule));
-            }
-            if !table.get("values").is_none_or(Value::is_array) {
-                let rule = "must be a list in brackets";
-                problems.push(refused(table, &path, "values", rule));
-            }
+            problems.extend(check_vary(table, &format!("vary.{index}")));
         }
-        if problems.is_empty() {
-            let file = table.clone().try_into();
-            file.map_err(|error: toml::de::Error| {
-                document.placed(vec![Problem::at("", error.message().to_owned())])
-            })
-        } else {
-            Err(document.placed(problems))
+        if !problems.is_empty() {
+            return Err(document.placed(problems));
         }
+        let file = table.clone().try_into();
+        file.map_err(|error: toml::de::Error| {
+            document.placed(vec![Problem::at("", error.message().to_owned())])
+        })
     }
 
     pub fn to_toml(&self) -> String {
@@ -135,8 +116,22 @@ impl SweepFile {
     }
 }
 
-fn list(value: &Value) -> Option<&Vec<Value>> {
-    value.as_array()
+/// Whether `list`, if it is there, is a list whose values all are so.
+fn are_all(list: Option<&Value>, is_so: fn(&Value) -> bool) -> bool {
+    list.is_none_or(|list| list.as_array().is_some_and(|all| all.iter().all(is_so)))
+}
+
+/// What is wrong with the `table` `[[vary]]` that stands at `path`.
+fn check_vary(table: &Table, path: &str) -> Vec<Problem> {
+    let mut problems = check(table, path, &VARY_KEYS);
+    let mut refuse = |key: &str, rule: &str| problems.push(refused(table, path, key, rule));
+    if !table.contains_key("key") {
+        refuse("key", "is missing: the dotted key that varies");
+    }
+    if !table.get("values").is_none_or(Value::is_array) {
+        refuse("values", "must be a list in brackets");
+    }
+    problems
 }
 
 /// The key `name` of `table`, which stands at `path`, breaks a `rule`.

@@ -1,19 +1,18 @@
 //! A checked sweep: its points in their order, the scenario of each, and its row.
 
-use super::axis::Axis;
-use super::checks::{axes, measured};
+use super::axis::{Axis, axes};
 use super::file::{Base, SweepFile};
 use super::shard::Shard;
-use crate::analysis::at_end::readouts;
-use crate::analysis::readouts::{Readout, Value as Readable};
+use crate::analysis::at_end;
+use crate::analysis::readouts::{self, READOUTS, Readout, Source, Value as Readable};
 use crate::export::layout::commented;
 use crate::run::Clock;
 use crate::run::resample::resampled;
 use crate::scenario::document::Document;
 use crate::scenario::dotted::{find, join, number_of_push};
-use crate::scenario::file::ScenarioFile;
 use crate::scenario::rescale::{MOST_STEPS, accumulates};
 use crate::scenario::{Problem, Problems, Scenario};
+use crate::study::alone;
 use crate::text::number::{decimal, shortest};
 use serde::Serialize;
 use std::path::Path;
@@ -34,7 +33,6 @@ pub struct SweepRow {
     pub line: String,
     /// Why it holds no readouts; `None` where it holds some.
     pub empty: Option<String>,
-    /// Whether its run failed.
     pub has_failed: bool,
 }
 
@@ -44,9 +42,10 @@ pub struct Sweep {
     /// As it stands in the header of its CSV.
     file: SweepFile,
     base: Document,
-    axes: Vec<Axis>,
-    measure: Vec<&'static Readout>,
-    shard: Shard,
+    /// The keys that vary, the last fastest.
+    pub axes: Vec<Axis>,
+    pub measure: Vec<&'static Readout>,
+    pub shard: Shard,
     points: u64,
 }
 
@@ -68,10 +67,7 @@ impl Sweep {
         let axes = axes(&file.vary, &mut problems);
         let measure = measured(file.measure.as_deref(), &axes, &mut problems);
         let shard = file.shard.as_deref().map_or(Ok(Shard::WHOLE), str::parse);
-        let shard = shard.unwrap_or_else(|rule| {
-            problems.push(Problem::at("shard", rule));
-            Shard::WHOLE
-        });
+        let shard = shard.map_err(|rule| problems.push(Problem::at("shard", rule)));
         let counts = axes.iter().map(|axis| axis.values.len() as u64);
         let points = counts.fold(1, u64::saturating_mul);
         if points > MOST_POINTS {
@@ -81,34 +77,26 @@ impl Sweep {
         if !problems.is_empty() {
             return Err(placed(problems));
         }
-        let base_file = ScenarioFile {
-            gyrolab: None,
-            // They are about the scenario as it stands alone, and about a screen.
-            expected: Vec::new(),
-            view: None,
-            ..base.file.clone()
-        };
-        let base = Document::from_file("", &base_file)?;
+        let base_file = alone(base.file.clone());
         let names = measure.iter().map(|readout| readout.name.to_owned());
         let sweep = Self {
+            base: Document::from_file("", &base_file)?,
             file: SweepFile {
                 gyrolab: Some(env!("CARGO_PKG_VERSION").to_owned()),
                 title: Some(file.title.unwrap_or_else(|| base_file.title.clone())),
-                shard: (shard != Shard::WHOLE).then(|| shard.to_string()),
                 measure: Some(names.collect()),
                 scenario: Base::Checked(Box::new(base_file)),
                 ..file
             },
-            base,
             axes,
             measure,
-            shard,
+            shard: Shard::WHOLE,
             points,
         };
-        match sweep.keys_lead_somewhere() {
-            Ok(()) => Ok(sweep),
-            Err(problem) => Err(placed(vec![problem])),
-        }
+        let sweep = sweep.with_shard(shard.unwrap_or(Shard::WHOLE));
+        let led = sweep.keys_lead_somewhere();
+        led.map_err(|problem| placed(vec![problem]))?;
+        Ok(sweep)
     }
 
     /// The scenario that `file`, which stands in `document`, begins from, with what `change` changes in it.
@@ -189,28 +177,10 @@ impl Sweep {
         self.file.about.as_deref()
     }
 
-    /// The keys that vary, the last fastest.
-    pub fn axes(&self) -> &[Axis] {
-        &self.axes
-    }
-
-    pub fn measure(&self) -> &[&'static Readout] {
-        &self.measure
-    }
-
-    /// Which of its points are its rows.
-    pub fn shard(&self) -> Shard {
-        self.shard
-    }
-
     /// How many rows its shard has.
     pub fn rows(&self) -> u64 {
         let points = self.shard.range(self.points);
         points.end - points.start
-    }
-
-    pub fn points(&self) -> u64 {
-        self.points
     }
 
     /// The sweep file in `# ` lines, and the line of the columns' names.
@@ -223,18 +193,12 @@ impl Sweep {
     /// The values of the point behind the `row`-th row, from 0, one of each axis.
     pub fn values(&self, row: u64) -> Vec<&Value> {
         let mut rest = self.shard.range(self.points).start + row;
-        let mut values: Vec<_> = self
-            .axes
-            .iter()
-            .rev()
-            .map(|axis| {
-                let count = axis.values.len() as u64;
-                let value = &axis.values[(rest % count) as usize];
-                rest /= count;
-                value
-            })
-            .collect();
-        values.reverse();
+        let mut values = Vec::new();
+        for axis in self.axes.iter().rev() {
+            let count = axis.values.len() as u64;
+            values.insert(0, &axis.values[(rest % count) as usize]);
+            rest /= count;
+        }
         values
     }
 
@@ -284,7 +248,7 @@ impl Sweep {
     pub fn row(&self, row: u64, go_on: &dyn Fn() -> bool) -> Option<SweepRow> {
         let found = self
             .scenario(row)
-            .and_then(|scenario| readouts(scenario, &self.measure, go_on));
+            .and_then(|scenario| at_end::readouts(scenario, &self.measure, go_on));
         let (cells, failure) = match found {
             Ok(cells) => (cells?, None),
             Err(why) => (vec![Readable::Nothing; self.measure.len()], Some(why)),
@@ -297,6 +261,44 @@ impl Sweep {
             has_failed: failure.is_some(),
         })
     }
+}
+
+/// The readouts called `names`; without any, every number that is the same each time.
+fn measured(
+    names: Option<&[String]>,
+    axes: &[Axis],
+    problems: &mut Vec<Problem>,
+) -> Vec<&'static Readout> {
+    let Some(names) = names else {
+        let is_number = |readout: &&Readout| readout.source != Source::Clock && !readout.is_text;
+        return READOUTS.iter().filter(is_number).collect();
+    };
+    if names.is_empty() {
+        problems.push(Problem::at("measure", "must name at least one readout"));
+    }
+    let mut found: Vec<&Readout> = Vec::new();
+    for name in names {
+        let mut refuse = |rule: &str| {
+            let value = Value::String(name.clone());
+            problems.push(Problem::with_value("measure", &value, rule));
+        };
+        match readouts::find(name) {
+            None => refuse(&format!("is no readout: {}", readouts::nearest(name))),
+            Some(readout) if readout.source == Source::Clock => {
+                refuse(
+                    "is told by the clock: it is another number each time, and so would be the file",
+                );
+            }
+            Some(readout) if found.iter().any(|other| other.name == readout.name) => {
+                refuse("is named twice")
+            }
+            Some(readout) if axes.iter().any(|axis| axis.key == readout.name) => {
+                refuse("varies, and has its column already");
+            }
+            Some(readout) => found.push(readout),
+        }
+    }
+    found
 }
 
 /// Whether SCENARIO names a file, and no preset.

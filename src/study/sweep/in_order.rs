@@ -1,6 +1,7 @@
 //! Work on all cores whose results are taken in order.
 
 use crate::cores;
+use rayon::iter::{ParallelBridge, ParallelIterator};
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
@@ -25,42 +26,28 @@ pub fn in_order<T: Send>(
         let _ = results.try_for_each(|result| take(vec![result]));
         return;
     };
-    let (next, taken) = (AtomicU64::new(range.start), AtomicU64::new(range.start));
-    let goes_on = AtomicBool::new(true);
-    let (sender, receiver) = channel();
-    let work = |results: Sender<(u64, T)>| {
-        let goes_on = || goes_on.load(Relaxed);
-        while goes_on() {
-            let index = next.fetch_add(1, Relaxed);
-            if index >= range.end {
-                return;
-            }
-            while goes_on() && index >= taken.load(Relaxed) + AHEAD {
-                sleep(PERIOD);
-            }
-            let Some(result) = of(index, &goes_on) else {
-                // What comes behind it is not wanted any more.
-                next.fetch_max(range.end, Relaxed);
-                return;
-            };
-            if results.send((index, result)).is_err() {
-                return;
-            }
+    let (taken, goes_on) = (AtomicU64::new(range.start), AtomicBool::new(true));
+    let goes_on_now = || goes_on.load(Relaxed);
+    let work = |results: &mut Sender<(u64, T)>, index: u64| {
+        while goes_on_now() && index >= taken.load(Relaxed) + AHEAD {
+            sleep(PERIOD);
         }
+        let result = goes_on_now().then(|| of(index, &goes_on_now))??;
+        results.send((index, result)).ok()
     };
+    let (sender, receiver) = channel();
     pool.in_place_scope(|scope| {
-        for _ in 0..pool.current_num_threads() {
-            let (sender, work) = (sender.clone(), &work);
-            scope.spawn(move |_| work(sender));
-        }
-        drop(sender); // so that the receiver ends with the last worker
+        scope.spawn(|_| {
+            // Each core takes the next of the range: what is missing behind a result has been begun.
+            range.par_bridge().try_for_each_with(sender, work);
+        });
         hand_over(&receiver, &taken, &mut take);
         goes_on.store(false, Relaxed);
     });
 }
 
-/// Gives the results to `take` in their order, until the last worker has ended or `take` breaks. `taken` is the index of
-/// the next one.
+/// Gives the results to `take` in their order, until the work has ended or `take` breaks. `taken` is the index of the next
+/// one.
 fn hand_over<T>(
     receiver: &Receiver<(u64, T)>,
     taken: &AtomicU64,

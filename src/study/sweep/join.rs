@@ -2,12 +2,14 @@
 
 use super::empty_rows::EmptyRows;
 use super::grid::Sweep;
-use super::part::{SweepFileError, There, cannot_read, first_difference, refused, whole};
+use super::part::{
+    SweepFileError, There, cannot_read, cannot_write, first_difference, refused, whole,
+};
 use super::shard::Shard;
 use crate::export::Destination;
-use crate::export::destination::DestinationError;
 use crate::scenario::document::Document;
 use crate::text::printable::Shown;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -23,16 +25,13 @@ pub fn join(
     for part in parts {
         shards.push((Sweep::open(&Document::read(part)?)?, part.as_path()));
     }
-    shards.sort_by_key(|(sweep, _)| sweep.shard().number());
+    shards.sort_by_key(|(sweep, _)| sweep.shard.number);
     let sweep = of_one_sweep(&shards)?;
     if let Some(empty) = whole(path, &sweep, may_replace)? {
         return Ok((sweep, empty));
     }
     let mut output = Destination::open_file(path, may_replace)?;
-    let cannot_write = |error| DestinationError::Refused {
-        path: path.to_owned(),
-        error,
-    };
+    let cannot_write = |error| cannot_write(path, &error);
     let written = output.write_all(sweep.header().as_bytes());
     written.map_err(cannot_write)?;
     let (mut rows, mut empty) = (0, EmptyRows::default());
@@ -52,7 +51,7 @@ fn rows_of(shard: &Sweep, path: &Path) -> Result<(EmptyRows, impl Read), SweepFi
     let file = File::open(path).map_err(cannot_read)?;
     let there = There::of(&file, shard).map_err(cannot_read)?;
     let empty = there.whole(shard).map_err(|why| {
-        let shard = shard.shard();
+        let shard = shard.shard;
         let why = format!("is not the whole shard {shard}: {why}; run its command again");
         refused(path, why)
     })?;
@@ -62,45 +61,39 @@ fn rows_of(shard: &Sweep, path: &Path) -> Result<(EmptyRows, impl Read), SweepFi
     Ok((empty, lines))
 }
 
-/// The sweep whose shards, in the order of their numbers, these are.
+/// The sweep whose shards these are, all of them and each once.
 fn of_one_sweep(shards: &[(Sweep, &Path)]) -> Result<Sweep, SweepFileError> {
     const MOST_NAMED: usize = 12;
     let Some((first, first_path)) = shards.first() else {
         return Err(SweepFileError::Refused("there are no shards".to_owned()));
     };
-    let of = first.shard().of();
+    let (of, first_path) = (first.shard.of, Shown(first_path));
     let whole = first.clone().with_shard(Shard::WHOLE);
-    let mut missing = Vec::new();
-    let mut last = 0;
+    let mut numbers = BTreeSet::new();
     for (sweep, path) in shards {
-        let (shard, first) = (sweep.shard(), Shown(first_path));
+        let shard = sweep.shard;
         let other = sweep.clone().with_shard(Shard::WHOLE).header();
-        if shard.of() != of {
-            let why = format!("is shard {shard}, and {first} is one of {of}");
-            return Err(refused(path, why));
-        }
-        if let Some(what) = first_difference(&other, &whole.header()) {
-            let why = format!("is no shard of the sweep of {first}: {what}");
-            return Err(refused(path, why));
-        }
-        if shard.number() == last {
-            return Err(refused(
-                path,
-                format!("is shard {shard}, and so is another"),
-            ));
-        }
-        missing.extend((last + 1..shard.number()).take(MOST_NAMED));
-        last = shard.number();
+        let why = if shard.of != of {
+            format!("is shard {shard}, and {first_path} is one of {of}")
+        } else if let Some(what) = first_difference(&other, &whole.header()) {
+            format!("is no shard of the sweep of {first_path}: {what}")
+        } else if !numbers.insert(shard.number) {
+            format!("is shard {shard}, and so is another")
+        } else {
+            continue;
+        };
+        return Err(refused(path, why));
     }
-    missing.extend((last + 1..=of).take(MOST_NAMED));
-    if missing.is_empty() {
+    let mut missing = (1..=of).filter(|number| !numbers.contains(number));
+    let named = missing.by_ref().take(MOST_NAMED);
+    let named: Vec<_> = named.map(|number| number.to_string()).collect();
+    if named.is_empty() {
         return Ok(whole);
     }
-    let named = missing.iter().take(MOST_NAMED).map(ToString::to_string);
-    let mut named = named.collect::<Vec<_>>().join(", ");
-    if missing.len() > MOST_NAMED {
-        named += ", and more";
-    }
-    let why = format!("the sweep has {of} shards, and these are missing: {named}");
+    let (named, more) = (
+        named.join(", "),
+        missing.next().map_or("", |_| ", and more"),
+    );
+    let why = format!("the sweep has {of} shards, and these are missing: {named}{more}");
     Err(SweepFileError::Refused(why))
 }

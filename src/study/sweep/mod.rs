@@ -7,7 +7,6 @@
 //! A row depends on the sweep and on its own point alone: threads, shards and interruptions change no byte of it.
 
 pub mod axis;
-mod checks;
 mod empty_rows;
 pub mod file;
 mod grid;

@@ -5,7 +5,7 @@
 //! a row: it drops what follows. When all are there the file gets its name.
 
 use super::empty_rows::EmptyRows;
-use super::grid::Sweep;
+use super::grid::{Sweep, SweepRow};
 use crate::export::Destination;
 use crate::export::destination::{DestinationError, is_workbook};
 use crate::scenario::Problems;
@@ -14,7 +14,6 @@ use crate::text::{unread, unwritten};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
-use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -40,7 +39,7 @@ pub(super) fn cannot_read(path: &Path, error: &io::Error) -> SweepFileError {
     SweepFileError::Refused(format!("{}: {}", Shown(path), unread::why(error)))
 }
 
-fn cannot_write(path: &Path, error: &io::Error) -> SweepFileError {
+pub(super) fn cannot_write(path: &Path, error: &io::Error) -> SweepFileError {
     let why = unwritten::why(error);
     SweepFileError::Refused(format!("cannot write {}: {why}", Shown(path)))
 }
@@ -58,13 +57,13 @@ pub enum Opened {
 #[derive(Debug)]
 pub struct PartFile {
     file: File,
-    path: PathBuf,
+    pub path: PathBuf,
     /// The name that it gets when it is whole.
     last: PathBuf,
     may_replace: bool,
-    rows: u64,
-    /// Those without readouts that were there when it was opened.
-    empty: EmptyRows,
+    pub rows: u64,
+    /// Those without readouts.
+    pub empty: EmptyRows,
     synced: Instant,
 }
 
@@ -110,23 +109,16 @@ impl PartFile {
         Ok(Opened::Part(part))
     }
 
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    pub fn rows(&self) -> u64 {
-        self.rows
-    }
-
-    /// Those without readouts that were there when it was opened.
-    pub fn empty(&self) -> &EmptyRows {
-        &self.empty
-    }
-
-    /// Adds `count` rows, which are whole `lines`.
-    pub fn add(&mut self, lines: &str, count: u64) -> Result<(), SweepFileError> {
-        self.write(lines)?;
-        self.rows += count;
+    /// Adds the next `rows`.
+    pub fn add(&mut self, rows: Vec<SweepRow>) -> Result<(), SweepFileError> {
+        let lines: String = rows.iter().map(|row| row.line.as_str()).collect();
+        self.write(&lines)?;
+        for row in rows {
+            if row.empty.is_some() {
+                self.empty.add(self.rows, row.empty);
+            }
+            self.rows += 1;
+        }
         if self.synced.elapsed() >= SYNC {
             let synced = self.file.sync_data();
             synced.map_err(|error| cannot_write(&self.path, &error))?;
@@ -198,25 +190,15 @@ pub(super) fn whole(
 
 /// Opens the part file, which nobody else may be writing.
 fn locked(part: &Path) -> Result<File, SweepFileError> {
-    let cannot = |error| cannot_write(part, &error);
-    loop {
-        let mut options = OpenOptions::new();
-        options.read(true).write(true).create(true).truncate(false);
-        let file = options.open(part).map_err(cannot)?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                return Err(refused(part, "is being written by another gyrolab now"));
-            }
-            // Some file systems have no locks.
-            Err(TryLockError::Error(_)) => return Ok(file),
-        }
-        // The one who had it may have given it its last name between the opening and the lock.
-        let own = file.metadata().map_err(cannot)?.ino();
-        if fs::metadata(part).is_ok_and(|there| there.ino() == own) {
-            return Ok(file);
-        }
+    let mut options = OpenOptions::new();
+    options.read(true).write(true).create(true).truncate(false);
+    let file = options.open(part);
+    let file = file.map_err(|error| cannot_write(part, &error))?;
+    // Some file systems have no locks.
+    if let Err(TryLockError::WouldBlock) = file.try_lock() {
+        return Err(refused(part, "is being written by another gyrolab now"));
     }
+    Ok(file)
 }
 
 /// The content of a file, compared with a sweep.
@@ -291,7 +273,7 @@ fn readouts<'a>(line: &'a [u8], sweep: &Sweep, row: u64) -> Option<&'a [u8]> {
     let readouts = line.strip_suffix(b"\n")?;
     let readouts = readouts.strip_prefix(sweep.row_begins(row).as_bytes())?;
     let commas = readouts.iter().filter(|&&byte| byte == b',').count();
-    (commas + 1 >= sweep.measure().len()).then_some(readouts)
+    (commas + 1 >= sweep.measure.len()).then_some(readouts)
 }
 
 /// The first line in which the header `there` differs from the `wanted` one, in words.

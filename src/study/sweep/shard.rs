@@ -8,22 +8,14 @@ use std::str::FromStr;
 /// or differ by one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    number: u64,
-    of: u64,
+    pub number: u64,
+    pub of: u64,
 }
 
 const MOST: u64 = 1_000_000;
 
 impl Shard {
     pub const WHOLE: Self = Self { number: 1, of: 1 };
-
-    pub fn number(self) -> u64 {
-        self.number
-    }
-
-    pub fn of(self) -> u64 {
-        self.of
-    }
 
     /// The points, of all `points` of a sweep, that belong to it.
     pub fn range(self, points: u64) -> Range<u64> {

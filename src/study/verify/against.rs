@@ -2,7 +2,7 @@
 
 use crate::scenario::head::Head;
 use crate::text::printable::brief;
-use std::cell::Cell;
+use std::cell::OnceCell;
 use std::fmt;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
 use std::rc::Rc;
@@ -42,8 +42,7 @@ pub(super) struct Against {
     rows: u64,
     /// The first line that ends in CR LF.
     rewritten: Option<u64>,
-    difference: Option<Difference>,
-    differs: Rc<Cell<bool>>,
+    difference: Rc<OnceCell<Difference>>,
 }
 
 impl Against {
@@ -60,36 +59,40 @@ impl Against {
             names: None,
             rows: 0,
             rewritten: None,
-            difference: None,
-            differs: Rc::default(),
+            difference: Rc::default(),
         }
     }
 
-    /// Says, while lines are compared, whether a difference has been found.
-    pub(super) fn differs(&self) -> Rc<Cell<bool>> {
-        Rc::clone(&self.differs)
+    /// The first difference, which is there as soon as it is found.
+    pub(super) fn difference(&self) -> Rc<OnceCell<Difference>> {
+        Rc::clone(&self.difference)
     }
 
     /// How many rows are the same, and what differs first.
     pub(super) fn end(mut self) -> io::Result<(u64, Option<Difference>)> {
-        if self.difference.is_none() {
+        if self.difference.get().is_none() {
             let more = self.next(MOST_BEYOND)?;
-            let (line, text) = (self.line, shown(&more));
             if !more.is_empty() {
-                let text = format!(
+                let (line, text) = (self.line, shown(&more));
+                self.differ(format!(
                     "line {line} is \"{text}\", where the computed rows have come to their end"
-                );
-                self.difference = Some(Difference { line, text });
+                ));
             }
         }
-        let line_ends = self.rewritten.map(|line| Difference {
-            line,
-            text: format!(
+        if let Some(line) = self.rewritten {
+            self.line = line;
+            self.differ(format!(
                 "every row is the same, but the lines end in CR LF from line {line} on, where gyrolab writes LF: \
                  another program has rewritten the file"
-            ),
-        });
-        Ok((self.rows, self.difference.or(line_ends)))
+            ));
+        }
+        Ok((self.rows, self.difference.get().cloned()))
+    }
+
+    /// This line of the file differs. Only the first difference counts.
+    fn differ(&self, text: String) {
+        let line = self.line;
+        self.difference.get_or_init(|| Difference { line, text });
     }
 
     /// The next line of the file with its end, of which no more than `most` bytes are read; empty behind the last.
@@ -103,17 +106,14 @@ impl Against {
     /// Compares the computed line with the next one of the file.
     fn compare(&mut self) -> io::Result<()> {
         let computed = std::mem::take(&mut self.computed);
-        let there = self.next(computed.len() as u64 + MOST_BEYOND)?;
-        let is_first = self.line == 1;
-        let [computed, there] = [&computed, &there].map(|text| without_mark(text, is_first));
-        let whole = there.strip_suffix(b"\n");
-        let (there, is_whole) = (whole.unwrap_or(there), whole.is_some());
-        let without_cr = there.strip_suffix(b"\r").filter(|_| is_whole);
-        if without_cr.is_some() {
+        let mut there = self.next(computed.len() as u64 + MOST_BEYOND)?;
+        let is_whole = there.pop_if(|byte| *byte == b'\n').is_some();
+        if is_whole && there.pop_if(|byte| *byte == b'\r').is_some() {
             self.rewritten.get_or_insert(self.line);
         }
-        let there = without_cr.unwrap_or(there);
+        let [computed, there] = [&computed, &there].map(|text| self.without_mark(text));
         let is_header = self.names.is_none() && computed.starts_with(b"#");
+        let are_versions = is_header && [computed, there].iter().all(|it| it.starts_with(VERSION));
         let line = self.line;
         let text = if !is_whole && there.is_empty() {
             let computed = shown(computed);
@@ -124,52 +124,48 @@ impl Against {
             Some(format!(
                 "line {line}, the last one, is cut off before its end"
             ))
-        } else if there == computed || is_header && are_versions(computed, there) {
+        } else if there == computed || are_versions {
             None
         } else {
             self.fields_differ(there, computed)
         };
-        if let Some(text) = text {
-            self.difference = Some(Difference { line, text });
-            self.differs.set(true);
-        } else if !is_header {
-            match &self.names {
-                None => self.names = Some(fields(computed, self.delimiter)),
-                Some(_) => self.rows += 1,
-            }
+        match (text, &self.names) {
+            (Some(text), _) => self.differ(text),
+            (None, Some(_)) => self.rows += 1,
+            (None, None) if is_header => {}
+            (None, None) => self.names = Some(fields(computed, self.delimiter)),
         }
         Ok(())
+    }
+
+    /// `line` without a byte order mark, which only the first one may have.
+    fn without_mark<'a>(&self, line: &'a [u8]) -> &'a [u8] {
+        let marked = line.strip_prefix("\u{feff}".as_bytes());
+        marked.filter(|_| self.line == 1).unwrap_or(line)
     }
 
     /// What differs between two lines that are not the same; `None` where only columns that are left out do.
     fn fields_differ(&self, there: &[u8], computed: &[u8]) -> Option<String> {
         let line = self.line;
-        let whole = || {
-            let (there, computed) = (shown(there), shown(computed));
-            Some(format!(
-                "line {line} is \"{there}\", computed \"{computed}\""
-            ))
-        };
-        let Some(names) = &self.names else {
-            return whole();
-        };
-        let [there, computed] = [there, computed].map(|line| fields(line, self.delimiter));
-        if there.len() != computed.len() || names.len() != computed.len() {
-            return whole();
+        let names = self.names.as_deref().unwrap_or_default();
+        let [cells, wanted] = [there, computed].map(|line| fields(line, self.delimiter));
+        let mut differing = Vec::new();
+        if cells.len() == wanted.len() && names.len() == wanted.len() {
+            differing.extend((0..names.len()).filter(|&at| cells[at] != wanted[at]));
         }
-        let differing: Vec<usize> = (0..names.len())
-            .filter(|&at| there[at] != computed[at])
-            .collect();
+        if differing.is_empty() {
+            let (there, computed) = (shown(there), shown(computed));
+            return Some(format!(
+                "line {line} is \"{there}\", computed \"{computed}\""
+            ));
+        }
         let is_compared = |at: &&usize| !self.left_out.contains(&names[**at].as_str());
-        let Some(&at) = differing.iter().find(is_compared) else {
-            return if differing.is_empty() { whole() } else { None };
-        };
-        let row = self.row_of(names, &computed);
-        let [there, computed] = [&there[at], &computed[at]].map(|text| match text.as_str() {
+        let at = *differing.iter().find(is_compared)?;
+        let [there, computed] = [&cells[at], &wanted[at]].map(|text| match text.as_str() {
             "" => "empty".to_owned(),
             text => brief(text, MOST_SHOWN),
         });
-        let column = &names[at];
+        let (row, column) = (self.row_of(names, &wanted), &names[at]);
         let field = format!("line {line}{row}: {column} is {there}, computed {computed}");
         if self.rows == 0 && differing.len() > 1 {
             let why = "its rows are not those of the scenario in its header: already in the first";
@@ -195,7 +191,7 @@ impl Against {
 impl Write for Against {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         for part in bytes.split_inclusive(|&byte| byte == b'\n') {
-            if self.difference.is_some() {
+            if self.difference.get().is_some() {
                 break;
             }
             self.computed.extend_from_slice(part);
@@ -209,17 +205,6 @@ impl Write for Against {
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
-}
-
-/// `line` without a byte order mark, which only the first one may have.
-fn without_mark(line: &[u8], is_first: bool) -> &[u8] {
-    let marked = line.strip_prefix("\u{feff}".as_bytes());
-    marked.filter(|_| is_first).unwrap_or(line)
-}
-
-/// Whether both lines of a header name a version, which may be another one.
-fn are_versions(one: &[u8], other: &[u8]) -> bool {
-    [one, other].iter().all(|line| line.starts_with(VERSION))
 }
 
 /// The fields of a line; none where it is not text.

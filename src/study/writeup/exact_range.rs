@@ -23,31 +23,27 @@ impl ExactRange {
     /// known, or too many nutations.
     pub fn new(scenario: &Arc<Scenario>, end_s: f64) -> Option<Self> {
         let mut truth = Truth::new(Arc::clone(scenario));
-        let (mut tilt, mut z) = (Range::default(), Range::default());
+        let mut ranges = [Range::EMPTY; 2];
         let (mut time_s, mut changes, mut apart_s) = (0.0, None, 0.0);
         for _ in 0..MOST as u64 {
             let state = truth.state_at(time_s);
-            if changes.replace(truth.changes()) != Some(truth.changes()) {
-                // The forces have changed: it is another curve from here on.
-                (tilt.before, z.before) = (None, None);
+            let is_end = time_s >= end_s;
+            let is_new = changes.replace(truth.changes()) != Some(truth.changes());
+            if is_new {
                 let form = truth.motion().closed_form();
                 apart_s = form.and_then(LagrangeTop::nutation_period)? / A_NUTATION;
             }
-            let is_end = time_s >= end_s;
-            if is_end {
-                // The last moment is nearer to the one before it: no parabola goes through it.
-                (tilt.before, z.before) = (None, None);
+            let z_m = observables::position(&scenario.body.mechanics, &state, scenario.trace).z;
+            for (range, value) in ranges.iter_mut().zip([observables::tilt_deg(&state), z_m]) {
+                // Where the forces have changed it is another curve, and the last moment is nearer to the one before it:
+                // no parabola goes through these.
+                range.take(value, is_new || is_end);
             }
-            let body = &scenario.body.mechanics;
-            tilt.take(observables::tilt_deg(&state));
-            z.take(observables::position(body, &state, scenario.trace).z);
             if is_end {
-                let is_finite =
-                    [tilt.low, tilt.high, z.low, z.high].map(f64::is_finite) == [true; 4];
-                return is_finite.then_some(Self {
-                    tilt_deg: (tilt.low, tilt.high),
-                    z_m: (z.low, z.high),
-                });
+                let [tilt_deg, z_m] = ranges.map(|range| (range.low, range.high));
+                let ends = [tilt_deg.0, tilt_deg.1, z_m.0, z_m.1];
+                let is_finite = ends.into_iter().all(f64::is_finite);
+                return is_finite.then_some(Self { tilt_deg, z_m });
             }
             time_s = (time_s + apart_s).min(end_s);
         }
@@ -60,31 +56,29 @@ impl ExactRange {
 struct Range {
     low: f64,
     high: f64,
-    /// The last value of the same curve, and the one before it.
-    before: Option<(Option<f64>, f64)>,
-}
-
-impl Default for Range {
-    fn default() -> Self {
-        Self {
-            low: f64::INFINITY,
-            high: f64::NEG_INFINITY,
-            before: None,
-        }
-    }
+    /// The last two values of the same curve; NaN where there are none.
+    before: [f64; 2],
 }
 
 impl Range {
-    fn take(&mut self, value: f64) {
-        self.widen(value);
-        if let Some((Some(first), second)) = self.before {
-            let (rise, bend) = (0.5 * (value - first), value - 2.0 * second + first);
-            if (value - second) * (second - first) < 0.0 {
-                // The vertex of the parabola through the three.
-                self.widen(second - 0.5 * rise * rise / bend);
-            }
+    const EMPTY: Self = Self {
+        low: f64::INFINITY,
+        high: f64::NEG_INFINITY,
+        before: [f64::NAN; 2],
+    };
+
+    fn take(&mut self, value: f64, is_first: bool) {
+        if is_first {
+            self.before = [f64::NAN; 2];
         }
-        self.before = Some((self.before.map(|(_, last)| last), value));
+        self.widen(value);
+        let [first, second] = self.before;
+        let (rise, bend) = (0.5 * (value - first), value - 2.0 * second + first);
+        if (value - second) * (second - first) < 0.0 {
+            // The vertex of the parabola through the three.
+            self.widen(second - 0.5 * rise * rise / bend);
+        }
+        self.before = [second, value];
     }
 
     fn widen(&mut self, value: f64) {

@@ -7,7 +7,6 @@ use crate::figure::course::{Course, Recorder, Wanted};
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Known, Request, Run};
 use crate::figure::{COLUMN_PT, Scene};
-use crate::measured::Measured;
 use crate::run::Clock;
 use crate::scenario::Scenario;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
@@ -32,7 +31,6 @@ const RESIDUALS: &str = "residuals";
 const SWINGS: &str = "swings";
 /// Least number of swings of a run that has this figure.
 const MANY_SWINGS: f64 = 15.0;
-/// Number of swings in it.
 const FEW_SWINGS: f64 = 8.0;
 /// Least number of steps a swing of a curve without corners.
 const SMOOTH: f64 = 40.0;
@@ -41,27 +39,8 @@ const BEYOND_DATA: f64 = 1.05;
 
 struct Planned {
     name: &'static str,
-    kind: Kind,
-    from_s: f64,
-    /// `None`: to the end of the run.
-    to_s: Option<f64>,
     caption: String,
-    /// Whether it shows what was measured too.
-    shows_measured: bool,
-}
-
-impl Planned {
-    /// One of the whole run.
-    fn whole(name: &'static str, kind: Kind, caption: String) -> Self {
-        Self {
-            name,
-            kind,
-            from_s: 0.0,
-            to_s: None,
-            caption,
-            shows_measured: false,
-        }
-    }
+    request: Request,
 }
 
 /// What is to be shown the start and every step of the run of `scenario`, so that its figures need not play it once more.
@@ -97,26 +76,20 @@ pub fn figures(
     }];
     let is_exact = of_runs::is_exact(scenario);
     let exact = is_affordable(scenario) && !is_exact;
-    let measured = beside.map(Beside::reached);
-    let mut planned = Vec::new();
     let also = also(scenario, readouts, is_exact, exact);
-    if let (Some(beside), Some(measured)) = (beside, &measured) {
-        planned.extend(of_data(beside, measured, &also));
-    }
-    planned.extend(of_run(scenario, readouts, &also)?);
-    let places = beside.is_some_and(|beside| !beside.compared.places.is_empty());
-    let request = |planned: &Planned| Request {
-        kind: planned.kind.clone(),
-        from_s: planned.from_s,
-        to_s: planned.to_s,
+    let whole = Request {
+        kind: Kind::traces(),
+        from_s: 0.0,
+        to_s: None,
         // A run of the exact motion is drawn once, with the circles that bound it.
         exact: exact || is_exact,
-        measured: measured
-            .clone()
-            .filter(|_| planned.shows_measured || (places && planned.name == ABOVE)),
+        measured: None,
         width_pt: COLUMN_PT,
     };
-    let requests: Vec<_> = planned.iter().map(request).collect();
+    let mut planned = beside.map_or(Vec::new(), |beside| of_data(beside, &whole, &also));
+    planned.extend(of_run(scenario, readouts, beside, &whole, &also)?);
+    let requests = planned.iter().map(|planned| planned.request.clone());
+    let requests: Vec<_> = requests.collect();
     let known = Known {
         recorded: Some(recorded),
         said: beside.map(|beside| beside.said.clone()),
@@ -124,14 +97,14 @@ pub fn figures(
     let drawn = of_runs::figures(&runs, &requests, &known, watch)?;
     let drawing = |(planned, figure): (Planned, Figure)| {
         Drawing {
+        name: planned.name,
         remark: figure.dense.map(|dense| {
             let exact = if exact { " --exact" } else { "" };
-            let (kind, part) = (planned.kind.name(), dense.options());
+            let (kind, part) = (planned.request.kind.name(), dense.options());
             format!(
                 "In this figure, {dense}: `gyrolab figure {RUN_FILE} --kind {kind}{exact} {part} -o part.pdf`."
             )
         }),
-        name: planned.name,
         caption: planned.caption,
         scene: figure.scene,
     }
@@ -156,17 +129,23 @@ fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -
 }
 
 /// The figures of what was measured, and of measured less run.
-fn of_data(beside: &Beside, measured: &Measured, also: &str) -> Vec<Planned> {
+fn of_data(beside: &Beside, whole: &Request, also: &str) -> Vec<Planned> {
+    let measured = beside.reached();
     let Some(series) = measured.series().ok().filter(|_| measured.count() > 0) else {
         return Vec::new();
     };
     let last_s = series.times_s.last().copied().unwrap_or_default();
-    let name = &measured.origin;
     let of_data = |name, kind, caption| Planned {
-        to_s: Some(beside.end_s.min(BEYOND_DATA * last_s)),
-        shows_measured: true,
-        ..Planned::whole(name, kind, caption)
+        name,
+        caption,
+        request: Request {
+            kind,
+            to_s: Some(beside.end_s.min(BEYOND_DATA * last_s)),
+            measured: Some(Arc::clone(&measured)),
+            ..whole.clone()
+        },
     };
+    let name = beside.name();
     let over_time = format!("What was measured, `{name}`, and the run{also}");
     let less = format!("What was measured, `{name}`, less what the run says");
     vec![
@@ -175,10 +154,23 @@ fn of_data(beside: &Beside, measured: &Measured, also: &str) -> Vec<Planned> {
     ]
 }
 
-fn of_run(scenario: &Scenario, readouts: &Readouts, also: &str) -> Result<Vec<Planned>, String> {
-    let whole = |name, kind, caption: &str| Planned::whole(name, kind, format!("{caption}{also}"));
+fn of_run(
+    scenario: &Scenario,
+    readouts: &Readouts,
+    beside: Option<&Beside>,
+    whole: &Request,
+    also: &str,
+) -> Result<Vec<Planned>, String> {
+    let plan = |name, kind, caption: &str| Planned {
+        name,
+        caption: format!("{caption}{also}"),
+        request: Request {
+            kind,
+            ..whole.clone()
+        },
+    };
     let over_time = "x, y and z of the traced point over time";
-    let mut planned = vec![whole(TRACES, Kind::traces(), over_time)];
+    let mut planned = vec![plan(TRACES, Kind::traces(), over_time)];
     if let Some((from_s, to_s)) = few_swings_s(scenario, readouts) {
         let to = significant(to_s, 9);
         let tilt = if from_s > 0.0 {
@@ -187,16 +179,16 @@ fn of_run(scenario: &Scenario, readouts: &Readouts, also: &str) -> Result<Vec<Pl
         } else {
             format!("Tilt in the first {to} s")
         };
-        planned.push(Planned {
-            from_s,
-            to_s: Some(to_s),
-            ..whole(SWINGS, Kind::named("tilt_deg")?, &tilt)
-        });
+        let mut swings = plan(SWINGS, Kind::named("tilt_deg")?, &tilt);
+        (swings.request.from_s, swings.request.to_s) = (from_s, Some(to_s));
+        planned.push(swings);
     }
-    planned.extend([
-        whole(ABOVE, Kind::Above, "Path of the traced point from above"),
-        whole(THREE_D, Kind::ThreeD, "Path of the traced point in space"),
-    ]);
+    let mut above = plan(ABOVE, Kind::Above, "Path of the traced point from above");
+    let beside = beside.filter(|beside| !beside.compared.places.is_empty());
+    above.request.measured = beside.map(Beside::reached);
+    planned.push(above);
+    let in_space = "Path of the traced point in space";
+    planned.push(plan(THREE_D, Kind::ThreeD, in_space));
     Ok(planned)
 }
 

@@ -18,9 +18,7 @@ pub struct Beside {
     pub text: String,
     /// What the run says of those that it reached: of each column a value for every point.
     pub said: Vec<Vec<f64>>,
-    /// The data compared with the run.
     pub compared: Compared,
-    /// The end of the run, s.
     pub end_s: f64,
 }
 
@@ -39,7 +37,6 @@ impl Beside {
         }
     }
 
-    /// The name of the copy in the folder.
     pub fn name(&self) -> &str {
         &self.measured.origin
     }
@@ -140,7 +137,6 @@ impl Beside {
     }
 }
 
-/// The row of the column `name` in the table of the page.
 fn write_row(page: &mut String, name: &str, own: &Sum) -> fmt::Result {
     let chi_squared = (own.weighed > 0).then(|| significant(own.chi_squared, 4));
     let largest = own.largest.map(|largest| {

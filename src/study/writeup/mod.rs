@@ -9,7 +9,6 @@ pub mod measured;
 mod page;
 mod quantities;
 
-use self::exact_range::ExactRange;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Source};
 use crate::figure::{self, Format, Unwritable};
@@ -17,11 +16,9 @@ use crate::run::NotFinite;
 use crate::scenario::Scenario;
 pub use figures::Drawing;
 pub use measured::Beside;
-pub use quantities::Quantity;
 use serde_json::{Map, Value};
 use std::sync::Arc;
 
-/// The run's rows.
 pub const CSV: &str = "run.csv";
 /// The scenario with its edits, from which the rows are computed.
 pub const RUN_FILE: &str = "run.toml";
@@ -39,36 +36,12 @@ pub struct Writeup {
     pub readouts: Readouts,
     /// Why it ended before its last step, where it did.
     pub broken: Option<NotFinite>,
-    pub quantities: Vec<Quantity>,
     /// Measured data beside the run, where there are some.
     pub beside: Option<Beside>,
     pub drawings: Vec<Drawing>,
 }
 
 impl Writeup {
-    /// The write-up of the run of `scenario`, whose `readouts` were read at its end; `broken` is why that was not its
-    /// last step, and `beside` has what was measured.
-    pub fn new(
-        scenario: Arc<Scenario>,
-        readouts: Readouts,
-        broken: Option<NotFinite>,
-        beside: Option<Beside>,
-        drawings: Vec<Drawing>,
-    ) -> Self {
-        Self {
-            broken,
-            beside,
-            quantities: quantities::quantities(
-                &scenario,
-                &readouts,
-                ExactRange::new(&scenario, readouts.sample.time_s),
-            ),
-            scenario,
-            readouts,
-            drawings,
-        }
-    }
-
     /// All files but the CSV, each with its name and its bytes.
     ///
     /// # Errors
@@ -80,14 +53,11 @@ impl Writeup {
             (READOUTS_FILE, self.readouts_json()),
             (PAGE, page),
         ];
-        let mut files: Vec<_> = texts
-            .into_iter()
-            .map(|(name, text)| (name.to_owned(), text.into_bytes()))
-            .collect();
-        if let Some(beside) = &self.beside {
-            let text = beside.text.clone().into_bytes();
-            files.push((beside.name().to_owned(), text));
-        }
+        let beside = self.beside.iter();
+        let beside = beside.map(|beside| (beside.name(), beside.text.clone()));
+        let texts = texts.into_iter().chain(beside);
+        let texts = texts.map(|(name, text)| (name.to_owned(), text.into_bytes()));
+        let mut files: Vec<_> = texts.collect();
         for drawing in &self.drawings {
             for (ending, format) in [("svg", Format::Svg), ("pdf", Format::Pdf)] {
                 let bytes = figure::write(&drawing.scene, format)?;
@@ -99,15 +69,13 @@ impl Writeup {
 
     /// The readouts without the times by the clock, one object.
     fn readouts_json(&self) -> String {
-        let lasting = READOUTS
-            .iter()
-            .filter(|readout| readout.source != Source::Clock);
-        let mut object: Map<_, _> = lasting
-            .map(|readout| {
-                let value = serde_json::to_value(readout.of(&self.readouts));
-                (readout.name.to_owned(), value.unwrap_or(Value::Null))
-            })
-            .collect();
+        let lasting = READOUTS.iter();
+        let lasting = lasting.filter(|readout| readout.source != Source::Clock);
+        let named = lasting.map(|readout| {
+            let value = serde_json::to_value(readout.of(&self.readouts));
+            (readout.name.to_owned(), value.unwrap_or(Value::Null))
+        });
+        let mut object: Map<_, _> = named.collect();
         if let Some(beside) = &self.beside {
             object.insert(MEASURED_DATA.to_owned(), beside.json());
         }

@@ -1,6 +1,7 @@
 //! The first page of a write-up, `README.md`: what was run, what came out, whether to believe it, how to make it again.
 
-use super::quantities::Quantity;
+use super::exact_range::ExactRange;
+use super::quantities::{Row, rows};
 use super::{AGAIN, Beside, CSV, Drawing, READOUTS_FILE, RUN_FILE, Writeup};
 use crate::export::summary::steps_in_words;
 use crate::physics::{SchemeInfo, SymmetricTop};
@@ -45,7 +46,8 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
         escaped(&readouts.health.sentence(readouts.advice.as_ref()))
     )?;
     writeln!(page, "## Measured beside theory\n")?;
-    write_quantities(&mut page, &writeup.quantities)?;
+    let range = ExactRange::new(&writeup.scenario, readouts.sample.time_s);
+    write_quantities(&mut page, &rows(&writeup.scenario, readouts, range))?;
     if let Some(beside) = &writeup.beside {
         writeln!(page, "\n## Measured data beside the run\n")?;
         beside.write(&mut page)?;
@@ -124,8 +126,8 @@ fn start(scenario: &Scenario) -> String {
     )
 }
 
-fn write_quantities(page: &mut String, quantities: &[Quantity]) -> fmt::Result {
-    if quantities.is_empty() {
+fn write_quantities(page: &mut String, rows: &[Row]) -> fmt::Result {
+    if rows.is_empty() {
         return writeln!(
             page,
             "The run is too short for that: nothing could be measured on it."
@@ -136,27 +138,12 @@ fn write_quantities(page: &mut String, quantities: &[Quantity]) -> fmt::Result {
         "| what | measured | theory | difference | in errors | unit |"
     )?;
     writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
-    for quantity in quantities {
-        writeln!(
-            page,
-            "| {} (`{}`) | {} | {} | {} | {} | {} |",
-            quantity.label(),
-            quantity.readout.name,
-            quantity.measured_text(),
-            quantity.predicted_text(),
-            quantity.difference_text(),
-            quantity.in_errors_text(),
-            quantity.readout.unit
-        )?;
+    for row in rows {
+        writeln!(page, "| {} |", row.cells.join(" | "))?;
     }
     writeln!(page)?;
-    for quantity in quantities {
-        writeln!(
-            page,
-            "- {}: {}",
-            quantity.name(),
-            escaped(&quantity.meaning())
-        )?;
+    for row in rows {
+        writeln!(page, "- {}", escaped(&row.meaning))?;
     }
     writeln!(
         page,
