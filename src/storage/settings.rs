@@ -159,7 +159,7 @@ pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
             Err(error) => return Err(error),
         };
         table.insert(key.to_owned(), value);
-        own::replace(&path, &[HEAD, &table.to_string()])
+        own::replace(&path, &format!("{HEAD}{table}"))
     };
     remembered().map_err(|error| {
         let path = Shown(&path);
