@@ -18,13 +18,6 @@ pub struct Expression {
     names: Vec<(String, usize)>,
 }
 
-/// An expression whose names have been looked up. Each name stands for a `T`.
-#[derive(Clone, Debug)]
-pub struct Bound<T> {
-    root: Node,
-    sources: Vec<T>,
-}
-
 /// What is wrong with an expression, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("column {column}: {rule}")]
@@ -158,40 +151,32 @@ impl Expression {
     pub fn bind<'a, T>(
         &'a self,
         find: impl Fn(&'a str) -> Result<T, String>,
-    ) -> Result<Bound<T>, Fault> {
+    ) -> Result<Vec<T>, Fault> {
         let look_up = |(name, column): &'a (String, usize)| {
             find(name).map_err(|rule| Fault {
                 column: *column,
                 rule,
             })
         };
-        let sources = self.names.iter().map(look_up).collect::<Result<_, _>>()?;
-        let root = self.root.clone();
-        Ok(Bound { root, sources })
+        self.names.iter().map(look_up).collect()
     }
 
-    /// Its value, with the values of the names from `value_of`; `None` where a number that it needs has no value.
-    pub fn value(&self, value_of: impl Fn(&str) -> Option<f64>) -> Option<f64> {
-        self.root.value(&mut |index| value_of(&self.names[index].0))
+    /// Its value, with the values of the names from `value_of`; `None` where a number that it needs has no value. A
+    /// condition is 1 where it holds and 0 where it does not.
+    pub fn value(&self, mut value_of: impl FnMut(&str) -> Option<f64>) -> Option<f64> {
+        self.value_at(|index| value_of(&self.names[index].0))
+    }
+
+    /// The same, with the value of the name of each index, as [`bind`](Self::bind) lists them. A name that cannot change
+    /// the result any more is not looked up.
+    pub fn value_at(&self, mut value_of: impl FnMut(usize) -> Option<f64>) -> Option<f64> {
+        self.root.value(&mut value_of)
     }
 }
 
 impl PartialEq for Expression {
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text
-    }
-}
-
-impl<T> Bound<T> {
-    /// Its value, with the values of the names from `value_of`. A condition is 1 where it holds and 0 where it does
-    /// not.
-    pub fn value(&self, mut value_of: impl FnMut(&T) -> Option<f64>) -> Option<f64> {
-        self.root.value(&mut |index| value_of(&self.sources[index]))
-    }
-
-    /// Whether it has a value other than 0. A number that cannot change the result any more is not looked up.
-    pub fn holds(&self, value_of: impl FnMut(&T) -> Option<f64>) -> bool {
-        self.value(value_of).is_some_and(|value| value != 0.0)
     }
 }
 

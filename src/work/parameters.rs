@@ -144,7 +144,7 @@ fn parameters_of(
         return Vec::new();
     };
     let written = find(table, place);
-    let unwritten = || present(key, place, table, scenario).or_else(|| lab.absent.value());
+    let unwritten = || present(key, place, table, scenario).or_else(|| key.default());
     let Some(value) = written.cloned().or_else(unwritten) else {
         return Vec::new();
     };

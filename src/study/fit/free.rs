@@ -1,7 +1,7 @@
 //! A key whose value is looked for.
 
 use crate::scenario::dotted;
-use crate::scenario::keys::{self, Absent, Effect, Kind, Nudge, Range};
+use crate::scenario::keys::{self, Effect, Kind, Nudge, Range};
 use crate::scenario::{Document, Problem, Problems};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
@@ -116,8 +116,8 @@ impl Free {
         let start = match dotted::find(scenario.table(), key) {
             Some(Value::Float(number)) => *number,
             Some(Value::Integer(whole)) => *whole as f64,
-            _ => match row.lab.map(|lab| lab.absent) {
-                Some(Absent::Number(number)) => number,
+            _ => match row.default() {
+                Some(Value::Float(number)) => number,
                 _ => {
                     return Err(format!(
                         "has no value in the scenario, from which the search would begin: give it one by --set {key}=..."

@@ -214,13 +214,10 @@ impl Parser {
     }
 
     fn absolute(&mut self, column: usize) -> Result<(Node, bool), Fault> {
-        let open = self.column();
         if !matches!(self.tokens.get(self.at), Some((_, Token::Open))) {
-            return Self::fault(open, "abs needs parentheses: abs(...)");
+            return Self::fault(self.column(), "abs needs parentheses: abs(...)");
         }
-        self.at += 1;
-        let (inner, is_condition) = self.expression(0)?;
-        self.close(open)?;
+        let (inner, is_condition) = self.operand()?;
         if is_condition {
             return Self::fault(column, "abs takes a number, not a comparison");
         }
