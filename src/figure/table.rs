@@ -88,7 +88,7 @@ impl Table {
         }
         let text = csv::text(path).map_err(refused)?;
         let csv = Csv::of(&text, MOST_VALUES);
-        let csv = csv.map_err(|found| Problems::of(path.display().to_string(), found))?;
+        let csv = csv.map_err(|found| found.of(path.display().to_string()))?;
         Ok(Some(Self {
             subject,
             title,

@@ -6,7 +6,7 @@ use crate::scenario::Problem;
 use crate::scenario::csv::{Csv, at_line};
 use crate::scenario::document::toml_or_text;
 use crate::scenario::keys::Kind;
-use crate::scenario::problem::Found;
+use crate::scenario::problem::Problems;
 use crate::text::number::shortest;
 use crate::text::printable::brief;
 use toml::Value;
@@ -14,7 +14,7 @@ use toml::Value;
 /// Reads cells, and takes down what is wrong with them.
 pub(super) struct Numbers<'a> {
     cells: &'a Csv,
-    pub found: Found,
+    pub found: Problems,
     /// The decimal signs that the file has used so far.
     uses_points: bool,
     uses_commas: bool,
@@ -24,7 +24,7 @@ impl<'a> Numbers<'a> {
     pub fn of(cells: &'a Csv) -> Self {
         Self {
             cells,
-            found: Found::default(),
+            found: Problems::default(),
             uses_points: false,
             uses_commas: false,
         }

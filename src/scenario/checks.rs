@@ -5,7 +5,7 @@ use super::file::{BodyFile, ScenarioFile};
 use super::keys::{TOP, is_under};
 use super::model::{Body, Scenario};
 use super::parts::{body, motion, pushes};
-use super::problem::{Found, Problem, listed};
+use super::problem::{Problem, Problems, listed};
 use super::rotor;
 use super::rubbing::{friction, objection};
 use super::start::start;
@@ -13,7 +13,7 @@ use crate::physics::{State, observables};
 use std::sync::Arc;
 use toml::Value;
 
-pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
+pub fn scenario(file: ScenarioFile) -> Result<Scenario, Problems> {
     // Without a body nothing can be said of the rest; of that, each part is looked at by itself.
     let mut body = body(&file.body)?;
     let trace = match &file.trace {
@@ -34,7 +34,7 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
     let (trace, (spinning, start, friction), pushes) = match (trace, started, pushed) {
         (Ok(trace), Ok(started), Ok(pushes)) => (trace, started, pushes),
         (trace, started, pushed) => {
-            let mut found = Found::default();
+            let mut found = Problems::default();
             for problems in [trace.err(), started.err()].into_iter().flatten() {
                 found.add_all(problems);
             }
@@ -64,7 +64,7 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
 
 /// Adds the unknown names of points in `table` to the problems `found` with its keys, so that both are printed together.
 /// Where the body itself is wrong, its points are unknown and nothing is added.
-pub fn names(table: &toml::Table, found: &mut Found) {
+pub fn names(table: &toml::Table, found: &mut Problems) {
     let is_of_body = |key: &str| key == "body" || is_under(key, "body");
     let file = table.get("body").filter(|_| {
         let wrong = found.list.iter();

@@ -1,7 +1,7 @@
 //! A CSV with a header of `#` lines, taken apart: measured data, and the tables of sweeps, comparisons and fits.
 
 use super::head::Head;
-use super::problem::{Found, Problem};
+use super::problem::{Problem, Problems};
 use crate::text::unread;
 use ::csv::{ReaderBuilder, StringRecord, Trim};
 use std::fmt;
@@ -59,11 +59,11 @@ pub fn text(path: &Path) -> Result<String, Problem> {
 }
 
 /// A problem of the whole file.
-fn one(rule: String) -> Found {
-    Found::from(vec![Problem::at("", rule)])
+fn one(rule: String) -> Problems {
+    Problems::from(vec![Problem::at("", rule)])
 }
 
-fn cannot(error: &dyn fmt::Display) -> Found {
+fn cannot(error: &dyn fmt::Display) -> Problems {
     one(format!("cannot be read: {error}"))
 }
 
@@ -72,7 +72,7 @@ impl Csv {
     ///
     /// # Errors
     /// When there are no names or no rows, too many values, or rows with more or fewer cells than there are names.
-    pub fn of(text: &str, most: usize) -> Result<Self, Found> {
+    pub fn of(text: &str, most: usize) -> Result<Self, Problems> {
         let head = Head::read(&mut text.as_bytes()).map_err(|error| cannot(&error))?;
         let names = str::from_utf8(head.names()).unwrap_or_default();
         let is_there = |separator: &&char| names.contains(**separator);
@@ -80,7 +80,7 @@ impl Csv {
         let mut csv = Self {
             header: head
                 .header()
-                .map_err(|problem| Found::from(vec![problem]))?,
+                .map_err(|problem| Problems::from(vec![problem]))?,
             line_of_names: head.line_of_names(),
             names: Vec::new(),
             separator,
@@ -100,7 +100,7 @@ impl Csv {
     }
 
     /// Reads the line of names and the rows, which are `text`.
-    fn read_rows(&mut self, text: &str, most: usize) -> Result<(), Found> {
+    fn read_rows(&mut self, text: &str, most: usize) -> Result<(), Problems> {
         // With every line ended alike, the reader's own count of lines is right.
         let text = text.replace("\r\n", "\n") + "\n";
         let mut reader = ReaderBuilder::new()
@@ -110,7 +110,7 @@ impl Csv {
             .comment(Some(b'#'))
             .delimiter(self.separator as u8)
             .from_reader(text.as_bytes());
-        let (mut record, mut found) = (StringRecord::new(), Found::default());
+        let (mut record, mut found) = (StringRecord::new(), Problems::default());
         loop {
             let read = reader.read_record(&mut record);
             if !read.map_err(|error| cannot(&error))? {
@@ -139,11 +139,7 @@ impl Csv {
                 )));
             }
         }
-        if found.list.is_empty() {
-            Ok(())
-        } else {
-            Err(found)
-        }
+        found.or(())
     }
 
     /// A row of another number of values than there are names.

@@ -4,7 +4,7 @@ use super::checks;
 use super::dotted::{find, is_in, set_key};
 use super::head::{read_text, utf8};
 use super::limits::{self, LONGEST};
-use super::problem::{Found, PRESETS, Problem, Problems, nearest};
+use super::problem::{PRESETS, Problem, Problems, nearest};
 use super::syntax::{mistake, offset_of, syntax_problem};
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start};
 use crate::text::number::shortest;
@@ -249,8 +249,8 @@ impl Document {
     }
 
     /// Problems with the places at which the user wrote their keys, in the order of the file.
-    pub fn placed(&self, found: impl Into<Found>) -> Problems {
-        let Found { list, more } = found.into();
+    pub fn placed(&self, found: impl Into<Problems>) -> Problems {
+        let Problems { list, more, .. } = found.into();
         let line_of = self.line_finder();
         let written = (!self.set.is_empty()).then(|| self.text.parse().unwrap_or_default());
         let mut lines: Vec<(usize, Problem)> = Vec::with_capacity(list.len());

@@ -6,7 +6,7 @@ use super::file::{BodyFile, MotionFile, PushFile};
 use super::keys::GRAVITY;
 use super::limits::MOST_POINTS;
 use super::model::{Body, Motion, Push, Pushes, Window};
-use super::problem::{Found, Problem};
+use super::problem::{Problem, Problems};
 use super::solids;
 use crate::physics::{self, BodyError, PointMass, SchemeInfo};
 use nalgebra::Vector3;
@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 /// The points that each part counts as, held against the most that there may be.
 const OF_PART: usize = 6;
 
-pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
+pub(super) fn body(file: &BodyFile) -> Result<Body, Problems> {
     few_enough(file)?;
     let mut points = rim_points(file);
     let mut named = Named::default();
@@ -38,9 +38,7 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
             Err(problems) => named.refuse(problems, index),
         }
     }
-    if !named.problems.list.is_empty() {
-        return Err(named.problems);
-    }
+    named.problems.or(())?;
     let mechanics = physics::Body::new(points).map_err(|error| {
         let few = match (&error, &file.rim) {
             (BodyError::Singular { .. }, Some(rim)) if rim.points == 1 => {
@@ -76,7 +74,7 @@ fn few_enough(file: &BodyFile) -> Result<(), Vec<Problem>> {
 #[derive(Default)]
 struct Named {
     names: HashMap<String, usize>,
-    problems: Found,
+    problems: Problems,
 }
 
 impl Named {
@@ -129,8 +127,8 @@ pub(super) fn motion(file: &MotionFile) -> Motion {
     }
 }
 
-pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Found> {
-    let mut found = Found::default();
+pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Problems> {
+    let mut found = Problems::default();
     let pushes = files.iter().enumerate().filter_map(|(index, file)| {
         // The nearest name is sought for those that are told alone: there may be 100 000 points.
         if found.is_full() && body.point(&file.point).is_none() {
@@ -140,12 +138,8 @@ pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Found> {
         let push = push(file, body, &format!("push.{index}"));
         push.map_err(|refused| found.add_all(refused)).ok()
     });
-    let pushes = pushes.collect::<Vec<_>>();
-    if found.list.is_empty() {
-        Ok(pushes.into())
-    } else {
-        Err(found)
-    }
+    let pushes = pushes.collect::<Vec<_>>().into();
+    found.or(pushes)
 }
 
 pub(super) fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<Problem>> {

@@ -24,10 +24,8 @@ impl Problem {
         rule: impl Into<String>,
     ) -> Self {
         Self {
-            key: key.into(),
             value: shown(value),
-            rule: rule.into(),
-            place: None,
+            ..Self::at(key, rule)
         }
     }
 
@@ -40,10 +38,8 @@ impl Problem {
             place: None,
         }
     }
-}
 
-impl Problem {
-    /// It in words, without its place.
+    /// The problem in words, without its place.
     fn bare(&self) -> String {
         let (key, value, rule) = (brief(&self.key, 80), &self.value, &self.rule);
         match (self.key.is_empty(), value.is_empty()) {
@@ -66,22 +62,35 @@ impl fmt::Display for Problem {
 /// The most problems of one file that are told one by one: more of them help nobody.
 const MOST_TOLD: usize = 100;
 
-/// Problems as they are found.
+/// What is wrong with one file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Found {
-    /// The first hundred.
+pub struct Problems {
+    /// The file; empty while they are found.
+    pub origin: String,
+    /// The first hundred; at the end in the order of the file.
     pub list: Vec<Problem>,
     /// How many more there are.
     pub more: usize,
 }
 
-impl Found {
+impl Problems {
+    /// The one `problem` of the file `origin`.
+    pub fn one(origin: impl Into<String>, problem: Problem) -> Self {
+        Self::from(vec![problem]).of(origin)
+    }
+
+    /// The same, as those of the file `origin`.
+    pub fn of(self, origin: impl Into<String>) -> Self {
+        let origin = origin.into();
+        Self { origin, ..self }
+    }
+
     /// Adds a problem; beyond the first hundred they are only counted.
     pub fn add(&mut self, problem: impl FnOnce() -> Problem) {
-        if self.list.len() < MOST_TOLD {
-            self.list.push(problem());
-        } else {
+        if self.is_full() {
             self.more += 1;
+        } else {
+            self.list.push(problem());
         }
     }
 
@@ -92,46 +101,17 @@ impl Found {
 
     /// Adds all that `other` has.
     pub fn add_all(&mut self, other: impl Into<Self>) {
-        let Self { list, more } = other.into();
+        let Self { list, more, .. } = other.into();
         list.into_iter().for_each(|problem| self.add(|| problem));
         self.more += more;
     }
-}
 
-impl From<Vec<Problem>> for Found {
-    fn from(mut list: Vec<Problem>) -> Self {
-        let more = list.len().saturating_sub(MOST_TOLD);
-        list.truncate(MOST_TOLD);
-        Self { list, more }
-    }
-}
-
-/// Everything found wrong with one file; never empty.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Problems {
-    pub origin: String,
-    /// What was found, in the order of the file.
-    pub list: Vec<Problem>,
-    /// How many more were found, which are not in the list.
-    pub more: usize,
-}
-
-impl Problems {
-    /// The one `problem` of the file `origin`.
-    pub fn one(origin: impl Into<String>, problem: Problem) -> Self {
-        Self {
-            origin: origin.into(),
-            list: vec![problem],
-            more: 0,
-        }
-    }
-
-    /// What was `found` in the file `origin`.
-    pub fn of(origin: impl Into<String>, found: Found) -> Self {
-        Self {
-            origin: origin.into(),
-            list: found.list,
-            more: found.more,
+    /// `made` where there are no problems.
+    pub fn or<T>(self, made: T) -> Result<T, Self> {
+        if self.list.is_empty() {
+            Ok(made)
+        } else {
+            Err(self)
         }
     }
 
@@ -144,6 +124,18 @@ impl Problems {
     pub fn in_one_line(&self) -> String {
         let first = self.list.first().map(Problem::bare);
         first.unwrap_or_default().replace('\n', " ")
+    }
+}
+
+impl From<Vec<Problem>> for Problems {
+    fn from(mut list: Vec<Problem>) -> Self {
+        let more = list.len().saturating_sub(MOST_TOLD);
+        list.truncate(MOST_TOLD);
+        Self {
+            list,
+            more,
+            ..Self::default()
+        }
     }
 }
 
@@ -319,7 +311,7 @@ mod tests {
 
     #[test]
     fn beyond_the_first_hundred_problems_are_counted_without_being_made() {
-        let (mut found, mut made) = (Found::default(), 0);
+        let (mut found, mut made) = (Problems::default(), 0);
         for _ in 0..1000 {
             found.add(|| {
                 made += 1;

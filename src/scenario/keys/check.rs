@@ -2,22 +2,22 @@
 
 use super::{KEYS, Key, only, pattern};
 use crate::scenario::dotted::join;
-use crate::scenario::problem::{Found, Problem, nearest};
+use crate::scenario::problem::{Problem, Problems, nearest};
 use toml::Value;
 
 /// Tables that a file must have.
 const REQUIRED_TABLES: [&str; 2] = ["start", "motion"];
 
 /// Checks the whole `table`: unknown names, wrong types, numbers out of range, missing keys.
-pub fn check(table: &toml::Table) -> Found {
-    let mut problems = Found::default();
+pub fn check(table: &toml::Table) -> Problems {
+    let mut problems = Problems::default();
     check_table(table, "", "", &mut problems);
     problems
 }
 
 /// Checks `value`, a part of a file: the table at the dotted `path`.
 pub(in crate::scenario) fn check_part(value: &Value, path: &str) -> Vec<Problem> {
-    let mut problems = Found::default();
+    let mut problems = Problems::default();
     let pattern = pattern(path);
     match value {
         Value::Table(table) => check_table(table, &pattern, path, &mut problems),
@@ -27,7 +27,7 @@ pub(in crate::scenario) fn check_part(value: &Value, path: &str) -> Vec<Problem>
 }
 
 /// Checks `table`, whose keys begin with the pattern `under`, and which stands at `path` in the file.
-fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Found) {
+fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Problems) {
     let names = names(under);
     for (name, value) in table {
         let key = join(path, name);
@@ -55,7 +55,7 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Foun
 }
 
 /// Finds the keys and tables that `table` lacks.
-fn check_missing(table: &toml::Table, under: &str, path: &str, problems: &mut Found) {
+fn check_missing(table: &toml::Table, under: &str, path: &str, problems: &mut Problems) {
     let is_there = |name: &&str| table.contains_key(*name);
     for (name, key) in below(under).filter(|(_, key)| key.required) {
         if name.contains('.') || is_there(&name) || key.instead.iter().any(is_there) {
@@ -74,7 +74,7 @@ fn check_missing(table: &toml::Table, under: &str, path: &str, problems: &mut Fo
     }
 }
 
-fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Found) {
+fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Problems) {
     if let Some(key) = KEYS.iter().find(|key| key.path == pattern) {
         if let Err(rule) = key.kind.check(value) {
             problems.add(|| Problem::with_value(path, value, rule));
