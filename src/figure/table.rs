@@ -4,8 +4,8 @@ use crate::export::comments::above_run_file;
 use crate::scenario::csv::{self, Csv};
 use crate::scenario::head::Head;
 use crate::scenario::{Problem, Problems};
+use crate::text::advice::unread;
 use crate::text::number::NONE;
-use crate::text::unread;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::BufReader;
@@ -72,7 +72,7 @@ impl Table {
             return Ok(None);
         }
         let head = File::open(path).and_then(|file| Head::read(&mut BufReader::new(file)));
-        let head = head.map_err(|error| refused(Problem::at("", unread::why(&error))))?;
+        let head = head.map_err(|error| refused(Problem::at("", unread(&error))))?;
         let names = String::from_utf8_lossy(head.names()).into_owned();
         let names: Vec<&str> = names
             .split(',')

@@ -3,9 +3,9 @@
 use super::quantity::{self, COUNTS, Quantity, TIME};
 use crate::analysis::readouts::{self, Readout, Source};
 use crate::scenario::Problem;
-use crate::scenario::csv::{Csv, at_line};
+use crate::scenario::csv::Csv;
 use crate::scenario::keys::{self, Kind};
-use crate::scenario::problem::{listed, nearest};
+use crate::scenario::problem::{at_line, listed, nearest};
 use crate::text::number::significant;
 use crate::text::unit::{Unit, with_word};
 

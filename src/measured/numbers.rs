@@ -3,10 +3,10 @@
 use super::names::{Is, Named};
 use super::{Column, Curve, Point, Series, Setting, Table};
 use crate::scenario::Problem;
-use crate::scenario::csv::{Csv, at_line};
+use crate::scenario::csv::Csv;
 use crate::scenario::document::toml_or_text;
 use crate::scenario::keys::Kind;
-use crate::scenario::problem::Problems;
+use crate::scenario::problem::{Problems, at_line};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
 use toml::Value;

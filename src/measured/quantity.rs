@@ -1,10 +1,11 @@
 //! What can be measured on one run over its time: quantities that it has at every step.
 
 use crate::analysis::readouts::{self, Readout};
-use crate::export::columns::{Column, OPTIONAL_COLUMNS, OptionalColumn};
+use crate::export::columns::{COLUMNS, Column, OPTIONAL_COLUMNS, OptionalColumn};
 use crate::run::{Sample, Step};
 use crate::scenario::Scenario;
 use crate::text::unit::Unit;
+use std::sync::LazyLock;
 
 pub const TIME: &str = "t_s";
 
@@ -24,47 +25,25 @@ pub struct Quantity {
 #[derive(Debug)]
 enum Read {
     /// A column of the run's CSV.
-    Column,
+    Column(&'static Column),
     /// A column that the CSV has where it is asked for.
     Optional(&'static OptionalColumn),
 }
 
-const fn column(name: &'static str) -> Quantity {
-    Quantity {
-        name,
-        is_direction: false,
-        read: Read::Column,
-    }
-}
-
-const fn optional(column: &'static OptionalColumn) -> Quantity {
-    Quantity {
-        name: column.name,
-        is_direction: false,
-        read: Read::Optional(column),
-    }
-}
-
 /// Every quantity that can be measured over time.
-pub static QUANTITIES: [Quantity; 14] = [
-    column("x_m"),
-    column("y_m"),
-    column("z_m"),
-    column("Lx_Js"),
-    column("Ly_Js"),
-    column("Lz_Js"),
-    column("wx_rad_per_s"),
-    column("wy_rad_per_s"),
-    column("wz_rad_per_s"),
-    column("tilt_deg"),
-    Quantity {
-        is_direction: true,
-        ..column("azimuth_deg")
-    },
-    column("energy_J"),
-    optional(&OPTIONAL_COLUMNS[0]),
-    optional(&OPTIONAL_COLUMNS[1]),
-];
+pub static QUANTITIES: LazyLock<Vec<Quantity>> = LazyLock::new(|| {
+    let quantity = |name, read| Quantity {
+        name,
+        is_direction: name == "azimuth_deg",
+        read,
+    };
+    let is_measured = |column: &&Column| column.name != TIME && !COUNTS.contains(&column.name);
+    let columns = COLUMNS.iter().filter(is_measured);
+    let columns = columns.map(|column| quantity(column.name, Read::Column(column)));
+    let optional = OPTIONAL_COLUMNS.iter();
+    let optional = optional.map(|column| quantity(column.name, Read::Optional(column)));
+    columns.chain(optional).collect()
+});
 
 impl Quantity {
     pub fn find(name: &str) -> Option<&'static Self> {
@@ -91,23 +70,21 @@ impl Quantity {
     pub fn of(&self, step: &Step) -> f64 {
         match self.read {
             Read::Optional(column) => column.of(step.scenario(), step.after()),
-            Read::Column => self.of_sample(step.scenario(), &step.sample()),
+            Read::Column(column) => column.value(&step.sample()).number(),
         }
     }
 
     /// Its value at `sample`, which is of a run of `scenario`, in the unit of its name.
     pub fn of_sample(&self, scenario: &Scenario, sample: &Sample) -> f64 {
         match self.read {
-            Read::Column => {
-                Column::find(self.name).map_or(f64::NAN, |column| column.value(sample).number())
-            }
+            Read::Column(column) => column.value(sample).number(),
             Read::Optional(column) => column.value(scenario, sample),
         }
     }
 
     /// Whether every CSV of a run has it as a column.
     pub fn is_column(&self) -> bool {
-        matches!(self.read, Read::Column)
+        matches!(self.read, Read::Column(_))
     }
 }
 
@@ -120,14 +97,11 @@ pub fn names() -> impl Iterator<Item = &'static str> + Clone {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::export::columns::COLUMNS;
 
     #[test]
-    fn every_column_of_a_run_and_nothing_without_a_readout_can_be_measured() {
-        for column in COLUMNS {
-            assert!(names().any(|name| name == column.name), "{}", column.name);
-        }
-        for quantity in &QUANTITIES {
+    fn every_quantity_has_a_readout_of_the_state() {
+        assert_eq!(QUANTITIES.len(), COLUMNS.len() - 3 + OPTIONAL_COLUMNS.len());
+        for quantity in &*QUANTITIES {
             let readout = quantity.readout().unwrap();
             assert_eq!(readout.source, readouts::Source::State, "{}", quantity.name);
         }

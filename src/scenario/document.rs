@@ -2,14 +2,13 @@
 
 use super::checks;
 use super::dotted::{find, is_in, set_key};
-use super::head::{read_text, utf8};
+use super::head::{read_text, text_of};
 use super::limits::{self, LONGEST};
 use super::problem::{PRESETS, Problem, Problems, nearest};
 use super::syntax::{mistake, offset_of, syntax_problem};
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start};
 use crate::text::number::shortest;
 use crate::text::printable::{brief, printable};
-use crate::text::unread;
 use std::io::Read;
 use std::path::Path;
 use toml::Value;
@@ -54,14 +53,11 @@ impl Document {
 
     /// Reads what `reader` gives to its end.
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
-        let mut text = Vec::new();
-        let read = reader.take(LONGEST + 1).read_to_end(&mut text);
-        let text = read
-            .map_err(|error| Problem::at("", unread::why(&error)))
-            .and_then(|length| limits::short_enough(length as u64))
-            .and_then(|()| utf8(text))
-            .map_err(|problem| Problems::one(origin, problem))?;
-        Self::parse(origin, &text)
+        let text = text_of(reader, LONGEST, limits::too_long, "");
+        Self::parse(
+            origin,
+            &text.map_err(|problem| Problems::one(origin, problem))?,
+        )
     }
 
     pub fn origin(&self) -> &str {

@@ -138,10 +138,9 @@ impl Progress<'_> {
     fn read<T: DeserializeOwned>(&self, key: &str) -> Result<T, Vec<Problem>> {
         let table = find(&self.written, key).cloned();
         let table = table.unwrap_or(Value::Boolean(false));
-        let problems = keys::check_part(&table, key);
-        if !problems.is_empty() {
-            return Err(problems);
-        }
+        keys::check_part(&table, key)
+            .or(())
+            .map_err(|problems| problems.list)?;
         let read = table.try_into();
         read.map_err(|error: toml::de::Error| vec![Problem::at(key, error.message().to_owned())])
     }

@@ -90,13 +90,10 @@ pub(super) fn too_many(edits: usize, bodies: usize, pushes: usize) -> Option<Pro
         })
 }
 
-/// Refuses a file of `length` bytes where that is too long.
-pub fn short_enough(length: u64) -> Result<(), Problem> {
-    if length <= LONGEST {
-        return Ok(());
-    }
+/// What there is against a file longer than [`LONGEST`].
+pub fn too_long() -> Problem {
     let rule = format!(
         "is longer than 4 MB ({LONGEST} bytes), the most that a scenario or run file may have: leave some of it out"
     );
-    Err(Problem::at("", rule))
+    Problem::at("", rule)
 }

@@ -59,6 +59,12 @@ impl fmt::Display for Problem {
     }
 }
 
+/// A problem in `line`.
+pub fn at_line(line: u64, mut problem: Problem) -> Problem {
+    problem.place = Some(format!("line {line}"));
+    problem
+}
+
 /// The most problems of one file that are told one by one: more of them help nobody.
 const MOST_TOLD: usize = 100;
 

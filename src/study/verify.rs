@@ -16,8 +16,8 @@ use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::study::fit::table::Header;
 use crate::study::sweep::Sweep;
 use crate::study::sweep::in_order::in_order;
+use crate::text::advice::unread;
 use crate::text::printable::printable;
-use crate::text::unread;
 use against::Against;
 pub use against::Difference;
 use std::cell::{Cell, RefCell};
@@ -62,7 +62,7 @@ impl From<String> for Unverified {
 
 impl From<io::Error> for Unverified {
     fn from(error: io::Error) -> Self {
-        unread::why(&error).into()
+        unread(&error).into()
     }
 }
 
