@@ -7,7 +7,7 @@ use crate::figure::Format;
 use crate::figure::kind::Kind;
 use crate::measured::Measured;
 use crate::scenario::Scenario;
-use crate::scenario::limits::{LONGEST, too_long};
+use crate::scenario::limits::{LONGEST, few_enough, too_long};
 use crate::storage::confined::Confined;
 use crate::storage::exporting::{self, Drawn, Exporting, Written};
 use crate::text::printable::{Shown, is_steering};
@@ -165,6 +165,7 @@ impl Files {
         if content.len() as u64 > LONGEST {
             return Err(format!("{what} {}", too_long().rule).into());
         }
+        few_enough(content, 1).map_err(|problem| format!("{what} {}", problem.rule))?;
         self.admit(path)?;
         let mut destination = Destination::open_file(path, force).map_err(refusal)?;
         let written = destination.write_all(content.as_bytes());

@@ -2,8 +2,8 @@
 
 use super::checks;
 use super::dotted::{find, is_in, set_key};
-use super::head::{read_text, text_of};
-use super::limits::{self, LONGEST};
+use super::head::{read_text, text_of_file};
+use super::limits;
 use super::problem::{PRESETS, Problem, Problems, nearest};
 use super::syntax::{mistake, offset_of, syntax_problem};
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start};
@@ -53,11 +53,8 @@ impl Document {
 
     /// Reads what `reader` gives to its end.
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
-        let text = text_of(reader, LONGEST, limits::too_long, "");
-        Self::parse(
-            origin,
-            &text.map_err(|problem| Problems::one(origin, problem))?,
-        )
+        let text = text_of_file(reader).map_err(|problem| Problems::one(origin, problem))?;
+        Self::parse(origin, &text)
     }
 
     pub fn origin(&self) -> &str {
@@ -86,7 +83,7 @@ impl Document {
     /// Takes `text` as the scenario that `origin` holds.
     pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
-        limits::few_enough(&text).map_err(|problem| Problems::one(origin, problem))?;
+        limits::few_enough(&text, 2).map_err(|problem| Problems::one(origin, problem))?;
         let table = text.parse();
         let table = table.map_err(|error| Problems::one(origin, syntax_problem(&text, &error)))?;
         Ok(Self {

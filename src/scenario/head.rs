@@ -121,8 +121,13 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
             "is not the CSV of a run: no line \"{names}...\" below a run file"
         )));
     }
-    let whole = head.bytes.as_slice().chain(reader);
-    text_of(whole, LONGEST, limits::too_long, "")
+    text_of_file(head.bytes.as_slice().chain(reader))
+}
+
+/// The text of a scenario or run file.
+pub(super) fn text_of_file(file: impl Read) -> Result<String, Problem> {
+    let text = text_of(file, LONGEST, limits::too_long, "")?;
+    limits::few_enough(&text, 1).map(|()| text)
 }
 
 /// The text of `file` to its end, of which no more than `most` bytes and one are read; `words` are said after the encoding.

@@ -112,6 +112,11 @@ impl Problems {
         self.more += more;
     }
 
+    /// What was `made`; where it was not, its problems are added.
+    pub fn kept<T>(&mut self, made: Result<T, impl Into<Self>>) -> Option<T> {
+        made.map_err(|problems| self.add_all(problems)).ok()
+    }
+
     /// `made` where there are no problems.
     pub fn or<T>(self, made: T) -> Result<T, Self> {
         if self.list.is_empty() {
