@@ -197,17 +197,12 @@ fn shown(value: &toml::Value) -> String {
 /// The names one after the other, the first dozen of them.
 pub fn listed<'a>(names: impl Iterator<Item = &'a str> + Clone) -> String {
     const MOST: usize = 12;
-    let mut list: Vec<_> = names
-        .clone()
-        .take(MOST)
-        .map(|name| brief(name, 40))
-        .collect();
-    match names.count().saturating_sub(MOST) {
-        0 => {}
-        more => list.push(format!("and {more} more")),
-    }
-    if list.is_empty() {
-        return "none".to_owned();
+    let first = names.clone().take(MOST);
+    let mut list: Vec<_> = first.map(|name| brief(name, 40)).collect();
+    match names.count() {
+        0 => list.push("none".to_owned()),
+        count if count > MOST => list.push(format!("and {} more", count - MOST)),
+        _ => {}
     }
     list.join(", ")
 }
@@ -244,12 +239,10 @@ fn closest<'a>(
     // A name that lacks its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near however long the unit; nearer is one
     // that differs in no letter and no digit ("method2" for "method-2", and not for "method-2-slow").
     if !bare.is_empty() {
-        let is_same = |name: &&str| letters(name) == bare;
+        let same = known.clone().find(|name| letters(name) == bare);
         let begins = |name: &&str| letters(name).starts_with(bare);
-        let found = known.clone().find(is_same);
-        let found = found.or_else(|| known.clone().find(begins));
-        if found.is_some() {
-            return found;
+        if let Some(found) = same.or_else(|| known.clone().find(begins)) {
+            return Some(found);
         }
     }
     let lower = wrong.to_lowercase();
@@ -280,14 +273,13 @@ mod tests {
     #[test]
     fn the_nearest_name_is_offered() {
         let known = ["radius_m", "height_m", "points"];
-        assert_eq!(
-            nearest("raduis_m", known.into_iter()),
-            "did you mean radius_m?"
-        );
-        assert_eq!(
-            nearest("radius", known.into_iter()),
-            "did you mean radius_m?"
-        );
+        for (wrong, near) in [
+            ("raduis_m", "did you mean radius_m?"),
+            ("radius", "did you mean radius_m?"),
+            ("colour", "there is radius_m, height_m, points"),
+        ] {
+            assert_eq!(nearest(wrong, known.into_iter()), near);
+        }
         let readouts = [
             "t_s",
             "Lx_Js",
@@ -304,10 +296,6 @@ mod tests {
         ] {
             assert_eq!(nearest(wrong, readouts.into_iter()), near, "{wrong}");
         }
-        assert_eq!(
-            nearest("colour", known.into_iter()),
-            "there is radius_m, height_m, points"
-        );
     }
 
     #[test]

@@ -194,18 +194,12 @@ fn is_offered(place: &str, table: &Table) -> bool {
     let Some((inside, name)) = place.rsplit_once('.') else {
         return true;
     };
-    if inside == "start" && name.starts_with("omega") {
-        return find(table, "start.omega_rad_per_s").is_some();
-    }
-    if !inside.starts_with("push.") {
-        return true;
-    }
-    let is_in_seconds = ["from_s", "for_s"]
-        .iter()
-        .any(|name| find(table, &join(inside, name)).is_some());
-    match name {
-        "first_step" | "steps" | "accumulates" => !is_in_seconds,
-        "from_s" | "for_s" => is_in_seconds,
+    let has = |name: &str| find(table, &join(inside, name)).is_some();
+    let is_in_seconds = || has("from_s") || has("for_s");
+    match (inside.split('.').next(), name) {
+        (Some("start"), "omega_rad_per_s" | "omega_frame") => has("omega_rad_per_s"),
+        (Some("push"), "first_step" | "steps" | "accumulates") => !is_in_seconds(),
+        (Some("push"), "from_s" | "for_s") => is_in_seconds(),
         _ => true,
     }
 }
@@ -216,13 +210,11 @@ fn group(place: &str, table: &Table) -> String {
         [_] => "scenario".to_owned(),
         ["body", kind @ ("point" | "part"), index, ..] => {
             let name = find(table, &format!("body.{kind}.{index}.name")).and_then(Value::as_str);
-            name.map_or(format!("{kind} {index}"), |name| {
-                format!("{kind} {}", brief(name, 40))
-            })
+            let name = name.map_or(index.to_owned(), |name| brief(name, 40));
+            format!("{kind} {name}")
         }
         ["push", index, ..] => format!("push {index}"),
-        [table, ..] => table.to_owned(),
-        [] => String::new(),
+        _ => names[0].to_owned(),
     }
 }
 
@@ -290,9 +282,10 @@ impl Parameter {
             (_, Nudge::Turn) => Value::String(self.cycled(times)?),
             (Value::Integer(value), _) => Value::Integer(nudge::whole(*value, times)),
             (value, rule) => {
-                let number =
-                    float(value).and_then(|number| nudge::number(number, self.size, rule, times));
-                Value::Float(number.ok_or("cannot be nudged: type it")?)
+                let number = float(value);
+                let nudged = |number| nudge::number(number, self.size, rule, times);
+                let nudged = number.and_then(nudged).ok_or("cannot be nudged: type it")?;
+                Value::Float(nudged)
             }
         };
         self.checked(value)
@@ -340,12 +333,8 @@ impl Parameter {
 
     /// The three components of a vector, each as a parameter.
     fn components(self) -> Vec<Parameter> {
-        let numbers = self
-            .value
-            .as_array()
-            .into_iter()
-            .flatten()
-            .filter_map(float);
+        let numbers = self.value.as_array().into_iter().flatten();
+        let numbers = numbers.filter_map(float);
         let component = |(index, number)| Parameter {
             key: join(&self.key, &format!("{index}")),
             label: format!("{}{}", self.label, ["x", "y", "z"][index]),
