@@ -13,7 +13,6 @@ const LONGEST: usize = 1000;
 pub struct Expression {
     text: String,
     root: Node,
-    is_condition: bool,
     /// Every name in it once, and the column (from 1) where it stands first.
     names: Vec<(String, usize)>,
 }
@@ -82,10 +81,6 @@ impl Operator {
         self.power < COMPARES
     }
 
-    fn gives_condition(&self) -> bool {
-        self.power <= COMPARES
-    }
-
     /// The result where one side alone decides it, whatever the other is.
     fn decided_by(&self, side: Option<f64>) -> Option<f64> {
         match (self.power, side?) {
@@ -110,25 +105,19 @@ impl Expression {
             let rule = format!("an expression has at most {LONGEST} characters");
             return Err(Fault { column: 1, rule });
         }
-        let (root, is_condition, names) = parse::parse(text)?;
-        Ok(Self {
-            text: text.to_owned(),
-            root,
-            is_condition,
-            names,
-        })
+        let (root, names) = parse::parse(text)?;
+        let text = text.to_owned();
+        Ok(Self { text, root, names })
     }
 
     /// Reads `text`, which must say whether something holds.
     pub fn condition(text: &str) -> Result<Self, Fault> {
         let expression = Self::parse(text)?;
-        if expression.is_condition {
+        if expression.is_condition() {
             return Ok(expression);
         }
-        Err(Fault {
-            column: 1,
-            rule: "must compare, such as t_s >= 60".to_owned(),
-        })
+        let rule = "must compare, such as t_s >= 60".to_owned();
+        Err(Fault { column: 1, rule })
     }
 
     pub fn text(&self) -> &str {
@@ -137,7 +126,7 @@ impl Expression {
 
     /// Whether it is a condition, not a number.
     pub fn is_condition(&self) -> bool {
-        self.is_condition
+        self.root.is_condition()
     }
 
     pub fn names(&self) -> impl Iterator<Item = &str> {
@@ -181,6 +170,10 @@ impl PartialEq for Expression {
 }
 
 impl Node {
+    fn is_condition(&self) -> bool {
+        matches!(self, Self::Computed(operator, ..) if operator.power <= COMPARES)
+    }
+
     fn value(&self, name: &mut impl FnMut(usize) -> Option<f64>) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),

@@ -6,7 +6,7 @@ use crate::scenario::dotted::{find, join, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
 use crate::scenario::keys::{InLab, KEYS, Key, Kind, Nudge, Range};
 use crate::scenario::solids::has_dimension;
-use crate::scenario::{Document, Problems, Scenario, nudge, start, vector};
+use crate::scenario::{Document, Problems, Scenario, float, nudge, start, vector};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
 use nalgebra::Vector3;
@@ -239,11 +239,6 @@ fn size(value: &Value) -> f64 {
         Value::Array(items) => items.iter().filter_map(float).fold(0.0, libm::hypot),
         other => float(other).unwrap_or_default().abs(),
     }
-}
-
-pub(super) fn float(value: &Value) -> Option<f64> {
-    let whole = || value.as_integer().map(|whole| whole as f64);
-    value.as_float().or_else(whole)
 }
 
 /// `value` as a float where `kind` is a number; whole numbers stay integers.

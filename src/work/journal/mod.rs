@@ -17,7 +17,7 @@ pub use entry::{Act, Entry};
 
 use super::parameters;
 use crate::scenario::file::{EditFile, PushFile, ScenarioFile};
-use crate::scenario::{Document, Problems, Scenario, rescale};
+use crate::scenario::{Document, Problems, Scenario, float, rescale};
 use run_file::describe;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -192,7 +192,7 @@ impl Journal {
             };
             for (key, value) in set {
                 if key == "motion.time_step_s" {
-                    time_step_s = parameters::float(value).unwrap_or(time_step_s);
+                    time_step_s = float(value).unwrap_or(time_step_s);
                 } else if !is_added(key) {
                     document.write(key, value.clone())?;
                 }
