@@ -1,8 +1,8 @@
 //! The output of an export: a file that appears only once it is complete, or a stream.
 
 use super::temporary;
+use crate::text::advice::unwritten;
 use crate::text::printable::Shown;
-use crate::text::unwritten;
 use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -41,7 +41,7 @@ pub enum DestinationError {
     NotAFile(PathBuf),
     #[error("cannot write {}: there is no folder {}", Shown(path), Shown(folder))]
     NoFolder { path: PathBuf, folder: PathBuf },
-    #[error("cannot write {}: {}", Shown(path), unwritten::why(error))]
+    #[error("cannot write {}: {}", Shown(path), unwritten(error))]
     Refused { path: PathBuf, error: io::Error },
 }
 

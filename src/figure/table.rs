@@ -4,8 +4,8 @@ use crate::export::layout::above_run_file;
 use crate::scenario::csv::{self, Csv};
 use crate::scenario::head::Head;
 use crate::scenario::{Problem, Problems};
+use crate::text::advice::unread;
 use crate::text::number::NONE;
-use crate::text::unread;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::BufReader;
@@ -78,7 +78,7 @@ impl Table {
             return Ok(None);
         }
         let head = File::open(path).and_then(|file| Head::read(&mut BufReader::new(file)));
-        let head = head.map_err(|error| refused(Problem::at("", unread::why(&error))))?;
+        let head = head.map_err(|error| refused(Problem::at("", unread(&error))))?;
         let names = String::from_utf8_lossy(head.names()).into_owned();
         let names: Vec<&str> = names
             .split(',')
@@ -94,7 +94,7 @@ impl Table {
         }
         let text = csv::text(path).map_err(refused)?;
         let csv = Csv::of(&text, MOST_VALUES);
-        let csv = csv.map_err(|found| Problems::of(path.display().to_string(), found))?;
+        let csv = csv.map_err(|found| found.of(path.display().to_string()))?;
         Ok(Some(Self {
             subject,
             title,

@@ -19,7 +19,7 @@ use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
 use crate::observe::recording::Curve;
 use crate::scenario::dotted::join;
-use crate::scenario::problem::{Found, nearest};
+use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
 use crate::work::expression::Expression;
 use crate::work::next_push::Toward;
@@ -230,7 +230,7 @@ pub fn open(path: &Path) -> Result<Commands, Problems> {
 
 /// The commands in `document`.
 pub fn read(document: &Document) -> Result<Commands, Problems> {
-    let mut problems = Found::default();
+    let mut problems = Problems::default();
     let mut list = Vec::new();
     for name in document.table().keys().filter(|name| *name != "do") {
         let rule = "unknown key: a file of commands holds [[do]] and nothing else";
@@ -243,9 +243,7 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
             for ((index, value), line) in tables.iter().enumerate().zip(lines) {
                 match one(index, value) {
                     Ok(command) => list.push(Placed { command, line }),
-                    Err(found) => found
-                        .into_iter()
-                        .for_each(|problem| problems.add(|| problem)),
+                    Err(found) => problems.add_all(found),
                 }
             }
         }
@@ -258,14 +256,9 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
             Problem::at("", rule)
         }),
     }
-    if problems.list.is_empty() {
-        Ok(Commands {
-            origin: document.origin().to_owned(),
-            list,
-        })
-    } else {
-        Err(document.placed(problems))
-    }
+    let origin = document.origin().to_owned();
+    let commands = problems.or(Commands { origin, list });
+    commands.map_err(|problems| document.placed(problems))
 }
 
 /// The command in the table `do.index`.

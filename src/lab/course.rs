@@ -66,14 +66,16 @@ impl Player {
 
     pub(super) fn run_until(&mut self, condition: &Expression) -> Answer {
         let run = self.run();
-        let bound = condition
+        let sources = condition
             .bind(|name| Ok(numbers::find(name)?.of(run)))
             .map_err(|fault| fault.to_string())?;
+        let condition = condition.clone();
         self.heading = None;
         let mut numbers = Numbers::default();
         let holds = move |run: &mut LiveRun| {
             let mut now = numbers.at(run);
-            bound.holds(|source| now.value(source))
+            let value = condition.value_at(|index| now.value(&sources[index]));
+            value.is_some_and(|value| value != 0.0)
         };
         Ok(if self.playback.run_until(Box::new(holds)) {
             Done::SILENT.going_on(UnderWay::Playing)

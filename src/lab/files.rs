@@ -7,7 +7,7 @@ use crate::figure::Format;
 use crate::figure::kind::Kind;
 use crate::measured::Measured;
 use crate::scenario::Scenario;
-use crate::scenario::limits::short_enough;
+use crate::scenario::limits::{LONGEST, few_enough, too_long};
 use crate::storage::confined::Confined;
 use crate::storage::exporting::{self, Drawn, Exporting, Written};
 use crate::text::printable::{Shown, is_steering};
@@ -162,8 +162,10 @@ impl Files {
     /// Writes `content` to the file `path`; `what` names the content in the message.
     pub(super) fn save(&self, what: &str, content: &str, path: &Path, force: bool) -> Answer {
         is_named(path)?;
-        short_enough(content.len() as u64)
-            .map_err(|too_long| format!("{what} {}", too_long.rule))?;
+        if content.len() as u64 > LONGEST {
+            return Err(format!("{what} {}", too_long().rule).into());
+        }
+        few_enough(content, 1).map_err(|problem| format!("{what} {}", problem.rule))?;
         self.admit(path)?;
         let mut destination = Destination::open_file(path, force).map_err(refusal)?;
         let written = destination.write_all(content.as_bytes());

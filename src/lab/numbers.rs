@@ -6,11 +6,10 @@ use crate::analysis::readouts::{self, Readout};
 use crate::export::columns::{COLUMNS, Column};
 use crate::observe::live::LiveRun;
 use crate::run::Sample;
-use crate::scenario::dotted;
 use crate::scenario::keys::{self, KEYS, Kind};
 use crate::scenario::problem::nearest;
+use crate::scenario::{dotted, float};
 use crate::work::parameters::table_at;
-use toml::Value;
 
 #[derive(Clone, Copy, Debug)]
 pub enum Named<'a> {
@@ -109,15 +108,10 @@ impl Named<'_> {
             Self::Key("motion.time_step_s") => Source::TimeStep,
             Self::Key(name) => {
                 let table = table_at(run.scenario(), run.simulation().step_number());
-                Source::Fixed(dotted::find(&table, name).and_then(number))
+                Source::Fixed(dotted::find(&table, name).and_then(float))
             }
         }
     }
-}
-
-fn number(value: &Value) -> Option<f64> {
-    let whole = || value.as_integer().map(|whole| whole as f64);
-    value.as_float().or_else(whole)
 }
 
 /// The numbers of a run at one step after the other. At each step only the numbers that are asked for are computed.

@@ -27,7 +27,7 @@ pub use reading::{open, read, text};
 pub use residual::{Residual, is_counted, residuals};
 
 use crate::analysis::readouts::Readout;
-use crate::scenario::{Problem, Problems};
+use crate::scenario::{Problem, Problems, float};
 use toml::Value;
 
 #[derive(Clone, Debug)]
@@ -148,11 +148,7 @@ impl Measured {
 impl Setting {
     /// The values as numbers; `None` where one of them is no number or not there.
     pub fn numbers(&self) -> Option<Vec<f64>> {
-        let number = |value: &Option<Value>| match value.as_ref()? {
-            Value::Float(number) => Some(*number),
-            Value::Integer(whole) => Some(*whole as f64),
-            _ => None,
-        };
+        let number = |value: &Option<Value>| float(value.as_ref()?);
         self.values.iter().map(number).collect()
     }
 }

@@ -2,10 +2,10 @@
 
 use super::quantity::{self, COUNTS, Quantity, TIME};
 use crate::analysis::readouts::{self, Readout, Source};
-use crate::scenario::Problem;
-use crate::scenario::csv::{Csv, at_line};
+use crate::scenario::csv::Csv;
 use crate::scenario::keys::{self, Kind};
-use crate::scenario::problem::{listed, nearest};
+use crate::scenario::problem::{at_line, listed, nearest};
+use crate::scenario::{Problem, Problems};
 use crate::text::number::significant;
 use crate::text::unit::{Unit, with_word};
 
@@ -50,33 +50,33 @@ pub(super) struct Named {
 }
 
 /// The columns of `cells`, without those that count.
-pub(super) fn named(cells: &Csv) -> Result<Vec<Named>, Vec<Problem>> {
+pub(super) fn named(cells: &Csv) -> Result<Vec<Named>, Problems> {
     let mut problems = Vec::new();
     let names = &cells.names;
     let is_series = names.iter().any(|name| name == TIME);
     let of = if is_series { of_series } else { of_table };
     let mut columns = Vec::new();
     for (place, name) in names.iter().enumerate() {
+        let mut refuse = |rule| problems.push(Problem::at(shown(name, place), rule));
         if names[..place].contains(name) {
-            let rule = "names two columns: leave one of them out";
-            problems.push(Problem::at(shown(name, place), rule));
+            refuse("names two columns: leave one of them out".to_owned());
         }
         if is_uncertainty(name) {
             continue;
         }
-        let uncertainty = with_word(name, UNCERTAINTY);
-        let of_it = |is: &Is| {
-            is.may_be_off()
-                .then(|| names.iter().position(|other| *other == uncertainty))?
-        };
         match of(name) {
-            Ok(is) => columns.push(Named {
-                place,
-                name: name.clone(),
-                uncertainty: of_it(&is),
-                is,
-            }),
-            Err(rule) => problems.push(Problem::at(shown(name, place), rule)),
+            Ok(is) => {
+                let uncertainty = with_word(name, UNCERTAINTY);
+                let mut others = names.iter();
+                let uncertainty = others.position(|other| *other == uncertainty);
+                columns.push(Named {
+                    place,
+                    name: name.clone(),
+                    uncertainty: uncertainty.filter(|_| is.may_be_off()),
+                    is,
+                });
+            }
+            Err(rule) => refuse(rule),
         }
     }
     problems.extend(uncertainties_alone(names, &columns));
@@ -85,11 +85,7 @@ pub(super) fn named(cells: &Csv) -> Result<Vec<Named>, Vec<Problem>> {
     }
     columns.retain(|column| !matches!(column.is, Is::Count));
     let place = |problem| at_line(cells.line_of_names, problem);
-    if problems.is_empty() {
-        Ok(columns)
-    } else {
-        Err(problems.into_iter().map(place).collect())
-    }
+    Problems::from(problems.into_iter().map(place).collect::<Vec<_>>()).or(columns)
 }
 
 /// A column's name, or its number where it has none.
@@ -131,17 +127,14 @@ fn of_series(name: &str) -> Result<Is, String> {
 /// What the column `name` of a table of runs holds.
 fn of_table(name: &str) -> Result<Is, String> {
     if let Some(readout) = readouts::find(name) {
-        return match readout {
-            _ if COUNTS.contains(&name) || name == "steps" => Ok(Is::Count),
-            _ if readout.is_text => Err("is a text of the run, and cannot be measured".to_owned()),
-            readout if readout.source == Source::Clock => {
-                Err("is told by the clock, and says nothing of the motion".to_owned())
-            }
-            readout if readout.source == Source::Scenario => {
-                Err("follows from the scenario alone: nothing is measured by it".to_owned())
-            }
-            readout => Ok(Is::Readout(readout)),
+        let rule = match readout.source {
+            _ if COUNTS.contains(&name) || name == "steps" => return Ok(Is::Count),
+            _ if readout.is_text => "is a text of the run, and cannot be measured",
+            Source::Clock => "is told by the clock, and says nothing of the motion",
+            Source::Scenario => "follows from the scenario alone: nothing is measured by it",
+            _ => return Ok(Is::Readout(readout)),
         };
+        return Err(rule.to_owned());
     }
     let first = name.split('.').next().unwrap_or_default();
     if [
@@ -169,11 +162,11 @@ fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Stri
         return told;
     }
     let is_time = ["t", "time", "zeit"].contains(&stem(name).to_lowercase().as_str());
-    if is_time {
-        format!("is no column that gyrolab knows: did you mean {TIME}?")
-    } else {
-        format!("is no column that gyrolab knows: {}", nearest(name, known))
-    }
+    let near = match is_time.then_some(TIME) {
+        Some(time) => format!("did you mean {time}?"),
+        None => nearest(name, known),
+    };
+    format!("is no column that gyrolab knows: {near}")
 }
 
 /// `name` without its unit.

@@ -3,10 +3,10 @@
 use super::names::{Is, Named};
 use super::{Column, Curve, Point, Series, Setting, Table};
 use crate::scenario::Problem;
-use crate::scenario::csv::{Csv, at_line};
+use crate::scenario::csv::Csv;
 use crate::scenario::document::toml_or_text;
 use crate::scenario::keys::Kind;
-use crate::scenario::problem::Found;
+use crate::scenario::problem::{Problems, at_line};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
 use toml::Value;
@@ -14,7 +14,7 @@ use toml::Value;
 /// Reads cells, and takes down what is wrong with them.
 pub(super) struct Numbers<'a> {
     cells: &'a Csv,
-    pub found: Found,
+    pub found: Problems,
     /// The decimal signs that the file has used so far.
     uses_points: bool,
     uses_commas: bool,
@@ -24,7 +24,7 @@ impl<'a> Numbers<'a> {
     pub fn of(cells: &'a Csv) -> Self {
         Self {
             cells,
-            found: Found::default(),
+            found: Problems::default(),
             uses_points: false,
             uses_commas: false,
         }
@@ -75,25 +75,15 @@ impl<'a> Numbers<'a> {
         let mut before: Option<(u64, f64)> = None;
         for (line, texts) in &self.cells.rows {
             let text = &texts[column.place];
-            let time_s = match self.number(*line, &column.name, text) {
-                None if text.is_empty() => {
-                    self.refuse(
-                        *line,
-                        &column.name,
-                        "",
-                        "is missing: every row needs its time",
-                    );
-                    f64::NAN
-                }
-                None => f64::NAN,
-                Some(time_s) if time_s < 0.0 => {
-                    let rule =
-                        "must not be negative: a run begins at t = 0; count the time from there";
-                    self.refuse(*line, &column.name, text, rule);
-                    time_s
-                }
-                Some(time_s) => time_s,
-            };
+            let number = self.number(*line, &column.name, text);
+            let time_s = number.unwrap_or(f64::NAN);
+            if text.is_empty() {
+                let rule = "is missing: every row needs its time";
+                self.refuse(*line, &column.name, text, rule);
+            } else if time_s < 0.0 {
+                let rule = "must not be negative: a run begins at t = 0; count the time from there";
+                self.refuse(*line, &column.name, text, rule);
+            }
             if let Some((above, earlier)) = before.filter(|(_, earlier)| time_s < *earlier) {
                 let rule = format!(
                     "is before the time {} in line {above}: sort the rows by time, and put another run's into a file of their own",
@@ -111,16 +101,13 @@ impl<'a> Numbers<'a> {
 
     /// The values of a measured column, with their uncertainties.
     fn points(&mut self, column: &Named) -> Vec<Point> {
-        let cells = self.cells;
-        let mut points = Vec::new();
-        for (row, (line, texts)) in cells.rows.iter().enumerate() {
+        let rows = self.cells.rows.iter().enumerate();
+        let points = rows.filter_map(|(row, (line, texts))| {
             let value = self.number(*line, &column.name, &texts[column.place]);
             let sigma = self.sigma(*line, column, texts);
-            if let Some(value) = value {
-                points.push(Point { row, value, sigma });
-            }
-        }
-        points
+            value.map(|value| Point { row, value, sigma })
+        });
+        points.collect()
     }
 
     fn setting(&mut self, column: &Named, kind: Kind) -> Setting {
@@ -171,23 +158,18 @@ impl<'a> Numbers<'a> {
         } else {
             text.to_owned()
         };
-        let number = match written.parse::<f64>() {
-            Ok(number) if number.is_finite() => number,
-            Ok(_) => {
-                let rule = "must be a finite number: a value that is missing is an empty place";
-                self.refuse(line, name, text, rule);
-                return None;
-            }
+        let rule = match written.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            Ok(_) => Err("must be a finite number: a value that is missing is an empty place"),
+            Err(_) if has_comma => Err(
+                "must be a number with one decimal sign, a point (1.5), and nothing between its thousands",
+            ),
             Err(_) => {
-                let rule = if has_comma {
-                    "must be a number with one decimal sign, a point (1.5), and nothing between its thousands"
-                } else {
-                    "must be a number, without its unit; a value that is missing is an empty place"
-                };
-                self.refuse(line, name, text, rule);
-                return None;
+                Err("must be a number, without its unit; a value that is missing is an empty place")
             }
         };
+        let read = rule.map_err(|rule| self.refuse(line, name, text, rule));
+        let number = read.ok()?;
         self.uses_commas |= has_comma;
         self.uses_points |= text.contains('.');
         if self.uses_commas && self.uses_points {

@@ -4,6 +4,7 @@ use crate::analysis::readouts::{self, Readout};
 use crate::export::Column;
 use crate::run::Step;
 use crate::text::unit::Unit;
+use std::sync::LazyLock;
 
 pub const TIME: &str = "t_s";
 
@@ -17,35 +18,19 @@ pub struct Quantity {
     pub name: &'static str,
     /// Whether it is an angle that can be measured only up to whole turns.
     pub is_direction: bool,
-}
-
-const fn column(name: &'static str) -> Quantity {
-    Quantity {
-        name,
-        is_direction: false,
-    }
+    column: &'static Column,
 }
 
 /// Every quantity that can be measured over time.
-pub static QUANTITIES: [Quantity; 14] = [
-    column("x_m"),
-    column("y_m"),
-    column("z_m"),
-    column("Lx_Js"),
-    column("Ly_Js"),
-    column("Lz_Js"),
-    column("wx_rad_per_s"),
-    column("wy_rad_per_s"),
-    column("wz_rad_per_s"),
-    column("tilt_deg"),
-    Quantity {
-        is_direction: true,
-        ..column("azimuth_deg")
-    },
-    column("energy_J"),
-    column("spin_rpm"),
-    column("L_axle_Js"),
-];
+pub static QUANTITIES: LazyLock<Vec<Quantity>> = LazyLock::new(|| {
+    let is_measured = |column: &&Column| column.name != TIME && !COUNTS.contains(&column.name);
+    let quantity = |column: &'static Column| Quantity {
+        name: column.name,
+        is_direction: column.name == "azimuth_deg",
+        column,
+    };
+    Column::all().filter(is_measured).map(quantity).collect()
+});
 
 impl Quantity {
     pub fn find(name: &str) -> Option<&'static Self> {
@@ -70,10 +55,7 @@ impl Quantity {
 
     /// Its value after `step`, in the unit of its name.
     pub fn of(&self, step: &Step) -> f64 {
-        let column = Column::all().find(|column| column.name == self.name);
-        column.map_or(f64::NAN, |column| {
-            column.value(step.scenario(), &step.sample())
-        })
+        self.column.value(step.scenario(), &step.sample())
     }
 }
 
@@ -86,14 +68,11 @@ pub fn names() -> impl Iterator<Item = &'static str> + Clone {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::export::columns::COLUMNS;
 
     #[test]
-    fn every_column_of_a_run_and_nothing_without_a_readout_can_be_measured() {
-        for column in COLUMNS {
-            assert!(names().any(|name| name == column.name), "{}", column.name);
-        }
-        for quantity in &QUANTITIES {
+    fn every_quantity_has_a_readout_of_the_state() {
+        assert_eq!(QUANTITIES.len(), Column::all().count() - 3);
+        for quantity in &*QUANTITIES {
             let readout = quantity.readout().unwrap();
             assert_eq!(readout.source, readouts::Source::State, "{}", quantity.name);
         }

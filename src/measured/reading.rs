@@ -6,7 +6,6 @@ use super::quantity::TIME;
 use super::shipped;
 use super::{Data, Measured};
 use crate::scenario::csv::{self, Csv};
-use crate::scenario::problem::Found;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
 use std::borrow::Cow;
@@ -53,11 +52,10 @@ fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
 /// # Errors
 /// Everything that is wrong with it: with the names of the columns first, and where these are right with the rows.
 pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
-    let refused = |found: Found| Problems::of(origin, found);
     let cells = Csv::of(text, MOST_VALUES);
     let named = cells.and_then(|cells| Ok((named(&cells)?, cells)));
-    let (columns, cells) =
-        named.map_err(|found| scenario_instead(origin, text).unwrap_or_else(|| refused(found)))?;
+    let (columns, cells) = named
+        .map_err(|found| scenario_instead(origin, text).unwrap_or_else(|| found.of(origin)))?;
     let mut numbers = Numbers::of(&cells);
     let data = if columns.iter().any(|column| column.name == TIME) {
         Data::Series(numbers.series(&columns))
@@ -87,5 +85,5 @@ pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
         place.parse::<u64>().ok()
     };
     found.list.sort_by_key(line);
-    Err(refused(found))
+    Err(found.of(origin))
 }

@@ -3,44 +3,30 @@
 use super::edits::edits;
 use super::file::{BodyFile, ScenarioFile};
 use super::keys::{TOP, is_under};
-use super::model::{Body, Scenario};
+use super::model::{Body, Motion, Scenario};
 use super::parts::{body, motion, pushes};
-use super::problem::{Found, Problem, listed};
+use super::problem::{Problem, Problems, listed};
 use super::rotor;
-use super::rubbing::{friction, objection};
+use super::rubbing::{friction, objects};
 use super::start::start;
-use crate::physics::{State, observables};
+use crate::physics::{self, Friction, State, observables};
 use std::sync::Arc;
 use toml::Value;
 
-pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
+pub fn scenario(file: ScenarioFile) -> Result<Scenario, Problems> {
     // Without a body nothing can be said of the rest; of that, each part is looked at by itself.
     let mut body = body(&file.body)?;
-    let trace = match &file.trace {
+    let motion = motion(&file.motion);
+    let mut problems = Problems::default();
+    let trace = problems.kept(match &file.trace {
         Some(name) => body.find("trace", name),
         None => body.point(TOP).ok_or_else(|| no_top(&body)),
-    };
-    let motion = motion(&file.motion);
-    let spinning = rotor::spinning(&file.start, &body, &file.body.part);
-    let started = spinning.and_then(|spinning| {
-        let start = start(&file.start, &spinning, motion.gravity)?;
-        let friction = friction(file.friction.as_ref(), &spinning)?;
-        match objection("motion.scheme", motion.scheme, &friction) {
-            None => Ok((spinning, start, friction)),
-            Some(problem) => Err(vec![problem]),
-        }
     });
-    let pushed = pushes(&file.push, &body);
-    let (trace, (spinning, start, friction), pushes) = match (trace, started, pushed) {
-        (Ok(trace), Ok(started), Ok(pushes)) => (trace, started, pushes),
-        (trace, started, pushed) => {
-            let mut found = Found::default();
-            for problems in [trace.err(), started.err()].into_iter().flatten() {
-                found.add_all(problems);
-            }
-            found.add_all(pushed.err().unwrap_or_default());
-            return Err(found);
-        }
+    let started = problems.kept(started(&file, &body, &motion));
+    let pushed = problems.kept(pushes(&file.push, &body));
+    let (Some(trace), Some((spinning, start, friction)), Some(pushes)) = (trace, started, pushed)
+    else {
+        return Err(problems);
     };
     body.mechanics = spinning;
     let edits = edits(&file, &body, &pushes, &friction)?;
@@ -62,9 +48,22 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
     })
 }
 
+/// What spins, its state at the start, and the friction on it.
+fn started(
+    file: &ScenarioFile,
+    body: &Body,
+    motion: &Motion,
+) -> Result<(physics::Body, State, Friction), Vec<Problem>> {
+    let spinning = rotor::spinning(&file.start, body, &file.body.part)?;
+    let start = start(&file.start, &spinning, motion.gravity)?;
+    let friction = friction(file.friction.as_ref(), &spinning)?;
+    objects(motion.scheme, &friction)?;
+    Ok((spinning, start, friction))
+}
+
 /// Adds the unknown names of points in `table` to the problems `found` with its keys, so that both are printed together.
 /// Where the body itself is wrong, its points are unknown and nothing is added.
-pub fn names(table: &toml::Table, found: &mut Found) {
+pub fn names(table: &toml::Table, found: &mut Problems) {
     let is_of_body = |key: &str| key == "body" || is_under(key, "body");
     let file = table.get("body").filter(|_| {
         let wrong = found.list.iter();
@@ -80,13 +79,8 @@ pub fn names(table: &toml::Table, found: &mut Found) {
     let traced = std::iter::once(("trace".to_owned(), table.get("trace")));
     for (key, name) in traced.chain(pushed) {
         let name = name.and_then(Value::as_str);
-        let Some(name) = name.filter(|name| body.point(name).is_none()) else {
-            continue;
-        };
-        if found.is_full() {
-            found.more += 1;
-        } else {
-            found.add_all(body.find(&key, name).err().unwrap_or_default());
+        if let Some(name) = name.filter(|name| body.point(name).is_none()) {
+            found.add(|| body.no_point(&key, name));
         }
     }
 }
@@ -101,16 +95,11 @@ fn is_readable(body: &Body, trace: usize, start: &State, gravity: f64) -> bool {
 }
 
 fn no_top(body: &Body) -> Vec<Problem> {
-    let names = body.names();
-    let known = match names.len() {
-        0 => "it has no named point: add a [[body.point]]".to_owned(),
-        _ => format!(
-            "name one of its points with trace = \"...\": {}",
-            listed(names.into_iter())
-        ),
+    let names = listed(body.names().into_iter());
+    let known = match names.as_str() {
+        "none" => "it has no named point: add a [[body.point]]".to_owned(),
+        names => format!("name one of its points with trace = \"...\": {names}"),
     };
-    vec![Problem::at(
-        "trace",
-        format!("the body has no point \"{TOP}\" whose path could be shown; {known}"),
-    )]
+    let rule = format!("the body has no point \"{TOP}\" whose path could be shown; {known}");
+    vec![Problem::at("trace", rule)]
 }

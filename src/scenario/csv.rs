@@ -1,12 +1,11 @@
 //! A CSV with a header of `#` lines, taken apart: measured data, and the tables of sweeps, comparisons and fits.
 
-use super::head::Head;
-use super::problem::{Found, Problem};
-use crate::text::unread;
+use super::head::{Head, text_of};
+use super::problem::{Problem, Problems, at_line};
+use crate::text::advice::unread;
 use ::csv::{ReaderBuilder, StringRecord, Trim};
 use std::fmt;
 use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 /// The longest file that is read, bytes.
@@ -27,12 +26,6 @@ pub struct Csv {
     pub rows: Vec<(u64, Vec<String>)>,
 }
 
-/// A problem in `line`.
-pub fn at_line(line: u64, mut problem: Problem) -> Problem {
-    problem.place = Some(format!("line {line}"));
-    problem
-}
-
 /// The text of the file `path`.
 ///
 /// # Errors
@@ -41,29 +34,22 @@ pub fn text(path: &Path) -> Result<String, Problem> {
     if path.is_dir() {
         return Err(Problem::at("", "is a folder: name a CSV file in it"));
     }
-    let mut bytes = Vec::new();
-    // Of a FIFO no more than the limit.
-    let read = File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes));
-    read.map_err(|error| Problem::at("", unread::why(&error)))?;
-    if bytes.len() as u64 > LONGEST {
-        let most = LONGEST >> 20;
-        let rule = format!("is longer than {most} MiB, the most that is read: leave rows out");
-        return Err(Problem::at("", rule));
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = good.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
-        let rule = "is not text in UTF-8: save the file in that encoding (\"CSV UTF-8\")";
-        at_line(line, Problem::at("", rule))
-    })
+    let file = File::open(path).map_err(|error| Problem::at("", unread(&error)))?;
+    text_of(file, LONGEST, too_long, " (\"CSV UTF-8\")")
+}
+
+fn too_long() -> Problem {
+    let most = LONGEST >> 20;
+    let rule = format!("is longer than {most} MiB, the most that is read: leave rows out");
+    Problem::at("", rule)
 }
 
 /// A problem of the whole file.
-fn one(rule: String) -> Found {
-    Found::from(vec![Problem::at("", rule)])
+fn one(rule: String) -> Problems {
+    Problems::from(vec![Problem::at("", rule)])
 }
 
-fn cannot(error: &dyn fmt::Display) -> Found {
+fn cannot(error: &dyn fmt::Display) -> Problems {
     one(format!("cannot be read: {error}"))
 }
 
@@ -72,15 +58,13 @@ impl Csv {
     ///
     /// # Errors
     /// When there are no names or no rows, too many values, or rows with more or fewer cells than there are names.
-    pub fn of(text: &str, most: usize) -> Result<Self, Found> {
+    pub fn of(text: &str, most: usize) -> Result<Self, Problems> {
         let head = Head::read(&mut text.as_bytes()).map_err(|error| cannot(&error))?;
         let names = str::from_utf8(head.names()).unwrap_or_default();
         let is_there = |separator: &&char| names.contains(**separator);
         let separator = *SEPARATORS.iter().find(is_there).unwrap_or(&SEPARATORS[0]);
         let mut csv = Self {
-            header: head
-                .header()
-                .map_err(|problem| Found::from(vec![problem]))?,
+            header: head.header().map_err(|problem| vec![problem])?,
             line_of_names: head.line_of_names(),
             names: Vec::new(),
             separator,
@@ -100,7 +84,7 @@ impl Csv {
     }
 
     /// Reads the line of names and the rows, which are `text`.
-    fn read_rows(&mut self, text: &str, most: usize) -> Result<(), Found> {
+    fn read_rows(&mut self, text: &str, most: usize) -> Result<(), Problems> {
         // With every line ended alike, the reader's own count of lines is right.
         let text = text.replace("\r\n", "\n") + "\n";
         let mut reader = ReaderBuilder::new()
@@ -110,7 +94,7 @@ impl Csv {
             .comment(Some(b'#'))
             .delimiter(self.separator as u8)
             .from_reader(text.as_bytes());
-        let (mut record, mut found) = (StringRecord::new(), Found::default());
+        let (mut record, mut found) = (StringRecord::new(), Problems::default());
         loop {
             let read = reader.read_record(&mut record);
             if !read.map_err(|error| cannot(&error))? {
@@ -139,11 +123,7 @@ impl Csv {
                 )));
             }
         }
-        if found.list.is_empty() {
-            Ok(())
-        } else {
-            Err(found)
-        }
+        found.or(())
     }
 
     /// A row of another number of values than there are names.

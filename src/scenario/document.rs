@@ -2,14 +2,13 @@
 
 use super::checks;
 use super::dotted::{find, is_in, set_key};
-use super::head::{read_text, utf8};
-use super::limits::{self, LONGEST};
-use super::problem::{Found, PRESETS, Problem, Problems, nearest};
+use super::head::{read_text, text_of_file};
+use super::limits;
+use super::problem::{PRESETS, Problem, Problems, nearest};
 use super::syntax::{mistake, offset_of, syntax_problem};
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start};
 use crate::text::number::shortest;
 use crate::text::printable::{brief, printable};
-use crate::text::unread;
 use std::io::Read;
 use std::path::Path;
 use toml::Value;
@@ -54,13 +53,7 @@ impl Document {
 
     /// Reads what `reader` gives to its end.
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
-        let mut text = Vec::new();
-        let read = reader.take(LONGEST + 1).read_to_end(&mut text);
-        let text = read
-            .map_err(|error| Problem::at("", unread::why(&error)))
-            .and_then(|length| limits::short_enough(length as u64))
-            .and_then(|()| utf8(text))
-            .map_err(|problem| Problems::one(origin, problem))?;
+        let text = text_of_file(reader).map_err(|problem| Problems::one(origin, problem))?;
         Self::parse(origin, &text)
     }
 
@@ -90,7 +83,7 @@ impl Document {
     /// Takes `text` as the scenario that `origin` holds.
     pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
-        limits::few_enough(&text).map_err(|problem| Problems::one(origin, problem))?;
+        limits::few_enough(&text, 2).map_err(|problem| Problems::one(origin, problem))?;
         let table = text.parse();
         let table = table.map_err(|error| Problems::one(origin, syntax_problem(&text, &error)))?;
         Ok(Self {
@@ -219,68 +212,70 @@ impl Document {
 
     /// The last `--set` that wrote what a problem at `key` is about: the value, something in it or around it, or the
     /// table that lacks it where the file has none such.
-    fn setting_behind(&self, key: &str, written: Option<&toml::Table>) -> Option<&Setting> {
+    fn setting_behind(&self, key: &str, written: &toml::Table) -> Option<&Setting> {
         let last =
             |wanted: &dyn Fn(&str) -> bool| self.set.iter().rev().find(|set| wanted(&set.key));
         last(&|set| is_in(key, set) || is_in(set, key)).or_else(|| {
             let table = key.rsplit_once('.')?.0;
-            let is_new = find(written?, table).is_none();
+            let is_new = find(written, table).is_none();
             last(&|set| is_new && is_in(set, table))
         })
     }
 
     /// Which entries the file has, where `--set` alone began the entry (a push, a point) that lacks a key.
-    fn that_are_there(&self, problem: &Problem, written: Option<&toml::Table>) -> String {
-        let told = || {
-            let (entry, _) = problem.key.rsplit_once('.')?;
-            let (list, number) = entry.rsplit_once('.')?;
-            number.parse::<usize>().ok()?;
-            let there = find(written?, list).and_then(Value::as_array);
-            let count = there.map_or(0, Vec::len);
-            let there = match count {
-                0 => format!("there is no {list}"),
-                1 => format!("there is only {list}.0"),
-                _ => format!("there are {list}.0 to {list}.{}", count - 1),
-            };
-            let is_new = find(written?, entry).is_none() && problem.rule.starts_with("is missing");
-            is_new.then(|| format!(": {entry} would be a new one, {there}"))
+    fn that_are_there(problem: &Problem, written: &toml::Table) -> Option<String> {
+        let (entry, _) = problem.key.rsplit_once('.')?;
+        let (list, number) = entry.rsplit_once('.')?;
+        number.parse::<usize>().ok()?;
+        if find(written, entry).is_some() || !problem.rule.starts_with("is missing") {
+            return None;
+        }
+        let there = find(written, list).and_then(Value::as_array);
+        let there = match there.map_or(0, Vec::len) {
+            0 => format!("there is no {list}"),
+            1 => format!("there is only {list}.0"),
+            count => format!("there are {list}.0 to {list}.{}", count - 1),
         };
-        told().unwrap_or_default()
+        Some(format!(": {entry} would be a new one, {there}"))
     }
 
     /// Problems with the places at which the user wrote their keys, in the order of the file.
-    pub fn placed(&self, found: impl Into<Found>) -> Problems {
-        let Found { list, more } = found.into();
+    pub fn placed(&self, found: impl Into<Problems>) -> Problems {
+        let Problems { list, more, .. } = found.into();
         let line_of = self.line_finder();
-        let written = (!self.set.is_empty()).then(|| self.text.parse().unwrap_or_default());
-        let mut lines: Vec<(usize, Problem)> = Vec::with_capacity(list.len());
-        for mut problem in list {
-            if let Some(setting) = self.setting_behind(&problem.key, written.as_ref()) {
-                problem.place = Some(set_place(&setting.argument));
-                match &setting.mistake {
-                    Some(mistake) if problem.key == setting.key => {
-                        (problem.value, problem.rule) = (String::new(), mistake.clone());
-                    }
-                    _ if problem.rule.starts_with(keys::UNKNOWN)
-                        && let Some(meant) = keys::meant(&setting.key) =>
-                    {
-                        // The whole key: whoever typed the argument does not see the tables of a file.
-                        problem.key.clone_from(&setting.key);
-                        problem.rule = format!("{}: did you mean {meant}?", keys::UNKNOWN);
-                    }
-                    _ => problem.rule += &self.that_are_there(&problem, written.as_ref()),
+        let written = if self.set.is_empty() {
+            toml::Table::new()
+        } else {
+            self.text.parse().unwrap_or_default()
+        };
+        let placed = |mut problem: Problem| {
+            let Some(setting) = self.setting_behind(&problem.key, &written) else {
+                let line = line_of(&problem.key);
+                problem.place = line.map(|line| format!("line {line}"));
+                return (line.unwrap_or(0), problem);
+            };
+            problem.place = Some(set_place(&setting.argument));
+            let meant = keys::meant(&setting.key);
+            match (&setting.mistake, meant) {
+                (Some(mistake), _) if problem.key == setting.key => {
+                    (problem.value, problem.rule) = (String::new(), mistake.clone());
                 }
-                lines.push((usize::MAX, problem));
-                continue;
+                (_, Some(meant)) if problem.rule.starts_with(keys::UNKNOWN) => {
+                    // The whole key: whoever typed the argument does not see the tables of a file.
+                    problem.key.clone_from(&setting.key);
+                    problem.rule = format!("{}: did you mean {meant}?", keys::UNKNOWN);
+                }
+                _ => problem
+                    .rule
+                    .extend(Self::that_are_there(&problem, &written)),
             }
-            let line = line_of(&problem.key);
-            problem.place = line.map(|line| format!("line {line}"));
-            lines.push((line.unwrap_or(0), problem));
-        }
-        lines.sort_by_key(|(line, _)| *line);
+            (usize::MAX, problem)
+        };
+        let mut placed: Vec<_> = list.into_iter().map(placed).collect();
+        placed.sort_by_key(|(line, _)| *line);
         Problems {
             origin: self.origin.clone(),
-            list: lines.into_iter().map(|(_, problem)| problem).collect(),
+            list: placed.into_iter().map(|(_, problem)| problem).collect(),
             more,
         }
     }

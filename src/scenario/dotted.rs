@@ -1,7 +1,7 @@
 //! Dotted keys: the way to a value in a table, with numbers from 0 for the places in arrays (`push.0.force_N`).
 
 use super::problem::Problem;
-use toml::Value;
+use toml::{Table, Value};
 
 /// The most names and numbers of a key: body.point.N.at_m.N has five. Tables nested without bound would exhaust the stack.
 const DEEPEST: usize = 5;
@@ -19,74 +19,62 @@ pub fn join(under: &str, name: &str) -> String {
 ///
 /// # Errors
 /// When the key leads into something that is neither table nor array, or past an array's end.
-pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), Problem> {
+pub fn set_key(table: &mut Table, key: &str, value: Value) -> Result<(), Problem> {
     let names: Vec<&str> = key.split('.').collect();
     if names.len() > DEEPEST {
         let rule = format!("leads deeper than any key: at most {DEEPEST} names and numbers");
         return Err(Problem::at(key, rule));
     }
-    let (Some((last, way)), false) = (names.split_last(), names.contains(&"")) else {
+    if names.contains(&"") {
         let rule = "is not a dotted key such as motion.time_step_s";
         return Err(Problem::at(key, rule));
+    }
+    let empty = |index: usize| match names.get(index + 1).map(|next| next.parse::<usize>()) {
+        Some(Ok(_)) => Value::Array(Vec::new()),
+        Some(Err(_)) => Value::Table(Table::new()),
+        None => Value::Boolean(false),
     };
-    let mut path = String::new();
-    let mut inside = Place::Table(table);
-    for (index, name) in way.iter().enumerate() {
-        path = join(&path, name);
-        let next_is_number = names[index + 1].parse::<usize>().is_ok();
-        let empty = if next_is_number {
-            Value::Array(Vec::new())
-        } else {
-            Value::Table(toml::Table::new())
-        };
-        inside = match inside.entry(name, &path, empty)? {
-            Value::Table(table) => Place::Table(table),
-            Value::Array(array) => Place::Array(array),
+    let mut inside = table.entry(names[0]).or_insert(empty(0));
+    let mut path = names[0].to_owned();
+    for (index, name) in names.iter().enumerate().skip(1) {
+        let outer = path;
+        path = join(&outer, name);
+        inside = match inside {
+            Value::Table(table) => table.entry(*name).or_insert(empty(index)),
+            Value::Array(array) => place(array, name, &path, empty(index))?,
             other => {
-                let rule = format!("holds no {}", names[index + 1]);
-                return Err(Problem::with_value(path, other, rule));
+                let rule = format!("holds no {name}");
+                return Err(Problem::with_value(outer, other, rule));
             }
         };
     }
-    let place = inside.entry(last, key, Value::Boolean(false))?;
-    *place = value;
+    *inside = value;
     Ok(())
 }
 
-enum Place<'a> {
-    Table(&'a mut toml::Table),
-    Array(&'a mut Vec<Value>),
-}
-
-impl<'a> Place<'a> {
-    /// What stands at `name` in here, `empty` put there first where nothing does.
-    fn entry(self, name: &str, path: &str, empty: Value) -> Result<&'a mut Value, Problem> {
-        match self {
-            Self::Table(table) => Ok(table.entry(name).or_insert(empty)),
-            Self::Array(array) => {
-                let Ok(index) = name.parse::<usize>() else {
-                    return Err(Problem::at(
-                        path,
-                        "must lead to a place in an array: a number from 0",
-                    ));
-                };
-                let length = array.len();
-                if index == length {
-                    array.push(empty);
-                }
-                array.get_mut(index).ok_or_else(|| {
-                    let rule = format!(
-                        "leads past the end: the array has {length} elements, numbered from 0"
-                    );
-                    Problem::at(path, rule)
-                })
-            }
-        }
+/// What stands at place `name` of `array`; `empty` is put there first where that is one past the end.
+fn place<'a>(
+    array: &'a mut Vec<Value>,
+    name: &str,
+    path: &str,
+    empty: Value,
+) -> Result<&'a mut Value, Problem> {
+    let Ok(index) = name.parse::<usize>() else {
+        let rule = "must lead to a place in an array: a number from 0";
+        return Err(Problem::at(path, rule));
+    };
+    let length = array.len();
+    if index == length {
+        array.push(empty);
     }
+    array.get_mut(index).ok_or_else(|| {
+        let rule = format!("leads past the end: the array has {length} elements, numbered from 0");
+        Problem::at(path, rule)
+    })
 }
 
 /// The value written at the dotted key.
-pub fn find<'a>(written: &'a toml::Table, key: &str) -> Option<&'a Value> {
+pub fn find<'a>(written: &'a Table, key: &str) -> Option<&'a Value> {
     let mut names = key.split('.');
     let first = names.next().and_then(|name| written.get(name));
     names.fold(first, |value, name| match value? {

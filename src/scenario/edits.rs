@@ -7,8 +7,8 @@ use super::keys::{self, EDITABLE_MOTION, Effect, KEYS};
 use super::limits::too_many;
 use super::model::{Body, Edit, Motion, Pushes, Touches};
 use super::parts::{motion, push};
-use super::problem::{Problem, nearest};
-use super::rubbing::objection;
+use super::problem::{Problem, Problems, nearest};
+use super::rubbing::objects;
 use crate::physics::Friction;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
@@ -91,20 +91,14 @@ impl Progress<'_> {
                 .iter()
                 .any(|key| entry.set.contains_key(*key)),
         };
-        let mut problems = Vec::new();
-        if touches.segment
-            && let Err(wrong) = self.set_motion()
-        {
-            problems.extend(wrong);
+        let mut problems = Problems::default();
+        if touches.segment {
+            problems.kept(self.set_motion());
         }
         for &place in &set_pushes {
-            if let Err(wrong) = self.set_push(place) {
-                problems.extend(wrong);
-            }
+            problems.kept(self.set_push(place));
         }
-        if !problems.is_empty() {
-            return Err(problems);
-        }
+        problems.or(()).map_err(|problems| problems.list)?;
         Ok(Edit {
             step: entry.step,
             motion: self.motion,
@@ -116,8 +110,7 @@ impl Progress<'_> {
 
     fn set_motion(&mut self) -> Result<(), Vec<Problem>> {
         self.motion = motion(&self.read::<MotionFile>("motion")?);
-        let objection = objection("motion.scheme", self.motion.scheme, self.friction);
-        objection.map_or(Ok(()), |problem| Err(vec![problem]))
+        objects(self.motion.scheme, self.friction)
     }
 
     fn set_push(&mut self, place: usize) -> Result<(), Vec<Problem>> {
@@ -129,8 +122,7 @@ impl Progress<'_> {
             None => pushes.push(push),
         }
         let (edits, body) = (self.file.edit.len(), &self.file.body);
-        let rim = body.rim.as_ref().map_or(0, |rim| rim.points);
-        let bodies = rim + body.point.len() + body.part.len();
+        let bodies = body.rim_points() + body.point.len() + body.part.len();
         too_many(edits, bodies, pushes.len()).map_or(Ok(()), |problem| Err(vec![problem]))
     }
 
@@ -138,10 +130,9 @@ impl Progress<'_> {
     fn read<T: DeserializeOwned>(&self, key: &str) -> Result<T, Vec<Problem>> {
         let table = find(&self.written, key).cloned();
         let table = table.unwrap_or(Value::Boolean(false));
-        let problems = keys::check_part(&table, key);
-        if !problems.is_empty() {
-            return Err(problems);
-        }
+        keys::check_part(&table, key)
+            .or(())
+            .map_err(|problems| problems.list)?;
         let read = table.try_into();
         read.map_err(|error: toml::de::Error| vec![Problem::at(key, error.message().to_owned())])
     }

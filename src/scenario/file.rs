@@ -35,6 +35,12 @@ pub struct BodyFile {
     pub part: Vec<PartFile>,
 }
 
+impl BodyFile {
+    pub fn rim_points(&self) -> usize {
+        self.rim.as_ref().map_or(0, |rim| rim.points)
+    }
+}
+
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RimFile {

@@ -1,8 +1,8 @@
 //! Files as they are read: the whole of a scenario, or the head of a CSV, which holds the run file.
 
-use super::limits::{LONGEST, LONGEST_HEADER, short_enough};
-use super::problem::Problem;
-use crate::text::unread;
+use super::limits::{self, LONGEST, LONGEST_HEADER};
+use super::problem::{Problem, at_line};
+use crate::text::advice::unread;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
@@ -89,7 +89,7 @@ impl Head {
     /// # Errors
     /// When they are not text.
     pub fn header(&self) -> Result<String, Problem> {
-        let lines = utf8(self.comments().to_vec())?;
+        let lines = utf8(self.comments().to_vec(), "")?;
         let stripped = |line: &str| {
             let line = line.trim_start_matches('\u{feff}');
             let line = line.strip_prefix('#').unwrap_or(line);
@@ -106,7 +106,7 @@ fn without_mark(line: &[u8]) -> &[u8] {
 /// The text of a scenario, or the run file in the header of a CSV, of which no more is read.
 pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
     let whole = |rule: String| Problem::at("", rule);
-    let cannot = |error: io::Error| whole(unread::why(&error));
+    let cannot = |error: io::Error| whole(unread(&error));
     if path.is_dir() {
         return Err(whole("is a folder: name a file in it".to_owned()));
     }
@@ -121,22 +121,36 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
             "is not the CSV of a run: no line \"{names}...\" below a run file"
         )));
     }
-    let length = std::fs::metadata(path).map_or(0, |file| file.len());
-    short_enough(length)?;
-    let mut text = head.bytes;
-    // A pipe has no length.
-    let rest = LONGEST.saturating_sub(text.len() as u64) + 1;
-    reader.take(rest).read_to_end(&mut text).map_err(cannot)?;
-    short_enough(text.len() as u64)?;
-    utf8(text)
+    text_of_file(head.bytes.as_slice().chain(reader))
 }
 
-pub(super) fn utf8(bytes: Vec<u8>) -> Result<String, Problem> {
+/// The text of a scenario or run file.
+pub(super) fn text_of_file(file: impl Read) -> Result<String, Problem> {
+    let text = text_of(file, LONGEST, limits::too_long, "")?;
+    limits::few_enough(&text, 1).map(|()| text)
+}
+
+/// The text of `file` to its end, of which no more than `most` bytes and one are read; `words` are said after the encoding.
+pub(super) fn text_of(
+    file: impl Read,
+    most: u64,
+    too_long: fn() -> Problem,
+    words: &str,
+) -> Result<String, Problem> {
+    let mut bytes = Vec::new();
+    let read = file.take(most + 1).read_to_end(&mut bytes);
+    let length = read.map_err(|error| Problem::at("", unread(&error)))?;
+    if length as u64 > most {
+        return Err(too_long());
+    }
+    utf8(bytes, words)
+}
+
+fn utf8(bytes: Vec<u8>, words: &str) -> Result<String, Problem> {
     String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
-        let mut problem = Problem::at("", "is not text in UTF-8: save the file in that encoding");
-        problem.place = Some(format!("line {line}"));
-        problem
+        let line = good.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
+        let rule = format!("is not text in UTF-8: save the file in that encoding{words}");
+        at_line(line, Problem::at("", rule))
     })
 }

@@ -38,8 +38,6 @@ pub struct InLab {
     pub label: &'static str,
     pub unit: &'static str,
     pub nudge: Nudge,
-    /// What is assumed where the key is absent.
-    pub absent: Absent,
 }
 
 /// What one nudge does to a value.
@@ -60,30 +58,6 @@ pub enum Nudge {
     Typed,
 }
 
-/// What a scenario means that lacks a key.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Absent {
-    /// Nothing that a value could tell.
-    Nothing,
-    Number(f64),
-    Whole(i64),
-    Word(&'static str),
-    Flag(bool),
-}
-
-impl Absent {
-    /// The value that is meant.
-    pub fn value(self) -> Option<Value> {
-        match self {
-            Self::Nothing => None,
-            Self::Number(number) => Some(Value::Float(number)),
-            Self::Whole(whole) => Some(Value::Integer(whole)),
-            Self::Word(word) => Some(Value::String(word.to_owned())),
-            Self::Flag(flag) => Some(Value::Boolean(flag)),
-        }
-    }
-}
-
 /// The traced point where a scenario names none.
 pub const TOP: &str = "top";
 
@@ -100,7 +74,6 @@ pub const GRAVITY: f64 = 9.8;
 /// Playback speed where a scenario gives none, simulated seconds a second.
 pub const SPEED: f64 = 1.0;
 
-use Absent::Word;
 use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, WholeOr, Words};
 use Nudge::{By, Hundredth, Ladder, Turn, Typed, WholeHundredth};
 use Range::{Any, NotNegative, Positive};
@@ -125,13 +98,7 @@ const fn may(path: &'static str, kind: Kind, about: &'static str) -> Key {
 
 impl Key {
     const fn lab(mut self, label: &'static str, unit: &'static str, nudge: Nudge) -> Self {
-        let absent = Absent::Nothing;
-        self.lab = Some(InLab {
-            label,
-            unit,
-            nudge,
-            absent,
-        });
+        self.lab = Some(InLab { label, unit, nudge });
         self
     }
 
@@ -141,12 +108,16 @@ impl Key {
         self
     }
 
-    /// What is meant where it is absent.
-    const fn or(mut self, absent: Absent) -> Self {
-        if let Some(lab) = self.lab {
-            self.lab = Some(InLab { absent, ..lab });
+    /// The value where a file has none, which stands at the end of `about`.
+    pub fn default(&self) -> Option<Value> {
+        let (_, told) = self.about.split_once("(default: ")?;
+        let told = told.strip_suffix(')')?;
+        match self.kind {
+            Number(_) => told.parse().ok().map(Value::Float),
+            Whole(..) => told.parse().ok().map(Value::Integer),
+            Flag => told.parse().ok().map(Value::Boolean),
+            _ => Some(Value::String(told.to_owned())),
         }
-        self
     }
 }
 
@@ -163,14 +134,14 @@ pub static KEYS: &[Key] = &[
     must("title", Line, "name of the scenario").lab("title", "", Typed),
     may("about", Paragraph, "one paragraph for the list of presets").lab("about", "", Typed),
     may("source", Paragraph, "where the set-up comes from").lab("source", "", Typed),
-    may("trace", Line, "name of the point whose path is shown (default: top)").lab("traced point", "", Turn).or(Word(TOP)),
+    may("trace", Line, "name of the point whose path is shown (default: top)").lab("traced point", "", Turn),
     must("body.rim.points", Whole(1, MOST_POINTS), "equal masses on a circle across the axle; point j at angle 2 pi j/n from +x towards +y").lab("rim points", "", WholeHundredth),
     must("body.rim.radius_m", Number(Positive), "radius of the circle, m").lab("rim radius", "m", Hundredth(0.01)),
     must("body.rim.height_m", Number(Any), "height of the circle above the pivot, m").lab("rim height", "m", Hundredth(0.01)),
     must("body.rim.point_mass_kg", Number(Positive), "mass of each point, kg").lab("mass each", "kg", Hundredth(0.01)),
     must("body.point.*.name", Line, "the point's name, its own").lab("name", "", Typed),
     must("body.point.*.at_m", Vector, "position in the upright pose, m, pivot at the origin").lab("", "m", Hundredth(0.01)),
-    may("body.point.*.mass_kg", Number(NotNegative), "mass, kg (default: 0)").lab("mass", "kg", Hundredth(0.01)).or(Absent::Number(0.0)),
+    may("body.point.*.mass_kg", Number(NotNegative), "mass, kg (default: 0)").lab("mass", "kg", Hundredth(0.01)),
     must("body.part.*.shape", OneOf(&SHAPES), "what kind of solid: it says which dimensions it has").lab("shape", "", Turn),
     must("body.part.*.name", Line, "the part's name, its own; its centre can be pushed and traced by it").lab("name", "", Typed),
     must("body.part.*.mass_kg", Number(Positive), "its mass, kg").lab("mass", "kg", Hundredth(0.01)),
@@ -182,33 +153,33 @@ pub static KEYS: &[Key] = &[
     may("body.part.*.length_m", Number(NotNegative), "tube, rod, cone (its apex against the axis), cylinder (if absent: 0, a disk): along the axis, m").lab("length", "m", Hundredth(0.01)),
     may("body.part.*.size_m", Vector, "block: its sides along its x, y and axis, m").lab("size ", "m", Hundredth(0.01)),
     may("body.part.*.moments_kg_m2", Vector, "moments: about its centre, across (x), across (y) and about the axis, kg m^2").lab("I", "kg m2", Hundredth(0.01)),
-    may("start.tilt_deg", Number(Any), "turns the upright body about +x, degrees (default: 0)").lab("tilt", "deg", By(1.0)).or(Absent::Number(0.0)),
-    may("start.turn_deg", Number(Any), "then turns the tilted body about +z, degrees (default: 0)").lab("turn", "deg", By(1.0)).or(Absent::Number(0.0)),
-    may("start.roll_deg", Number(Any), "first turns the upright body about its own axle, degrees (default: 0)").lab("roll", "deg", By(1.0)).or(Absent::Number(0.0)),
+    may("start.tilt_deg", Number(Any), "turns the upright body about +x, degrees (default: 0)").lab("tilt", "deg", By(1.0)),
+    may("start.turn_deg", Number(Any), "then turns the tilted body about +z, degrees (default: 0)").lab("turn", "deg", By(1.0)),
+    may("start.roll_deg", Number(Any), "first turns the upright body about its own axle, degrees (default: 0)").lab("roll", "deg", By(1.0)),
     must("start.momentum_Js", Vector, STATED).unless(&["spin_rpm", "spin_rad_per_s", "omega_rad_per_s"]).lab("L", "J s", Hundredth(1.0)),
-    may("start.momentum_frame", OneOf(&["world", "body"]), "\"body\": L is turned with the body (default: world)").lab("L given in", "", Turn).or(Word("world")),
+    may("start.momentum_frame", OneOf(&["world", "body"]), "\"body\": L is turned with the body (default: world)").lab("L given in", "", Turn),
     may("start.spin_rpm", Number(Any), "instead of momentum_Js: the body turns about its axle, revolutions a minute (rpm); omega = spin * axle").lab("spin", "rpm", Hundredth(1.0)),
     may("start.spin_rad_per_s", Number(Any), "the same in rad/s").lab("spin", "rad/s", Hundredth(0.1)),
-    may("start.steady", Flag, "true, with a spin: L is such that the top precesses steadily at this tilt, the slow way; pushes do not count (default: false)").lab("steady", "", Turn).or(Absent::Flag(false)),
+    may("start.steady", Flag, "true, with a spin: L is such that the top precesses steadily at this tilt, the slow way; pushes do not count (default: false)").lab("steady", "", Turn),
     may("start.omega_rad_per_s", Vector, "instead of momentum_Js: angular velocity, rad/s; L = I omega").lab("w", "rad/s", Hundredth(0.1)),
-    may("start.omega_frame", OneOf(&["world", "body"]), "\"body\": omega is turned with the body (default: world)").lab("w given in", "", Turn).or(Word("world")),
+    may("start.omega_frame", OneOf(&["world", "body"]), "\"body\": omega is turned with the body (default: world)").lab("w given in", "", Turn),
     may("start.rotor", Line, "name of the part that spins while the rest of the body does not: L along the axle is that part's moment times the spin").lab("rotor", "", Turn),
-    may("motion.gravity_m_per_s2", Number(Any), "acceleration of gravity along -z, m/s^2 (default: 9.8)").lab("gravity", "m/s2", By(0.1)).or(Absent::Number(GRAVITY)),
-    may("motion.scheme", OneOf(&SCHEME_NAMES), "the numerical scheme (default: report)").lab("scheme", "", Turn).or(Word(scheme::SCHEMES[0].name)),
+    may("motion.gravity_m_per_s2", Number(Any), "acceleration of gravity along -z, m/s^2 (default: 9.8)").lab("gravity", "m/s2", By(0.1)),
+    may("motion.scheme", OneOf(&SCHEME_NAMES), "the numerical scheme (default: report)").lab("scheme", "", Turn),
     must("motion.time_step_s", Number(Positive), "time step dt, s").lab("dt", "s", Ladder),
     must("motion.steps", Whole(1, i64::MAX), "length of the run in steps").lab("steps", "", WholeHundredth),
     must("push.*.point", Line, "name of the pushed point").lab("point", "", Turn),
     must("push.*.force_N", Vector, "force, world frame, N").lab("F", "N", Hundredth(1.0)),
-    may("push.*.first_step", Whole(1, i64::MAX), "first step on which it acts; step 1 ends at t = dt (default: 1)").lab("first step", "", WholeHundredth).or(Absent::Whole(1)),
+    may("push.*.first_step", Whole(1, i64::MAX), "first step on which it acts; step 1 ends at t = dt (default: 1)").lab("first step", "", WholeHundredth),
     may("push.*.steps", Whole(1, i64::MAX), "on how many steps it acts").lab("steps", "", WholeHundredth),
-    may("push.*.from_s", Number(NotNegative), "or, instead: from this time, s (default: 0)").lab("from", "s", Hundredth(0.1)).or(Absent::Number(0.0)),
+    may("push.*.from_s", Number(NotNegative), "or, instead: from this time, s (default: 0)").lab("from", "s", Hundredth(0.1)),
     may("push.*.for_s", Number(Positive), "for so long, s").lab("for", "s", Hundredth(0.1)),
-    may("push.*.accumulates", Flag, "true: j times the force on its j-th step, then steps times it to the end (default: false)").lab("accumulates", "", Turn).or(Absent::Flag(false)),
-    may("friction.spin_dry_Nm", Number(NotNegative), "dry friction on the spin: this torque against it, N m; it holds a body that does not spin (default: 0)").lab("dry", "N m", Hundredth(0.001)).or(Absent::Number(0.0)),
-    may("friction.spin_viscous_Nms", Number(NotNegative), "viscous friction on the spin: this times the spin in rad/s, N m s (default: 0)").lab("viscous", "N m s", Hundredth(0.001)).or(Absent::Number(0.0)),
-    may("friction.spin_quadratic_Nms2", Number(NotNegative), "friction on the spin as of air: this times the square of the spin, N m s^2 (default: 0)").lab("quadratic", "N m s2", Hundredth(1e-5)).or(Absent::Number(0.0)),
-    may("friction.swing_viscous_Nms", Number(NotNegative), "viscous friction on the swing: this times the part of the angular velocity across the axle, N m s (default: 0)").lab("on swing", "N m s", Hundredth(0.001)).or(Absent::Number(0.0)),
-    may("view.speed", Number(Positive), "what the workbench starts with: simulated seconds a second (default: 1)").lab("speed", "s/s", Ladder).or(Absent::Number(SPEED)),
+    may("push.*.accumulates", Flag, "true: j times the force on its j-th step, then steps times it to the end (default: false)").lab("accumulates", "", Turn),
+    may("friction.spin_dry_Nm", Number(NotNegative), "dry friction on the spin: this torque against it, N m; it holds a body that does not spin (default: 0)").lab("dry", "N m", Hundredth(0.001)),
+    may("friction.spin_viscous_Nms", Number(NotNegative), "viscous friction on the spin: this times the spin in rad/s, N m s (default: 0)").lab("viscous", "N m s", Hundredth(0.001)),
+    may("friction.spin_quadratic_Nms2", Number(NotNegative), "friction on the spin as of air: this times the square of the spin, N m s^2 (default: 0)").lab("quadratic", "N m s2", Hundredth(1e-5)),
+    may("friction.swing_viscous_Nms", Number(NotNegative), "viscous friction on the swing: this times the part of the angular velocity across the axle, N m s (default: 0)").lab("on swing", "N m s", Hundredth(0.001)),
+    may("view.speed", Number(Positive), "what the workbench starts with: simulated seconds a second (default: 1)").lab("speed", "s/s", Ladder),
     may("view.look_at", Line, "one line: what there is to see").lab("look at", "", Typed),
     may("view.next", Line, "one line: what to try after the run (default, for a preset: its own)"),
     may("view.window_s", Number(Positive), "length of time that the traces show, s (default: the run, or what is played of it in two minutes)"),
@@ -345,38 +316,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn labels_are_short_and_defaults_are_those_told() {
+    fn labels_are_short_and_units_and_defaults_are_told() {
         for key in KEYS {
             let Some(lab) = key.lab else { continue };
             assert!(lab.label.len() <= 12, "{}", key.path);
-            let told = key
-                .about
-                .split_once("(default: ")
-                .map(|(_, rest)| rest.trim_end_matches(')'));
-            let meant = match lab.absent {
-                Absent::Nothing => None,
-                Absent::Number(number) => Some(number.to_string()),
-                Absent::Whole(whole) => Some(whole.to_string()),
-                Word(word) => Some(word.to_owned()),
-                Absent::Flag(flag) => Some(flag.to_string()),
-            };
-            assert_eq!(told, meant.as_deref(), "{}", key.path);
-            assert!(
-                lab.absent
-                    .value()
-                    .is_none_or(|value| key.kind.check(&value).is_ok()),
-                "{}",
-                key.path
-            );
-            let is_told = lab.unit.is_empty()
-                || key
-                    .about
-                    .replace("^2", "2")
-                    .replace("degrees", "deg")
-                    .contains(lab.unit)
-                || lab.unit == "s/s";
+            let is_told = key.about.contains("(default: ");
+            let default = key.default();
+            assert_eq!(default.is_some(), is_told, "{}", key.path);
+            let is_allowed = |value: Value| key.kind.check(&value).is_ok();
+            assert!(default.is_none_or(is_allowed), "{}", key.path);
+            let about = key.about.replace("^2", "2").replace("degrees", "deg");
+            let is_told = about.contains(lab.unit) || lab.unit == "s/s";
             assert!(is_told, "{}: {}", key.path, lab.unit);
         }
+        let default = |path: &str| find(path).unwrap().0.default().unwrap();
+        assert_eq!(default("motion.gravity_m_per_s2"), GRAVITY.into());
+        assert_eq!(default("motion.scheme"), scheme::SCHEMES[0].name.into());
+        assert_eq!(default("view.speed"), SPEED.into());
+        assert_eq!(default("trace"), TOP.into());
     }
 
     #[test]

@@ -59,16 +59,10 @@ impl Kind {
                 _ => check_whole(value, 1, most),
             },
             Vector => check_vector(value),
-            Flag => value
-                .as_bool()
-                .map(|_| ())
-                .ok_or_else(|| not("true or false", value)),
+            Flag => is(value.is_bool(), "true or false", value),
             OneOf(words) => text(value).and_then(|text| check_word(text, words)),
             Words(words) => check_words(value, words),
-            Settings => value
-                .as_table()
-                .map(|_| ())
-                .ok_or_else(|| not("a table of keys and values", value)),
+            Settings => is(value.is_table(), "a table of keys and values", value),
         }
     }
 }
@@ -101,20 +95,24 @@ fn not(wanted: &str, value: &Value) -> String {
     format!("must be {wanted}, not {found}")
 }
 
+fn is(wanted: bool, what: &str, value: &Value) -> Result<(), String> {
+    wanted.then_some(()).ok_or_else(|| not(what, value))
+}
+
 fn text(value: &Value) -> Result<&str, String> {
     value.as_str().ok_or_else(|| not("text", value))
 }
 
+/// The number that `value` is, whole or not.
+pub(crate) fn float(value: &Value) -> Option<f64> {
+    let whole = || value.as_integer().map(|whole| whole as f64);
+    value.as_float().or_else(whole)
+}
+
 fn number(value: &Value) -> Result<f64, String> {
-    let number = match value {
-        Value::Integer(whole) => *whole as f64,
-        Value::Float(number) => *number,
-        other => return Err(not("a number", other)),
-    };
-    if number.is_finite() {
-        Ok(number)
-    } else {
-        Err("must be a finite number".to_owned())
+    match float(value).ok_or_else(|| not("a number", value))? {
+        number if number.is_finite() => Ok(number),
+        _ => Err("must be a finite number".to_owned()),
     }
 }
 
@@ -132,16 +130,15 @@ fn check_text(text: &str, most: usize, allowed: &str) -> Result<(), String> {
             "must be at most {most} characters long, not {length}"
         ));
     }
-    match text
+    let mut steering = text
         .chars()
-        .find(|&c| is_steering(c) && !allowed.contains(c))
-    {
-        Some(c) => Err(format!(
-            "must hold no control, direction or invisible characters (here U+{:04X})",
-            c as u32
-        )),
-        None => Ok(()),
-    }
+        .filter(|&c| is_steering(c) && !allowed.contains(c));
+    steering.next().map_or(Ok(()), |c| {
+        let code = c as u32;
+        Err(format!(
+            "must hold no control, direction or invisible characters (here U+{code:04X})"
+        ))
+    })
 }
 
 fn check_whole(value: &Value, least: i64, most: i64) -> Result<(), String> {
@@ -159,39 +156,34 @@ fn check_whole(value: &Value, least: i64, most: i64) -> Result<(), String> {
 }
 
 fn check_vector(value: &Value) -> Result<(), String> {
-    let items = value
-        .as_array()
-        .ok_or_else(|| not("three numbers in brackets", value))?;
+    let items = items(value, "three numbers in brackets")?;
     if items.len() != 3 {
         return Err(format!("must be three numbers, not {}", items.len()));
     }
-    items.iter().try_for_each(|item| {
-        number(item)
-            .map(|_| ())
-            .map_err(|rule| format!("each {rule}"))
-    })
+    check_each(items, |item| number(item).map(drop))
 }
 
 fn check_words(value: &Value, words: &[&str]) -> Result<(), String> {
-    let items = value
-        .as_array()
-        .ok_or_else(|| not("a list in brackets", value))?;
-    items.iter().try_for_each(|item| {
-        let checked = text(item).and_then(|word| check_word(word, words));
-        checked.map_err(|rule| format!("each {rule}"))
-    })
+    let items = items(value, "a list in brackets")?;
+    check_each(items, |item| check_word(text(item)?, words))
+}
+
+fn items<'a>(value: &'a Value, wanted: &str) -> Result<&'a Vec<Value>, String> {
+    value.as_array().ok_or_else(|| not(wanted, value))
+}
+
+fn check_each(items: &[Value], check: impl Fn(&Value) -> Result<(), String>) -> Result<(), String> {
+    let mut items = items.iter();
+    items.try_for_each(|item| check(item).map_err(|rule| format!("each {rule}")))
 }
 
 fn check_word(word: &str, words: &[&str]) -> Result<(), String> {
     if words.contains(&word) {
         return Ok(());
     }
-    let near = nearest(word, words.iter().copied());
-    let near = if near.starts_with("did") {
-        format!("; {near}")
-    } else {
-        String::new()
-    };
+    let near = Some(nearest(word, words.iter().copied()));
+    let near = near.filter(|near| near.starts_with("did"));
+    let near = near.map_or(String::new(), |near| format!("; {near}"));
     let one_of = if words.len() > 1 { "one of " } else { "" };
     Err(format!("must be {one_of}{}{near}", words.join(", ")))
 }

@@ -20,13 +20,15 @@ pub const MOST_EDITS: usize = 10_000;
 pub const MOST_PRODUCT: usize = 1_000_000;
 
 /// The most tables that a file may ask for. A few letters ask for one, and it takes 2 kB.
-const MOST_TABLES: usize = 120_000;
+const MOST_TABLES: usize = 70_000;
 
 /// The most lines and elements of arrays that a file may have.
-const MOST_VALUES: usize = 800_000;
+const MOST_VALUES: usize = 350_000;
 
-/// Refuses a `text` that would take far more memory than a scenario of its length.
-pub(super) fn few_enough(text: &str) -> Result<(), Problem> {
+/// Refuses a `text` with more tables or values than a file may have, which would take more than 200 MB, or than `times` as
+/// many: the header of a CSV writes as several lines what may stand on one in its scenario.
+pub fn few_enough(text: &str, times: usize) -> Result<(), Problem> {
+    let (most_tables, most_values) = (times * MOST_TABLES, times * MOST_VALUES);
     let (mut tables, mut values, mut heading) = (0, 0, "");
     for line in text.lines() {
         // A dot in quotes is part of a name.
@@ -49,11 +51,11 @@ pub(super) fn few_enough(text: &str) -> Result<(), Problem> {
         }
         values += 1 + line.matches(',').count();
     }
-    if tables <= MOST_TABLES && values <= MOST_VALUES {
+    if tables <= most_tables && values <= most_values {
         return Ok(());
     }
     let rule = format!(
-        "asks for more than {MOST_TABLES} tables (a dot in a key is one, too) or {MOST_VALUES} values: leave some out"
+        "asks for more than {most_tables} tables (a dot in a key is one, too) or {most_values} values: leave some out"
     );
     Err(Problem::at("", rule))
 }
@@ -90,13 +92,10 @@ pub(super) fn too_many(edits: usize, bodies: usize, pushes: usize) -> Option<Pro
         })
 }
 
-/// Refuses a file of `length` bytes where that is too long.
-pub fn short_enough(length: u64) -> Result<(), Problem> {
-    if length <= LONGEST {
-        return Ok(());
-    }
+/// What there is against a file longer than [`LONGEST`].
+pub fn too_long() -> Problem {
     let rule = format!(
         "is longer than 4 MB ({LONGEST} bytes), the most that a scenario or run file may have: leave some of it out"
     );
-    Err(Problem::at("", rule))
+    Problem::at("", rule)
 }

@@ -31,6 +31,6 @@ mod syntax;
 
 pub use document::Document;
 pub use file::ScenarioFile;
-pub(crate) use kind::vector;
+pub(crate) use kind::{float, vector};
 pub use model::{Body, Edit, Motion, Push, Pushes, Scenario, Touches, Window};
 pub use problem::{Problem, Problems};

@@ -132,15 +132,15 @@ impl Body {
     }
 
     pub(super) fn find(&self, key: &str, name: &str) -> Result<usize, Vec<Problem>> {
-        self.point(name).ok_or_else(|| {
-            let near = nearest(name, self.names().into_iter());
-            let value = toml::Value::String(name.to_owned());
-            vec![Problem::with_value(
-                key,
-                &value,
-                format!("is no point of this body: {near}"),
-            )]
-        })
+        self.point(name)
+            .ok_or_else(|| vec![self.no_point(key, name)])
+    }
+
+    /// The problem that no point has the `name`, which stands at `key`.
+    pub(super) fn no_point(&self, key: &str, name: &str) -> Problem {
+        let near = nearest(name, self.names().into_iter());
+        let value = toml::Value::String(name.to_owned());
+        Problem::with_value(key, &value, format!("is no point of this body: {near}"))
     }
 }
 
@@ -178,8 +178,7 @@ impl Scenario {
             let part = file.part.get(of_parts / part::POINTS)?;
             return Some(part.name.clone() + OFF_CENTRE[of_parts % part::POINTS]);
         }
-        let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
-        let point = file.point.get(index.checked_sub(rim)?)?;
+        let point = file.point.get(index.checked_sub(file.rim_points())?)?;
         Some(point.name.clone())
     }
 

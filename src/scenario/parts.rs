@@ -6,7 +6,7 @@ use super::file::{BodyFile, MotionFile, PushFile};
 use super::keys::GRAVITY;
 use super::limits::MOST_POINTS;
 use super::model::{Body, Motion, Push, Pushes, Window};
-use super::problem::{Found, Problem};
+use super::problem::{Problem, Problems};
 use super::solids;
 use crate::physics::{self, BodyError, PointMass, SchemeInfo};
 use nalgebra::Vector3;
@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 /// The points that each part counts as, held against the most that there may be.
 const OF_PART: usize = 6;
 
-pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
+pub(super) fn body(file: &BodyFile) -> Result<Body, Problems> {
     few_enough(file)?;
     let mut points = rim_points(file);
     let mut named = Named::default();
@@ -38,9 +38,7 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
             Err(problems) => named.refuse(problems, index),
         }
     }
-    if !named.problems.list.is_empty() {
-        return Err(named.problems);
-    }
+    named.problems.or(())?;
     let mechanics = physics::Body::new(points).map_err(|error| {
         let few = match (&error, &file.rim) {
             (BodyError::Singular { .. }, Some(rim)) if rim.points == 1 => {
@@ -58,16 +56,12 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
 }
 
 fn few_enough(file: &BodyFile) -> Result<(), Vec<Problem>> {
-    let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
-    let count = rim + file.point.len() + OF_PART * file.part.len();
+    let count = file.rim_points() + file.point.len() + OF_PART * file.part.len();
     if count <= usize::try_from(MOST_POINTS).unwrap_or(usize::MAX) {
         return Ok(());
     }
-    let of_parts = if file.part.is_empty() {
-        ""
-    } else {
-        ", six for each part"
-    };
+    let parts = file.part.first();
+    let of_parts = parts.map_or("", |_| ", six for each part");
     let rule = format!("has {count} points{of_parts}; at most {MOST_POINTS} are allowed");
     Err(vec![Problem::at("body", rule)])
 }
@@ -76,7 +70,7 @@ fn few_enough(file: &BodyFile) -> Result<(), Vec<Problem>> {
 #[derive(Default)]
 struct Named {
     names: HashMap<String, usize>,
-    problems: Found,
+    problems: Problems,
 }
 
 impl Named {
@@ -129,70 +123,53 @@ pub(super) fn motion(file: &MotionFile) -> Motion {
     }
 }
 
-pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Found> {
-    let mut found = Found::default();
+pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Problems> {
+    let mut found = Problems::default();
     let pushes = files.iter().enumerate().filter_map(|(index, file)| {
         // The nearest name is sought for those that are told alone: there may be 100 000 points.
         if found.is_full() && body.point(&file.point).is_none() {
             found.more += 1;
             return None;
         }
-        let push = push(file, body, &format!("push.{index}"));
-        push.map_err(|refused| found.add_all(refused)).ok()
+        found.kept(push(file, body, &format!("push.{index}")))
     });
-    let pushes = pushes.collect::<Vec<_>>();
-    if found.list.is_empty() {
-        Ok(pushes.into())
-    } else {
-        Err(found)
-    }
+    let pushes = pushes.collect::<Vec<_>>().into();
+    found.or(pushes)
 }
 
 pub(super) fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<Problem>> {
-    let (point, window) = (
-        body.find(&format!("{key}.point"), &file.point),
-        window(file, key),
-    );
-    match (point, window) {
-        (Ok(point), Ok(window)) => Ok(Push {
-            point,
-            force: Vector3::from(file.force_N),
-            window,
-            accumulates: file.accumulates.unwrap_or(false),
-        }),
-        (point, window) => {
-            let problems = [point.err(), window.err()];
-            Err(problems.into_iter().flatten().flatten().collect())
-        }
-    }
+    let mut problems = Problems::default();
+    let point = problems.kept(body.find(&format!("{key}.point"), &file.point));
+    let window = problems.kept(window(file, key));
+    let (Some(point), Some(window)) = (point, window) else {
+        return Err(problems.list);
+    };
+    Ok(Push {
+        point,
+        force: Vector3::from(file.force_N),
+        window,
+        accumulates: file.accumulates.unwrap_or(false),
+    })
 }
 
 /// When the push at `key` acts.
 fn window(file: &PushFile, key: &str) -> Result<Window, Vec<Problem>> {
-    let wrong = |rule: &str| Err(vec![Problem::at(key, rule)]);
-    let window = match (file.first_step, file.steps, file.from_s, file.for_s) {
-        (first, Some(count), None, None) => Window::Steps {
-            first: first.unwrap_or(1),
-            count,
-        },
-        (None, None, from, Some(for_s)) => Window::Time {
-            from_s: from.unwrap_or(0.0),
-            for_s,
-        },
-        (None, None, Some(_), None) => return wrong("does not say for how long: add for_s"),
-        (first, steps, None, None) if first.is_some() || steps.is_some() => {
-            return wrong("does not say for how long: add steps");
+    let rule = match (file.first_step, file.steps, file.from_s, file.for_s) {
+        (first, Some(count), None, None) => {
+            let first = first.unwrap_or(1);
+            return Ok(Window::Steps { first, count });
         }
-        (None, None, None, None) => return wrong("does not say for how long: add steps, or for_s"),
-        _ => {
-            return wrong(
-                "counts in steps and in seconds: keep first_step and steps, or from_s and for_s",
-            );
+        (None, None, from, Some(for_s)) if file.accumulates != Some(true) => {
+            let from_s = from.unwrap_or(0.0);
+            return Ok(Window::Time { from_s, for_s });
         }
+        (None, None, _, Some(_)) => {
+            "accumulates step by step: give first_step and steps instead of seconds"
+        }
+        (None, None, Some(_), None) => "does not say for how long: add for_s",
+        (Some(_), None, None, None) => "does not say for how long: add steps",
+        (None, None, None, None) => "does not say for how long: add steps, or for_s",
+        _ => "counts in steps and in seconds: keep first_step and steps, or from_s and for_s",
     };
-    let accumulates = file.accumulates.unwrap_or(false);
-    if accumulates && matches!(window, Window::Time { .. }) {
-        return wrong("accumulates step by step: give first_step and steps instead of seconds");
-    }
-    Ok(window)
+    Err(vec![Problem::at(key, rule)])
 }

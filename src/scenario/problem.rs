@@ -24,10 +24,8 @@ impl Problem {
         rule: impl Into<String>,
     ) -> Self {
         Self {
-            key: key.into(),
             value: shown(value),
-            rule: rule.into(),
-            place: None,
+            ..Self::at(key, rule)
         }
     }
 
@@ -40,10 +38,8 @@ impl Problem {
             place: None,
         }
     }
-}
 
-impl Problem {
-    /// It in words, without its place.
+    /// The problem in words, without its place.
     fn bare(&self) -> String {
         let (key, value, rule) = (brief(&self.key, 80), &self.value, &self.rule);
         match (self.key.is_empty(), value.is_empty()) {
@@ -63,25 +59,44 @@ impl fmt::Display for Problem {
     }
 }
 
+/// A problem in `line`.
+pub fn at_line(line: u64, mut problem: Problem) -> Problem {
+    problem.place = Some(format!("line {line}"));
+    problem
+}
+
 /// The most problems of one file that are told one by one: more of them help nobody.
 const MOST_TOLD: usize = 100;
 
-/// Problems as they are found.
+/// What is wrong with one file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Found {
-    /// The first hundred.
+pub struct Problems {
+    /// The file; empty while they are found.
+    pub origin: String,
+    /// The first hundred; at the end in the order of the file.
     pub list: Vec<Problem>,
     /// How many more there are.
     pub more: usize,
 }
 
-impl Found {
+impl Problems {
+    /// The one `problem` of the file `origin`.
+    pub fn one(origin: impl Into<String>, problem: Problem) -> Self {
+        Self::from(vec![problem]).of(origin)
+    }
+
+    /// The same, as those of the file `origin`.
+    pub fn of(self, origin: impl Into<String>) -> Self {
+        let origin = origin.into();
+        Self { origin, ..self }
+    }
+
     /// Adds a problem; beyond the first hundred they are only counted.
     pub fn add(&mut self, problem: impl FnOnce() -> Problem) {
-        if self.list.len() < MOST_TOLD {
-            self.list.push(problem());
-        } else {
+        if self.is_full() {
             self.more += 1;
+        } else {
+            self.list.push(problem());
         }
     }
 
@@ -92,46 +107,22 @@ impl Found {
 
     /// Adds all that `other` has.
     pub fn add_all(&mut self, other: impl Into<Self>) {
-        let Self { list, more } = other.into();
+        let Self { list, more, .. } = other.into();
         list.into_iter().for_each(|problem| self.add(|| problem));
         self.more += more;
     }
-}
 
-impl From<Vec<Problem>> for Found {
-    fn from(mut list: Vec<Problem>) -> Self {
-        let more = list.len().saturating_sub(MOST_TOLD);
-        list.truncate(MOST_TOLD);
-        Self { list, more }
-    }
-}
-
-/// Everything found wrong with one file; never empty.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Problems {
-    pub origin: String,
-    /// What was found, in the order of the file.
-    pub list: Vec<Problem>,
-    /// How many more were found, which are not in the list.
-    pub more: usize,
-}
-
-impl Problems {
-    /// The one `problem` of the file `origin`.
-    pub fn one(origin: impl Into<String>, problem: Problem) -> Self {
-        Self {
-            origin: origin.into(),
-            list: vec![problem],
-            more: 0,
-        }
+    /// What was `made`; where it was not, its problems are added.
+    pub fn kept<T>(&mut self, made: Result<T, impl Into<Self>>) -> Option<T> {
+        made.map_err(|problems| self.add_all(problems)).ok()
     }
 
-    /// What was `found` in the file `origin`.
-    pub fn of(origin: impl Into<String>, found: Found) -> Self {
-        Self {
-            origin: origin.into(),
-            list: found.list,
-            more: found.more,
+    /// `made` where there are no problems.
+    pub fn or<T>(self, made: T) -> Result<T, Self> {
+        if self.list.is_empty() {
+            Ok(made)
+        } else {
+            Err(self)
         }
     }
 
@@ -144,6 +135,18 @@ impl Problems {
     pub fn in_one_line(&self) -> String {
         let first = self.list.first().map(Problem::bare);
         first.unwrap_or_default().replace('\n', " ")
+    }
+}
+
+impl From<Vec<Problem>> for Problems {
+    fn from(mut list: Vec<Problem>) -> Self {
+        let more = list.len().saturating_sub(MOST_TOLD);
+        list.truncate(MOST_TOLD);
+        Self {
+            list,
+            more,
+            ..Self::default()
+        }
     }
 }
 
@@ -194,17 +197,12 @@ fn shown(value: &toml::Value) -> String {
 /// The names one after the other, the first dozen of them.
 pub fn listed<'a>(names: impl Iterator<Item = &'a str> + Clone) -> String {
     const MOST: usize = 12;
-    let mut list: Vec<_> = names
-        .clone()
-        .take(MOST)
-        .map(|name| brief(name, 40))
-        .collect();
-    match names.count().saturating_sub(MOST) {
-        0 => {}
-        more => list.push(format!("and {more} more")),
-    }
-    if list.is_empty() {
-        return "none".to_owned();
+    let first = names.clone().take(MOST);
+    let mut list: Vec<_> = first.map(|name| brief(name, 40)).collect();
+    match names.count() {
+        0 => list.push("none".to_owned()),
+        count if count > MOST => list.push(format!("and {} more", count - MOST)),
+        _ => {}
     }
     list.join(", ")
 }
@@ -241,12 +239,10 @@ fn closest<'a>(
     // A name that lacks its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near however long the unit; nearer is one
     // that differs in no letter and no digit ("method2" for "method-2", and not for "method-2-slow").
     if !bare.is_empty() {
-        let is_same = |name: &&str| letters(name) == bare;
+        let same = known.clone().find(|name| letters(name) == bare);
         let begins = |name: &&str| letters(name).starts_with(bare);
-        let found = known.clone().find(is_same);
-        let found = found.or_else(|| known.clone().find(begins));
-        if found.is_some() {
-            return found;
+        if let Some(found) = same.or_else(|| known.clone().find(begins)) {
+            return Some(found);
         }
     }
     let lower = wrong.to_lowercase();
@@ -277,14 +273,13 @@ mod tests {
     #[test]
     fn the_nearest_name_is_offered() {
         let known = ["radius_m", "height_m", "points"];
-        assert_eq!(
-            nearest("raduis_m", known.into_iter()),
-            "did you mean radius_m?"
-        );
-        assert_eq!(
-            nearest("radius", known.into_iter()),
-            "did you mean radius_m?"
-        );
+        for (wrong, near) in [
+            ("raduis_m", "did you mean radius_m?"),
+            ("radius", "did you mean radius_m?"),
+            ("colour", "there is radius_m, height_m, points"),
+        ] {
+            assert_eq!(nearest(wrong, known.into_iter()), near);
+        }
         let readouts = [
             "t_s",
             "Lx_Js",
@@ -301,10 +296,6 @@ mod tests {
         ] {
             assert_eq!(nearest(wrong, readouts.into_iter()), near, "{wrong}");
         }
-        assert_eq!(
-            nearest("colour", known.into_iter()),
-            "there is radius_m, height_m, points"
-        );
     }
 
     #[test]
@@ -319,7 +310,7 @@ mod tests {
 
     #[test]
     fn beyond_the_first_hundred_problems_are_counted_without_being_made() {
-        let (mut found, mut made) = (Found::default(), 0);
+        let (mut found, mut made) = (Problems::default(), 0);
         for _ in 0..1000 {
             found.add(|| {
                 made += 1;

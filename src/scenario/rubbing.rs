@@ -28,35 +28,28 @@ pub(super) fn friction(file: Option<&FrictionFile>, body: &Body) -> Result<Frict
         ("swing_viscous_Nms", friction.swing_viscous),
     ];
     let least = damping.least_moment();
-    match rates.iter().find(|(_, rate)| *rate / least > MOST_RATE) {
-        None => Ok(friction),
-        Some((name, rate)) => {
-            let rule = format!(
-                "is too large for this body, whose least moment is {least:e} kg m^2: at most {:e}",
-                MOST_RATE * least
-            );
-            let value = toml::Value::Float(*rate);
-            Err(vec![Problem::with_value(
-                format!("friction.{name}"),
-                &value,
-                rule,
-            )])
-        }
-    }
+    let Some((name, rate)) = rates.iter().find(|(_, rate)| *rate / least > MOST_RATE) else {
+        return Ok(friction);
+    };
+    let rule = format!(
+        "is too large for this body, whose least moment is {least:e} kg m^2: at most {:e}",
+        MOST_RATE * least
+    );
+    let value = toml::Value::Float(*rate);
+    let key = format!("friction.{name}");
+    Err(vec![Problem::with_value(key, &value, rule)])
 }
 
-/// What there is against `scheme`, named at `key`, under `friction`.
-pub(super) fn objection(
-    key: &str,
+/// Refuses a `scheme` that is not true to `friction`.
+pub(super) fn objects(
     scheme: &'static SchemeInfo,
     friction: &Friction,
-) -> Option<Problem> {
-    let why = scheme.admits.objection(friction)?;
-    let able = scheme::true_to(*friction).map(|scheme| scheme.name);
+) -> Result<(), Vec<Problem>> {
+    let Some(why) = scheme.admits.objection(friction) else {
+        return Ok(());
+    };
+    let able = listed(scheme::true_to(*friction).map(|scheme| scheme.name));
     let value = toml::Value::String(scheme.name.to_owned());
-    let rule = format!(
-        "cannot be true to this friction: it {why}; take one of {}",
-        listed(able)
-    );
-    Some(Problem::with_value(key, &value, rule))
+    let rule = format!("cannot be true to this friction: it {why}; take one of {able}");
+    Err(vec![Problem::with_value("motion.scheme", &value, rule)])
 }

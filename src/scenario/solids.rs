@@ -15,66 +15,30 @@ pub(super) struct Form {
     needs: &'static [&'static str],
     /// Those that it may have too.
     may_have: &'static [&'static str],
-    read: fn(&PartFile) -> Result<Shape, Problem>,
 }
 
-const fn form(
-    name: &'static str,
-    needs: &'static [&'static str],
-    read: fn(&PartFile) -> Result<Shape, Problem>,
-) -> Form {
+const fn form(name: &'static str, needs: &'static [&'static str]) -> Form {
     Form {
         name,
         needs,
         may_have: &[],
-        read,
     }
 }
 
 /// Every shape there is.
 pub(super) static FORMS: [Form; 9] = [
-    form("ring", &["radius_m"], |file| {
-        let radius = given(file.radius_m);
-        Ok(Shape::Ring { radius })
-    }),
+    form("ring", &["radius_m"]),
     Form {
         may_have: &["length_m"],
-        ..form("cylinder", &["radius_m"], |file| {
-            Ok(Shape::Cylinder {
-                radius: given(file.radius_m),
-                length: given(file.length_m),
-            })
-        })
+        ..form("cylinder", &["radius_m"])
     },
-    form(
-        "tube",
-        &["inner_radius_m", "outer_radius_m", "length_m"],
-        tube,
-    ),
-    form("rod", &["length_m"], |file| {
-        let length = long(file)?;
-        Ok(Shape::Rod { length })
-    }),
-    form("ball", &["radius_m"], |file| {
-        let radius = given(file.radius_m);
-        Ok(Shape::Ball { radius })
-    }),
-    form("shell", &["radius_m"], |file| {
-        let radius = given(file.radius_m);
-        Ok(Shape::Shell { radius })
-    }),
-    form("cone", &["radius_m", "length_m"], |file| {
-        let (radius, length) = (given(file.radius_m), long(file)?);
-        Ok(Shape::Cone { radius, length })
-    }),
-    form("block", &["size_m"], |file| {
-        let size = not_negative("size_m", file.size_m)?;
-        Ok(Shape::Block { size })
-    }),
-    form("moments", &["moments_kg_m2"], |file| {
-        let moments = not_negative("moments_kg_m2", file.moments_kg_m2)?;
-        Ok(Shape::Moments(moments / file.mass_kg))
-    }),
+    form("tube", &["inner_radius_m", "outer_radius_m", "length_m"]),
+    form("rod", &["length_m"]),
+    form("ball", &["radius_m"]),
+    form("shell", &["radius_m"]),
+    form("cone", &["radius_m", "length_m"]),
+    form("block", &["size_m"]),
+    form("moments", &["moments_kg_m2"]),
 ];
 
 /// The dimensions of any shape, in the order of the table of keys.
@@ -116,7 +80,7 @@ pub(super) fn part(file: &PartFile) -> Result<Part, Vec<Problem>> {
     if !problems.is_empty() {
         return Err(problems);
     }
-    let shape = (form.read)(file).map_err(|problem| vec![problem])?;
+    let shape = shape(file).map_err(|problem| vec![problem])?;
     let axis = Vector3::from(file.axis.unwrap_or([0.0, 0.0, 1.0]));
     if axis == Vector3::zeros() {
         let rule = "must not be of length 0: it is a direction";
@@ -161,49 +125,53 @@ fn wrong_dimensions(form: &Form, file: &PartFile) -> Vec<Problem> {
     DIMENSIONS.into_iter().filter_map(wrong).collect()
 }
 
-/// A dimension that is there, or may be left out and is then 0.
-fn given(dimension: Option<f64>) -> f64 {
-    dimension.unwrap_or_default()
-}
-
-/// The length of a solid that is nothing without one.
-fn long(file: &PartFile) -> Result<f64, Problem> {
-    match given(file.length_m) {
-        length if length > 0.0 => Ok(length),
-        length => Err(Problem::with_value(
-            "length_m",
-            &Value::Float(length),
-            "must be greater than zero",
-        )),
-    }
-}
-
-fn tube(file: &PartFile) -> Result<Shape, Problem> {
-    let (inner, outer) = (given(file.inner_radius_m), given(file.outer_radius_m));
-    if inner > outer {
-        let rule = format!(
-            "must not be greater than outer_radius_m, {}",
-            shortest(outer)
-        );
-        let inner = Value::Float(inner);
-        return Err(Problem::with_value("inner_radius_m", &inner, rule));
-    }
-    Ok(Shape::Tube {
-        inner,
-        outer,
-        length: given(file.length_m),
+/// The shape of `file`, which has the dimensions of its form.
+fn shape(file: &PartFile) -> Result<Shape, Problem> {
+    let given = Option::<f64>::unwrap_or_default;
+    let (radius, length) = (given(file.radius_m), given(file.length_m));
+    let long = || {
+        let rule = "must be greater than zero";
+        let refused = || Problem::with_value("length_m", &Value::Float(length), rule);
+        (length > 0.0).then_some(length).ok_or_else(refused)
+    };
+    Ok(match file.shape.as_str() {
+        "cylinder" => Shape::Cylinder { radius, length },
+        "tube" => {
+            let (inner, outer) = (given(file.inner_radius_m), given(file.outer_radius_m));
+            if inner > outer {
+                let outer = shortest(outer);
+                let rule = format!("must not be greater than outer_radius_m, {outer}");
+                let inner = Value::Float(inner);
+                return Err(Problem::with_value("inner_radius_m", &inner, rule));
+            }
+            Shape::Tube {
+                inner,
+                outer,
+                length,
+            }
+        }
+        "rod" => Shape::Rod { length: long()? },
+        "ball" => Shape::Ball { radius },
+        "shell" => Shape::Shell { radius },
+        "cone" => Shape::Cone {
+            radius,
+            length: long()?,
+        },
+        "block" => Shape::Block {
+            size: not_negative("size_m", file.size_m)?,
+        },
+        "moments" => {
+            Shape::Moments(not_negative("moments_kg_m2", file.moments_kg_m2)? / file.mass_kg)
+        }
+        _ => Shape::Ring { radius },
     })
 }
 
 fn not_negative(name: &str, numbers: Option<[f64; 3]>) -> Result<Vector3<f64>, Problem> {
     let numbers = Vector3::from(numbers.unwrap_or_default());
-    if numbers.min() < 0.0 {
-        Err(Problem::with_value(
-            name,
-            &vector(&numbers),
-            "must hold no negative number",
-        ))
-    } else {
-        Ok(numbers)
+    if numbers.min() >= 0.0 {
+        return Ok(numbers);
     }
+    let rule = "must hold no negative number";
+    Err(Problem::with_value(name, &vector(&numbers), rule))
 }

@@ -92,30 +92,25 @@ fn refused(name: &str, value: impl Into<Value>, rule: impl Into<String>) -> Vec<
 
 fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
     let written = Table::try_from(file).unwrap_or_default();
-    let told: Vec<_> = WAYS_TO_TELL
-        .iter()
-        .filter_map(|name| Some((*name, written.get(*name)?)))
-        .collect();
-    let way = match &told[..] {
-        [] => {
-            let rule = format!("is missing ({STATED})");
-            return Err(vec![Problem::at("start.momentum_Js", rule)]);
-        }
-        [(way, _)] => *way,
-        [(first, _), (other, value), ..] => {
-            let rule = format!("is given beside {first}: keep one of the two");
-            return Err(refused(other, (*value).clone(), rule));
-        }
+    let mut told = WAYS_TO_TELL
+        .into_iter()
+        .filter(|name| written.contains_key(*name));
+    let Some(way) = told.next() else {
+        let rule = format!("is missing ({STATED})");
+        return Err(vec![Problem::at("start.momentum_Js", rule)]);
     };
-    let goes_with = |name: &str, wanted: &str| {
-        let rule = format!("goes with {wanted}, and {way} is given: leave it out");
-        Err(vec![Problem::at(format!("start.{name}"), rule)])
-    };
-    if file.momentum_frame.is_some() && way != "momentum_Js" {
-        return goes_with("momentum_frame", "momentum_Js");
+    if let Some(other) = told.next() {
+        let rule = format!("is given beside {way}: keep one of the two");
+        return Err(refused(other, written[other].clone(), rule));
     }
-    if file.omega_frame.is_some() && way != "omega_rad_per_s" {
-        return goes_with("omega_frame", "omega_rad_per_s");
+    for (frame, own) in [
+        ("momentum_frame", "momentum_Js"),
+        ("omega_frame", "omega_rad_per_s"),
+    ] {
+        if written.contains_key(frame) && way != own {
+            let rule = format!("goes with {own}, and {way} is given: leave it out");
+            return Err(vec![Problem::at(format!("start.{frame}"), rule)]);
+        }
     }
     if file.steady == Some(true) && !SPIN.contains(&way) {
         let rule = format!("goes with a spin: give spin_rpm or spin_rad_per_s instead of {way}");
@@ -140,20 +135,15 @@ fn steady(
     if across.norm() <= VERTICAL_WITHIN {
         return Ok(Vector3::zeros()); // a vertical axle stays where it is
     }
-    let cosine = if up.z.abs() <= VERTICAL_WITHIN {
-        0.0
-    } else {
-        up.z
-    };
+    let is_level = up.z.abs() <= VERTICAL_WITHIN;
+    let cosine = if is_level { 0.0 } else { up.z };
     let load = gravity * top.first_moment;
-    let slow = if load == 0.0 {
-        Some(0.0)
-    } else {
-        steady_precession(top.across * cosine, top.along * spin, load).0
+    let slow = match load {
+        0.0 => Some(0.0),
+        _ => steady_precession(top.across * cosine, top.along * spin, load).0,
     };
-    let precession = slow.filter(|slow| slow.is_finite());
-    precession
-        .map(|slow| slow * across)
+    let slow = slow.filter(|slow| slow.is_finite());
+    slow.map(|slow| slow * across)
         .ok_or_else(|| too_slow(least_spin(&top, cosine, load)))
 }
 
@@ -165,11 +155,10 @@ fn least_spin(top: &SymmetricTop, cosine: f64, load: f64) -> f64 {
 fn too_slow(least: f64) -> String {
     let why = match least {
         0.0 => "the spin must not be zero".to_owned(),
-        least if least.is_finite() => format!(
-            "the spin must be at least {} rpm ({} rad/s)",
-            above(rpm(least)),
-            above(least)
-        ),
+        least if least.is_finite() => {
+            let (rpm, rate) = (above(rpm(least)), above(least));
+            format!("the spin must be at least {rpm} rpm ({rate} rad/s)")
+        }
         _ => "its numbers leave the range of floating-point numbers".to_owned(),
     };
     format!("has no steady precession at this tilt: {why}")
@@ -218,32 +207,28 @@ pub(super) fn make_room(table: &mut Table, key: &str) {
     let Some(own) = way_of(name).filter(|_| !is_frame_or_flag) else {
         return;
     };
-    let other = WAYS.into_iter().filter(|way| *way != own).flatten();
-    let other_spin = SPIN[..2]
-        .iter()
-        .filter(|spin| own == SPIN && **spin != name);
-    let replaced: Vec<&str> = other.chain(other_spin).copied().collect();
-    remove(table, &replaced);
+    remove(table, WAYS.into_iter().filter(|way| *way != own).flatten());
+    if own == SPIN {
+        remove(table, SPIN[..2].iter().filter(|spin| **spin != name));
+    }
 }
 
-fn remove(table: &mut Table, names: &[&str]) {
+fn remove<'a>(table: &mut Table, names: impl Iterator<Item = &'a &'static str>) {
     if let Some(Value::Table(start)) = table.get_mut("start") {
-        start.retain(|name, _| !names.contains(&name));
+        names.for_each(|name| drop(start.remove(*name)));
     }
 }
 
 /// Whether a new `value` at `key` is about a way of telling the momentum that `table` does not use.
 pub(super) fn is_other_way(table: &Table, key: &str, value: &Value) -> bool {
     let is_given = |name: &str| find(table, &format!("start.{name}")).is_some();
-    match key {
-        "start.momentum_frame" => !is_given("momentum_Js"),
-        "start.omega_frame" => !is_given("omega_rad_per_s"),
-        "start.steady" => {
-            let is_spun = is_given("spin_rpm") || is_given("spin_rad_per_s");
-            !is_spun && value.as_bool() == Some(true)
-        }
-        _ if key.starts_with("start.momentum_Js.") => !is_given("momentum_Js"),
-        _ if key.starts_with("start.omega_rad_per_s.") => !is_given("omega_rad_per_s"),
+    let name = key.strip_prefix("start.").unwrap_or_default();
+    match name.split_once('.').map_or(name, |(vector, _)| vector) {
+        "momentum_Js" if name != "momentum_Js" => !is_given("momentum_Js"),
+        "omega_rad_per_s" if name != "omega_rad_per_s" => !is_given("omega_rad_per_s"),
+        "momentum_frame" => !is_given("momentum_Js"),
+        "omega_frame" => !is_given("omega_rad_per_s"),
+        "steady" => value.as_bool() == Some(true) && !SPIN[..2].iter().any(|spin| is_given(spin)),
         _ => false,
     }
 }
@@ -253,20 +238,16 @@ pub(super) fn is_other_way(table: &Table, key: &str, value: &Value) -> bool {
 pub(super) fn tell_other_way(table: &mut Table, key: &str, value: &Value, now: &Scenario) {
     let name = key.split('.').nth(1).unwrap_or_default();
     let own = way_of(name).unwrap_or(&MOMENTUM);
-    let others = WAYS.into_iter().filter(|way| *way != own).flatten();
-    let others: Vec<&str> = others.copied().collect();
-    remove(table, &others);
+    remove(table, WAYS.into_iter().filter(|way| *way != own).flatten());
     let start = &now.start;
     let framed = |in_world: Vector3<f64>| match value.as_str() {
         Some("body") => vector(&start.orientation.tr_mul(&in_world)),
         _ => vector(&in_world),
     };
+    let omega = || angular_velocity(&now.body.mechanics, start);
     let (name, told) = match own[0] {
         "spin_rpm" => ("spin_rad_per_s", now.spin_rad_per_s(start).into()),
-        "omega_rad_per_s" => (
-            "omega_rad_per_s",
-            framed(angular_velocity(&now.body.mechanics, start)),
-        ),
+        "omega_rad_per_s" => ("omega_rad_per_s", framed(omega())),
         _ => ("momentum_Js", framed(start.momentum)),
     };
     if let Some(Value::Table(table)) = table.get_mut("start") {

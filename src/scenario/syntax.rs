@@ -1,6 +1,6 @@
 //! Where the keys of a file stand in its text, and what is wrong with a text that is no TOML.
 
-use super::problem::Problem;
+use super::problem::{Problem, at_line};
 use crate::text::printable::{brief, printable_lines};
 use toml::de::{DeTable, DeValue};
 
@@ -20,11 +20,11 @@ pub(super) fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
         Some(span) => repeated_table(text, span.start).unwrap_or(rule),
         None => format!("cannot be read as TOML: {rule}"),
     };
-    let mut problem = Problem::at("", rule);
-    problem.place = error
-        .span()
-        .map(|span| format!("line {}", line_at(text, span.start)));
-    problem
+    let problem = Problem::at("", rule);
+    match error.span() {
+        Some(span) => at_line(line_at(text, span.start) as u64, problem),
+        None => problem,
+    }
 }
 
 /// The tables of which a file may have several.

@@ -15,11 +15,16 @@ pub enum Release {
     Suspend,
 }
 
-/// How long all hooks together may delay the shell that suspends the process.
-const PATIENCE: Duration = Duration::from_millis(600);
-/// How long they may delay the end of the process. On a busy machine a hook may need seconds until it runs at all; only a
-/// disk that no longer answers makes the user wait for the whole of it.
-const LAST_PATIENCE: Duration = Duration::from_secs(5);
+impl Release {
+    /// How long all hooks together may delay it. On a busy machine a hook may need seconds until it runs at all; only a disk
+    /// that no longer answers makes the user wait for the whole of it.
+    pub fn patience(self) -> Duration {
+        match self {
+            Self::Exit => Duration::from_secs(5),
+            Self::Suspend => Duration::from_millis(600),
+        }
+    }
+}
 
 type Hook = Arc<dyn Fn(Release) + Send + Sync>;
 
@@ -42,8 +47,7 @@ impl Drop for Registered {
 }
 
 /// Registers `hook`, which is called on a thread of its own before the terminal is given back. It may be called more than
-/// once, and while the lab is still running. It should give up after half a second where the process is suspended, and
-/// after four seconds where it ends.
+/// once, and while the lab is still running. It should give up after [`Release::patience`].
 pub fn hook(hook: impl Fn(Release) + Send + Sync + 'static) -> Registered {
     let mut hooks = hooks();
     let number = hooks.last().map_or(0, |(last, _)| last + 1);
@@ -51,13 +55,8 @@ pub fn hook(hook: impl Fn(Release) + Send + Sync + 'static) -> Registered {
     Registered(number)
 }
 
-/// Calls every hook and waits until all have returned, but at most 0.6 s where the process is suspended and 5 s where it
-/// ends: a hook must not keep it from that.
+/// Calls every hook and waits until all have returned, but no longer than [`Release::patience`].
 pub fn run_hooks(release: Release) {
-    let patience = match release {
-        Release::Exit => LAST_PATIENCE,
-        Release::Suspend => PATIENCE,
-    };
     let (done, all_done) = mpsc::channel::<()>();
     let hooks = hooks().clone();
     for (_, hook) in hooks {
@@ -73,7 +72,7 @@ pub fn run_hooks(release: Release) {
         }
     }
     drop(done);
-    let _ = all_done.recv_timeout(patience); // nothing is sent: receiving ends when the last sender is dropped
+    let _ = all_done.recv_timeout(release.patience()); // nothing is sent: receiving ends when the last sender is dropped
 }
 
 fn call(hook: &Hook, release: Release) {

@@ -22,9 +22,6 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// How long the end of the process waits for an export to remove its temporary file.
-const PATIENCE: Duration = Duration::from_secs(4);
-
 /// An export in progress, or a finished one. Dropping it cancels an export in progress and removes its temporary file.
 pub struct Exporting {
     path: PathBuf,
@@ -166,7 +163,7 @@ impl Shared {
         }
         self.cancel();
         let begin = Instant::now();
-        while !self.has_ended.load(Ordering::SeqCst) && begin.elapsed() < PATIENCE {
+        while !self.has_ended.load(Ordering::SeqCst) && begin.elapsed() < release.patience() {
             thread::sleep(Duration::from_millis(2));
         }
     }

@@ -41,14 +41,12 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Replaces the file at `path` by one that contains `parts` and that is the user's alone. The file is complete at any
+/// Replaces the file at `path` by one that contains `text` and that is the user's alone. The file is complete at any
 /// moment; where the new one cannot be written, the old one stays.
-pub(super) fn replace(path: &Path, parts: &[&str]) -> io::Result<()> {
+pub(super) fn replace(path: &Path, text: &str) -> io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     let mut file = temporary::file_in(folder, &Permissions::from_mode(0o600))?;
-    for part in parts {
-        file.as_file_mut().write_all(part.as_bytes())?; // whose errors do not speak of the temporary name
-    }
+    file.as_file_mut().write_all(text.as_bytes())?; // whose errors do not speak of the temporary name
     file.persist(path)?;
     Ok(())
 }

@@ -4,7 +4,7 @@
 //! The content is two texts, which this module does not interpret: the work, which changes seldom and may be long, and the
 //! place in it, which changes all the time.
 
-use super::at_exit::{self, Registered, Release};
+use super::at_exit::{self, Registered};
 use super::own::make_folder;
 use super::slot::{self, Slot};
 use crate::text::printable::Shown;
@@ -14,16 +14,14 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, SystemTime};
 
-/// How long a flush may hold up the loop, or the shell that suspends the process.
+/// How long a flush may hold up the loop.
 const PATIENCE: Duration = Duration::from_millis(400);
-/// How long it may hold up the end of the process.
-const LAST_PATIENCE: Duration = Duration::from_secs(4);
-/// Least time between two saves, so that a running run does not keep the disk busy.
+/// How often what was noted is saved; a running run does not keep the disk busy.
 const PERIOD: Duration = Duration::from_millis(500);
 
-/// A text that is written when it is first read, once; a clone shares it.
+/// A text that is written once, when it is first read; a clone shares it.
 pub type Text = Arc<LazyLock<String, Box<dyn FnOnce() -> String + Send>>>;
 
 pub fn later(write: impl FnOnce() -> String + Send + 'static) -> Text {
@@ -60,27 +58,24 @@ pub struct Closed {
 pub struct Session {
     name: String,
     state: Arc<Mutex<State>>,
-    orders: Sender<Order>,
+    flushes: Flushes,
     writer: Option<JoinHandle<()>>,
     _at_end: Registered,
 }
+
+/// Each asks the writer to save at once, and to answer.
+type Flushes = Sender<Sender<()>>;
 
 /// The content to save, and what has been saved.
 #[derive(Debug, Default)]
 struct State {
     noted: Option<Content>,
-    /// Whether the writer has taken what was noted last.
-    is_taken: bool,
+    /// Whether what was noted last is still to be saved.
+    is_news: bool,
     kept: Option<Content>,
     trouble: Option<String>,
-}
-
-/// What the writer is to do.
-enum Order {
-    Save,
-    /// Save at once, and answer.
-    Flush(Sender<()>),
-    End,
+    /// Whether the writer is to end after its next save.
+    ends: bool,
 }
 
 /// The result of looking for a session to resume.
@@ -134,7 +129,7 @@ pub fn folder() -> Result<PathBuf, String> {
 pub fn resume<T>(
     folder: &Path,
     name: Option<&str>,
-    mut read: impl FnMut(&Content) -> Result<T, String>,
+    read: impl Fn(&Content) -> Result<T, String>,
 ) -> io::Result<Found<T>> {
     let mut names = sessions(folder)?;
     if let Some(name) = name {
@@ -150,7 +145,14 @@ pub fn resume<T>(
         in_use_by: Vec::new(),
     };
     for name in names {
-        match taken(folder, &name, &mut read) {
+        let taken = || -> Result<_, String> {
+            let slot = Slot::take(folder, &name).map_err(|error| error.to_string())?;
+            let Some(slot) = slot else { return Ok(None) };
+            let content = slot::stored(folder, &name)?;
+            let what = read(&content)?;
+            Ok(Some((slot, content, what)))
+        };
+        match taken() {
             Ok(Some((slot, content, what))) => {
                 found.resumed = Some((Session::start(slot, Some(content))?, what));
                 break;
@@ -163,20 +165,6 @@ pub fn resume<T>(
         }
     }
     Ok(found)
-}
-
-/// Takes the session and reads it; `None` if it is in use.
-fn taken<T>(
-    folder: &Path,
-    name: &str,
-    read: &mut impl FnMut(&Content) -> Result<T, String>,
-) -> Result<Option<(Slot, Content, T)>, String> {
-    let Some(slot) = Slot::take(folder, name).map_err(|error| error.to_string())? else {
-        return Ok(None);
-    };
-    let content = slot::stored(folder, name)?;
-    let what = read(&content)?;
-    Ok(Some((slot, content, what)))
 }
 
 /// Lists the sessions in `folder`, the one saved last first. It changes nothing.
@@ -204,28 +192,26 @@ fn listed(folder: &Path, name: String) -> Listed {
 
 /// The names of all sessions in `folder`, the one saved last first; none where there is no such folder.
 fn sessions(folder: &Path) -> io::Result<Vec<String>> {
-    match slot::sessions(folder) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
-        Err(error) => {
-            let text = format!("cannot look for sessions in {}: {error}", Shown(folder));
-            Err(io::Error::new(error.kind(), text))
-        }
-        found => found,
-    }
+    let found = slot::sessions(folder).or_else(|error| match error.kind() {
+        io::ErrorKind::NotFound => Ok(Vec::new()),
+        _ => Err(error),
+    });
+    found.map_err(|error| told(&error, "cannot look for sessions in", folder))
+}
+
+fn told(error: &io::Error, what: &str, folder: &Path) -> io::Error {
+    io::Error::new(error.kind(), format!("{what} {}: {error}", Shown(folder)))
 }
 
 impl Session {
     /// Begins a new session in `folder`, which is created if it does not exist, and removes the oldest unused sessions.
     /// Nothing is saved before the first [`note`](Self::note).
     pub fn begin(folder: &Path) -> io::Result<Self> {
-        let made = make_folder(folder).and_then(|()| {
+        let slot = make_folder(folder).and_then(|()| {
             slot::prune(folder);
             Slot::new(folder)
         });
-        let slot = made.map_err(|error| {
-            let text = format!("sessions cannot be kept in {}: {error}", Shown(folder));
-            io::Error::new(error.kind(), text)
-        })?;
+        let slot = slot.map_err(|error| told(&error, "sessions cannot be kept in", folder))?;
         Self::start(slot, None)
     }
 
@@ -236,41 +222,29 @@ impl Session {
             kept,
             ..State::default()
         }));
-        let (orders, received) = channel();
-        let (of_writer, at_end) = (Arc::clone(&state), orders.clone());
+        let (flushes, received) = channel();
+        let (of_writer, at_end) = (Arc::clone(&state), flushes.clone());
         let writer = thread::Builder::new()
             .name("session".to_owned())
             .spawn(move || keep_writing(slot, &of_writer, &received))?;
         Ok(Self {
             name,
             state,
-            orders,
+            flushes,
             writer: Some(writer),
             _at_end: at_exit::hook(move |release| {
-                let patience = match release {
-                    Release::Exit => LAST_PATIENCE,
-                    Release::Suspend => PATIENCE,
-                };
-                flush(&at_end, patience);
+                flush(&at_end, release.patience());
             }),
         })
     }
 
-    /// Makes `content` the content to save. It only wakes the saving thread, and may be called in every round of the
-    /// loop.
+    /// Makes `content` the content to save. It is quick, and may be called in every round of the loop.
     pub fn note(&self, content: Content) {
         let mut state = locked(&self.state);
-        if state
-            .noted
-            .as_ref()
-            .is_some_and(|old| old.is_same(&content))
-        {
-            return;
-        }
-        let is_news = state.noted.replace(content).is_none() || state.is_taken;
-        state.is_taken = false;
-        if is_news {
-            let _ = self.orders.send(Order::Save);
+        let noted = state.noted.as_ref();
+        if !noted.is_some_and(|noted| noted.is_same(&content)) {
+            state.noted = Some(content);
+            state.is_news = true;
         }
     }
 
@@ -281,7 +255,7 @@ impl Session {
     /// Saves at once, and gives up after 0.4 s. Returns whether saving was attempted in that time;
     /// [`trouble`](Self::trouble) tells whether it failed.
     pub fn flush(&self) -> bool {
-        flush(&self.orders, PATIENCE)
+        flush(&self.flushes, PATIENCE)
     }
 
     /// Why the last attempt to save failed; `None` if it succeeded. The thread tries again every half second.
@@ -305,8 +279,8 @@ impl Session {
         let Some(writer) = self.writer.take() else {
             return true;
         };
-        let is_in_time = flush(&self.orders, patience);
-        let _ = self.orders.send(Order::End);
+        locked(&self.state).ends = true;
+        let is_in_time = flush(&self.flushes, patience);
         if is_in_time {
             let _ = writer.join();
         }
@@ -325,37 +299,26 @@ fn locked(state: &Mutex<State>) -> MutexGuard<'_, State> {
 }
 
 /// Makes the writer save, and waits for it at most `patience`. Returns whether it tried in that time.
-fn flush(orders: &Sender<Order>, patience: Duration) -> bool {
+fn flush(flushes: &Flushes, patience: Duration) -> bool {
     let (done, is_done) = channel();
-    let _ = orders.send(Order::Flush(done));
+    let _ = flushes.send(done);
     is_done.recv_timeout(patience).is_ok()
 }
 
 /// The body of the writer. It returns when the session is closed; one that was never saved leaves nothing.
-fn keep_writing(slot: Slot, state: &Mutex<State>, orders: &Receiver<Order>) {
-    let mut last = None;
-    let mut due: Option<Instant> = None;
+fn keep_writing(slot: Slot, state: &Mutex<State>, flushes: &Receiver<Sender<()>>) {
     loop {
-        let order = match due {
-            None => orders.recv().map_err(|_| RecvTimeoutError::Disconnected),
-            Some(due) => orders.recv_timeout(due.saturating_duration_since(Instant::now())),
-        };
-        let waiting = match order {
-            Ok(Order::Save) => {
-                let next = last.map_or_else(Instant::now, |last| last + PERIOD);
-                due = due.or(Some(next));
-                continue;
-            }
-            // A flush saves even what has not changed, so that the session left last has the newest file.
-            Ok(Order::Flush(waiting)) => Some(waiting),
-            Err(RecvTimeoutError::Timeout) => None,
-            Ok(Order::End) | Err(RecvTimeoutError::Disconnected) => break,
-        };
-        let is_saved = save(&slot, state);
-        last = Some(Instant::now());
-        due = (!is_saved).then(|| Instant::now() + PERIOD);
-        if let Some(waiting) = waiting {
-            let _ = waiting.send(());
+        let flushed = flushes.recv_timeout(PERIOD);
+        // A flush saves even what has not changed, so that the session left last has the newest file.
+        if flushed.is_ok() || locked(state).is_news {
+            save(&slot, state);
+        }
+        let ends = locked(state).ends;
+        if let Ok(done) = &flushed {
+            let _ = done.send(());
+        }
+        if ends || matches!(flushed, Err(RecvTimeoutError::Disconnected)) {
+            break;
         }
     }
     if locked(state).kept.is_none() {
@@ -363,23 +326,21 @@ fn keep_writing(slot: Slot, state: &Mutex<State>, orders: &Receiver<Order>) {
     }
 }
 
-/// Saves what was noted last. Returns whether there is nothing left to save.
-fn save(slot: &Slot, state: &Mutex<State>) -> bool {
+/// Saves what was noted last.
+fn save(slot: &Slot, state: &Mutex<State>) {
     let noted = {
         let mut state = locked(state);
-        state.is_taken = true;
+        state.is_news = false;
         state.noted.clone()
     };
-    let Some(content) = noted else {
-        return true;
-    };
+    let Some(content) = noted else { return };
     let saved = slot.save(&content);
     let mut state = locked(state);
-    let trouble = saved.err();
-    let trouble = trouble.map(|error| format!("the session cannot be kept: {error}"));
-    if trouble.is_none() {
-        state.kept = Some(content);
+    match saved {
+        Ok(()) => (state.kept, state.trouble) = (Some(content), None),
+        Err(error) => {
+            state.trouble = Some(format!("the session cannot be kept: {error}"));
+            state.is_news = true;
+        }
     }
-    state.trouble = trouble;
-    state.trouble.is_none()
 }

@@ -79,45 +79,48 @@ pub struct Read {
 fn checked(path: &Path, read: io::Result<Vec<u8>>) -> Read {
     let origin = path.display().to_string();
     let document = match read {
-        Ok(bytes) => Document::read_from(&origin, &*bytes),
         Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
             return Read::default();
         }
+        Ok(bytes) => Document::read_from(&origin, &*bytes),
         Err(error) => {
             let rule = format!("cannot be read: {error}");
             Err(Problems::one(origin, Problem::at("", rule)))
         }
     };
-    let checked = document.map(|document| {
-        let (good, found) = sifted(document.table());
-        Read {
-            settings: good.try_into().unwrap_or_default(),
-            problems: (!found.is_empty()).then(|| document.placed(found)),
+    match document {
+        Ok(document) => {
+            let (good, found) = sifted(document.table());
+            let placed = found.or(()).map_err(|found| document.placed(found));
+            Read {
+                settings: good.try_into().unwrap_or_default(),
+                problems: placed.err(),
+            }
         }
-    });
-    checked.unwrap_or_else(|problems| Read {
-        settings: Settings::default(),
-        problems: Some(problems),
-    })
+        Err(problems) => Read {
+            settings: Settings::default(),
+            problems: Some(problems),
+        },
+    }
 }
 
 /// The settings in `table` that break no rule, and what is wrong with the others.
-fn sifted(table: &Table) -> (Table, Vec<Problem>) {
-    let mut good = Table::new();
-    let mut problems = Vec::new();
+fn sifted(table: &Table) -> (Table, Problems) {
+    let (mut good, mut problems) = (Table::new(), Problems::default());
     for (key, value) in table {
         let name = match key.as_str() {
             "color" if !table.contains_key("colour") => "colour",
             other => other,
         };
-        let Some((_, kind, _)) = KEYS.iter().find(|(known, ..)| *known == name) else {
-            let near = nearest(key, KEYS.iter().map(|(known, ..)| *known));
-            problems.push(Problem::at(key.clone(), format!("unknown key: {near}")));
-            continue;
-        };
-        match kind.check(value) {
-            Ok(()) => drop(good.insert(name.to_owned(), value.clone())),
-            Err(rule) => problems.push(Problem::with_value(key.clone(), value, rule)),
+        match KEYS.iter().find(|(known, ..)| *known == name) {
+            None => problems.add(|| {
+                let near = nearest(key, KEYS.iter().map(|(known, ..)| *known));
+                Problem::at(key, format!("unknown key: {near}"))
+            }),
+            Some((_, kind, _)) => match kind.check(value) {
+                Ok(()) => drop(good.insert(name.to_owned(), value.clone())),
+                Err(rule) => problems.add(|| Problem::with_value(key, value, rule)),
+            },
         }
     }
     (good, problems)
@@ -159,7 +162,7 @@ pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
             Err(error) => return Err(error),
         };
         table.insert(key.to_owned(), value);
-        own::replace(&path, &[HEAD, &table.to_string()])
+        own::replace(&path, &format!("{HEAD}{table}"))
     };
     remembered().map_err(|error| {
         let path = Shown(&path);
@@ -180,13 +183,8 @@ mod tests {
         symlink(&target, home.path().join(FILE)).unwrap();
         let found = read(home.path());
         assert_eq!(found.settings, Settings::default());
-        assert!(
-            found
-                .problems
-                .unwrap()
-                .to_string()
-                .contains("symbolic link")
-        );
+        let told = found.problems.unwrap().to_string();
+        assert!(told.contains("symbolic link"), "{told}");
         let trouble = remember(home.path(), "marker", "ascii".into()).unwrap_err();
         assert!(trouble.contains("symbolic link"), "{trouble}");
         assert_eq!(fs::read_to_string(&target).unwrap(), "marker = 'dot'\n");

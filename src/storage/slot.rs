@@ -92,7 +92,7 @@ pub(super) fn stored(folder: &Path, name: &str) -> Result<Content, String> {
 /// The content from the text of a session behind its first line; `None` if it is incomplete or changed.
 fn content(text: &str) -> Option<Content> {
     let (sum, summed) = text.split_once('\n')?;
-    if sum != sum_line(&[summed]) {
+    if sum != sum_of(summed) {
         return None;
     }
     let (length, texts) = summed.split_once('\n')?;
@@ -105,12 +105,8 @@ fn content(text: &str) -> Option<Content> {
     })
 }
 
-fn sum_line(parts: &[&str]) -> String {
-    let mut sum = crc32fast::Hasher::new();
-    for part in parts {
-        sum.update(part.as_bytes());
-    }
-    format!("sum {:08x}", sum.finalize())
+fn sum_of(text: &str) -> String {
+    format!("sum {:08x}", crc32fast::hash(text.as_bytes()))
 }
 
 /// Removes all but the newest unused sessions, and lock files without a session. What is another user's stays.
@@ -137,9 +133,8 @@ fn exists(path: &Path) -> bool {
 impl Slot {
     /// A new session. Its name is the number above the largest in the folder.
     pub(super) fn new(folder: &Path) -> io::Result<Self> {
-        let mut names = names(folder, "session")?;
-        names.extend(self::names(folder, "lock")?);
-        let numbers = names.iter().filter_map(|name| name.parse::<u64>().ok());
+        let used = [names(folder, "session")?, names(folder, "lock")?].concat();
+        let numbers = used.iter().filter_map(|name| name.parse::<u64>().ok());
         let mut number = numbers.max().unwrap_or(0);
         loop {
             number = number.wrapping_add(1);
@@ -189,12 +184,10 @@ impl Slot {
     /// Writes `content`. If writing fails, the old file is unchanged.
     pub(super) fn save(&self, content: &Content) -> io::Result<()> {
         own::make_folder(&self.folder)?; // somebody may have removed it
-        let length = format!("place {}\n", content.place.len());
-        let parts = [&*length, &content.place, &content.work];
-        let head = format!("{FORMAT}\n{}\n", sum_line(&parts));
-        let [length, place, work] = parts;
+        let Content { place, work } = content;
+        let texts = format!("place {}\n{place}{}", place.len(), work.as_str());
         let path = file(&self.folder, &self.name, "session");
-        own::replace(&path, &[&head, length, place, work])
+        own::replace(&path, &format!("{FORMAT}\n{}\n{texts}", sum_of(&texts)))
     }
 
     /// Removes the session's files, the lock file last: until then no other process can take the session.

@@ -17,8 +17,8 @@ use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::study::fit::table::Header;
 use crate::study::sweep::Sweep;
 use crate::study::sweep::in_order::in_order;
+use crate::text::advice::unread;
 use crate::text::printable::printable;
-use crate::text::unread;
 use against::Against;
 pub use against::Difference;
 use std::cell::RefCell;
@@ -62,7 +62,7 @@ impl From<String> for Unverified {
 
 impl From<io::Error> for Unverified {
     fn from(error: io::Error) -> Self {
-        unread::why(&error).into()
+        unread(&error).into()
     }
 }
 
@@ -260,7 +260,7 @@ fn comparison(
         return Err(cannot(why.to_owned()));
     }
     let text = csv::text(path).map_err(|problem| Problems::one("", problem))?;
-    let table = Csv::of(&text, MOST_VALUES).map_err(|found| Problems::of("", found))?;
+    let table = Csv::of(&text, MOST_VALUES)?;
     let (mut schemes, mut time_steps) = (Vec::<&SchemeInfo>::new(), BTreeMap::new());
     for (line, row) in &table.rows {
         let scheme = SchemeInfo::find(&row[0]);

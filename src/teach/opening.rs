@@ -8,7 +8,7 @@ use crate::export::Destination;
 use crate::lab::command::Command;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, Problems, presets};
-use crate::text::unread;
+use crate::text::advice::unread;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -92,7 +92,7 @@ fn look_in(folder: &Path, lesson: &mut Lesson) {
 
 fn text_of(path: &Path) -> Result<String, Problem> {
     let whole = |rule: String| Problem::at("", rule);
-    let cannot = |error: std::io::Error| whole(unread::why(&error));
+    let cannot = |error: std::io::Error| whole(unread(&error));
     if path.is_dir() {
         return Err(whole("is a folder: name a file in it".to_owned()));
     }

@@ -8,7 +8,6 @@ use super::structure::on_line;
 use super::text::Text;
 use crate::lab::Lab;
 use crate::lab::command::Command;
-use crate::scenario::problem::Found;
 use crate::scenario::{Problem, Problems};
 use crate::text::number::{NONE, significant};
 use crate::work::expression::Expression;
@@ -96,7 +95,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The places of `text` for numbers that there are not now.
-    fn unstated_in(&self, text: &Text, found: &mut Found) {
+    fn unstated_in(&self, text: &Text, found: &mut Problems) {
         for (line, expression) in text.numbers() {
             let names: Vec<_> = expression.names().collect();
             let is_of_compare = names.contains(&"with") || names.contains(&"prediction");
@@ -108,7 +107,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn unstated_on(&self, page: &Page, found: &mut Found) {
+    fn unstated_on(&self, page: &Page, found: &mut Problems) {
         for block in &page.blocks {
             match block {
                 Block::Text(text) | Block::Notes(text) => self.unstated_in(text, found),
@@ -143,32 +142,23 @@ pub struct Played {
 /// off, the result means nothing.
 pub fn check(lesson: &Lesson, lab: Lab, go_on: GoOn<'_>) -> Result<Played, Problems> {
     let mut walk = Walk::new(lesson, lab);
-    let (mut found, mut unstated) = (Found::default(), Found::default());
+    let (mut found, mut unstated) = (Problems::default(), Problems::default());
     for page in &lesson.pages {
         if let Err(problem) = walk.check_page(page, &mut found, &mut unstated, go_on) {
             found.add(|| problem);
             break; // the pages to come stand on it
         }
     }
-    if found.list.is_empty() {
-        Ok(Played {
-            unstated: unstated.list,
-        })
-    } else {
-        Err(Problems {
-            origin: lesson.origin.clone(),
-            list: found.list,
-            more: found.more,
-        })
-    }
+    let unstated = unstated.list;
+    found.of(&lesson.origin).or(Played { unstated })
 }
 
 impl<'a> Walk<'a> {
     fn check_page(
         &mut self,
         page: &'a Page,
-        found: &mut Found,
-        unstated: &mut Found,
+        found: &mut Problems,
+        unstated: &mut Problems,
         go_on: GoOn<'_>,
     ) -> Result<(), Problem> {
         let block = match page.task() {

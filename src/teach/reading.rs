@@ -12,7 +12,7 @@ use super::lesson::{Block, Compare, Lesson, Page, Setup, Shown};
 use super::names::Names;
 use super::structure::{Element, Kind, LANGUAGES, Lines, WORDS, on_line, structure};
 use super::text::Text;
-use crate::scenario::problem::{Found, listed, nearest};
+use crate::scenario::problem::{listed, nearest};
 use crate::scenario::{Problem, Problems};
 use crate::text::printable::is_steering;
 use std::collections::BTreeSet;
@@ -75,7 +75,7 @@ struct Assembly<'a> {
     predictions: BTreeSet<String>,
     compares: Vec<Compare>,
     has_head: bool,
-    found: Found,
+    found: Problems,
 }
 
 impl<'a> Assembly<'a> {
@@ -92,7 +92,7 @@ impl<'a> Assembly<'a> {
             predictions: BTreeSet::new(),
             compares: Vec::new(),
             has_head: false,
-            found: Found::default(),
+            found: Problems::default(),
         };
         assembly.read_setups(elements);
         assembly
@@ -334,13 +334,8 @@ impl<'a> Assembly<'a> {
                 pages: self.pages,
             });
         }
-        let Found { mut list, more } = self.found;
-        list.sort_by_key(line_of);
-        Err(Problems {
-            origin: self.origin.to_owned(),
-            list,
-            more,
-        })
+        self.found.list.sort_by_key(line_of);
+        Err(self.found.of(self.origin))
     }
 
     /// Checks that the prediction of `compare` is asked for before it.

@@ -1,19 +1,17 @@
 //! Numbers and words as people read them: what every other room writes with. It knows nothing of gyroscopes.
 //!
+//! - [`advice`]: why a file cannot be read or written.
 //! - [`ladder`]: the numbers 1, 2 and 5 times a power of ten.
 //! - [`number`]: numbers in as few digits as a reader needs.
 //! - [`printable`]: text with nothing in it that steers a terminal.
 //! - [`shipped`]: files that come with the program.
 //! - [`mod@unit`]: units at the end of names.
-//! - [`unread`]: why a file cannot be read.
-//! - [`unwritten`]: why a file cannot be written.
 //! - [`wrap`]: text in lines of a width.
 
+pub mod advice;
 pub mod ladder;
 pub mod number;
 pub mod printable;
 pub mod shipped;
 pub mod unit;
-pub mod unread;
-pub mod unwritten;
 pub mod wrap;

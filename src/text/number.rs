@@ -29,35 +29,29 @@ pub fn without_minus_zero(text: String) -> String {
 
 /// As [`fixed`], with its sign: `+0.1160`, `+0.0000`.
 pub fn signed(number: f64, decimals: usize) -> String {
-    let text = fixed(number, decimals);
-    if number.is_finite() && !text.starts_with('-') {
-        format!("+{text}")
-    } else {
+    with_sign(fixed(number, decimals))
+}
+
+fn with_sign(text: String) -> String {
+    if text.starts_with('-') || text == NONE {
         text
+    } else {
+        format!("+{text}")
     }
 }
 
 /// `number` with an exponent and `digits` digits after the point: `2.4e-9`.
 pub fn exponent(number: f64, digits: usize) -> String {
     if number.is_finite() {
-        format!("{:.digits$e}", number + 0.0)
+        format!("{:.digits$e}", number + 0.0) // adding 0 makes 0 of -0
     } else {
-        // adding 0 makes 0 of -0
         NONE.to_owned()
     }
 }
 
 /// As [`exponent`], with its sign: `+2.4e-9`.
 pub fn signed_exponent(number: f64, digits: usize) -> String {
-    with_sign(number, exponent(number, digits))
-}
-
-fn with_sign(number: f64, text: String) -> String {
-    if number.is_finite() && number.is_sign_positive() {
-        format!("+{text}")
-    } else {
-        text
-    }
+    with_sign(exponent(number, digits))
 }
 
 /// The shortest text that is read back as `number`: 0.1, 1e308.

@@ -49,13 +49,10 @@ impl Original {
         let file = Path::new(name).file_name().unwrap_or_default();
         let file = printable(&file.to_string_lossy()).into_owned();
         let is_short = (1..=LONGEST_NAME).contains(&file.chars().count());
+        let file = Some(file).filter(|_| is_short);
         Self {
             scenario: Arc::clone(opened),
-            name: if is_short {
-                file
-            } else {
-                "what was opened".to_owned()
-            },
+            name: file.unwrap_or("what was opened".to_owned()),
         }
     }
 
@@ -125,31 +122,24 @@ fn preset_with_words_of(scenario: &Scenario) -> Option<(&'static Preset, Scenari
 }
 
 fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
-    let (old, new) = (last_motion(before), last_motion(now));
-    let mut changes = Vec::new();
-    let mut differs = |is_other: bool, what: String| changes.extend(is_other.then_some(what));
-    let [dt, old_dt] = [new.time_step_s, old.time_step_s];
-    let words = format!("dt {} s, not {}", shortest(dt), shortest(old_dt));
-    differs(dt != old_dt, words);
-    let [scheme, old_scheme] = [new.scheme.name, old.scheme.name];
-    let words = format!("{scheme} scheme, not {old_scheme}");
-    differs(scheme != old_scheme, words);
-    let [g, old_g] = [new.gravity, old.gravity];
-    let words = format!("gravity {} m/s2, not {}", shortest(g), shortest(old_g));
-    differs(g != old_g, words);
-    if now.file.body != before.file.body {
-        changes.push("another body".to_owned());
-    }
-    changes.extend(values("start", &before.file.start, &now.file.start));
-    changes.extend(values(
-        "friction",
-        &before.file.friction,
-        &now.file.friction,
-    ));
-    if are_pushes_changed(before, now) {
-        changes.push(push_change(before, now).to_owned());
-    }
-    if changes.is_empty() && now.file.edit != before.file.edit {
+    let [old, new] = [before, now].map(last_motion);
+    let (old_file, new_file) = (&before.file, &now.file);
+    let motion = |name: &str, unit: &str, [new, old]: [f64; 2]| {
+        let words = || format!("{name} {} {unit}, not {}", shortest(new), shortest(old));
+        (new != old).then(words)
+    };
+    let [scheme, old_scheme] = [new, old].map(|motion| motion.scheme.name);
+    let changes = [
+        motion("dt", "s", [new.time_step_s, old.time_step_s]),
+        (scheme != old_scheme).then(|| format!("{scheme} scheme, not {old_scheme}")),
+        motion("gravity", "m/s2", [new.gravity, old.gravity]),
+        (new_file.body != old_file.body).then(|| "another body".to_owned()),
+        values("start", &old_file.start, &new_file.start),
+        values("friction", &old_file.friction, &new_file.friction),
+        push_change(before, now).map(str::to_owned),
+    ];
+    let mut changes: Vec<String> = changes.into_iter().flatten().collect();
+    if changes.is_empty() && new_file.edit != old_file.edit {
         changes.push("edits on the way".to_owned());
     }
     changes
@@ -162,21 +152,15 @@ fn values<T: Serialize + PartialEq>(name: &str, before: &T, now: &T) -> Option<S
     }
     // What is not there, as friction may be, is an empty table.
     let [before, now] = [before, now].map(|table| Table::try_from(table).unwrap_or_default());
-    let new = now
-        .iter()
-        .filter(|(key, value)| before.get(*key) != Some(*value));
-    let new: Vec<_> = new
-        .map(|(key, value)| {
-            let is_plain = |value: &&Value| number(value).is_some() || value.is_array();
-            let old = before
-                .get(key)
-                .filter(is_plain)
-                .filter(|_| is_plain(&value));
-            let old = old.map(|old| format!(", not {}", written(old)));
-            let old = old.unwrap_or_default();
-            format!("{name}.{key} {}{old}", written(value))
-        })
-        .collect();
+    let is_new = |(key, value): &(&String, &Value)| before.get(*key) != Some(*value);
+    let new = now.iter().filter(is_new).map(|(key, value)| {
+        let is_plain = |value: &&Value| number(value).is_some() || value.is_array();
+        let old = before.get(key).filter(is_plain);
+        let old = old.filter(|_| is_plain(&value)).map(written);
+        let old = old.map_or(String::new(), |old| format!(", not {old}"));
+        format!("{name}.{key} {}{old}", written(value))
+    });
+    let new: Vec<_> = new.collect();
     Some(match new.len() {
         1..=MOST_VALUES => new.join(", "),
         _ => format!("another {name}"),
@@ -205,26 +189,20 @@ fn number(value: &Value) -> Option<String> {
 
 /// Gravity, scheme and time step after the last edit.
 fn last_motion(scenario: &Scenario) -> &Motion {
-    scenario
-        .edits
-        .last()
-        .map_or(&scenario.motion, |edit| &edit.motion)
+    let last = scenario.edits.last();
+    last.map_or(&scenario.motion, |edit| &edit.motion)
 }
 
-/// How the pushes have changed, in words.
-fn push_change(before: &Scenario, now: &Scenario) -> &'static str {
-    match now.file.push.len().saturating_sub(before.file.push.len()) {
+/// How the pushes have changed, in words, by more than the rescaling that a new time step causes.
+fn push_change(before: &Scenario, now: &Scenario) -> Option<&'static str> {
+    let (old, new) = (&before.file, &now.file);
+    let rescaled = || at_time_step(old, now.motion.time_step_s);
+    if new.push == old.push || rescaled().is_ok_and(|rescaled| rescaled.push == new.push) {
+        return None;
+    }
+    Some(match new.push.len().saturating_sub(old.push.len()) {
         0 => "other pushes",
         1 => "one more push",
         _ => "more pushes",
-    }
-}
-
-/// Whether the pushes differ by more than the rescaling that a new time step causes.
-fn are_pushes_changed(before: &Scenario, now: &Scenario) -> bool {
-    let (old, new) = (&before.file, &now.file);
-    let is_rescaled = || {
-        at_time_step(old, now.motion.time_step_s).is_ok_and(|rescaled| rescaled.push == new.push)
-    };
-    new.push != old.push && !is_rescaled()
+    })
 }

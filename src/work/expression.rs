@@ -13,16 +13,8 @@ const LONGEST: usize = 1000;
 pub struct Expression {
     text: String,
     root: Node,
-    is_condition: bool,
     /// Every name in it once, and the column (from 1) where it stands first.
     names: Vec<(String, usize)>,
-}
-
-/// An expression whose names have been looked up. Each name stands for a `T`.
-#[derive(Clone, Debug)]
-pub struct Bound<T> {
-    root: Node,
-    sources: Vec<T>,
 }
 
 /// What is wrong with an expression, and where.
@@ -89,10 +81,6 @@ impl Operator {
         self.power < COMPARES
     }
 
-    fn gives_condition(&self) -> bool {
-        self.power <= COMPARES
-    }
-
     /// The result where one side alone decides it, whatever the other is.
     fn decided_by(&self, side: Option<f64>) -> Option<f64> {
         match (self.power, side?) {
@@ -117,25 +105,19 @@ impl Expression {
             let rule = format!("an expression has at most {LONGEST} characters");
             return Err(Fault { column: 1, rule });
         }
-        let (root, is_condition, names) = parse::parse(text)?;
-        Ok(Self {
-            text: text.to_owned(),
-            root,
-            is_condition,
-            names,
-        })
+        let (root, names) = parse::parse(text)?;
+        let text = text.to_owned();
+        Ok(Self { text, root, names })
     }
 
     /// Reads `text`, which must say whether something holds.
     pub fn condition(text: &str) -> Result<Self, Fault> {
         let expression = Self::parse(text)?;
-        if expression.is_condition {
+        if expression.is_condition() {
             return Ok(expression);
         }
-        Err(Fault {
-            column: 1,
-            rule: "must compare, such as t_s >= 60".to_owned(),
-        })
+        let rule = "must compare, such as t_s >= 60".to_owned();
+        Err(Fault { column: 1, rule })
     }
 
     pub fn text(&self) -> &str {
@@ -144,7 +126,7 @@ impl Expression {
 
     /// Whether it is a condition, not a number.
     pub fn is_condition(&self) -> bool {
-        self.is_condition
+        self.root.is_condition()
     }
 
     pub fn names(&self) -> impl Iterator<Item = &str> {
@@ -158,21 +140,26 @@ impl Expression {
     pub fn bind<'a, T>(
         &'a self,
         find: impl Fn(&'a str) -> Result<T, String>,
-    ) -> Result<Bound<T>, Fault> {
+    ) -> Result<Vec<T>, Fault> {
         let look_up = |(name, column): &'a (String, usize)| {
             find(name).map_err(|rule| Fault {
                 column: *column,
                 rule,
             })
         };
-        let sources = self.names.iter().map(look_up).collect::<Result<_, _>>()?;
-        let root = self.root.clone();
-        Ok(Bound { root, sources })
+        self.names.iter().map(look_up).collect()
     }
 
-    /// Its value, with the values of the names from `value_of`; `None` where a number that it needs has no value.
-    pub fn value(&self, value_of: impl Fn(&str) -> Option<f64>) -> Option<f64> {
-        self.root.value(&mut |index| value_of(&self.names[index].0))
+    /// Its value, with the values of the names from `value_of`; `None` where a number that it needs has no value. A
+    /// condition is 1 where it holds and 0 where it does not.
+    pub fn value(&self, mut value_of: impl FnMut(&str) -> Option<f64>) -> Option<f64> {
+        self.value_at(|index| value_of(&self.names[index].0))
+    }
+
+    /// The same, with the value of the name of each index, as [`bind`](Self::bind) lists them. A name that cannot change
+    /// the result any more is not looked up.
+    pub fn value_at(&self, mut value_of: impl FnMut(usize) -> Option<f64>) -> Option<f64> {
+        self.root.value(&mut value_of)
     }
 }
 
@@ -182,20 +169,11 @@ impl PartialEq for Expression {
     }
 }
 
-impl<T> Bound<T> {
-    /// Its value, with the values of the names from `value_of`. A condition is 1 where it holds and 0 where it does
-    /// not.
-    pub fn value(&self, mut value_of: impl FnMut(&T) -> Option<f64>) -> Option<f64> {
-        self.root.value(&mut |index| value_of(&self.sources[index]))
-    }
-
-    /// Whether it has a value other than 0. A number that cannot change the result any more is not looked up.
-    pub fn holds(&self, value_of: impl FnMut(&T) -> Option<f64>) -> bool {
-        self.value(value_of).is_some_and(|value| value != 0.0)
-    }
-}
-
 impl Node {
+    fn is_condition(&self) -> bool {
+        matches!(self, Self::Computed(operator, ..) if operator.power <= COMPARES)
+    }
+
     fn value(&self, name: &mut impl FnMut(usize) -> Option<f64>) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),

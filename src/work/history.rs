@@ -11,7 +11,7 @@ use toml::Table;
 
 /// The most earlier runs that are kept.
 const MOST_RUNS: usize = 200;
-/// The most points that the bodies of all kept runs may have together; it limits the memory for large bodies.
+/// The most points that all kept runs of such a body as the present one would have together, which limits the memory.
 const MOST_POINTS: usize = 200_000;
 
 /// One run of the history: its name, its journal, and the step at which the user left it.
@@ -107,21 +107,12 @@ impl History {
         self.drop_oldest();
     }
 
-    /// Drops the oldest runs beyond [`MOST_RUNS`] and [`MOST_POINTS`]; the newest past run always stays.
+    /// Drops the oldest runs beyond [`MOST_RUNS`], or beyond fewer where the body has many points.
     fn drop_oldest(&mut self) {
-        let points = |run: &RunRecord| {
-            let body = &run.journal.base().body;
-            body.point.len() + body.part.len()
-        };
-        let mut points_left = MOST_POINTS;
-        let affordable = self.past.iter().rev().take(MOST_RUNS).take_while(|run| {
-            let needed = points(run);
-            let fits = needed <= points_left;
-            points_left = points_left.saturating_sub(needed);
-            fits
-        });
-        let kept = affordable.count().max(1).min(self.past.len());
-        self.past.drain(..self.past.len() - kept);
+        let body = &self.present.journal.base().body;
+        let points = (body.point.len() + body.part.len()).max(1);
+        let kept = (MOST_POINTS / points).clamp(1, MOST_RUNS);
+        self.past.drain(..self.past.len().saturating_sub(kept));
     }
 
     /// Does `act` at `step` of the present run and returns the run's new scenario. With `is_again` it is one more nudge of
@@ -130,12 +121,7 @@ impl History {
     /// # Errors
     /// Why the act is refused; the history is then unchanged.
     pub fn act(&mut self, step: u64, act: Act, is_again: bool) -> Result<Arc<Scenario>, Problems> {
-        let journal = &mut self.present.journal;
-        let scenario = if is_again {
-            journal.act_again(step, act)?
-        } else {
-            journal.act(step, act)?
-        };
+        let scenario = self.present.journal.act(step, act, is_again)?;
         self.undone.clear();
         Ok(scenario)
     }
@@ -232,6 +218,11 @@ mod tests {
             .unwrap();
     }
 
+    fn set(history: &mut History, step: u64, key: &str, value: f64) -> Arc<Scenario> {
+        let act = Act::set(key, Value::Float(value));
+        history.act(step, act, false).unwrap()
+    }
+
     fn time_step(history: &History) -> f64 {
         let scenario = history.present().journal.scenario().unwrap();
         scenario
@@ -247,17 +238,9 @@ mod tests {
     #[test]
     fn undo_and_redo_go_through_all_acts_and_runs_in_order() {
         let mut history = History::new("method-2", &opened("method-2"));
-        history
-            .act(
-                40,
-                Act::set("motion.time_step_s", Value::Float(0.05)),
-                false,
-            )
-            .unwrap();
+        set(&mut history, 40, "motion.time_step_s", 0.05);
         begin_with_tilt(&mut history, 90, 30.0);
-        history
-            .act(7, Act::set("motion.time_step_s", Value::Float(0.02)), false)
-            .unwrap();
+        set(&mut history, 7, "motion.time_step_s", 0.02);
         leave(&mut history, 9);
         history.begin("cusps", &opened("cusps"));
         assert_eq!(history.undo(), Some(Reversal::OtherRun));
@@ -289,12 +272,10 @@ mod tests {
     #[test]
     fn undo_takes_the_advice_back_before_the_edits_that_it_kept() {
         let mut history = History::new("method-2", &opened("method-2"));
-        let gravity = Act::set("motion.gravity_m_per_s2", Value::Float(5.0));
-        let edited = history.act(40, gravity, false).unwrap();
+        let edited = set(&mut history, 40, "motion.gravity_m_per_s2", 5.0);
         leave(&mut history, 90);
         history.begin_as_advised(&edited);
-        let push = Act::set("motion.time_step_s", Value::Float(0.02));
-        history.act(7, push, false).unwrap();
+        set(&mut history, 7, "motion.time_step_s", 0.02);
         assert!(matches!(
             history.undo(),
             Some(Reversal::SameRun { step: 7, .. })
@@ -316,13 +297,7 @@ mod tests {
         let mut history = History::new("method-2", &opened("method-2"));
         begin_with_tilt(&mut history, 90, 30.0);
         history.undo();
-        history
-            .act(
-                5,
-                Act::set("motion.gravity_m_per_s2", Value::Float(1.0)),
-                false,
-            )
-            .unwrap();
+        set(&mut history, 5, "motion.gravity_m_per_s2", 1.0);
         assert_eq!(history.redo(), None);
     }
 
@@ -348,13 +323,7 @@ mod tests {
     #[test]
     fn redo_brings_the_new_run_back_and_not_an_edit_undone_before_it() {
         let mut history = History::new("method-2", &opened("method-2"));
-        history
-            .act(
-                40,
-                Act::set("motion.time_step_s", Value::Float(0.05)),
-                false,
-            )
-            .unwrap();
+        set(&mut history, 40, "motion.time_step_s", 0.05);
         history.undo();
         begin_with_tilt(&mut history, 90, 30.0);
         history.undo();

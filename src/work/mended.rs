@@ -37,22 +37,16 @@ pub fn mended(
     }
     file.motion.steps = (end_s / time_step_s).round().clamp(1.0, MOST_STEPS) as u64;
     for ((time_s, _), edit) in Clock::edits(scenario).zip(edits) {
-        let set: Table = (edit.set.iter())
-            .filter(|(key, _)| !REPLACED.contains(&key.as_str()))
-            .map(|(key, value)| (key.clone(), value.clone()))
-            .collect();
-        if let Some((key, _)) = set
-            .iter()
-            .find(|(key, value)| is_other && counts(key, value))
-        {
+        let mut set = edit.set;
+        set.retain(|key, _| !REPLACED.contains(&key));
+        let counted = set.iter().find(|(key, value)| counts(key, value));
+        if let Some((key, _)) = counted.filter(|_| is_other) {
             let rule = "is counted in steps, which are others at another time step";
             return Err(refused(Problem::at(key.clone(), rule)));
         }
         if !set.is_empty() {
-            file.edit.push(EditFile {
-                step: (time_s / time_step_s).round() as u64,
-                set,
-            });
+            let step = (time_s / time_step_s).round() as u64;
+            file.edit.push(EditFile { step, set });
         }
     }
     Document::from_file(ORIGIN, &file)?.scenario()

@@ -68,28 +68,21 @@ impl NextPush {
     /// The first push of `scenario`; where it has none, a default push that visibly moves its body.
     pub fn of(scenario: &Scenario) -> Self {
         let own = scenario.file.push.first().zip(scenario.pushes.first());
-        let Some((file, push)) = own else {
+        let Some((file, push)) = own.filter(|(_, push)| push.force.norm() > 0.0) else {
             return Self::default_for(scenario);
         };
         let size = push.force.norm();
         let unit = push.force / size;
-        let named = Toward::NAMED.iter().find_map(|(_, toward)| {
-            let direction = toward.direction(&Vector3::zeros()).ok()?;
-            (direction == unit).then_some(*toward)
-        });
-        let for_s = match push.window {
-            Window::Steps { count, .. } => count as f64 * scenario.written_for_s,
-            Window::Time { for_s, .. } => for_s,
-        };
-        if size > 0.0 {
-            Self {
-                point: file.point.clone(),
-                size_N: size,
-                toward: named.unwrap_or(Toward::Along(unit.into())),
-                for_s,
-            }
-        } else {
-            Self::default_for(scenario)
+        let is_same = |toward: &Toward| toward.direction(&Vector3::zeros()) == Ok(unit);
+        let mut named = Toward::NAMED.into_iter().map(|(_, toward)| toward);
+        Self {
+            point: file.point.clone(),
+            size_N: size,
+            toward: named.find(is_same).unwrap_or(Toward::Along(unit.into())),
+            for_s: match push.window {
+                Window::Steps { count, .. } => count as f64 * scenario.written_for_s,
+                Window::Time { for_s, .. } => for_s,
+            },
         }
     }
 
@@ -111,13 +104,11 @@ impl NextPush {
 
     /// The same push, on the default point where the body of `scenario` has no point of its name.
     pub fn suited_to(self, scenario: &Scenario) -> Self {
-        match scenario.body.point(&self.point) {
-            Some(_) => self,
-            None => Self {
-                point: Self::default_for(scenario).point,
-                ..self
-            },
+        if scenario.body.point(&self.point).is_some() {
+            return self;
         }
+        let point = Self::default_for(scenario).point;
+        Self { point, ..self }
     }
 
     /// The value of `field` as text that [`typed`](Self::typed) reads back.
@@ -222,10 +213,8 @@ impl NextPush {
 
 /// The element `times` places after the one that `is_present`; after the last comes the first. `None` for an empty list.
 fn cycled<T>(list: &[T], is_present: impl Fn(&T) -> bool, times: i32) -> Option<&T> {
-    let now = list
-        .iter()
-        .position(is_present)
-        .map_or(-1, |now| now as i64);
+    let now = list.iter().position(is_present);
+    let now = now.map_or(-1, |now| now as i64);
     let count = i64::try_from(list.len()).ok().filter(|count| *count > 0)?;
     list.get((now + i64::from(times)).rem_euclid(count) as usize)
 }
@@ -244,10 +233,7 @@ mod tests {
         let own = NextPush::of(&scenario("wobble-push"));
         assert_eq!(own.in_words(), "100 N on top, down, for 20 s");
         let default = NextPush::of(&scenario("method-2"));
-        assert_eq!(
-            (default.point.as_str(), default.toward),
-            ("top", Toward::Down)
-        );
+        assert!(default.in_words().contains("N on top, down, for "));
         assert!(default.size_N >= 49.0 && default.for_s > 0.0, "{default:?}");
     }
 
@@ -273,11 +259,7 @@ mod tests {
         ] {
             assert!(push.typed(field, text, &scenario, 0.1).is_err(), "{text}");
         }
-        assert_eq!(
-            push.typed(Field::Length, "20 steps", &scenario, 0.1)
-                .unwrap()
-                .for_s,
-            2.0
-        );
+        let typed = push.typed(Field::Length, "20 steps", &scenario, 0.1);
+        assert_eq!(typed.unwrap().for_s, 2.0);
     }
 }

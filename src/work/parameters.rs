@@ -6,7 +6,7 @@ use crate::scenario::dotted::{find, join, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
 use crate::scenario::keys::{InLab, KEYS, Key, Kind, Nudge, Range};
 use crate::scenario::solids::has_dimension;
-use crate::scenario::{Document, Problems, Scenario, nudge, start, vector};
+use crate::scenario::{Document, Problems, Scenario, float, nudge, start, vector};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
 use nalgebra::Vector3;
@@ -144,7 +144,7 @@ fn parameters_of(
         return Vec::new();
     };
     let written = find(table, place);
-    let unwritten = || present(key, place, table, scenario).or_else(|| lab.absent.value());
+    let unwritten = || present(key, place, table, scenario).or_else(|| key.default());
     let Some(value) = written.cloned().or_else(unwritten) else {
         return Vec::new();
     };
@@ -194,18 +194,12 @@ fn is_offered(place: &str, table: &Table) -> bool {
     let Some((inside, name)) = place.rsplit_once('.') else {
         return true;
     };
-    if inside == "start" && name.starts_with("omega") {
-        return find(table, "start.omega_rad_per_s").is_some();
-    }
-    if !inside.starts_with("push.") {
-        return true;
-    }
-    let is_in_seconds = ["from_s", "for_s"]
-        .iter()
-        .any(|name| find(table, &join(inside, name)).is_some());
-    match name {
-        "first_step" | "steps" | "accumulates" => !is_in_seconds,
-        "from_s" | "for_s" => is_in_seconds,
+    let has = |name: &str| find(table, &join(inside, name)).is_some();
+    let is_in_seconds = || has("from_s") || has("for_s");
+    match (inside.split('.').next(), name) {
+        (Some("start"), "omega_rad_per_s" | "omega_frame") => has("omega_rad_per_s"),
+        (Some("push"), "first_step" | "steps" | "accumulates") => !is_in_seconds(),
+        (Some("push"), "from_s" | "for_s") => is_in_seconds(),
         _ => true,
     }
 }
@@ -216,13 +210,11 @@ fn group(place: &str, table: &Table) -> String {
         [_] => "scenario".to_owned(),
         ["body", kind @ ("point" | "part"), index, ..] => {
             let name = find(table, &format!("body.{kind}.{index}.name")).and_then(Value::as_str);
-            name.map_or(format!("{kind} {index}"), |name| {
-                format!("{kind} {}", brief(name, 40))
-            })
+            let name = name.map_or(index.to_owned(), |name| brief(name, 40));
+            format!("{kind} {name}")
         }
         ["push", index, ..] => format!("push {index}"),
-        [table, ..] => table.to_owned(),
-        [] => String::new(),
+        _ => names[0].to_owned(),
     }
 }
 
@@ -247,11 +239,6 @@ fn size(value: &Value) -> f64 {
         Value::Array(items) => items.iter().filter_map(float).fold(0.0, libm::hypot),
         other => float(other).unwrap_or_default().abs(),
     }
-}
-
-pub(super) fn float(value: &Value) -> Option<f64> {
-    let whole = || value.as_integer().map(|whole| whole as f64);
-    value.as_float().or_else(whole)
 }
 
 /// `value` as a float where `kind` is a number; whole numbers stay integers.
@@ -290,9 +277,10 @@ impl Parameter {
             (_, Nudge::Turn) => Value::String(self.cycled(times)?),
             (Value::Integer(value), _) => Value::Integer(nudge::whole(*value, times)),
             (value, rule) => {
-                let number =
-                    float(value).and_then(|number| nudge::number(number, self.size, rule, times));
-                Value::Float(number.ok_or("cannot be nudged: type it")?)
+                let number = float(value);
+                let nudged = |number| nudge::number(number, self.size, rule, times);
+                let nudged = number.and_then(nudged).ok_or("cannot be nudged: type it")?;
+                Value::Float(nudged)
             }
         };
         self.checked(value)
@@ -340,12 +328,8 @@ impl Parameter {
 
     /// The three components of a vector, each as a parameter.
     fn components(self) -> Vec<Parameter> {
-        let numbers = self
-            .value
-            .as_array()
-            .into_iter()
-            .flatten()
-            .filter_map(float);
+        let numbers = self.value.as_array().into_iter().flatten();
+        let numbers = numbers.filter_map(float);
         let component = |(index, number)| Parameter {
             key: join(&self.key, &format!("{index}")),
             label: format!("{}{}", self.label, ["x", "y", "z"][index]),

@@ -27,17 +27,16 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
         step,
         motion: &motion,
     };
-    let push = now
-        .pushes(pushes)
+    let moved = pushes.iter().enumerate();
+    let moved = moved.filter_map(|(index, push)| now.push(index, push).transpose());
+    let push = moved
+        .collect::<Result<_, _>>()
         .map_err(|problem| Problems::one(origin, problem))?;
     let old = &scenario.file;
+    let time_s = number::significant(state.time_s, 7);
     let speed = old.view.as_ref().and_then(|view| view.speed);
     let file = ScenarioFile {
-        title: format!(
-            "{}, from t = {} s",
-            old.title,
-            number::significant(state.time_s, 7)
-        ),
+        title: format!("{}, from t = {time_s} s", old.title),
         trace: old.trace.clone(),
         body: old.body.clone(),
         start: StartFile {
@@ -64,13 +63,11 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
 /// The number of steps that make the new run as long, in seconds, as the run of `scenario`.
 fn steps_of_same_length(scenario: &Scenario, motion: &Motion) -> u64 {
     if motion.time_step_s == scenario.motion.time_step_s {
-        scenario.steps
-    } else {
-        let length_s = scenario.steps as f64 * scenario.motion.time_step_s;
-        (length_s / motion.time_step_s)
-            .round()
-            .clamp(1.0, MOST_STEPS) as u64
+        return scenario.steps;
     }
+    let length_s = scenario.steps as f64 * scenario.motion.time_step_s;
+    let steps = (length_s / motion.time_step_s).round();
+    steps.clamp(1.0, MOST_STEPS) as u64
 }
 
 /// Gravity, scheme, time step and pushes in force for the step that follows `step`.
@@ -120,12 +117,6 @@ struct Now<'a> {
 }
 
 impl Now<'_> {
-    fn pushes(&self, pushes: &Pushes) -> Result<Vec<PushFile>, Problem> {
-        let pushes = pushes.iter().enumerate();
-        let moved = pushes.filter_map(|(index, push)| self.push(index, push).transpose());
-        moved.collect()
-    }
-
     /// The rest of `push`, number `index` of the run, from now on; `None` where it is over.
     fn push(&self, index: usize, push: &Push) -> Result<Option<PushFile>, Problem> {
         let file = PushFile {
@@ -137,10 +128,8 @@ impl Now<'_> {
         match push.window {
             Window::Steps { first, count } if push.accumulates || self.may_keep_step_numbers() => {
                 let first = self.first_step(first, push.accumulates).map_err(|rule| {
-                    Problem::at(
-                        format!("push.{index}"),
-                        format!("on \"{}\" {rule}", file.point),
-                    )
+                    let rule = format!("on \"{}\" {rule}", file.point);
+                    Problem::at(format!("push.{index}"), rule)
                 })?;
                 Ok(Some(PushFile {
                     first_step: Some(first),
@@ -163,12 +152,8 @@ impl Now<'_> {
 
     /// Whether the time step is still the one for which the scenario's pushes give their step numbers.
     fn counts_steps(&self) -> bool {
-        let mut made = self
-            .scenario
-            .edits
-            .iter()
-            .filter(|edit| edit.step <= self.step);
-        let is_edited = made.any(|edit| edit.touches.time_step);
+        let mut edits = self.scenario.edits.iter();
+        let is_edited = edits.any(|edit| edit.step <= self.step && edit.touches.time_step);
         !is_edited && self.scenario.written_for_s == self.motion.time_step_s
     }
 
@@ -187,30 +172,24 @@ impl Now<'_> {
 
     /// Beginning of the rest of `window`, counted from now, and its duration, both in s; `None` where it is over.
     fn seconds(&self, window: Window) -> Option<(f64, f64)> {
-        let (from, to) = self.span(window);
-        let begin = from.max(0.0);
-        (to - begin > ROUNDING * self.motion.time_step_s).then_some((begin, to - begin))
-    }
-
-    /// Beginning and end of `window`, counted from now, s.
-    fn span(&self, window: Window) -> (f64, f64) {
         let dt = self.scenario.written_for_s;
         let now_s = self.state.time_s;
-        match window {
-            Window::Time { from_s, for_s } => (from_s - now_s, from_s + for_s - now_s),
+        let [from, to] = match window {
+            Window::Time { from_s, for_s } => [from_s - now_s, from_s + for_s - now_s],
             Window::Steps { first, count } => {
-                // Subtract whole numbers of steps before multiplying: that difference is exact.
                 let begin = first as f64 - 1.0;
-                let end = begin + count as f64;
-                if self.counts_steps() {
-                    [begin, end]
-                        .map(|steps| (steps - self.step as f64) * dt)
-                        .into()
-                } else {
-                    [begin, end].map(|steps| steps * dt - now_s).into()
-                }
+                [begin, begin + count as f64].map(|steps| {
+                    if self.counts_steps() {
+                        // The difference of whole numbers is exact, and is multiplied afterwards.
+                        (steps - self.step as f64) * dt
+                    } else {
+                        steps * dt - now_s
+                    }
+                })
             }
-        }
+        };
+        let begin = from.max(0.0);
+        (to - begin > ROUNDING * self.motion.time_step_s).then_some((begin, to - begin))
     }
 }
 

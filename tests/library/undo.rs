@@ -132,7 +132,7 @@ proptest! {
                     past.push(before);
                 }
                 kind => {
-                    journal.act(step, act(kind, f64::from(value))).unwrap();
+                    journal.act(step, act(kind, f64::from(value)), false).unwrap();
                     past.push(before);
                     future.clear();
                 }

@@ -6,7 +6,7 @@ use crate::lab::numbers;
 use crate::scenario::dotted::join;
 use crate::scenario::keys::{self, Kind, Range};
 use crate::scenario::problem::nearest;
-use crate::scenario::{Problem, presets};
+use crate::scenario::{Problem, float, presets};
 use crate::work::expression::Expression;
 use crate::work::next_push::Toward;
 use toml::{Table, Value};
@@ -47,8 +47,7 @@ pub(super) fn of_view<'a>(name: &str, value: &'a Value) -> Result<&'a Value, Vec
 }
 
 pub(super) fn number_in(value: &Value) -> f64 {
-    let whole = || value.as_integer().map(|whole| whole as f64);
-    value.as_float().or_else(whole).unwrap_or_default()
+    float(value).unwrap_or_default()
 }
 
 pub(super) fn text_in(value: &Value) -> &str {

@@ -1,33 +1,36 @@
 //! Checks files against the table of keys.
 
-use super::{KEYS, Key, only, pattern};
+use super::{KEYS, Key, is_table, only, pattern};
 use crate::scenario::dotted::join;
-use crate::scenario::problem::{Found, Problem, nearest};
+use crate::scenario::problem::{Problem, Problems, nearest};
 use toml::Value;
 
 /// Tables that a file must have.
 const REQUIRED_TABLES: [&str; 2] = ["start", "motion"];
 
 /// Checks the whole `table`: unknown names, wrong types, numbers out of range, missing keys.
-pub fn check(table: &toml::Table) -> Found {
-    let mut problems = Found::default();
+pub fn check(table: &toml::Table) -> Problems {
+    let mut problems = Problems::default();
     check_table(table, "", "", &mut problems);
     problems
 }
 
-/// Checks `value`, a part of a file: the table at the dotted `path`.
-pub(in crate::scenario) fn check_part(value: &Value, path: &str) -> Vec<Problem> {
-    let mut problems = Found::default();
-    let pattern = pattern(path);
+/// Checks `value`, which must be the table at the dotted `path` of a file.
+pub(in crate::scenario) fn check_part(value: &Value, path: &str) -> Problems {
+    let mut problems = Problems::default();
+    check_element(value, &pattern(path), path, &mut problems);
+    problems
+}
+
+fn check_element(value: &Value, pattern: &str, path: &str, problems: &mut Problems) {
     match value {
-        Value::Table(table) => check_table(table, &pattern, path, &mut problems),
+        Value::Table(table) => check_table(table, pattern, path, problems),
         other => problems.add(|| Problem::with_value(path, other, "must be a table")),
     }
-    problems.list
 }
 
 /// Checks `table`, whose keys begin with the pattern `under`, and which stands at `path` in the file.
-fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Found) {
+fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Problems) {
     let names = names(under);
     for (name, value) in table {
         let key = join(path, name);
@@ -55,7 +58,7 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Foun
 }
 
 /// Finds the keys and tables that `table` lacks.
-fn check_missing(table: &toml::Table, under: &str, path: &str, problems: &mut Found) {
+fn check_missing(table: &toml::Table, under: &str, path: &str, problems: &mut Problems) {
     let is_there = |name: &&str| table.contains_key(*name);
     for (name, key) in below(under).filter(|(_, key)| key.required) {
         if name.contains('.') || is_there(&name) || key.instead.iter().any(is_there) {
@@ -74,7 +77,7 @@ fn check_missing(table: &toml::Table, under: &str, path: &str, problems: &mut Fo
     }
 }
 
-fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Found) {
+fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Problems) {
     if let Some(key) = KEYS.iter().find(|key| key.path == pattern) {
         if let Err(rule) = key.kind.check(value) {
             problems.add(|| Problem::with_value(path, value, rule));
@@ -82,32 +85,23 @@ fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Found) {
         return;
     }
     let element = format!("{pattern}.*");
+    let is_list = is_table(&element);
     match value {
-        Value::Array(items) if is_known(&element) => {
+        Value::Array(items) if is_list => {
             for (index, item) in items.iter().enumerate() {
-                let path = join(path, &index.to_string());
-                match item {
-                    Value::Table(table) => check_table(table, &element, &path, problems),
-                    other => problems.add(|| Problem::with_value(path, other, "must be a table")),
-                }
+                check_element(item, &element, &join(path, &index.to_string()), problems);
             }
         }
-        Value::Table(table) if !is_known(&element) => check_table(table, pattern, path, problems),
-        other if is_known(&element) => {
-            let rule = format!("must be an array of tables: write [[{pattern}]]");
-            problems.add(|| Problem::with_value(path, other, rule));
-        }
-        other => {
-            let rule = format!("must be a table: write [{pattern}]");
-            problems.add(|| Problem::with_value(path, other, rule));
-        }
+        Value::Table(table) if !is_list => check_table(table, pattern, path, problems),
+        other => problems.add(|| {
+            let rule = if is_list {
+                format!("must be an array of tables: write [[{pattern}]]")
+            } else {
+                format!("must be a table: write [{pattern}]")
+            };
+            Problem::with_value(path, other, rule)
+        }),
     }
-}
-
-/// Whether `pattern` is a key, or a table that holds some.
-fn is_known(pattern: &str) -> bool {
-    KEYS.iter()
-        .any(|key| key.path == pattern || is_under(key.path, pattern))
 }
 
 pub(in crate::scenario) fn is_under(path: &str, table: &str) -> bool {
@@ -127,15 +121,13 @@ fn names(under: &str) -> Vec<&'static str> {
 
 /// The keys below the pattern `under`, and what their paths have after it.
 fn below(under: &str) -> impl Iterator<Item = (&'static str, &'static Key)> {
-    KEYS.iter().filter_map(move |key| {
-        let rest = key.path.strip_prefix(under)?;
-        let rest = if under.is_empty() {
-            rest
-        } else {
-            rest.strip_prefix('.')?
-        };
-        Some((rest, key))
-    })
+    let under = if under.is_empty() {
+        String::new()
+    } else {
+        format!("{under}.")
+    };
+    KEYS.iter()
+        .filter_map(move |key| Some((key.path.strip_prefix(&under)?, key)))
 }
 
 #[cfg(test)]

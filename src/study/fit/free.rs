@@ -1,11 +1,10 @@
 //! A key whose value is looked for.
 
 use crate::scenario::dotted;
-use crate::scenario::keys::{self, Absent, Effect, Kind, Nudge, Range};
-use crate::scenario::{Document, Problem, Problems};
+use crate::scenario::keys::{self, Effect, Kind, Nudge, Range};
+use crate::scenario::{Document, Problem, Problems, float};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
-use toml::Value;
 
 /// A free key: where the search begins, and what it may not leave.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,18 +90,13 @@ impl Free {
         if Effect::of(key) == Effect::None || key.starts_with("edit.") {
             return Err("no number of a run depends on this key: it cannot be fitted".to_owned());
         }
-        let start = match dotted::find(scenario.table(), key) {
-            Some(Value::Float(number)) => *number,
-            Some(Value::Integer(whole)) => *whole as f64,
-            _ => match row.lab.map(|lab| lab.absent) {
-                Some(Absent::Number(number)) => number,
-                _ => {
-                    return Err(format!(
-                        "has no value in the scenario, from which the search would begin: give it one by --set {key}=..."
-                    ));
-                }
-            },
-        };
+        let written = dotted::find(scenario.table(), key).cloned();
+        let start = written.or_else(|| row.default());
+        let start = start.and_then(|value| float(&value)).ok_or_else(|| {
+            format!(
+                "has no value in the scenario, from which the search would begin: give it one by --set {key}=..."
+            )
+        })?;
         let nudge = match row.lab.map(|lab| lab.nudge) {
             Some(Nudge::By(size) | Nudge::Hundredth(size)) => size,
             _ => SMALL,

@@ -9,8 +9,8 @@ use super::grid::{Sweep, SweepRow};
 use crate::export::Destination;
 use crate::export::destination::{DestinationError, is_workbook};
 use crate::scenario::Problems;
+use crate::text::advice::{unread, unwritten};
 use crate::text::printable::{Shown, brief};
-use crate::text::{unread, unwritten};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -36,11 +36,11 @@ pub(super) fn refused(path: &Path, why: impl AsRef<str>) -> SweepFileError {
 }
 
 pub(super) fn cannot_read(path: &Path, error: &io::Error) -> SweepFileError {
-    SweepFileError::Refused(format!("{}: {}", Shown(path), unread::why(error)))
+    SweepFileError::Refused(format!("{}: {}", Shown(path), unread(error)))
 }
 
 pub(super) fn cannot_write(path: &Path, error: &io::Error) -> SweepFileError {
-    let why = unwritten::why(error);
+    let why = unwritten(error);
     SweepFileError::Refused(format!("cannot write {}: {why}", Shown(path)))
 }
 

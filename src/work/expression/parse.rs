@@ -6,10 +6,8 @@ use std::fmt;
 /// How deep parentheses and signs may be nested.
 const DEEPEST: usize = 64;
 
-/// The result: the expression, whether it is a condition, and each name in it once with its column.
-type Read = (Node, bool, Vec<(String, usize)>);
-
-pub(super) fn parse(text: &str) -> Result<Read, Fault> {
+/// The expression in `text`, and each name in it once with its column.
+pub(super) fn parse(text: &str) -> Result<(Node, Vec<(String, usize)>), Fault> {
     let mut parser = Parser {
         tokens: tokens(text)?,
         at: 0,
@@ -17,13 +15,13 @@ pub(super) fn parse(text: &str) -> Result<Read, Fault> {
         names: Vec::new(),
         depth: 0,
     };
-    let (root, is_condition) = parser.expression(0)?;
+    let root = parser.expression(0)?;
     match parser.tokens.get(parser.at) {
-        None => Ok((root, is_condition, parser.names)),
-        Some((column, token)) => Err(Fault {
-            column: *column,
-            rule: format!("{token} cannot follow here: an operator must come first"),
-        }),
+        None => Ok((root, parser.names)),
+        Some((column, token)) => Parser::fault(
+            *column,
+            format!("{token} cannot follow here: an operator must come first"),
+        ),
     }
 }
 
@@ -143,15 +141,14 @@ impl Parser {
         Err(Fault { column, rule })
     }
 
-    /// The operands joined by operators that bind at least as tightly as `least`; and whether the result is a
-    /// condition.
-    fn expression(&mut self, least: u8) -> Result<(Node, bool), Fault> {
+    /// The operands joined by operators that bind at least as tightly as `least`.
+    fn expression(&mut self, least: u8) -> Result<Node, Fault> {
         self.depth += 1;
         if self.depth > DEEPEST {
             return Self::fault(self.column(), "it is nested too deep");
         }
         let begin = self.column();
-        let (mut left, mut is_condition) = self.operand()?;
+        let mut left = self.operand()?;
         while let Some((column, Token::Operator(operator))) = self.tokens.get(self.at) {
             let (column, operator) = (*column, *operator);
             if operator.power < least {
@@ -159,45 +156,39 @@ impl Parser {
             }
             self.at += 1;
             let right_begins = self.column();
-            let (right, right_is) = self.expression(operator.power + 1)?;
-            for (is, at) in [(is_condition, begin), (right_is, right_begins)] {
-                Self::check_side(operator, is, at, column)?;
+            let right = self.expression(operator.power + 1)?;
+            for (side, at) in [(&left, begin), (&right, right_begins)] {
+                Self::check_side(operator, side, at, column)?;
             }
             left = Node::Computed(operator, Box::new(left), Box::new(right));
-            is_condition = operator.gives_condition();
         }
         self.depth -= 1;
-        Ok((left, is_condition))
+        Ok(left)
     }
 
-    fn check_side(
-        operator: &Operator,
-        is_condition: bool,
-        at: usize,
-        column: usize,
-    ) -> Result<(), Fault> {
+    fn check_side(operator: &Operator, side: &Node, at: usize, column: usize) -> Result<(), Fault> {
         let name = operator.name;
-        match (operator.joins_conditions(), is_condition) {
+        match (operator.joins_conditions(), side.is_condition()) {
             (true, false) => Self::fault(at, format!("{name} joins comparisons, not numbers")),
-            (false, true) => Self::fault(
-                column,
-                format!("{name} takes numbers, not comparisons: join those with and"),
-            ),
+            (false, true) => {
+                let rule = format!("{name} takes numbers, not comparisons: join those with and");
+                Self::fault(column, rule)
+            }
             _ => Ok(()),
         }
     }
 
-    fn operand(&mut self) -> Result<(Node, bool), Fault> {
+    fn operand(&mut self) -> Result<Node, Fault> {
         let Some((column, token)) = self.tokens.get(self.at).cloned() else {
             return Self::fault(self.end, "a number or a name is missing at the end");
         };
         self.at += 1;
         match token {
-            Token::Number(number) => Ok((Node::Number(number), false)),
+            Token::Number(number) => Ok(Node::Number(number)),
             Token::Operator(operator) if operator.name == "-" => {
-                let (inner, is_condition) = self.expression(MULTIPLIES + 1)?;
-                Self::check_side(operator, is_condition, column, column)?;
-                Ok((Node::Negated(Box::new(inner)), false))
+                let inner = self.expression(MULTIPLIES + 1)?;
+                Self::check_side(operator, &inner, column, column)?;
+                Ok(Node::Negated(Box::new(inner)))
             }
             Token::Open => {
                 let inner = self.expression(0)?;
@@ -205,7 +196,7 @@ impl Parser {
                 Ok(inner)
             }
             Token::Name(name) if name == "abs" => self.absolute(column),
-            Token::Name(name) => Ok((Node::Name(self.number_of(name, column)), false)),
+            Token::Name(name) => Ok(Node::Name(self.number_of(name, column))),
             other => Self::fault(
                 column,
                 format!("{other} needs a number or a name before it"),
@@ -213,31 +204,24 @@ impl Parser {
         }
     }
 
-    fn absolute(&mut self, column: usize) -> Result<(Node, bool), Fault> {
-        let open = self.column();
+    fn absolute(&mut self, column: usize) -> Result<Node, Fault> {
         if !matches!(self.tokens.get(self.at), Some((_, Token::Open))) {
-            return Self::fault(open, "abs needs parentheses: abs(...)");
+            return Self::fault(self.column(), "abs needs parentheses: abs(...)");
         }
-        self.at += 1;
-        let (inner, is_condition) = self.expression(0)?;
-        self.close(open)?;
-        if is_condition {
+        let inner = self.operand()?;
+        if inner.is_condition() {
             return Self::fault(column, "abs takes a number, not a comparison");
         }
-        Ok((Node::Absolute(Box::new(inner)), false))
+        Ok(Node::Absolute(Box::new(inner)))
     }
 
     fn close(&mut self, opened: usize) -> Result<(), Fault> {
-        match self.tokens.get(self.at) {
-            Some((_, Token::Close)) => {
-                self.at += 1;
-                Ok(())
-            }
-            _ => Self::fault(
-                self.column(),
-                format!("the parenthesis of column {opened} is not closed"),
-            ),
+        if !matches!(self.tokens.get(self.at), Some((_, Token::Close))) {
+            let rule = format!("the parenthesis of column {opened} is not closed");
+            return Self::fault(self.column(), rule);
         }
+        self.at += 1;
+        Ok(())
     }
 
     fn number_of(&mut self, name: String, column: usize) -> usize {

@@ -17,7 +17,7 @@ pub use entry::{Act, Entry};
 
 use super::parameters;
 use crate::scenario::file::{EditFile, PushFile, ScenarioFile};
-use crate::scenario::{Document, Problems, Scenario, rescale};
+use crate::scenario::{Document, Problems, Scenario, float, rescale};
 use run_file::describe;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -49,11 +49,9 @@ impl Journal {
                 is_chained: false,
             })
         };
+        let edits = std::mem::take(&mut file.edit).into_iter();
         Self {
-            log: std::mem::take(&mut file.edit)
-                .into_iter()
-                .map(entry)
-                .collect(),
+            log: edits.map(entry).collect(),
             base: Arc::new(file),
             undone: Vec::new(),
         }
@@ -86,39 +84,21 @@ impl Journal {
         checked(&self.file_with(&entries[..last.map_or(0, |last| last + 1)]))
     }
 
-    /// The run file of the run up to `step`: it has that many steps (at least one), and no later entry.
-    pub fn file_until(&self, step: u64) -> ScenarioFile {
+    /// The run up to `step`: it has that many steps (at least one), and no later entry.
+    pub fn scenario_until(&self, step: u64) -> Result<Arc<Scenario>, Problems> {
         let mut file = self.file_with(&self.in_force_by(step));
         file.motion.steps = step.max(1);
-        file
-    }
-
-    /// The checked scenario of the run file up to `step`, see [`file_until`](Self::file_until).
-    pub fn scenario_until(&self, step: u64) -> Result<Arc<Scenario>, Problems> {
-        checked(&self.file_until(step))
+        checked(&file)
     }
 
     /// How many entries in force stand at steps later than `step`.
     pub fn later_than(&self, step: u64) -> usize {
-        let entries = self.in_force();
-        entries
-            .iter()
-            .filter(|entry| entry.is_later_than(step))
-            .count()
+        self.in_force().len() - self.count_by(step)
     }
 
-    /// Does `act` at `step` and returns the run's new scenario.
-    pub fn act(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
-        self.enter(step, act, false)
-    }
-
-    /// Does `act` at `step` as one more nudge of the value that the last entry set: undo takes all nudges of this chain
-    /// back at once.
-    pub fn act_again(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
-        self.enter(step, act, !self.log.is_empty())
-    }
-
-    fn enter(&mut self, step: u64, act: Act, is_chained: bool) -> Result<Arc<Scenario>, Problems> {
+    /// Does `act` at `step` and returns the run's new scenario. With `is_again` it is one more nudge of the value that the
+    /// last entry set: undo takes all nudges of this chain back at once.
+    pub fn act(&mut self, step: u64, act: Act, is_again: bool) -> Result<Arc<Scenario>, Problems> {
         let file = self.file();
         let act = match act {
             Act::Push(push) => push_with_new_number(&file, push),
@@ -131,7 +111,7 @@ impl Journal {
             step,
             act,
             from_file: false,
-            is_chained,
+            is_chained: is_again && !self.log.is_empty(),
         }));
         let scenario = self.scenario();
         match &scenario {
@@ -212,7 +192,7 @@ impl Journal {
             };
             for (key, value) in set {
                 if key == "motion.time_step_s" {
-                    time_step_s = parameters::float(value).unwrap_or(time_step_s);
+                    time_step_s = float(value).unwrap_or(time_step_s);
                 } else if !is_added(key) {
                     document.write(key, value.clone())?;
                 }

@@ -22,55 +22,55 @@ fn pushed(from_s: f64) -> PushFile {
 }
 
 fn gravity(value: f64) -> Act {
-    Act::set("motion.gravity_m_per_s2", Value::Float(value))
+    Act::set("motion.gravity_m_per_s2", value.into())
+}
+
+fn title(title: &str) -> Act {
+    Act::set("title", title.into())
+}
+
+fn one(key: &str, value: impl Into<Value>) -> Table {
+    Table::from_iter([(key.to_owned(), value.into())])
+}
+
+/// The numbers of edits and of pushes in the run file.
+fn counts(journal: &Journal) -> (usize, usize) {
+    let file = journal.file();
+    (file.edit.len(), file.push.len())
 }
 
 #[test]
 fn an_act_drops_entries_at_later_steps_until_it_is_undone() {
     let mut journal = journal("method-2");
-    journal.act(10, gravity(1.0)).unwrap();
-    journal.act(50, push(5.0)).unwrap();
-    journal
-        .act(60, Act::set("title", Value::String("Mine".to_owned())))
-        .unwrap();
-    journal.act(20, gravity(2.0)).unwrap();
-    let file = journal.file();
-    assert_eq!(
-        (file.edit.len(), file.push.len(), file.title.as_str()),
-        (2, 0, "Mine")
-    );
+    journal.act(10, gravity(1.0), false).unwrap();
+    journal.act(50, push(5.0), false).unwrap();
+    journal.act(60, title("Mine"), false).unwrap();
+    journal.act(20, gravity(2.0), false).unwrap();
+    assert_eq!(counts(&journal), (2, 0));
+    assert_eq!(journal.file().title, "Mine");
     assert_eq!(journal.undo().unwrap().0, 20);
-    let file = journal.file();
-    assert_eq!((file.edit.len(), file.push.len()), (1, 1));
+    assert_eq!(counts(&journal), (1, 1));
     journal.redo().unwrap();
-    assert_eq!(
-        (journal.file().edit.len(), journal.file().push.len()),
-        (2, 0)
-    );
-    assert_eq!(journal.file_until(15).edit.len(), 1);
-    assert_eq!(
-        journal.file_until(20).edit.len(),
-        2,
-        "an act at the last step is included"
-    );
+    assert_eq!(counts(&journal), (2, 0));
+    let edits_until = |step| journal.scenario_until(step).unwrap().edits.len();
+    // An act at the last step is included.
+    assert_eq!((edits_until(15), edits_until(20)), (1, 2));
     assert_eq!(journal.later_than(15), 1);
 }
 
 #[test]
-fn the_run_up_to_a_step_is_what_its_file_says() {
+fn the_run_up_to_a_step_ends_there() {
     let mut journal = journal("method-2");
     for step in [5, 10, 10, 20] {
-        journal.act(step, gravity(step as f64)).unwrap();
+        journal.act(step, gravity(step as f64), false).unwrap();
     }
-    journal.act(30, push(5.0)).unwrap();
-    let title = Act::set("title", Value::String("Mine".to_owned()));
-    journal.act(40, title).unwrap();
-    for step in [0, 4, 5, 10, 15, 20, 30, 50] {
+    journal.act(30, push(5.0), false).unwrap();
+    journal.act(40, title("Mine"), false).unwrap();
+    for (step, edits, pushes) in [(0, 0, 0), (4, 0, 0), (5, 1, 0), (15, 2, 0), (50, 3, 1)] {
         let run = journal.scenario_until(step).unwrap();
-        assert_eq!(
-            (run.steps, &run.file),
-            (step.max(1), &journal.file_until(step))
-        );
+        let found = (run.steps, run.edits.len(), run.pushes.len());
+        assert_eq!(found, (step.max(1), edits, pushes));
+        assert_eq!(run.file.title, "Mine");
     }
 }
 
@@ -79,21 +79,21 @@ fn an_act_that_passes_a_limit_is_refused() {
     let mut file = journal("method-2").file();
     let one = |step| EditFile {
         step,
-        set: Table::from_iter([("motion.gravity_m_per_s2".to_owned(), Value::Float(1.0))]),
+        set: one("motion.gravity_m_per_s2", 1.0),
     };
     file.edit = (0..limits::MOST_EDITS as u64).map(one).collect();
     let mut journal = Journal::of(file);
     let refusal = |done: Result<_, Problems>| done.map(drop).unwrap_err().in_one_line();
-    let edit = journal.act(1_000_000, gravity(2.0));
+    let edit = journal.act(1_000_000, gravity(2.0), false);
     assert!(refusal(edit).starts_with("edit: 10001 edits are too many: at most 10000"));
     // With the 14 points of method-2 there is room for 86 pushes.
     Arc::make_mut(&mut journal.base).push = vec![pushed(1.0); 86];
     journal.scenario().unwrap();
-    let push = journal.act(1_000_000, push(2.0));
+    let push = journal.act(1_000_000, push(2.0), false);
     assert!(refusal(push).contains("10000 times 101 may be at most 1000000"));
     journal.log.clear();
     Arc::make_mut(&mut journal.base).push = vec![pushed(1.0); limits::MOST_PUSHES];
-    let push = journal.act(3, Act::Push(pushed(2.0)));
+    let push = journal.act(3, Act::Push(pushed(2.0)), false);
     assert!(refusal(push).starts_with("push: 10001 pushes are too many: at most 10000"));
 }
 
@@ -113,13 +113,9 @@ fn the_act_is_written_last() {
 #[test]
 fn a_description_belongs_to_every_step() {
     let mut journal = journal("method-2");
-    let title = Act::set("title", Value::String("Mine".to_owned()));
-    journal.act(500, title).unwrap();
-    assert_eq!(journal.file_until(100).title, "Mine");
-    let begun = journal.begun_with(
-        100,
-        &Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(3.0))]),
-    );
+    journal.act(500, title("Mine"), false).unwrap();
+    assert_eq!(journal.scenario_until(100).unwrap().file.title, "Mine");
+    let begun = journal.begun_with(100, &one("start.tilt_deg", 3.0));
     assert_eq!(begun.unwrap().1.file.title, "Mine");
 }
 
@@ -133,9 +129,8 @@ fn undo_restores_the_edits_of_the_file() {
         .unwrap()
         .file;
     let mut journal = Journal::of(file.clone());
-    let title = Act::set("title", Value::String(file.title.clone()));
-    journal.act(70, title).unwrap();
-    journal.act(50, gravity(2.0)).unwrap();
+    journal.act(70, title(&file.title), false).unwrap();
+    journal.act(50, gravity(2.0), false).unwrap();
     journal.undo();
     assert_eq!(journal.file(), file);
 }
@@ -149,7 +144,7 @@ fn pushes_added_at_one_step_keep_their_order() {
     let document = Document::parse("pushed", &format!("{text}\n{own}{added}")).unwrap();
     let mut journal = Journal::of(document.scenario().unwrap().file);
     for count in 10..13 {
-        let scenario = journal.act(20, push(2.0)).unwrap();
+        let scenario = journal.act(20, push(2.0), false).unwrap();
         assert_eq!(scenario.edits.last().unwrap().pushes.len(), count);
     }
 }
@@ -157,8 +152,8 @@ fn pushes_added_at_one_step_keep_their_order() {
 #[test]
 fn redo_does_not_panic_in_a_journal_edited_by_hand() {
     let mut journal = journal("method-2");
-    journal.act(5, gravity(3.0)).unwrap();
-    journal.act(3, gravity(4.0)).unwrap();
+    journal.act(5, gravity(3.0), false).unwrap();
+    journal.act(3, gravity(4.0), false).unwrap();
     journal.undo();
     journal.log.clear();
     assert!(journal.redo().is_some());
@@ -167,16 +162,13 @@ fn redo_does_not_panic_in_a_journal_edited_by_hand() {
 #[test]
 fn undo_takes_all_nudges_of_a_chain_back() {
     let mut journal = journal("method-2");
-    journal.act(5, push(0.5)).unwrap();
-    journal.act(10, gravity(1.0)).unwrap();
-    journal.act_again(12, gravity(2.0)).unwrap();
-    journal.act_again(14, gravity(3.0)).unwrap();
+    journal.act(5, push(0.5), false).unwrap();
+    journal.act(10, gravity(1.0), false).unwrap();
+    journal.act(12, gravity(2.0), true).unwrap();
+    journal.act(14, gravity(3.0), true).unwrap();
     let whole = journal.file();
     assert_eq!(journal.undo(), Some((10, gravity(3.0))));
-    assert_eq!(
-        (journal.file().edit.len(), journal.file().push.len()),
-        (0, 1)
-    );
+    assert_eq!(counts(&journal), (0, 1));
     assert_eq!(journal.redo(), Some((10, gravity(3.0))));
     assert_eq!(journal.file(), whole);
     assert_eq!(journal.redo(), None);
@@ -185,20 +177,17 @@ fn undo_takes_all_nudges_of_a_chain_back() {
 #[test]
 fn edits_at_one_step_are_joined_unless_the_file_had_them_apart() {
     let mut journal = journal("method-2");
-    journal.act(10, gravity(1.0)).unwrap();
-    journal.act(10, gravity(2.0)).unwrap();
+    journal.act(10, gravity(1.0), false).unwrap();
+    journal.act(10, gravity(2.0), false).unwrap();
     journal
-        .act(
-            10,
-            Act::set("motion.scheme", Value::String("rk4".to_owned())),
-        )
+        .act(10, Act::set("motion.scheme", "rk4".into()), false)
         .unwrap();
     assert_eq!(journal.file().edit.len(), 1);
     assert_eq!(journal.file().edit[0].set.len(), 2);
     let mut file = journal.file();
     file.edit.push(EditFile {
         step: 10,
-        set: Table::from_iter([("motion.gravity_m_per_s2".to_owned(), Value::Float(3.0))]),
+        set: one("motion.gravity_m_per_s2", 3.0),
     });
     assert_eq!(Journal::of(file.clone()).file(), file);
 }
@@ -211,10 +200,10 @@ fn a_new_push_keeps_the_numbers_of_pushes_that_edits_added() {
         .unwrap();
     file.edit.push(EditFile {
         step: 3,
-        set: Table::from_iter([("push.0".to_owned(), added["edit"].clone())]),
+        set: one("push.0", added["edit"].clone()),
     });
     let mut journal = Journal::of(file);
-    let scenario = journal.act(9, push(0.9)).unwrap();
+    let scenario = journal.act(9, push(0.9), false).unwrap();
     assert_eq!(scenario.edits.last().unwrap().pushes.len(), 2);
     assert_eq!(scenario.edits[0].pushes.len(), 1);
     assert_eq!(scenario.pushes.len(), 0);
@@ -224,18 +213,15 @@ fn a_new_push_keeps_the_numbers_of_pushes_that_edits_added() {
 fn a_new_run_begins_with_the_settings_of_the_old_one() {
     let mut journal = journal("wobble-push");
     journal
-        .act(40, Act::set("motion.time_step_s", Value::Float(0.05)))
+        .act(40, Act::set("motion.time_step_s", 0.05.into()), false)
         .unwrap();
-    journal.act(50, push(4.5)).unwrap();
+    journal.act(50, push(4.5), false).unwrap();
     journal
-        .act(55, Act::set("push.1.force_N.0", Value::Float(3.0)))
+        .act(55, Act::set("push.1.force_N.0", 3.0.into()), false)
         .unwrap();
-    journal.act(60, gravity(1.6)).unwrap();
+    journal.act(60, gravity(1.6), false).unwrap();
     let (begun, scenario) = journal
-        .begun_with(
-            60,
-            &Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(10.0))]),
-        )
+        .begun_with(60, &one("start.tilt_deg", 10.0))
         .unwrap();
     assert_eq!(
         (scenario.motion.time_step_s, scenario.motion.gravity),
@@ -249,10 +235,7 @@ fn a_new_run_begins_with_the_settings_of_the_old_one() {
         "the push keeps its times in seconds"
     );
     let (_, earlier) = journal
-        .begun_with(
-            39,
-            &Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(10.0))]),
-        )
+        .begun_with(39, &one("start.tilt_deg", 10.0))
         .unwrap();
     assert_eq!(earlier.motion.time_step_s, 0.1);
 }

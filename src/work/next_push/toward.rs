@@ -41,17 +41,11 @@ impl Toward {
         ("-y", Self::Along([0.0, -1.0, 0.0])),
     ];
 
-    fn name(self) -> Option<&'static str> {
-        Self::NAMED
-            .iter()
-            .find(|(_, toward)| *toward == self)
-            .map(|(name, _)| *name)
-    }
-
     /// The direction as text that [`typed`](Self::typed) reads back.
     pub fn shown(self) -> String {
-        match (self.name(), self) {
-            (Some(name), _) => name.to_owned(),
+        let named = Self::NAMED.iter().find(|(_, toward)| *toward == self);
+        match (named, self) {
+            (Some((name, _)), _) => (*name).to_owned(),
             (None, Self::Along(direction)) => direction.map(shortest).join(" "),
             (None, _) => String::new(),
         }
@@ -68,16 +62,12 @@ impl Toward {
             .filter(|part| !part.is_empty())
             .map_while(|part| part.parse().ok().filter(|number: &f64| number.is_finite()))
             .collect();
-        match <[f64; 3]>::try_from(numbers) {
-            Ok(direction) if Vector3::from(direction).norm() > 0.0 => Ok(Self::Along(direction)),
-            _ => {
-                let names: Vec<_> = Self::NAMED.iter().map(|(name, _)| *name).collect();
-                Err(format!(
-                    "toward must be one of {}, or three numbers",
-                    names.join(", ")
-                ))
-            }
-        }
+        let direction = <[f64; 3]>::try_from(numbers).ok();
+        let direction = direction.filter(|direction| Vector3::from(*direction).norm() > 0.0);
+        direction.map(Self::Along).ok_or_else(|| {
+            let names = Self::NAMED.map(|(name, _)| name).join(", ");
+            format!("toward must be one of {names}, or three numbers")
+        })
     }
 
     /// The unit vector of the direction, world frame, for a point that stands at `at` (world frame, m).
@@ -117,22 +107,13 @@ mod tests {
             assert!((direction.norm() - 1.0).abs() < 1e-15, "{name}");
             assert_eq!(Toward::typed(name), Ok(toward));
         }
-        assert_eq!(
-            Toward::Out.direction(&at).unwrap(),
-            Vector3::new(0.6, 0.8, 0.0)
-        );
-        assert!(
-            Toward::Around
-                .direction(&at)
-                .unwrap()
-                .dot(&Vector3::new(-0.8, 0.6, 0.0))
-                > 0.999
-        );
+        let out = Toward::Out.direction(&at).unwrap();
+        assert_eq!(out, Vector3::new(0.6, 0.8, 0.0));
+        let around = Toward::Around.direction(&at).unwrap();
+        assert!(around.dot(&Vector3::new(-0.8, 0.6, 0.0)) > 0.999);
         assert!(Toward::Out.direction(&Vector3::z()).is_err());
-        assert_eq!(
-            Toward::typed("[1, -2, 0.5]"),
-            Ok(Toward::Along([1.0, -2.0, 0.5]))
-        );
+        let along = Toward::Along([1.0, -2.0, 0.5]);
+        assert_eq!(Toward::typed("[1, -2, 0.5]"), Ok(along));
         for bad in ["", "sideways", "1 2", "1 2 3 4", "0 0 0", "nan 0 0"] {
             assert!(Toward::typed(bad).is_err(), "{bad}");
         }
