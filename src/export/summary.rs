@@ -69,8 +69,8 @@ impl Summary {
         writeln!(f, "  L             {x}, {y}, {z} J s")?;
         let [now, low, high] = [
             sample.tilt_deg,
-            extremes.lowest_tilt_deg,
-            extremes.highest_tilt_deg,
+            extremes.tilt.lowest_deg,
+            extremes.tilt.highest_deg,
         ]
         .map(|tilt| fixed(tilt, 6));
         writeln!(
