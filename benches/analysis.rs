@@ -72,7 +72,7 @@ fn readouts(criterion: &mut Criterion) {
                     simulation.step().unwrap();
                     let health = monitor.health(black_box(simulation.now()));
                     let theory = monitor.theory(simulation.state().time_s);
-                    let instruments = &monitor.gauges.instruments;
+                    let instruments = &monitor.instruments;
                     black_box((
                         health,
                         theory,

@@ -61,20 +61,34 @@ impl Beside {
         self.truth.as_mut()
     }
 
-    /// Holds the distance of the next `state` of the run.
+    /// Compares the next `state` of the run with the exact motion.
     #[inline]
     pub fn hold(&mut self, state: &State) {
+        self.wait(state);
+        if self.waiting.len() >= AT_ONCE {
+            self.look();
+        }
+    }
+
+    /// The same, at the latest when the run is [settled](Self::settle).
+    #[inline]
+    pub fn wait(&mut self, state: &State) {
         if self.is_known() {
             self.waiting.push(*state);
-            if self.waiting.len() == AT_ONCE {
-                self.look();
-            }
         }
     }
 
     /// Looks at the steps that wait.
     fn look(&mut self) {
-        let states = std::mem::take(&mut self.waiting);
+        let mut states = std::mem::take(&mut self.waiting);
+        for together in states.chunks(AT_ONCE) {
+            self.look_at(together);
+        }
+        states.clear();
+        self.waiting = states;
+    }
+
+    fn look_at(&mut self, states: &[State]) {
         let near = self.truth.as_ref().zip(states.as_array());
         let near = near.and_then(|(truth, states)| Some((states, near_exact(states, truth)?)));
         if let Some((states, (distances_m, heights))) = near {
@@ -85,7 +99,7 @@ impl Beside {
                 }
             }
         } else {
-            for state in &states {
+            for state in states {
                 self.settle_farthest(); // the forces may change here, and it stood under those before
                 let Some(truth) = &mut self.truth else {
                     break;
@@ -96,8 +110,6 @@ impl Beside {
                 self.take_in(distance_m);
             }
         }
-        self.waiting = states;
-        self.waiting.clear();
     }
 
     /// Looks at all steps so far, and computes the largest distance to the last bit.

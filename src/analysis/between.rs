@@ -33,7 +33,7 @@ const TOO_FAR_RAD: f64 = 60.0;
 const BEYOND_ERROR: f64 = 2.0;
 
 #[derive(Clone, Debug)]
-pub(super) struct Between {
+pub struct Between {
     /// One over the moment across the axle, 1/(kg m²).
     per_across: f64,
     equations: Equations,

@@ -14,6 +14,7 @@ use crate::physics::{SchemeInfo, SymmetricTop, observables};
 use crate::run::resample::resampled;
 use crate::run::{Clock, EnergyUnit, Simulation, Step};
 use crate::scenario::{Edit, Motion, Scenario, rescale};
+use crate::text::ladder::rung;
 use crate::work::restart::in_force;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
@@ -348,21 +349,16 @@ fn finer_time_steps(scenario: &Scenario) -> impl Iterator<Item = f64> + use<> {
     let (duration, most) = (Clock::end_s(scenario), most_steps(scenario));
     let spin = observables::angular_velocity(&scenario.body.mechanics, &scenario.start).norm();
     let coarsest = begin.min(PI / spin);
-    let decade = libm::floor(libm::log10(coarsest)) as i32;
+    let decade = libm::floor(libm::log10(coarsest)).max(-400.0) as i64;
     // An exact motion that has to be integrated is integrated anew for every trial.
     let trials = (AFFORDABLE_RAD / integration_rad(scenario)).clamp(4.0, 64.0) as usize;
     let mut spent = 0.0;
-    (0..12)
-        .flat_map(move |down| [5, 2, 1].map(|digit| rounded(digit, decade - down)))
+    (0..36)
+        .map(move |down| rung(3 * decade + 2 - down))
         .filter(move |&step| step < 0.999 * coarsest)
         .take_while(move |step| {
             spent += duration / step;
             spent <= most
         })
         .take(trials)
-}
-
-/// digit · 10^power as it is written: the nearest number to that decimal.
-fn rounded(digit: i32, power: i32) -> f64 {
-    format!("{digit}e{power}").parse().unwrap_or(f64::NAN)
 }

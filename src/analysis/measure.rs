@@ -29,10 +29,7 @@ use crate::run::Step;
 
 /// The instruments that follow a run; to be shown every step of it.
 #[derive(Clone, Debug)]
-pub struct Instruments(Sight);
-
-#[derive(Clone, Debug)]
-enum Sight {
+pub enum Instruments {
     Between(Box<Between>),
     Rows(Box<Rows>),
 }
@@ -40,33 +37,33 @@ enum Sight {
 impl Instruments {
     /// Instruments that begin to follow a run at `step`.
     pub fn new(step: &Step) -> Self {
-        Self(match Between::new(step) {
-            Some(between) => Sight::Between(Box::new(between)),
-            None => Sight::Rows(Box::new(Rows::new(step))),
-        })
+        match Between::new(step) {
+            Some(between) => Self::Between(Box::new(between)),
+            None => Self::Rows(Box::new(Rows::new(step))),
+        }
     }
 
     #[inline]
     pub fn follow(&mut self, step: &Step) {
-        match &mut self.0 {
-            Sight::Between(between) => between.follow(step),
-            Sight::Rows(rows) => rows.follow(step),
+        match self {
+            Self::Between(between) => between.follow(step),
+            Self::Rows(rows) => rows.follow(step),
         }
     }
 
     /// Nutation period of the run so far, s; `None` where too little of it was seen to say how well it is known.
     pub fn nutation_period_s(&self) -> Option<Measured> {
-        match &self.0 {
-            Sight::Between(between) => between.nutation_period_s(),
-            Sight::Rows(rows) => rows.nutation_period_s(),
+        match self {
+            Self::Between(between) => between.nutation_period_s(),
+            Self::Rows(rows) => rows.nutation_period_s(),
         }
     }
 
     /// Precession of the run so far, rad/s; `None` likewise, and where the axle passes through the vertical.
     pub fn precession_rad_per_s(&self) -> Option<Measured> {
-        match &self.0 {
-            Sight::Between(between) => between.precession_rad_per_s(),
-            Sight::Rows(rows) => rows.precession_rad_per_s(),
+        match self {
+            Self::Between(between) => between.precession_rad_per_s(),
+            Self::Rows(rows) => rows.precession_rad_per_s(),
         }
     }
 }

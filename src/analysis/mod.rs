@@ -13,7 +13,6 @@ pub mod compare;
 pub mod cost;
 pub mod extremes;
 pub mod frozen;
-pub mod gauges;
 pub mod health;
 pub mod measure;
 pub mod monitor;
@@ -30,7 +29,6 @@ mod turns;
 
 pub use beside::Beside;
 pub use extremes::Extremes;
-pub use gauges::Gauges;
 pub use health::Health;
 pub use measure::{Instruments, Measured};
 pub use monitor::Monitor;

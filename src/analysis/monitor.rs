@@ -1,37 +1,40 @@
 //! What follows a run step by step and can say at any moment how it stands: instruments, theory, health.
 
 use super::beside::Beside;
-use super::gauges::Gauges;
+use super::frozen::Frozen;
 use super::health::Health;
-use super::swings::Swing;
+use super::swings::height_in;
 use super::theory::Theory;
-use super::trial::Deviation;
-use crate::physics::{LagrangeTop, State, SymmetricTop};
+use super::tilt_swing::TiltSwing;
+use super::{Extremes, Instruments, Measured};
+use crate::physics::{LagrangeTop, SymmetricTop};
 use crate::run::Step;
-use crate::scenario::Scenario;
-use std::sync::Arc;
 
 /// Follows one run from its start.
 #[derive(Clone, Debug)]
 pub struct Monitor {
-    pub gauges: Gauges,
-    beside: Beside,
-    /// Steps still to be compared with the exact motion.
-    unheld: Vec<State>,
+    pub instruments: Instruments,
+    pub extremes: Extremes,
+    /// The change of forces since which the instruments measure.
+    changes: u64,
+    /// The step from which on they do.
+    pub since: u64,
+    tilt_swing: TiltSwing,
+    pub frozen: Option<Frozen>,
+    pub beside: Beside,
 }
 
 impl Monitor {
     pub fn new(step: &Step) -> Self {
         Self {
-            gauges: Gauges::new(step),
+            instruments: Instruments::new(step),
+            extremes: Extremes::new(step),
+            changes: step.changes(),
+            since: step.number(),
+            tilt_swing: TiltSwing::new(step),
+            frozen: Frozen::new(step),
             beside: Beside::new(step.scenario()),
-            unheld: Vec::new(),
         }
-    }
-
-    /// Goes on with a run of `scenario`, whose past is the same.
-    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
-        self.beside.go_on_in(scenario);
     }
 
     /// Takes in `step`; to be shown every step. Every one of them is compared with the exact motion: what leaves it and
@@ -42,57 +45,45 @@ impl Monitor {
         self.beside.hold(step.after());
     }
 
-    /// The same, but for the exact motion: [`catch_up`](Self::catch_up) comes to that later, at the latest when health or
-    /// theory is asked for. So the time that stepping takes can be told from it.
+    /// The same, but the step is compared with the exact motion later: when [`catch_up`](Self::catch_up) is called, at the
+    /// latest when health or theory is asked for. So the time that stepping takes can be told from it.
     #[inline]
     pub fn follow_ahead(&mut self, step: &Step) {
         self.measure(step);
-        if self.beside.is_known() {
-            self.unheld.push(*step.after());
-        }
+        self.beside.wait(step.after());
     }
 
-    /// Holds against the exact motion the steps that have not been.
+    /// Compares the steps with the exact motion that have not been.
     pub fn catch_up(&mut self) {
-        self.hold_rest();
         self.beside.settle();
     }
 
-    fn hold_rest(&mut self) {
-        for state in &self.unheld {
-            self.beside.hold(state);
-        }
-        self.unheld.clear();
-    }
-
-    /// Whether the run is compared with the exact motion.
-    pub fn has_exact(&self) -> bool {
-        self.beside.is_known()
-    }
-
-    /// As [`follow`](Self::follow), without holding the step against the exact motion: for a reader of what is measured
+    /// As [`follow`](Self::follow), without comparing the step with the exact motion: for a reader of what is measured
     /// and of the extremes alone.
     #[inline]
     pub fn measure(&mut self, step: &Step) {
-        self.gauges.follow(step);
+        let height = height_in(step.after());
+        self.extremes.follow(step, height);
+        if step.changes() == self.changes {
+            self.instruments.follow(step);
+            self.tilt_swing.follow(step, height);
+        } else {
+            self.changes = step.changes();
+            self.since = step.number();
+            self.instruments = Instruments::new(step);
+            self.tilt_swing = TiltSwing::new(step);
+            self.frozen = Frozen::new(step);
+        }
     }
 
-    /// Holds `step` against the exact motion, and says how the run is there.
+    /// By how much the tilt has swung since the forces last changed, degrees; `None` before it was seen whole.
+    pub fn tilt_swing_deg(&self) -> Option<Measured> {
+        self.tilt_swing.measured()
+    }
+
+    /// How the run stands at `step`, the last one that it was shown.
     pub fn health(&mut self, step: &Step) -> Health {
-        self.catch_up();
         Health::new(step, &mut self.beside)
-    }
-
-    /// How the tilt has swung up to the last [`deviation`](Self::deviation) beside the exact motion's, where they differ most;
-    /// `None` where it is not compared.
-    pub fn swing(&self) -> Option<Swing> {
-        self.beside.swing()
-    }
-
-    /// How far off the exact motion the run is at `step`; `None` where that would take too long.
-    pub fn deviation(&mut self, step: &Step) -> Option<Deviation> {
-        self.catch_up();
-        self.beside.deviation(step.after())
     }
 
     /// What theory says of the exact motion at `time_s` (s), where there is friction as if it ceased then; `None` for a
@@ -103,22 +94,13 @@ impl Monitor {
         let body = &truth.scenario().body.mechanics;
         let top = SymmetricTop::of(body)?;
         let load = truth.loads().on_axle(body, &top)?;
-        if truth.loads().friction.is_none() {
-            let motion = truth.motion().closed_form()?;
-            return Some(Theory::new(&top, &load, motion, &state));
-        }
+        let rubs = !truth.loads().friction.is_none();
         let (turn, momentum) = (state.orientation, state.momentum);
-        let motion = LagrangeTop::new(top.across, top.along, load, turn, momentum);
-        let theory = Theory::new(&top, &load, &motion, &state);
+        let ceased = rubs.then(|| LagrangeTop::new(top.across, top.along, load, turn, momentum));
+        let motion = ceased.as_ref().or_else(|| truth.motion().closed_form())?;
         Some(Theory {
-            is_of_a_moment: true,
-            ..theory
+            is_of_a_moment: rubs,
+            ..Theory::new(&top, &load, motion, &state)
         })
-    }
-
-    /// The largest distance of the traced point from the exact motion up to the last [`deviation`](Self::deviation), m; 0
-    /// where it is not compared.
-    pub fn most_distance_m(&self) -> f64 {
-        self.beside.most_distance_m()
     }
 }

@@ -82,16 +82,16 @@ impl Readouts {
             health: *health,
             advice: advice.copied(),
             theory: monitor.theory(state.time_s),
-            extremes: monitor.gauges.extremes,
+            extremes: monitor.extremes,
             precession: is_lasting
-                .then(|| monitor.gauges.instruments.precession_rad_per_s())
+                .then(|| monitor.instruments.precession_rad_per_s())
                 .flatten(),
             nutation: is_lasting
-                .then(|| monitor.gauges.instruments.nutation_period_s())
+                .then(|| monitor.instruments.nutation_period_s())
                 .flatten(),
-            tilt_swing: monitor.gauges.tilt_swing_deg(),
-            frozen: monitor.gauges.frozen,
-            since: monitor.gauges.since,
+            tilt_swing: monitor.tilt_swing_deg(),
+            frozen: monitor.frozen,
+            since: monitor.since,
             stepping: None,
         }
     }
@@ -100,19 +100,19 @@ impl Readouts {
     /// reading them as well would cost more.
     pub fn read_again(&mut self, source: Source, simulation: &Simulation, monitor: &mut Monitor) {
         match source {
-            Source::EveryStep => self.extremes = monitor.gauges.extremes,
+            Source::EveryStep => self.extremes = monitor.extremes,
             Source::Measured => {
                 if self.health.slowing.is_none() {
-                    self.precession = monitor.gauges.instruments.precession_rad_per_s();
-                    self.nutation = monitor.gauges.instruments.nutation_period_s();
+                    self.precession = monitor.instruments.precession_rad_per_s();
+                    self.nutation = monitor.instruments.nutation_period_s();
                 }
-                self.tilt_swing = monitor.gauges.tilt_swing_deg();
+                self.tilt_swing = monitor.tilt_swing_deg();
             }
             Source::Exact => {
-                let deviation = monitor.deviation(simulation.now());
+                let deviation = monitor.beside.deviation(simulation.state());
                 self.health.deviation = deviation;
-                self.health.most_distance_m = deviation.map(|_| monitor.most_distance_m());
-                self.health.swing = monitor.swing();
+                self.health.most_distance_m = deviation.map(|_| monitor.beside.most_distance_m());
+                self.health.swing = monitor.beside.swing();
             }
             Source::Scenario | Source::State | Source::Scheme | Source::Theory | Source::Clock => {
                 let health = monitor.health(simulation.now());

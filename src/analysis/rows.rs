@@ -24,7 +24,7 @@ const ROWS_OF_CHANCE: f64 = 1.5;
 const AT_RANDOM: f64 = 1.75;
 
 #[derive(Clone, Debug)]
-pub(super) struct Rows {
+pub struct Rows {
     /// The last three steps, the newest last.
     looks: [Look; 3],
     seen: u64,

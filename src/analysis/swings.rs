@@ -78,9 +78,9 @@ pub(super) fn height(cosine: f64) -> f64 {
     cosine * cosine.abs()
 }
 
-/// The [height] of the axle in `state`, which may have lost its length.
+/// The [height] of the axle in `state`, which may have lost its length. It changes by no more than the tilt does (rad).
 #[inline]
-fn height_in(state: &State) -> f64 {
+pub(super) fn height_in(state: &State) -> f64 {
     let axle = state.axle();
     height(axle.z) / axle.norm_squared()
 }

@@ -5,7 +5,8 @@
 //! swing: a strobed run) the rows are phases of the swing in no order. How much the second half of them has added to the
 //! swing of the first then tells how much is still unseen.
 
-use super::extremes::{NEAR, height};
+use super::extremes::{NEAR, Tilts};
+use super::swings::height_in;
 use super::turns::Measured;
 use crate::physics::observables::tilt_of;
 use crate::run::Step;
@@ -31,21 +32,18 @@ pub(super) struct TiltSwing {
     turns: u64,
     /// The axle at the last two rows, and its [height].
     last: [(Vector3<f64>, f64); 2],
-    lowest: Extreme,
-    highest: Extreme,
+    tilts: Tilts,
     /// The lowest and the highest turning point among the rows.
     turned: [Option<Turned>; 2],
     /// The swing at the last two numbers of rows that were powers of two, degrees.
     earlier: [f64; 2],
 }
 
-/// A tilt, degrees, and the [height] there.
-type Extreme = (f64, f64);
-
 /// A turning point, at the row nearest to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Turned {
-    row: Extreme,
+    tilt_deg: f64,
+    height: f64,
     /// By how much the parabola through it and its neighbours reaches beyond the row, degrees.
     beyond: f64,
     /// The second difference of the three, without its sign, degrees.
@@ -54,22 +52,21 @@ struct Turned {
 
 impl TiltSwing {
     pub fn new(step: &Step) -> Self {
-        let row = (step.after().axle(), height(step));
-        let tilt = (tilt_of(&row.0), row.1);
+        let row = (step.after().axle(), height_in(step.after()));
         Self {
             rows: 1,
             turns: 0,
             last: [row; 2],
-            lowest: tilt,
-            highest: tilt,
+            tilts: Tilts::new(step),
             turned: [None; 2],
             earlier: [0.0; 2],
         }
     }
 
+    /// Takes in the next `step`, at which the axle has this height.
     #[inline]
-    pub fn follow(&mut self, step: &Step) {
-        let row = (step.after().axle(), height(step));
+    pub fn follow(&mut self, step: &Step, height: f64) {
+        let row = (step.after().axle(), height);
         let [before, at] = self.last;
         // The height falls as the tilt grows.
         let is_top = at.1 < before.1 && at.1 <= row.1;
@@ -78,14 +75,9 @@ impl TiltSwing {
         }
         self.last = [at, row];
         self.rows += 1;
-        // As for the extremes of the whole run: an arc tangent only where there may be a new one.
-        if row.1 >= self.lowest.1 - NEAR || row.1 <= self.highest.1 + NEAR {
-            let tilt = step.tilt_deg();
-            self.lowest = (self.lowest.0.min(tilt), self.lowest.1.max(row.1));
-            self.highest = (self.highest.0.max(tilt), self.highest.1.min(row.1));
-        }
+        self.tilts.follow(step, height);
         if self.rows.is_power_of_two() {
-            self.earlier = [self.earlier[1], self.highest.0 - self.lowest.0];
+            self.earlier = [self.earlier[1], self.tilts.swing_deg()];
         }
     }
 
@@ -94,16 +86,20 @@ impl TiltSwing {
         self.turns += 1;
         let sign = if is_top { 1.0 } else { -1.0 };
         let record = &mut self.turned[usize::from(is_top)];
-        let may_be_higher = |there: Extreme| sign * rows[1].1 <= sign * there.1 + NEAR;
-        if !record.is_none_or(|there| may_be_higher(there.row)) {
+        let height = rows[1].1;
+        if record.is_some_and(|there| sign * height > sign * there.height + NEAR) {
             return;
         }
         let [before, at, after] = rows.map(|(axle, _)| tilt_of(&axle));
-        if record.is_none_or(|there| sign * at > sign * there.row.0) {
+        if record.is_none_or(|there| sign * at > sign * there.tilt_deg) {
             let bend = (sign * (2.0 * at - before - after)).max(f64::MIN_POSITIVE);
             let beyond = ((before - after).powi(2) / (8.0 * bend)).min(bend);
-            let row = (at, rows[1].1);
-            *record = Some(Turned { row, beyond, bend });
+            *record = Some(Turned {
+                tilt_deg: at,
+                height,
+                beyond,
+                bend,
+            });
         }
     }
 
@@ -112,10 +108,10 @@ impl TiltSwing {
         let [Some(bottom), Some(top)] = self.turned else {
             return None;
         };
-        let swing = self.highest.0 - self.lowest.0;
+        let swing = self.tilts.swing_deg();
         // The start of the run may be a turning point too, and lie beyond those between two rows.
-        let above = top.row.0 + top.beyond - self.highest.0;
-        let below = self.lowest.0 - (bottom.row.0 - bottom.beyond);
+        let above = top.tilt_deg + top.beyond - self.tilts.highest_deg;
+        let below = self.tilts.lowest_deg - (bottom.tilt_deg - bottom.beyond);
         let bends = top.bend.powi(2) + bottom.bend.powi(2);
         let unseen = match self.turns * STROBED > self.rows {
             true => swing - self.earlier[0] + 20.0 * swing / (self.rows as f64).powi(2),

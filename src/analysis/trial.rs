@@ -4,12 +4,11 @@ use crate::physics::State;
 use crate::run::{NotFinite, Simulation, Step, Truth};
 use crate::scenario::Scenario;
 use nalgebra::Matrix3;
-use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Number of steps of a trial, evenly spread, at which energy and turning are read off. The distance is read at every step.
+/// Number of steps of a trial, evenly spread, at which the energy is read off. The distance is read at every step.
 const LOOKS: u64 = 1000;
 /// Steps that are taken at once, without a look at the clock, the exact motion or the watcher.
 const BLOCK: u64 = 4096;
@@ -31,8 +30,6 @@ pub struct Trial {
     pub spin_drift: f64,
     /// Largest deviation of L_z, likewise.
     pub lz_drift: f64,
-    /// Most turns of the body in one time step.
-    pub most_turns: f64,
     /// Time spent on stepping alone.
     pub stepping: Duration,
     /// Time of a step where stepping went fastest, s: what other work on the machine has cost is not in it.
@@ -145,7 +142,6 @@ impl Trial {
             energy_drift: None,
             spin_drift: 0.0,
             lz_drift: 0.0,
-            most_turns: 0.0,
             stepping: Duration::ZERO,
             fastest_s: f64::INFINITY,
             broke: None,
@@ -162,9 +158,6 @@ impl Trial {
     }
 
     fn read_off(&mut self, step: &Step) {
-        let omega = step.angular_velocity().norm();
-        let turns = omega * step.motion().time_step_s / TAU;
-        self.most_turns = self.most_turns.max(turns);
         let drift = step.energy_drift().map(f64::abs);
         self.energy_drift = drift.map(|drift| drift.max(self.energy_drift.unwrap_or(0.0)));
     }

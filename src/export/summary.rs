@@ -62,8 +62,8 @@ impl Summary {
         let steps = self.steps.clone().unwrap_or_else(steps);
         let [now, low, high] = [
             sample.tilt_deg,
-            extremes.lowest_tilt_deg,
-            extremes.highest_tilt_deg,
+            extremes.tilt.lowest_deg,
+            extremes.tilt.highest_deg,
         ]
         .map(|tilt| fixed(tilt, 6));
         let [lowest, highest] = [extremes.lowest_z_m, extremes.highest_z_m].map(|z| fixed(z, 9));

@@ -163,7 +163,7 @@ impl LiveRun {
     fn adopt(&mut self, scenario: &Arc<Scenario>) {
         if !Arc::ptr_eq(self.simulation.scenario(), scenario) {
             self.simulation.go_on_in(Arc::clone(scenario));
-            self.monitor.go_on_in(scenario);
+            self.monitor.beside.go_on_in(scenario);
         }
     }
 
@@ -257,7 +257,7 @@ impl LiveRun {
         let (motion, _) = in_force(self.scenario(), self.simulation.step_number());
         let state = self.simulation.state();
         let is_exact = motion.scheme.order.is_none();
-        let integrations = f64::from(is_exact) + f64::from(self.monitor.has_exact());
+        let integrations = f64::from(is_exact) + f64::from(self.monitor.beside.is_known());
         if integrations == 0.0 {
             return 0;
         }
@@ -319,7 +319,7 @@ impl LiveRun {
     }
 
     pub fn instruments(&self) -> &Instruments {
-        &self.monitor.gauges.instruments
+        &self.monitor.instruments
     }
 
     /// Whether the workings of every step to come are kept, as whoever shows them wants it while the run goes on.

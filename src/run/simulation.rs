@@ -1,7 +1,5 @@
 //! Steps a scenario forward in time.
 
-mod replaced;
-
 use super::pushes::{self, Counting, Stretch};
 use super::step::{Derived, EnergyAccount};
 use super::{Clock, Sample, Step};
@@ -9,7 +7,6 @@ use crate::physics::observables::{self, Azimuth};
 use crate::physics::workings::Part;
 use crate::physics::{Loads, PointForce, Scheme, State, Workings};
 use crate::scenario::{Edit, Motion, Push, Scenario};
-use replaced::Replaced;
 use std::sync::Arc;
 
 /// A run that stands at one of its steps; [`step`](Self::step) takes it to the next. A clone is independent of it and
@@ -28,7 +25,8 @@ pub struct Simulation {
     /// The step of the next edit; [`u64::MAX`] if there is none.
     next_edit: u64,
     ended: Option<NotFinite>,
-    replaced: Replaced,
+    /// The run before its loads were last changed: a step that fails is put back to it.
+    unchanged: Option<Box<Step>>,
     /// While |L|² is below this, every number read off a finite state is finite too.
     safe_below: f64,
     /// Whether the workings of every step are kept.
@@ -85,7 +83,7 @@ impl Simulation {
             edits_made: 0,
             next_edit: step_of_edit(&scenario, 0),
             ended: None,
-            replaced: Replaced::default(),
+            unchanged: None,
             safe_below: safe_below(&scenario, motion.gravity),
             keeps_workings: false,
             rubs: !scenario.friction.is_none(),
@@ -149,8 +147,11 @@ impl Simulation {
     /// that the run is read as it stood before. `before` was the state then, `friction` the work of friction up to it, J.
     #[cold]
     fn fail(&mut self, before: State, friction: f64) -> NotFinite {
+        let here = self.now.number;
+        if let Some(unchanged) = self.unchanged.take_if(|unchanged| unchanged.number == here) {
+            self.now = *unchanged;
+        }
         let now = &mut self.now;
-        self.replaced.put_back(now);
         now.energy.friction = friction;
         now.after = before;
         now.derived = Derived::default();
@@ -273,9 +274,12 @@ impl Simulation {
         }
     }
 
-    /// Counts a change of the loads, and keeps what there was before it, in case the coming step fails.
+    /// Counts a change of the loads. The first one at a step keeps the run as it stood, in case the coming step fails.
     fn change_loads(&mut self) {
-        self.replaced.keep(&self.now);
+        let kept = self.unchanged.as_ref().map(|unchanged| unchanged.number);
+        if kept != Some(self.now.number) {
+            self.unchanged = Some(Box::new(self.now.clone()));
+        }
         self.now.changes += 1;
     }
 

@@ -399,7 +399,7 @@ fn off(measured: Option<Measured>, theory: f64, scheme: f64) -> (f64, f64) {
 fn measurement_is_theory(name: &str, scenario: &Arc<Scenario>, scheme: f64) {
     let theory = theory(scenario, 0.0).unwrap();
     let (_, monitor) = followed(scenario);
-    let instruments = monitor.gauges.instruments;
+    let instruments = monitor.instruments;
     let Some(period) = theory
         .nutation_period_s
         .filter(|_| theory.path != Path::Circle)
@@ -473,7 +473,7 @@ fn uncertainty_is_honest_where_few_steps_make_a_nutation() {
             let scenario = Arc::new(resampled(&scenario, dt, exact));
             let theory = theory(&scenario, 0.0).unwrap();
             let (_, monitor) = followed(&scenario);
-            let instruments = monitor.gauges.instruments;
+            let instruments = monitor.instruments;
             let measured = [
                 instruments.nutation_period_s(),
                 instruments.precession_rad_per_s(),
@@ -516,7 +516,7 @@ fn uncertainty_is_that_of_repeated_measurements() {
                 simulation.step().unwrap();
                 monitor.follow(simulation.now());
             }
-            let instruments = monitor.gauges.instruments;
+            let instruments = monitor.instruments;
             [
                 instruments.nutation_period_s().unwrap(),
                 instruments.precession_rad_per_s().unwrap(),

@@ -181,8 +181,8 @@ readouts! {
     "energy_drift", "", State, "energy that only the scheme's error can have made, in units of M g |c|, or of the kinetic energy at the start where M g |c| is below 1e-9 of it", |r| r.health.energy_drift;
     "friction_work_J", "J", State, "work of friction since the start, which the energy drift counts as work: of each impulse of it, the impulse times the mean of omega before and after; under exact and rk4 its power integrated", |r| r.health.slowing.map(|slowing| slowing.work);
     "segment", "", Scenario, "edits of time step, scheme or gravity before this step", |r| r.sample.segment;
-    "measured_lowest_tilt_deg", "deg", EveryStep, "least angle of the axle from +z", |r| r.extremes.lowest_tilt_deg, "*θ*_{min}";
-    "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.highest_tilt_deg, "*θ*_{max}";
+    "measured_lowest_tilt_deg", "deg", EveryStep, "least angle of the axle from +z", |r| r.extremes.tilt.lowest_deg, "*θ*_{min}";
+    "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.tilt.highest_deg, "*θ*_{max}";
     "measured_lowest_z_m", "m", EveryStep, "least z of the traced point", |r| r.extremes.lowest_z_m, "*z*_{min}";
     "measured_highest_z_m", "m", EveryStep, "greatest z of the traced point", |r| r.extremes.highest_z_m, "*z*_{max}";
     "turns_per_step", "", State, "turns of the body in one time step, |Omega| dt/2 pi", |r| r.health.turns_per_step;

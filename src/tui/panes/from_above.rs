@@ -188,7 +188,7 @@ impl FromAbove<'_> {
             Some(reading) if reading.last_whole.is_some() => Moment::new(&reading.state, &traced),
             Some(reading) if self.ages(across).are_crowded => {
                 let extremes = &reading.readouts.extremes;
-                let swing_deg = extremes.highest_tilt_deg - extremes.lowest_tilt_deg;
+                let swing_deg = extremes.tilt.highest_deg - extremes.tilt.lowest_deg;
                 let swing_dots = swing_deg.to_radians() * traced.norm() * across;
                 if swing_dots > LARGE_SWING {
                     Moment::new(&reading.state, &traced)
