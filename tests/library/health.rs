@@ -3,6 +3,8 @@
 use crate::support::dice::Dice;
 use crate::support::scenarios::{find_scheme, parse, preset};
 use crate::support::stage::{SMALL, Stage};
+use crate::support::words::{has, has_all, has_no};
+use gyrolab::analysis::cost::is_affordable;
 use gyrolab::analysis::health::{Advice, BELIEVED_WITHIN, Health, Picture, advise, advise_while};
 use gyrolab::analysis::remarks::remarks;
 use gyrolab::analysis::{Monitor, Trial};
@@ -16,6 +18,31 @@ use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 use std::sync::Arc;
+
+const COARSE: [&str; 3] = [
+    "motion.scheme=report",
+    "motion.time_step_s=0.01",
+    "motion.steps=1000",
+];
+
+#[track_caller]
+fn begins(sentence: &str, words: &str) {
+    assert!(sentence.starts_with(words), "{sentence}");
+}
+
+/// How many of the pieces of advice are of a kind.
+fn count(advice: &[Advice], is: fn(&Advice) -> bool) -> usize {
+    advice.iter().filter(|advice| is(advice)).count()
+}
+
+/// Asserts that more than these are `Holds`, another time step or another scheme, and that none is `Nothing`.
+#[track_caller]
+fn has_kinds(advice: &[Advice], [holds, steps, schemes]: [usize; 3]) {
+    assert!(count(advice, |advice| *advice == Advice::Holds) > holds);
+    assert!(count(advice, |advice| matches!(advice, Advice::TimeStep(_))) > steps);
+    assert!(count(advice, |advice| matches!(advice, Advice::Scheme { .. })) > schemes);
+    assert_eq!(count(advice, |advice| *advice == Advice::Nothing), 0);
+}
 
 /// The health of the whole run, as `gyrolab run` has it.
 fn health(scenario: Scenario) -> Health {
@@ -42,25 +69,14 @@ fn it_warns_of_the_runs_that_the_time_step_has_made() {
         ),
         ("wobble-push", &[], "times in a time step"),
         ("wobble-push-accumulating", &[], "times in a time step"),
-        (
-            "cusps",
-            &[
-                "motion.scheme=report",
-                "motion.time_step_s=0.01",
-                "motion.steps=1000",
-            ],
-            "damps the nutation",
-        ),
+        ("cusps", &COARSE, "damps the nutation"),
     ] {
         let scenario = preset(name, set);
         let health = health(scenario.clone());
         let sentence = health.sentence(Some(&advise(&scenario)));
-        println!("{sentence}");
         assert_eq!(health.is_believed(), Some(false));
-        assert!(
-            sentence.starts_with("Do not believe this run") && sentence.contains(words),
-            "{sentence}"
-        );
+        begins(&sentence, "Do not believe this run");
+        has(&sentence, words);
         let advised = match name {
             // At another time step, which --time-step refuses, its push would be another.
             "wobble-push-accumulating" => {
@@ -68,7 +84,7 @@ fn it_warns_of_the_runs_that_the_time_step_has_made() {
             }
             _ => "; a time step of 0.0",
         };
-        assert!(sentence.contains(advised), "{sentence}");
+        has(&sentence, advised);
         assert!(!sentence.contains('\n') && !sentence.contains("NaN"));
     }
 }
@@ -81,14 +97,8 @@ fn it_does_not_warn_of_the_runs_that_hold() {
             continue;
         }
         let health = health(scenario.clone());
-        let sentence = health.sentence(None);
-        assert_eq!(
-            health.is_believed(),
-            Some(true),
-            "{}: {sentence}",
-            preset.name
-        );
-        assert!(sentence.starts_with("The numbers hold"), "{sentence}");
+        assert_eq!(health.is_believed(), Some(true), "{}", preset.name);
+        begins(&health.sentence(None), "The numbers hold");
         assert_eq!(advise(&scenario), Advice::Holds, "{}", preset.name);
     }
 }
@@ -114,26 +124,25 @@ fn strays(scenario: Scenario) -> f64 {
 #[test]
 fn the_largest_distance_is_that_of_every_step() {
     // Runs whose swing falls between any thousand looks at them.
+    let [scheme, time_step, _] = COARSE;
+    let steps = "motion.steps=20000";
     for (name, set) in [
-        (
-            "cusps",
-            &[
-                "motion.scheme=report",
-                "motion.time_step_s=0.01",
-                "motion.steps=20000",
-            ][..],
-        ),
-        ("wobble-push", &["motion.steps=20000"]),
+        ("cusps", &[scheme, time_step, steps][..]),
+        ("wobble-push", &[steps]),
     ] {
         let scenario = preset(name, set);
         let most = strays(scenario.clone()) * scenario.arm_m();
-        let trial = Trial::run(&Arc::new(scenario.clone()), |_| ControlFlow::Continue(()));
+        let trial = trial(scenario.clone());
         let health = health(scenario);
         let close = |seen: f64| (seen / most - 1.0).abs() < 1e-12;
         let seen = health.most_distance_m.unwrap();
         assert!(close(seen), "{name}: {seen}, and {most} at some step");
-        assert!(close(trial.unwrap().most_distance_m), "{name}: the trial");
+        assert!(close(trial.most_distance_m), "{name}: the trial");
     }
+}
+
+fn trial(scenario: Scenario) -> Trial {
+    Trial::run(&Arc::new(scenario), |_| ControlFlow::Continue(())).unwrap()
 }
 
 /// Asks for advice and takes it.
@@ -195,11 +204,7 @@ fn the_advice_is_right_for_every_preset_under_every_scheme() {
             advice_is_right(preset.name, &resampled(&scenario, step, scheme))
         })
         .collect();
-    let count = |is: fn(&Advice) -> bool| advice.iter().filter(|advice| is(advice)).count();
-    assert!(count(|advice| matches!(advice, Advice::Holds)) > 20);
-    assert!(count(|advice| matches!(advice, Advice::TimeStep(_))) > 20);
-    assert!(count(|advice| matches!(advice, Advice::Scheme { .. })) > 2);
-    assert_eq!(count(|advice| *advice == Advice::Nothing), 0);
+    has_kinds(&advice, [20, 20, 2]);
 }
 
 #[test]
@@ -209,10 +214,8 @@ fn a_scheme_is_advised_at_a_time_step_at_which_it_holds() {
         let scenario = resampled(&preset(name, &[]), 2.0, find_scheme("report"));
         assert!(strays(resampled(&scenario, 2.0, find_scheme("srkn11b"))) > BELIEVED_WITHIN);
         let advice = advice_is_right(name, &scenario);
-        assert!(
-            matches!(advice, Advice::Scheme { time_step_s, .. } if time_step_s < 2.0),
-            "{name}: {advice:?}"
-        );
+        let is_shorter = matches!(advice, Advice::Scheme { time_step_s, .. } if time_step_s < 2.0);
+        assert!(is_shorter, "{name}: {advice:?}");
     }
 }
 
@@ -274,28 +277,20 @@ fn the_advice_is_right_for_random_bodies() {
             advice_is_right("random", scenario)
         })
         .collect();
-    let count = |is: fn(&Advice) -> bool| advice.iter().filter(|advice| is(advice)).count();
-    assert!(count(|advice| matches!(advice, Advice::Holds)) > 20);
-    assert!(count(|advice| matches!(advice, Advice::TimeStep(_))) > 20);
-    assert!(count(|advice| matches!(advice, Advice::Scheme { .. })) > 5);
-    assert_eq!(count(|advice| *advice == Advice::Nothing), 0);
+    has_kinds(&advice, [20, 20, 5]);
 }
 
 /// The monitor looks at some steps only: it may miss a little of the largest distance.
 fn is_believed_rightly(scenario: &Scenario) {
     let health = health(scenario.clone());
-    let (seen, most) = (
-        health.most_distance_m.unwrap() / scenario.arm_m(),
-        strays(scenario.clone()),
-    );
+    let seen = health.most_distance_m.unwrap() / scenario.arm_m();
+    let most = strays(scenario.clone());
     if most.is_infinite() {
         assert_eq!(health.is_believed(), Some(false), "its numbers break");
         return;
     }
-    assert!(
-        seen <= most * (1.0 + 1e-9) && seen > 0.9 * most - 1e-12,
-        "{seen} of {most}"
-    );
+    let is_right = seen <= most * (1.0 + 1e-9) && seen > 0.9 * most - 1e-12;
+    assert!(is_right, "{seen} of {most}");
     let sentence = health.sentence(None);
     let begins = |words| sentence.starts_with(words);
     let is_near = most <= BELIEVED_WITHIN;
@@ -322,15 +317,12 @@ fn wheel(height: f64, axle_kg: f64, rest: &str) -> Scenario {
 /// The wheel standing upright without gravity, turning by `psi` (rad) a step, some of it aside.
 fn turning(height: f64, psi: f64, aside: f64, steps: u64) -> Scenario {
     // I3 = 3.2 kg m^2, and dt = 1 s.
-    let momentum = 3.2 * psi;
-    wheel(
-        height,
-        0.0,
-        &format!(
-            "[start]\nmomentum_Js = [0, {}, {momentum}]\n[motion]\ngravity_m_per_s2 = 0\ntime_step_s = 1\nsteps = {steps}\n",
-            aside * momentum
-        ),
-    )
+    let momentum = [3.2 * psi * aside, 3.2 * psi];
+    let motion = "gravity_m_per_s2 = 0\ntime_step_s = 1";
+    let [aside, along] = momentum;
+    let start = format!("[start]\nmomentum_Js = [0, {aside}, {along}]\n");
+    let rest = format!("{start}[motion]\n{motion}\nsteps = {steps}\n");
+    wheel(height, 0.0, &rest)
 }
 
 #[test]
@@ -358,9 +350,8 @@ fn the_picture_is_what_one_step_shows() {
         simulation.step().unwrap();
         let spoke = simulation.state().orientation.column(0).into_owned();
         let seems = spoke.y.atan2(spoke.x);
-        let shown = Monitor::new(simulation.now())
-            .health(simulation.now())
-            .picture;
+        let mut monitor = Monitor::new(simulation.now());
+        let shown = monitor.health(simulation.now()).picture;
         let expected = match seems {
             _ if seems < 0.0 => Picture::Backwards,
             _ if (seems - psi).abs() > 1e-9 => Picture::TooSlow,
@@ -387,20 +378,15 @@ fn the_multiplier_is_that_of_a_measured_run() {
         let (first, last) = (lag(0), lag(steps));
         let measured = (last.lag_deg / first.lag_deg).powf(1.0 / steps as f64);
         let told = last.nutation.unwrap().multiplier;
-        assert!(
-            (measured - told).abs() < 1e-8,
-            "h {height}, psi {psi}: {told}, measured {measured}"
-        );
+        let off = (measured - told).abs();
+        assert!(off < 1e-8, "h {height}, psi {psi}: {told}, {measured}");
         assert!((told - 1.0).abs() > 1e-4 || height == 0.2);
     }
     let isotropic = turning(0.8 / 2_f64.sqrt(), 31.25, 1e-6, 1);
     assert!((health(isotropic).nutation.unwrap().multiplier - 1.0).abs() < 1e-12);
     let other = resampled(&turning(1.0, 1.0, 0.0, 1), 1.0, find_scheme("rk4"));
-    assert_eq!(
-        health(other).nutation,
-        None,
-        "it is the report's scheme alone"
-    );
+    // It is the report's scheme alone.
+    assert_eq!(health(other).nutation, None);
 }
 
 /// Largest angle between axle and L over the run, degrees.
@@ -418,20 +404,17 @@ fn largest_lag(scenario: &Scenario) -> f64 {
 /// A top that begins in steady precession goes on with the angle between axle and L that it began with.
 #[test]
 fn the_true_lag_is_that_of_a_top_in_steady_precession() {
-    let nutation = |name: &str, set: &[&str]| health_at(preset(name, set), 0).nutation.unwrap();
+    let nutation = |name: &str| {
+        let scenario = preset(name, &["motion.scheme=report"]);
+        health_at(scenario, 0).nutation.unwrap()
+    };
     let health = health_at(preset("steady-slow", &[]), 0);
-    let lag_deg = nutation("steady-slow", &["motion.scheme=report"]).true_lag_deg;
-    assert!(
-        (lag_deg.unwrap() / health.lag_deg - 1.0).abs() < 1e-12,
-        "{lag_deg:?}"
-    );
+    let lag_deg = nutation("steady-slow").true_lag_deg.unwrap();
+    assert!((lag_deg / health.lag_deg - 1.0).abs() < 1e-12, "{lag_deg}");
     assert_eq!(health.nutation, None);
     // Too slow a top has no such angle, and one without a torque none but zero.
-    assert_eq!(
-        nutation("sleeping-unstable", &["motion.scheme=report"]).true_lag_deg,
-        None
-    );
-    let free = nutation("torque-free", &["motion.scheme=report"]);
+    assert_eq!(nutation("sleeping-unstable").true_lag_deg, None);
+    let free = nutation("torque-free");
     assert_eq!((free.true_lag_deg, free.lag_ratio), (Some(0.0), None));
 }
 
@@ -446,39 +429,26 @@ fn the_lag_of_method_2_is_188_times_the_true_one() {
     let expected = (kick / (2.0 * (psi / 2.0).sin().abs())).to_degrees();
     let scheme_lag_deg = nutation.scheme_lag_deg().unwrap();
     // The formula is that of small angles: the fast precession is 35 000 times as fast.
-    assert!(
-        (scheme_lag_deg / expected - 1.0).abs() < 1e-4,
-        "{nutation:?}"
-    );
+    let off = (scheme_lag_deg / expected - 1.0).abs();
+    assert!(off < 1e-4, "{nutation:?}");
     let true_lag_deg = nutation.true_lag_deg.unwrap();
     assert!((true_lag_deg / (kick / psi).to_degrees() - 1.0).abs() < 1e-4);
-    assert!(
-        (nutation.lag_ratio.unwrap() - 188.0).abs() < 1.0,
-        "{nutation:?}"
-    );
+    let ratio = nutation.lag_ratio.unwrap();
+    assert!((ratio - 188.0).abs() < 1.0, "{nutation:?}");
     // It swings about the lag, from none to twice as much.
     let measured = largest_lag(&scenario) / 2.0;
-    println!("lag {scheme_lag_deg}, measured {measured}");
     assert!((measured / scheme_lag_deg - 1.0).abs() < 0.02, "{measured}");
-    let exact = resampled(
-        &preset("method-2", &["motion.steps=10"]),
-        0.0007,
-        find_scheme("exact"),
-    );
+    let short = preset("method-2", &["motion.steps=10"]);
+    let exact = resampled(&short, 0.0007, find_scheme("exact"));
     let measured = largest_lag(&exact) / 2.0;
-    println!("true lag {true_lag_deg}, measured {measured}");
     assert!((measured / true_lag_deg - 1.0).abs() < 0.001, "{measured}");
 }
 
 /// The body of kappa = 0.38 for ten seconds under the report's scheme at 1e-3 s.
 fn reference_top(momentum: &str) -> Scenario {
-    wheel(
-        1.0,
-        0.5,
-        &format!(
-            "[start]\ntilt_deg = 45\nmomentum_Js = {momentum}\nmomentum_frame = 'body'\n[motion]\ntime_step_s = 1e-3\nsteps = 10000\n"
-        ),
-    )
+    let start = format!("tilt_deg = 45\nmomentum_Js = {momentum}\nmomentum_frame = 'body'");
+    let motion = "[motion]\ntime_step_s = 1e-3\nsteps = 10000\n";
+    wheel(1.0, 0.5, &format!("[start]\n{start}\n{motion}"))
 }
 
 #[test]
@@ -487,19 +457,12 @@ fn drifts_and_deviation_are_those_of_known_cases() {
     assert!((cusped.energy_drift.unwrap() - 0.116).abs() < 5e-4);
     let looping = health(reference_top("[0, -20, 30]"));
     let deviation = looping.deviation.unwrap();
-    assert!(
-        (deviation.spin / 30.0 - 0.125).abs() < 5e-4,
-        "{deviation:?}"
-    );
+    let off = (deviation.spin / 30.0 - 0.125).abs();
+    assert!(off < 5e-4, "{deviation:?}");
     assert!(deviation.lz.abs() < 1e-11);
-    let trial = Trial::run(&Arc::new(reference_top("[0, -20, 30]")), |_| {
-        ControlFlow::Continue(())
-    })
-    .unwrap();
-    assert!(
-        (trial.spin_drift * 1300_f64.sqrt() / 30.0 - 0.125).abs() < 5e-4,
-        "{trial:?}"
-    );
+    let trial = trial(reference_top("[0, -20, 30]"));
+    let off = (trial.spin_drift * 1300_f64.sqrt() / 30.0 - 0.125).abs();
+    assert!(off < 5e-4, "{trial:?}");
     assert!(trial.lz_drift < 1e-12 && trial.steps == 10_000 && trial.broke.is_none());
     assert_eq!(trial.end_distance_m, deviation.distance_m);
     assert_eq!(Some(trial.most_distance_m), looping.most_distance_m);
@@ -508,13 +471,9 @@ fn drifts_and_deviation_are_those_of_known_cases() {
 #[test]
 fn distances_are_those_from_the_reference_motions() {
     // Rows: t (s), axle, ...; the traced point is 1.5 m up the axle.
-    for (momentum, table) in [
-        ("[0, 0, 100]", include_str!("../reference/exact/cusped.csv")),
-        (
-            "[0, -20, 30]",
-            include_str!("../reference/exact/looping.csv"),
-        ),
-    ] {
+    let cusped = include_str!("../reference/exact/cusped.csv");
+    let looping = include_str!("../reference/exact/looping.csv");
+    for (momentum, table) in [("[0, 0, 100]", cusped), ("[0, -20, 30]", looping)] {
         let scenario = reference_top(momentum);
         let mut simulation = Simulation::new(Arc::new(scenario));
         let mut monitor = Monitor::new(simulation.now());
@@ -528,16 +487,9 @@ fn distances_are_those_from_the_reference_motions() {
             simulation.step_to(step as u64).unwrap();
             let axle = simulation.state().axle();
             let known = nalgebra::Vector3::new(row[1], row[2], row[3]);
-            let distance = monitor
-                .health(simulation.now())
-                .deviation
-                .unwrap()
-                .distance_m;
-            assert!(
-                (distance - 1.5 * (axle - known).norm()).abs() < 1e-12,
-                "at {} s",
-                row[0]
-            );
+            let deviation = monitor.health(simulation.now()).deviation;
+            let off = deviation.unwrap().distance_m - 1.5 * (axle - known).norm();
+            assert!(off.abs() < 1e-12, "at {} s", row[0]);
             compared += 1;
         }
         assert!(compared > 5, "{compared}");
@@ -546,85 +498,53 @@ fn distances_are_those_from_the_reference_motions() {
 
 #[test]
 fn lz_drifts_where_a_push_from_the_side_meets_the_wrong_axle() {
-    let scenario = preset(
-        "cusps",
-        &["push.0={point='top',force_N=[30,0,0],from_s=0.5,for_s=2}"],
-    );
-    let drift = |step, scheme| {
-        let scenario = Arc::new(resampled(&scenario, step, find_scheme(scheme)));
-        Trial::run(&scenario, |_| ControlFlow::Continue(()))
-            .unwrap()
-            .lz_drift
-    };
+    let push = "push.0={point='top',force_N=[30,0,0],from_s=0.5,for_s=2}";
+    let scenario = preset("cusps", &[push]);
+    let drift = |step, scheme| trial(resampled(&scenario, step, find_scheme(scheme))).lz_drift;
     let (report, better) = (drift(0.01, "report"), drift(0.01, "srkn11b"));
     assert!(report > 1e-3 && better < 1e-10, "{report} {better}");
 }
 
 #[test]
 fn where_nothing_can_be_said_it_says_so() {
-    let pivot = health(preset("method-2", &["trace=foot", "motion.steps=10"]));
-    assert_eq!(pivot.is_believed(), None);
-    assert!(
-        pivot
-            .sentence(None)
-            .contains("the traced point is the pivot")
-    );
     // The closed form leaves the range of numbers long before the report's scheme does.
-    let huge = health(preset(
-        "cusps",
-        &[
-            "motion.scheme=report",
-            "start.momentum_Js=[0,0,1e100]",
-            "motion.steps=10",
-        ],
-    ));
-    assert_eq!(huge.is_believed(), None);
-    assert!(
-        huge.sentence(None).contains("leaves the range of numbers"),
-        "{}",
-        huge.sentence(None)
-    );
+    let huge = ["motion.scheme=report", "start.momentum_Js=[0,0,1e100]"];
+    for (name, set, words) in [
+        (
+            "method-2",
+            &["trace=foot"][..],
+            "the traced point is the pivot",
+        ),
+        ("cusps", &huge, "leaves the range of numbers"),
+    ] {
+        let health = health(preset(name, &[set, &["motion.steps=10"]].concat()));
+        assert_eq!(health.is_believed(), None);
+        has(health.sentence(None), words);
+    }
     let push = "push.0={point='side',force_N=[0,0,-1],steps=5}";
     let side = "body.point.2={name='side',at_m=[0.5,0,1]}";
     let long = preset("cusps", &[side, push, "motion.steps=100000000"]);
     assert_eq!(advise(&long), Advice::Nothing);
-    assert!(
-        health_at(long, 3)
-            .sentence(None)
-            .contains("would take too long")
-    );
+    has(health_at(long, 3).sentence(None), "would take too long");
 }
 
 #[test]
 fn a_body_at_rest_counts_as_one_that_will_swing() {
-    let at_rest = wheel(
-        1.0,
-        0.5,
-        "[start]\ntilt_deg = 45\nmomentum_Js = [0, 0, 0]\n[motion]\ntime_step_s = 0.1\nsteps = 100000000\n[[push]]\npoint = 'top'\nforce_N = [1, 0, 0]\nsteps = 3\n",
-    );
-    assert!(
-        gyrolab::analysis::cost::is_affordable(&at_rest),
-        "pushed on the axle: closed form"
-    );
+    let motion = "[motion]\ntime_step_s = 0.1\nsteps = 100000000\n";
+    let push = "[[push]]\npoint = 'top'\nforce_N = [1, 0, 0]\nsteps = 3\n";
+    let start = "[start]\ntilt_deg = 45\nmomentum_Js = [0, 0, 0]\n";
+    let at_rest = wheel(1.0, 0.5, &format!("{start}{motion}{push}"));
+    assert!(is_affordable(&at_rest), "pushed on the axle: closed form");
     let mut lopsided = at_rest.file.clone();
     lopsided.body.point[0].at_m[0] = 0.3;
-    let lopsided = gyrolab::scenario::Document::from_file("lopsided", &lopsided)
-        .unwrap()
-        .scenario()
-        .unwrap();
-    assert!(!gyrolab::analysis::cost::is_affordable(&lopsided));
+    let lopsided = Document::from_file("lopsided", &lopsided).unwrap();
+    assert!(!is_affordable(&lopsided.scenario().unwrap()));
 }
 
 #[test]
 fn edits_that_spoil_a_run_are_advised_away() {
-    let text = Document::open("cusps")
-        .unwrap()
-        .scenario()
-        .unwrap()
-        .to_toml();
-    let spoilt = parse(&format!(
-        "{text}\n[[edit]]\nstep = 1000\nset = {{ 'motion.scheme' = 'report', 'motion.time_step_s' = 0.05 }}\n"
-    ));
+    let edit = "edit=[{step=1000, set={'motion.scheme'='report', 'motion.time_step_s'=0.05}}]";
+    let spoilt = preset("cusps", &[edit]);
     assert_eq!(health(spoilt.clone()).is_believed(), Some(false));
     assert_eq!(advise(&spoilt), Advice::TimeStep(0.001));
 }
@@ -633,54 +553,40 @@ fn edits_that_spoil_a_run_are_advised_away() {
 fn the_sentence_names_the_right_cause() {
     let told = |name: &str, set: &[&str]| {
         let scenario = preset(name, set);
-        (
-            health(scenario.clone()).sentence(Some(&advise(&scenario))),
-            scenario,
-        )
+        health(scenario.clone()).sentence(Some(&advise(&scenario)))
     };
-    let report = "motion.scheme=report";
+    let added_up = "the error that the scheme report makes at this time step has added up";
     // A steady precession has no nutation that could be damped.
-    let coarse = ["motion.time_step_s=0.01", "motion.steps=1000", report];
-    let (sentence, _) = told("steady-slow", &coarse);
-    assert!(
-        sentence.contains("the error that the scheme report makes at this time step has added up"),
-        "{sentence}"
-    );
-    assert!(!sentence.contains("nutation"), "{sentence}");
+    let sentence = told("steady-slow", &COARSE);
+    has(&sentence, added_up);
+    has_no(&sentence, "nutation");
     // One that is a hair off steady has a nutation, too small to put the traced point off.
-    let [step, steps, scheme] = coarse;
-    let (sentence, _) = told(
-        "steady-slow",
-        &[step, steps, scheme, "start.tilt_deg=30.01"],
-    );
-    assert!(
-        sentence.contains("the error that the scheme report makes at this time step has added up"),
-        "{sentence}"
-    );
-    let (sentence, _) = told("cusps", &coarse);
-    assert!(
-        sentence.contains("the scheme damps the nutation by"),
-        "{sentence}"
-    );
+    let hair_off = [&COARSE[..], &["start.tilt_deg=30.01"]].concat();
+    has(told("steady-slow", &hair_off), added_up);
+    let damps = "the scheme damps the nutation by";
+    has(told("cusps", &COARSE), damps);
     // The traced point holds, the nutation does not.
+    let report = "motion.scheme=report";
     let fine = ["motion.time_step_s=0.001", "motion.steps=20000", report];
-    let (sentence, _) = told("fast-top", &fine);
-    assert!(
-        sentence.starts_with(
-            "The traced point holds, and the nutation does not: the point has kept within",
-        ) && sentence.contains(" degrees, and should from 30.000 to 30.074: the scheme damps")
-            && sentence.contains("so that it is gone; no time step"),
-        "{sentence}"
+    let sentence = told("fast-top", &fine);
+    begins(
+        &sentence,
+        "The traced point holds, and the nutation does not: the point has kept within",
+    );
+    has_all(
+        &sentence,
+        [
+            " degrees, and should from 30.000 to 30.074: the scheme damps",
+            "so that it is gone; no time step",
+        ],
     );
     // Nor is there one in a steady precession whose traced point holds.
     let fewer = ["motion.time_step_s=0.0001", "motion.steps=5000", report];
-    let (sentence, _) = told("steady-slow", &fewer);
-    assert!(
-        sentence.starts_with("The numbers hold") && !sentence.contains("nutation"),
-        "{sentence}"
-    );
+    let sentence = told("steady-slow", &fewer);
+    begins(&sentence, "The numbers hold");
+    has_no(&sentence, "nutation");
     let gone = |name: &str, set: &[&str]| {
-        gyrolab::analysis::remarks::remarks(&health(preset(name, set)), None)
+        remarks(&health(preset(name, set)), None)
             .iter()
             .any(|remark| remark.long.ends_with(": gone") && remark.warns)
     };
@@ -695,8 +601,8 @@ fn a_time_step_that_would_be_refused_is_not_advised() {
     assert_eq!(advice, Advice::BoundToItsTimeStep);
     let health = health(scenario);
     assert!(!health.sentence(Some(&advice)).contains("--time-step"));
-    for remark in gyrolab::analysis::remarks::remarks(&health, Some(&advice)) {
-        assert!(!remark.long.contains("--time-step"), "{remark:?}");
+    for remark in remarks(&health, Some(&advice)) {
+        has_no(&remark.long, "--time-step");
     }
 }
 
@@ -704,17 +610,13 @@ fn a_time_step_that_would_be_refused_is_not_advised() {
 fn a_drift_that_cannot_be_told_is_told_why() {
     let told = |set: &[&str]| {
         let health = health_at(preset("method-2", set), 5);
-        let remarks = remarks(&health, None);
-        let energy = remarks
-            .into_iter()
-            .find(|remark| remark.short.starts_with("energy"));
+        let mut remarks = remarks(&health, None).into_iter();
+        let energy = remarks.find(|remark| remark.short.starts_with("energy"));
         energy.unwrap()
     };
     let still = told(&["motion.gravity_m_per_s2=0", "start.momentum_Js=[0,0,0]"]);
-    assert_eq!(
-        still.long,
-        "energy drift n/a: neither weight nor kinetic energy to measure it by"
-    );
+    let words = "energy drift n/a: neither weight nor kinetic energy to measure it by";
+    assert_eq!(still.long, words);
     assert_eq!(still.short, "energy n/a: no scale");
     let usual = told(&[]);
     assert!(usual.long.starts_with("energy drift +") || usual.long.starts_with("energy drift -"));
@@ -758,13 +660,9 @@ fn a_nutation_that_the_time_step_makes_larger_is_told() {
         health_at(scenario, steps).sentence(None)
     };
     let told = sentence(0.01);
-    assert!(
-        told.starts_with("The traced point holds, and the nutation does not: ")
-            && told.contains("lags behind L 1.56 times as far as it should"),
-        "{told}"
-    );
-    let told = sentence(0.002);
-    assert!(told.starts_with("The numbers hold: "), "{told}");
+    begins(&told, "The traced point holds, and the nutation does not: ");
+    has(&told, "lags behind L 1.56 times as far as it should");
+    begins(&sentence(0.002), "The numbers hold: ");
 }
 
 /// Runs whose traced point is right. The swing of each is another's: made by the scheme, larger or smaller than it should

@@ -2,12 +2,13 @@
 //! (Dormand-Prince 8(5,3), tolerance 1e-15) that reads the same numbers and shares no code with either.
 
 use crate::support::dice::Dice;
+use crate::support::scenarios::{find_scheme, parse, preset};
 use differential_equations::prelude::*;
+use gyrolab::physics::State;
 use gyrolab::physics::exact::Kind;
-use gyrolab::physics::{SchemeInfo, State};
 use gyrolab::run::resample::resampled;
 use gyrolab::run::{Simulation, Truth};
-use gyrolab::scenario::file::{EditFile, PushFile};
+use gyrolab::scenario::file::{EditFile, PushFile, ScenarioFile};
 use gyrolab::scenario::{Document, Scenario};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::fmt::Write;
@@ -116,9 +117,7 @@ impl Told {
     }
 
     fn scenario(&self, scheme: &str) -> Arc<Scenario> {
-        let text = self.toml(scheme);
-        let scenario = Document::parse("x.toml", &text).and_then(|document| document.scenario());
-        Arc::new(scenario.unwrap_or_else(|problems| panic!("{problems}\n{text}")))
+        Arc::new(parse(&self.toml(scheme)))
     }
 
     fn start(&self) -> (Matrix3<f64>, Vector3<f64>) {
@@ -506,81 +505,58 @@ fn pushed(mut told: Told, force: [f64; 3], window: Window, accumulates: bool) ->
 }
 
 fn degenerate() -> Vec<(&'static str, Told)> {
+    const SPIN: [f64; 3] = [0.0, 0.0, 60.0];
+    const REST: [f64; 3] = [0.0; 3];
     let kappa_1 = 0.8 / 2_f64.sqrt();
+    let even = || named(kappa_1, 45.0, [0.0, 0.0, 100.0]);
+    let cusps = || named(1.0, 30.0, SPIN);
+    let steady = [0.0, 2.945_444_198_542_434_7, 60.0];
     let sideways = [30.0, -20.0, 0.0];
-    let mut regrown = named(1.0, 30.0, [0.0, 0.0, 60.0]);
-    regrown.edits = vec![
-        Edited {
-            step: 100,
-            change: Change::Gravity(0.0),
-        },
-        Edited {
-            step: 250,
-            change: Change::Gravity(9.8),
-        },
-        Edited {
-            step: 400,
-            change: Change::Gravity(-9.8),
-        },
-    ];
-    let spin = [0.0, 0.0, 60.0];
-    let cusps = || named(1.0, 30.0, spin);
+    let aside = |told: Told, from: f64, long: f64| {
+        pushed(told, sideways, Window::Seconds(from, long), false)
+    };
+    let mut regrown = cusps();
+    regrown.edits = [(100, 0.0), (250, 9.8), (400, -9.8)]
+        .map(|(step, gravity)| Edited {
+            step,
+            change: Change::Gravity(gravity),
+        })
+        .into();
+    let weightless = |told: Told| Told {
+        gravity: 0.0,
+        ..told
+    };
+    let held = Window::Seconds(1.003, 3.0);
+    let first = pushed(cusps(), sideways, Window::Steps(1, 150), false);
+    let second = Window::Seconds(1.5, 1.0);
     vec![
         ("cusps", cusps()),
         ("loops", named(1.0, 30.0, [0.0, -3.0, 60.0])),
         ("waves", named(1.0, 30.0, [0.0, 1.5, 60.0])),
-        (
-            "steady",
-            named(1.0, 30.0, [0.0, 2.945_444_198_542_434_7, 60.0]),
-        ),
+        ("steady", named(1.0, 30.0, steady)),
         ("sleeping", named(1.0, 0.0, [0.0, 0.0, 40.0])),
         ("hanging and spinning", named(-1.0, 0.0, [0.0, 0.0, 40.0])),
         (
             "hanging, pushed",
-            pushed(
-                named(1.0, 180.0, [0.0; 3]),
-                sideways,
-                Window::Seconds(0.123, 0.7),
-                false,
-            ),
+            aside(named(1.0, 180.0, REST), 0.123, 0.7),
         ),
-        ("a pendulum", named(1.0, 80.0, [0.0; 3])),
+        ("a pendulum", named(1.0, 80.0, REST)),
         (
             "a pendulum, pushed",
-            pushed(
-                named(1.0, 80.0, [0.0; 3]),
-                sideways,
-                Window::Seconds(1.111, 2.0),
-                false,
-            ),
+            aside(named(1.0, 80.0, REST), 1.111, 2.0),
         ),
-        ("kappa = 1", named(kappa_1, 45.0, [0.0, 0.0, 100.0])),
+        ("kappa = 1", even()),
         (
             "kappa = 1, pushed down",
-            pushed(
-                named(kappa_1, 45.0, [0.0, 0.0, 100.0]),
-                [0.0, 0.0, -100.0],
-                Window::Steps(1, 200),
-                false,
-            ),
+            pushed(even(), [0.0, 0.0, -100.0], Window::Steps(1, 200), false),
         ),
         (
             "upright, pushed aside: a tilted gravity",
-            pushed(
-                named(1.0, 0.0, [0.0, 0.0, 60.0]),
-                sideways,
-                Window::Seconds(0.0, 10.0),
-                false,
-            ),
+            aside(named(1.0, 0.0, SPIN), 0.0, 10.0),
         ),
         (
             "a push that holds the weight",
-            pushed(
-                cusps(),
-                [0.0, 0.0, 49.0 / 1.3],
-                Window::Seconds(1.003, 3.0),
-                false,
-            ),
+            pushed(cusps(), [0.0, 0.0, 49.0 / 1.3], held, false),
         ),
         (
             "an accumulating push",
@@ -588,32 +564,15 @@ fn degenerate() -> Vec<(&'static str, Told)> {
         ),
         (
             "two pushes of which one ends as the other begins",
-            pushed(
-                pushed(cusps(), sideways, Window::Steps(1, 150), false),
-                [0.0, 0.0, -50.0],
-                Window::Seconds(1.5, 1.0),
-                false,
-            ),
+            pushed(first, [0.0, 0.0, -50.0], second, false),
         ),
         (
             "a push of which nothing is left",
-            pushed(cusps(), sideways, Window::Seconds(2.0, 1e-15), false),
+            aside(cusps(), 2.0, 1e-15),
         ),
         ("gravity off, on and upside down", regrown),
-        (
-            "no forces at all",
-            Told {
-                gravity: 0.0,
-                ..cusps()
-            },
-        ),
-        (
-            "at rest without forces",
-            Told {
-                gravity: 0.0,
-                ..named(1.0, 30.0, [0.0; 3])
-            },
-        ),
+        ("no forces at all", weightless(cusps())),
+        ("at rest without forces", weightless(named(1.0, 30.0, REST))),
     ]
 }
 
@@ -683,12 +642,8 @@ fn edits_of_time_step_and_scheme_do_not_touch_the_truth() {
         }
         let (mut a, mut b) = (Truth::new(plain), Truth::new(told.scenario("strang")));
         for time in TIMES {
-            assert_eq!(
-                a.state_at(time),
-                b.state_at(time),
-                "{}",
-                told.toml("strang")
-            );
+            let text = told.toml("strang");
+            assert_eq!(a.state_at(time), b.state_at(time), "{text}");
         }
     }
 }
@@ -705,25 +660,19 @@ fn going_back_in_time_and_forward_again_gives_the_same() {
         let mut wandering = Truth::new(scenario);
         for place in [5, 0, 3, 3, 1, 4, 2, 5, 1] {
             let (seen, known) = (wandering.state_at(TIMES[place]), &known[place]);
-            let gap = apart(
-                &told,
-                1.0 + known.momentum.norm(),
-                &seen,
-                &(known.orientation, known.momentum),
-            );
-            assert!(
-                gap < 1e-13 * growth.max(10.0),
-                "{gap:e} at {} s\n{}",
-                TIMES[place],
-                told.toml("report")
-            );
+            let size = 1.0 + known.momentum.norm();
+            let known = (known.orientation, known.momentum);
+            let gap = apart(&told, size, &seen, &known);
+            let text = told.toml("report");
+            let allowed = 1e-13 * growth.max(10.0);
+            assert!(gap < allowed, "{gap:e} at {} s\n{text}", TIMES[place]);
         }
     }
 }
 
 /// Runs by the scheme `exact` at `time_step_s` and gives the greatest distance from `Truth` at any of its steps.
 fn exact_scheme_off(told: &Told, time_step_s: f64) -> f64 {
-    let exact = SchemeInfo::find("exact").unwrap();
+    let exact = find_scheme("exact");
     let scenario = Arc::new(resampled(&told.scenario("exact"), time_step_s, exact));
     let mut truth = Truth::new(Arc::clone(&scenario));
     let mut simulation = Simulation::new(Arc::clone(&scenario));
@@ -746,11 +695,9 @@ fn the_scheme_exact_gives_the_truth_whatever_its_time_step() {
         let growth = integrated(&told).1;
         for time_step_s in [1.0, 0.37, 0.1, 0.01] {
             let off = exact_scheme_off(&told, time_step_s);
-            assert!(
-                off < 1e-13 * growth.max(100.0),
-                "{name}, dt {time_step_s}: {off:e}\n{}",
-                told.toml("exact")
-            );
+            let allowed = 1e-13 * growth.max(100.0);
+            let text = told.toml("exact");
+            assert!(off < allowed, "{name}, dt {time_step_s}: {off:e}\n{text}");
         }
     }
 }
@@ -765,26 +712,12 @@ fn the_exact_scheme_says_which_kind_it_was() {
     };
     let top = named(1.0, 30.0, [0.0, 0.0, 60.0]);
     assert_eq!(kind(&top), "closed form");
-    assert_eq!(
-        kind(&pushed(
-            top.clone(),
-            [5.0, 1.0, 2.0],
-            Window::Seconds(1.0, 2.0),
-            false
-        )),
-        "closed form"
-    );
-    let mut rim = pushed(
-        top.clone(),
-        [5.0, 1.0, 2.0],
-        Window::Seconds(1.0, 2.0),
-        false,
-    );
-    rim.pushes[0].point = 3;
-    assert_eq!(
-        kind(&rim),
-        "closed form, and off the axle integration held to 1e-12"
-    );
+    let window = Window::Seconds(1.0, 2.0);
+    let mut push = pushed(top.clone(), [5.0, 1.0, 2.0], window, false);
+    assert_eq!(kind(&push), "closed form");
+    push.pushes[0].point = 3;
+    let words = "closed form, and off the axle integration held to 1e-12";
+    assert_eq!(kind(&push), words);
     let mut lopsided = top;
     lopsided.points[1].2 = 0.6;
     assert_eq!(kind(&lopsided), "integration held to 1e-12");
@@ -806,8 +739,8 @@ fn heights(scenario: &Arc<Scenario>, position: impl FnMut(&Simulation) -> f64) -
 
 #[test]
 fn the_wobble_is_made_by_the_time_step() {
-    let preset = Document::open("wobble-push").unwrap().scenario().unwrap();
-    let report = SchemeInfo::find("report").unwrap();
+    let preset = preset("wobble-push", &[]);
+    let report = find_scheme("report");
     let table = [
         (0.1, "0.77137", "1.14268"),
         (0.05, "0.99739", "1.00238"),
@@ -829,6 +762,15 @@ fn the_wobble_is_made_by_the_time_step() {
         truth.state_at(simulation.state().time_s).axle().z * arm
     });
     assert_eq!(seen, ["0.99936", "1.00010"], "the truth");
+}
+
+/// The scenario with an edit of gravity at this step.
+fn with_less_gravity(mut file: ScenarioFile, step: u64) -> Arc<Scenario> {
+    let gravity = ("motion.gravity_m_per_s2".to_owned(), 3.0.into());
+    let set = toml::Table::from_iter([gravity]);
+    file.edit.push(EditFile { step, set });
+    let edited = Document::from_file("edited", &file).unwrap();
+    Arc::new(edited.scenario().unwrap())
 }
 
 /// What the random scenarios are looked at for, s.
@@ -853,15 +795,7 @@ fn an_edit_on_the_way_leads_to_the_truth_that_was_edited_from_the_start() {
             for_s: Some(0.3 * LENGTH_S),
             ..push
         }));
-        file.edit.push(EditFile {
-            step,
-            set: toml::Table::from_iter([(
-                "motion.gravity_m_per_s2".to_owned(),
-                toml::Value::Float(3.0),
-            )]),
-        });
-        let edited = Document::from_file("edited", &file).and_then(|document| document.scenario());
-        let edited = Arc::new(edited.unwrap());
+        let edited = with_less_gravity(file, step);
         let mut on_the_way = Truth::new(Arc::clone(&plain));
         on_the_way.state_at(step as f64 * plain.motion.time_step_s);
         on_the_way.go_on_in(&edited);
@@ -877,21 +811,8 @@ fn an_edit_on_the_way_leads_to_the_truth_that_was_edited_from_the_start() {
 
 #[test]
 fn an_edit_at_the_start_is_in_force_from_the_start() {
-    let plain = Arc::new(
-        Document::open("method-2")
-            .and_then(|document| document.scenario())
-            .unwrap(),
-    );
-    let mut file = plain.file.clone();
-    file.edit.push(EditFile {
-        step: 0,
-        set: toml::Table::from_iter([(
-            "motion.gravity_m_per_s2".to_owned(),
-            toml::Value::Float(3.0),
-        )]),
-    });
-    let edited = Document::from_file("edited", &file).and_then(|document| document.scenario());
-    let edited = Arc::new(edited.unwrap());
+    let plain = Arc::new(preset("method-2", &[]));
+    let edited = with_less_gravity(plain.file.clone(), 0);
     for (from, to) in [(&plain, &edited), (&edited, &plain)] {
         let mut on_the_way = Truth::new(Arc::clone(from));
         on_the_way.state_at(0.0);

@@ -1,6 +1,7 @@
 //! Recordings: `gyrolab cast`.
 
 use crate::support::ground::{Ground, code, stderr};
+use crate::support::words::has;
 use serde_json::Value;
 use std::fs;
 use std::num::NonZero;
@@ -116,7 +117,7 @@ fn the_bytes_do_not_depend_on_time_settings_or_surroundings() {
     let config = ground.config().join("gyrolab/config.toml");
     fs::create_dir_all(config.parent().unwrap()).unwrap();
     fs::write(&config, "markers = \"ascii\"\ncolor = \"never\"\n").unwrap();
-    let mut other = ground.command(&["cast", "demo.toml", "-o", "b.cast"]);
+    let mut other = ground.command("cast demo.toml -o b.cast");
     other.envs([
         ("NO_COLOR", "1"),
         ("TERM", "dumb"),
@@ -143,24 +144,17 @@ fn what_cannot_be_recorded_leaves_no_file() {
         ("", "holds no command"),
     ] {
         ground.write("wrong.toml", commands);
-        let output = ground.run(&["cast", "wrong.toml", "-o", "x.cast"]);
+        let output = ground.run("cast wrong.toml -o x.cast");
         assert_eq!(code(&output), 1, "{commands}");
         assert!(stderr(&output).contains(said), "{}", stderr(&output));
         assert!(!ground.file("x.cast").exists());
     }
     ground.write("x.cast", "kept");
     ground.write("demo.toml", "[[do]]\nstep = 3\n");
-    let refused = ground.run(&["cast", "demo.toml", "-o", "x.cast"]);
+    let refused = ground.run("cast demo.toml -o x.cast");
     assert_eq!(code(&refused), 1);
-    assert!(
-        stderr(&refused).contains("--force replaces it"),
-        "{}",
-        stderr(&refused)
-    );
+    has(stderr(&refused), "--force replaces it");
     assert_eq!(ground.read("x.cast"), "kept");
-    assert_eq!(
-        code(&ground.run(&["cast", "demo.toml", "-o", "x.cast", "--force"])),
-        0
-    );
+    assert_eq!(code(&ground.run("cast demo.toml -o x.cast --force")), 0);
     parsed(&ground.read("x.cast"));
 }

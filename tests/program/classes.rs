@@ -1,6 +1,7 @@
 //! Lessons in the program itself: what a session keeps of them, and what the teacher sees beside it.
 
 use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
+use crate::support::words::{has, has_all};
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 use std::sync::mpsc;
@@ -23,7 +24,7 @@ fn a_prediction_survives_a_kill_and_is_handed_in() {
         stdout(&output).contains("**Predicted.** is more than a hundred times smaller")
     });
     lab.kill();
-    let mut lab = ground.open(&["--resume"]);
+    let mut lab = ground.open("--resume");
     lab.wait_for("[x] is more than a hundred times");
     lab.wait_for("2 of 10");
     lab.press("n");
@@ -36,9 +37,9 @@ fn a_prediction_survives_a_kill_and_is_handed_in() {
     assert!(stdout(&answers).is_empty());
     let text = ground.read("mine.md");
     assert!(text.contains("Left at page 3 of 10."), "{text}");
-    assert!(
-        text.contains("**Came out.** The tilt now stays within 0.057 degrees"),
-        "{text}"
+    has(
+        &text,
+        "**Came out.** The tilt now stays within 0.057 degrees",
     );
 }
 
@@ -54,11 +55,11 @@ fn answers_without_a_session_are_refused() {
         ],
     );
     failed(
-        &ground.run(&["lesson", "--notes"]),
+        &ground.run("lesson --notes"),
         &["no lesson is open in any lab"],
     );
     failed(
-        &ground.run(&["lesson", "--notes", "nobody"]),
+        &ground.run("lesson --notes nobody"),
         &["--notes nobody", "gyrolab sessions"],
     );
 }
@@ -70,7 +71,7 @@ fn notes_follow_the_lab_from_page_to_page() {
     lab.wait_for("2 of 10");
     let (sender, lines) = mpsc::channel();
     let mut notes = loop {
-        let mut notes = ground.command(&["lesson", "--notes"]);
+        let mut notes = ground.command("lesson --notes");
         let mut notes = notes
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
@@ -117,16 +118,17 @@ fn notes_follow_the_lab_from_page_to_page() {
 #[test]
 fn the_manual_has_a_page_for_the_class() {
     let ground = Ground::new();
-    let class = done(ground.run(&["man", "class"]));
-    for words in [
-        "MaxStartups 60:30:120",
-        "PerSourcePenaltyExemptList",
-        "tmux attach -r",
-    ] {
-        assert!(stdout(&class).contains(words), "{words}");
-    }
+    let class = done(ground.run("man class"));
+    has_all(
+        stdout(&class),
+        [
+            "MaxStartups 60:30:120",
+            "PerSourcePenaltyExemptList",
+            "tmux attach -r",
+        ],
+    );
     failed(
-        &ground.run(&["man", "clas"]),
+        &ground.run("man clas"),
         &["no topic named clas", "did you mean class?"],
     );
 }

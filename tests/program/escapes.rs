@@ -14,11 +14,11 @@ const BODY: &str = "[[body.point]]\nname = 'top'\nat_m = [0, 0, 1]\nmass_kg = 1\
                     [start]\nmomentum_Js = [0, 0, 9]\n[motion]\ntime_step_s = 0.01\nsteps = 5\n";
 
 #[track_caller]
-fn is_printable(args: &[&str], output: &Output) {
+fn is_printable(args: &str, output: &Output) {
     for stream in [&output.stdout, &output.stderr] {
         let text = String::from_utf8_lossy(stream);
         let steering = text.chars().find(|&c| c != '\n' && is_steering(c));
-        assert_eq!(steering, None, "{args:?}: {text:?}");
+        assert_eq!(steering, None, "{args}: {text:?}");
     }
 }
 
@@ -60,56 +60,49 @@ fn no_argument_steers_the_terminal() {
         format!("./{NASTY}.d/y"),
         format!("push.{NASTY}=1"),
     ];
-    let commands: &[&[&str]] = &[
-        &[NASTY],
-        &[&good, "--at", "3"],
-        &[&option],
-        &["run", NASTY],
-        &["run", &good],
-        &["run", &here, "-o", NASTY],
-        &["run", &here, "-o", &missing],
-        &["run", &here, "-o", &csv],
-        &["run", &here, "--json"],
-        &["run", &csv],
-        &["run", NASTY, NASTY],
-        &["run", "method-2", "--set", NASTY],
-        &["run", "method-2", "--set", &key],
-        &["run", "method-2", "--set", &value],
-        &["run", "method-2", "--set", &word],
-        &["run", "method-2", "--set", &title],
-        &["run", "method-2", "--set", &deep],
-        &["run", "method-2", "--set", &place],
-        &["run", "method-2", "--scheme", NASTY],
-        &["run", "method-2", "--time-step", NASTY],
-        &["run", "method-2", "--steps", NASTY],
-        &["run", "method-2", "--every", NASTY],
-        &["compare", NASTY],
-        &["compare", "method-2", "--schemes", NASTY],
-        &["compare", &here, "--time-steps", NASTY],
-        &["compare", &here, "-o", NASTY],
-        &["show", NASTY],
-        &["show", &here],
-        &["show", &here, "--size", NASTY],
-        &["presets", NASTY],
-        &["check", NASTY, &good, &here, &csv, "broken.toml"],
-        &[
-            "check",
-            "title.toml",
-            "key.toml",
-            "trace.toml",
-            "scheme.toml",
-            "about.toml",
-        ],
-        &["check", "view.toml", "type.toml"],
-        &["completions", NASTY],
-        &["help", NASTY],
-        &["--resume", NASTY],
-        &["--color", NASTY],
+    let commands = [
+        NASTY.to_owned(),
+        format!("{good} --at 3"),
+        option.clone(),
+        format!("run {NASTY}"),
+        format!("run {good}"),
+        format!("run {here} -o {NASTY}"),
+        format!("run {here} -o {missing}"),
+        format!("run {here} -o {csv}"),
+        format!("run {here} --json"),
+        format!("run {csv}"),
+        format!("run {NASTY} {NASTY}"),
+        format!("run method-2 --set {NASTY}"),
+        format!("run method-2 --set {key}"),
+        format!("run method-2 --set {value}"),
+        format!("run method-2 --set {word}"),
+        format!("run method-2 --set {title}"),
+        format!("run method-2 --set {deep}"),
+        format!("run method-2 --set {place}"),
+        format!("run method-2 --scheme {NASTY}"),
+        format!("run method-2 --time-step {NASTY}"),
+        format!("run method-2 --steps {NASTY}"),
+        format!("run method-2 --every {NASTY}"),
+        format!("compare {NASTY}"),
+        format!("compare method-2 --schemes {NASTY}"),
+        format!("compare {here} --time-steps {NASTY}"),
+        format!("compare {here} -o {NASTY}"),
+        format!("show {NASTY}"),
+        format!("show {here}"),
+        format!("show {here} --size {NASTY}"),
+        format!("presets {NASTY}"),
+        format!("check {NASTY} {good} {here} {csv} broken.toml"),
+        "check title.toml key.toml trace.toml scheme.toml about.toml".to_owned(),
+        "check view.toml type.toml".to_owned(),
+        format!("completions {NASTY}"),
+        format!("help {NASTY}"),
+        format!("--resume {NASTY}"),
+        format!("--color {NASTY}"),
     ];
-    for args in commands {
+    for args in &commands {
         is_printable(args, &ground.run(args));
     }
-    let checked = ground.run(&["check", "title.toml", "about.toml", "view.toml"]);
+    let checked = ground.run("check title.toml about.toml view.toml");
     let told = String::from_utf8_lossy(&checked.stderr);
     for key in ["title", "about", "view.look_at"] {
         assert!(told.contains(&format!(" {key} (\"x\\u")), "{told}");
@@ -168,9 +161,9 @@ fn what_clap_says_of_arguments_on_a_terminal_is_escaped() {
     // A whole sequence and nothing else: clap's own plain text leaves such a one out, its coloured text does not.
     let title = "x\u{1b}]0;P\u{7}y";
     let option = format!("--bo{title}");
-    for args in [&[option.as_str()][..], &["run", "cusps", "--scheme", title]] {
-        let mut terminal = ground.open(args);
-        assert_eq!(terminal.wait_for_end().exit_code(), 2, "{args:?}");
+    for args in [option, format!("run cusps --scheme {title}")] {
+        let mut terminal = ground.open(&args);
+        assert_eq!(terminal.wait_for_end().exit_code(), 2, "{args}");
         terminal.wait_until("clap's last line", |terminal| {
             terminal.sent_text().contains("--help")
         });

@@ -91,7 +91,7 @@ fn carry_out(of: &str, commands: &[String]) -> usize {
 #[test]
 fn the_examples_of_every_help_work_as_they_are_printed() {
     let ground = Ground::new();
-    let help = done(ground.run(&["--help"]));
+    let help = done(ground.run("--help"));
     let commands = stdout(&help).split("Commands:\n").nth(1).unwrap();
     let commands = commands.split("\n\n").next().unwrap().lines();
     let commands = commands.filter_map(|line| line.strip_prefix("  "));
@@ -99,7 +99,7 @@ fn the_examples_of_every_help_work_as_they_are_printed() {
     let commands = commands.filter_map(|line| line.split(' ').next());
     let mut count = carry_out("gyrolab", &examples(stdout(&help)));
     for command in commands.filter(|name| *name != "help") {
-        let help = done(ground.run(&[command, "--help"]));
+        let help = done(ground.run(&format!("{command} --help")));
         count += carry_out(command, &examples(stdout(&help)));
     }
     assert!(count > 45, "{count}");
@@ -110,7 +110,7 @@ fn the_commands_of_the_topics_work_as_they_are_printed() {
     let ground = Ground::new();
     let mut count = 0;
     for topic in ["fit", "schemes", "sweep"] {
-        let text = done(ground.run(&["man", topic]));
+        let text = done(ground.run(&format!("man {topic}")));
         count += carry_out(topic, &commands_of_topic(stdout(&text)));
     }
     assert!(count >= 4, "{count}");

@@ -117,7 +117,7 @@ fn numbers_that_break_leave_the_figure_up_to_there() {
 #[test]
 fn an_exported_run_and_a_comparison_are_drawn_from_their_files() {
     let ground = Ground::new();
-    done(ground.run(&["run", "method-2", "--steps", "40", "-o", "run.csv"]));
+    done(ground.run("run method-2 --steps 40 -o run.csv"));
     draws(&ground, &["run.csv", "--kind", "tilt_deg", "-o", "run.svg"]);
     let steps = "0.1,0.05,0.025";
     let compare = [

@@ -4,6 +4,7 @@
 use crate::support::dice::Dice;
 use crate::support::ground::Ground;
 use crate::support::pty::Terminal;
+use crate::support::words::has_all;
 use std::fs;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -22,14 +23,14 @@ const AS_LEFT: &str = "as it was left";
 /// The lab with Method 2, standing still at `step`.
 fn paused_at(ground: &Ground, step: u64) -> Terminal {
     let step = step.to_string();
-    let lab = ground.open(&["--paused", "--at", &step]);
+    let lab = ground.open(&format!("--paused --at {step}"));
     lab.wait_for("q quit");
     lab
 }
 
 /// The lab of the newest session, once it has arrived at the step where it was left.
 fn resumed(ground: &Ground) -> Terminal {
-    let lab = ground.open(&["--resume"]);
+    let lab = ground.open("--resume");
     lab.wait_for(AS_LEFT);
     lab.wait_for("paused");
     lab
@@ -99,7 +100,7 @@ fn exported(lab: &mut Terminal, name: &str) -> Vec<u8> {
 
 /// The CSV that `gyrolab run` writes for the file `name`.
 fn run(ground: &Ground, name: &str) -> Vec<u8> {
-    let output = ground.run(&["run", name, "-o", "-"]);
+    let output = ground.run(&format!("run {name} -o -"));
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{said}");
     output.stdout
@@ -175,10 +176,7 @@ fn another_tilt_begins_a_run_and_undo_goes_back_to_the_old_one() {
     lab.wait_for_step(103);
     lab.wait_for("►tilt 30 deg");
     let run = saved(&mut lab, "run.toml");
-    assert!(
-        run.contains("tilt_deg = 30") && run.contains("steps = 103\n"),
-        "{run}"
-    );
+    has_all(&run, ["tilt_deg = 30", "steps = 103\n"]);
     lab.quit();
 }
 
@@ -198,14 +196,15 @@ fn a_push_is_chosen_given_marked_and_saved() {
     lab.wait_for("═"); // below the traces, when it acts
     let run = saved(&mut lab, "run.toml");
     let push = &run[run.find("[[push]]").unwrap()..];
-    for line in [
-        "point = \"top\"",
-        "force_N = [0.0, 0.0, 75.0]",
-        "from_s = 10.0",
-        "for_s = 20.0",
-    ] {
-        assert!(push.contains(line), "{line}: {run}");
-    }
+    has_all(
+        &push,
+        [
+            "point = \"top\"",
+            "force_N = [0.0, 0.0, 75.0]",
+            "from_s = 10.0",
+            "for_s = 20.0",
+        ],
+    );
     lab.quit();
 }
 
@@ -321,14 +320,14 @@ fn the_present_state_is_saved_as_a_scenario_that_runs() {
     lab.wait_for("the scenario is in");
     let z = shown(&lab)[2].last().cloned();
     lab.quit();
-    let checked = ground.run(&["check", "here.toml"]);
+    let checked = ground.run("check here.toml");
     assert!(
         checked.status.success(),
         "{}",
         String::from_utf8_lossy(&checked.stderr)
     );
     assert!(run(&ground, "here.toml").starts_with(b"# "));
-    let begins = ground.open(&["here.toml", "--paused"]);
+    let begins = ground.open("here.toml --paused");
     begins.wait_until("the z of the saved state", |begins| {
         begins.values("z").last().cloned() == z
     });
@@ -385,7 +384,7 @@ const LONG: u64 = 1_000_000;
 
 fn long_run(ground: &Ground) -> Terminal {
     let step = LONG.to_string();
-    let lab = ground.open(&["--paused", "--at", &step]);
+    let lab = ground.open(&format!("--paused --at {step}"));
     lab.wait_for_step(LONG);
     lab
 }
@@ -423,7 +422,7 @@ fn a_line_that_is_lost_in_an_export_leaves_no_part_and_is_told_of() {
         lab.wait_for("in the background");
         ended(&mut lab, end);
         assert_eq!(ground.files(), ["state"], "{end}");
-        let lab = ground.open(&["--resume"]);
+        let lab = ground.open("--resume");
         lab.wait_for("run.csv was cut off, x begins another");
         lab.wait_for_step(LONG);
     });
@@ -688,7 +687,7 @@ fn two_labs_have_two_sessions_and_a_third_begins_anew() {
     first.wait_for_step(57);
     let second = resumed(&ground);
     second.wait_for_step(30);
-    let third = ground.open(&["--resume"]);
+    let third = ground.open("--resume");
     third.wait_for("newer sessions are open in other labs");
     third.wait_for("this is a new one");
     third.wait_for("Method 2");
@@ -703,7 +702,7 @@ fn wait_until_kept(lab: &Terminal, ground: &Ground) {
 #[test]
 fn without_a_session_resume_opens_a_new_lab_and_says_so() {
     let ground = Ground::new();
-    let mut lab = ground.open(&["--resume", "--paused"]);
+    let mut lab = ground.open("--resume --paused");
     lab.wait_for("no session to come back to: this is a new one");
     push(&mut lab);
     lab.quit();
@@ -722,7 +721,7 @@ fn a_damaged_session_is_named_and_left_alone() {
     let path = ground.state().join("gyrolab").join(name);
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, &text[..text.len() / 2]).unwrap();
-    let mut lab = ground.open(&["--resume"]);
+    let mut lab = ground.open("--resume");
     lab.wait_for("is left alone (it has been cut off or changed)");
     lab.wait_for("Method 2");
     lab.press(" ");
@@ -780,7 +779,7 @@ fn an_end_on_the_way_back_costs_nothing() {
     wait_until_kept(&lab, &ground);
     lab.quit();
     for _ in 0..2 {
-        let mut lab = ground.open(&["--resume"]);
+        let mut lab = ground.open("--resume");
         lab.wait_for("to go, Esc stops");
         lab.signal("HUP");
         lab.wait_for_end();

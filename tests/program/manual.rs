@@ -1,13 +1,14 @@
 //! The manual's pages, and completion in the shells that are there.
 
 use crate::support::ground::{GYROLAB, Ground, done, failed, stdout};
+use crate::support::words::{has, has_all};
 use std::path::Path;
 use std::process::Command;
 
 #[test]
 fn every_command_has_a_page_with_examples() {
     let ground = Ground::new();
-    let help = done(ground.run(&["--help"]));
+    let help = done(ground.run("--help"));
     let commands = stdout(&help).split("Commands:\n").nth(1).unwrap();
     let commands = commands.split("\n\n").next().unwrap().lines();
     let commands = commands.filter_map(|line| line.strip_prefix("  "));
@@ -17,17 +18,15 @@ fn every_command_has_a_page_with_examples() {
         .filter(|name| *name != "help")
         .collect();
     assert!(commands.contains(&"verify"), "{commands:?}");
-    done(ground.run(&["man", "--all", "-o", "man1"]));
+    done(ground.run("man --all -o man1"));
     for command in &commands {
         let page = ground.read(&format!("man1/gyrolab-{command}.1"));
-        assert!(
-            page.contains(&format!("\n.TH gyrolab-{command} 1 ")),
-            "{page:.200}"
+        has(&page, &format!("\n.TH gyrolab-{command} 1 "));
+        has_all(
+            &page,
+            [".SH SYNOPSIS", ".SH EXAMPLES", ".SH \"EXIT STATUS\""],
         );
-        for section in [".SH SYNOPSIS", ".SH EXAMPLES", ".SH \"EXIT STATUS\""] {
-            assert!(page.contains(section), "{command}: {section}");
-        }
-        let help = done(ground.run(&[command, "--help"]));
+        let help = done(ground.run(&format!("{command} --help")));
         assert!(stdout(&help).contains("Examples:\n"), "{command}");
     }
     let whole = ground.read("man1/gyrolab.1");
@@ -43,18 +42,18 @@ fn every_command_has_a_page_with_examples() {
         !whole.contains("gyrolab\\-help"),
         "a page that there is not"
     );
-    let again = ground.run(&["man", "--all", "-o", "man1"]);
+    let again = ground.run("man --all -o man1");
     failed(&again, &["man1/gyrolab.1 exists; --force replaces it"]);
-    done(ground.run(&["man", "--all", "-o", "man1", "--force"]));
-    failed(&ground.run(&["man", "verfy"]), &["did you mean verify?"]);
+    done(ground.run("man --all -o man1 --force"));
+    failed(&ground.run("man verfy"), &["did you mean verify?"]);
 }
 
 /// The pages in roff are those of --all.
 #[test]
 fn the_manual_is_printed_as_text() {
     let ground = Ground::new();
-    let whole = done(ground.run(&["man"]));
-    let page = done(ground.run(&["man", "run"]));
+    let whole = done(ground.run("man"));
+    let page = done(ground.run("man run"));
     assert!(stdout(&whole).contains("\n\nGYROLAB RUN\n\n"));
     assert!(stdout(&page).contains("\nUsage: gyrolab run [OPTIONS] <SCENARIO>\n"));
     for text in [stdout(&whole), stdout(&page)] {
@@ -66,7 +65,7 @@ fn the_manual_is_printed_as_text() {
         assert!(stdout(&whole).contains(&title), "{section}");
     }
     // A topic that is a command's, too, says where the options are.
-    let topic = done(ground.run(&["man", "sweep"]));
+    let topic = done(ground.run("man sweep"));
     let last = stdout(&topic).lines().last();
     assert_eq!(
         last,
@@ -92,7 +91,7 @@ fn no_line_is_wider_than_80_columns() {
 #[test]
 fn checkers_of_manual_pages_find_nothing() {
     let ground = Ground::new();
-    done(ground.run(&["man", "--all", "-o", "man1"]));
+    done(ground.run("man --all -o man1"));
     for checker in ["mandoc -Tlint -W warning", "man -l --warnings"] {
         let program = checker.split(' ').next().unwrap();
         if Command::new(program).arg("--version").output().is_err() {
@@ -118,7 +117,7 @@ fn the_topics_hold_the_tables_of_the_program() {
         ("numbers", "measured_precession_rad_per_s (rad/s)"),
         ("lab", "Take a step apart"),
     ] {
-        let page = done(ground.run(&["man", topic]));
+        let page = done(ground.run(&format!("man {topic}")));
         assert!(stdout(&page).contains(words), "{topic}: {words}");
         let is_unfilled = |line: &str| line.starts_with('{') && line.ends_with('}');
         assert!(!stdout(&page).lines().any(is_unfilled), "{topic}");
@@ -129,7 +128,7 @@ fn the_topics_hold_the_tables_of_the_program() {
 #[test]
 fn the_manual_names_every_environment_variable() {
     let ground = Ground::new();
-    let manual = done(ground.run(&["man"]));
+    let manual = done(ground.run("man"));
     let manual = stdout(&manual);
     // A library reads this one.
     assert!(manual.contains("\n  RAYON_NUM_THREADS\n"));
@@ -180,7 +179,7 @@ fn bash_completes_presets_files_keys_values_and_names() {
         return;
     }
     let ground = Ground::new();
-    let script = done(ground.run(&["completions", "bash"]));
+    let script = done(ground.run("completions bash"));
     ground.write("completion.bash", stdout(&script));
     ground.write("mine.toml", "");
     ground.write("mine.txt", "");
@@ -227,7 +226,7 @@ fn bash_completes_presets_files_keys_values_and_names() {
 fn zsh_and_fish_complete_keys() {
     let ground = Ground::new();
     for shell in ["zsh", "fish"] {
-        let script = done(ground.run(&["completions", shell]));
+        let script = done(ground.run(&format!("completions {shell}")));
         ground.write(&format!("completion.{shell}"), stdout(&script));
         if Command::new(shell).arg("--version").output().is_err() {
             continue;
@@ -236,7 +235,7 @@ fn zsh_and_fish_complete_keys() {
     }
     // What the scripts ask, and what they are told.
     let ask = |shell: &str, index: &str| {
-        let mut command = ground.command(&["--", "gyrolab", "run", "cusps", "--set", "motion.sch"]);
+        let mut command = ground.command("-- gyrolab run cusps --set motion.sch");
         command
             .env("GYROLAB_COMPLETE", shell)
             .env("_CLAP_COMPLETE_INDEX", index);

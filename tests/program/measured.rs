@@ -1,13 +1,14 @@
 //! Measured data beside a run in the real program.
 
 use crate::support::ground::{Ground, code, stderr, stdout};
+use crate::support::words::{has, has_all, has_no};
 
 #[test]
 fn one_key_shows_the_residuals() {
     let ground = Ground::new();
     let text = "t_s,x_m,x_uncertainty_m\n0,0.02,0.01\n1,0.04,0.01\n2,0.09,0.01\n";
     ground.write("bench.csv", text);
-    let mut lab = ground.open(&["--paused", "--at", "15", "--measured", "bench.csv"]);
+    let mut lab = ground.open("--paused --at 15 --measured bench.csv");
     lab.wait_for("× measured: bench.csv (2 of 3 points)");
     lab.ask("m", "× residuals: bench.csv");
     lab.ask("m", "× measured: bench.csv");
@@ -19,20 +20,19 @@ fn one_key_shows_the_residuals() {
 fn a_run_without_them_says_where_they_stand() {
     let ground = Ground::new();
     for command in ["run", "compare", "fit"] {
-        let ran = ground.run(&[command, "method-2", "--measured", "bench.csv"]);
+        let ran = ground.run(&format!("{command} method-2 --measured bench.csv"));
         let told = stderr(&ran);
         assert_eq!(code(&ran), 2, "{told}");
-        for words in [
-            "gyrolab SCENARIO --measured FILE",
-            "figure and writeup",
-            "gyrolab fit FILE",
-        ] {
-            assert!(told.contains(words), "{command}: {words}: {told}");
-        }
-        assert!(
-            !told.contains("similar argument") && !told.contains("Usage"),
-            "{told}"
+        has_all(
+            &told,
+            [
+                "gyrolab SCENARIO --measured FILE",
+                "figure and writeup",
+                "gyrolab fit FILE",
+            ],
         );
+        has_no(&told, "similar argument");
+        has_no(&told, "Usage");
     }
 }
 
@@ -40,13 +40,9 @@ fn a_run_without_them_says_where_they_stand() {
 fn broken_data_are_refused_before_the_screen_opens() {
     let ground = Ground::new();
     ground.write("bad.csv", "t_s,tilt_deg\n0,1\n1,high\n");
-    for command in [&["method-2"][..], &["show", "method-2"]] {
-        let ran = ground.run(&[command, &["--measured", "bad.csv"]].concat());
+    for command in ["method-2", "show method-2"] {
+        let ran = ground.run(&format!("{command} --measured bad.csv"));
         assert_eq!((code(&ran), stdout(&ran)), (1, ""));
-        assert!(
-            stderr(&ran).contains("bad.csv:3: tilt_deg"),
-            "{}",
-            stderr(&ran)
-        );
+        has(stderr(&ran), "bad.csv:3: tilt_deg");
     }
 }

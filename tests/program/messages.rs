@@ -1,114 +1,125 @@
 //! What the program says where something is wrong: each message names what the user typed, and what to do.
 
-use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
+use crate::support::ground::{Ground, done, failed, refused, stderr};
 use crate::support::pty::Terminal;
+use crate::support::words::{has, has_all, has_no};
 
 const PUSHED: &str = "[[push]]\npoint = \"top\"\nforce_N = [0, 0, 1]\n";
 
 /// A scenario of its own in the file `name`: Method 2 with `more` at its end.
 fn scenario(ground: &Ground, name: &str, more: &str) {
-    let method_2 = done(ground.run(&["presets", "method-2"]));
-    ground.write(name, &format!("{}\n{more}", stdout(&method_2)));
+    let method_2 = ground.stdout("presets method-2");
+    ground.write(name, &format!("{method_2}\n{more}"));
 }
 
 #[test]
 fn wrong_arguments_are_told_in_words() {
     let ground = Ground::new();
+    let whole = "must be a whole number of steps, 1 or more";
+    let no_number = "must be a number greater than zero";
     for (args, words) in [
         (
-            &["runn", "wobble-push"][..],
+            "runn wobble-push",
             "there is no command runn: did you mean gyrolab run?",
         ),
-        (&["cusps", "--at", "-3"], "must be a whole number of steps"),
+        ("cusps --at -3", "must be a whole number of steps"),
+        ("run cusps --steps 1e3", whole),
+        ("run cusps --steps 0", whole),
+        ("cusps --fps 100", "must be a whole number from 1 to 60"),
+        ("run cusps --folder x", "--folder is for the lab"),
+        ("run cusps --dt 0.1", "--time-step 0.05 holds the seconds"),
         (
-            &["run", "cusps", "--steps", "1e3"],
-            "must be a whole number of steps, 1 or more",
-        ),
-        (
-            &["run", "cusps", "--steps", "0"],
-            "must be a whole number of steps, 1 or more",
-        ),
-        (
-            &["cusps", "--fps", "100"],
-            "must be a whole number from 1 to 60",
-        ),
-        (
-            &["run", "cusps", "--folder", "x"],
-            "--folder is for the lab",
-        ),
-        (
-            &["run", "cusps", "--dt", "0.1"],
-            "--time-step 0.05 holds the seconds",
-        ),
-        (
-            &[
-                "figure",
-                "cusps",
-                "-o",
-                "x.svg",
-                "--kind",
-                "measured_tilt_swing_deg",
-            ],
+            "figure cusps -o x.svg --kind measured_tilt_swing_deg",
             "is a readout, one number of a run, and no column",
         ),
-        (&["run", "cusps", "-o", "-", "--json"], "Usage: gyrolab run"),
+        ("run cusps -o - --json", "Usage: gyrolab run"),
+        // numbers with a unit
+        ("figure method-2 --to 20s -o f.svg", "write 20, in seconds"),
+        (
+            "figure method-2 --from '2.5 s' -o f.svg",
+            "write 2.5, in seconds",
+        ),
+        ("run method-2 --from 2s -o out.csv", "write 2, in seconds"),
+        (
+            "run method-2 --to 1e1sec -o out.csv",
+            "write 1e1, in seconds",
+        ),
+        ("run method-2 --duration 20s", "write 20, in seconds"),
+        (
+            "run method-2 --duration 3min",
+            "without a unit (min), in seconds",
+        ),
+        (
+            "run method-2 --time-step 50ms",
+            "without a unit (ms), in seconds",
+        ),
+        (
+            "compare method-2 --time-steps 0.1,0.05s",
+            "write 0.05, in seconds",
+        ),
+        (
+            "show method-2 --at 20s",
+            "without a unit (s), in time steps",
+        ),
+        (
+            "run method-2 --steps 20s",
+            "without a unit (s), in time steps",
+        ),
+        // What is no number is told as before.
+        ("run method-2 --duration long", no_number),
+        ("run method-2 --duration=-2s", no_number),
+        ("run method-2 --duration inf", no_number),
     ] {
         let output = ground.run(args);
+        refused(args, &output, 2, &[words]);
         let said = stderr(&output);
-        assert_eq!(code(&output), 2, "{args:?}: {said}");
-        assert!(said.contains(words), "{args:?}: {said}");
         for wrong in ["-- -3", "--force", "invalid digit", "9223372036854775807"] {
             let is_usage = said.contains("Usage: gyrolab run [OPTIONS]");
-            assert!(is_usage || !said.contains(wrong), "{args:?}: {said}");
+            assert!(is_usage || !said.contains(wrong), "{args}: {said}");
         }
     }
+    assert_eq!(ground.files(), [""; 0]);
     // The colour of the British is an option too.
-    done(ground.run(&["cusps", "--colour", "never"]));
+    done(ground.run("cusps --colour never"));
 }
 
 #[test]
-fn a_wrong_setting_is_named_without_a_file_that_nobody_named() {
+fn wrong_settings_and_values_are_named_without_a_file_that_nobody_named() {
     let ground = Ground::new();
-    for (set, words) in [
+    for (option, words) in [
         (
-            "motion.time_step=3",
+            "--set motion.time_step=3",
             "motion.time_step: unknown key: did you mean motion.time_step_s?",
         ),
         (
-            "push.1.force_N=[0,0,1]",
+            "--set push.1.force_N=[0,0,1]",
             "push.1 would be a new one, there is only push.0",
         ),
         (
-            "push=[{point=\"top\", force_N=[0,50,0], from_s=10s}]",
+            "--set 'push=[{point=\"top\", force_N=[0,50,0], from_s=10s}]'",
             "is no TOML: at \"10s}]\"",
         ),
-        ("body.rim.points=1", "the rim has 1 point"),
-    ] {
-        let output = ground.run(&["run", "wobble-push", "--set", set]);
-        failed(&output, &["gyrolab: --set ", words]);
-        let said = stderr(&output);
-        assert!(!said.contains("presets/"), "{said}");
-    }
-}
-
-#[test]
-fn what_is_wrong_with_a_sweep_names_its_argument() {
-    let ground = Ground::new();
-    for (vary, words) in [
+        ("--set body.rim.points=1", "the rim has 1 point"),
         (
-            "motion.steps=10,x",
+            "--vary motion.steps=10,x",
             "motion.steps (\"x\") must be a whole number",
         ),
         (
-            "start.momentm=3",
+            "--vary start.momentm=3",
             "unknown key: did you mean start.momentum_Js?",
         ),
-        ("body.rim.points=-1,2", "must be 1 or more"),
+        ("--vary body.rim.points=-1,2", "must be 1 or more"),
     ] {
-        let output = ground.run(&["sweep", "method-2", "-o", "s.csv", "--vary", vary]);
-        failed(&output, &[&format!("gyrolab: --vary {vary}: "), words]);
-        let said = stderr(&output);
-        assert!(!said.contains("presets/"), "{said}");
+        let (command, begin) = match option.strip_prefix("--vary ") {
+            Some(vary) => (
+                "sweep method-2 -o s.csv",
+                format!("gyrolab: --vary {vary}: "),
+            ),
+            None => ("run wobble-push", "gyrolab: --set ".to_owned()),
+        };
+        let output = ground.run(&format!("{command} {option}"));
+        failed(&output, &[&begin, words]);
+        has_no(stderr(&output), "presets/");
     }
 }
 
@@ -116,43 +127,30 @@ fn what_is_wrong_with_a_sweep_names_its_argument() {
 fn a_file_is_what_its_name_says() {
     let ground = Ground::new();
     for command in [
-        &["run", "cusps", "-o", "x.xlsx"][..],
-        &["compare", "cusps", "-o", "x.XLS"],
-        &["sweep", "wobble-over-time-step", "-o", "x.ods"],
+        "run cusps -o x.xlsx",
+        "compare cusps -o x.XLS",
+        "sweep wobble-over-time-step -o x.ods",
     ] {
-        failed(&ground.run(command), &["let the name end in .csv"]);
+        ground.refused(command, 1, &["let the name end in .csv"]);
     }
-    let args = ["method-2", "--vary", "motion.steps=1,2", "-o", "s.csv"];
-    done(ground.run(&[&["sweep"][..], &args].concat()));
-    let whole = ground.read("s.csv");
-    ground.write("t.csv.part", &whole);
-    failed(
-        &ground.run(&["figure", "t.csv.part", "-o", "x.svg"]),
-        &["t.csv.part", "a sweep that is not whole yet"],
-    );
+    ground.stderr("sweep method-2 --vary motion.steps=1,2 -o s.csv");
+    ground.write("t.csv.part", &ground.read("s.csv"));
+    let words = ["t.csv.part", "a sweep that is not whole yet"];
+    ground.refused("figure t.csv.part -o x.svg", 1, &words);
     // Every number there is, of which a page holds a few.
-    failed(
-        &ground.run(&["figure", "s.csv", "-o", "x.svg"]),
-        &["do not fit on a page: choose some with --kind"],
-    );
-    let chosen = ["figure", "s.csv", "-o", "x.svg", "--kind", "z_m,tilt_deg"];
-    done(ground.run(&chosen));
+    let words = "do not fit on a page: choose some with --kind";
+    ground.refused("figure s.csv -o x.svg", 1, &[words]);
+    done(ground.run("figure s.csv -o x.svg --kind z_m,tilt_deg"));
 }
 
 #[test]
 fn a_time_step_longer_than_the_run_is_refused() {
     let ground = Ground::new();
-    let args = ["run", "wobble-push", "--time-step"];
-    let longer = ground.run(&[&args[..], &["1000"]].concat());
-    failed(
-        &longer,
-        &[
-            "gyrolab: --time-step 1000: ",
-            "longer than the whole run, 230 s",
-        ],
-    );
-    let whole = done(ground.run(&[&args[..], &["230"]].concat()));
-    assert!(stdout(&whole).contains("1 of 230 s"));
+    let run = "run wobble-push --time-step";
+    let begin = "gyrolab: --time-step 1000: ";
+    let words = [begin, "longer than the whole run, 230 s"];
+    ground.refused(&format!("{run} 1000"), 1, &words);
+    has(ground.stdout(&format!("{run} 230")), "1 of 230 s");
 }
 
 #[test]
@@ -167,32 +165,32 @@ fn mistakes_in_files_of_commands_are_told_with_the_remedy() {
         ("[[do]]\nrun_until = 't_s =< 20'\n", "write <= for =<"),
     ] {
         ground.write("x.toml", text);
-        failed(&ground.run(&["check", "x.toml"]), &[words]);
+        ground.refused("check x.toml", 1, &[words]);
     }
-    let missing = ground.run(&["--do", "nofile"]);
+    let missing = ground.run("--do nofile");
     failed(&missing, &["nofile: cannot be read"]);
-    assert!(!stderr(&missing).contains("is printed"), "{missing:?}");
+    has_no(stderr(&missing), "is printed");
 }
 
 #[test]
 fn a_push_that_never_acts_is_told() {
     let ground = Ground::new();
-    let in_steps = format!("{PUSHED}first_step = 100000\nsteps = 5\n");
-    scenario(&ground, "steps.toml", &in_steps);
-    let checked = done(ground.run(&["check", "steps.toml"]));
-    let said = stdout(&checked);
-    assert!(
-        said.contains("push.0 never acts: it begins at step 100000, and the run ends at step 2300"),
-        "{said}"
-    );
-    let in_seconds = format!("{PUSHED}from_s = 230\nfor_s = 5\n");
-    scenario(&ground, "seconds.toml", &in_seconds);
-    let checked = done(ground.run(&["check", "seconds.toml"]));
-    assert!(stdout(&checked).contains("push.0 never acts: it begins at 230 s"));
-    let that_acts = format!("{PUSHED}first_step = 2300\nsteps = 5\n");
-    scenario(&ground, "acts.toml", &that_acts);
-    let checked = done(ground.run(&["check", "acts.toml"]));
-    assert!(!stdout(&checked).contains("never"));
+    let never = "push.0 never acts: it begins at";
+    for (push, words) in [
+        (
+            "first_step = 100000\nsteps = 5\n",
+            Some("step 100000, and the run ends at step 2300"),
+        ),
+        ("from_s = 230\nfor_s = 5\n", Some("230 s")),
+        ("first_step = 2300\nsteps = 5\n", None),
+    ] {
+        scenario(&ground, "mine.toml", &format!("{PUSHED}{push}"));
+        let said = ground.stdout("check mine.toml");
+        match words {
+            Some(words) => has(&said, format!("{never} {words}")),
+            None => has_no(&said, "never"),
+        }
+    }
 }
 
 #[test]
@@ -201,58 +199,44 @@ fn every_time_step_of_a_run_is_told() {
     let edit = "[[edit]]\nstep = 40\nset = { \"motion.time_step_s\" = 0.05 }\n";
     scenario(&ground, "mine.toml", edit);
     let words = "2300: 40 of 0.1 s, then 2260 of 0.05 s";
-    let checked = done(ground.run(&["check", "mine.toml"]));
-    assert!(stdout(&checked).contains(words), "{checked:?}");
-    let summary = done(ground.run(&["run", "mine.toml"]));
-    assert!(stdout(&summary).contains(words), "{summary:?}");
-    let short = done(ground.run(&["run", "mine.toml", "--steps", "40"]));
-    assert!(stdout(&short).contains("  40 of 0.1 s"), "{short:?}");
+    has(ground.stdout("check mine.toml"), words);
+    has(ground.stdout("run mine.toml"), words);
+    has(ground.stdout("run mine.toml --steps 40"), "  40 of 0.1 s");
 }
 
 #[test]
 fn a_written_file_is_named_with_its_rows() {
     let ground = Ground::new();
-    let output = done(ground.run(&["run", "cusps", "--every", "100", "-o", "x.csv"]));
-    let last = stderr(&output).lines().last().unwrap_or_default();
-    assert_eq!(last, "gyrolab: 101 rows in x.csv");
-    let piped = done(ground.run(&["run", "cusps", "--steps", "3", "-o", "-"]));
-    assert!(!stderr(&piped).contains("rows in"));
+    let said = ground.stderr("run cusps --every 100 -o x.csv");
+    assert_eq!(said.lines().last(), Some("gyrolab: 101 rows in x.csv"));
+    has_no(ground.stderr("run cusps --steps 3 -o -"), "rows in");
 }
 
 #[test]
 fn a_precession_that_there_is_not_is_told_why() {
-    let ground = Ground::new();
-    let summary = done(ground.run(&["run", "method-1"]));
-    let said = stdout(&summary);
-    assert!(
-        said.contains("none measured: the axle passes through the vertical"),
-        "{said}"
-    );
+    let words = "none measured: the axle passes through the vertical";
+    has(Ground::new().stdout("run method-1"), words);
 }
 
 #[test]
 fn the_manual_has_the_keys_of_the_lab_and_the_values_of_options() {
     let ground = Ground::new();
-    let manual = done(ground.run(&["man"]));
-    let manual = stdout(&manual);
+    let manual = ground.stdout("man");
     let keys = manual.find("KEYS IN THE LAB").unwrap();
-    for key in ["\n  space\n", "\n  d\n", "\n  f\n"] {
-        assert!(manual[keys..].contains(key), "{key}");
-    }
-    for option in ["--at <STEP>", "--resume [<NAME>]", "-o, --output <FILE>"] {
-        assert!(manual.contains(option), "{option}");
-    }
-    let help = done(ground.run(&["keys", "--help"]));
-    assert!(
-        stdout(&help)
-            .contains("scenario or run file may hold; the keys to press are in gyrolab man")
+    has_all(&manual[keys..], ["\n  space\n", "\n  d\n", "\n  f\n"]);
+    has_all(
+        &manual,
+        ["--at <STEP>", "--resume [<NAME>]", "-o, --output <FILE>"],
     );
+    let words = "scenario or run file may hold; the keys to press are in gyrolab man";
+    has(ground.stdout("keys --help"), words);
 }
 
 const NO_COLOR: [(&str, &str); 3] = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("NO_COLOR", "1")];
 
-fn open(ground: &Ground) -> Terminal {
-    let lab = ground.open(&["method-2", "--paused"]);
+/// The lab where NO_COLOR is set.
+fn without_colours(ground: &Ground) -> Terminal {
+    let lab = ground.open_with("method-2 --paused", &NO_COLOR);
     lab.wait_for("q quit");
     lab
 }
@@ -260,158 +244,66 @@ fn open(ground: &Ground) -> Terminal {
 #[test]
 fn colours_that_were_turned_off_and_on_again_are_no_choice() {
     let ground = Ground::new();
-    let mut lab = open(&ground);
+    let has_kept = |choice: &str| {
+        let settings = ground.read("state/gyrolab/settings.toml");
+        has(settings, format!("colour = \"{choice}\""));
+    };
+    let is_coloured = |lab: &Terminal| lab.sent_text().contains("\u{1b}[38;");
+    let mut lab = ground.open("method-2 --paused");
+    lab.wait_for("q quit");
     lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colours off");
     lab.ask("\r", "colours on");
     lab.ask("\x1b", "q quit");
     lab.quit();
-    assert!(
-        ground
-            .read("state/gyrolab/settings.toml")
-            .contains("colour = \"auto\"")
-    );
-    let mut lab = ground.open_with(&["method-2", "--paused"], &NO_COLOR);
-    lab.wait_for("q quit");
-    assert!(!lab.sent_text().contains("\u{1b}[38;"));
+    has_kept("auto");
+    let mut lab = without_colours(&ground);
+    assert!(!is_coloured(&lab));
     // What is remembered does not win over NO_COLOR either; the user's own file does.
     lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colours on");
     lab.ask("\x1b", "q quit");
     lab.quit();
-    assert!(
-        ground
-            .read("state/gyrolab/settings.toml")
-            .contains("colour = \"always\"")
-    );
-    let mut lab = ground.open_with(&["method-2", "--paused"], &NO_COLOR);
-    lab.wait_for("q quit");
-    assert!(!lab.sent_text().contains("\u{1b}[38;"));
+    has_kept("always");
+    let mut lab = without_colours(&ground);
+    assert!(!is_coloured(&lab));
     lab.quit();
     std::fs::create_dir_all(ground.config().join("gyrolab")).unwrap();
     ground.write("config/gyrolab/config.toml", "colour = 'always'\n");
-    let mut lab = ground.open_with(&["method-2", "--paused"], &NO_COLOR);
-    lab.wait_for("q quit");
-    assert!(lab.sent_text().contains("\u{1b}[38;"));
+    let mut lab = without_colours(&ground);
+    assert!(is_coloured(&lab));
     lab.quit();
-}
-
-#[test]
-fn a_number_with_a_unit_is_told_without_it() {
-    let ground = Ground::new();
-    let out = ["-o", "out.csv"];
-    for (args, words) in [
-        (
-            &["figure", "method-2", "--to", "20s", "-o", "f.svg"][..],
-            "write 20, in seconds",
-        ),
-        (
-            &["figure", "method-2", "--from", "2.5 s", "-o", "f.svg"],
-            "write 2.5, in seconds",
-        ),
-        (
-            &[&["run", "method-2", "--from", "2s"], &out[..]].concat(),
-            "write 2, in seconds",
-        ),
-        (
-            &[&["run", "method-2", "--to", "1e1sec"], &out[..]].concat(),
-            "write 1e1, in seconds",
-        ),
-        (
-            &["run", "method-2", "--duration", "20s"],
-            "write 20, in seconds",
-        ),
-        (
-            &["run", "method-2", "--duration", "3min"],
-            "without a unit (min), in seconds",
-        ),
-        (
-            &["run", "method-2", "--time-step", "50ms"],
-            "without a unit (ms), in seconds",
-        ),
-        (
-            &["compare", "method-2", "--time-steps", "0.1,0.05s"],
-            "write 0.05, in seconds",
-        ),
-        (
-            &["show", "method-2", "--at", "20s"],
-            "without a unit (s), in time steps",
-        ),
-        (
-            &["run", "method-2", "--steps", "20s"],
-            "without a unit (s), in time steps",
-        ),
-        // What is no number is told as before.
-        (
-            &["run", "method-2", "--duration", "long"],
-            "must be a number greater than zero",
-        ),
-        (
-            &["run", "method-2", "--duration=-2s"],
-            "must be a number greater than zero",
-        ),
-        (
-            &["run", "method-2", "--duration", "inf"],
-            "must be a number greater than zero",
-        ),
-    ] {
-        let output = ground.run(args);
-        let told = stderr(&output);
-        assert_eq!(code(&output), 2, "{args:?}: {told}");
-        assert!(told.contains(words), "{args:?}: {told}");
-    }
-    assert_eq!(ground.files(), [""; 0]);
 }
 
 #[test]
 fn what_is_not_there_is_refused_before_a_picture_is_promised() {
     let ground = Ground::new();
     for (args, words) in [
-        (&["method2"][..], "did you mean method-2?"),
-        (&["nothing.toml"], "nothing.toml"),
-        (&["method-2", "--set", "motion.steps=0"], "motion.steps"),
-        (&["method-2", "--measured", "no.csv"], "no.csv"),
-        (&["method-2", "--do", "no.toml"], "no.toml"),
+        ("method2", "did you mean method-2?"),
+        ("nothing.toml", "nothing.toml"),
+        ("method-2 --set motion.steps=0", "motion.steps"),
+        ("method-2 --measured no.csv", "no.csv"),
+        ("method-2 --do no.toml", "no.toml"),
     ] {
         let output = ground.run(args);
-        let told = stderr(&output);
-        assert_eq!(code(&output), 1, "{args:?}: {told}");
-        assert!(told.contains(words) && !told.contains("picture"), "{told}");
+        refused(args, &output, 1, &[words]);
+        has_no(stderr(&output), "picture");
     }
 }
 
 #[test]
 fn a_scenario_given_as_measured_data_is_told_once() {
     let ground = Ground::new();
-    let preset = ground.run(&["presets", "wobble-push"]);
-    ground.write("own.toml", &String::from_utf8(preset.stdout).unwrap());
+    ground.write("own.toml", &ground.stdout("presets wobble-push"));
     for args in [
-        &[
-            "fit",
-            "own.toml",
-            "--in",
-            "method-2",
-            "--free",
-            "start.tilt_deg",
-        ][..],
-        &["show", "method-2", "--measured", "own.toml"],
-        &[
-            "figure",
-            "method-2",
-            "--measured",
-            "own.toml",
-            "-o",
-            "f.svg",
-        ],
+        "fit own.toml --in method-2 --free start.tilt_deg",
+        "show method-2 --measured own.toml",
+        "figure method-2 --measured own.toml -o f.svg",
     ] {
         let output = ground.run(args);
-        let told = stderr(&output);
-        assert_eq!((code(&output), told.lines().count()), (1, 1), "{told}");
-        assert!(
-            told.contains("own.toml: is a scenario, and no measured data"),
-            "{told}"
-        );
+        failed(&output, &["own.toml: is a scenario, and no measured data"]);
+        assert_eq!(stderr(&output).lines().count(), 1, "{args}");
     }
     // A table of numbers that is no scenario is told its rows as before.
     ground.write("bad.csv", "t_s,tilt_deg\n0,1\n1,2,3\n");
-    let output = ground.run(&["show", "method-2", "--measured", "bad.csv"]);
-    assert!(stderr(&output).contains("bad.csv:3: this row"));
+    let output = ground.run("show method-2 --measured bad.csv");
+    has(stderr(&output), "bad.csv:3: this row");
 }

@@ -36,7 +36,7 @@ fn has_given_the_mouse_back(lab: &Terminal) {
 
 #[test]
 fn what_is_pressed_is_done() {
-    let mut lab = Terminal::open(&["--paused", "--at", "900"]);
+    let mut lab = Terminal::open("--paused --at 900");
     lab.wait_for("q quit");
     lab.wait_until("the mouse", |lab| lab.sent_text().contains(ON));
     // The traces: the cursor.
@@ -71,7 +71,7 @@ fn what_is_pressed_is_done() {
 
 #[test]
 fn hostile_places_do_nothing() {
-    let mut lab = Terminal::open(&["--paused", "--at", "10"]);
+    let mut lab = Terminal::open("--paused --at 10");
     lab.wait_for("q quit");
     let before = lab.screen();
     for place in [
@@ -103,7 +103,7 @@ fn hostile_places_do_nothing() {
 
 #[test]
 fn the_terminal_has_its_mouse_back_after_every_end() {
-    let mut lab = Terminal::open(&["--paused"]);
+    let mut lab = Terminal::open("--paused");
     lab.wait_for("q quit");
     lab.quit();
     has_given_the_mouse_back(&lab);
@@ -149,7 +149,7 @@ fn the_shell_has_the_mouse_while_the_lab_is_stopped() {
 
 #[test]
 fn the_mouse_can_stay_with_the_terminal() {
-    let mut lab = Terminal::open(&["--paused", "--no-mouse"]);
+    let mut lab = Terminal::open("--paused --no-mouse");
     lab.wait_for("q quit");
     lab.ask(".", "step 1");
     assert!(!lab.sent_text().contains(ON));
@@ -164,13 +164,13 @@ fn the_mouse_can_stay_with_the_terminal() {
 
 #[test]
 fn without_a_name_the_lab_goes_on_at_the_end() {
-    let mut lab = Terminal::open(&["--paused", "--at", "2290"]);
+    let mut lab = Terminal::open("--paused --at 2290");
     lab.wait_for("q quit");
     lab.press(" ");
     lab.wait_until("a step beyond the end", |lab| lab.step() > Some(2400));
     lab.wait_for("t draws the exact motion");
     lab.quit();
-    let mut lab = Terminal::open(&["method-2", "--paused", "--at", "2290"]);
+    let mut lab = Terminal::open("method-2 --paused --at 2290");
     lab.wait_for("q quit");
     lab.ask(" ", "end of the run: space goes on");
     lab.wait_for_step(2300);

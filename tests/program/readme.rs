@@ -25,7 +25,7 @@ fn block(kind: &str, word: &str) -> String {
 #[track_caller]
 fn example(topic: &str, line: &str) -> String {
     let ground = Ground::new();
-    let manual = said(&ground.run(&["man", topic]).stdout);
+    let manual = said(&ground.run(&format!("man {topic}")).stdout);
     let at = manual
         .lines()
         .position(|it| it.trim_start().starts_with(line));
@@ -52,7 +52,7 @@ fn the_file_of_commands_can_be_played_again() {
     let ground = Ground::new();
     ground.write("demo.toml", &example("lab", "[[do]]"));
     for _ in 0..2 {
-        let shown = ground.run(&["show", "--do", "demo.toml"]);
+        let shown = ground.run("show --do demo.toml");
         assert!(shown.status.success(), "{}", said(&shown.stderr));
         assert!(ground.file("run.csv").exists());
     }
@@ -63,13 +63,13 @@ fn the_scenario_is_good_and_its_mistakes_are_told_as_shown() {
     let ground = Ground::new();
     let scenario = block("toml", "title = ");
     ground.write("my.toml", &scenario);
-    let checked = ground.run(&["check", "my.toml"]);
+    let checked = ground.run("check my.toml");
     assert!(checked.status.success(), "{}", said(&checked.stderr));
     let wrong = scenario
         .replace("point_mass_kg = 0.5", "point_mass_kg = -0.1")
         .replace("tilt_deg = 45 ", "tilt = 45 ");
     ground.write("with-mistakes.toml", &wrong);
-    let told = said(&ground.run(&["check", "with-mistakes.toml"]).stderr);
+    let told = said(&ground.run("check with-mistakes.toml").stderr);
     let shown = block("text", "gyrolab check with-mistakes.toml");
     assert_eq!(shown, format!("$ gyrolab check with-mistakes.toml\n{told}"));
 }
@@ -90,7 +90,7 @@ fn the_demonstration_is_recorded_to_its_end() {
     let ground = Ground::new();
     let demo = include_str!("../../presets/commands/demo.toml");
     ground.write("demo.toml", demo);
-    let recorded = ground.run(&["cast", "demo.toml", "-o", "demo.cast"]);
+    let recorded = ground.run("cast demo.toml -o demo.cast");
     assert!(recorded.status.success(), "{}", said(&recorded.stderr));
     let cast = ground.read("demo.cast");
     let markers = cast.lines().filter(|line| line.contains("\"m\", ")).count();
@@ -122,7 +122,7 @@ fn the_steady_start_is_steady() {
     let tables = example("scenario", "steady = true");
     let (above, _) = scenario.split_once("[start]").unwrap();
     ground.write("my.toml", &(above.to_owned() + &tables));
-    let run = ground.run(&["run", "my.toml", "--json"]);
+    let run = ground.run("run my.toml --json");
     let json: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
     for name in ["measured_lowest_tilt_deg", "measured_highest_tilt_deg"] {
         let tilt = json[name].as_f64().unwrap();

@@ -15,7 +15,7 @@ const AS_LEFT: &str = "as it was left";
 #[test]
 fn seventy_six_acts_each_earlier_than_the_one_before_are_come_back_to() {
     let ground = Ground::new();
-    let mut lab = ground.open(&["method-2", "--paused"]);
+    let mut lab = ground.open("method-2 --paused");
     lab.wait_for("q quit");
     lab.press("157g");
     lab.wait_for_step(157);
@@ -25,7 +25,7 @@ fn seventy_six_acts_each_earlier_than_the_one_before_are_come_back_to() {
     }
     lab.quit();
     lab.wait_for("comes back to step 81 of Method 2");
-    let mut lab = ground.open(&["--resume"]);
+    let mut lab = ground.open("--resume");
     lab.wait_for(AS_LEFT);
     lab.wait_for_step(81);
     lab.quit();
@@ -55,7 +55,7 @@ fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {
 #[test]
 fn on_a_full_disk_the_end_names_the_step_that_the_disk_has() {
     let ground = Ground::new();
-    let mut lab = ground.open(&["--paused", "--at", "30"]);
+    let mut lab = ground.open("--paused --at 30");
     lab.wait_for("q quit");
     lab.quit();
     let mut lab = ground.open_shell();
@@ -79,7 +79,7 @@ fn a_session_of_another_version_is_named_and_left_alone() {
     for (name, version) in [("1.session", 2), ("2.session", 4)] {
         fs::write(folder.join(name), format!("gyrolab session {version}\nx\n")).unwrap();
     }
-    let mut lab = ground.open(&["--resume"]);
+    let mut lab = ground.open("--resume");
     for name in ["1.session", "2.session"] {
         lab.wait_for(&format!(
             "{name} is left alone (another version of gyrolab wrote it)"
@@ -91,7 +91,7 @@ fn a_session_of_another_version_is_named_and_left_alone() {
 
 #[test]
 fn a_command_behind_its_options_is_told_where_it_belongs() {
-    let output = Ground::new().run(&["--folder", ".", "run", "cusps"]);
+    let output = Ground::new().run("--folder . run cusps");
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(
@@ -99,7 +99,7 @@ fn a_command_behind_its_options_is_told_where_it_belongs() {
         "gyrolab: run is a command, and commands come before their options: gyrolab run ...; \
          --folder is an option of the lab\n"
     );
-    let output = Ground::new().run(&["--folder", ".", "sessions"]);
+    let output = Ground::new().run("--folder . sessions");
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(
@@ -112,14 +112,14 @@ fn a_command_behind_its_options_is_told_where_it_belongs() {
 fn sessions_are_listed_and_one_is_taken_by_its_name() {
     let ground = Ground::new();
     for (preset, step) in [("cusps", "20"), ("method-2", "30")] {
-        let mut lab = ground.open(&[preset, "--paused", "--at", step]);
+        let mut lab = ground.open(&format!("{preset} --paused --at {step}"));
         lab.wait_for("q quit");
         lab.quit();
     }
-    let mut first = ground.open(&["--resume", "1"]);
+    let mut first = ground.open("--resume 1");
     first.wait_for(AS_LEFT);
     first.wait_for_step(20);
-    let listed = ground.run(&["sessions"]);
+    let listed = ground.run("sessions");
     let text = String::from_utf8(listed.stdout).unwrap();
     let lines: Vec<_> = text.lines().map(str::to_owned).collect();
     assert_eq!(lines.len(), 3, "{text}");
@@ -136,7 +136,7 @@ fn sessions_are_listed_and_one_is_taken_by_its_name() {
         ("1", "it is open in another lab"),
         ("7", "there is no such session"),
     ] {
-        let mut lab = ground.open(&["--resume", name]);
+        let mut lab = ground.open(&format!("--resume {name}"));
         assert_eq!(lab.wait_for_end().exit_code(), 1);
         lab.wait_for(words);
     }
@@ -148,7 +148,7 @@ fn confined(ground: &Ground) -> Terminal {
     let inside = ground.file("inside");
     if !inside.exists() {
         fs::create_dir(&inside).unwrap();
-        let preset = ground.run(&["presets", "cusps"]).stdout;
+        let preset = ground.run("presets cusps").stdout;
         fs::write(ground.file("secret.toml"), &preset).unwrap();
         fs::write(inside.join("own.toml"), &preset).unwrap();
         symlink(ground.file("secret.toml"), inside.join("out.toml")).unwrap();
@@ -157,7 +157,7 @@ fn confined(ground: &Ground) -> Terminal {
         assert!(fifo.unwrap().success());
     }
     let folder = inside.to_str().unwrap();
-    let lab = ground.open(&["--folder", folder, "--paused", "--at", "30"]);
+    let lab = ground.open(&format!("--folder {folder} --paused --at 30"));
     lab.wait_for("q quit");
     lab
 }
@@ -227,7 +227,7 @@ fn a_confined_lab_reads_in_its_folder_alone() {
         "up/secret.toml",
         "/dev/null.toml",
     ] {
-        let mut lab = ground.open(&["--folder", folder, scenario]);
+        let mut lab = ground.open(&format!("--folder {folder} {scenario}"));
         assert_eq!(lab.wait_for_end().exit_code(), 1, "{scenario}");
         lab.wait_for("stays in its folder");
     }
@@ -235,10 +235,10 @@ fn a_confined_lab_reads_in_its_folder_alone() {
     let piped = ground.run(&["--folder", folder, secret.to_str().unwrap()]);
     assert_eq!(piped.status.code(), Some(1));
 
-    let listed = ground.run(&["sessions", "--folder", folder]);
+    let listed = ground.run(&format!("sessions --folder {folder}"));
     let text = String::from_utf8(listed.stdout).unwrap();
     assert!(text.contains("(own.toml)"), "{text}");
-    let mut lab = ground.open(&["--folder", folder, "--resume"]);
+    let mut lab = ground.open(&format!("--folder {folder} --resume"));
     lab.wait_for(AS_LEFT);
     lab.quit();
     lab.wait_for("gyrolab --folder");

@@ -2,6 +2,7 @@
 
 use crate::support::ground::{Ground, stdout};
 use crate::support::pty::Terminal;
+use crate::support::words::has_all;
 use std::fs;
 use std::path::PathBuf;
 
@@ -43,9 +44,10 @@ fn what_was_chosen_is_there_at_the_next_start() {
     lab.ask("\x1b", "q quit");
     lab.quit();
     let text = fs::read_to_string(remembered(&ground)).unwrap();
-    for line in ["marker = \"ascii\"", "colour = \"never\"", "fps = 30"] {
-        assert!(text.contains(line), "{line}: {text}");
-    }
+    has_all(
+        &text,
+        ["marker = \"ascii\"", "colour = \"never\"", "fps = 30"],
+    );
     assert_eq!(ground.mode("state/gyrolab/settings.toml"), 0o600);
     for args in [&[][..], &["--resume"]] {
         let mut lab = match args {
@@ -61,7 +63,7 @@ fn what_was_chosen_is_there_at_the_next_start() {
     assert!(!is_ascii(&lab) && has_colours(&lab));
     lab.quit();
     // A picture does not depend on what was chosen.
-    let shown = ground.run(&["show", "method-2"]);
+    let shown = ground.run("show method-2");
     assert!(stdout(&shown).contains('┌'));
 }
 
@@ -85,7 +87,7 @@ fn the_users_own_file_wins_and_is_never_written() {
     lab.quit();
     let file = ground.config().join("gyrolab/config.toml");
     assert_eq!(fs::read_to_string(file).unwrap(), text);
-    let shown = ground.run(&["show", "method-2"]);
+    let shown = ground.run("show method-2");
     assert!(stdout(&shown).contains('┌'));
 }
 

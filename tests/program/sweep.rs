@@ -1,28 +1,28 @@
 //! `gyrolab sweep`: its CSV, how it goes on, what it refuses, and how shards become one file.
 
 use crate::support::dice::Dice;
-use crate::support::ground::{Ground, code, names};
+use crate::support::ground::{Ground, code, names, refused};
+use crate::support::pty::signal;
+use crate::support::words::{has, has_all, has_no};
 use std::fs;
 use std::os::unix::fs::symlink;
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
 /// A sweep of 60 short runs over a number and a text, some of which fail.
-const GRID: [&str; 9] = [
-    "sweep",
-    "cusps",
-    "--set",
-    "motion.steps=400",
-    "--vary",
-    "start.momentum_Js.2=10..400:20",
-    "--vary",
-    "motion.scheme=report,rk4,exact",
-    "--measure=z_m,tilt_deg,path,measured_tilt_swing_deg,most_distance_m",
-];
+const GRID: &str = "cusps --set motion.steps=400 --vary start.momentum_Js.2=10..400:20 \
+    --vary motion.scheme=report,rk4,exact --measure=z_m,tilt_deg,path,measured_tilt_swing_deg,most_distance_m";
 
-fn sweep(ground: &Ground, args: &[&str], output: &str) -> Output {
-    ground.run(&[args, &["-o", output]].concat())
+/// The command that sweeps `args` into the file `output`.
+fn sweep(args: &str, output: &str) -> String {
+    format!("sweep {args} -o {output}")
+}
+
+/// Sweeps, which must succeed with nothing on stdout, and returns what is said on stderr.
+#[track_caller]
+fn make(ground: &Ground, args: &str, output: &str) -> String {
+    made(&ground.run(&sweep(args, output)))
 }
 
 #[track_caller]
@@ -33,12 +33,8 @@ fn made(output: &Output) -> String {
 }
 
 #[track_caller]
-fn refused(output: &Output, with: i32, words: &[&str]) {
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(code(output), with, "{told}");
-    for word in words {
-        assert!(told.contains(word), "{word}: {told}");
-    }
+fn refuse(ground: &Ground, args: &str, output: &str, words: &[&str]) {
+    ground.refused(&sweep(args, output), 1, words);
 }
 
 /// The lines of a CSV below its sweep file.
@@ -46,10 +42,23 @@ fn rows(csv: &str) -> Vec<&str> {
     csv.lines().filter(|line| !line.starts_with('#')).collect()
 }
 
+fn remove(ground: &Ground, name: &str) {
+    fs::remove_file(ground.file(name)).unwrap();
+}
+
+/// Makes each shard of the sweep `args`: `1.csv` and so on.
+#[track_caller]
+fn shards(ground: &Ground, args: &str, of: usize) {
+    for shard in 1..=of {
+        let args = format!("{args} --shard {shard}/{of}");
+        make(ground, &args, &format!("{shard}.csv"));
+    }
+}
+
 #[test]
 fn rows_are_those_of_single_runs_in_the_order_of_the_grid() {
     let ground = Ground::new();
-    made(&sweep(&ground, &GRID, "grid.csv"));
+    make(&ground, GRID, "grid.csv");
     let csv = ground.read("grid.csv");
     let rows = rows(&csv);
     assert_eq!(
@@ -60,12 +69,8 @@ fn rows_are_those_of_single_runs_in_the_order_of_the_grid() {
     assert!(rows[1].starts_with("10.0,report,") && rows[2].starts_with("10.0,rk4,"));
     assert!(rows[60].starts_with("400.0,exact,"));
     // The row of a point is what run says of the same scenario, to the last digit.
-    let set = "start.momentum_Js.2=400";
-    let args = [
-        "run", "cusps", "--steps", "400", "--set", set, "--scheme", "rk4", "--json",
-    ];
-    let run = ground.run(&args);
-    let json = String::from_utf8(run.stdout).unwrap();
+    let json =
+        ground.stdout("run cusps --steps 400 --set start.momentum_Js.2=400 --scheme rk4 --json");
     let cells: Vec<_> = rows[59].split(',').collect();
     assert_eq!(cells[..2], ["400.0", "rk4"]);
     for (name, cell) in rows[0].split(',').zip(&cells).skip(2) {
@@ -80,49 +85,35 @@ fn rows_are_those_of_single_runs_in_the_order_of_the_grid() {
 #[test]
 fn its_csv_is_its_sweep_file() {
     let ground = Ground::new();
-    made(&sweep(&ground, &GRID, "grid.csv"));
-    made(&sweep(&ground, &["sweep", "grid.csv"], "again.csv"));
+    make(&ground, GRID, "grid.csv");
+    make(&ground, "grid.csv", "again.csv");
     let csv = ground.read("grid.csv");
     assert_eq!(csv, ground.read("again.csv"));
-    let file: String = csv
-        .lines()
-        .filter_map(|line| line.strip_prefix("# "))
-        .flat_map(|line| [line, "\n"])
-        .collect();
+    let header = csv.lines().filter_map(|line| line.strip_prefix("# "));
+    let file: String = header.flat_map(|line| [line, "\n"]).collect();
     ground.write("grid.toml", &file);
-    made(&sweep(&ground, &["sweep", "grid.toml"], "file.csv"));
+    make(&ground, "grid.toml", "file.csv");
     assert_eq!(csv, ground.read("file.csv"));
     for name in ["grid.csv", "grid.toml"] {
-        let checked = ground.run(&["check", name]);
-        let told = String::from_utf8_lossy(&checked.stdout);
-        assert!(told.contains("rows: 60") && code(&checked) == 0, "{told}");
+        has(ground.stdout(&format!("check {name}")), "rows: 60");
     }
     // A scenario it is not.
-    let run = ground.run(&["run", "grid.csv"]);
-    refused(&run, 1, &["grid.csv", "gyrolab sweep"]);
+    ground.refused("run grid.csv", 1, &["grid.csv", "gyrolab sweep"]);
 }
 
 #[test]
 fn a_scenario_is_found_from_the_sweep_file_on() {
     let ground = Ground::new();
     fs::create_dir(ground.file("deep")).unwrap();
-    let preset = ground.run(&["presets", "cusps"]);
-    fs::write(ground.file("deep/mine.toml"), preset.stdout).unwrap();
+    ground.write("deep/mine.toml", &ground.stdout("presets cusps"));
     let file = "scenario = \"mine.toml\"\nmeasure = [\"z_m\"]\n\
         [[vary]]\nkey = \"motion.steps\"\nvalues = [1, 2]\n";
     ground.write("deep/sweep.toml", file);
-    made(&sweep(&ground, &["sweep", "deep/sweep.toml"], "out.csv"));
+    make(&ground, "deep/sweep.toml", "out.csv");
     assert_eq!(rows(&ground.read("out.csv")).len(), 3);
     // --vary takes the place of the file's values, and --measure of its readouts.
-    let args = [
-        "sweep",
-        "deep/sweep.toml",
-        "--vary",
-        "motion.steps=1..5:5",
-        "--measure",
-        "t_s",
-    ];
-    made(&sweep(&ground, &args, "other.csv"));
+    let args = "deep/sweep.toml --vary motion.steps=1..5:5 --measure t_s";
+    make(&ground, args, "other.csv");
     let other = ground.read("other.csv");
     assert_eq!(rows(&other)[0], "motion.steps,t_s");
     assert_eq!(rows(&other).len(), 6);
@@ -131,55 +122,37 @@ fn a_scenario_is_found_from_the_sweep_file_on() {
 #[test]
 fn neither_threads_nor_shards_change_a_byte() {
     let ground = Ground::new();
-    made(&sweep(&ground, &GRID, "whole.csv"));
+    make(&ground, GRID, "whole.csv");
     let whole = ground.read("whole.csv");
-    for threads in ["1", "7"] {
-        let mut command = ground.command(&[&GRID[..], &["-o", "threads.csv"]].concat());
-        made(&command.env("RAYON_NUM_THREADS", threads).output().unwrap());
-        assert_eq!(ground.read("threads.csv"), whole, "{threads}");
-        fs::remove_file(ground.file("threads.csv")).unwrap();
+    for (variable, value) in [
+        ("RAYON_NUM_THREADS", "1"),
+        ("RAYON_NUM_THREADS", "7"),
+        // A stack larger than any memory: no thread can be had.
+        ("RUST_MIN_STACK", "4611686018427387904"),
+    ] {
+        let mut command = ground.command(&sweep(GRID, "threads.csv"));
+        made(&command.env(variable, value).output().unwrap());
+        assert_eq!(ground.read("threads.csv"), whole, "{variable} {value}");
+        remove(&ground, "threads.csv");
     }
-    // A stack larger than any memory: no thread can be had.
-    let mut command = ground.command(&[&GRID[..], &["-o", "none.csv"]].concat());
-    made(
-        &command
-            .env("RUST_MIN_STACK", "4611686018427387904")
-            .output()
-            .unwrap(),
-    );
-    assert_eq!(ground.read("none.csv"), whole);
-    for shard in ["4/7", "1/7", "7/7", "2/7", "6/7", "3/7", "5/7"] {
-        let name = format!("{}.csv", shard.replace('/', "-"));
-        made(&sweep(
-            &ground,
-            &[&GRID[..], &["--shard", shard]].concat(),
-            &name,
-        ));
+    for shard in [4, 1, 7, 2, 6, 3, 5] {
+        let args = format!("{GRID} --shard {shard}/7");
+        make(&ground, &args, &format!("{shard}.csv"));
     }
-    let parts: Vec<_> = [7, 3, 1, 2, 5, 4, 6].map(|k| format!("{k}-7.csv")).into();
-    let parts: Vec<_> = parts.iter().map(String::as_str).collect();
-    let join = [&["sweep", "--join"], &parts[..]].concat();
-    made(&sweep(&ground, &join, "joined.csv"));
+    let join = "--join 7.csv 3.csv 1.csv 2.csv 5.csv 4.csv 6.csv";
+    make(&ground, join, "joined.csv");
     assert_eq!(ground.read("joined.csv"), whole);
     // What is there and whole is left as it is.
-    made(&sweep(&ground, &join, "joined.csv"));
-    made(&sweep(&ground, &join, "whole.csv"));
+    make(&ground, join, "joined.csv");
+    make(&ground, join, "whole.csv");
 }
 
 #[test]
 fn killed_twenty_times_it_ends_with_the_same_bytes() {
     let ground = Ground::new();
-    let args = [
-        "sweep",
-        "cusps",
-        "--set",
-        "motion.steps=4000",
-        "--vary",
-        "start.momentum_Js.2=20..400:60",
-        "--measure",
-        "z_m,measured_precession_rad_per_s",
-    ];
-    made(&sweep(&ground, &args, "whole.csv"));
+    let args = "cusps --set motion.steps=4000 --vary start.momentum_Js.2=20..400:60 \
+        --measure z_m,measured_precession_rad_per_s";
+    make(&ground, args, "whole.csv");
     let whole = ground.read("whole.csv");
     let mut dice = Dice(13);
     let part = ground.file("killed.csv.part");
@@ -187,7 +160,7 @@ fn killed_twenty_times_it_ends_with_the_same_bytes() {
     let mut most = 0;
     for kill in 0..20 {
         let until = there() + dice.whole(0, 4);
-        let mut command = ground.command(&[&args[..], &["-o", "killed.csv"]].concat());
+        let mut command = ground.command(&sweep(args, "killed.csv"));
         let mut child = command.stderr(Stdio::null()).spawn().unwrap();
         while there() < until && child.try_wait().unwrap().is_none() {
             sleep(Duration::from_millis(1));
@@ -209,7 +182,7 @@ fn killed_twenty_times_it_ends_with_the_same_bytes() {
         }
     }
     assert!(most > 1, "it was never killed between two rows");
-    made(&sweep(&ground, &args, "killed.csv"));
+    make(&ground, args, "killed.csv");
     assert_eq!(ground.read("killed.csv"), whole);
     assert_eq!(ground.files(), ["killed.csv", "whole.csv"]);
 }
@@ -217,68 +190,47 @@ fn killed_twenty_times_it_ends_with_the_same_bytes() {
 #[test]
 fn a_part_of_the_file_is_gone_on_with_and_no_row_is_computed_again() {
     let ground = Ground::new();
-    made(&sweep(&ground, &GRID, "whole.csv"));
+    make(&ground, GRID, "whole.csv");
     let whole = ground.read("whole.csv");
-    for cut in [
-        0,
-        1,
-        50,
-        whole.len() - 300,
-        whole.len() - 7,
-        whole.len() - 1,
-        whole.len(),
-    ] {
-        ground.write("cut.csv.part", &whole[..cut]);
-        let told = made(&sweep(&ground, &GRID, "cut.csv"));
-        let kept = whole[..cut]
-            .rfind('\n')
-            .map_or(0, |end| rows(&whole[..end]).len());
-        if kept > 1 {
-            let words = format!("going on behind {} of 60 rows", kept - 1);
-            assert!(told.contains(&words), "{words}: {told}");
-        }
-        assert_eq!(ground.read("cut.csv"), whole, "{cut}");
-        fs::remove_file(ground.file("cut.csv")).unwrap();
+    // Goes on behind `part`, of which so many rows are kept.
+    let goes_on = |part: &[u8], kept: usize| {
+        fs::write(ground.file("cut.csv.part"), part).unwrap();
+        let told = make(&ground, GRID, "cut.csv");
+        let words = format!("going on behind {kept} of 60 rows");
+        assert!(kept == 0 || told.contains(&words), "{words}: {told}");
+        assert_eq!(ground.read("cut.csv"), whole, "{kept}");
+        remove(&ground, "cut.csv");
+    };
+    let end = whole.len();
+    for cut in [0, 1, 50, end - 300, end - 7, end - 1, end] {
+        let kept = whole[..cut].rfind('\n');
+        let kept = kept.map_or(0, |end| rows(&whole[..end]).len());
+        goes_on(&whole.as_bytes()[..cut], kept.saturating_sub(1));
     }
-    // What is no row, and all behind it, is computed anew: a cell too few, another point.
+    // What is no row, and all behind it, is computed anew: a cell too few, another point, other bytes.
     let row = rows(&whole)[30];
     let (begin, _) = row.rsplit_once(',').unwrap();
     for wrong in [begin.to_owned(), format!("1{row}")] {
-        ground.write("cut.csv.part", &whole.replace(row, &wrong));
-        let told = made(&sweep(&ground, &GRID, "cut.csv"));
-        assert!(told.contains("going on behind 29 of 60 rows"), "{told}");
-        assert_eq!(ground.read("cut.csv"), whole);
-        fs::remove_file(ground.file("cut.csv")).unwrap();
+        goes_on(whole.replace(row, &wrong).as_bytes(), 29);
     }
     let end = whole.find(row).unwrap();
     let damaged = [&whole.as_bytes()[..end], &[0, 159, 10, 200, 10]].concat();
-    fs::write(ground.file("cut.csv.part"), damaged).unwrap();
-    made(&sweep(&ground, &GRID, "cut.csv"));
-    assert_eq!(ground.read("cut.csv"), whole);
+    goes_on(&damaged, 29);
 }
 
 #[test]
 fn what_is_not_this_sweep_is_refused_and_left_alone() {
     let ground = Ground::new();
-    made(&sweep(&ground, &GRID, "grid.csv"));
+    make(&ground, GRID, "grid.csv");
     let whole = ground.read("grid.csv");
-    let told = made(&sweep(&ground, &GRID, "grid.csv"));
-    assert!(told.contains("is whole"), "{told}");
-    let mut other = GRID;
-    other[5] = "start.momentum_Js.2=10..400:21";
-    let words = [
-        "grid.csv",
-        "its line 9 is \"# count = 20\", not \"# count = 21\"",
-        "--force",
-    ];
-    refused(&sweep(&ground, &other, "grid.csv"), 1, &words);
+    has(make(&ground, GRID, "grid.csv"), "is whole");
+    let other = GRID.replace("400:20", "400:21");
+    let words = "its line 9 is \"# count = 20\", not \"# count = 21\"";
+    refuse(&ground, &other, "grid.csv", &["grid.csv", words, "--force"]);
     assert_eq!(ground.read("grid.csv"), whole);
     ground.write("part.csv.part", &whole[..whole.len() - 5]);
-    refused(
-        &sweep(&ground, &other, "part.csv"),
-        1,
-        &["part.csv.part", "count = 20", "--force"],
-    );
+    let words = ["part.csv.part", "count = 20", "--force"];
+    refuse(&ground, &other, "part.csv", &words);
     assert_eq!(ground.read("part.csv.part"), whole[..whole.len() - 5]);
     let longer = format!("{whole}{}\n", rows(&whole)[60]);
     let shorter = &whole[..whole.len() - rows(&whole)[60].len() - 1];
@@ -292,17 +244,12 @@ fn what_is_not_this_sweep_is_refused_and_left_alone() {
         (&whole.replace(",z_m,", ",y_m,"), ",y_m,"),
     ] {
         ground.write("mine.csv", text);
-        refused(&sweep(&ground, &GRID, "mine.csv"), 1, &["mine.csv", word]);
+        refuse(&ground, GRID, "mine.csv", &["mine.csv", word]);
         assert_eq!(ground.read("mine.csv"), text);
     }
-    made(&sweep(
-        &ground,
-        &[&GRID[..], &["--force"]].concat(),
-        "mine.csv",
-    ));
+    make(&ground, &format!("{GRID} --force"), "mine.csv");
     assert_eq!(ground.read("mine.csv"), whole);
-    let forced = [&other[..], &["--force"]].concat();
-    made(&sweep(&ground, &forced, "part.csv"));
+    make(&ground, &format!("{other} --force"), "part.csv");
     assert_eq!(ground.files(), ["grid.csv", "mine.csv", "part.csv"]);
 }
 
@@ -311,100 +258,103 @@ fn two_at_once_do_not_write_into_each_others_rows() {
     let ground = Ground::new();
     let file = fs::File::create(ground.file("grid.csv.part")).unwrap();
     file.lock().unwrap();
-    refused(
-        &sweep(&ground, &GRID, "grid.csv"),
-        1,
-        &["grid.csv.part", "another gyrolab"],
-    );
+    let words = ["grid.csv.part", "another gyrolab"];
+    refuse(&ground, GRID, "grid.csv", &words);
 }
 
 #[test]
 fn wrong_keys_values_and_readouts_are_refused_before_anything_runs() {
     let ground = Ground::new();
-    let vary = "motion.steps=1,2";
     for (args, words) in [
-        (&["cusps"][..], &["vary", "--vary"][..]),
-        (&["cusp", "--vary", vary], &["did you mean cusps?"]),
+        ("cusps", &["vary", "--vary"][..]),
+        ("cusp --vary motion.steps=1,2", &["did you mean cusps?"]),
         (
-            &["precesion-over-tilt"],
+            "precesion-over-tilt",
             &["did you mean precession-over-tilt?"],
         ),
-        (&["none.toml"], &["none.toml", "there is no such file"]),
+        ("none.toml", &["none.toml", "there is no such file"]),
         (
-            &["cusps", "--vary", "motion.step=1,2"],
+            "cusps --vary motion.step=1,2",
             &["motion.step", "did you mean motion.steps?"],
         ),
-        (&["cusps", "--vary", "motion.steps=1..2"], &["A..B:N"]),
+        ("cusps --vary motion.steps=1..2", &["A..B:N"]),
         (
-            &["cusps", "--vary", "motion.steps=0,2"],
+            "cusps --vary motion.steps=0,2",
             &["motion.steps (0)", "1 or more"],
         ),
-        (&["cusps", "--vary", "push.0.steps=1,2"], &["push.0"]),
+        ("cusps --vary push.0.steps=1,2", &["push.0"]),
         (
-            &["cusps", "--vary", vary, "--vary", "motion.steps=3,4"],
+            "cusps --vary motion.steps=1,2 --vary motion.steps=3,4",
             &["motion.steps", "twice"],
         ),
         (
-            &[
-                "cusps",
-                "--vary",
-                "start.momentum_Js.2=1,2",
-                "--vary",
-                "start.spin_rpm=10,20",
-            ],
+            "cusps --vary start.momentum_Js.2=1,2 --vary start.spin_rpm=10,20",
             &[
                 "start.spin_rpm",
                 "so does start.momentum_Js.2: a start has one of them",
             ],
         ),
         (
-            &["cusps", "--vary", vary, "--measure", "tilt"],
+            "cusps --vary motion.steps=1,2 --measure tilt",
             &["gyrolab: --measure tilt: is no readout: did you mean tilt_deg?"],
         ),
         (
-            &["cusps", "--vary", vary, "--measure", "wall_s"],
+            "cusps --vary motion.steps=1,2 --measure wall_s",
             &["wall_s", "clock"],
         ),
         (
-            &["cusps", "--vary", vary, "--measure", "z_m,z_m"],
+            "cusps --vary motion.steps=1,2 --measure z_m,z_m",
             &["z_m", "twice"],
         ),
         (
-            &["cusps", "--vary", vary, "--set", "motion.time_step_s=-1"],
+            "cusps --vary motion.steps=1,2 --set motion.time_step_s=-1",
             &["motion.time_step_s", "zero"],
         ),
         (
-            &[
-                "cusps",
-                "--vary",
-                "motion.time_step_s=1e-9..1e-8:1000000000",
-            ],
+            "cusps --vary motion.time_step_s=1e-9..1e-8:1000000000",
             &["at most"],
         ),
         (
-            &[
-                "cusps",
-                "--vary",
-                "motion.steps=1..2000000:2000000",
-                "--vary",
-                "motion.time_step_s=1e-9..1e-8:1000",
-            ],
+            "cusps --vary motion.steps=1..2000000:2000000 --vary motion.time_step_s=1e-9..1e-8:1000",
             &["gyrolab: --vary: is a grid of 2000000000 points: at most"],
         ),
+        // Steps and seconds of a push are not mixed.
+        (
+            "wobble-push --time-step=0.01 --vary=push.0.steps=20,200",
+            &[
+                "--vary push.0.steps=20,200: push.0.steps: the push counts in seconds (--time-step turns steps into seconds): vary push.0.for_s",
+            ],
+        ),
+        (
+            "wobble-push --time-step=0.01 --vary=push.0.first_step=20,200",
+            &["vary push.0.from_s"],
+        ),
+        (
+            "wobble-push --vary=push.0.for_s=1,2",
+            &["push.0.for_s: the push counts in steps: vary push.0.steps"],
+        ),
+        (
+            "wobble-push --vary=push.0.from_s=1,2",
+            &["push.0.from_s: the push counts in steps: vary push.0.first_step"],
+        ),
     ] {
-        let output = sweep(&ground, &[&["sweep"], args].concat(), "out.csv");
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        refused(&output, 1, words);
-        assert!(!told.contains("panicked"), "{told}");
-        assert_eq!(ground.files(), [""; 0], "{args:?}");
+        refuse(&ground, args, "out.csv", words);
+        assert_eq!(ground.files(), [""; 0], "{args}");
     }
     for args in [
-        &["sweep", "cusps", "--vary", vary][..],
-        &["sweep", "cusps", "--shard", "3/2", "-o", "a.csv"],
-        &["sweep", "cusps", "--join", "b.csv", "-o", "a.csv"],
-        &["sweep", "--join", "b.csv"],
+        "sweep cusps --vary motion.steps=1,2",
+        "sweep cusps --shard 3/2 -o a.csv",
+        "sweep cusps --join b.csv -o a.csv",
+        "sweep --join b.csv",
     ] {
-        refused(&ground.run(args), 2, &[]);
+        ground.refused(args, 2, &[]);
+    }
+    for args in [
+        "wobble-push --measure=z_m --set=motion.steps=10 --vary=push.0.steps=2,3",
+        "wobble-push --measure=z_m --set=motion.steps=10 --vary=push.0.for_s=2,3 --time-step=0.1",
+    ] {
+        has_no(make(&ground, args, "out.csv"), "without readouts");
+        remove(&ground, "out.csv");
     }
 }
 
@@ -412,6 +362,8 @@ fn wrong_keys_values_and_readouts_are_refused_before_anything_runs() {
 fn what_is_wrong_in_a_sweep_file_is_told_with_its_line() {
     let ground = Ground::new();
     let good = "title = \"t\"\nscenario = \"cusps\"\nmeasure = [\"z_m\"]\n[[vary]]\nkey = \"motion.steps\"\nvalues = [1, 2]\n";
+    let values = "values = [1, 2]";
+    let both = "from = 1\nto = 5\ncount = 3\nvalues = [1]";
     for (from, to, words) in [
         ("title", "titel", &["s.toml:1:", "did you mean title?"][..]),
         ("\"cusps\"", "3", &["s.toml:2:", "scenario (3)"]),
@@ -426,16 +378,8 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_line() {
         ),
         ("[1, 2]", "[1, 2.5]", &["whole number"]),
         ("[1, 2]", "[]", &["s.toml:6:", "at least one"]),
-        (
-            "values = [1, 2]",
-            "from = 1",
-            &["s.toml:", "from, to and count"],
-        ),
-        (
-            "values = [1, 2]",
-            "from = 1\nto = 5\ncount = 3\nvalues = [1]",
-            &["either"],
-        ),
+        (values, "from = 1", &["s.toml:", "from, to and count"]),
+        (values, both, &["either"]),
         ("scenario = \"cusps\"\n", "", &["scenario", "is missing"]),
         (
             "\"t\"",
@@ -454,65 +398,42 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_line() {
         let text = good.replacen(from, to, 1);
         assert_ne!(text, good);
         ground.write("s.toml", &text);
-        for args in [
-            &["check", "s.toml"][..],
-            &["sweep", "s.toml", "-o", "out.csv"],
-        ] {
-            refused(&ground.run(args), 1, words);
-        }
+        ground.refused("check s.toml", 1, words);
+        refuse(&ground, "s.toml", "out.csv", words);
     }
     // The scenario itself, in the file.
     let inside = "[scenario]\ntitle = \"x\"\n[scenario.start]\nmomentum_Js = [0, 0, 1]\n[scenario.motion]\ntime_step_s = 0.1\nsteps = 0\n";
     let text = format!("{}{inside}", good.replace("scenario = \"cusps\"\n", ""));
     ground.write("s.toml", &text);
-    refused(
-        &ground.run(&["check", "s.toml"]),
-        1,
-        &["s.toml:12:", "scenario.motion.steps (0)"],
-    );
+    let words = ["s.toml:12:", "scenario.motion.steps (0)"];
+    ground.refused("check s.toml", 1, &words);
 }
 
 /// A sweep over the scheme, of which the rows by rk4 break down.
-const SOME_ROWS_FAIL: [&str; 6] = [
-    "sweep",
-    "method-2",
-    "--set",
-    "motion.steps=40",
-    "--vary",
-    "motion.scheme=report,rk4",
-];
+const SOME_ROWS_FAIL: &str = "method-2 --set motion.steps=40 --vary motion.scheme=report,rk4";
 
 #[test]
 fn a_point_that_fails_is_a_row_without_readouts_and_its_reason_is_told() {
     let ground = Ground::new();
-    let more = [
-        "--vary=body.rim.height_m=0.5,0,1e200",
-        "--measure=z_m,path,steps",
-    ];
-    let args = [&SOME_ROWS_FAIL[..], &more].concat();
-    let told = made(&sweep(&ground, &args, "out.csv"));
+    let args =
+        format!("{SOME_ROWS_FAIL} --vary=body.rim.height_m=0.5,0,1e200 --measure=z_m,path,steps");
+    let told = make(&ground, &args, "out.csv");
     let csv = ground.read("out.csv");
     let rows = rows(&csv);
     assert!(rows[1].starts_with("report,0.5,0.8"), "{csv}");
-    assert_eq!(rows[4], "rk4,0.5,,,", "{csv}");
-    assert_eq!(
-        [rows[3], rows[6]],
-        ["report,1e200,,,", "rk4,1e200,,,"],
-        "{csv}"
+    let empty = [rows[3], rows[4], rows[6]];
+    let wanted = ["report,1e200,,,", "rk4,0.5,,,", "rk4,1e200,,,"];
+    assert_eq!(empty, wanted, "{csv}");
+    has_all(
+        &told,
+        [
+            "rows without readouts: 3 of 6",
+            "motion.scheme = \"rk4\", body.rim.height_m = 0.5: the numbers are no longer finite",
+        ],
     );
-    assert!(told.contains("rows without readouts: 3 of 6"), "{told}");
-    assert!(
-        told.contains(
-            "motion.scheme = \"rk4\", body.rim.height_m = 0.5: the numbers are no longer finite"
-        ),
-        "{told}"
-    );
-    assert_eq!(
-        told.matches("body.rim.height_m = 1e200").count(),
-        2,
-        "{told}"
-    );
-    made(&sweep(&ground, &["sweep", "out.csv"], "again.csv"));
+    let of_height = told.matches("body.rim.height_m = 1e200").count();
+    assert_eq!(of_height, 2, "{told}");
+    make(&ground, "out.csv", "again.csv");
     assert_eq!(csv, ground.read("again.csv"));
 }
 
@@ -520,154 +441,85 @@ fn a_point_that_fails_is_a_row_without_readouts_and_its_reason_is_told() {
 #[test]
 fn rows_without_readouts_are_told_by_every_command_that_finds_them() {
     let ground = Ground::new();
-    let more = ["--vary=body.rim.height_m=0.5,1e200", "--measure=z_m"];
-    let args = [&SOME_ROWS_FAIL[..], &more].concat();
-    let count = "gyrolab: rows without readouts: 3 of 4\n";
-    let reasons = [
-        "motion.scheme = \"rk4\", body.rim.height_m = 0.5: ",
-        "motion.scheme = \"report\", body.rim.height_m = 1e200: ",
-        "motion.scheme = \"rk4\", body.rim.height_m = 1e200: ",
-    ];
+    let args = &format!("{SOME_ROWS_FAIL} --vary=body.rim.height_m=0.5,1e200 --measure=z_m");
     let is_told = |told: &str| {
-        assert!(told.contains(count), "{told}");
-        let missing = reasons.iter().find(|reason| !told.contains(*reason));
-        assert_eq!(missing, None, "{told}");
+        has_all(
+            told,
+            [
+                "gyrolab: rows without readouts: 3 of 4\n",
+                "motion.scheme = \"rk4\", body.rim.height_m = 0.5: ",
+                "motion.scheme = \"report\", body.rim.height_m = 1e200: ",
+                "motion.scheme = \"rk4\", body.rim.height_m = 1e200: ",
+            ],
+        );
     };
-    let told = made(&sweep(&ground, &args, "whole.csv"));
+    let told = make(&ground, args, "whole.csv");
     is_told(&told);
-    assert!(
-        told.contains("0.5: the numbers are no longer finite"),
-        "{told}"
-    );
+    has(&told, "0.5: the numbers are no longer finite");
     let whole = ground.read("whole.csv");
     // A file that is whole already, and one that was ended behind its second row or before its last.
-    is_told(&made(&sweep(&ground, &args, "whole.csv")));
-    for (kept, words) in [
-        (
-            2,
-            "behind 2 of 4 rows in cut.csv.part, 1 of them without readouts\n",
-        ),
-        (
-            3,
-            "behind 3 of 4 rows in cut.csv.part, 2 of them without readouts\n",
-        ),
-    ] {
-        let lost: usize = rows(&whole)[1 + kept..]
-            .iter()
-            .map(|row| row.len() + 1)
-            .sum();
-        ground.write("cut.csv.part", &whole[..whole.len() - lost]);
-        let told = made(&sweep(&ground, &args, "cut.csv"));
-        assert!(told.contains(words), "{told}");
+    is_told(&make(&ground, args, "whole.csv"));
+    for (kept, empty) in [(2, 1), (3, 2)] {
+        let lost = rows(&whole).into_iter().skip(1 + kept);
+        let lost = lost.map(|row| row.len() + 1);
+        ground.write("cut.csv.part", &whole[..whole.len() - lost.sum::<usize>()]);
+        let told = make(&ground, args, "cut.csv");
+        has(
+            &told,
+            format!("behind {kept} of 4 rows in cut.csv.part, {empty} of them without readouts\n"),
+        );
         is_told(&told);
         assert_eq!(ground.read("cut.csv"), whole);
-        fs::remove_file(ground.file("cut.csv")).unwrap();
+        remove(&ground, "cut.csv");
     }
     // Shards joined, and once more where the file is whole.
-    for shard in ["1/2", "2/2"] {
-        let name = format!("{}.csv", &shard[..1]);
-        made(&sweep(
-            &ground,
-            &[&args[..], &["--shard", shard]].concat(),
-            &name,
-        ));
-    }
+    shards(&ground, args, 2);
     for _ in 0..2 {
-        let join = ["sweep", "--join", "1.csv", "2.csv"];
-        is_told(&made(&sweep(&ground, &join, "joined.csv")));
+        is_told(&make(&ground, "--join 1.csv 2.csv", "joined.csv"));
     }
     assert_eq!(ground.read("joined.csv"), whole);
 }
 
-/// What a broken disk leaves behind good rows is told as such, with what to do.
 #[test]
 fn a_time_step_that_varies_holds_the_seconds() {
     let ground = Ground::new();
-    let args = [
-        "sweep",
-        "wobble-push",
-        "--vary",
-        "motion.time_step_s=0.1,0.05,0.2,500",
-        "--measure",
-        "t_s,steps,measured_lowest_z_m",
-    ];
-    let told = made(&sweep(&ground, &args, "out.csv"));
-    assert!(
-        told.contains("not be longer than the whole run, 230 s"),
-        "{told}"
-    );
+    let args = "wobble-push --vary motion.time_step_s=0.1,0.05,0.2,500 --measure t_s,steps,measured_lowest_z_m";
+    let told = make(&ground, args, "out.csv");
+    has(&told, "not be longer than the whole run, 230 s");
     let csv = ground.read("out.csv");
     let rows = rows(&csv);
-    for (row, beginning) in [
-        (1, "0.1,230.0,2300,"),
-        (2, "0.05,230.0,4600,"),
-        (3, "0.2,230.0,1150,"),
-    ] {
-        assert!(rows[row].starts_with(beginning), "{csv}");
+    let beginnings = ["0.1,230.0,2300,", "0.05,230.0,4600,", "0.2,230.0,1150,"];
+    for (row, beginning) in rows[1..].iter().zip(beginnings) {
+        assert!(row.starts_with(beginning), "{csv}");
     }
     // As `run --time-step` has it: the push lasts 20 s.
-    let run = ground.run(&["run", "wobble-push", "--time-step", "0.05", "--json"]);
-    let json: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+    let json = ground.json("run wobble-push --time-step 0.05 --json");
     let lowest = json["measured_lowest_z_m"].as_f64().unwrap();
     assert!(rows[2].ends_with(&format!(",{lowest}")), "{csv} {lowest}");
     // A push that accumulates is another at another time step.
-    let args = [
-        "sweep",
-        "wobble-push-accumulating",
-        "--vary",
-        "motion.time_step_s=0.1,0.05",
-        "--measure",
-        "t_s",
-    ];
-    let told = made(&sweep(&ground, &args, "acc.csv"));
-    assert!(
-        told.contains("rows without readouts: 1 of 2") && told.contains("accumulates"),
-        "{told}"
-    );
+    let args = "wobble-push-accumulating --vary motion.time_step_s=0.1,0.05 --measure t_s";
+    let told = make(&ground, args, "acc.csv");
+    has_all(told, ["rows without readouts: 1 of 2", "accumulates"]);
 }
 
 #[test]
 fn ctrl_c_keeps_what_was_done() {
     let ground = Ground::new();
-    let args = [
-        "sweep",
-        "cusps",
-        "--set",
-        "motion.steps=2000",
-        "--vary",
-        "start.momentum_Js.2=20..400:100000",
-        "--measure",
-        "z_m",
-        "-o",
-        "out.csv",
-    ];
-    let child = ground
-        .command(&args)
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let args =
+        "cusps --set motion.steps=2000 --vary start.momentum_Js.2=20..400:100000 --measure z_m";
+    let mut command = ground.command(&sweep(args, "out.csv"));
+    let child = command.stderr(Stdio::piped()).spawn().unwrap();
     let part = ground.file("out.csv.part");
     while fs::read_to_string(&part).map_or(0, |text| rows(&text).len()) < 3 {
         sleep(Duration::from_millis(5));
     }
-    let pid = child.id().to_string();
-    assert!(
-        Command::new("kill")
-            .args(["-INT", &pid])
-            .status()
-            .unwrap()
-            .success()
-    );
+    signal(child.id(), "INT");
     let output = child.wait_with_output().unwrap();
-    refused(&output, 130, &["rows are in", "out.csv.part", "goes on"]);
     let text = fs::read_to_string(&part).unwrap();
     assert!(text.ends_with('\n'));
-    let kept = rows(&text).len() - 1;
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        told.contains(&format!("{kept} of 100000 rows")),
-        "{kept}: {told}"
-    );
+    let kept = format!("{} of 100000 rows", rows(&text).len() - 1);
+    let words = ["rows are in", "out.csv.part", "goes on", &kept];
+    refused(args, &output, 130, &words);
 }
 
 #[test]
@@ -675,143 +527,112 @@ fn a_disk_that_is_full_and_a_folder_that_takes_no_file() {
     let ground = Ground::new();
     let grid = "\"$G\" sweep cusps --set motion.steps=2 --vary start.momentum_Js.2=10..400:2000 --measure z_m,x_m,y_m";
     let full = ground.shell(&format!("ulimit -f 40; {grid} -o out.csv"));
-    refused(
-        &full,
-        1,
-        &["out.csv.part", "large", "of 2000 rows are in", "goes on"],
-    );
+    let words = ["out.csv.part", "large", "of 2000 rows are in", "goes on"];
+    refused("a full disk", &full, 1, &words);
     // With room again the same command goes on, and nothing is lost or twice.
     let told = made(&ground.shell(&format!("{grid} -o out.csv")));
-    assert!(told.contains("going on behind"), "{told}");
+    has(&told, "going on behind");
     made(&ground.shell(&format!("{grid} -o whole.csv")));
     assert_eq!(ground.read("out.csv"), ground.read("whole.csv"));
     fs::create_dir(ground.file("folder")).unwrap();
     symlink("/dev/full", ground.file("link.csv.part")).unwrap();
-    for (output, word) in [
-        ("none/out.csv", "there is no folder"),
-        ("folder", "is a folder"),
-        ("folder/", "is a folder"),
-        ("/dev/null", "not a regular file"),
-        ("/dev/full", "not a regular file"),
-        ("link.csv", "not a regular file"),
-        ("/proc/out.csv", "cannot write"),
-        ("-", "not written to stdout"),
+    let args = "cusps --vary motion.steps=1,2 --measure=z_m";
+    let advice = "name a file in a folder that exists";
+    for (output, words) in [
+        ("none/out.csv", &["none/out.csv", "there is no folder"][..]),
+        ("folder", &["folder", "is a folder"]),
+        ("folder/", &["folder", "is a folder"]),
+        ("/dev/null", &["/dev/null", "not a regular file"]),
+        ("/dev/full", &["/dev/full", "not a regular file"]),
+        ("link.csv", &["link.csv", "not a regular file"]),
+        ("/proc/out.csv", &["/proc/out.csv", "cannot write", advice]),
+        ("-", &["-", "not written to stdout"]),
     ] {
-        let args = ["sweep", "cusps", "--vary", "motion.steps=1,2"];
-        refused(
-            &sweep(&ground, &args, output),
-            1,
-            &[output.trim_end_matches('/'), word],
-        );
+        refuse(&ground, args, output, words);
     }
-    assert_eq!(
-        ground.files(),
-        ["folder", "link.csv.part", "out.csv", "whole.csv"]
-    );
+    let files = ["folder", "link.csv.part", "out.csv", "whole.csv"];
+    assert_eq!(ground.files(), files);
+    // Joining writes the whole at once.
+    shards(&ground, args, 1);
+    refuse(&ground, "--join 1.csv", "/proc/out.csv", &[advice]);
 }
 
 #[test]
 fn only_whole_shards_of_one_sweep_are_joined() {
     let ground = Ground::new();
-    let shard = |args: &[&str], shard: &str, name: &str| {
-        made(&sweep(&ground, &[args, &["--shard", shard]].concat(), name));
-    };
-    let mut other = GRID;
-    other[3] = "motion.steps=300";
-    shard(&GRID, "1/3", "1.csv");
-    shard(&GRID, "2/3", "2.csv");
-    shard(&GRID, "3/3", "3.csv");
-    shard(&GRID, "2/4", "of-4.csv");
-    shard(&other, "3/3", "other.csv");
+    shards(&ground, GRID, 3);
+    let other = GRID.replace("steps=400", "steps=300");
+    make(&ground, &format!("{GRID} --shard 2/4"), "of-4.csv");
+    make(&ground, &format!("{other} --shard 3/3"), "other.csv");
     let text = ground.read("3.csv");
     ground.write("torn.csv", &text[..text.len() - 1]);
     let last = text.lines().last().unwrap();
     ground.write("twice.csv", &format!("{text}{last}\n"));
     ground.write("changed.csv", &text.replace(",exact,", ",rk4,"));
     for (parts, words) in [
-        (&["1.csv", "3.csv"][..], &["3 shards", "missing: 2"][..]),
-        (&["1.csv"], &["missing: 2, 3"]),
+        ("1.csv 3.csv", &["3 shards", "missing: 2"][..]),
+        ("1.csv", &["missing: 2, 3"]),
         (
-            &["1.csv", "2.csv", "3.csv", "2.csv"],
+            "1.csv 2.csv 3.csv 2.csv",
             &["2.csv", "shard 2/3", "so is another"],
         ),
         (
-            &["1.csv", "2.csv", "of-4.csv"],
+            "1.csv 2.csv of-4.csv",
             &["of-4.csv", "shard 2/4", "one of 3"],
         ),
         (
-            &["1.csv", "2.csv", "other.csv"],
+            "1.csv 2.csv other.csv",
             &["other.csv", "steps = 300", "steps = 400"],
         ),
         (
-            &["1.csv", "2.csv", "torn.csv"],
+            "1.csv 2.csv torn.csv",
             &["torn.csv", "is not row 20 of 20", "again"],
         ),
         (
-            &["1.csv", "2.csv", "twice.csv"],
+            "1.csv 2.csv twice.csv",
             &["twice.csv", "more than the rows"],
         ),
         (
-            &["1.csv", "2.csv", "changed.csv"],
+            "1.csv 2.csv changed.csv",
             &["changed.csv", "is not row 2 of 20"],
         ),
         (
-            &["1.csv", "2.csv", "none.csv"],
+            "1.csv 2.csv none.csv",
             &["none.csv", "there is no such file"],
         ),
     ] {
-        let join = [&["sweep", "--join"], parts].concat();
-        refused(&sweep(&ground, &join, "joined.csv"), 1, words);
-        assert!(!ground.file("joined.csv").exists(), "{parts:?}");
+        refuse(&ground, &format!("--join {parts}"), "joined.csv", words);
+        assert!(!ground.file("joined.csv").exists(), "{parts}");
     }
-    made(&sweep(
-        &ground,
-        &["sweep", "--join", "3.csv", "1.csv", "2.csv"],
-        "joined.csv",
-    ));
-    made(&sweep(&ground, &GRID, "whole.csv"));
+    make(&ground, "--join 3.csv 1.csv 2.csv", "joined.csv");
+    make(&ground, GRID, "whole.csv");
     assert_eq!(ground.read("joined.csv"), ground.read("whole.csv"));
 }
 
 #[test]
 fn the_shipped_sweeps_are_listed_and_printed() {
     let ground = Ground::new();
-    let list = ground.run(&["sweep"]);
-    let list = String::from_utf8(list.stdout).unwrap();
+    let list = ground.stdout("sweep");
     for name in [
         "wobble-over-time-step",
         "precession-over-momentum",
         "precession-over-tilt",
     ] {
-        assert!(list.contains(&format!("{name}: ")), "{list}");
-        let printed = ground.run(&["presets", name]);
-        ground.write("mine.toml", &String::from_utf8(printed.stdout).unwrap());
-        assert_eq!(code(&ground.run(&["check", "mine.toml"])), 0);
+        has(&list, format!("{name}: "));
+        ground.write("mine.toml", &ground.stdout(&format!("presets {name}")));
+        ground.stdout("check mine.toml");
     }
-    let man = ground.run(&["man", "sweep"]);
-    let man = String::from_utf8(man.stdout).unwrap();
-    assert!(
-        man.contains("SLURM_ARRAY_TASK_ID") && man.contains("parallel"),
-        "{man}"
+    has_all(
+        ground.stdout("man sweep"),
+        ["SLURM_ARRAY_TASK_ID", "parallel"],
     );
 }
 
 /// On a terminal there is something to see before the first row, and no rate or time left is made up.
 #[test]
 fn progress_is_shown_from_the_beginning() {
-    let ground = Ground::new();
-    let args = [
-        "sweep",
-        "cusps",
-        "--vary",
-        "start.tilt_deg=10..40:1000",
-        "--set",
-        "motion.steps=100000000",
-        "--measure=z_m",
-        "-o",
-        "slow.csv",
-    ];
-    let mut terminal = ground.open(&args);
+    let args = "cusps --vary start.tilt_deg=10..40:1000 --set motion.steps=100000000 --measure=z_m";
+    let mut terminal = Ground::new().open(&sweep(args, "slow.csv"));
     terminal.wait_for("row 0 of 1,000");
     let text = terminal.sent_text();
     assert!(!text.contains("left") && !text.contains("/s"), "{text}");
@@ -820,71 +641,14 @@ fn progress_is_shown_from_the_beginning() {
 }
 
 #[test]
-fn steps_and_seconds_of_a_push_are_not_mixed() {
-    let ground = Ground::new();
-    let vary = |more: &[&str]| {
-        let args = [&["sweep", "wobble-push", "--measure=z_m"], more].concat();
-        sweep(&ground, &args, "out.csv")
-    };
-    for (args, words) in [
-        (
-            &["--time-step=0.01", "--vary=push.0.steps=20,200"][..],
-            "--vary push.0.steps=20,200: push.0.steps: the push counts in seconds (--time-step turns steps into seconds): vary push.0.for_s",
-        ),
-        (
-            &["--time-step=0.01", "--vary=push.0.first_step=20,200"],
-            "vary push.0.from_s",
-        ),
-        (
-            &["--vary=push.0.for_s=1,2"],
-            "push.0.for_s: the push counts in steps: vary push.0.steps",
-        ),
-        (
-            &["--vary=push.0.from_s=1,2"],
-            "push.0.from_s: the push counts in steps: vary push.0.first_step",
-        ),
-    ] {
-        refused(&vary(args), 1, &[words]);
-        assert_eq!(ground.files(), [""; 0]);
-    }
-    let told = made(&vary(&["--set=motion.steps=10", "--vary=push.0.steps=2,3"]));
-    assert!(!told.contains("without readouts"), "{told}");
-    fs::remove_file(ground.file("out.csv")).unwrap();
-    let args = [
-        "--time-step=0.1",
-        "--set=motion.steps=10",
-        "--vary=push.0.for_s=2,3",
-    ];
-    let told = made(&vary(&args));
-    assert!(!told.contains("without readouts"), "{told}");
-}
-
-#[test]
 fn a_value_may_be_an_empty_text() {
     let ground = Ground::new();
-    let args = [
-        "sweep",
-        "cusps",
-        "--set=motion.steps=2",
-        "--vary",
-        "about=\"\",x,\"a,b\"",
-        "--measure=z_m",
-    ];
-    made(&sweep(&ground, &args, "out.csv"));
-    let told = made(&sweep(&ground, &args, "out.csv"));
-    assert!(told.contains("out.csv is whole, 3 rows"), "{told}");
-    let verified = ground.run(&["verify", "out.csv"]);
-    assert_eq!(code(&verified), 0, "{verified:?}");
-    for shard in ["1/2", "2/2"] {
-        let name = format!("{}.csv", &shard[..1]);
-        made(&sweep(
-            &ground,
-            &[&args[..], &["--shard", shard]].concat(),
-            &name,
-        ));
-    }
-    let join = ["sweep", "--join", "1.csv", "2.csv"];
-    made(&sweep(&ground, &join, "joined.csv"));
+    let args = "cusps --set=motion.steps=2 --vary 'about=\"\",x,\"a,b\"' --measure=z_m";
+    make(&ground, args, "out.csv");
+    has(make(&ground, args, "out.csv"), "out.csv is whole, 3 rows");
+    ground.stdout("verify out.csv");
+    shards(&ground, args, 2);
+    make(&ground, "--join 1.csv 2.csv", "joined.csv");
     assert_eq!(ground.read("joined.csv"), ground.read("out.csv"));
 }
 
@@ -892,42 +656,26 @@ fn a_value_may_be_an_empty_text() {
 #[test]
 fn another_sweep_is_told_by_the_first_key_that_differs() {
     let ground = Ground::new();
-    let about = |title: &str, shard: &str| {
-        let args = [
-            "sweep",
-            "cusps",
-            "--set=motion.steps=2",
-            &format!("--set=title={title}"),
-            "--vary=start.momentum_Js.2=10..400:4",
-            "--measure=z_m",
-            "--shard",
-            shard,
-        ];
-        made(&sweep(
-            &ground,
-            &args,
-            &format!("{}.csv", shard.replace('/', "-")),
-        ));
-    };
-    about("a top here and there", "1/2");
-    about("a top", "2/2");
-    let join = ["sweep", "--join", "1-2.csv", "2-2.csv"];
-    let output = sweep(&ground, &join, "joined.csv");
-    let words = "2-2.csv: is no shard of the sweep of 1-2.csv: its line 2 is";
-    refused(&output, 1, &[words, "a top\"", "a top here and there"]);
-    let all = ["sweep", "cusps", "--set=motion.steps=2"];
-    let vary = |values: &'static str| ["--vary", values];
-    let first = vary("start.momentum_Js.2=10,20,30");
-    made(&sweep(&ground, &[&all[..], &first].concat(), "all.csv"));
+    for (title, shard) in [("a top here and there", 1), ("a top", 2)] {
+        let args = format!(
+            "cusps --set=motion.steps=2 '--set=title={title}' --vary=start.momentum_Js.2=10..400:4 --measure=z_m --shard {shard}/2"
+        );
+        make(&ground, &args, &format!("{shard}.csv"));
+    }
+    let words = "2.csv: is no shard of the sweep of 1.csv: its line 2 is";
+    let words = [words, "a top\"", "a top here and there"];
+    refuse(&ground, "--join 1.csv 2.csv", "joined.csv", &words);
+    let vary = "cusps --set=motion.steps=2 --vary start.momentum_Js.2";
+    make(&ground, &format!("{vary}=10,20,30"), "all.csv");
     for (more, words) in [
-        (&[first[0], first[1], "--measure=steps,z_m"][..], "measure"),
+        ("=10,20,30 --measure=steps,z_m", "measure"),
         (
-            &vary("start.momentum_Js.2=10,21,30"),
+            "=10,21,30",
             "is \"# values = [10, 20, 30]\", not \"# values = [10, 21, 30]\"; --force replaces it\n",
         ),
     ] {
-        let output = sweep(&ground, &[&all[..], more].concat(), "all.csv");
-        refused(&output, 1, &[words]);
+        let output = ground.run(&sweep(&format!("{vary}{more}"), "all.csv"));
+        refused(more, &output, 1, &[words]);
         assert!(output.stderr.len() < 300, "{output:?}");
     }
 }
@@ -935,18 +683,13 @@ fn another_sweep_is_told_by_the_first_key_that_differs() {
 #[test]
 fn a_symbolic_link_is_kept_and_the_file_behind_it_replaced() {
     let ground = Ground::new();
-    let args = ["sweep", "cusps", "--measure=z_m", "--vary=motion.steps=2,3"];
+    let args = "cusps --measure=z_m --vary=motion.steps=2,3";
     fs::create_dir(ground.file("deep")).unwrap();
     ground.write("deep/mine.csv", "mine\n");
     symlink("deep/mine.csv", ground.file("link.csv")).unwrap();
-    refused(
-        &sweep(&ground, &args, "link.csv"),
-        1,
-        &["link.csv", "--force"],
-    );
-    let force = [&args[..], &["--force"]].concat();
-    let told = made(&sweep(&ground, &force, "link.csv"));
-    assert!(told.contains("gyrolab: 2 rows in link.csv\n"), "{told}");
+    refuse(&ground, args, "link.csv", &["link.csv", "--force"]);
+    let told = make(&ground, &format!("{args} --force"), "link.csv");
+    has(&told, "gyrolab: 2 rows in link.csv\n");
     assert!(ground.file("link.csv").is_symlink());
     assert_eq!(rows(&ground.read("deep/mine.csv")).len(), 3);
     assert_eq!(ground.files(), ["deep", "link.csv"]);
@@ -954,37 +697,16 @@ fn a_symbolic_link_is_kept_and_the_file_behind_it_replaced() {
 }
 
 #[test]
-fn where_it_cannot_be_written_there_is_what_to_do() {
-    let ground = Ground::new();
-    let args = [
-        "sweep",
-        "cusps",
-        "--vary",
-        "motion.steps=1,2",
-        "--measure=z_m",
-    ];
-    let advice = "name a file in a folder that exists";
-    refused(&sweep(&ground, &args, "/proc/out.csv"), 1, &[advice]);
-    // Joining writes the whole at once.
-    made(&sweep(
-        &ground,
-        &[&args[..], &["--shard", "1/1"]].concat(),
-        "whole.csv",
-    ));
-    let join = ["sweep", "--join", "whole.csv"];
-    refused(&sweep(&ground, &join, "/proc/out.csv"), 1, &[advice]);
-}
-
-#[test]
 fn more_shards_than_files_may_be_open_are_joined() {
     let ground = Ground::new();
-    let grid = "\"$G\" sweep cusps --set motion.steps=2 --vary start.momentum_Js.2=10..400:200 --measure z_m,x_m,y_m";
-    made(&ground.shell(&format!("{grid} -o whole.csv")));
+    let grid =
+        "cusps --set motion.steps=2 --vary start.momentum_Js.2=10..400:200 --measure z_m,x_m,y_m";
+    make(&ground, grid, "whole.csv");
     let whole = ground.read("whole.csv");
     let (header, all) = whole.split_at(whole.find("start.momentum_Js.2,z_m").unwrap());
     let all: Vec<&str> = all.split_inclusive('\n').collect();
     const OF: usize = 150;
-    made(&ground.shell(&format!("{grid} --shard 1/{OF} -o 1.csv")));
+    make(&ground, &format!("{grid} --shard 1/{OF}"), "1.csv");
     let first = ground.read("1.csv");
     let of_first = &first[..first.find("start.momentum_Js.2,z_m").unwrap()];
     assert_ne!(of_first, header);
@@ -996,10 +718,7 @@ fn more_shards_than_files_may_be_open_are_joined() {
     }
     assert_eq!(ground.read("1.csv"), first);
     let parts: Vec<String> = (1..=OF).map(|number| format!("{number}.csv")).collect();
-    let join = format!(
-        "ulimit -n 64; \"$G\" sweep --join {} -o joined.csv",
-        parts.join(" ")
-    );
-    made(&ground.shell(&join));
+    let join = sweep(&format!("--join {}", parts.join(" ")), "joined.csv");
+    made(&ground.shell(&format!("ulimit -n 64; \"$G\" {join}")));
     assert_eq!(ground.read("joined.csv"), whole);
 }

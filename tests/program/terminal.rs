@@ -1,7 +1,8 @@
 //! The program itself in a pty: what it does to a terminal, and how it gives it back at every end.
 
-use crate::support::ground::Ground;
+use crate::support::ground::{Ground, done, stderr};
 use crate::support::pty::{LEAVES_ALTERNATE_SCREEN, SHOWS_CURSOR, Terminal};
+use crate::support::words::has_all;
 use std::thread;
 use std::time::Duration;
 
@@ -18,14 +19,7 @@ fn it_opens_runs_and_leaves() {
 
 #[test]
 fn a_screen_is_prepared_in_one_command() {
-    let terminal = Terminal::open(&[
-        "cusps",
-        "--paused",
-        "--at",
-        "500",
-        "--set",
-        "start.tilt_deg=20",
-    ]);
+    let terminal = Terminal::open("cusps --paused --at 500 --set start.tilt_deg=20");
     terminal.wait_for("paused");
     terminal.wait_for("step 500");
     terminal.wait_for("20.000 deg");
@@ -33,7 +27,7 @@ fn a_screen_is_prepared_in_one_command() {
 
 #[test]
 fn not_a_byte_while_it_stands_still() {
-    let terminal = Terminal::open(&["--paused"]);
+    let terminal = Terminal::open("--paused");
     terminal.wait_for("q quit");
     thread::sleep(Duration::from_millis(300));
     let before = terminal.sent().len();
@@ -43,7 +37,7 @@ fn not_a_byte_while_it_stands_still() {
 
 #[test]
 fn keys_are_answered_at_top_speed() {
-    let mut terminal = Terminal::open(&["--set", "motion.steps=1000000000"]);
+    let mut terminal = Terminal::open("--set motion.steps=1000000000");
     terminal.wait_for("q quit");
     terminal.press("99+");
     terminal.wait_for("top ×");
@@ -53,7 +47,7 @@ fn keys_are_answered_at_top_speed() {
 
 #[test]
 fn it_follows_the_size_of_the_screen() {
-    let mut terminal = Terminal::open(&["--paused"]);
+    let mut terminal = Terminal::open("--paused");
     terminal.wait_for("q quit");
     for size in [(200, 50), (40, 10), (1, 1), (120, 30)] {
         terminal.resize(size);
@@ -79,7 +73,7 @@ fn a_window_of_any_size_is_drawn_within_little_memory() {
 #[test]
 fn signals_to_end_give_the_terminal_back() {
     for (signal, code) in [("TERM", 143), ("INT", 130), ("HUP", 129), ("QUIT", 131)] {
-        let mut terminal = Terminal::open(&["--fps", "60"]);
+        let mut terminal = Terminal::open("--fps 60");
         terminal.wait_for("q quit");
         terminal.signal(signal);
         assert_eq!(terminal.wait_for_end().exit_code(), code, "{signal}");
@@ -150,7 +144,7 @@ fn a_line_lost_without_a_signal_ends_it_and_keeps_the_session() {
         terminal.wait_until("the step", |terminal| terminal.step() >= Some(120));
         terminal.lose_line();
         assert_eq!(terminal.wait_for_end().exit_code(), 1);
-        let mut again = ground.open(&["--resume"]);
+        let mut again = ground.open("--resume");
         again.wait_for("q quit");
         again.wait_until("the step where it was left", |again| {
             again.step() >= Some(120)
@@ -161,7 +155,7 @@ fn a_line_lost_without_a_signal_ends_it_and_keeps_the_session() {
 
 #[test]
 fn keys_in_bulk_are_all_taken_at_once() {
-    let mut terminal = Terminal::open(&["--paused"]);
+    let mut terminal = Terminal::open("--paused");
     terminal.wait_for("q quit");
     terminal.press(&".".repeat(2000));
     terminal.wait_for_step(2000);
@@ -183,12 +177,12 @@ fn a_sequence_that_never_ends_does_not_swallow_what_follows() {
         "\u{1b}O",
     ];
     let cut_off = |begun: &str| {
-        let mut terminal = Terminal::open(&["--paused"]);
+        let mut terminal = Terminal::open("--paused");
         terminal.wait_for("q quit");
         // Ctrl-C ends the lab, however soon it follows.
         terminal.press(&format!("{begun}abc\u{3}"));
         assert_eq!(terminal.wait_for_end().exit_code(), 0, "{begun:?}");
-        let mut terminal = Terminal::open(&["--paused"]);
+        let mut terminal = Terminal::open("--paused");
         terminal.wait_for("q quit");
         // And after a while any key means what it says.
         terminal.press(begun);
@@ -205,7 +199,7 @@ fn a_sequence_that_never_ends_does_not_swallow_what_follows() {
 
 #[test]
 fn a_paste_into_a_field_is_cut_and_says_so() {
-    let mut terminal = Terminal::open(&["--paused", "--at", "10"]);
+    let mut terminal = Terminal::open("--paused --at 10");
     terminal.wait_for("q quit");
     let paste = |text: &str| format!("\u{1b}[200~{text}\u{1b}[201~");
     terminal.ask("x", "export steps 0 to 10");
@@ -258,7 +252,7 @@ fn without_threads_the_lab_opens_acts_and_ends() {
 
 #[test]
 fn nothing_is_saved_where_it_could_hang_the_lab_or_write_over_the_picture() {
-    let mut terminal = Terminal::open(&["--paused", "--at", "10"]);
+    let mut terminal = Terminal::open("--paused --at 10");
     let fifo = terminal.ground().file("fifo");
     let made = std::process::Command::new("mkfifo").arg(fifo).status();
     assert!(made.unwrap().success());
@@ -285,7 +279,7 @@ fn nothing_is_saved_where_it_could_hang_the_lab_or_write_over_the_picture() {
 #[test]
 #[ignore = "waits three seconds until the terminal is full"]
 fn a_terminal_that_takes_no_bytes_does_not_hold_up_the_end() {
-    let mut terminal = Terminal::open(&["--fps", "60", "--set", "motion.steps=1000000000"]);
+    let mut terminal = Terminal::open("--fps 60 --set motion.steps=1000000000");
     terminal.wait_for("q quit");
     terminal.press("99+");
     terminal.set_stopped(true);
@@ -297,7 +291,7 @@ fn a_terminal_that_takes_no_bytes_does_not_hold_up_the_end() {
 
 #[test]
 fn ctrl_l_draws_all_of_it_again() {
-    let mut terminal = Terminal::open(&["--paused"]);
+    let mut terminal = Terminal::open("--paused");
     terminal.wait_for("q quit");
     thread::sleep(Duration::from_millis(300));
     terminal.forget();
@@ -308,7 +302,7 @@ fn ctrl_l_draws_all_of_it_again() {
 
 #[test]
 fn ctrl_z_gives_the_terminal_back_and_resuming_draws_all_of_it() {
-    let mut terminal = Terminal::open(&["--paused"]);
+    let mut terminal = Terminal::open("--paused");
     terminal.wait_for("q quit");
     terminal.press("\u{1a}");
     terminal.has_given_the_terminal_back();
@@ -348,74 +342,54 @@ fn a_locale_without_utf8_gets_ascii() {
     }
 }
 
-fn gyrolab(args: &[&str]) -> std::process::Output {
-    Ground::new().run(args)
-}
-
 #[test]
 fn without_a_terminal_it_shows_the_picture_and_says_so() {
-    let shown = gyrolab(&["cusps"]);
-    assert!(shown.status.success());
-    let said = String::from_utf8_lossy(&shown.stderr).into_owned();
-    assert!(
-        said.contains("no terminal") && said.contains("at the end of the run"),
-        "{said}"
-    );
-    let early = gyrolab(&["cusps", "--at", "3"]);
-    let said = String::from_utf8_lossy(&early.stderr).into_owned();
-    assert!(
-        said.contains("no terminal") && said.contains("at step 3"),
-        "{said}"
-    );
-    let same = gyrolab(&["show", "cusps"]);
+    let ground = Ground::new();
+    let shown = done(ground.run("cusps"));
+    let words = ["no terminal", "at the end of the run"];
+    has_all(stderr(&shown), words);
+    let early = ground.stderr("cusps --at 3");
+    has_all(early, ["no terminal", "at step 3"]);
+    let same = ground.run("show cusps");
     assert_eq!(shown.stdout, same.stdout);
     assert!(same.stderr.is_empty());
 }
 
 #[test]
 fn show_prints_plain_text_of_the_size_asked_for() {
+    let ground = Ground::new();
     for (size, lines, columns) in [("80x24", 24, 80), ("200x50", 50, 200), ("1x1", 1, 1)] {
-        let output = gyrolab(&["show", "method-2", "--size", size]);
-        let text = String::from_utf8(output.stdout).unwrap();
+        let text = ground.stdout(&format!("show method-2 --size {size}"));
         assert_eq!(text.lines().count(), lines, "{size}");
-        assert!(
-            text.lines()
-                .all(|line| line.chars().count() <= columns && !line.contains('\u{1b}')),
-            "{size}"
-        );
+        let fits = |line: &str| line.chars().count() <= columns && !line.contains('\u{1b}');
+        assert!(text.lines().all(fits), "{size}");
     }
-    let text = String::from_utf8(gyrolab(&["show", "method-2"]).stdout).unwrap();
-    assert!(
-        text.contains("step 2300") && text.contains("0.8109"),
-        "{text}"
-    );
+    let text = ground.stdout("show method-2");
+    has_all(&text, ["step 2300", "0.8109"]);
 }
 
 #[test]
 fn what_is_wrong_on_the_command_line_is_refused_in_words() {
     for (args, code, words) in [
-        (vec!["no-such-preset"], 1, "no preset of that name"),
-        (vec!["show"], 2, "SCENARIO"),
-        (vec!["show", "cusps", "--size", "0x9"], 2, "80x24"),
-        (vec!["show", "cusps", "--size", "1000x501"], 2, "1000x500"),
-        (vec!["--scheme", "euler"], 2, "report"),
-        (vec!["--at", "x"], 2, "a whole number of steps"),
+        ("no-such-preset", 1, "no preset of that name"),
+        ("show", 2, "SCENARIO"),
+        ("show cusps --size 0x9", 2, "80x24"),
+        ("show cusps --size 1000x501", 2, "1000x500"),
+        ("--scheme euler", 2, "report"),
+        ("--at x", 2, "a whole number of steps"),
         (
-            vec!["--set", "motion.time_step_s=-1"],
+            "--set motion.time_step_s=-1",
             1,
             "must be greater than zero",
         ),
     ] {
-        let output = gyrolab(&args);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
-        assert!(said.contains(words), "{args:?}: {said}");
+        Ground::new().refused(args, code, &[words]);
     }
 }
 
 #[test]
 fn a_time_step_is_gone_through_phase_by_phase() {
-    let mut lab = Terminal::open(&["--paused"]);
+    let mut lab = Terminal::open("--paused");
     lab.wait_for("q quit");
     lab.ask("v", "No time step has been taken yet");
     lab.ask(".", "step 1: 1 of 7, inertia");

@@ -1,6 +1,16 @@
 //! `gyrolab run` with chosen rows and columns, and `gyrolab verify`.
 
-use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
+use crate::support::ground::{Ground, code, done, failed, stdout};
+use crate::support::words::{has, has_all};
+
+/// What is said of `a.csv` with the content `text`, which must be refused.
+#[track_caller]
+fn differs(ground: &Ground, text: &str) -> String {
+    ground.write("a.csv", text);
+    let output = ground.run("verify a.csv");
+    failed(&output, &[]);
+    stdout(&output).to_owned()
+}
 
 #[test]
 fn exports_of_every_kind_are_verified() {
@@ -18,34 +28,25 @@ fn exports_of_every_kind_are_verified() {
         let run = format!("$G run wobble-push --steps 40 {options} -o {name}");
         done(ground.shell(&run));
     }
-    done(ground.run(&["compare", "cusps", "--duration", "0.1", "-o", "errors.csv"]));
+    done(ground.run("compare cusps --duration 0.1 -o errors.csv"));
     let output = done(ground.shell("$G verify *.csv"));
     let told = stdout(&output);
-    for words in [
-        "whole.csv: the same: all 41 rows, computed again\n    Do not believe this run: ",
-        "part.csv: the same: all 4 rows",
-        "spin.csv: the same: all 41 rows",
-        "excel.csv: the same: all 41 rows",
-        "errors.csv: the same: all 16 rows",
-        "ns_per_step and wall_s are times by the clock",
-    ] {
-        assert!(told.contains(words), "{words}: {told}");
-    }
+    has_all(
+        &told,
+        [
+            "whole.csv: the same: all 41 rows, computed again\n    Do not believe this run: ",
+            "part.csv: the same: all 4 rows",
+            "spin.csv: the same: all 41 rows",
+            "excel.csv: the same: all 41 rows",
+            "errors.csv: the same: all 16 rows",
+            "ns_per_step and wall_s are times by the clock",
+        ],
+    );
     // The columns on request say what the readouts say at the end.
-    let last = |name: &str| ground.read(name).lines().last().unwrap().to_owned();
-    let run = [
-        "run",
-        "wobble-push",
-        "--steps",
-        "40",
-        "--scheme",
-        "strang",
-        "--json",
-    ];
-    let json = done(ground.run(&run));
-    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let json = ground.json("run wobble-push --steps 40 --scheme strang --json");
     let ends = [&json["t_s"], &json["spin_rpm"], &json["L_axle_Js"]];
-    let last = last("spin.csv");
+    let spins = ground.read("spin.csv");
+    let last = spins.lines().last().unwrap();
     let cells = last.split(',').map(|cell| cell.parse::<f64>().unwrap());
     assert!(
         cells.eq(ends.map(|end| end.as_f64().unwrap())),
@@ -57,82 +58,64 @@ fn exports_of_every_kind_are_verified() {
     assert!(excel.contains("\n40;4,0;"));
     // Each of them runs again.
     for name in ["part.csv", "points.csv", "excel.csv"] {
-        done(ground.run(&["run", name, "-o", "again.csv", "--force"]));
-        done(ground.run(&["verify", "again.csv"]));
+        done(ground.run(&format!("run {name} -o again.csv --force")));
+        done(ground.run("verify again.csv"));
     }
     let whole = ground.read("whole.csv");
-    done(ground.run(&["run", "part.csv", "-o", "again.csv", "--force"]));
+    done(ground.run("run part.csv -o again.csv --force"));
     assert_eq!(ground.read("again.csv"), whole);
 }
 
 #[test]
 fn what_differs_is_told_with_exit_code_1() {
     let ground = Ground::new();
-    done(ground.run(&["run", "method-2", "--steps", "40", "-o", "a.csv"]));
+    done(ground.run("run method-2 --steps 40 -o a.csv"));
     let good = ground.read("a.csv");
     ground.write("a.csv", &good.replace("\n12,1.2", "\n12,1.3"));
     ground.write("b.csv", "nothing\n");
     ground.write("c.csv", &good);
-    let output = ground.run(&["verify", "a.csv", "b.csv", "c.csv", "d.csv"]);
-    assert_eq!(code(&output), 1);
-    let told = stdout(&output);
-    assert!(told.contains(", the row of step 12: t_s is 1.3"), "{told}");
-    assert!(told.contains("c.csv: the same"), "{told}");
-    let said = stderr(&output);
-    for words in [
-        "b.csv: is no CSV that gyrolab wrote",
-        "d.csv: there is no such file",
-    ] {
-        assert!(said.contains(words), "{said}");
-    }
-    assert_eq!(code(&ground.run(&["verify"])), 2);
-    assert_eq!(code(&ground.run(&["verify", "/"])), 1);
+    let output = ground.run("verify a.csv b.csv c.csv d.csv");
+    let words = "b.csv: is no CSV that gyrolab wrote";
+    failed(&output, &[words, "d.csv: there is no such file"]);
+    let words = ", the row of step 12: t_s is 1.3";
+    has_all(stdout(&output), [words, "c.csv: the same"]);
+    ground.refused("verify", 2, &[]);
+    ground.refused("verify /", 1, &[]);
 }
 
 #[test]
 fn what_stands_behind_the_last_row_is_told_even_if_it_is_empty() {
     let ground = Ground::new();
-    done(ground.run(&["run", "method-2", "--steps", "4", "-o", "a.csv"]));
+    done(ground.run("run method-2 --steps 4 -o a.csv"));
     let good = ground.read("a.csv");
     for more in ["\n", "\n\n\n", " \n", "x"] {
-        ground.write("a.csv", &format!("{good}{more}"));
-        let output = ground.run(&["verify", "a.csv"]);
-        assert_eq!(code(&output), 1, "{more:?}");
-        let told = stdout(&output);
-        assert!(told.contains("have come to their end"), "{told}");
+        let told = differs(&ground, &format!("{good}{more}"));
+        has(&told, "have come to their end");
     }
 }
 
 #[test]
 fn a_long_run_that_differs_is_not_played_on() {
     let ground = Ground::new();
-    done(ground.run(&["run", "method-2", "--steps", "3", "-o", "a.csv"]));
+    done(ground.run("run method-2 --steps 3 -o a.csv"));
     let good = ground.read("a.csv");
     let long = good.replace("# steps = 3\n", "# steps = 2000000000\n");
-    ground.write("a.csv", &long);
-    let output = ground.run(&["verify", "a.csv"]);
-    assert_eq!(code(&output), 1);
-    let told = stdout(&output);
-    for words in ["it is cut off", "not judged: 19999"] {
-        assert!(told.contains(words), "{told}");
-    }
+    let told = differs(&ground, &long);
+    has_all(&told, ["it is cut off", "not judged: 19999"]);
 }
 
 #[test]
 fn a_header_that_was_changed_by_hand_is_told_as_such() {
     let ground = Ground::new();
-    done(ground.run(&["run", "cusps", "--steps", "5", "-o", "a.csv"]));
+    done(ground.run("run cusps --steps 5 -o a.csv"));
     let good = ground.read("a.csv");
     let changed = good.replace("[0.0, 0.0, 60.0]", "[0.0, 0.0, 61.0]");
     assert_ne!(good, changed);
-    ground.write("a.csv", &changed);
-    let output = ground.run(&["verify", "a.csv"]);
-    let told = stdout(&output);
-    assert!(
-        told.contains("its rows are not those of the scenario in its header"),
-        "{told}"
+    let words = "its rows are not those of the scenario in its header";
+    has_all(
+        differs(&ground, &changed),
+        [words, "the row of step 0: Ly_Js is "],
     );
-    assert!(told.contains("the row of step 0: Ly_Js is "), "{told}");
 }
 
 #[test]
@@ -151,61 +134,47 @@ fn ctrl_c_ends_a_verification() {
 #[test]
 fn rows_and_columns_that_cannot_be_are_refused() {
     let ground = Ground::new();
-    let refused = |options: &str, exit: i32, words: &str| {
-        let output = ground.shell(&format!("$G run method-2 {options}"));
-        assert_eq!(code(&output), exit, "{options}");
-        assert!(stderr(&output).contains(words), "{}", stderr(&output));
-    };
-    refused(
-        "--columns z,t_s -o x.csv",
-        2,
-        "--columns: no column named z: did you mean z_m?",
-    );
-    refused(
-        "--from 5 --to 4 -o x.csv",
-        2,
-        "--to: 4 s is before the first row's time, 5 s",
-    );
-    refused("--from -1 -o x.csv", 2, "must be a time in seconds");
-    refused("--columns z_m", 2, "--output <FILE>");
-    refused(
-        "--from 500 -o x.csv",
-        1,
-        "no row is left by --from: the run ends at 230 s",
-    );
-    refused(
-        "--from 5.01 --to 5.02 -o x.csv",
-        1,
-        "no row lies between --from and --to",
-    );
+    for (options, exit, words) in [
+        (
+            "--columns z,t_s -o x.csv",
+            2,
+            "--columns: no column named z: did you mean z_m?",
+        ),
+        (
+            "--from 5 --to 4 -o x.csv",
+            2,
+            "--to: 4 s is before the first row's time, 5 s",
+        ),
+        ("--from -1 -o x.csv", 2, "must be a time in seconds"),
+        ("--columns z_m", 2, "--output <FILE>"),
+        (
+            "--from 500 -o x.csv",
+            1,
+            "no row is left by --from: the run ends at 230 s",
+        ),
+        (
+            "--from 5.01 --to 5.02 -o x.csv",
+            1,
+            "no row lies between --from and --to",
+        ),
+    ] {
+        ground.refused(&format!("run method-2 {options}"), exit, &[words]);
+    }
     assert!(!ground.file("x.csv").exists());
 }
 
 #[test]
 fn a_comparison_is_given_as_json() {
     let ground = Ground::new();
-    let args = [
-        "compare",
-        "steady-slow",
-        "--duration",
-        "0.2",
-        "--schemes",
-        "report,exact",
-        "--json",
-    ];
-    let output = done(ground.run(&args));
-    let table: serde_json::Value = serde_json::from_str(stdout(&output)).unwrap();
+    let table = ground.json("compare steady-slow --duration 0.2 --schemes report,exact --json");
     assert_eq!(table["energy_drift_unit"], "M g |c|");
     let rows = table["rows"].as_array().unwrap();
     assert_eq!(rows.len(), 8);
     assert!(rows[1]["order"].is_number() && rows[0]["order"].is_null());
     assert!(rows.iter().all(|row| row["error_m"].is_number()));
-    assert_eq!(
-        code(&ground.run(&["compare", "cusps", "--json", "-o", "-"])),
-        2
-    );
-    let unwritable = ground.run(&["compare", "cusps", "--json", "-o", "no/where.csv"]);
-    failed(&unwritable, &["there is no folder no"]);
+    ground.refused("compare cusps --json -o -", 2, &[]);
+    let words = "there is no folder no";
+    ground.refused("compare cusps --json -o no/where.csv", 1, &[words]);
 }
 
 /// A sweep of four runs over a number and a text.
@@ -219,12 +188,7 @@ fn small_sweep(ground: &Ground) -> String {
 fn the_field_of_a_sweep_that_differs_is_told() {
     let ground = Ground::new();
     let good = small_sweep(&ground);
-    let told = |text: &str| {
-        ground.write("a.csv", text);
-        let output = ground.run(&["verify", "a.csv"]);
-        assert_eq!(code(&output), 1);
-        stdout(&output).to_owned()
-    };
+    let told = |text: &str| differs(&ground, text);
     let begin = good.find("\n5,report,").unwrap() + "\n5,report,".len();
     let line = good[..begin].lines().count();
     let row = &good[begin..];
@@ -237,11 +201,9 @@ fn the_field_of_a_sweep_that_differs_is_told() {
         )
     );
     let columns = told(&good.replace(",z_m,path\n", ",path,z_m\n"));
-    assert!(
-        columns.contains(
-            " is \"motion.steps,motion.scheme,path,z_m\", computed \"motion.steps,motion.scheme,z_m,path\""
-        ),
-        "{columns}"
+    has(
+        &columns,
+        " is \"motion.steps,motion.scheme,path,z_m\", computed \"motion.steps,motion.scheme,z_m,path\"",
     );
     // What would steer the terminal is shown as an escape, and cut short, wherever it stands.
     let steering = format!("\u{1b}]0;title\u{7}{}", "x".repeat(100_000));
@@ -265,32 +227,22 @@ fn the_field_of_a_sweep_that_differs_is_told() {
 fn ends_of_lines_are_told_of_a_sweep_as_of_a_run() {
     let ground = Ground::new();
     let sweep = small_sweep(&ground);
-    done(ground.run(&["run", "cusps", "--steps", "4", "-o", "run.csv"]));
+    done(ground.run("run cusps --steps 4 -o run.csv"));
     let run = ground.read("run.csv");
     for good in [&run, &sweep] {
-        let told = |text: &str, code_wanted: i32| {
-            ground.write("a.csv", text);
-            let output = ground.run(&["verify", "a.csv"]);
-            assert_eq!(code(&output), code_wanted, "{}", stderr(&output));
-            stdout(&output).to_owned()
-        };
-        let dos = told(&good.replace('\n', "\r\n"), 1);
-        assert!(
-            dos.contains("every row is the same, but the lines end in CR LF from line 1 on"),
-            "{dos}"
-        );
-        let marked = format!("\u{feff}{good}");
-        assert!(told(&marked, 0).contains("the same: all "));
-        let cut = told(good.trim_end(), 1);
-        assert!(
-            cut.contains(", the last one, is cut off before its end"),
-            "{cut}"
-        );
-        let half = &good[..good.len() - 4];
-        assert!(told(half, 1).contains("the last one, is cut off before its end"));
+        let cut = "the last one, is cut off before its end";
         let without = &good[..=good.trim_end().rfind('\n').unwrap()];
-        assert!(told(without, 1).contains("it is cut off"));
-        let longer = format!("{good}\n");
-        assert!(told(&longer, 1).contains("have come to their end"));
+        let of_dos = "every row is the same, but the lines end in CR LF from line 1 on";
+        for (text, words) in [
+            (good.replace('\n', "\r\n").as_str(), of_dos),
+            (good.trim_end(), &format!(", {cut}")),
+            (&good[..good.len() - 4], cut),
+            (without, "it is cut off"),
+            (&format!("{good}\n"), "have come to their end"),
+        ] {
+            has(differs(&ground, text), words);
+        }
+        ground.write("a.csv", &format!("\u{feff}{good}"));
+        has(ground.stdout("verify a.csv"), "the same: all ");
     }
 }

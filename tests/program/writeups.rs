@@ -1,6 +1,8 @@
 //! `gyrolab writeup`: what is in the folder, that the same run gives the same bytes, and that no file is lost.
 
-use crate::support::ground::{Ground, code, done, failed, names, stderr};
+use crate::support::ground::{Ground, code, done, failed, names};
+use crate::support::pty::signal;
+use crate::support::words::{has, has_all, has_no};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
@@ -27,23 +29,14 @@ fn row_of(page: &str, readout: &str) -> Vec<String> {
 fn the_folder_says_what_was_run_and_makes_it_again() {
     let lab = Ground::new();
     let set = "push.0.force_N=[0,0,-50]";
-    done(lab.run(&[
-        "writeup",
-        "wobble-push",
-        "--set",
-        set,
-        "--steps",
-        "700",
-        "-o",
-        "w",
-    ]));
-    done(lab.run(&["writeup", "w/run.toml", "-o", "again"]));
+    done(lab.run(&format!("writeup wobble-push --set {set} --steps 700 -o w")));
+    done(lab.run("writeup w/run.toml -o again"));
     assert_eq!(
         contents(&lab.file("w")),
         contents(&lab.file("again")),
         "the run file of a write-up makes the same write-up"
     );
-    done(lab.run(&["run", "w/run.toml", "-o", "run.csv"]));
+    done(lab.run("run w/run.toml -o run.csv"));
     assert_eq!(lab.read("w/run.csv"), lab.read("run.csv"));
     let page = lab.read("w/README.md");
     for name in ["traces", "swings", "above", "3d"] {
@@ -53,33 +46,33 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
         let pdf = fs::read(lab.file("w").join(name).with_extension("pdf")).unwrap();
         assert!(pdf.starts_with(b"%PDF-"), "{name}");
     }
-    for words in [
-        "# The wobble push",
-        "force_N = [0.0, 0.0, -50.0]\nfirst_step = 1\nsteps = 200",
-        "700 of 0.1 s",
-        "Do not believe this run",
-        "\n\nSource: report, section 4, the extra force on the axle top; changed since\n\n",
-        "| tilt swing since 20 s (`measured_tilt_swing_deg`) |",
-        "| nutation period (strobed) since 20 s (`measured_nutation_period_s`) |",
-        "; strobed: the time step is too long to see the nutation, and ",
-        "as the steps show it; since the forces last changed, at t = 20 s\n",
-        // The line of the preset speaks of another run.
-        "\n\nDiffers from the preset wobble-push: other pushes\n\n",
-        "\n\nOf the preset wobble-push as it was: ",
-    ] {
-        assert!(page.contains(words), "{words}: {page}");
-    }
+    has_all(
+        &page,
+        [
+            "# The wobble push",
+            "force_N = [0.0, 0.0, -50.0]\nfirst_step = 1\nsteps = 200",
+            "700 of 0.1 s",
+            "Do not believe this run",
+            "\n\nSource: report, section 4, the extra force on the axle top; changed since\n\n",
+            "| tilt swing since 20 s (`measured_tilt_swing_deg`) |",
+            "| nutation period (strobed) since 20 s (`measured_nutation_period_s`) |",
+            "; strobed: the time step is too long to see the nutation, and ",
+            "as the steps show it; since the forces last changed, at t = 20 s\n",
+            // The line of the preset speaks of another run.
+            "\n\nDiffers from the preset wobble-push: other pushes\n\n",
+            "\n\nOf the preset wobble-push as it was: ",
+        ],
+    );
     let own = "23 % lower to 14 % higher";
     assert!(!page.contains(own), "{page}");
-    done(lab.run(&["writeup", "wobble-push", "--steps", "20", "-o", "own"]));
+    done(lab.run("writeup wobble-push --steps 20 -o own"));
     assert!(lab.read("own/README.md").contains(own));
 }
 
 #[test]
 fn measured_data_stand_beside_the_run() {
     let lab = Ground::new();
-    let run = ["method-2", "--steps", "40"];
-    done(lab.run(&[&["run"], &run[..], &["-o", "run.csv", "--columns", "x_m"]].concat()));
+    done(lab.run("run method-2 --steps 40 -o run.csv --columns x_m"));
     let csv = lab.read("run.csv");
     let x: Vec<f64> = csv.lines().filter_map(|line| line.parse().ok()).collect();
     // Two uncertainties off, and one value after the run, which ends at 4 s.
@@ -89,39 +82,32 @@ fn measured_data_stand_beside_the_run() {
         x[20] - 0.02
     );
     lab.write("bench.csv", &data);
-    let measured = ["--measured", "bench.csv", "-o", "w"];
-    done(lab.run(&[&["writeup"], &run[..], &measured].concat()));
+    done(lab.run("writeup method-2 --steps 40 --measured bench.csv -o w"));
     assert_eq!(lab.read("w/bench.csv"), data);
     let page = lab.read("w/README.md");
-    for words in [
-        "`bench.csv` holds 3 measured values. The run ends at 4 s, before 1 of them",
-        "| `x_m` | 2 of 3 | 8 | 2 | 2 at 1 s | n/a |",
-        "chi^2 of all is 8 at 2 measured values",
-        "](measured.svg)",
-        "](residuals.svg)",
-        "gyrolab writeup run.toml --measured bench.csv -o again",
-    ] {
-        assert!(page.contains(words), "{words}: {page}");
-    }
+    has_all(
+        &page,
+        [
+            "`bench.csv` holds 3 measured values. The run ends at 4 s, before 1 of them",
+            "| `x_m` | 2 of 3 | 8 | 2 | 2 at 1 s | n/a |",
+            "chi^2 of all is 8 at 2 measured values",
+            "](measured.svg)",
+            "](residuals.svg)",
+            "gyrolab writeup run.toml --measured bench.csv -o again",
+        ],
+    );
     let json: serde_json::Value = serde_json::from_str(&lab.read("w/readouts.json")).unwrap();
     let told = &json["measured_data"];
-    assert!(
-        (told["chi_squared"].as_f64().unwrap() - 8.0).abs() < 1e-9,
-        "{told}"
-    );
-    assert_eq!(
-        (&told["file"], &told["points_in_run"]),
-        (&"bench.csv".into(), &2.into())
-    );
+    let chi_squared = told["chi_squared"].as_f64().unwrap();
+    assert!((chi_squared - 8.0).abs() < 1e-9, "{told}");
+    assert_eq!(told["file"], "bench.csv");
+    assert_eq!(told["points_in_run"], 2);
     assert_eq!(told["columns"][0]["name"], "x_m");
-    assert!(
-        lab.read("w/measured.svg")
-            .contains("measured: bench (2 points)")
-    );
+    has(lab.read("w/measured.svg"), "measured: bench (2 points)");
     done(lab.shell("cd w && \"$G\" writeup run.toml --measured bench.csv -o ../again"));
     assert_eq!(contents(&lab.file("w")), contents(&lab.file("again")));
     // What has no place beside a run is refused before there is a folder.
-    let refused = |data: &str| lab.run(&["writeup", "method-2", "--measured", data, "-o", "no"]);
+    let refused = |data: &str| lab.run(&format!("writeup method-2 --measured {data} -o no"));
     failed(&refused("heidelberg-precession"), &["is a table of runs"]);
     failed(&refused("nothing.csv"), &["there is no such file"]);
     assert!(!lab.files().contains(&"no".to_owned()));
@@ -130,10 +116,9 @@ fn measured_data_stand_beside_the_run() {
 #[test]
 fn the_numbers_of_the_page_are_those_of_the_summary() {
     let lab = Ground::new();
-    done(lab.run(&["writeup", "cusps", "-o", "w"]));
+    done(lab.run("writeup cusps -o w"));
     let page = lab.read("w/README.md");
-    let json = done(lab.run(&["run", "cusps", "--json"]));
-    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let json = lab.json("run cusps --json");
     let number = |name: &str| json[name].as_f64().unwrap();
     let row = row_of(&page, "measured_precession_rad_per_s");
     let (digits, error) = row[2].split_once('(').unwrap();
@@ -164,47 +149,31 @@ fn the_numbers_of_the_page_are_those_of_the_summary() {
 #[test]
 fn what_a_user_wrote_is_not_said_to_be_a_presets() {
     let lab = Ground::new();
-    let cusps = String::from_utf8(done(lab.run(&["presets", "cusps"])).stdout).unwrap();
+    let cusps = lab.stdout("presets cusps");
     let line = |key: &str| {
         let begin = format!("{key} = ");
-        let found = cusps.lines().find(|line| line.starts_with(&begin));
-        found
-            .unwrap_or_else(|| panic!("{key} in {cusps}"))
-            .to_owned()
+        cusps.lines().find(|line| line.starts_with(&begin)).unwrap()
     };
     // The look_at line is left as it was, which is now of another motion.
     let mine = cusps
-        .replace(&line("source"), "source = \"my homework\"")
-        .replace(&line("tilt_deg"), "tilt_deg = 50");
+        .replace(line("source"), "source = \"my homework\"")
+        .replace(line("tilt_deg"), "tilt_deg = 50");
     let (before, about) = mine.split_once("about = \"\"\"").unwrap();
     let (_, after) = about.split_once("\"\"\"").unwrap();
     lab.write("mine.toml", &format!("{before}about = \"My top.\"{after}"));
-    let checked = done(lab.run(&["check", "mine.toml"]));
-    let told = String::from_utf8(checked.stdout).unwrap();
-    assert!(
-        told.contains("this one differs from the preset cusps: start.tilt_deg 50, not 30"),
-        "{told}"
-    );
-    done(lab.run(&["writeup", "mine.toml", "--steps", "50", "-o", "w"]));
+    let words = "this one differs from the preset cusps: start.tilt_deg 50, not 30";
+    has(lab.stdout("check mine.toml"), words);
+    done(lab.run("writeup mine.toml --steps 50 -o w"));
     let page = lab.read("w/README.md");
     assert!(page.contains("\n\nMy top.\n\n"), "{page}");
     assert!(page.contains("\n\nSource: my homework\n\n"), "{page}");
     assert!(page.contains("Differs from the preset cusps: "), "{page}");
     // A new look_at line alone: the preset's other words are of another motion all the same.
-    let set = [
-        "--set",
-        "view.look_at=My line.",
-        "--set",
-        "start.tilt_deg=50",
-    ];
-    let words = ["writeup", "cusps", "--steps", "50", "-o", "line"];
-    done(lab.run(&[&words[..], &set[..]].concat()));
+    let set = "--set 'view.look_at=My line.' --set start.tilt_deg=50";
+    done(lab.run(&format!("writeup cusps --steps 50 -o line {set}")));
     let page = lab.read("line/README.md");
     assert!(page.contains("\n\nMy line.\n\n"), "{page}");
-    assert!(
-        page.contains("\n\nOf the preset cusps as it was: "),
-        "{page}"
-    );
+    has(&page, "\n\nOf the preset cusps as it was: ");
 }
 
 /// Least and greatest values are of the whole run, and so is what theory says of them; the motion since a push has ended is
@@ -212,8 +181,7 @@ fn what_a_user_wrote_is_not_said_to_be_a_presets() {
 #[test]
 fn theory_of_the_extremes_is_of_the_whole_run() {
     let lab = Ground::new();
-    let run = ["writeup", "wobble-push", "--time-step", "0.01", "-o", "w"];
-    done(lab.run(&run));
+    done(lab.run("writeup wobble-push --time-step 0.01 -o w"));
     let page = lab.read("w/README.md");
     // Of the steps of `gyrolab run wobble-push --scheme exact --time-step 0.0005`.
     for (name, theory) in [
@@ -226,31 +194,25 @@ fn theory_of_the_extremes_is_of_the_whole_run() {
         let number = |place: usize| row[place].parse::<f64>().unwrap();
         assert!((number(3) - theory).abs() < 2e-6, "{row:?}");
         let less = number(2) - number(3);
-        assert!(
-            (number(4) - less).abs() < 0.02 * less.abs() + 2e-6,
-            "{row:?}"
-        );
+        let off = (number(4) - less).abs();
+        assert!(off < 0.02 * less.abs() + 2e-6, "{row:?}");
     }
-    assert!(
-        page.contains("![Tilt from 20 s, when the forces last changed, to 20."),
-        "{page}"
-    );
+    let words = "![Tilt from 20 s, when the forces last changed, to 20.";
+    has(&page, words);
 }
 
 #[test]
 fn a_folder_in_use_is_left_alone_unless_forced() {
     let lab = Ground::new();
-    let args = ["writeup", "method-1", "--steps", "20", "-o", "w"];
+    let args = "writeup method-1 --steps 20 -o w";
     fs::create_dir(lab.file("w")).unwrap();
-    done(lab.run(&args)); // an empty one may be used
+    done(lab.run(args)); // an empty one may be used
     lab.write("w/README.md", "mine");
     lab.write("w/notes.txt", "mine too");
-    failed(&lab.run(&args), &["w holds files", "--force"]);
+    lab.refused(args, 1, &["w holds files", "--force"]);
     assert_eq!(lab.read("w/README.md"), "mine");
     lab.write("w/swings.svg", "of another run");
-    let forced = [&args[..], &["--force"]].concat();
-    let told = done(lab.run(&forced)).stderr;
-    let told = String::from_utf8_lossy(&told);
+    let told = lab.stderr(&format!("{args} --force"));
     assert!(lab.read("w/README.md").starts_with("# Method 1"));
     assert_eq!(lab.read("w/notes.txt"), "mine too");
     // What the new page does not speak of is named.
@@ -262,11 +224,11 @@ fn a_folder_in_use_is_left_alone_unless_forced() {
 #[test]
 fn what_cannot_be_written_is_refused_with_its_reason() {
     let lab = Ground::new();
-    let write_to = |folder: &str| lab.run(&["writeup", "method-1", "--steps", "20", "-o", folder]);
+    let write_to = |folder: &str| lab.run(&format!("writeup method-1 --steps 20 -o {folder}"));
     lab.write("file", "");
     failed(&write_to("file"), &["file is not a folder"]);
     failed(&write_to("none/w"), &["there is no folder none"]);
-    failed(&lab.run(&["writeup", "nonsense", "-o", "w"]), &["nonsense"]);
+    failed(&lab.run("writeup nonsense -o w"), &["nonsense"]);
     fs::create_dir(lab.file("closed")).unwrap();
     let mode = |mode| fs::set_permissions(lab.file("closed"), fs::Permissions::from_mode(mode));
     mode(0o500).unwrap();
@@ -282,15 +244,14 @@ fn what_cannot_be_written_is_refused_with_its_reason() {
 #[test]
 fn a_signal_leaves_no_folder() {
     let lab = Ground::new();
-    let long = ["writeup", "method-2", "--steps", "100000000", "-o", "w"];
-    let mut running = lab.command(&long).spawn().unwrap();
+    let mut command = lab.command("writeup method-2 --steps 100000000 -o w");
+    let mut running = command.spawn().unwrap();
     let begin = Instant::now();
     while lab.files().is_empty() {
         assert!(begin.elapsed() < Duration::from_secs(60), "it never began");
         thread::sleep(Duration::from_millis(5));
     }
-    let pid = rustix::process::Pid::from_child(&running);
-    rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
+    signal(running.id(), "TERM");
     assert_eq!(running.wait().unwrap().code(), Some(130));
     assert_eq!(lab.files(), [""; 0]);
 }
@@ -299,53 +260,41 @@ fn a_signal_leaves_no_folder() {
 fn a_run_that_breaks_down_is_written_up_to_there() {
     let lab = Ground::new();
     let push = "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}";
-    let output = lab.run(&["writeup", "method-2", "--set", push, "-o", "w"]);
+    let output = lab.run(&format!("writeup method-2 --set '{push}' -o w"));
     failed(&output, &["no longer finite at step 25"]);
     let csv = lab.read("w/run.csv");
     assert!(csv.lines().last().unwrap().starts_with("24,"), "{csv}");
     let page = lab.read("w/README.md");
-    assert!(
-        page.contains("The numbers are no longer finite at step 25"),
-        "{page}"
-    );
+    has(&page, "The numbers are no longer finite at step 25");
 }
 
 #[test]
 fn a_figure_that_is_covered_says_so_and_names_a_stretch_that_is_not() {
     let lab = Ground::new();
-    done(lab.run(&["writeup", "method-1", "-o", "w"]));
+    done(lab.run("writeup method-1 -o w"));
     let page = lab.read("w/README.md");
     let begin = "In this figure, on 86 mm about 203 swings cover the paper, ";
     let remark = page.lines().find(|line| line.starts_with(begin)).unwrap();
     // The command is one that works.
     let command = remark.split('`').find(|part| part.starts_with("gyrolab "));
-    let words: Vec<_> = command.unwrap().split(' ').skip(1).collect();
-    let args: Vec<_> = words
-        .iter()
-        .map(|&word| match word {
-            "run.toml" => "w/run.toml",
-            word => word,
-        })
-        .collect();
-    let output = done(lab.run(&args));
-    let said = stderr(&output);
-    assert!(!said.contains("solid black"), "{said}");
+    let args = command.unwrap().strip_prefix("gyrolab ").unwrap();
+    let said = lab.stderr(&args.replace("run.toml", "w/run.toml"));
+    has_no(said, "solid black");
     assert!(lab.file("part.pdf").exists());
 }
 
 #[test]
 fn a_run_of_the_exact_motion_is_said_to_be_it() {
     let lab = Ground::new();
-    done(lab.run(&["writeup", "heidelberg", "--steps", "300", "-o", "w"]));
+    done(lab.run("writeup heidelberg --steps 300 -o w"));
     let page = lab.read("w/README.md");
-    for words in [
-        "The numbers hold: the run is the exact motion itself.",
-        "x, y and z of the traced point over time; the run is the exact motion itself",
-    ] {
-        assert!(page.contains(words), "{words}: {page}");
-    }
-    assert!(
-        !page.contains("dashed") && !page.contains("cover the paper"),
-        "{page}"
+    has_all(
+        &page,
+        [
+            "The numbers hold: the run is the exact motion itself.",
+            "x, y and z of the traced point over time; the run is the exact motion itself",
+        ],
     );
+    has_no(&page, "dashed");
+    has_no(&page, "cover the paper");
 }

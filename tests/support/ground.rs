@@ -9,6 +9,41 @@ use tempfile::TempDir;
 pub const GYROLAB: &str = env!("CARGO_BIN_EXE_gyrolab");
 pub(super) const VARIABLES: [(&str, &str); 2] = [("TERM", "xterm"), ("LANG", "C.UTF-8")];
 
+/// Arguments of the program: a list, or a line as one types it in a shell.
+pub trait Args {
+    fn list(self) -> Vec<String>;
+}
+
+impl Args for &str {
+    fn list(self) -> Vec<String> {
+        shlex::split(self).unwrap()
+    }
+}
+
+impl Args for &String {
+    fn list(self) -> Vec<String> {
+        self.as_str().list()
+    }
+}
+
+impl Args for &[&str] {
+    fn list(self) -> Vec<String> {
+        self.iter().map(ToString::to_string).collect()
+    }
+}
+
+impl<const N: usize> Args for &[&str; N] {
+    fn list(self) -> Vec<String> {
+        self[..].list()
+    }
+}
+
+impl Args for &Vec<&str> {
+    fn list(self) -> Vec<String> {
+        self[..].list()
+    }
+}
+
 /// A temporary working directory for the program, with a subfolder for its sessions. It is removed with its last clone.
 #[derive(Clone)]
 pub struct Ground(Arc<TempDir>);
@@ -70,15 +105,45 @@ impl Ground {
     }
 
     /// A command that starts the program without a terminal.
-    pub fn command(&self, args: &[&str]) -> Command {
+    pub fn command(&self, args: impl Args) -> Command {
         let mut command = self.in_it(GYROLAB);
-        command.args(args);
+        command.args(args.list());
         command
     }
 
     /// Runs the program without a terminal, and returns its output.
-    pub fn run(&self, args: &[&str]) -> Output {
+    pub fn run(&self, args: impl Args) -> Output {
         self.command(args).output().unwrap()
+    }
+
+    /// Runs the program, which must succeed, and returns its stdout.
+    #[track_caller]
+    pub fn stdout(&self, args: impl Args) -> String {
+        stdout(&done(self.run(args))).to_owned()
+    }
+
+    /// Runs the program, which must succeed, and returns its stderr.
+    #[track_caller]
+    pub fn stderr(&self, args: impl Args) -> String {
+        stderr(&done(self.run(args))).to_owned()
+    }
+
+    /// Runs the program, which must succeed, and reads its stdout as JSON.
+    #[track_caller]
+    pub fn json(&self, args: impl Args) -> serde_json::Value {
+        serde_json::from_str(&self.stdout(args)).unwrap()
+    }
+
+    /// Asserts that the program ends with the exit code `with`, without a panic, and that its message contains all `words`.
+    #[track_caller]
+    pub fn refused(&self, args: &str, with: i32, words: &[&str]) {
+        refused(args, &self.run(args), with, words);
+    }
+
+    /// Makes a named pipe.
+    pub fn make_fifo(&self, name: &str) {
+        let made = Command::new("mkfifo").arg(self.file(name)).status();
+        assert!(made.unwrap().success());
     }
 
     /// Runs `script` in a shell that knows the program as `$G`; its own exit code is the program's.
@@ -135,10 +200,16 @@ pub fn done(output: Output) -> Output {
 /// Asserts that the program failed with exit code 1 and without a panic, and that its message contains all `words`.
 #[track_caller]
 pub fn failed(output: &Output, words: &[&str]) {
-    assert_eq!(code(output), 1, "{output:?}");
-    let said = stderr(output);
+    refused("", output, 1, words);
+}
+
+/// The same with the exit code `with`; `what` names the case.
+#[track_caller]
+pub fn refused(what: &str, output: &Output, with: i32, words: &[&str]) {
+    assert_eq!(code(output), with, "{what}: {output:?}");
+    let said = String::from_utf8_lossy(&output.stderr);
     for word in words {
-        assert!(said.contains(word), "\"{word}\" is not in: {said}");
+        assert!(said.contains(word), "{what}: {word:?} is not in: {said}");
     }
-    assert!(!said.contains("panicked"), "{said}");
+    assert!(!said.contains("panicked"), "{what}: {said}");
 }

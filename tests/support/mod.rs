@@ -8,3 +8,4 @@ pub mod ground;
 pub mod pty;
 pub mod scenarios;
 pub mod stage;
+pub mod words;

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "no test needs all of it")]
 
-use super::ground::{GYROLAB, Ground, VARIABLES};
+use super::ground::{Args, GYROLAB, Ground, VARIABLES};
 use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, native_pty_system};
 use std::io::{Read, Write};
 use std::num::NonZero;
@@ -19,21 +19,21 @@ pub const LEAVES_ALTERNATE_SCREEN: &str = "\u{1b}[?1049l";
 pub const SHOWS_CURSOR: &str = "\u{1b}[?25h";
 
 impl Ground {
-    pub fn open(&self, args: &[&str]) -> Terminal {
+    pub fn open(&self, args: impl Args) -> Terminal {
         self.open_with(args, &VARIABLES)
     }
 
-    pub fn open_with(&self, args: &[&str], variables: &[(&str, &str)]) -> Terminal {
+    pub fn open_with(&self, args: impl Args, variables: &[(&str, &str)]) -> Terminal {
         let mut command = CommandBuilder::new(GYROLAB);
-        command.args(args);
+        command.args(args.list());
         self.spawn(command, variables)
     }
 
     /// The program on a terminal that is not its controlling terminal, as after `su -c`: it gets no signal when the
     /// line is lost.
-    pub fn open_uncontrolled(&self, args: &[&str]) -> Terminal {
-        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_gyrolab"));
-        command.args(args);
+    pub fn open_uncontrolled(&self, args: impl Args) -> Terminal {
+        let mut command = CommandBuilder::new(GYROLAB);
+        command.args(args.list());
         command.set_controlling_tty(false);
         self.spawn(command, &VARIABLES)
     }
@@ -86,11 +86,11 @@ pub struct Terminal {
 
 impl Terminal {
     /// Opens the program in a new working directory.
-    pub fn open(args: &[&str]) -> Self {
+    pub fn open(args: impl Args) -> Self {
         Ground::new().open(args)
     }
 
-    pub fn open_with(args: &[&str], variables: &[(&str, &str)]) -> Self {
+    pub fn open_with(args: impl Args, variables: &[(&str, &str)]) -> Self {
         Ground::new().open_with(args, variables)
     }
 
