@@ -54,7 +54,7 @@ impl Lab {
             },
             Action::TogglePin => one(Command::Pin(!self.player.is_pinned())),
             Action::ToggleExact => one(Command::Exact(!self.player.run().shows_exact())),
-            Action::ToggleResiduals => one(Command::Residuals(!self.view.residuals)),
+            Action::ToggleResiduals => one(Command::look("residuals", !self.view.residuals)),
             Action::FillScreen => one(Command::Fill(
                 (!self.view.filled).then_some(self.view.focus),
             )),
@@ -108,7 +108,7 @@ impl Lab {
             Pane::THREE_D => zoom.three_d = factor,
             _ => return Err("the view from above and the 3-D view are zoomed: Tab".to_owned()),
         }
-        Ok(vec![Command::Zoom(zoom)])
+        Ok(vec![Command::look("zoom", zoom)])
     }
 
     /// The commands of an arrow key that is pressed `times` times.
@@ -116,7 +116,7 @@ impl Lab {
         match (self.on_top.mode, self.view.focus) {
             (Mode::Lab, Pane::THREE_D) => {
                 let camera = self.view.turned(direction, times);
-                Ok(Some(vec![Command::Camera(camera)]))
+                Ok(Some(vec![Command::look("camera", camera)]))
             }
             (Mode::Lab | Mode::Find, Pane::PARAMETERS) => match direction {
                 Direction::Left => self.nudged(-times),

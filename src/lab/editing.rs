@@ -33,9 +33,10 @@ impl Lab {
         self.say("the push to come: p gives it");
     }
 
-    pub(super) fn choose_next_push(&mut self, next: NextPush) {
+    pub(super) fn choose_next_push(&mut self, next: NextPush) -> Done {
         self.values.set_next_push(next);
         self.list_parameters();
+        Done::SILENT
     }
 
     /// Begins a new run with the values of `set` in its scenario, and does `acts` at its beginning. With `is_again` it

@@ -4,11 +4,11 @@ mod resuming;
 
 use super::command::{self, Command, Place};
 use super::rerun::Reference;
-use super::view::step::Page;
+use super::view::Look;
 use super::{Lab, UnderWay};
 use crate::observe::pace::Speed;
 use crate::scenario::Problems;
-use crate::scenario::file::{Choice, ScenarioFile, ZoomFile};
+use crate::scenario::file::ScenarioFile;
 use crate::storage::session::{Content, Text, later};
 use crate::text::printable::Shown;
 use crate::work::history::History;
@@ -58,46 +58,18 @@ impl KeptPinned {
 #[serde(deny_unknown_fields)]
 struct KeptPlace {
     step: u64,
-    /// Simulated seconds a second; `None` at top speed.
-    speed: Option<f64>,
+    speed: Speed,
     shows_exact: bool,
-    window_s: f64,
-    /// The time that the strip of the fast motion shows; `None` where the motion or `[view]` of the scenario tells.
-    detail_s: Option<f64>,
-    /// What that strip shows; `None` where the motion or `[view]` of the scenario tells.
-    detail_of: Option<String>,
     focus: String,
     filled: bool,
+    look: Look,
     exporting: Option<String>,
-    /// The ids of the panes that share the screen; `None` where `[view]` of the scenario tells.
-    show: Option<Vec<String>>,
-    /// The ids of what is hidden; `None` where `[view]` of the scenario tells.
-    hide: Option<Vec<String>>,
-    /// The line about what there is to see; `None` where the scenario tells.
-    look_at: Option<String>,
-    /// The line about what to try next; `None` where the scenario or the preset tells.
-    next: Option<String>,
-    bare: Option<bool>,
-    /// The measured data beside the run, and whether they are shown less what it says.
+    /// The measured data beside the run.
     measured: Option<String>,
-    residuals: Option<bool>,
-    /// The page of the step pane, and how many rows it adds up; `None` where they are as usual.
-    phase: Option<Choice>,
-    sum_to: Option<usize>,
     next_push: NextPush,
-    camera: Option<KeptCamera>,
-    zoom: Option<ZoomFile>,
     script: Option<KeptScript>,
     /// What the room of the lessons keeps.
     lessons: Option<toml::Table>,
-}
-
-/// The camera of the 3-D view, as [`Camera`] has it.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct KeptCamera {
-    yaw_deg: f64,
-    pitch_deg: f64,
 }
 
 /// The commands of the script that were not complete, as two files of commands: the one after the other.
@@ -157,41 +129,16 @@ impl Lab {
     }
 
     fn place(&mut self) -> KeptPlace {
-        let ids = |list: &mut dyn Iterator<Item = &'static str>| -> Vec<String> {
-            list.map(str::to_owned).collect()
-        };
-        let speed = match self.player.playback.speed() {
-            Speed::Times(speed) => Some(speed),
-            Speed::Top => None,
-        };
         KeptPlace {
             step: self.player.step_to_keep(),
-            speed,
+            speed: self.player.playback.speed(),
             shows_exact: self.player.run().shows_exact(),
-            window_s: self.view.window_s,
-            detail_s: self.view.detail_s,
-            detail_of: self.view.detail_of.map(|curve| curve.name().to_owned()),
             focus: self.view.focus.id().to_owned(),
             filled: self.view.filled,
+            look: self.view.look.clone(),
             exporting: self.files.exported_to().map(|path| Shown(path).to_string()),
-            show: Some(ids(&mut self.view.shown.iter().map(|pane| pane.id()))),
-            hide: Some(ids(&mut self.view.hidden.iter().map(|part| part.id()))),
-            look_at: self.view.look_at.clone(),
-            next: self.view.next.clone(),
-            bare: self.view.bare.then_some(true),
             measured: self.measured_to_keep(),
-            residuals: self.view.residuals.then_some(true),
-            phase: (self.view.page != Page::default()).then(|| self.view.page.choice()),
-            sum_to: self.view.sum_to,
             next_push: self.values.next_push.clone(),
-            camera: self.view.camera_is_chosen.then_some(KeptCamera {
-                yaw_deg: self.view.camera.yaw_deg,
-                pitch_deg: self.view.camera.pitch_deg,
-            }),
-            zoom: Some(ZoomFile {
-                above: Some(self.view.zoom.above),
-                three_d: Some(self.view.zoom.three_d),
-            }),
             script: self.kept_script(),
             lessons: self.lessons.clone(),
         }

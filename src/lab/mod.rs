@@ -232,7 +232,7 @@ impl Lab {
     fn turn_camera(&mut self) {
         let playback = &self.player.playback;
         let is_still = !playback.is_running() || playback.step_number() == 0;
-        if is_still && !self.view.camera_is_chosen {
+        if is_still && self.view.look.camera.is_none() {
             let axle = self.player.reading.state.axle();
             self.view.camera = self.view.camera.aside_of(&axle);
         }

@@ -2,7 +2,7 @@
 //! started is complete.
 
 use super::Lab;
-use super::answer::UnderWay;
+use super::answer::{Done, UnderWay};
 use super::command::{self, Command, Commands, Place, Placed};
 use crate::observe::playback::{Halt, MOST_UNTIL};
 use indicatif::HumanCount;
@@ -63,8 +63,9 @@ impl Script {
         self.failed.as_deref()
     }
 
-    pub(super) fn begin_chapter(&mut self, title: &str) {
+    pub(super) fn begin_chapter(&mut self, title: &str) -> Done {
         self.chapters.push(title.to_owned());
+        Done::saying(title)
     }
 
     /// How many commands are not complete, with the one under way.

@@ -4,42 +4,42 @@ use super::Lab;
 use super::action::Direction;
 use super::answer::{Answer, Done};
 use super::command::{Command, CursorTo, MOST_MAGNIFIED, Place};
+use super::view::View;
 use crate::observe::live::LiveRun;
 use crate::observe::lookup;
 use crate::observe::recording::Curve;
 use crate::observe::strip::Strip;
+use crate::scenario::screen::AUTO;
 
 /// The share of the window by which a key moves the cursor, and by which it moves the window.
 const CURSOR_SHARE: f64 = 0.02;
 const PAN_SHARE: f64 = 0.5;
 
-impl Lab {
-    pub(super) fn set_window(&mut self, window_s: f64) -> Answer {
-        let least_s = 2.0 * self.player.motion().time_step_s;
-        if window_s < least_s {
-            return Err(format!("the traces show two time steps at least: {least_s} s").into());
-        }
-        self.view.window_s = window_s;
-        Ok(Done::saying(format!(
-            "the traces show {window_s} s; Home shows the usual time"
-        )))
+impl View {
+    pub(super) fn set_since(&mut self, since_s: Option<f64>) -> Done {
+        self.since_s = since_s;
+        Done::saying(match since_s {
+            Some(since_s) => format!("the traces begin at {since_s} s; Home shows the run again"),
+            None => "the traces follow the run".to_owned(),
+        })
     }
 
+    pub(super) fn magnify(&mut self, times: f64) -> Done {
+        self.magnified = times;
+        Done::saying(if times > 1.0 {
+            format!("values are magnified {times} times; Home shows all of them again")
+        } else {
+            "values are shown in full".to_owned()
+        })
+    }
+}
+
+impl Lab {
     /// The command that shows the next longer or shorter time; none at the end of the ladder.
     pub(super) fn other_window(&self, wider: bool) -> Option<Vec<Command>> {
         let time_step_s = self.player.run().simulation().motion().time_step_s;
         let window_s = self.view.zoomed(wider, time_step_s)?;
-        Some(vec![Command::Window(window_s)])
-    }
-
-    pub(super) fn set_detail(&mut self, detail_s: f64) -> Answer {
-        let least_s = 2.0 * self.player.motion().time_step_s;
-        if detail_s < least_s {
-            return Err(format!("the strip shows two time steps at least: {least_s} s").into());
-        }
-        self.view.detail_s = Some(detail_s);
-        let text = format!("the strip of the fast motion shows {detail_s} s");
-        Ok(Done::saying(text))
+        Some(vec![Command::look("window_s", window_s)])
     }
 
     /// The command that shows another curve in the strip of the fast motion than it shows now.
@@ -52,24 +52,7 @@ impl Lab {
             _ => times,
         };
         let next = (now + by).rem_euclid(curves.len() as i32) as usize;
-        Command::DetailOf(Some(curves[next]))
-    }
-
-    pub(super) fn set_since(&mut self, since_s: Option<f64>) -> Answer {
-        self.view.since_s = since_s;
-        Ok(Done::saying(match since_s {
-            Some(since_s) => format!("the traces begin at {since_s} s; Home shows the run again"),
-            None => "the traces follow the run".to_owned(),
-        }))
-    }
-
-    pub(super) fn magnify(&mut self, times: f64) -> Answer {
-        self.view.magnified = times;
-        Ok(Done::saying(if times > 1.0 {
-            format!("values are magnified {times} times; Home shows all of them again")
-        } else {
-            "values are shown in full".to_owned()
-        }))
+        Command::look("detail_of", curves[next])
     }
 
     pub(super) fn set_cursor(&mut self, to: CursorTo) -> Answer {
@@ -157,11 +140,12 @@ impl Lab {
 
     /// The commands that show the run again, after the time or the values were chosen by hand.
     pub(super) fn whole_view(&self) -> Vec<Command> {
+        let usual_s = self.view.usual_window_s(self.player.run().scenario());
         vec![
-            Command::DetailOf(None),
+            Command::look("detail_of", AUTO),
             Command::Cursor(CursorTo::Nowhere),
             Command::Magnify(1.0),
-            Command::Window(self.view.usual_window_s(self.player.run().scenario())),
+            Command::look("window_s", usual_s),
             Command::Since(None),
         ]
     }

@@ -6,10 +6,13 @@
 
 mod parse;
 
+use serde::{Deserialize, Serialize};
+
 /// The longest expression, bytes.
 const LONGEST: usize = 1000;
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub struct Expression {
     text: String,
     root: Node,
@@ -173,6 +176,20 @@ impl Expression {
     /// Its value, with the values of the names from `value_of`; `None` where a number that it needs has no value.
     pub fn value(&self, value_of: impl Fn(&str) -> Option<f64>) -> Option<f64> {
         self.root.value(&mut |index| value_of(&self.names[index].0))
+    }
+}
+
+impl TryFrom<String> for Expression {
+    type Error = Fault;
+
+    fn try_from(text: String) -> Result<Self, Fault> {
+        Self::parse(&text)
+    }
+}
+
+impl From<Expression> for String {
+    fn from(expression: Expression) -> Self {
+        expression.text
     }
 }
 

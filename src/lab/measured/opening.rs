@@ -4,6 +4,7 @@ use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::answer::{Answer, Done};
 use crate::lab::files::Files;
+use crate::lab::player::Player;
 use crate::measured::{self, Measured, shipped};
 use crate::scenario::{Problem, Problems, Scenario};
 use crate::text::printable::printable;
@@ -23,6 +24,25 @@ impl Files {
             }
         }
         measured::open(name)
+    }
+}
+
+impl Player {
+    /// What is said of residuals that are shown from now on, or no longer.
+    ///
+    /// # Errors
+    /// Where there are no measured data.
+    pub(in crate::lab) fn residuals_in_words(&self, shown: bool) -> Result<&'static str, String> {
+        if self.measured.is_none() {
+            return Err(
+                "there are no measured data beside the run: gyrolab --measured FILE".to_owned(),
+            );
+        }
+        Ok(if shown {
+            "measured less run, where something was measured; m shows both again"
+        } else {
+            "measured values and the run"
+        })
     }
 }
 
@@ -62,20 +82,6 @@ impl Lab {
         let put = self.put_beside(name, false);
         put.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))?;
         Ok(Done::SILENT)
-    }
-
-    pub(in crate::lab) fn show_residuals(&mut self, shown: bool) -> Answer {
-        if self.player.measured.is_none() {
-            return Err(
-                "there are no measured data beside the run: gyrolab --measured FILE".into(),
-            );
-        }
-        self.view.residuals = shown;
-        Ok(Done::saying(if shown {
-            "measured less run, where something was measured; m shows both again"
-        } else {
-            "measured values and the run"
-        }))
     }
 
     /// To be called after another scenario was opened in place of `before`. Puts the data that its `[view]` names

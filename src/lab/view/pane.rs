@@ -1,19 +1,23 @@
 //! The panes and the other parts of the screen, by the names that commands, `[view]` and sessions have for them.
 
 use crate::scenario::screen::{self, PANES};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// A pane, by its id: the word for it in commands, in `[view]` and in sessions. `tui` has the table of all panes. The
 /// constants here are the panes that the lab itself needs to know.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Pane(&'static str);
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Part {
-    Pane(Pane),
     Health,
     Predicted,
     /// The line that says what there is to see.
     LookAt,
+    #[serde(untagged)]
+    Pane(Pane),
 }
 
 impl Pane {
@@ -42,6 +46,13 @@ impl Pane {
     /// The pane of that name in files and commands.
     pub fn named(id: &str) -> Option<Self> {
         PANES.into_iter().find(|pane| *pane == id).map(Self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Pane {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let id = String::deserialize(deserializer)?;
+        Self::named(&id).ok_or_else(|| D::Error::custom(format!("there is no pane {id}")))
     }
 }
 

@@ -16,7 +16,7 @@ pub fn check(table: &toml::Table) -> Found {
 }
 
 /// Checks `value`, a part of a file: the table at the dotted `path`.
-pub(in crate::scenario) fn check_part(value: &Value, path: &str) -> Vec<Problem> {
+pub fn check_part(value: &Value, path: &str) -> Vec<Problem> {
     let mut problems = Found::default();
     let pattern = pattern(path);
     match value {
