@@ -19,7 +19,6 @@ mod answering;
 pub mod browser;
 mod carry_out;
 pub mod command;
-mod commands_of;
 mod course;
 mod dialog;
 mod editing;

@@ -35,11 +35,13 @@ impl View {
 }
 
 impl Lab {
-    /// The command that shows the next longer or shorter time; none at the end of the ladder.
-    pub(super) fn other_window(&self, wider: bool) -> Option<Vec<Command>> {
+    /// Shows the next longer or shorter time in the traces; at the end of the ladder says which it is.
+    pub(super) fn change_window(&mut self, wider: bool) {
         let time_step_s = self.player.run().simulation().motion().time_step_s;
-        let window_s = self.view.zoomed(wider, time_step_s)?;
-        Some(vec![Command::look("window_s", window_s)])
+        match self.view.zoomed(wider, time_step_s) {
+            Some(window_s) => self.carry_out_all(&[Command::look("window_s", window_s)]),
+            None => self.say(format!("the traces show {} s", self.view.window_s)),
+        }
     }
 
     /// The command that shows another curve in the strip of the fast motion than it shows now.
