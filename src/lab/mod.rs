@@ -154,9 +154,7 @@ impl Lab {
     /// Takes the run to `step` at once.
     pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
         let arrived = self.player.playback.begin_at(step);
-        self.player.playback.catch_up_exact();
-        self.player.catch_up_measured();
-        self.read_now();
+        self.arrive();
         arrived
     }
 

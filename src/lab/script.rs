@@ -176,28 +176,18 @@ impl Lab {
                 }
                 None => {}
             }
-            if self.files.is_exporting() {
-                thread::sleep(LOOK);
-                self.follow_export();
-            }
-            if let Some((_, UnderWay::Waiting(until))) = &self.script.under_way {
-                self.now = self.now.max(*until);
-            }
+            self.pass_time();
             if steps > MOST_UNTIL
                 && let Some((placed, _)) = self.script.under_way.take()
             {
                 let most = HumanCount(MOST_UNTIL);
+                let reason = format!("commands take at most {most} steps in all");
                 self.player.pause();
-                self.script_has_failed(
-                    &placed,
-                    &format!("commands take at most {most} steps in all"),
-                );
+                self.script_has_failed(&placed, &reason);
             }
             self.go_on_with_script(halt);
         }
-        self.player.playback.catch_up_exact();
-        self.player.catch_up_measured();
-        self.read_now();
+        self.arrive();
         match self.script.failed.take() {
             Some(text) => {
                 self.on_top.notice.take_back(); // the caller says it
@@ -205,6 +195,24 @@ impl Lab {
             }
             None => Ok(()),
         }
+    }
+
+    /// Lets pass the time for which the command under way waits.
+    fn pass_time(&mut self) {
+        if self.files.is_exporting() {
+            thread::sleep(LOOK);
+            self.follow_export();
+        }
+        if let Some((_, UnderWay::Waiting(until))) = &self.script.under_way {
+            self.now = self.now.max(*until);
+        }
+    }
+
+    /// Brings exact motion, measured data and numbers up to the present step.
+    pub(super) fn arrive(&mut self) {
+        self.player.playback.catch_up_exact();
+        self.player.catch_up_measured();
+        self.read_now();
     }
 
     /// Pauses the script. When it goes on, the command under way is carried out again: a run goes to the same step or

@@ -347,13 +347,7 @@ impl Lab {
         } else if self.view.cursor.is_some() {
             self.one(Command::Cursor(CursorTo::Nowhere));
         } else if self.view.filled {
-            self.one(Command::Fill(None));
-            self.turn_to_sheet();
-            // On a screen that has no place for the values beside the run, they fill it: leaving them shows the run
-            // again.
-            if !self.view.side_by_side.contains(&Pane::PARAMETERS) {
-                self.view.leave_parameters();
-            }
+            self.leave_filled();
         } else if cleared.count.is_none() && self.view.leave_parameters() {
             // The focus returns to the run even if the key has removed a message too.
         } else if cleared.anything {
@@ -368,6 +362,15 @@ impl Lab {
             self.say("nothing to close; q leaves");
         }
         None
+    }
+
+    fn leave_filled(&mut self) {
+        self.one(Command::Fill(None));
+        self.turn_to_sheet();
+        // On a screen that has no place for the values beside the run, they fill it: leaving them shows the run again.
+        if !self.view.side_by_side.contains(&Pane::PARAMETERS) {
+            self.view.leave_parameters();
+        }
     }
 
     /// Moves the focus to the values and begins to search for one by a part of its name.

@@ -342,7 +342,7 @@ fn what_is_wrong_is_told_with_its_line_and_the_nearest_right_name() {
             "[[do]]\nrun_until = \"motion.scheme > 3\"",
             "no number named",
         ),
-        ("[[do]]\nwait_s = -1", "must not be negative"),
+        ("[[do]]\nwait_s = -1", "must be from 0 to 86400"),
         ("[[do]]\nundo = 0", "must be 1 or more"),
         (
             "[[do]]\nexport = { path = \"x.csv\", evry = 3 }",

@@ -24,8 +24,10 @@ pub const MOST_MAGNIFIED: f64 = 1e6;
 
 pub(super) enum Form {
     Is(Kind),
-    /// As the key of this name in `[view]`.
+    /// As the key or table of this name in `[view]`.
     View(&'static str),
+    /// What this function takes; otherwise this is the rule.
+    As(fn(&Value) -> bool, &'static str),
     /// What passes this check.
     By(fn(&Value) -> Result<(), String>),
     /// Dotted keys of the scenario and their values.
@@ -50,7 +52,7 @@ enum Alone {
     First(&'static str),
 }
 
-use Form::{By, Is, View};
+use Form::{As, By, Is, View};
 use Kind::{Flag, Line, Number, Whole};
 
 const LATER: Form = Is(Whole(1, i64::MAX));
@@ -59,34 +61,25 @@ const PATH: (&str, Form) = ("path", Is(Line));
 const TO_STEP: (&str, Form) = ("to_step", LATER);
 const FORCE: (&str, Form) = ("force", Is(Flag));
 
-pub(super) const TRUE: Form = By(|value| match value {
-    Value::Boolean(true) => Ok(()),
-    _ => Err("must be true".to_owned()),
-});
+pub(super) const TRUE: Form = As(|value| value.as_bool() == Some(true), "must be true");
 pub(super) const COUNT: Form = Is(Whole(1, MOST_TIMES));
 pub(super) const STEPS: Form = By(|value| not_zero(value, MOST_STEPS));
 pub(super) const OPEN: Form = By(is_scenario);
-pub(super) const PLACE: Form = By(|value| {
-    let rule = "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\" or \"end\"";
-    read::<Place>(value).map_err(|_| rule.to_owned())
-});
-pub(super) const CURSOR: Form = By(|value| {
-    let rule = "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\", \"end\", \"next turn\", \"turn before\" or \"none\"";
-    read::<CursorTo>(value).map_err(|_| rule.to_owned())
-});
+pub(super) const PLACE: Form = As(
+    is::<Place>,
+    "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\" or \"end\"",
+);
+pub(super) const CURSOR: Form = As(
+    is::<CursorTo>,
+    "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\", \"end\", \"next turn\", \"turn before\" or \"none\"",
+);
 pub(super) const CONDITION: Form = By(|value| {
     Line.check(value)?;
     let condition = Expression::condition(value.as_str().unwrap_or_default());
     let bound = condition.and_then(|condition| condition.bind(numbers::find).map(|_| ()));
     bound.map_err(|fault| fault.to_string())
 });
-pub(super) const WAIT: Form = By(|value| {
-    Number(Range::NotNegative).check(value)?;
-    match Number(Range::Within((0.0, LONGEST_WAIT))).check(value) {
-        Ok(()) => Ok(()),
-        Err(_) => Err(format!("must be at most {LONGEST_WAIT}")),
-    }
-});
+pub(super) const WAIT: Form = Is(Number(Range::Within((0.0, LONGEST_WAIT))));
 pub(super) const SPEED: Form = By(|value| match value.as_str() {
     Some("top") => Ok(()),
     Some(_) => Err("must be a number greater than zero, or \"top\"".to_owned()),
@@ -96,11 +89,7 @@ pub(super) const SINCE: Form = By(|value| match value.as_str() {
     Some("none") => Ok(()),
     _ => Number(Range::NotNegative).check(value),
 });
-pub(super) const MAGNIFY: Form = By(|value| {
-    Number(Range::Positive).check(value)?;
-    let check = Number(Range::Within((1.0, MOST_MAGNIFIED))).check(value);
-    check.map_err(|_| "must be between 1 and 1000000".to_owned())
-});
+pub(super) const MAGNIFY: Form = Is(Number(Range::Within((1.0, MOST_MAGNIFIED))));
 pub(super) const NUDGE: Form = Form::Fields(Fields {
     known: &[
         ("key", By(can_be_nudged)),
@@ -138,7 +127,10 @@ const OF_PUSH: [(&str, Form); 4] = [
     ),
     (
         "toward",
-        By(|value| Line.check(value).and_then(|()| read::<Toward>(value))),
+        By(|value| {
+            Line.check(value)?;
+            Toward::typed(value.as_str().unwrap_or_default()).map(|_| ())
+        }),
     ),
     ("for_s", Is(Number(Range::Positive))),
 ];
@@ -196,20 +188,6 @@ pub(super) const SAVE: Form = Form::Fields(Fields {
         Ok(())
     },
 });
-pub(super) const CAMERA: Form = Form::Fields(Fields {
-    known: &[
-        ("yaw_deg", View("camera.yaw_deg")),
-        ("pitch_deg", View("camera.pitch_deg")),
-    ],
-    alone: Alone::Nothing,
-    rule: |_| Ok(()),
-});
-pub(super) const ZOOM: Form = Form::Fields(Fields {
-    known: &[("above", View("zoom.above")), ("3d", View("zoom.3d"))],
-    alone: Alone::Nothing,
-    rule: |_| Ok(()),
-});
-
 impl Form {
     /// `value` as serde reads it: what stands alone for a table is one.
     ///
@@ -218,10 +196,9 @@ impl Form {
     pub(super) fn check(&self, value: &Value) -> Result<Value, Vec<Problem>> {
         let checked = match self {
             Is(kind) => kind.check(value),
-            View(name) => {
-                let key = keys::find(&format!("view.{name}"));
-                key.and_then(|(_, kind)| kind.check(value))
-            }
+            View(name) => return of_view(&format!("view.{name}"), value),
+            As(is_it, rule) if !is_it(value) => Err((*rule).to_owned()),
+            As(..) => Ok(()),
             By(check) => check(value),
             Self::Keys => return are_keys(value),
             Self::Fields(fields) => return fields.check(value),
@@ -291,9 +268,21 @@ pub(super) fn below(name: &str, problem: Problem) -> Problem {
 }
 
 /// Whether serde reads a `T` from `value`.
-fn read<T: DeserializeOwned>(value: &Value) -> Result<(), String> {
-    let read = value.clone().try_into::<T>();
-    read.map(|_| ()).map_err(|error| error.message().to_owned())
+fn is<T: DeserializeOwned>(value: &Value) -> bool {
+    value.clone().try_into::<T>().is_ok()
+}
+
+/// Checks `value` as that of `key`, a key or a table of `[view]`.
+fn of_view(key: &str, value: &Value) -> Result<Value, Vec<Problem>> {
+    let mut problems = keys::check_part(value, key);
+    for problem in &mut problems {
+        problem.key = problem.key[key.len()..].trim_start_matches('.').to_owned();
+    }
+    if problems.is_empty() {
+        Ok(value.clone())
+    } else {
+        Err(problems)
+    }
 }
 
 fn not_zero(value: &Value, most: i64) -> Result<(), String> {

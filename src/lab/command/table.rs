@@ -67,6 +67,6 @@ pub static COMMANDS: &[CommandRow] = &[
     row("sum_to", "4, or \"all\"", "how many rows of a phase's table the pane step adds up", View("sum_to")),
     row("point_at", "\"above\"", "the pane that is pointed at, by a heavy frame, or \"none\"", View("fill")),
     row("bare", "true or false", "whether the screen is bare: two panes, or one, with title and time, and nothing else", View("bare")),
-    row("camera", "{ yaw_deg = 30, pitch_deg = 20 }", "from where the 3-D view is seen", form::CAMERA),
-    row("zoom", "{ above = 4, 3d = 2 }", "how much larger than the whole the path from above and the 3-D view are shown", form::ZOOM),
+    row("camera", "{ yaw_deg = 30, pitch_deg = 20 }", "from where the 3-D view is seen", View("camera")),
+    row("zoom", "{ above = 4, 3d = 2 }", "how much larger than the whole the path from above and the 3-D view are shown", View("zoom")),
 ];

@@ -15,11 +15,13 @@ pub fn check(table: &toml::Table) -> Found {
     problems
 }
 
-/// Checks `value`, a part of a file: the table at the dotted `path`.
+/// Checks `value`, a part of a file: the key or table at the dotted `path`.
 pub fn check_part(value: &Value, path: &str) -> Vec<Problem> {
     let mut problems = Found::default();
     let pattern = pattern(path);
+    let is_key = KEYS.iter().any(|key| key.path == pattern);
     match value {
+        _ if is_key => check_value(value, &pattern, path, &mut problems),
         Value::Table(table) => check_table(table, &pattern, path, &mut problems),
         other => problems.add(|| Problem::with_value(path, other, "must be a table")),
     }
