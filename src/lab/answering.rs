@@ -6,7 +6,7 @@ use super::command::{Command, Export, Figure, Place, Save};
 use super::dialog::{Dialog, Question};
 use super::view::Pane;
 use super::{Lab, Request};
-use crate::export::layout::LayoutFile;
+use crate::export::Layout;
 
 impl Lab {
     /// Asks for a number: `title` says for what, `label` what it is and in which unit, `about` how to answer. It comes back as
@@ -85,10 +85,7 @@ impl Lab {
             }
             Question::Export(scenario) => Some(Command::Export(Export {
                 path: text.to_owned(),
-                layout: LayoutFile {
-                    every: Some(dialog.every()?),
-                    ..LayoutFile::default()
-                },
+                layout: Layout::every(dialog.every()?).file().clone(),
                 to_step: Some(scenario.steps),
                 force,
             })),

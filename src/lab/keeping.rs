@@ -72,17 +72,14 @@ struct KeptPlace {
     lessons: Option<toml::Table>,
 }
 
-/// The commands of the script that were not complete, as two files of commands: the one after the other.
+/// The commands of the script that were not complete, as a file of commands. The first lead back to the command under
+/// way: it is carried out again, but steps that were under way are only taken to their end.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct KeptScript {
     /// The file from which they were read, as the user named it.
     origin: String,
-    /// What leads back to the command under way: it is carried out again, but steps that were under way are only taken
-    /// to their end.
-    first: String,
-    /// The commands after that one.
-    left: String,
+    commands: String,
 }
 
 /// What a list of sessions shows of a session.
@@ -128,7 +125,7 @@ impl Lab {
             .lessons
     }
 
-    fn place(&mut self) -> KeptPlace {
+    fn place(&self) -> KeptPlace {
         KeptPlace {
             step: self.player.step_to_keep(),
             speed: self.player.playback.speed(),
@@ -145,7 +142,7 @@ impl Lab {
     }
 
     /// The commands of the script that are not complete; `None` where all are.
-    fn kept_script(&mut self) -> Option<KeptScript> {
+    fn kept_script(&self) -> Option<KeptScript> {
         if self.script.is_done() {
             return None;
         }
@@ -162,11 +159,11 @@ impl Lab {
             UnderWay::Playing | UnderWay::Waiting(_) | UnderWay::Exporting => Some(command.clone()),
         });
         let run = is_playing.then_some(Command::Run);
-        let first: Vec<_> = run.into_iter().chain(again).collect();
+        let left = self.script.left().cloned();
+        let commands: Vec<_> = run.into_iter().chain(again).chain(left).collect();
         Some(KeptScript {
-            origin: self.script.origin.to_owned(),
-            first: command::to_toml(&first),
-            left: self.script.left_as_text().to_string(),
+            origin: self.script.origin.clone(),
+            commands: command::to_toml(&commands),
         })
     }
 }

@@ -3,12 +3,11 @@
 
 use super::Lab;
 use super::answer::{Done, UnderWay};
-use super::command::{self, Command, Commands, Place, Placed};
+use super::command::{Command, Commands, Place, Placed};
 use crate::observe::playback::{Halt, MOST_UNTIL};
 use indicatif::HumanCount;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -37,8 +36,6 @@ pub struct Script {
     pub is_held: bool,
     /// Whether the run played when the script was paused, and plays again when it goes on.
     pub plays_again: bool,
-    /// `left` as a file of commands; `None` where `left` has changed since it was written.
-    kept: Option<Arc<str>>,
 }
 
 impl Script {
@@ -79,20 +76,9 @@ impl Script {
         Some((&placed.command, *under_way))
     }
 
-    /// The commands after the one under way, as a file of commands.
-    pub(super) fn left_as_text(&mut self) -> Arc<str> {
-        let left = &self.left;
-        let written = || {
-            let left: Vec<_> = left.iter().map(|placed| placed.command.clone()).collect();
-            command::to_toml(&left).into()
-        };
-        Arc::clone(self.kept.get_or_insert_with(written))
-    }
-
-    /// Removes the next command and returns it.
-    fn next(&mut self) -> Option<Placed> {
-        self.kept = None;
-        self.left.pop_front()
+    /// The commands after the one under way.
+    pub(super) fn left(&self) -> impl Iterator<Item = &Command> {
+        self.left.iter().map(|placed| &placed.command)
     }
 
     pub fn is_done(&self) -> bool {
@@ -109,7 +95,7 @@ impl Script {
         let line = placed.line.map_or(String::new(), |line| format!(":{line}"));
         let name: String = placed.command.to_table().keys().cloned().collect();
         let text = format!("{}{line}: {name}: {reason}{rest}", self.origin);
-        (self.left, self.kept) = (VecDeque::new(), None);
+        self.left.clear();
         self.failed = Some(text.clone());
         text
     }
@@ -167,14 +153,12 @@ impl Lab {
             let from = playback.step_number();
             let halt = playback.finish_part(|| begin.elapsed() > PART);
             steps += playback.step_number().abs_diff(from);
-            match halt {
-                Some(halt) => self.halted(halt),
-                None if go_on(playback.step_number(), playback.stops_at()).is_break() => {
-                    self.files.drop_export();
-                    self.script.drop_all();
-                    break;
-                }
-                None => {}
+            if let Some(halt) = halt {
+                self.halted(halt);
+            } else if go_on(playback.step_number(), playback.stops_at()).is_break() {
+                self.files.drop_export();
+                self.script.drop_all();
+                break;
             }
             self.pass_time();
             if steps > MOST_UNTIL
@@ -235,7 +219,6 @@ impl Lab {
         self.script.plays_again = playback.is_running() && !playback.is_running_until();
         if again.is_some() {
             self.script.under_way = None;
-            self.script.kept = None;
             self.script.left.extend(again);
             self.script.left.rotate_right(1);
         }
@@ -276,7 +259,7 @@ impl Lab {
                     Err(reason) => return self.script_has_failed(&placed, &reason),
                 }
             }
-            let Some(next) = self.script.next() else {
+            let Some(next) = self.script.left.pop_front() else {
                 return;
             };
             let answer = self.carry_out(&next.command);

@@ -210,24 +210,7 @@ impl Form {
 
 impl Fields {
     fn check(&self, value: &Value) -> Result<Value, Vec<Problem>> {
-        let names = || self.known.iter().map(|(name, _)| *name);
-        let first = &self.known[0];
-        let table = match (&self.alone, value) {
-            (_, Value::Table(table)) => table.clone(),
-            (Alone::True, Value::Boolean(true)) => Table::new(),
-            (Alone::First(_), Value::String(_)) => {
-                Table::from_iter([(first.0.to_owned(), first.1.check(value)?)])
-            }
-            _ => {
-                let or_true = match self.alone {
-                    Alone::True => "true, or ",
-                    _ => "",
-                };
-                let names = names().collect::<Vec<_>>().join(", ");
-                let rule = format!("must be {or_true}a table of {names}");
-                return Err(vec![Problem::with_value("", value, rule)]);
-            }
-        };
+        let table = self.table(value)?;
         let mut problems = Vec::new();
         for (name, value) in &table {
             match self.known.iter().find(|(known, _)| known == name) {
@@ -236,16 +219,17 @@ impl Fields {
                     problems.extend(found.map(|problem| below(name, problem)));
                 }
                 None => {
-                    let rule = format!("unknown key: {}", nearest(name, names()));
+                    let rule = format!("unknown key: {}", nearest(name, self.names()));
                     problems.push(Problem::at(name, rule));
                 }
             }
         }
+        let first = self.known[0].0;
         if let Alone::First(meaning) = self.alone
             && problems.is_empty()
-            && !table.contains_key(first.0)
+            && !table.contains_key(first)
         {
-            problems.push(Problem::at(first.0, format!("is missing: {meaning}")));
+            problems.push(Problem::at(first, format!("is missing: {meaning}")));
         }
         if problems.is_empty()
             && let Err((name, rule)) = (self.rule)(&table)
@@ -257,6 +241,32 @@ impl Fields {
             Ok(Value::Table(table))
         } else {
             Err(problems)
+        }
+    }
+
+    fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
+        self.known.iter().map(|(name, _)| *name)
+    }
+
+    /// The table that `value` is, or stands for.
+    fn table(&self, value: &Value) -> Result<Table, Vec<Problem>> {
+        let (first, form) = &self.known[0];
+        match (&self.alone, value) {
+            (_, Value::Table(table)) => Ok(table.clone()),
+            (Alone::True, Value::Boolean(true)) => Ok(Table::new()),
+            (Alone::First(_), Value::String(_)) => Ok(Table::from_iter([(
+                (*first).to_owned(),
+                form.check(value)?,
+            )])),
+            _ => {
+                let or_true = match self.alone {
+                    Alone::True => "true, or ",
+                    _ => "",
+                };
+                let names = self.names().collect::<Vec<_>>().join(", ");
+                let rule = format!("must be {or_true}a table of {names}");
+                Err(vec![Problem::with_value("", value, rule)])
+            }
         }
     }
 }

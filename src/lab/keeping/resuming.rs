@@ -133,12 +133,8 @@ fn left_of(commands: &Commands) -> String {
 impl KeptScript {
     /// The commands to be carried out.
     fn commands(&self) -> Result<Commands, Problems> {
-        let read = |text: &str| {
-            let document = Document::parse(&self.origin, text)?;
-            command::read(&document)
-        };
-        let mut commands = read(&self.first)?;
-        commands.list.extend(read(&self.left)?.list);
+        let document = Document::parse(&self.origin, &self.commands)?;
+        let mut commands = command::read(&document)?;
         for placed in &mut commands.list {
             placed.line = None; // the line in the user's file is not kept
         }
