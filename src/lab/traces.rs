@@ -57,12 +57,14 @@ impl Lab {
         Command::look("detail_of", curves[next])
     }
 
+    fn cursor_or_here(&self) -> u64 {
+        let here = self.player.playback.step_number();
+        self.view.cursor.unwrap_or(here)
+    }
+
     pub(super) fn set_cursor(&mut self, to: CursorTo) -> Answer {
         let run = self.player.run();
-        let here = self
-            .view
-            .cursor
-            .unwrap_or(self.player.playback.step_number());
+        let here = self.cursor_or_here();
         let step = match to {
             CursorTo::Nowhere => None,
             CursorTo::Place(Place::Step(step)) => Some(step),
@@ -96,10 +98,7 @@ impl Lab {
 
     pub(super) fn moved_cursor(&self, fiftieths: i32) -> Command {
         let run = self.player.run();
-        let here = self
-            .view
-            .cursor
-            .unwrap_or(self.player.playback.step_number());
+        let here = self.cursor_or_here();
         let time_step_s = self.player.motion().time_step_s;
         let steps = (CURSOR_SHARE * self.view.window_s / time_step_s)
             .round()
@@ -110,10 +109,7 @@ impl Lab {
     }
 
     pub(super) fn stepped_cursor(&self, steps: i32) -> Command {
-        let here = self
-            .view
-            .cursor
-            .unwrap_or(self.player.playback.step_number());
+        let here = self.cursor_or_here();
         let step = here.saturating_add_signed(i64::from(steps));
         Command::Cursor(CursorTo::Place(Place::Step(step)))
     }

@@ -30,6 +30,8 @@ pub(super) enum Form {
     As(fn(&Value) -> bool, &'static str),
     /// What passes this check.
     By(fn(&Value) -> Result<(), String>),
+    /// A line of text that passes it.
+    Text(fn(&str) -> Result<(), String>),
     /// Dotted keys of the scenario and their values.
     Keys,
     Fields(Fields),
@@ -52,7 +54,7 @@ enum Alone {
     First(&'static str),
 }
 
-use Form::{As, By, Is, View};
+use Form::{As, By, Is, Text, View};
 use Kind::{Flag, Line, Number, Whole};
 
 const LATER: Form = Is(Whole(1, i64::MAX));
@@ -64,7 +66,7 @@ const FORCE: (&str, Form) = ("force", Is(Flag));
 pub(super) const TRUE: Form = As(|value| value.as_bool() == Some(true), "must be true");
 pub(super) const COUNT: Form = Is(Whole(1, MOST_TIMES));
 pub(super) const STEPS: Form = By(|value| not_zero(value, MOST_STEPS));
-pub(super) const OPEN: Form = By(is_scenario);
+pub(super) const OPEN: Form = Text(is_scenario);
 pub(super) const PLACE: Form = As(
     is::<Place>,
     "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\" or \"end\"",
@@ -73,9 +75,8 @@ pub(super) const CURSOR: Form = As(
     is::<CursorTo>,
     "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\", \"end\", \"next turn\", \"turn before\" or \"none\"",
 );
-pub(super) const CONDITION: Form = By(|value| {
-    Line.check(value)?;
-    let condition = Expression::condition(value.as_str().unwrap_or_default());
+pub(super) const CONDITION: Form = Text(|text| {
+    let condition = Expression::condition(text);
     let bound = condition.and_then(|condition| condition.bind(numbers::find).map(|_| ()));
     bound.map_err(|fault| fault.to_string())
 });
@@ -92,7 +93,7 @@ pub(super) const SINCE: Form = By(|value| match value.as_str() {
 pub(super) const MAGNIFY: Form = Is(Number(Range::Within((1.0, MOST_MAGNIFIED))));
 pub(super) const NUDGE: Form = Form::Fields(Fields {
     known: &[
-        ("key", By(can_be_nudged)),
+        ("key", Text(can_be_nudged)),
         ("times", By(|value| not_zero(value, MOST_TIMES))),
     ],
     alone: Alone::First("the dotted key that is nudged"),
@@ -125,13 +126,7 @@ const OF_PUSH: [(&str, Form); 4] = [
             _ => Number(Range::Positive).check(value),
         }),
     ),
-    (
-        "toward",
-        By(|value| {
-            Line.check(value)?;
-            Toward::typed(value.as_str().unwrap_or_default()).map(|_| ())
-        }),
-    ),
+    ("toward", Text(|text| Toward::typed(text).map(|_| ()))),
     ("for_s", Is(Number(Range::Positive))),
 ];
 pub(super) const EXPORT: Form = Form::Fields(Fields {
@@ -158,13 +153,7 @@ pub(super) const EXPORT: Form = Form::Fields(Fields {
 pub(super) const FIGURE: Form = Form::Fields(Fields {
     known: &[
         PATH,
-        (
-            "kind",
-            By(|value| {
-                Line.check(value)?;
-                FigureKind::named(value.as_str().unwrap_or_default()).map(|_| ())
-            }),
-        ),
+        ("kind", Text(|name| FigureKind::named(name).map(|_| ()))),
         ("exact", Is(Flag)),
         TO_STEP,
         FORCE,
@@ -200,6 +189,9 @@ impl Form {
             As(is_it, rule) if !is_it(value) => Err((*rule).to_owned()),
             As(..) => Ok(()),
             By(check) => check(value),
+            Text(check) => Line
+                .check(value)
+                .and_then(|()| check(value.as_str().unwrap_or_default())),
             Self::Keys => return are_keys(value),
             Self::Fields(fields) => return fields.check(value),
         };
@@ -303,9 +295,7 @@ fn not_zero(value: &Value, most: i64) -> Result<(), String> {
     }
 }
 
-fn is_scenario(value: &Value) -> Result<(), String> {
-    Line.check(value)?;
-    let name = value.as_str().unwrap_or_default();
+fn is_scenario(name: &str) -> Result<(), String> {
     let is_file = name.contains('/') || name.contains(".toml") || name.contains(".csv");
     if is_file || presets::find(name).is_some() {
         return Ok(());
@@ -314,9 +304,7 @@ fn is_scenario(value: &Value) -> Result<(), String> {
     Err(format!("is no preset: {near}"))
 }
 
-fn can_be_nudged(value: &Value) -> Result<(), String> {
-    Line.check(value)?;
-    let key = value.as_str().unwrap_or_default();
+fn can_be_nudged(key: &str) -> Result<(), String> {
     match keys::find(key)? {
         (_, Kind::Vector) => Err(format!("is a vector: nudge {key}.0, .1 or .2")),
         (row, _) if row.lab.is_some() => Ok(()),

@@ -71,9 +71,7 @@ impl Lab {
     /// Puts the measured data `name` beside the run, or takes away those that are there.
     pub(in crate::lab) fn measure(&mut self, name: Option<&str>) -> Answer {
         let Some(name) = name else {
-            let had = self.player.measured.take().is_some();
-            self.view.measured = false;
-            return Ok(Done::saying(if had {
+            return Ok(Done::saying(if self.take_measured_away() {
                 "the measured data are taken away"
             } else {
                 "there are no measured data beside the run"
@@ -82,6 +80,12 @@ impl Lab {
         let put = self.put_beside(name, false);
         put.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))?;
         Ok(Done::SILENT)
+    }
+
+    /// Takes the measured data away; returns whether there were any.
+    fn take_measured_away(&mut self) -> bool {
+        self.view.measured = false;
+        self.player.measured.take().is_some()
     }
 
     /// To be called after another scenario was opened in place of `before`. Puts the data that its `[view]` names
@@ -93,16 +97,14 @@ impl Lab {
         match named(scenario) {
             Some(name) if Some(&name) == shown.as_ref() => {}
             Some(name) => {
-                self.player.measured = None;
-                self.view.measured = false;
+                self.take_measured_away();
                 if let Err(problems) = self.put_beside(&name, false) {
                     let why = format!("{}: {}", problems.origin, problems.in_one_line());
                     self.tell(printable(&why));
                 }
             }
             None if shown.is_some() && shown == named(before) => {
-                self.player.measured = None;
-                self.view.measured = false;
+                self.take_measured_away();
             }
             None => {}
         }
