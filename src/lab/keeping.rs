@@ -2,10 +2,10 @@
 
 mod resuming;
 
-use super::command::{self, Command, Place};
+use super::Lab;
+use super::command::{self, Command};
 use super::rerun::Reference;
 use super::view::Look;
-use super::{Lab, UnderWay};
 use crate::observe::pace::Speed;
 use crate::scenario::Problems;
 use crate::scenario::file::ScenarioFile;
@@ -146,19 +146,9 @@ impl Lab {
         if self.script.is_done() {
             return None;
         }
-        let playback = &self.player.playback;
-        let plays_again = self.script.is_held && self.script.plays_again;
-        let is_playing = plays_again || playback.is_running() && !playback.is_running_until();
-        let under_way = self.script.under_way();
-        let again = under_way.and_then(|(command, under_way)| match under_way {
-            UnderWay::Going => {
-                let to_go = playback.steps_to_go()?;
-                let step = playback.step_number().saturating_add(to_go);
-                Some(Command::GoTo(Place::Step(step)))
-            }
-            UnderWay::Playing | UnderWay::Waiting(_) | UnderWay::Exporting => Some(command.clone()),
-        });
-        let run = is_playing.then_some(Command::Run);
+        let plays = self.plays_again() || self.script.is_held && self.script.plays_again;
+        let run = plays.then_some(Command::Run);
+        let again = self.under_way_again(false).map(|placed| placed.command);
         let left = self.script.left().cloned();
         let commands: Vec<_> = run.into_iter().chain(again).chain(left).collect();
         Some(KeptScript {

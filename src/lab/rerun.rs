@@ -125,11 +125,16 @@ impl Player {
         });
     }
 
+    /// The step to which the run is on its way.
+    pub(super) fn bound_for(&self) -> Option<u64> {
+        let to_go = self.playback.steps_to_go()?;
+        Some(self.playback.step_number().saturating_add(to_go))
+    }
+
     /// The step to which the run is on its way by itself.
     fn heading(&self) -> Option<Heading> {
-        let to_go = self.playback.steps_to_go()?;
-        let bound_for = self.playback.step_number().saturating_add(to_go);
-        self.heading.filter(|heading| heading.step == bound_for)
+        let step = self.bound_for()?;
+        self.heading.filter(|heading| heading.step == step)
     }
 
     /// Whether a run that an edit has begun anew is on its way to the time at which the lab stood.

@@ -70,12 +70,6 @@ impl Script {
         self.left.len() + usize::from(self.under_way.is_some())
     }
 
-    /// The command whose action takes time, and that action.
-    pub(super) fn under_way(&self) -> Option<(&Command, UnderWay)> {
-        let (placed, under_way) = self.under_way.as_ref()?;
-        Some((&placed.command, *under_way))
-    }
-
     /// The commands after the one under way.
     pub(super) fn left(&self) -> impl Iterator<Item = &Command> {
         self.left.iter().map(|placed| &placed.command)
@@ -199,28 +193,37 @@ impl Lab {
         self.read_now();
     }
 
-    /// Pauses the script. When it goes on, the command under way is carried out again: a run goes to the same step or
-    /// until the same condition holds, a wait lasts for what was left of it. An export goes on meanwhile.
-    pub(super) fn pause_script(&mut self) {
-        let playback = &self.player.playback;
-        let again = match &self.script.under_way {
-            None | Some((_, UnderWay::Exporting)) => None,
-            Some((placed, UnderWay::Playing)) => Some(placed.clone()),
-            Some((placed, UnderWay::Waiting(until))) => Some(Placed {
-                command: Command::Wait(until.saturating_sub(self.now).as_secs_f64()),
-                ..placed.clone()
-            }),
-            Some((placed, UnderWay::Going)) => playback.steps_to_go().map(|to_go| Placed {
-                command: Command::GoTo(Place::Step(playback.step_number().saturating_add(to_go))),
-                ..placed.clone()
-            }),
+    /// The command under way as it is carried out again: a run goes to the same step or until the same condition holds, a
+    /// wait lasts anew, or for what is `left` of it.
+    pub(super) fn under_way_again(&self, left: bool) -> Option<Placed> {
+        let (placed, under_way) = self.script.under_way.as_ref()?;
+        let command = match under_way {
+            UnderWay::Going => Command::GoTo(Place::Step(self.player.bound_for()?)),
+            UnderWay::Waiting(until) if left => {
+                Command::Wait(until.saturating_sub(self.now).as_secs_f64())
+            }
+            _ => placed.command.clone(),
         };
+        let line = placed.line;
+        Some(Placed { command, line })
+    }
+
+    /// Whether the run plays when the script goes on.
+    pub(super) fn plays_again(&self) -> bool {
+        let playback = &self.player.playback;
+        playback.is_running() && !playback.is_running_until()
+    }
+
+    /// Pauses the script. When it goes on, the command under way is carried out again. An export goes on meanwhile.
+    pub(super) fn pause_script(&mut self) {
         self.script.is_held = true;
-        self.script.plays_again = playback.is_running() && !playback.is_running_until();
-        if again.is_some() {
+        self.script.plays_again = self.plays_again();
+        if let Some((_, UnderWay::Exporting)) = self.script.under_way {
+            return;
+        }
+        if let Some(again) = self.under_way_again(true) {
             self.script.under_way = None;
-            self.script.left.extend(again);
-            self.script.left.rotate_right(1);
+            self.script.left.push_front(again);
         }
     }
 
@@ -232,12 +235,9 @@ impl Lab {
         if std::mem::take(&mut self.script.plays_again) {
             self.player.play();
         }
-        let to_go = self.player.playback.steps_to_go();
-        if let (Some(to_go), None) = (to_go, &self.script.under_way) {
-            let step = self.player.playback.step_number().saturating_add(to_go);
-            let command = Command::GoTo(Place::Step(step));
+        if let (Some(step), None) = (self.player.bound_for(), &self.script.under_way) {
             let arrive = Placed {
-                command,
+                command: Command::GoTo(Place::Step(step)),
                 line: None,
             };
             self.script.under_way = Some((arrive, UnderWay::Going));
