@@ -177,31 +177,25 @@ impl Work {
     ) -> Result<Option<Arc<Scenario>>, String> {
         let before = (acts.len() > 1).then(|| self.history.clone());
         let history = self.change();
-        let mut done = None;
-        for (index, act) in acts.into_iter().enumerate() {
-            let result = history.act(step, act, is_again || index > 0);
-            let is_refused = result.is_err();
-            done = Some(result);
-            if is_refused {
-                break;
-            }
-        }
-        let Some(done) = done else {
+        let mut acts = acts.into_iter().enumerate();
+        let done = acts.try_fold(None, |_, (index, act)| {
+            history.act(step, act, is_again || index > 0).map(Some)
+        });
+        let Some(scenario) = self.or_back_to(before, done)? else {
             return Ok(None);
         };
-        let scenario = self.or_back_to(before, done)?;
         if scenario.steps != steps {
             self.change().set_end(Clock::end_s(&scenario));
         }
         Ok(Some(scenario))
     }
 
-    /// The scenario `done`; where it was refused, the history is again as it was `before`.
-    fn or_back_to(
+    /// What is `done`; where it was refused, the history is again as it was `before`.
+    fn or_back_to<T>(
         &mut self,
         before: Option<History>,
-        done: Result<Arc<Scenario>, Problems>,
-    ) -> Result<Arc<Scenario>, String> {
+        done: Result<T, Problems>,
+    ) -> Result<T, String> {
         done.map_err(|problems| {
             if let Some(before) = before {
                 *self.change() = before;
