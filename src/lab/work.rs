@@ -276,10 +276,6 @@ mod tests {
         Act::set("motion.time_step_s", Value::Float(value))
     }
 
-    fn tilt(value: f64) -> Table {
-        Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(value))])
-    }
-
     #[test]
     fn acts_are_done_all_or_none() {
         let mut work = work();
@@ -296,16 +292,6 @@ mod tests {
         assert_eq!(work.journal().file(), before.file());
         assert!(work.turn(Way::Back, 2300).unwrap().is_none());
         assert!(work.act(40, Vec::new(), false, 2300).unwrap().is_none());
-    }
-
-    #[test]
-    fn a_new_run_that_is_refused_leaves_the_old_one() {
-        let mut work = work();
-        let refused = work.begin_with(&tilt(30.0), vec![time_step(-1.0)], false);
-        assert!(refused.is_err());
-        assert_eq!(work.journal().file().start.tilt_deg, Some(45.0));
-        let scenario = work.begin_with(&tilt(30.0), vec![time_step(0.05)], false);
-        assert_eq!(scenario.unwrap().file.start.tilt_deg, Some(30.0));
     }
 
     #[test]

@@ -23,7 +23,10 @@ pub fn check_part(value: &Value, path: &str) -> Vec<Problem> {
     match value {
         _ if is_key => check_value(value, &pattern, path, &mut problems),
         Value::Table(table) => check_table(table, &pattern, path, &mut problems),
-        other => problems.add(|| Problem::with_value(path, other, "must be a table")),
+        other => problems.add(|| {
+            let rule = format!("must be a table of {}", names(&pattern).join(", "));
+            Problem::with_value(path, other, rule)
+        }),
     }
     problems.list
 }
