@@ -55,21 +55,3 @@ impl<'de> Deserialize<'de> for Pane {
         Self::named(&id).ok_or_else(|| D::Error::custom(format!("there is no pane {id}")))
     }
 }
-
-impl Part {
-    /// Its name in files and commands.
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Pane(pane) => pane.id(),
-            Self::Health => "health",
-            Self::Predicted => "predicted",
-            Self::LookAt => "look_at",
-        }
-    }
-
-    pub fn named(id: &str) -> Option<Self> {
-        let others = [Self::Health, Self::Predicted, Self::LookAt];
-        let other = others.into_iter().find(|part| part.id() == id);
-        other.or_else(|| Pane::named(id).map(Self::Pane))
-    }
-}
