@@ -14,10 +14,6 @@ use std::time::{Duration, Instant};
 /// How often to look whether an export is complete while there is nothing else to do.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// The keys of a script that waits, for one command and for several.
-pub(super) const GO_ON_WITH_IT: &str = "space goes on with it, Esc leaves it out";
-pub(super) const GO_ON_WITH_THEM: &str = "space goes on with them, Esc leaves them out";
-
 /// How long steps are taken before the caller decides whether to go on.
 const PART: Duration = Duration::from_millis(100);
 
@@ -73,6 +69,17 @@ impl Script {
     /// The commands after the one under way.
     pub(super) fn left(&self) -> impl Iterator<Item = &Command> {
         self.left.iter().map(|placed| &placed.command)
+    }
+
+    /// How many commands are left, and the keys of a script that waits.
+    pub(super) fn left_in_words(&self) -> String {
+        let origin = &self.origin;
+        match self.count() {
+            1 => format!("1 command of {origin} is left: space goes on with it, Esc leaves it out"),
+            left => format!(
+                "{left} commands of {origin} are left: space goes on with them, Esc leaves them out"
+            ),
+        }
     }
 
     pub fn is_done(&self) -> bool {

@@ -6,7 +6,6 @@ use super::answer::{Answer, Done};
 use super::command::{Command, CursorTo, Place, PushChoice};
 use super::dialog::Dialog;
 use super::on_top::{Cleared, Mode};
-use super::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
 use super::values::listed::ListedValue;
 use super::view::Pane;
 use super::{Lab, Request};
@@ -387,14 +386,9 @@ impl Lab {
 
     /// Pauses the run and the commands that are not carried out yet.
     fn hold_script(&mut self) {
-        let left = self.script.count();
         self.pause_script();
         self.one(Command::Pause);
-        let origin = &self.script.origin;
-        self.tell(match left {
-            1 => format!("paused: 1 command of {origin} is left: {GO_ON_WITH_IT}"),
-            left => format!("paused: {left} commands of {origin} are left: {GO_ON_WITH_THEM}"),
-        });
+        self.tell(format!("paused: {}", self.script.left_in_words()));
     }
 
     /// Stops the run and drops the commands that are not carried out yet.

@@ -2,7 +2,6 @@
 
 use super::{KeptPinned, KeptPlace, KeptScript, KeptWork, Unreadable, read};
 use crate::lab::command::{self, Commands};
-use crate::lab::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
 use crate::lab::view::View;
 use crate::lab::{Lab, Script, Work, opening};
 use crate::scenario::{Document, Problems, Scenario, keys};
@@ -67,8 +66,8 @@ impl Lab {
         match place.script.map(|kept| kept.commands()) {
             None => {}
             Some(Ok(commands)) => {
-                told = left_of(&commands);
                 self.script = Script::held(commands);
+                told = self.script.left_in_words();
             }
             Some(Err(problems)) => {
                 let reason = problems.in_one_line();
@@ -118,15 +117,6 @@ impl KeptPlace {
         view.focus = *focus.ok_or_else(unknown)?;
         view.filled = self.filled;
         Ok(())
-    }
-}
-
-/// What is said of `commands`, those of a script that are not carried out yet.
-fn left_of(commands: &Commands) -> String {
-    let origin = &commands.origin;
-    match commands.list.len() {
-        1 => format!("1 command of {origin} is left: {GO_ON_WITH_IT}"),
-        count => format!("{count} commands of {origin} are left: {GO_ON_WITH_THEM}"),
     }
 }
 
