@@ -89,7 +89,7 @@ impl Lab {
             Action::WiderWindow => self.change_window(true),
             Action::NarrowerWindow => self.change_window(false),
             Action::StepCursor(direction) => {
-                self.one(self.stepped_cursor(signed(direction, times)))
+                self.one(self.stepped_cursor(signed(direction, times)));
             }
             Action::ToTurn(Direction::Left) => self.one(Command::Cursor(CursorTo::TurnBefore)),
             Action::ToTurn(_) => self.one(Command::Cursor(CursorTo::NextTurn)),
