@@ -15,6 +15,8 @@ use std::sync::Arc;
 pub(super) struct Offer {
     /// In words: a scheme and a time step.
     what: String,
+    /// " from the start" where the run has it already from an edit on; otherwise empty.
+    since: &'static str,
     /// The run from its start, as advised.
     scenario: Arc<Scenario>,
 }
@@ -52,7 +54,8 @@ impl Player {
         let scheme = scheme.map_or(String::new(), |scheme| format!("{scheme}, "));
         let since = if is_in_force { " from the start" } else { "" };
         Some(Offer {
-            what: format!("{scheme}dt {} s{since}", shortest(time_step_s)),
+            what: format!("{scheme}dt {} s", shortest(time_step_s)),
+            since,
             scenario: Arc::new(scenario),
         })
     }
@@ -91,14 +94,17 @@ impl Player {
     pub fn offer(&self) -> Option<String> {
         let is_doubted = self.reading.readouts.health.is_believed() == Some(false);
         let offer = self.offer.as_ref().filter(|_| is_doubted)?;
-        Some(format!("{} mends it: a takes it", offer.what))
+        Some(format!(
+            "{}{} mends it: a takes it",
+            offer.what, offer.since
+        ))
     }
 
     /// As [`offer`](Self::offer), in fewer words.
     pub fn offer_in_short(&self) -> Option<String> {
         self.offer()?;
         let offer = self.offer.as_ref()?;
-        Some(format!("a: {} mends it", offer.what))
+        Some(format!("a: {}{} mends it", offer.what, offer.since))
     }
 }
 
@@ -118,7 +124,7 @@ impl Lab {
             let advice = known.unwrap_or_else(|| advise(&self.player.to_be_mended()));
             self.player.offer = self.player.offered(&advice);
         }
-        let Some(Offer { what, scenario }) = self.player.offer.take() else {
+        let Some(Offer { what, scenario, .. }) = self.player.offer.take() else {
             return Err("no time step or scheme is known that mends this run".into());
         };
         let left_at = self.player.step_to_leave_at();

@@ -2,7 +2,7 @@
 
 use super::action::Action;
 use super::answer::{Answer, Done};
-use super::command::{Command, Place};
+use super::command::{Command, Export, Figure, Place, Save};
 use super::dialog::{Dialog, Question};
 use super::view::Pane;
 use super::{Lab, Request};
@@ -83,25 +83,25 @@ impl Lab {
                 let step = self.player.step_meant(text)?;
                 Some(Command::GoTo(Place::Step(step)))
             }
-            Question::Export(scenario) => Some(Command::Export {
+            Question::Export(scenario) => Some(Command::Export(Export {
                 path: text.to_owned(),
-                layout: Layout::every(dialog.every()?),
+                layout: Layout::every(dialog.every()?).file().clone(),
                 to_step: Some(scenario.steps),
                 force,
-            }),
-            Question::Figure(to_step) => Some(Command::Figure {
+            })),
+            Question::Figure(to_step) => Some(Command::Figure(Figure {
                 path: text.to_owned(),
                 kind: dialog.form.text(1).trim().to_owned(),
                 exact: self.player.run().overlay().is_some(),
                 to_step: Some(*to_step),
                 force,
-            }),
-            Question::SaveRun(to_step) => Some(Command::Save {
+            })),
+            Question::SaveRun(to_step) => Some(Command::Save(Save {
                 path: text.to_owned(),
                 from_here: false,
                 to_step: Some(*to_step),
                 force,
-            }),
+            })),
             Question::Number | Question::Settings => None, // taken before
             Question::SavePresent(content) => {
                 return self.files.save("the scenario", content, &path, force);

@@ -2,7 +2,7 @@
 
 use super::Lab;
 use super::answer::{Answer, Done, UnderWay};
-use super::command::{Command, Force, PushChoice};
+use super::command::{Command, Export, Figure, Force, PushChoice, Save};
 use super::values::listed::ListedValue;
 use super::work::Way;
 use crate::scenario::problem::nearest;
@@ -11,6 +11,7 @@ use crate::work::journal::Act;
 use crate::work::next_push::NextPush;
 use std::sync::Arc;
 use std::time::Duration;
+use toml::Table;
 
 impl Lab {
     /// Carries `command` out. An action that takes time is only started: [`advance`](Self::advance) continues it.
@@ -34,114 +35,101 @@ impl Lab {
             Command::Set(table) => self.set_all(table),
             Command::Nudge { key, times } => self.nudge(key, *times),
             Command::Push(choice) => self.push(choice),
-            Command::NextPush(choice) => {
-                self.choose_next_push(self.chosen(choice)?);
-                Ok(Done::SILENT)
-            }
+            Command::NextPush(choice) => Ok(self.choose_next_push(self.chosen(choice)?)),
             Command::Step(steps) => self.player.step(*steps),
             Command::GoTo(place) => self.player.go_to(*place),
             Command::RunUntil(condition) => self.player.run_until(condition),
-            Command::Run => {
-                self.player.play();
-                Ok(Done::SILENT)
-            }
+            Command::Run => Ok(self.player.play()),
             Command::Pause => Ok(self.player.pause()),
-            Command::Wait(seconds) => {
-                let until = self.now + Duration::try_from_secs_f64(*seconds).unwrap_or_default();
-                Ok(Done::SILENT.going_on(UnderWay::Waiting(until)))
-            }
-            Command::Chapter(title) => {
-                self.script.begin_chapter(title);
-                Ok(Done::saying(title))
-            }
+            Command::Wait(seconds) => Ok(self.wait(*seconds)),
+            Command::Chapter(title) => Ok(self.script.begin_chapter(title)),
             Command::Undo(times) => self.turn(Way::Back, *times),
             Command::Redo(times) => self.turn(Way::On, *times),
-            Command::Export {
-                path,
-                layout,
-                to_step,
-                force,
-            } => {
-                let scenario = self.work.marked(&self.run_up_to(*to_step, "export")?);
-                let path = self.files.path_of(path);
-                self.files.export(&scenario, &path, layout.clone(), *force)
-            }
-            Command::Figure {
-                path,
-                kind,
-                exact,
-                to_step,
-                force,
-            } => {
-                let scenario = self.run_up_to(*to_step, "draw")?;
-                let path = self.files.path_of(path);
-                let beside = self.player.measured();
-                let measured = beside.map(|beside| Arc::clone(&beside.measured));
-                let what = (kind.as_str(), *exact);
-                self.files.draw(&scenario, &path, what, measured, *force)
-            }
-            Command::Save {
-                path,
-                from_here,
-                to_step,
-                force,
-            } => {
-                let path = self.files.path_of(path);
-                match from_here {
-                    true => {
-                        let content = self.player.present_as_text()?;
-                        self.files.save("the scenario", &content, &path, *force)
-                    }
-                    false => {
-                        let run = self.work.marked(&self.run_up_to(*to_step, "save")?);
-                        self.files.save("the run", &run.to_toml(), &path, *force)
-                    }
-                }
-            }
+            Command::Export(export) => self.export(export),
+            Command::Figure(figure) => self.draw(figure),
+            Command::Save(save) => self.save(save),
             Command::Speed(speed) => Ok(self.player.set_speed(*speed)),
+            Command::Since(since_s) => Ok(self.view.set_since(*since_s)),
+            Command::Magnify(times) => Ok(self.view.magnify(*times)),
+            Command::Cursor(to) => self.set_cursor(*to),
             Command::Exact(shown) => Ok(self.player.set_exact(*shown)),
             Command::Measured(name) => self.measure(name.as_deref()),
-            Command::Residuals(shown) => self.show_residuals(*shown),
             Command::TakeAdvice => self.follow_advice(),
             Command::Pin(pinned) => Ok(self.player.set_pinned(*pinned)),
-            _ => self.look(command),
+            Command::Fill(pane) => Ok(self.view.fill(*pane)),
+            Command::PointAt(pane) => Ok(self.view.point_at(*pane)),
+            Command::Look(patch) => self.look(patch),
         }
     }
 
-    /// Carries out a command that only changes how the run is shown.
-    fn look(&mut self, command: &Command) -> Answer {
-        match command {
-            Command::LookAt(text) => self.view.look_at = Some(text.clone()),
-            Command::Next(text) => self.view.next = Some(text.clone()),
-            Command::Bare(bare) => {
-                self.view.bare = *bare;
-                if *bare {
-                    return Ok(Done::saying("a bare screen: c brings the rest back"));
-                }
-            }
-            Command::Detail(detail_s) => return self.set_detail(*detail_s),
-            Command::DetailOf(curve) => {
-                self.view.detail_of = *curve;
-                return Ok(Done::saying(match curve {
+    fn wait(&self, seconds: f64) -> Done {
+        let until = self.now + Duration::try_from_secs_f64(seconds).unwrap_or_default();
+        Done::SILENT.going_on(UnderWay::Waiting(until))
+    }
+
+    /// Shows the run as `patch`, keys of `[view]` and their values, says.
+    fn look(&mut self, patch: &Table) -> Answer {
+        let mut look = self.view.look.patched(patch)?;
+        let least_s = 2.0 * self.player.motion().time_step_s;
+        let short = |what| Err(format!("the {what} two time steps at least: {least_s} s").into());
+        let mut said = None;
+        for key in patch.keys() {
+            said = match key.as_str() {
+                "window_s" if look.window_s < least_s => return short("traces show"),
+                "window_s" => Some(format!(
+                    "the traces show {} s; Home shows the usual time",
+                    look.window_s
+                )),
+                "detail_s" if look.detail_s < Some(least_s) => return short("strip shows"),
+                "detail_s" => look
+                    .detail_s
+                    .map(|detail_s| format!("the strip of the fast motion shows {detail_s} s")),
+                "detail_of" => Some(match look.detail_of {
                     Some(curve) => format!("the upper strip shows {}", curve.name()),
                     None => "the upper strip shows what swings: the tilt, or x".to_owned(),
-                }));
-            }
-            Command::Since(since_s) => return self.set_since(*since_s),
-            Command::Magnify(times) => return self.magnify(*times),
-            Command::Cursor(to) => return self.set_cursor(*to),
-            Command::Window(window_s) => return self.set_window(*window_s),
-            Command::Show(panes) => self.view.show(panes),
-            Command::Hide(parts) => self.view.hidden.clone_from(parts),
-            Command::Fill(pane) => self.view.fill(*pane),
-            Command::PointAt(pane) => self.view.pointed_at = *pane,
-            Command::Phase(page) => return self.show_page(*page),
-            Command::SumTo(rows) => self.view.sum_to = *rows,
-            Command::Camera(camera) => self.view.look_from(*camera),
-            Command::Zoom(zoom) => self.view.zoom = *zoom,
-            _ => {}
+                }),
+                "phase" => {
+                    self.player.may_show(look.page)?;
+                    look.sum_to = None; // all rows of its table
+                    None
+                }
+                "residuals" => Some(self.player.residuals_in_words(look.residuals)?.to_owned()),
+                "bare" if look.bare => Some("a bare screen: c brings the rest back".to_owned()),
+                _ => None,
+            };
         }
-        Ok(Done::SILENT)
+        self.view.take(look);
+        Ok(said.map_or(Done::SILENT, Done::saying))
+    }
+
+    fn export(&mut self, export: &Export) -> Answer {
+        let layout = export.layout.clone().check();
+        let layout = layout.map_err(|error| error.to_string())?;
+        let scenario = self.run_up_to(export.to_step, "export")?;
+        let scenario = self.work.marked(&scenario);
+        let path = self.files.path_of(&export.path);
+        self.files.export(&scenario, &path, layout, export.force)
+    }
+
+    fn draw(&mut self, figure: &Figure) -> Answer {
+        let scenario = self.run_up_to(figure.to_step, "draw")?;
+        let path = self.files.path_of(&figure.path);
+        let beside = self.player.measured();
+        let measured = beside.map(|beside| Arc::clone(&beside.measured));
+        let what = (figure.kind.as_str(), figure.exact);
+        self.files
+            .draw(&scenario, &path, what, measured, figure.force)
+    }
+
+    fn save(&mut self, save: &Save) -> Answer {
+        let path = self.files.path_of(&save.path);
+        if save.from_here {
+            let content = self.player.present_as_text()?;
+            return self.files.save("the scenario", &content, &path, save.force);
+        }
+        let run = self.run_up_to(save.to_step, "save")?;
+        let run = self.work.marked(&run).to_toml();
+        self.files.save("the run", &run, &path, save.force)
     }
 
     fn open_named(&mut self, name: &str) -> Answer {
@@ -156,9 +144,9 @@ impl Lab {
     }
 
     /// Sets all keys of `table` as one act. Keys of body and start begin a new run; the others act from the next step on.
-    fn set_all(&mut self, table: &toml::Table) -> Answer {
+    fn set_all(&mut self, table: &Table) -> Answer {
         let is_of_a_new_run = |key: &str| keys::Effect::of(key) == keys::Effect::NewRun;
-        let (new, rest): (toml::Table, toml::Table) = table
+        let (new, rest): (Table, Table) = table
             .clone()
             .into_iter()
             .partition(|(key, _)| is_of_a_new_run(key));
@@ -190,7 +178,7 @@ impl Lab {
             .map_err(|reason| format!("{} {reason}", parameter.label))?;
         let now = self.now;
         let is_again = self.values.is_nudged_again(key, now);
-        let table = toml::Table::from_iter([(key.to_owned(), value)]);
+        let table = Table::from_iter([(key.to_owned(), value)]);
         let done = match keys::Effect::of(key) {
             keys::Effect::NewRun => self.begin_with(&table, Vec::new(), is_again)?,
             keys::Effect::FromHere | keys::Effect::None => {
@@ -237,10 +225,9 @@ impl Lab {
 }
 
 /// The acts that set the keys of `table`: an edit, a description, or both.
-fn acts(table: toml::Table) -> Vec<Act> {
+fn acts(table: Table) -> Vec<Act> {
     let is_idle = |key: &str| keys::Effect::of(key) == keys::Effect::None;
-    let (idle, acting): (toml::Table, toml::Table) =
-        table.into_iter().partition(|(key, _)| is_idle(key));
+    let (idle, acting): (Table, Table) = table.into_iter().partition(|(key, _)| is_idle(key));
     let edit = (!acting.is_empty()).then_some(Act::Edit(acting));
     let description = (!idle.is_empty()).then_some(Act::Describe(idle));
     edit.into_iter().chain(description).collect()

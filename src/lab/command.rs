@@ -4,35 +4,29 @@
 //! A file of commands is a list of `[[do]]` tables with one command each. The [table](COMMANDS) lists every command with
 //! its name, its value and its effect; [`read`] and the manual use it.
 
-mod exporting;
-mod looking;
-mod reading;
+mod form;
 mod table;
-mod write;
 
+pub use form::MOST_MAGNIFIED;
 pub use table::{COMMANDS, CommandRow};
 
-use crate::export::Layout;
-use crate::lab::view::step::Page;
-use crate::lab::view::{Pane, Part};
-use crate::observe::camera::{Camera, Zoom};
+use crate::export::layout::LayoutFile;
+use crate::lab::view::{Look, Pane};
 use crate::observe::pace::Speed;
-use crate::observe::recording::Curve;
-use crate::scenario::dotted::join;
+use crate::scenario::file::Choice;
 use crate::scenario::problem::nearest;
+use crate::scenario::screen::TRACES;
 use crate::scenario::{Document, Problem, Problems};
 use crate::work::expression::Expression;
 use crate::work::next_push::Toward;
+use form::{below, quoted};
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use toml::{Table, Value};
 
-pub const MOST_MAGNIFIED: f64 = 1e6;
-/// What stands for the absence of a choice, and for turns of the tilt, in files.
-const NONE: &str = "none";
-const NEXT_TURN: &str = "next turn";
-const TURN_BEFORE: &str = "turn before";
-
-#[derive(Clone, Debug, PartialEq)]
+/// A command; serde reads and writes it under its name in a `[[do]]` table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Command {
     /// Opens a preset or a file: SCENARIO as on the command line.
     Open(String),
@@ -43,6 +37,7 @@ pub enum Command {
         /// The key, of a single value.
         key: String,
         /// How often; negative: downwards. Not 0.
+        #[serde(default = "once")]
         times: i32,
     },
     /// Pushes from the next step on.
@@ -55,58 +50,24 @@ pub enum Command {
     GoTo(Place),
     /// Plays at the present speed until this condition holds, and stops there.
     RunUntil(Expression),
+    #[serde(with = "only_true")]
     Run,
+    #[serde(with = "only_true")]
     Pause,
     /// Lets the next command of the script wait for this many seconds.
+    #[serde(rename = "wait_s")]
     Wait(f64),
     /// Begins a part of the script that has this title.
     Chapter(String),
     Undo(u32),
     /// Does this many undone acts again.
     Redo(u32),
-    /// Writes the run up to here as CSV.
-    Export {
-        path: String,
-        layout: Layout,
-        /// Up to this step instead of the present one.
-        to_step: Option<u64>,
-        /// Whether an existing file is replaced.
-        force: bool,
-    },
-    /// Draws the run up to here.
-    Figure {
-        /// The file; its name's end says in which form.
-        path: String,
-        /// What it shows: traces, above, 3d, or columns.
-        kind: String,
-        /// Whether the exact motion is drawn beside it.
-        exact: bool,
-        /// Up to this step instead of the present one.
-        to_step: Option<u64>,
-        /// Whether an existing file is replaced.
-        force: bool,
-    },
-    /// Writes the run up to here as a run file, or the present state as a scenario.
-    Save {
-        path: String,
-        /// Whether the file is a scenario that starts from the present state.
-        from_here: bool,
-        /// Of a run file: up to this step instead of the present one.
-        to_step: Option<u64>,
-        /// Whether an existing file is replaced.
-        force: bool,
-    },
+    Export(Export),
+    Figure(Figure),
+    Save(Save),
     Speed(Speed),
-    LookAt(String),
-    /// The line about what to try after the run.
-    Next(String),
-    /// Length of time that the traces show, s.
-    Window(f64),
-    /// Length of time that the strip of the fast motion shows, s.
-    Detail(f64),
-    /// What that strip shows; `None`: the motion tells.
-    DetailOf(Option<Curve>),
     /// Time at the left edge of the traces, s; `None`: they follow the run.
+    #[serde(rename = "since_s", with = "or_none")]
     Since(Option<f64>),
     /// How many times the values of the traces are magnified.
     Magnify(f64),
@@ -115,30 +76,77 @@ pub enum Command {
     /// Whether the exact motion is drawn beside the run.
     Exact(bool),
     /// Puts these measured data beside the run, or none.
+    #[serde(with = "or_none")]
     Measured(Option<String>),
-    /// Whether measured data are shown less what the run says.
-    Residuals(bool),
     /// Begins the run anew with the time step or scheme that mends doubtful numbers.
+    #[serde(with = "only_true")]
     TakeAdvice,
     /// Whether the present run is pinned as the reference; false: no run is.
     Pin(bool),
-    /// The panes that share the screen; none: as many as there is room for.
-    Show(Vec<Pane>),
-    Hide(Vec<Part>),
+    #[serde(with = "or_none")]
     Fill(Option<Pane>),
-    Phase(Page),
-    /// How many rows of a table the step pane adds up; `None`: all.
-    SumTo(Option<usize>),
+    #[serde(with = "or_none")]
     PointAt(Option<Pane>),
-    Bare(bool),
-    /// The direction from which the 3-D view is seen.
-    Camera(Camera),
-    /// How large the round pictures show what they show.
-    Zoom(Zoom),
+    /// Shows the run as these keys of `[view]` say: those of [`Look`](crate::lab::view::Look).
+    #[serde(skip)]
+    Look(Table),
+}
+
+fn once() -> i32 {
+    1
+}
+
+/// Writes the run up to a step as CSV.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Export {
+    pub path: String,
+    #[serde(flatten)]
+    pub layout: LayoutFile,
+    /// Up to this step instead of the present one.
+    pub to_step: Option<u64>,
+    /// Whether an existing file is replaced.
+    #[serde(default)]
+    pub force: bool,
+}
+
+/// Draws the run up to a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// The file; its name's end says in which form.
+    pub path: String,
+    /// What it shows: traces, above, 3d, or columns.
+    #[serde(default = "traces")]
+    pub kind: String,
+    /// Whether the exact motion is drawn beside it.
+    #[serde(default)]
+    pub exact: bool,
+    /// Up to this step instead of the present one.
+    pub to_step: Option<u64>,
+    /// Whether an existing file is replaced.
+    #[serde(default)]
+    pub force: bool,
+}
+
+fn traces() -> String {
+    TRACES.to_owned()
+}
+
+/// Writes the run up to a step as a run file, or the present state as a scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Save {
+    pub path: String,
+    /// Whether the file is a scenario that starts from the present state.
+    #[serde(default)]
+    pub from_here: bool,
+    /// Of a run file: up to this step instead of the present one.
+    pub to_step: Option<u64>,
+    /// Whether an existing file is replaced.
+    #[serde(default)]
+    pub force: bool,
 }
 
 /// The values of a push that a command gives. The push to come has the others.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct PushChoice {
     pub point: Option<String>,
@@ -149,14 +157,16 @@ pub struct PushChoice {
 }
 
 /// A force, N.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
 pub enum Force {
     Size(f64),
     /// The force itself, world frame.
     Vector([f64; 3]),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Choice", into = "Choice")]
 pub enum Place {
     Step(u64),
     /// The one at this time, s.
@@ -165,15 +175,59 @@ pub enum Place {
     End,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum CursorTo {
-    /// To a step or a time that the run has reached.
-    Place(Place),
     /// To the next step at which the tilt turns up or down.
+    #[serde(rename = "next turn")]
     NextTurn,
+    #[serde(rename = "turn before")]
     TurnBefore,
     /// Off the traces.
+    #[serde(rename = "none")]
     Nowhere,
+    /// To a step or a time that the run has reached.
+    #[serde(untagged)]
+    Place(Place),
+}
+
+/// The value of a command that takes none.
+mod only_true {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(serializer: S) -> Result<S::Ok, S::Error> {
+        true.serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(), D::Error> {
+        bool::deserialize(deserializer).map(|_| ())
+    }
+}
+
+/// A value, or the word `none`.
+mod or_none {
+    use serde::de::{DeserializeOwned, Error};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use toml::Value;
+
+    pub fn serialize<T: Serialize, S: Serializer>(
+        value: &Option<T>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        match value {
+            Some(value) => value.serialize(serializer),
+            None => "none".serialize(serializer),
+        }
+    }
+
+    pub fn deserialize<'de, T: DeserializeOwned, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<T>, D::Error> {
+        let value = Value::deserialize(deserializer)?;
+        if value.as_str() == Some("none") {
+            return Ok(None);
+        }
+        value.try_into().map(Some).map_err(D::Error::custom)
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -193,16 +247,43 @@ pub struct Commands {
 impl Command {
     /// The command called `name` with `value`.
     pub fn new(name: &str, value: &Value) -> Result<Self, Vec<Problem>> {
-        match COMMANDS.iter().find(|row| row.name == name) {
-            Some(row) => row.read(value),
-            None => Err(vec![unknown(name, None)]),
+        let Some(row) = COMMANDS.iter().find(|row| row.name == name) else {
+            return Err(vec![unknown(name, None)]);
+        };
+        let table = Table::from_iter([(name.to_owned(), row.form.check(value)?)]);
+        if Look::has(name) {
+            return Ok(Self::Look(table));
+        }
+        let read = table.try_into();
+        read.map_err(|error: toml::de::Error| vec![Problem::with_value("", value, error.message())])
+    }
+
+    /// The command that shows the run as the key `name` of `[view]` says with `value`.
+    pub fn look(name: &str, value: impl Serialize) -> Self {
+        let value = Value::try_from(value).ok();
+        Self::Look(
+            value
+                .map(|value| (name.to_owned(), value))
+                .into_iter()
+                .collect(),
+        )
+    }
+
+    /// The value of the key `name` of `[view]`, where the command sets it.
+    pub fn looked(&self, name: &str) -> Option<&Value> {
+        match self {
+            Self::Look(table) => table.get(name),
+            _ => None,
         }
     }
 
     /// Its name and the value behind it, as TOML.
     pub fn to_table(&self) -> Table {
-        let (name, value) = write::written(self);
-        Table::from_iter([(name.to_owned(), value)])
+        match (self, Value::try_from(self)) {
+            (Self::Look(table), _) => table.clone(),
+            (_, Ok(Value::Table(table))) => table,
+            _ => Table::new(), // a command holds nothing that TOML cannot write
+        }
     }
 }
 
@@ -264,43 +345,34 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
 /// The command in the table `do.index`.
 fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
     let here = format!("do.{index}");
+    let wrong = |rule: String| Err(vec![Problem::at(here.as_str(), rule)]);
     let Value::Table(table) = value else {
         return Err(vec![Problem::with_value(here, value, "must be a table")]);
     };
-    let under = |problem: Problem| Problem {
-        key: format!("{here}.{}", problem.key),
-        ..problem
-    };
-    let names: Vec<&String> = table.keys().collect();
-    let wrong = names
-        .iter()
-        .filter(|name| !COMMANDS.iter().any(|row| row.name == name.as_str()));
+    let known = |name: &&String| COMMANDS.iter().any(|row| row.name == name.as_str());
     let beside = COMMANDS.iter().find(|row| table.contains_key(row.name));
-    let wrong: Vec<_> = wrong.map(|name| under(unknown(name, beside))).collect();
-    if !wrong.is_empty() {
-        return Err(wrong);
+    let unknown: Vec<_> = table
+        .keys()
+        .filter(|name| !known(name))
+        .map(|name| below(&here, unknown(name, beside)))
+        .collect();
+    if !unknown.is_empty() {
+        return Err(unknown);
     }
     match table.iter().collect::<Vec<_>>()[..] {
-        [(name, value)] => {
-            let inside = |problem: Problem| Problem {
-                key: join(name, &problem.key).trim_end_matches('.').to_owned(),
-                ..problem
-            };
-            let under_name = |problem| under(inside(problem));
-            Command::new(name, value)
-                .map_err(|problems| problems.into_iter().map(under_name).collect())
-        }
-        [] => {
-            let rule = "holds no command: there is gyrolab man for their names";
-            Err(vec![Problem::at(here, rule)])
-        }
+        [(name, value)] => Command::new(name, value).map_err(|problems| {
+            let problems = problems.into_iter();
+            problems
+                .map(|problem| below(&here, below(name, problem)))
+                .collect()
+        }),
+        [] => wrong("holds no command: there is gyrolab man for their names".to_owned()),
         _ => {
-            let names: Vec<_> = names.iter().map(|name| name.as_str()).collect();
-            let rule = format!(
-                "holds {}: one command each, the next in a [[do]] of its own",
-                names.join(", ")
-            );
-            Err(vec![Problem::at(here, rule)])
+            let names: Vec<_> = table.keys().map(String::as_str).collect();
+            let names = names.join(", ");
+            wrong(format!(
+                "holds {names}: one command each, the next in a [[do]] of its own"
+            ))
         }
     }
 }
@@ -314,12 +386,29 @@ fn unknown(name: &str, beside: Option<&CommandRow>) -> Problem {
         ),
         None => nearest(name, COMMANDS.iter().map(|row| row.name)),
     };
-    let key = if name.contains('.') {
-        format!("\"{name}\"")
-    } else {
-        name.to_owned()
-    };
-    Problem::at(key, format!("unknown command: {near}"))
+    Problem::at(quoted(name), format!("unknown command: {near}"))
+}
+
+impl TryFrom<Choice> for Place {
+    type Error = &'static str;
+
+    fn try_from(choice: Choice) -> Result<Self, Self::Error> {
+        match choice {
+            Choice::Number(step) => Ok(Self::Step(step)),
+            Choice::Word(text) => Self::parse(&text).ok_or("must be a step or a time"),
+        }
+    }
+}
+
+impl From<Place> for Choice {
+    fn from(place: Place) -> Self {
+        match place {
+            Place::Step(step) => Self::Number(step.min(i64::MAX as u64)), // TOML has no larger one
+            Place::Time(time_s) => Self::Word(format!("{time_s} s")),
+            Place::Start => Self::Word("start".to_owned()),
+            Place::End => Self::Word("end".to_owned()),
+        }
+    }
 }
 
 impl Place {

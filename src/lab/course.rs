@@ -109,9 +109,10 @@ impl Player {
     }
 
     /// Lets the run go on.
-    pub(super) fn play(&mut self) {
+    pub(super) fn play(&mut self) -> Done {
         self.heading = None;
         self.playback.set_running(true);
+        Done::SILENT
     }
 
     pub(super) fn pause(&mut self) -> Done {

@@ -33,9 +33,10 @@ impl Lab {
         self.say("the push to come: p gives it");
     }
 
-    pub(super) fn choose_next_push(&mut self, next: NextPush) {
+    pub(super) fn choose_next_push(&mut self, next: NextPush) -> Done {
         self.values.set_next_push(next);
         self.list_parameters();
+        Done::SILENT
     }
 
     /// Begins a new run with the values of `set` in its scenario, and does `acts` at its beginning. With `is_again` it
@@ -129,52 +130,49 @@ impl Lab {
 
     /// Undoes the last `times` acts, or does as many undone ones again.
     pub(super) fn turn(&mut self, way: Way, times: u32) -> Answer {
-        let (done, run, other_way, nothing) = match way {
-            Way::Back => (
-                "undone",
-                "the run before",
-                "U brings it again",
-                "nothing to undo",
-            ),
-            Way::On => (
-                "done again",
-                "the run after",
-                "u takes it back",
-                "nothing to do again",
-            ),
-        };
         let mut answer = Done::SILENT;
         for _ in 0..times {
             self.leave();
             let steps = self.player.run().scenario().steps;
-            answer = match self.work.turn(way, steps)? {
-                None => return Err(nothing.into()),
-                Some(Turned::SameRun {
-                    step,
-                    act,
-                    scenario,
-                }) => {
-                    match act {
-                        Act::Describe(_) => self.player.playback.describe_as(&scenario),
-                        Act::Edit(_) | Act::Push(_) => {
-                            self.player.continue_at(step, &scenario);
-                        }
-                    }
-                    self.player.playback.set_end(self.work.present().end_s);
-                    self.scenario_has_changed();
-                    let act = act.in_words();
-                    Done::saying(format!("{done}: {act}, at step {step}; {other_way}"))
-                }
-                Some(Turned::OtherRun {
-                    is_of_same_name,
-                    scenario,
-                }) => {
-                    self.return_to_run(scenario, is_of_same_name);
-                    Done::saying(format!("{done}: this is {run}; {other_way}"))
-                }
+            let turned = self.work.turn(way, steps)?;
+            answer = match (turned, way) {
+                (Some(turned), _) => self.turned(turned, way),
+                (None, Way::Back) => return Err("nothing to undo".into()),
+                (None, Way::On) => return Err("nothing to do again".into()),
             };
         }
         Ok(answer.going_on(UnderWay::Going))
+    }
+
+    /// Shows the run as an undo or a redo has left it.
+    fn turned(&mut self, turned: Turned, way: Way) -> Done {
+        let (done, run, other_way) = match way {
+            Way::Back => ("undone", "the run before", "U brings it again"),
+            Way::On => ("done again", "the run after", "u takes it back"),
+        };
+        Done::saying(match turned {
+            Turned::SameRun {
+                step,
+                act,
+                scenario,
+            } => {
+                match act {
+                    Act::Describe(_) => self.player.playback.describe_as(&scenario),
+                    Act::Edit(_) | Act::Push(_) => self.player.continue_at(step, &scenario),
+                }
+                self.player.playback.set_end(self.work.present().end_s);
+                self.scenario_has_changed();
+                let act = act.in_words();
+                format!("{done}: {act}, at step {step}; {other_way}")
+            }
+            Turned::OtherRun {
+                is_of_same_name,
+                scenario,
+            } => {
+                self.return_to_run(scenario, is_of_same_name);
+                format!("{done}: this is {run}; {other_way}")
+            }
+        })
     }
 
     /// Shows the run of `scenario`, which is the present one again, at the step where it was left. `is_of_same_name` tells

@@ -2,7 +2,6 @@
 
 use super::Lab;
 use super::action::Direction;
-use super::answer::{Answer, Done};
 use super::command::{Command, Place};
 use super::player::Player;
 use super::view::View;
@@ -11,6 +10,7 @@ use crate::observe::dip::Dip;
 use crate::physics::workings::{Phase, Quantity, Sums, Table, Value};
 use crate::physics::{State, Workings};
 use crate::scenario::Scenario;
+use crate::scenario::screen::ALL_ROWS;
 use std::sync::Arc;
 
 /// The most points of a body whose steps are taken apart while the run goes on. The step of a larger body is taken
@@ -115,6 +115,22 @@ impl Player {
         }
     }
 
+    /// Refuses a page that names a phase which the scheme of the present step does not have.
+    pub(super) fn may_show(&self, page: Page) -> Result<(), String> {
+        let (Page::Named(name), Some(explained)) = (page, self.explained()) else {
+            return Ok(());
+        };
+        let phases = explained.workings.phases();
+        let mut names: Vec<_> = phases.map(|phase| phase.name).collect();
+        if names.contains(&name) {
+            return Ok(());
+        }
+        names.dedup();
+        let scheme = self.run().simulation().now().motion().scheme.name;
+        let names = names.join(", ");
+        Err(format!("{scheme} has no phase {name}: it has {names}"))
+    }
+
     fn taken_apart(&mut self) -> Option<Explained> {
         let now = self.run().simulation().now();
         let (step, states) = (now.number(), (*now.before()?, *now.after()));
@@ -136,34 +152,12 @@ impl Player {
 }
 
 impl Lab {
-    /// Shows `page` in the step pane; all rows of its table are added up.
-    pub(super) fn show_page(&mut self, page: Page) -> Answer {
-        if let (Page::Named(name), Some(explained)) = (page, self.player.explained())
-            && explained.workings.phases().all(|phase| phase.name != name)
-        {
-            let scheme = self.player.run().simulation().now().motion().scheme.name;
-            let mut names: Vec<_> = explained
-                .workings
-                .phases()
-                .map(|phase| phase.name)
-                .collect();
-            names.dedup();
-            let names = names.join(", ");
-            return Err(format!("{scheme} has no phase {name}: it has {names}").into());
-        }
-        if self.view.page != Page::Why {
-            self.view.page_before = self.view.page;
-        }
-        (self.view.page, self.view.sum_to) = (page, None);
-        Ok(Done::SILENT)
-    }
-
     /// Shows the step pane beside another one, or takes it away.
     pub(super) fn toggle_step(&mut self) {
         let is_filled = self.view.filled;
         if self.view.shows_step() {
             if !is_filled || self.view.shown.contains(&super::Pane::STEP) {
-                self.carry_out_all(&[Command::Show(self.view.with_step_toggled())]);
+                self.carry_out_all(&[Command::look("show", self.view.with_step_toggled())]);
             }
             if is_filled {
                 self.carry_out_all(&[Command::Fill(None)]);
@@ -174,7 +168,7 @@ impl Lab {
             self.carry_out_all(&[Command::Fill(None)]);
         }
         if !self.view.shown.contains(&super::Pane::STEP) {
-            self.carry_out_all(&[Command::Show(self.view.with_step_toggled())]);
+            self.carry_out_all(&[Command::look("show", self.view.with_step_toggled())]);
         }
         self.view.turn_to(super::Pane::STEP);
     }
@@ -182,7 +176,7 @@ impl Lab {
     /// The commands that go `times` phases forward or back. The first phase of the next step follows the last phase of
     /// a step.
     pub(super) fn other_phase(&self, times: i64) -> Result<Vec<Command>, String> {
-        let first = Command::Phase(Page::default());
+        let first = Command::look("phase", Page::default());
         if self.player.is_moving() {
             return Ok(vec![Command::Pause]);
         }
@@ -207,21 +201,22 @@ impl Lab {
             _ => Page::Number(index as usize + 1),
         };
         if steps == 0 {
-            return Ok(vec![Command::Phase(page)]);
+            return Ok(vec![Command::look("phase", page)]);
         }
         let before = steps.unsigned_abs();
         if steps < 0 && before >= here {
             return Ok(vec![Command::GoTo(Place::Start), first]);
         }
-        Ok(vec![Command::Step(steps), Command::Phase(page)])
+        Ok(vec![Command::Step(steps), Command::look("phase", page)])
     }
 
     /// The command that shows why the axle goes sideways, or the first phase again.
     pub(super) fn why_toggled(&self) -> Command {
-        Command::Phase(match self.view.page {
+        let page = match self.view.page {
             Page::Why => self.view.page_before,
             _ => Page::Why,
-        })
+        };
+        Command::look("phase", page)
     }
 
     /// The command that adds up more rows of the table in the step pane, or fewer. Beyond either end all rows are added
@@ -252,6 +247,9 @@ impl Lab {
         let next = usize::try_from(next)
             .ok()
             .filter(|next| (1..=all).contains(&(*next as i64)));
-        Ok(Command::SumTo(next))
+        Ok(match next {
+            Some(rows) => Command::look("sum_to", rows),
+            None => Command::look("sum_to", ALL_ROWS),
+        })
     }
 }

@@ -72,9 +72,13 @@ impl Files {
     ) -> Answer {
         self.may_export_to(path)?;
         let begun = Exporting::begin(Arc::clone(scenario), path, layout, force);
+        self.begin(begun, "the export goes on in the background")
+    }
+
+    fn begin(&mut self, begun: Result<Exporting, DestinationError>, said: &str) -> Answer {
         self.exporting = Some(begun.map_err(refusal)?);
         self.failure = None;
-        Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))
+        Ok(Done::saying(said).going_on(UnderWay::Exporting))
     }
 
     /// Begins to draw a figure of `scenario`, with or without the exact motion and the measured data.
@@ -99,9 +103,7 @@ impl Files {
             format,
         };
         let begun = Exporting::begin_figure(Arc::clone(scenario), path, drawn, force);
-        self.exporting = Some(begun.map_err(refusal)?);
-        self.failure = None;
-        Ok(Done::saying("the figure is drawn in the background").going_on(UnderWay::Exporting))
+        self.begin(begun, "the figure is drawn in the background")
     }
 
     fn may_export_to(&self, path: &Path) -> Result<(), Refusal> {

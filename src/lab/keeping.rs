@@ -2,13 +2,13 @@
 
 mod resuming;
 
-use super::command::{self, Command, Place};
+use super::Lab;
+use super::command::{self, Command};
 use super::rerun::Reference;
-use super::view::step::Page;
-use super::{Lab, UnderWay};
+use super::view::Look;
 use crate::observe::pace::Speed;
 use crate::scenario::Problems;
-use crate::scenario::file::{Choice, ScenarioFile, ZoomFile};
+use crate::scenario::file::ScenarioFile;
 use crate::storage::session::{Content, Text, later};
 use crate::text::printable::Shown;
 use crate::work::history::History;
@@ -58,59 +58,28 @@ impl KeptPinned {
 #[serde(deny_unknown_fields)]
 struct KeptPlace {
     step: u64,
-    /// Simulated seconds a second; `None` at top speed.
-    speed: Option<f64>,
+    speed: Speed,
     shows_exact: bool,
-    window_s: f64,
-    /// The time that the strip of the fast motion shows; `None` where the motion or `[view]` of the scenario tells.
-    detail_s: Option<f64>,
-    /// What that strip shows; `None` where the motion or `[view]` of the scenario tells.
-    detail_of: Option<String>,
     focus: String,
     filled: bool,
+    look: Look,
     exporting: Option<String>,
-    /// The ids of the panes that share the screen; `None` where `[view]` of the scenario tells.
-    show: Option<Vec<String>>,
-    /// The ids of what is hidden; `None` where `[view]` of the scenario tells.
-    hide: Option<Vec<String>>,
-    /// The line about what there is to see; `None` where the scenario tells.
-    look_at: Option<String>,
-    /// The line about what to try next; `None` where the scenario or the preset tells.
-    next: Option<String>,
-    bare: Option<bool>,
-    /// The measured data beside the run, and whether they are shown less what it says.
+    /// The measured data beside the run.
     measured: Option<String>,
-    residuals: Option<bool>,
-    /// The page of the step pane, and how many rows it adds up; `None` where they are as usual.
-    phase: Option<Choice>,
-    sum_to: Option<usize>,
     next_push: NextPush,
-    camera: Option<KeptCamera>,
-    zoom: Option<ZoomFile>,
     script: Option<KeptScript>,
     /// What the room of the lessons keeps.
     lessons: Option<toml::Table>,
 }
 
-/// The camera of the 3-D view, as [`Camera`] has it.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct KeptCamera {
-    yaw_deg: f64,
-    pitch_deg: f64,
-}
-
-/// The commands of the script that were not complete, as two files of commands: the one after the other.
+/// The commands of the script that were not complete, as a file of commands. The first lead back to the command under
+/// way: it is carried out again, but steps that were under way are only taken to their end.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct KeptScript {
     /// The file from which they were read, as the user named it.
     origin: String,
-    /// What leads back to the command under way: it is carried out again, but steps that were under way are only taken
-    /// to their end.
-    first: String,
-    /// The commands after that one.
-    left: String,
+    commands: String,
 }
 
 /// What a list of sessions shows of a session.
@@ -156,70 +125,35 @@ impl Lab {
             .lessons
     }
 
-    fn place(&mut self) -> KeptPlace {
-        let ids = |list: &mut dyn Iterator<Item = &'static str>| -> Vec<String> {
-            list.map(str::to_owned).collect()
-        };
-        let speed = match self.player.playback.speed() {
-            Speed::Times(speed) => Some(speed),
-            Speed::Top => None,
-        };
+    fn place(&self) -> KeptPlace {
         KeptPlace {
             step: self.player.step_to_keep(),
-            speed,
+            speed: self.player.playback.speed(),
             shows_exact: self.player.run().shows_exact(),
-            window_s: self.view.window_s,
-            detail_s: self.view.detail_s,
-            detail_of: self.view.detail_of.map(|curve| curve.name().to_owned()),
             focus: self.view.focus.id().to_owned(),
             filled: self.view.filled,
+            look: self.view.look.clone(),
             exporting: self.files.exported_to().map(|path| Shown(path).to_string()),
-            show: Some(ids(&mut self.view.shown.iter().map(|pane| pane.id()))),
-            hide: Some(ids(&mut self.view.hidden.iter().map(|part| part.id()))),
-            look_at: self.view.look_at.clone(),
-            next: self.view.next.clone(),
-            bare: self.view.bare.then_some(true),
             measured: self.measured_to_keep(),
-            residuals: self.view.residuals.then_some(true),
-            phase: (self.view.page != Page::default()).then(|| self.view.page.choice()),
-            sum_to: self.view.sum_to,
             next_push: self.values.next_push.clone(),
-            camera: self.view.camera_is_chosen.then_some(KeptCamera {
-                yaw_deg: self.view.camera.yaw_deg,
-                pitch_deg: self.view.camera.pitch_deg,
-            }),
-            zoom: Some(ZoomFile {
-                above: Some(self.view.zoom.above),
-                three_d: Some(self.view.zoom.three_d),
-            }),
             script: self.kept_script(),
             lessons: self.lessons.clone(),
         }
     }
 
     /// The commands of the script that are not complete; `None` where all are.
-    fn kept_script(&mut self) -> Option<KeptScript> {
+    fn kept_script(&self) -> Option<KeptScript> {
         if self.script.is_done() {
             return None;
         }
-        let playback = &self.player.playback;
-        let plays_again = self.script.is_held && self.script.plays_again;
-        let is_playing = plays_again || playback.is_running() && !playback.is_running_until();
-        let under_way = self.script.under_way();
-        let again = under_way.and_then(|(command, under_way)| match under_way {
-            UnderWay::Going => {
-                let to_go = playback.steps_to_go()?;
-                let step = playback.step_number().saturating_add(to_go);
-                Some(Command::GoTo(Place::Step(step)))
-            }
-            UnderWay::Playing | UnderWay::Waiting(_) | UnderWay::Exporting => Some(command.clone()),
-        });
-        let run = is_playing.then_some(Command::Run);
-        let first: Vec<_> = run.into_iter().chain(again).collect();
+        let plays = self.plays_again() || self.script.is_held && self.script.plays_again;
+        let run = plays.then_some(Command::Run);
+        let again = self.under_way_again(false).map(|placed| placed.command);
+        let left = self.script.left().cloned();
+        let commands: Vec<_> = run.into_iter().chain(again).chain(left).collect();
         Some(KeptScript {
-            origin: self.script.origin.to_owned(),
-            first: command::to_toml(&first),
-            left: self.script.left_as_text().to_string(),
+            origin: self.script.origin.clone(),
+            commands: command::to_toml(&commands),
         })
     }
 }

@@ -19,7 +19,6 @@ mod answering;
 pub mod browser;
 mod carry_out;
 pub mod command;
-mod commands_of;
 mod course;
 mod dialog;
 mod editing;
@@ -155,9 +154,7 @@ impl Lab {
     /// Takes the run to `step` at once.
     pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
         let arrived = self.player.playback.begin_at(step);
-        self.player.playback.catch_up_exact();
-        self.player.catch_up_measured();
-        self.read_now();
+        self.arrive();
         arrived
     }
 
@@ -232,7 +229,7 @@ impl Lab {
     fn turn_camera(&mut self) {
         let playback = &self.player.playback;
         let is_still = !playback.is_running() || playback.step_number() == 0;
-        if is_still && !self.view.camera_is_chosen {
+        if is_still && self.view.look.camera.is_none() {
             let axle = self.player.reading.state.axle();
             self.view.camera = self.view.camera.aside_of(&axle);
         }

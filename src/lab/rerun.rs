@@ -65,25 +65,28 @@ impl Player {
     /// present one stands. That one stays as a ghost. With `is_again` the edit is one more nudge of the same value: time and
     /// ghost are those of the first.
     pub(super) fn begin(&mut self, scenario: Arc<Scenario>, is_again: bool) {
-        self.forget_advice(); // now, so that its search does not take a processor from the steps to come
-        let to = self.to_be_played_to(is_again);
-        self.leave_ghost(is_again && self.replay.is_some());
-        self.measure_again(&scenario);
+        let to = self.leave_for(&scenario, is_again);
         self.playback.begin(scenario);
         self.replay(to, is_again);
     }
 
     /// Continues with `scenario`, which differs by an edit made at step 0, as [`begin`](Self::begin) does.
     pub(super) fn begin_with_act(&mut self, scenario: &Arc<Scenario>, is_again: bool) {
-        self.forget_advice();
         let to = Replay {
             is_act_at_start: true,
-            ..self.to_be_played_to(is_again)
+            ..self.leave_for(scenario, is_again)
         };
-        self.leave_ghost(is_again && self.replay.is_some());
-        self.measure_again(scenario);
         self.playback.continue_at(0, scenario);
         self.replay(to, is_again);
+    }
+
+    /// Leaves the present run for that of `scenario`; returns to where that is to be played.
+    fn leave_for(&mut self, scenario: &Arc<Scenario>, is_again: bool) -> Replay {
+        self.forget_advice(); // now, so that its search does not take a processor from the steps to come
+        let to = self.to_be_played_to(is_again);
+        self.leave_ghost(is_again && self.replay.is_some());
+        self.measure_again(scenario);
+        to
     }
 
     /// Continues with `scenario`, which differs by an act at the present step.
@@ -125,11 +128,16 @@ impl Player {
         });
     }
 
+    /// The step to which the run is on its way.
+    pub(super) fn bound_for(&self) -> Option<u64> {
+        let to_go = self.playback.steps_to_go()?;
+        Some(self.playback.step_number().saturating_add(to_go))
+    }
+
     /// The step to which the run is on its way by itself.
     fn heading(&self) -> Option<Heading> {
-        let to_go = self.playback.steps_to_go()?;
-        let bound_for = self.playback.step_number().saturating_add(to_go);
-        self.heading.filter(|heading| heading.step == bound_for)
+        let step = self.bound_for()?;
+        self.heading.filter(|heading| heading.step == step)
     }
 
     /// Whether a run that an edit has begun anew is on its way to the time at which the lab stood.

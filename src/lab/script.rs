@@ -2,22 +2,17 @@
 //! started is complete.
 
 use super::Lab;
-use super::answer::UnderWay;
-use super::command::{self, Command, Commands, Place, Placed};
+use super::answer::{Done, UnderWay};
+use super::command::{Command, Commands, Place, Placed};
 use crate::observe::playback::{Halt, MOST_UNTIL};
 use indicatif::HumanCount;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
 /// How often to look whether an export is complete while there is nothing else to do.
 const LOOK: Duration = Duration::from_millis(2);
-
-/// The keys of a script that waits, for one command and for several.
-pub(super) const GO_ON_WITH_IT: &str = "space goes on with it, Esc leaves it out";
-pub(super) const GO_ON_WITH_THEM: &str = "space goes on with them, Esc leaves them out";
 
 /// How long steps are taken before the caller decides whether to go on.
 const PART: Duration = Duration::from_millis(100);
@@ -37,8 +32,6 @@ pub struct Script {
     pub is_held: bool,
     /// Whether the run played when the script was paused, and plays again when it goes on.
     pub plays_again: bool,
-    /// `left` as a file of commands; `None` where `left` has changed since it was written.
-    kept: Option<Arc<str>>,
 }
 
 impl Script {
@@ -63,8 +56,9 @@ impl Script {
         self.failed.as_deref()
     }
 
-    pub(super) fn begin_chapter(&mut self, title: &str) {
+    pub(super) fn begin_chapter(&mut self, title: &str) -> Done {
         self.chapters.push(title.to_owned());
+        Done::saying(title)
     }
 
     /// How many commands are not complete, with the one under way.
@@ -72,26 +66,20 @@ impl Script {
         self.left.len() + usize::from(self.under_way.is_some())
     }
 
-    /// The command whose action takes time, and that action.
-    pub(super) fn under_way(&self) -> Option<(&Command, UnderWay)> {
-        let (placed, under_way) = self.under_way.as_ref()?;
-        Some((&placed.command, *under_way))
+    /// The commands after the one under way.
+    pub(super) fn left(&self) -> impl Iterator<Item = &Command> {
+        self.left.iter().map(|placed| &placed.command)
     }
 
-    /// The commands after the one under way, as a file of commands.
-    pub(super) fn left_as_text(&mut self) -> Arc<str> {
-        let left = &self.left;
-        let written = || {
-            let left: Vec<_> = left.iter().map(|placed| placed.command.clone()).collect();
-            command::to_toml(&left).into()
-        };
-        Arc::clone(self.kept.get_or_insert_with(written))
-    }
-
-    /// Removes the next command and returns it.
-    fn next(&mut self) -> Option<Placed> {
-        self.kept = None;
-        self.left.pop_front()
+    /// How many commands are left, and the keys of a script that waits.
+    pub(super) fn left_in_words(&self) -> String {
+        let origin = &self.origin;
+        match self.count() {
+            1 => format!("1 command of {origin} is left: space goes on with it, Esc leaves it out"),
+            left => format!(
+                "{left} commands of {origin} are left: space goes on with them, Esc leaves them out"
+            ),
+        }
     }
 
     pub fn is_done(&self) -> bool {
@@ -108,7 +96,7 @@ impl Script {
         let line = placed.line.map_or(String::new(), |line| format!(":{line}"));
         let name: String = placed.command.to_table().keys().cloned().collect();
         let text = format!("{}{line}: {name}: {reason}{rest}", self.origin);
-        (self.left, self.kept) = (VecDeque::new(), None);
+        self.left.clear();
         self.failed = Some(text.clone());
         text
     }
@@ -166,37 +154,25 @@ impl Lab {
             let from = playback.step_number();
             let halt = playback.finish_part(|| begin.elapsed() > PART);
             steps += playback.step_number().abs_diff(from);
-            match halt {
-                Some(halt) => self.halted(halt),
-                None if go_on(playback.step_number(), playback.stops_at()).is_break() => {
-                    self.files.drop_export();
-                    self.script.drop_all();
-                    break;
-                }
-                None => {}
+            if let Some(halt) = halt {
+                self.halted(halt);
+            } else if go_on(playback.step_number(), playback.stops_at()).is_break() {
+                self.files.drop_export();
+                self.script.drop_all();
+                break;
             }
-            if self.files.is_exporting() {
-                thread::sleep(LOOK);
-                self.follow_export();
-            }
-            if let Some((_, UnderWay::Waiting(until))) = &self.script.under_way {
-                self.now = self.now.max(*until);
-            }
+            self.pass_time();
             if steps > MOST_UNTIL
                 && let Some((placed, _)) = self.script.under_way.take()
             {
                 let most = HumanCount(MOST_UNTIL);
+                let reason = format!("commands take at most {most} steps in all");
                 self.player.pause();
-                self.script_has_failed(
-                    &placed,
-                    &format!("commands take at most {most} steps in all"),
-                );
+                self.script_has_failed(&placed, &reason);
             }
             self.go_on_with_script(halt);
         }
-        self.player.playback.catch_up_exact();
-        self.player.catch_up_measured();
-        self.read_now();
+        self.arrive();
         match self.script.failed.take() {
             Some(text) => {
                 self.on_top.notice.take_back(); // the caller says it
@@ -206,29 +182,55 @@ impl Lab {
         }
     }
 
-    /// Pauses the script. When it goes on, the command under way is carried out again: a run goes to the same step or
-    /// until the same condition holds, a wait lasts for what was left of it. An export goes on meanwhile.
-    pub(super) fn pause_script(&mut self) {
-        let playback = &self.player.playback;
-        let again = match &self.script.under_way {
-            None | Some((_, UnderWay::Exporting)) => None,
-            Some((placed, UnderWay::Playing)) => Some(placed.clone()),
-            Some((placed, UnderWay::Waiting(until))) => Some(Placed {
-                command: Command::Wait(until.saturating_sub(self.now).as_secs_f64()),
-                ..placed.clone()
-            }),
-            Some((placed, UnderWay::Going)) => playback.steps_to_go().map(|to_go| Placed {
-                command: Command::GoTo(Place::Step(playback.step_number().saturating_add(to_go))),
-                ..placed.clone()
-            }),
+    /// Lets pass the time for which the command under way waits.
+    fn pass_time(&mut self) {
+        if self.files.is_exporting() {
+            thread::sleep(LOOK);
+            self.follow_export();
+        }
+        if let Some((_, UnderWay::Waiting(until))) = &self.script.under_way {
+            self.now = self.now.max(*until);
+        }
+    }
+
+    /// Brings exact motion, measured data and numbers up to the present step.
+    pub(super) fn arrive(&mut self) {
+        self.player.playback.catch_up_exact();
+        self.player.catch_up_measured();
+        self.read_now();
+    }
+
+    /// The command under way as it is carried out again: a run goes to the same step or until the same condition holds, a
+    /// wait lasts anew, or for what is `left` of it.
+    pub(super) fn under_way_again(&self, left: bool) -> Option<Placed> {
+        let (placed, under_way) = self.script.under_way.as_ref()?;
+        let command = match under_way {
+            UnderWay::Going => Command::GoTo(Place::Step(self.player.bound_for()?)),
+            UnderWay::Waiting(until) if left => {
+                Command::Wait(until.saturating_sub(self.now).as_secs_f64())
+            }
+            _ => placed.command.clone(),
         };
+        let line = placed.line;
+        Some(Placed { command, line })
+    }
+
+    /// Whether the run plays when the script goes on.
+    pub(super) fn plays_again(&self) -> bool {
+        let playback = &self.player.playback;
+        playback.is_running() && !playback.is_running_until()
+    }
+
+    /// Pauses the script. When it goes on, the command under way is carried out again. An export goes on meanwhile.
+    pub(super) fn pause_script(&mut self) {
         self.script.is_held = true;
-        self.script.plays_again = playback.is_running() && !playback.is_running_until();
-        if again.is_some() {
+        self.script.plays_again = self.plays_again();
+        if let Some((_, UnderWay::Exporting)) = self.script.under_way {
+            return;
+        }
+        if let Some(again) = self.under_way_again(true) {
             self.script.under_way = None;
-            self.script.kept = None;
-            self.script.left.extend(again);
-            self.script.left.rotate_right(1);
+            self.script.left.push_front(again);
         }
     }
 
@@ -240,12 +242,9 @@ impl Lab {
         if std::mem::take(&mut self.script.plays_again) {
             self.player.play();
         }
-        let to_go = self.player.playback.steps_to_go();
-        if let (Some(to_go), None) = (to_go, &self.script.under_way) {
-            let step = self.player.playback.step_number().saturating_add(to_go);
-            let command = Command::GoTo(Place::Step(step));
+        if let (Some(step), None) = (self.player.bound_for(), &self.script.under_way) {
             let arrive = Placed {
-                command,
+                command: Command::GoTo(Place::Step(step)),
                 line: None,
             };
             self.script.under_way = Some((arrive, UnderWay::Going));
@@ -267,7 +266,7 @@ impl Lab {
                     Err(reason) => return self.script_has_failed(&placed, &reason),
                 }
             }
-            let Some(next) = self.script.next() else {
+            let Some(next) = self.script.left.pop_front() else {
                 return;
             };
             let answer = self.carry_out(&next.command);

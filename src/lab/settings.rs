@@ -35,7 +35,7 @@ pub(super) const SETTINGS: [Setting; 8] = [
     row("line about the numbers", |view| shown(view, Part::Health), |lab, _| lab.hide_or_show(Part::Health)),
     row("what theory predicts", |view| shown(view, Part::Predicted), |lab, _| lab.hide_or_show(Part::Predicted)),
     row("screen", |view| if view.bare { "bare: two panes, title and time" } else { "everything" }.to_owned(), |lab, _| {
-        lab.carry_out_all(&[Command::Bare(!lab.view.bare)]);
+        lab.carry_out_all(&[Command::look("bare", !lab.view.bare)]);
     }),
     row("dots", |view| view.marker.name().to_owned(), |lab, forward| {
         lab.view.marker = beside(&Marker::ALL, lab.view.marker, forward);
@@ -88,7 +88,7 @@ impl Lab {
         if hidden.len() == self.view.hidden.len() {
             hidden.push(part);
         }
-        self.carry_out_all(&[Command::Hide(hidden)]);
+        self.carry_out_all(&[Command::look("hide", hidden)]);
     }
 }
 

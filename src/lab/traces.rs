@@ -4,42 +4,44 @@ use super::Lab;
 use super::action::Direction;
 use super::answer::{Answer, Done};
 use super::command::{Command, CursorTo, MOST_MAGNIFIED, Place};
+use super::view::View;
 use crate::observe::live::LiveRun;
 use crate::observe::lookup;
 use crate::observe::recording::Curve;
 use crate::observe::strip::Strip;
+use crate::scenario::screen::AUTO;
 
 /// The share of the window by which a key moves the cursor, and by which it moves the window.
 const CURSOR_SHARE: f64 = 0.02;
 const PAN_SHARE: f64 = 0.5;
 
+impl View {
+    pub(super) fn set_since(&mut self, since_s: Option<f64>) -> Done {
+        self.since_s = since_s;
+        Done::saying(match since_s {
+            Some(since_s) => format!("the traces begin at {since_s} s; Home shows the run again"),
+            None => "the traces follow the run".to_owned(),
+        })
+    }
+
+    pub(super) fn magnify(&mut self, times: f64) -> Done {
+        self.magnified = times;
+        Done::saying(if times > 1.0 {
+            format!("values are magnified {times} times; Home shows all of them again")
+        } else {
+            "values are shown in full".to_owned()
+        })
+    }
+}
+
 impl Lab {
-    pub(super) fn set_window(&mut self, window_s: f64) -> Answer {
-        let least_s = 2.0 * self.player.motion().time_step_s;
-        if window_s < least_s {
-            return Err(format!("the traces show two time steps at least: {least_s} s").into());
-        }
-        self.view.window_s = window_s;
-        Ok(Done::saying(format!(
-            "the traces show {window_s} s; Home shows the usual time"
-        )))
-    }
-
-    /// The command that shows the next longer or shorter time; none at the end of the ladder.
-    pub(super) fn other_window(&self, wider: bool) -> Option<Vec<Command>> {
+    /// Shows the next longer or shorter time in the traces; at the end of the ladder says which it is.
+    pub(super) fn change_window(&mut self, wider: bool) {
         let time_step_s = self.player.run().simulation().motion().time_step_s;
-        let window_s = self.view.zoomed(wider, time_step_s)?;
-        Some(vec![Command::Window(window_s)])
-    }
-
-    pub(super) fn set_detail(&mut self, detail_s: f64) -> Answer {
-        let least_s = 2.0 * self.player.motion().time_step_s;
-        if detail_s < least_s {
-            return Err(format!("the strip shows two time steps at least: {least_s} s").into());
+        match self.view.zoomed(wider, time_step_s) {
+            Some(window_s) => self.carry_out_all(&[Command::look("window_s", window_s)]),
+            None => self.say(format!("the traces show {} s", self.view.window_s)),
         }
-        self.view.detail_s = Some(detail_s);
-        let text = format!("the strip of the fast motion shows {detail_s} s");
-        Ok(Done::saying(text))
     }
 
     /// The command that shows another curve in the strip of the fast motion than it shows now.
@@ -52,32 +54,17 @@ impl Lab {
             _ => times,
         };
         let next = (now + by).rem_euclid(curves.len() as i32) as usize;
-        Command::DetailOf(Some(curves[next]))
+        Command::look("detail_of", curves[next])
     }
 
-    pub(super) fn set_since(&mut self, since_s: Option<f64>) -> Answer {
-        self.view.since_s = since_s;
-        Ok(Done::saying(match since_s {
-            Some(since_s) => format!("the traces begin at {since_s} s; Home shows the run again"),
-            None => "the traces follow the run".to_owned(),
-        }))
-    }
-
-    pub(super) fn magnify(&mut self, times: f64) -> Answer {
-        self.view.magnified = times;
-        Ok(Done::saying(if times > 1.0 {
-            format!("values are magnified {times} times; Home shows all of them again")
-        } else {
-            "values are shown in full".to_owned()
-        }))
+    fn cursor_or_here(&self) -> u64 {
+        let here = self.player.playback.step_number();
+        self.view.cursor.unwrap_or(here)
     }
 
     pub(super) fn set_cursor(&mut self, to: CursorTo) -> Answer {
         let run = self.player.run();
-        let here = self
-            .view
-            .cursor
-            .unwrap_or(self.player.playback.step_number());
+        let here = self.cursor_or_here();
         let step = match to {
             CursorTo::Nowhere => None,
             CursorTo::Place(Place::Step(step)) => Some(step),
@@ -111,10 +98,7 @@ impl Lab {
 
     pub(super) fn moved_cursor(&self, fiftieths: i32) -> Command {
         let run = self.player.run();
-        let here = self
-            .view
-            .cursor
-            .unwrap_or(self.player.playback.step_number());
+        let here = self.cursor_or_here();
         let time_step_s = self.player.motion().time_step_s;
         let steps = (CURSOR_SHARE * self.view.window_s / time_step_s)
             .round()
@@ -125,10 +109,7 @@ impl Lab {
     }
 
     pub(super) fn stepped_cursor(&self, steps: i32) -> Command {
-        let here = self
-            .view
-            .cursor
-            .unwrap_or(self.player.playback.step_number());
+        let here = self.cursor_or_here();
         let step = here.saturating_add_signed(i64::from(steps));
         Command::Cursor(CursorTo::Place(Place::Step(step)))
     }
@@ -157,11 +138,12 @@ impl Lab {
 
     /// The commands that show the run again, after the time or the values were chosen by hand.
     pub(super) fn whole_view(&self) -> Vec<Command> {
+        let usual_s = self.view.usual_window_s(self.player.run().scenario());
         vec![
-            Command::DetailOf(None),
+            Command::look("detail_of", AUTO),
             Command::Cursor(CursorTo::Nowhere),
             Command::Magnify(1.0),
-            Command::Window(self.view.usual_window_s(self.player.run().scenario())),
+            Command::look("window_s", usual_s),
             Command::Since(None),
         ]
     }

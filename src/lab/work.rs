@@ -177,31 +177,25 @@ impl Work {
     ) -> Result<Option<Arc<Scenario>>, String> {
         let before = (acts.len() > 1).then(|| self.history.clone());
         let history = self.change();
-        let mut done = None;
-        for (index, act) in acts.into_iter().enumerate() {
-            let result = history.act(step, act, is_again || index > 0);
-            let is_refused = result.is_err();
-            done = Some(result);
-            if is_refused {
-                break;
-            }
-        }
-        let Some(done) = done else {
+        let mut acts = acts.into_iter().enumerate();
+        let done = acts.try_fold(None, |_, (index, act)| {
+            history.act(step, act, is_again || index > 0).map(Some)
+        });
+        let Some(scenario) = self.or_back_to(before, done)? else {
             return Ok(None);
         };
-        let scenario = self.or_back_to(before, done)?;
         if scenario.steps != steps {
             self.change().set_end(Clock::end_s(&scenario));
         }
         Ok(Some(scenario))
     }
 
-    /// The scenario `done`; where it was refused, the history is again as it was `before`.
-    fn or_back_to(
+    /// What is `done`; where it was refused, the history is again as it was `before`.
+    fn or_back_to<T>(
         &mut self,
         before: Option<History>,
-        done: Result<Arc<Scenario>, Problems>,
-    ) -> Result<Arc<Scenario>, String> {
+        done: Result<T, Problems>,
+    ) -> Result<T, String> {
         done.map_err(|problems| {
             if let Some(before) = before {
                 *self.change() = before;
@@ -282,10 +276,6 @@ mod tests {
         Act::set("motion.time_step_s", Value::Float(value))
     }
 
-    fn tilt(value: f64) -> Table {
-        Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(value))])
-    }
-
     #[test]
     fn acts_are_done_all_or_none() {
         let mut work = work();
@@ -302,16 +292,6 @@ mod tests {
         assert_eq!(work.journal().file(), before.file());
         assert!(work.turn(Way::Back, 2300).unwrap().is_none());
         assert!(work.act(40, Vec::new(), false, 2300).unwrap().is_none());
-    }
-
-    #[test]
-    fn a_new_run_that_is_refused_leaves_the_old_one() {
-        let mut work = work();
-        let refused = work.begin_with(&tilt(30.0), vec![time_step(-1.0)], false);
-        assert!(refused.is_err());
-        assert_eq!(work.journal().file().start.tilt_deg, Some(45.0));
-        let scenario = work.begin_with(&tilt(30.0), vec![time_step(0.05)], false);
-        assert_eq!(scenario.unwrap().file.start.tilt_deg, Some(30.0));
     }
 
     #[test]

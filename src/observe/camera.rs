@@ -1,11 +1,13 @@
 //! The parallel projection of the world onto a picture, along a direction that the user turns.
 
-use crate::scenario::file::{CameraFile, ZoomFile};
+use crate::scenario::file::CameraFile;
 use crate::scenario::keys::{PITCH_DEG, ZOOM};
 use crate::text::ladder;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Camera {
     /// Angle about +z from −y, degrees: at 0 the picture's right is +x and its depth +y.
     pub yaw_deg: f64,
@@ -25,9 +27,11 @@ const UPRIGHT_DEG: f64 = 8.0;
 const NOTCH_DEG: f64 = 10.0;
 
 /// The enlargement of the pictures in space: 1 where a picture shows the whole.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Zoom {
     pub above: f64,
+    #[serde(rename = "3d")]
     pub three_d: f64,
 }
 
@@ -41,15 +45,6 @@ impl Default for Zoom {
 }
 
 impl Zoom {
-    /// The zoom that a file states, brought into range; 1 where it states none.
-    pub fn of(file: ZoomFile) -> Self {
-        let read = |zoom: Option<f64>| zoom.unwrap_or(1.0).max(ZOOM.0).min(ZOOM.1);
-        Self {
-            above: read(file.above),
-            three_d: read(file.three_d),
-        }
-    }
-
     /// `zoom` moved by `rungs` on the ladder 1, 2, 5, ..., down if negative; `None` if it is at its limit already.
     pub fn shifted(zoom: f64, rungs: i32) -> Option<f64> {
         let next = ladder::climbed(zoom, rungs).clamp(ZOOM.0, ZOOM.1);

@@ -1,6 +1,7 @@
 //! Playback speed: how much simulated time passes per wall time, whatever the time step.
 
 use crate::text::ladder::rung;
+use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
@@ -10,10 +11,12 @@ const LONGEST_FRAME: Duration = Duration::from_millis(250);
 /// Rungs of the 1-2-5 ladder that are playback speeds: 1e-4 to 5e5 simulated seconds a second.
 const SPEEDS: RangeInclusive<i64> = -12..=17;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Speed {
-    Times(f64),
     Top,
+    #[serde(untagged)]
+    Times(f64),
 }
 
 impl Speed {

@@ -11,8 +11,8 @@ use super::problem::nearest;
 use super::screen::{ALL_ROWS, DETAILS, FILLING, HIDEABLE, PANES, PHASES};
 use super::solids;
 use crate::physics::scheme;
-pub use check::check;
-pub(super) use check::{check_part, is_under};
+pub(super) use check::is_under;
+pub use check::{check, check_part};
 use toml::Value;
 
 /// One key a scenario or run file may hold.

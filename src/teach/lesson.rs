@@ -182,14 +182,10 @@ impl Setup {
     }
 
     /// The parts of the screen that its `hide` names.
-    pub fn hides(&self) -> &[Part] {
-        let hidden = self
-            .commands
-            .iter()
-            .find_map(|placed| match &placed.command {
-                Command::Hide(parts) => Some(parts.as_slice()),
-                _ => None,
-            });
+    pub fn hides(&self) -> Vec<Part> {
+        let mut commands = self.commands.iter();
+        let hidden = commands.find_map(|placed| placed.command.looked("hide"));
+        let hidden = hidden.and_then(|hidden| hidden.clone().try_into().ok());
         hidden.unwrap_or_default()
     }
 }

@@ -66,7 +66,7 @@ impl<'a> Walk<'a> {
         if page.predicts().next().is_some() {
             let hidden = Predictions::hidden_after_lock(page, &self.lab.view().hidden);
             // Hiding is never refused.
-            let _ = self.lab.carry_out(&Command::Hide(hidden));
+            let _ = self.lab.carry_out(&Command::look("hide", hidden));
         }
         Ok(())
     }

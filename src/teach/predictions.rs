@@ -1,6 +1,6 @@
 //! What a student has predicted in a lesson. A prediction is locked: it is not changed any more.
 
-use super::lesson::{Answer, Compare, Lesson, Page, Predict};
+use super::lesson::{Answer, Compare, Lesson, Page, Predict, Setup};
 use super::names::{Kept, value};
 use super::text::Format;
 use crate::lab::Lab;
@@ -59,7 +59,7 @@ impl Predictions {
     /// What is hidden once all predictions of `page` are locked, if `hidden` is hidden before: all of it but what the page
     /// has hidden itself.
     pub fn hidden_after_lock(page: &Page, hidden: &[Part]) -> Vec<Part> {
-        let own = page.lab().map_or(&[][..], |setup| setup.hides());
+        let own = page.lab().map(Setup::hides).unwrap_or_default();
         let others = hidden.iter().copied().filter(|part| !own.contains(part));
         others.collect()
     }

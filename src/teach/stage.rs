@@ -112,8 +112,7 @@ impl Stage<'_> {
         let line = Some(self.setup.line);
         let put_back = put_back.into_iter().map(|command| Placed { command, line });
         let own = self.setup.commands.iter();
-        let own =
-            own.filter(|placed| self.is_hiding || !matches!(placed.command, Command::Hide(_)));
+        let own = own.filter(|placed| self.is_hiding || placed.command.looked("hide").is_none());
         Commands {
             origin: self.lesson.origin.clone(),
             list: put_back.chain(own.cloned()).collect(),
@@ -151,13 +150,16 @@ fn put_back(lab: &Lab) -> Vec<Command> {
     let shows_exact = lab.player().run().shows_exact();
     let all = [
         (view.filled, Command::Fill(None)),
-        (view.bare, Command::Bare(false)),
+        (view.bare, Command::look("bare", false)),
         (view.pointed_at.is_some(), Command::PointAt(None)),
         (
             view.camera != Camera::default(),
-            Command::Camera(Camera::default()),
+            Command::look("camera", Camera::default()),
         ),
-        (view.zoom != Zoom::default(), Command::Zoom(Zoom::default())),
+        (
+            view.zoom != Zoom::default(),
+            Command::look("zoom", Zoom::default()),
+        ),
         (shows_exact, Command::Exact(false)),
         (lab.player().is_pinned(), Command::Pin(false)),
     ];

@@ -125,7 +125,7 @@ impl Pointer {
                 let yaw_deg = -DEGREES_A_COLUMN * moved(from.x, at.x);
                 camera.turn(yaw_deg, DEGREES_A_ROW * moved(from.y, at.y));
                 self.held = Some(Held::Camera(at));
-                lab.carry_out_now(&Command::Camera(camera));
+                lab.carry_out_now(&Command::look("camera", camera));
             }
         }
     }

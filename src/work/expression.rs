@@ -6,10 +6,13 @@
 
 mod parse;
 
+use serde::{Deserialize, Serialize};
+
 /// The longest expression, bytes.
 const LONGEST: usize = 1000;
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub struct Expression {
     text: String,
     root: Node,
@@ -160,6 +163,20 @@ impl Expression {
     /// the result any more is not looked up.
     pub fn value_at(&self, mut value_of: impl FnMut(usize) -> Option<f64>) -> Option<f64> {
         self.root.value(&mut value_of)
+    }
+}
+
+impl TryFrom<String> for Expression {
+    type Error = Fault;
+
+    fn try_from(text: String) -> Result<Self, Fault> {
+        Self::parse(&text)
+    }
+}
+
+impl From<Expression> for String {
+    fn from(expression: Expression) -> Self {
+        expression.text
     }
 }
 

@@ -6,9 +6,9 @@ use crate::support::desk::{Desk, commands};
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::export::layout::LayoutFile;
 use gyrolab::lab::Refusal;
-use gyrolab::lab::command::{self, COMMANDS, Command, Force, Place, PushChoice};
+use gyrolab::lab::command::{self, COMMANDS, Command, Export, Force, Place, PushChoice, Save};
 use gyrolab::lab::view::step::Page;
-use gyrolab::lab::view::{Pane, Part};
+use gyrolab::lab::view::{Look, Pane, Part};
 use gyrolab::observe::camera::Camera;
 use gyrolab::observe::pace::Speed;
 use gyrolab::physics::workings::NAMES;
@@ -128,24 +128,28 @@ fn a_command() -> impl Strategy<Value = Command> {
                 points,
                 excel,
             };
-            file.check().unwrap()
+            file.clone().check().unwrap();
+            file
         },
     );
     let to_step = || prop::option::of(1..1_000_000u64);
     let file = || (a_name(), to_step(), any::<bool>());
-    let export = (file(), layout).prop_map(|((path, to_step, force), layout)| Command::Export {
-        path,
-        layout,
-        to_step,
-        force,
+    let export = (file(), layout).prop_map(|((path, to_step, force), layout)| {
+        Command::Export(Export {
+            path,
+            layout,
+            to_step,
+            force,
+        })
     });
-    let save =
-        (file(), any::<bool>()).prop_map(|((path, to_step, force), from_here)| Command::Save {
+    let save = (file(), any::<bool>()).prop_map(|((path, to_step, force), from_here)| {
+        Command::Save(Save {
             path,
             from_here,
             to_step: to_step.filter(|_| !from_here),
             force,
-        });
+        })
+    });
     let condition = prop::sample::select(vec![
         "t_s >= 60",
         "abs(tilt_deg - 3) < 1e-3 or step > motion.steps",
@@ -160,22 +164,23 @@ fn a_command() -> impl Strategy<Value = Command> {
     let looks = prop_oneof![
         a_number().prop_map(|speed| Command::Speed(Speed::Times(speed))),
         Just(Command::Speed(Speed::Top)),
-        a_number().prop_map(Command::Window),
+        a_number().prop_map(|s| Command::look("window_s", s)),
         any::<bool>().prop_map(Command::Exact),
         any::<bool>().prop_map(Command::Pin),
         Just(Command::TakeAdvice),
-        "[a-zA-Z\"'=#]{1,20}".prop_map(Command::LookAt),
-        "[a-zA-Z\"'=#]{1,20}".prop_map(Command::Next),
+        "[a-zA-Z\"'=#]{1,20}".prop_map(|text| Command::look("look_at", text)),
+        "[a-zA-Z\"'=#]{1,20}".prop_map(|text| Command::look("next", text)),
         "[a-zA-Z\"'=#]{1,20}".prop_map(Command::Chapter),
-        any::<bool>().prop_map(Command::Bare),
-        prop::collection::vec(pane(), 0..4).prop_map(Command::Show),
-        prop::collection::vec(part, 0..4).prop_map(Command::Hide),
+        any::<bool>().prop_map(|bare| Command::look("bare", bare)),
+        prop::collection::vec(pane(), 0..4).prop_map(|panes| Command::look("show", panes)),
+        prop::collection::vec(part, 0..4).prop_map(|parts| Command::look("hide", parts)),
         prop::option::of(pane()).prop_map(Command::Fill),
         prop::option::of(pane()).prop_map(Command::PointAt),
-        a_page().prop_map(Command::Phase),
-        prop::option::of(1..100_000usize).prop_map(Command::SumTo),
+        a_page().prop_map(|page| Command::look("phase", page)),
+        (1..100_000usize).prop_map(|rows| Command::look("sum_to", rows)),
         (a_number(), -90.0..90.0)
-            .prop_map(|(yaw_deg, pitch_deg)| Command::Camera(Camera { yaw_deg, pitch_deg })),
+            .prop_map(|(yaw_deg, pitch_deg)| Camera { yaw_deg, pitch_deg })
+            .prop_map(|camera| Command::look("camera", camera)),
     ];
     let times = || prop_oneof![1..10_000i32, -10_000..0i32];
     prop_oneof![
@@ -261,6 +266,17 @@ fn every_row_of_the_table_is_written_under_its_name() {
         .collect();
     let rows: Vec<_> = COMMANDS.iter().map(|row| row.name.to_owned()).collect();
     assert_eq!(named, rows);
+    // And every command has a row.
+    let nothing = Table::from_iter([("nothing".to_owned(), Value::Boolean(true))]);
+    let refused = nothing.try_into::<Command>().unwrap_err();
+    let (_, known) = refused.message().split_once("expected one of ").unwrap();
+    let known = known.split(", ").map(|name| name.trim_matches('`'));
+    let looks = rows.iter().map(String::as_str).filter(|row| Look::has(row));
+    let mut all: Vec<_> = known.chain(looks).collect();
+    let mut rows: Vec<_> = rows.iter().map(String::as_str).collect();
+    all.sort_unstable();
+    rows.sort_unstable();
+    assert_eq!(all, rows);
 }
 
 #[test]
@@ -326,7 +342,7 @@ fn what_is_wrong_is_told_with_its_line_and_the_nearest_right_name() {
             "[[do]]\nrun_until = \"motion.scheme > 3\"",
             "no number named",
         ),
-        ("[[do]]\nwait_s = -1", "must not be negative"),
+        ("[[do]]\nwait_s = -1", "must be from 0 to 86400"),
         ("[[do]]\nundo = 0", "must be 1 or more"),
         (
             "[[do]]\nexport = { path = \"x.csv\", evry = 3 }",
@@ -465,7 +481,7 @@ fn places_conditions_and_refusals() {
     );
     assert!(desk.carry_out(&Command::Undo(1)).is_err());
     assert!(
-        desk.carry_out(&Command::Window(0.1))
+        desk.carry_out(&Command::look("window_s", 0.1))
             .unwrap_err()
             .to_string()
             .contains("two time steps")
@@ -724,11 +740,8 @@ fn a_pane_has_the_name_that_files_give_it() {
         assert_eq!(pane.id(), id);
         assert!(panes::row(pane).is_some(), "{id} has no row");
     }
-    assert!(
-        HIDEABLE
-            .iter()
-            .all(|id| Part::named(id).is_some_and(|part| part.id() == *id))
-    );
+    let part = |id: &str| Value::from(id).try_into::<Part>();
+    assert!(HIDEABLE.iter().all(|id| part(id).is_ok()));
     assert!(
         FILLING
             .iter()

@@ -65,7 +65,7 @@ fn text(buf: &Buffer) -> String {
 
 fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: Marker) -> String {
     let mut view = view(run, marker);
-    view.window_s = window_s.unwrap_or(view.window_s);
+    view.look.window_s = window_s.unwrap_or(view.window_s);
     let detail = undivided(run, &view);
     let pane = Traces {
         ghost,
@@ -428,7 +428,7 @@ fn a_circle_is_round_to_a_dot() {
     let run = run("torque-free", &[], "", 700);
     for zoom in [1.0, 0.5] {
         let mut view = view(&run, Marker::Braille);
-        view.zoom.above = zoom;
+        view.look.zoom.above = zoom;
         for size in [(36, 19), (80, 20), (47, 23), (30, 40)] {
             let pane = pane_above(&run, &view);
             let picture = drawn(pane, size);
@@ -467,7 +467,7 @@ fn the_point_stays_in_the_picture_however_large_it_is() {
         let run = run("wobble-push", &[], "", steps);
         for zoom in [0.5, 1.0, 2.0, 5.0, 100.0] {
             let mut view = view(&run, Marker::Dot);
-            view.zoom.above = zoom;
+            view.look.zoom.above = zoom;
             let pane = pane_above(&run, &view);
             let picture = drawn(pane, ROUND);
             // Where it is enlarged, not at the edge either, where it would be put if it were outside.
@@ -708,7 +708,7 @@ proptest! {
         let mut now = run("wobble-push", &[&set], EDITS, steps);
         let ghost = Ghost::of(&run("wobble-push", &[], "", ghosts));
         let mut view = view(&now, Marker::ALL[marker]);
-        view.window_s = window_s;
+        view.look.window_s = window_s;
         let around = Rect::new(0, 0, width + 6, height + 6);
         let inside = Rect::new(3, 3, width, height);
         let read = Reading::new(&mut now, &Pace::new(1.0, false));

@@ -4,6 +4,7 @@ use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::answer::{Answer, Done};
 use crate::lab::files::Files;
+use crate::lab::player::Player;
 use crate::measured::{self, Measured, shipped};
 use crate::scenario::{Problem, Problems, Scenario};
 use crate::text::printable::printable;
@@ -23,6 +24,25 @@ impl Files {
             }
         }
         measured::open(name)
+    }
+}
+
+impl Player {
+    /// What is said of residuals that are shown from now on, or no longer.
+    ///
+    /// # Errors
+    /// Where there are no measured data.
+    pub(in crate::lab) fn residuals_in_words(&self, shown: bool) -> Result<&'static str, String> {
+        if self.measured.is_none() {
+            return Err(
+                "there are no measured data beside the run: gyrolab --measured FILE".to_owned(),
+            );
+        }
+        Ok(if shown {
+            "measured less run, where something was measured; m shows both again"
+        } else {
+            "measured values and the run"
+        })
     }
 }
 
@@ -51,9 +71,7 @@ impl Lab {
     /// Puts the measured data `name` beside the run, or takes away those that are there.
     pub(in crate::lab) fn measure(&mut self, name: Option<&str>) -> Answer {
         let Some(name) = name else {
-            let had = self.player.measured.take().is_some();
-            self.view.measured = false;
-            return Ok(Done::saying(if had {
+            return Ok(Done::saying(if self.take_measured_away() {
                 "the measured data are taken away"
             } else {
                 "there are no measured data beside the run"
@@ -64,18 +82,10 @@ impl Lab {
         Ok(Done::SILENT)
     }
 
-    pub(in crate::lab) fn show_residuals(&mut self, shown: bool) -> Answer {
-        if self.player.measured.is_none() {
-            return Err(
-                "there are no measured data beside the run: gyrolab --measured FILE".into(),
-            );
-        }
-        self.view.residuals = shown;
-        Ok(Done::saying(if shown {
-            "measured less run, where something was measured; m shows both again"
-        } else {
-            "measured values and the run"
-        }))
+    /// Takes the measured data away; returns whether there were any.
+    fn take_measured_away(&mut self) -> bool {
+        self.view.measured = false;
+        self.player.measured.take().is_some()
     }
 
     /// To be called after another scenario was opened in place of `before`. Puts the data that its `[view]` names
@@ -87,16 +97,14 @@ impl Lab {
         match named(scenario) {
             Some(name) if Some(&name) == shown.as_ref() => {}
             Some(name) => {
-                self.player.measured = None;
-                self.view.measured = false;
+                self.take_measured_away();
                 if let Err(problems) = self.put_beside(&name, false) {
                     let why = format!("{}: {}", problems.origin, problems.in_one_line());
                     self.tell(printable(&why));
                 }
             }
             None if shown.is_some() && shown == named(before) => {
-                self.player.measured = None;
-                self.view.measured = false;
+                self.take_measured_away();
             }
             None => {}
         }

@@ -1,13 +1,20 @@
 //! Which pane has the focus, and whether it fills the screen.
 
 use super::{Pane, View};
+use crate::lab::Done;
 
 impl View {
     /// Fills the screen with `pane` and moves the focus there; with `None` shows all panes again.
-    pub fn fill(&mut self, pane: Option<Pane>) {
+    pub fn fill(&mut self, pane: Option<Pane>) -> Done {
         self.filled = pane.is_some();
         self.focus = pane.unwrap_or(self.focus);
         self.is_touched |= self.filled;
+        Done::SILENT
+    }
+
+    pub(in crate::lab) fn point_at(&mut self, pane: Option<Pane>) -> Done {
+        self.pointed_at = pane;
+        Done::SILENT
     }
 
     pub fn is_filled_by(&self, pane: Pane) -> bool {
@@ -131,7 +138,7 @@ mod tests {
             view.shift_focus(true);
         }
         assert_eq!(seen, ["traces", "above", "parameters", "traces"]);
-        view.hidden = vec![Part::Pane(Pane::FROM_ABOVE)];
+        view.look.hidden = vec![Part::Pane(Pane::FROM_ABOVE)];
         view.keep_focus();
         assert_eq!(view.focus, Pane::TRACES, "the one in focus is hidden");
         view.shift_focus(false);

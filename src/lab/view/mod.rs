@@ -18,9 +18,13 @@ use crate::run::Clock;
 use crate::scenario::{Scenario, keys};
 use markers::Marker;
 pub use pane::{Pane, Part};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer, Serialize};
+use std::ops::Deref;
 use std::sync::Arc;
 use step::Page;
 use theme::Theme;
+use toml::{Table, Value};
 
 /// The longest time that one sweep of the traces may take at first, seconds of wall time.
 const LONGEST_SWEEP_S: f64 = 120.0;
@@ -31,8 +35,71 @@ pub const FPS: u32 = 15;
 /// Degrees by which one press of an arrow turns the camera.
 const TURN_DEG: f64 = 10.0;
 
+/// What is looked at: what `[view]` of a scenario, a session and commands say of the screen. serde reads and writes it
+/// under the keys of `[view]`, and [`patched`](Self::patched) with some of them makes another one.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Look {
+    /// Length of time the traces show, s.
+    pub window_s: f64,
+    /// Length of time that the strip of the fast motion shows, s; `None`: about ten swings.
+    pub detail_s: Option<f64>,
+    /// What that strip shows; `None`: the tilt, or x where the tilt does not swing.
+    #[serde(deserialize_with = "where_known")]
+    pub detail_of: Option<Curve>,
+    /// Where the 3-D view is looked at from, if that was chosen. Otherwise it is turned so that the axle is seen aslant.
+    pub camera: Option<Camera>,
+    /// How much larger than the whole the round pictures are shown.
+    pub zoom: Zoom,
+    /// The panes that share the screen; if empty, as many as there is room for.
+    #[serde(rename = "show")]
+    pub shown: Vec<Pane>,
+    #[serde(rename = "hide")]
+    pub hidden: Vec<Part>,
+    /// The page that the step pane shows.
+    #[serde(rename = "phase")]
+    pub page: Page,
+    /// How many rows of a table the step pane adds up; `None`: all.
+    #[serde(deserialize_with = "where_known")]
+    pub sum_to: Option<usize>,
+    /// The line about what there is to see, if a command has set it; otherwise the scenario's line is shown.
+    pub look_at: Option<String>,
+    /// The line about what to try after the run, if a command has set it; otherwise the scenario's or the preset's.
+    pub next: Option<String>,
+    /// Whether the screen is bare: few panes, and nothing around them but title and time.
+    pub bare: bool,
+    /// Whether what was measured is shown less what the run says.
+    pub residuals: bool,
+}
+
+/// What a value says, or `None` for a word such as "auto" or "all".
+fn where_known<'de, T: DeserializeOwned, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
+    Ok(Value::deserialize(deserializer)?.try_into().ok())
+}
+
+impl Look {
+    /// Whether `key` of `[view]` is of a look. Speed, measured data, exact motion and the pane that fills the screen are
+    /// not.
+    pub fn has(key: &str) -> bool {
+        const OTHERS: [&str; 4] = ["speed", "exact", "measured", "fill"];
+        let path = format!("view.{key}");
+        !OTHERS.contains(&key) && (keys::find(&path).is_ok() || keys::is_table(&path))
+    }
+
+    /// The look with the values of `patch`, a table as `[view]` is one.
+    pub fn patched(&self, patch: &Table) -> Result<Self, String> {
+        let mut all = Table::try_from(self).map_err(|error| error.to_string())?;
+        all.extend(patch.clone());
+        all.try_into()
+            .map_err(|error: toml::de::Error| error.message().to_owned())
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
+    pub look: Look,
     /// Every pane there is, in the order in which the focus goes through them.
     pub panes: &'static [Pane],
     pub focus: Pane,
@@ -41,12 +108,6 @@ pub struct View {
     pub filled: bool,
     pub marker: Marker,
     pub theme: Theme,
-    /// Length of time the traces show, s.
-    pub window_s: f64,
-    /// Length of time that the strip of the fast motion shows, s; `None`: about ten swings.
-    pub detail_s: Option<f64>,
-    /// What that strip shows; `None`: the tilt, or x where the tilt does not swing.
-    pub detail_of: Option<Curve>,
     /// Time at the left edge of the traces, s; `None`: they follow the run.
     pub since_s: Option<f64>,
     /// How many times the values of the traces are magnified: about the value at the cursor, or else about the run's
@@ -56,26 +117,8 @@ pub struct View {
     pub cursor: Option<u64>,
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
-    /// Whether that direction was chosen by hand, a file or a command. One that was not is turned so that the axle is seen
-    /// aslant.
-    pub camera_is_chosen: bool,
-    /// How much larger than the whole the round pictures are shown.
-    pub zoom: Zoom,
-    /// The panes that share the screen; if empty, as many as there is room for.
-    pub shown: Vec<Pane>,
-    /// The page that the step pane shows.
-    pub page: Page,
     /// The phase to which the step pane returns from its last page.
     pub page_before: Page,
-    /// How many rows of a table the step pane adds up; `None`: all.
-    pub sum_to: Option<usize>,
-    pub hidden: Vec<Part>,
-    /// The line about what there is to see, if a command has set it; otherwise the scenario's line is shown.
-    pub look_at: Option<String>,
-    /// The line about what to try after the run, if a command has set it; otherwise the scenario's or the preset's.
-    pub next: Option<String>,
-    /// Whether the screen is bare: few panes, and nothing around them but title and time.
-    pub bare: bool,
     pub pointed_at: Option<Pane>,
     /// The pane beside the text where there is room for one: the last that had the focus, or the first that was chosen.
     pub beside: Option<Pane>,
@@ -85,8 +128,6 @@ pub struct View {
     pub sheet_scrolled: Option<usize>,
     /// Whether measured data stand beside the run: a line then tells of them.
     pub measured: bool,
-    /// Whether what was measured is shown less what the run says.
-    pub residuals: bool,
     /// Frames a second at most.
     pub fps: u32,
     /// Whether the lab listens to the mouse; otherwise the terminal has it, to select text.
@@ -96,39 +137,36 @@ pub struct View {
     pub side_by_side: Vec<Pane>,
 }
 
+/// What is drawn reads `view.zoom` as it reads `view.cursor`.
+impl Deref for View {
+    type Target = Look;
+
+    fn deref(&self) -> &Look {
+        &self.look
+    }
+}
+
 impl View {
     /// The view with which a lab of these `panes` starts: the first has the focus, and the traces show the run of `scenario`.
     pub fn new(scenario: &Scenario, marker: Marker, theme: Theme, panes: &'static [Pane]) -> Self {
         let mut view = Self {
+            look: Look::default(),
             panes,
             focus: panes.first().copied().unwrap_or(Pane::TRACES),
             is_touched: false,
             filled: false,
             marker,
             theme,
-            window_s: first_window_s(scenario),
-            detail_s: None,
-            detail_of: None,
             since_s: None,
             magnified: 1.0,
             cursor: None,
             camera: Camera::default(),
-            camera_is_chosen: false,
-            zoom: Zoom::default(),
-            shown: Vec::new(),
-            page: Page::default(),
             page_before: Page::default(),
-            sum_to: None,
-            hidden: Vec::new(),
-            look_at: None,
-            next: None,
-            bare: false,
             pointed_at: None,
             beside: None,
             sheet: None,
             sheet_scrolled: None,
             measured: false,
-            residuals: false,
             fps: FPS,
             mouse: true,
             side_by_side: panes.to_vec(),
@@ -139,41 +177,50 @@ impl View {
 
     /// Changes to another scenario: the traces show its run, and the rest is as its `[view]` says.
     pub fn fit(&mut self, scenario: &Scenario) {
-        let file = scenario.file.view.clone().unwrap_or_default();
-        self.window_s = self.usual_window_s(scenario);
-        self.detail_s = file.detail_s;
-        self.detail_of = file.detail_of.as_deref().and_then(Curve::of_name);
+        let file = scenario.file.view.as_ref();
+        let mut patch = file.and_then(|file| Table::try_from(file).ok());
+        let patch = patch.get_or_insert_default();
+        patch.retain(|key, _| !["look_at", "next"].contains(&key)); // the scenario's, which may be edited
+        let usual = Look {
+            window_s: self.usual_window_s(scenario),
+            // What of these was chosen suits any run.
+            camera: self.look.camera,
+            zoom: self.look.zoom,
+            bare: self.look.bare,
+            residuals: self.look.residuals,
+            ..Look::default()
+        };
         (self.since_s, self.magnified, self.cursor) = (None, 1.0, None);
-        let panes = file.show.iter().flatten();
-        let panes: Vec<_> = panes.filter_map(|id| Pane::named(id)).collect();
-        self.show(&panes);
-        self.fit_step(&file);
-        let parts = file.hide.iter().flatten();
-        self.hidden = parts.filter_map(|id| Part::named(id)).collect();
-        (self.look_at, self.next) = (None, None);
-        self.bare = file.bare.unwrap_or(self.bare);
-        self.residuals = file.residuals.unwrap_or(self.residuals);
+        if self.look.camera.is_none() {
+            self.camera = Camera::default();
+        }
+        self.take(usual.patched(patch).unwrap_or(usual));
         if !self.may_show(self.focus) {
             self.keep_focus_among(&self.to_show());
         }
-        if let Some(fill) = &file.fill {
+        if let Some(fill) = file.and_then(|file| file.fill.as_deref()) {
             self.fill(Pane::named(fill));
-        }
-        if let Some(zoom) = file.zoom {
-            self.zoom = Zoom::of(zoom);
-        }
-        match file.camera {
-            Some(camera) => self.look_from(Camera::of(camera)),
-            // The camera of the last run need not suit another one.
-            None if !self.camera_is_chosen => self.camera = Camera::default(),
-            None => {}
         }
     }
 
-    /// Looks at the 3-D view from where `camera` is. The usual place is no choice.
-    pub fn look_from(&mut self, camera: Camera) {
-        self.camera_is_chosen = camera != Camera::default();
-        self.camera = camera;
+    /// Shows the run as `look` says. The step pane has the focus when it comes.
+    pub fn take(&mut self, look: Look) {
+        let before = std::mem::replace(&mut self.look, look);
+        if before.shown != self.shown {
+            self.beside = self.shown.first().copied();
+            self.side_by_side = self.to_show(); // until the lab is fitted to its screen again
+        }
+        let comes = self.shown.contains(&Pane::STEP) && !before.shown.contains(&Pane::STEP);
+        if comes && !self.filled {
+            self.focus = Pane::STEP;
+        }
+        if before.page != Page::Why {
+            self.page_before = before.page;
+        }
+        self.camera = self.look.camera.unwrap_or(self.camera);
+        // The usual place is no choice.
+        let camera = &mut self.look.camera;
+        camera.take_if(|camera| *camera == Camera::default());
     }
 
     /// The time that the traces show of the run of `scenario` while none is chosen by hand, s.
@@ -202,10 +249,6 @@ impl View {
     pub fn to_show(&self) -> Vec<Pane> {
         let panes = self.panes.iter().copied();
         panes.filter(|pane| self.may_show(*pane)).collect()
-    }
-
-    pub fn kept_as(&self, id: &str) -> Option<Pane> {
-        self.panes.iter().copied().find(|pane| pane.id() == id)
     }
 
     /// Twice the time that the traces show (`wider`), or half of it, s; `None` if less than two time steps of

@@ -1,19 +1,23 @@
 //! The panes and the other parts of the screen, by the names that commands, `[view]` and sessions have for them.
 
 use crate::scenario::screen::{self, PANES};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// A pane, by its id: the word for it in commands, in `[view]` and in sessions. `tui` has the table of all panes. The
 /// constants here are the panes that the lab itself needs to know.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Pane(&'static str);
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Part {
-    Pane(Pane),
     Health,
     Predicted,
     /// The line that says what there is to see.
     LookAt,
+    #[serde(untagged)]
+    Pane(Pane),
 }
 
 impl Pane {
@@ -45,20 +49,9 @@ impl Pane {
     }
 }
 
-impl Part {
-    /// Its name in files and commands.
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Pane(pane) => pane.id(),
-            Self::Health => "health",
-            Self::Predicted => "predicted",
-            Self::LookAt => "look_at",
-        }
-    }
-
-    pub fn named(id: &str) -> Option<Self> {
-        let others = [Self::Health, Self::Predicted, Self::LookAt];
-        let other = others.into_iter().find(|part| part.id() == id);
-        other.or_else(|| Pane::named(id).map(Self::Pane))
+impl<'de> Deserialize<'de> for Pane {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let id = String::deserialize(deserializer)?;
+        Self::named(&id).ok_or_else(|| D::Error::custom(format!("there is no pane {id}")))
     }
 }

@@ -3,10 +3,13 @@
 use super::{Pane, View};
 use crate::physics::Workings;
 use crate::physics::workings::NAMES;
-use crate::scenario::file::{Choice, ViewFile};
+use crate::scenario::file::Choice;
 use crate::scenario::screen::{LAST, WHY};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(into = "Choice")]
 pub enum Page {
     /// The phase of this number, from 1; the last one where there are fewer.
     Number(usize),
@@ -23,35 +26,33 @@ impl Default for Page {
     }
 }
 
+impl<'de> Deserialize<'de> for Page {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match Choice::deserialize(deserializer)? {
+            Choice::Number(number) => Ok(Self::Number(number as usize)),
+            Choice::Word(word) if word == LAST => Ok(Self::Last),
+            Choice::Word(word) if word == WHY => Ok(Self::Why),
+            Choice::Word(word) => {
+                let name = NAMES.into_iter().find(|known| *known == word);
+                let named = name.map(Self::Named);
+                named.ok_or_else(|| D::Error::custom(format!("there is no phase {word}")))
+            }
+        }
+    }
+}
+
+impl From<Page> for Choice {
+    fn from(page: Page) -> Self {
+        match page {
+            Page::Number(number) => Self::Number(number as u64),
+            Page::Named(name) => Self::Word(name.to_owned()),
+            Page::Last => Self::Word(LAST.to_owned()),
+            Page::Why => Self::Word(WHY.to_owned()),
+        }
+    }
+}
+
 impl Page {
-    pub fn named(name: &str) -> Option<Self> {
-        match name {
-            LAST => Some(Self::Last),
-            WHY => Some(Self::Why),
-            _ => NAMES
-                .into_iter()
-                .find(|known| *known == name)
-                .map(Self::Named),
-        }
-    }
-
-    pub fn of(choice: &Choice) -> Option<Self> {
-        match choice {
-            Choice::Number(number) => usize::try_from(*number).ok().map(Self::Number),
-            Choice::Word(name) => Self::named(name),
-        }
-    }
-
-    /// The page as files write it.
-    pub fn choice(self) -> Choice {
-        match self {
-            Self::Number(number) => Choice::Number(number as u64),
-            Self::Named(name) => Choice::Word(name.to_owned()),
-            Self::Last => Choice::Word(LAST.to_owned()),
-            Self::Why => Choice::Word(WHY.to_owned()),
-        }
-    }
-
     /// The index of its phase in `workings`; `None` for the page that shows no phase, and where there are no phases.
     pub fn index(self, workings: &Workings) -> Option<usize> {
         let last = workings.phases().count().checked_sub(1)?;
@@ -68,31 +69,9 @@ impl Page {
 }
 
 impl View {
-    /// Sets page and sum of the step pane from `[view]`, or to their defaults.
-    pub(super) fn fit_step(&mut self, file: &ViewFile) {
-        self.page = file.phase.as_ref().and_then(Page::of).unwrap_or_default();
-        self.sum_to = match &file.sum_to {
-            Some(Choice::Number(rows)) => usize::try_from(*rows).ok(),
-            _ => None,
-        };
-    }
-
     /// Whether the step pane is on the screen, if that has room for it.
     pub fn shows_step(&self) -> bool {
         self.is_filled_by(Pane::STEP) || (!self.filled && self.may_show(Pane::STEP))
-    }
-
-    /// Chooses the panes that share the screen; the step pane has the focus when it comes.
-    pub fn show(&mut self, panes: &[Pane]) {
-        let comes = panes.contains(&Pane::STEP) && !self.shown.contains(&Pane::STEP);
-        if self.shown != panes {
-            self.shown = panes.to_vec();
-            self.beside = panes.first().copied();
-            self.side_by_side = self.to_show(); // until the lab is fitted to its screen again
-        }
-        if comes && !self.filled {
-            self.focus = Pane::STEP;
-        }
     }
 
     /// The panes that share the screen once the step pane is shown beside them, or is no longer.

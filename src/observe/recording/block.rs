@@ -3,8 +3,10 @@
 use crate::physics::State;
 use crate::run::Sample;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Curve {
     /// x of the traced point, world frame, m.
     X,

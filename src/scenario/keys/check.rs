@@ -15,18 +15,20 @@ pub fn check(table: &toml::Table) -> Problems {
     problems
 }
 
-/// Checks `value`, which must be the table at the dotted `path` of a file.
-pub(in crate::scenario) fn check_part(value: &Value, path: &str) -> Problems {
+/// Checks `value`, a part of a file: the key or table at the dotted `path`.
+pub fn check_part(value: &Value, path: &str) -> Problems {
     let mut problems = Problems::default();
-    check_element(value, &pattern(path), path, &mut problems);
-    problems
-}
-
-fn check_element(value: &Value, pattern: &str, path: &str, problems: &mut Problems) {
+    let pattern = pattern(path);
+    let is_key = KEYS.iter().any(|key| key.path == pattern);
     match value {
-        Value::Table(table) => check_table(table, pattern, path, problems),
-        other => problems.add(|| Problem::with_value(path, other, "must be a table")),
+        _ if is_key => check_value(value, &pattern, path, &mut problems),
+        Value::Table(table) => check_table(table, &pattern, path, &mut problems),
+        other => problems.add(|| {
+            let rule = format!("must be a table of {}", names(&pattern).join(", "));
+            Problem::with_value(path, other, rule)
+        }),
     }
+    problems
 }
 
 /// Checks `table`, whose keys begin with the pattern `under`, and which stands at `path` in the file.
@@ -89,7 +91,11 @@ fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Problems
     match value {
         Value::Array(items) if is_list => {
             for (index, item) in items.iter().enumerate() {
-                check_element(item, &element, &join(path, &index.to_string()), problems);
+                let path = join(path, &index.to_string());
+                match item {
+                    Value::Table(table) => check_table(table, &element, &path, problems),
+                    other => problems.add(|| Problem::with_value(path, other, "must be a table")),
+                }
             }
         }
         Value::Table(table) if !is_list => check_table(table, pattern, path, problems),

@@ -159,7 +159,7 @@ impl Taken {
             let hidden = lab.view().hidden.clone();
             let hidden = Predictions::hidden_after_lock(page, &hidden);
             if hidden != lab.view().hidden {
-                lab.carry_out_now(&Command::Hide(hidden));
+                lab.carry_out_now(&Command::look("hide", hidden));
             }
         }
     }

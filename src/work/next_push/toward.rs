@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 const UPRIGHT: f64 = 1e-9;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(try_from = "String", into = "String")]
 pub enum Toward {
     /// −z, the direction of the weight.
     Down,
@@ -25,6 +25,20 @@ pub enum Toward {
     Back,
     /// A direction in the world frame.
     Along([f64; 3]),
+}
+
+impl TryFrom<String> for Toward {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        Self::typed(&text)
+    }
+}
+
+impl From<Toward> for String {
+    fn from(toward: Toward) -> Self {
+        toward.shown()
+    }
 }
 
 impl Toward {
