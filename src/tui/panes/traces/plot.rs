@@ -2,7 +2,7 @@
 
 use super::groups::Group;
 use super::{Traces, curve::Stroke};
-use crate::lab::measured::Shown;
+use crate::lab::measured::{Beside, Shown};
 use crate::observe::ghost::Ghost;
 use crate::observe::marks::Marks;
 use crate::observe::recording::{Curve, Extent, Recording};
@@ -238,11 +238,8 @@ impl Traces<'_> {
         match content {
             Content::Curve(curve) => (curve.name().to_owned(), curve.unit()),
             Content::Measured(index) => {
-                let mut quantities = self
-                    .measured
-                    .into_iter()
-                    .flat_map(|beside| beside.quantities());
-                let quantity = quantities.nth(index);
+                let quantities = self.measured.map(Beside::quantities);
+                let quantity = quantities.and_then(|mut quantities| quantities.nth(index));
                 quantity.map_or_else(Default::default, |quantity| {
                     (quantity.words(), quantity.unit())
                 })
