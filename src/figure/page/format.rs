@@ -122,9 +122,8 @@ fn rounded_item(item: &Item) -> Option<Item> {
             pen.dash_pt.clear();
         }
     }
-    let mut places = item.path.points().chain(item.clip.into_iter().flatten());
-    let is_sound = places.all(is_place);
-    drop(places);
+    let clip = item.clip.into_iter().flatten();
+    let is_sound = item.path.points().chain(clip).all(is_place);
     is_sound.then_some(item)
 }
 
