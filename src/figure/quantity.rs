@@ -8,6 +8,7 @@ use crate::text::unit::Unit;
 
 /// The parts of a vector, by the numbers that keys give them.
 const PARTS: [(&str, &str); 3] = [("0", "*x*"), ("1", "*y*"), ("2", "*z*")];
+
 /// The axis of a column, of a readout, or of a dotted key of a scenario: of the readout's value at the start, where there is
 /// such a readout.
 pub fn axis(name: &str) -> Axis {
