@@ -15,6 +15,7 @@ pub struct Column {
 }
 
 /// What a row is of: a step, in a CSV of all points a point at that step.
+#[derive(Clone, Copy)]
 pub(super) struct Row<'a> {
     pub scenario: &'a Scenario,
     pub sample: &'a Sample,

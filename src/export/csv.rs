@@ -2,7 +2,7 @@
 //! memory does not grow with the run.
 
 use super::Layout;
-use super::columns::{Cell, Column, Row};
+use super::columns::{Cell, Row};
 use super::layout::commented;
 use super::points::NamedPoint;
 use crate::run::Sample;
@@ -15,7 +15,9 @@ const BYTE_ORDER_MARK: &str = "\u{feff}";
 /// Writes a run's CSV row by row.
 #[derive(Debug)]
 pub struct CsvWriter<W: Write> {
-    rows: Rows<W>,
+    out: BufWriter<W>,
+    line: Vec<u8>,
+    count: u64,
     layout: Layout,
     scenario: Scenario,
     /// The points of the body, where each of them has a row.
@@ -31,28 +33,24 @@ impl<W: Write> CsvWriter<W> {
     /// Begins a CSV as `layout` says on `out`.
     pub fn with_layout(out: W, scenario: &Scenario, layout: Layout) -> io::Result<Self> {
         let mut out = BufWriter::new(out);
-        let (delimiter, mark) = if layout.file().excel {
-            (';', BYTE_ORDER_MARK)
+        let mark = if layout.file().excel {
+            BYTE_ORDER_MARK
         } else {
-            (',', "")
+            ""
         };
+        let delimiter = delimiter(&layout);
         let (above, run_file) = (layout.comments(), commented(&scenario.to_toml()));
-        let names = layout.names().join(&delimiter.to_string());
+        let names = layout.names().join(&char::from(delimiter).to_string());
         writeln!(out, "{mark}{above}{run_file}{names}")?;
-        let delimiter = delimiter as u8;
         let points = if layout.file().points {
             NamedPoint::all_of(scenario, |name| field(name, delimiter))
         } else {
             Vec::new()
         };
         Ok(Self {
-            rows: Rows {
-                out,
-                delimiter,
-                decimal: layout.file().excel.then_some(b','),
-                line: Vec::new(),
-                count: 0,
-            },
+            out,
+            line: Vec::new(),
+            count: 0,
             layout,
             scenario: scenario.clone(),
             points,
@@ -66,66 +64,58 @@ impl<W: Write> CsvWriter<W> {
     /// Adds the row of `sample`, or its rows where every point has one. The caller
     /// has asked the layout whether there is one.
     pub fn write(&mut self, sample: &Sample) -> io::Result<()> {
-        let columns = self.layout.columns();
-        let row = Row::new(&self.scenario, sample);
-        if !self.layout.file().points {
-            return self.rows.add(columns, &row);
+        let is_of_points = self.layout.file().points;
+        let step = Row::new(&self.scenario, sample);
+        let points = self.points.iter().map(|point| Row {
+            point: point.placed(sample),
+            ..step
+        });
+        for row in points.chain((!is_of_points).then_some(step)) {
+            self.line.clear();
+            add(&mut self.line, &self.layout, &row);
+            self.count += 1;
+            self.out.write_all(&self.line)?;
         }
-        self.points.iter().try_for_each(|point| {
-            let point = point.placed(sample);
-            self.rows.add(columns, &Row { point, ..row })
-        })
+        Ok(())
     }
 
     pub fn count(&self) -> u64 {
-        self.rows.count
+        self.count
     }
 
     /// Writes what is still buffered, and returns the output.
     pub fn finish(self) -> io::Result<W> {
-        let whole = self.rows.out.into_inner();
+        let whole = self.out.into_inner();
         whole.map_err(io::IntoInnerError::into_error)
     }
 }
 
-/// Writes rows of cells. Where a text needs quotes, it has them already.
-#[derive(Debug)]
-struct Rows<W: Write> {
-    out: BufWriter<W>,
-    delimiter: u8,
-    /// The decimal mark, where it is no point.
-    decimal: Option<u8>,
-    line: Vec<u8>,
-    count: u64,
+fn delimiter(layout: &Layout) -> u8 {
+    if layout.file().excel { b';' } else { b',' }
 }
 
-impl<W: Write> Rows<W> {
-    /// Writes one row. Numbers have the digits that the csv crate gives them with serde.
-    fn add(&mut self, columns: &[&Column], row: &Row<'_>) -> io::Result<()> {
-        let line = &mut self.line;
-        line.clear();
-        let (mut digits, mut whole) = (ryu::Buffer::new(), itoa::Buffer::new());
-        for column in columns {
-            let begin = line.len();
-            match (column.cell)(row) {
-                Cell::Text(text) => line.extend_from_slice(text.as_bytes()),
-                Cell::Whole(count) => line.extend_from_slice(whole.format(count).as_bytes()),
-                Cell::Number(number) => {
-                    line.extend_from_slice(digits.format(number).as_bytes());
-                    if let Some(decimal) = self.decimal
-                        && let Some(point) = line[begin..].iter_mut().find(|c| **c == b'.')
-                    {
-                        *point = decimal;
-                    }
+/// Adds one row to `line`. Numbers have the digits that the csv crate gives them with serde; where a text needs quotes, it has
+/// them already.
+fn add(line: &mut Vec<u8>, layout: &Layout, row: &Row<'_>) {
+    let (mut digits, mut whole) = (ryu::Buffer::new(), itoa::Buffer::new());
+    for column in layout.columns() {
+        let begin = line.len();
+        match (column.cell)(row) {
+            Cell::Text(text) => line.extend_from_slice(text.as_bytes()),
+            Cell::Whole(count) => line.extend_from_slice(whole.format(count).as_bytes()),
+            Cell::Number(number) => {
+                line.extend_from_slice(digits.format(number).as_bytes());
+                if layout.file().excel
+                    && let Some(point) = line[begin..].iter_mut().find(|c| **c == b'.')
+                {
+                    *point = b',';
                 }
             }
-            line.push(self.delimiter);
         }
-        if let Some(last) = line.last_mut() {
-            *last = b'\n';
-        }
-        self.count += 1;
-        self.out.write_all(line)
+        line.push(delimiter(layout));
+    }
+    if let Some(last) = line.last_mut() {
+        *last = b'\n';
     }
 }
 

@@ -76,10 +76,10 @@ impl Folder {
         let mut others = names(&self.path).map_err(refused)?;
         others.retain(|name| !new.contains(name));
         others.sort();
-        let others = others.into_iter();
-        Ok(others
-            .map(|name| name.to_string_lossy().into_owned())
-            .collect())
+        let others = others
+            .iter()
+            .map(|name| name.to_string_lossy().into_owned());
+        Ok(others.collect())
     }
 }
 

@@ -167,10 +167,9 @@ impl Layout {
     /// Whether the first row would come after the end of the run of `scenario`.
     pub fn begins_after(&self, scenario: &Scenario) -> bool {
         let end_s = Clock::end_s(scenario);
-        let slack_s = 1e-9 * scenario.motion.time_step_s + 4.0 * f64::EPSILON * end_s;
-        self.file
-            .from_s
-            .is_some_and(|from_s| from_s > end_s + slack_s)
+        let slack_s = slack_s(scenario.motion.time_step_s, end_s);
+        let from_s = self.file.from_s;
+        from_s.is_some_and(|from_s| from_s > end_s + slack_s)
     }
 
     /// Whether the time of `step` lies between the two ends.
@@ -180,7 +179,7 @@ impl Layout {
             return true;
         }
         let time_s = step.time_s();
-        let slack_s = 1e-9 * step.motion().time_step_s + 4.0 * f64::EPSILON * time_s;
+        let slack_s = slack_s(step.motion().time_step_s, time_s);
         from_s.is_none_or(|from_s| time_s >= from_s - slack_s)
             && to_s.is_none_or(|to_s| time_s <= to_s + slack_s)
     }
@@ -204,6 +203,11 @@ impl Layout {
             })?;
         file.check()
     }
+}
+
+/// A time this near to an end counts as on it, s.
+fn slack_s(time_step_s: f64, time_s: f64) -> f64 {
+    1e-9 * time_step_s + 4.0 * f64::EPSILON * time_s
 }
 
 /// The comments above the run file, without their marks. `header` is the header of a CSV whose lines have lost their `# `.

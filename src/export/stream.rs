@@ -1,7 +1,7 @@
 //! Plays a run to its end and writes its rows as it goes.
 
 use super::CsvWriter;
-use crate::run::{NotFinite, Sample, Simulation, Step};
+use crate::run::{NotFinite, Simulation, Step};
 use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -45,60 +45,37 @@ pub fn play<W: Write>(
     let mut ended = None;
     while ended.is_none() {
         let begin = Instant::now();
-        let result = take_block(simulation, steps, block, |step| {
+        let end = steps.min(simulation.step_number() + block as u64);
+        let result = (simulation.step_number()..end).try_for_each(|_| {
+            let step = simulation.step()?;
             each(step);
             if has_row(step) {
                 rows.push(step.sample());
             }
+            Ok(())
         });
         stepping += begin.elapsed();
+        let last = simulation.now();
+        // The last finite step has a row whichever the layout leaves out between.
+        let is_left_out = result.is_err() && !has_row(last);
+        if layout
+            .as_ref()
+            .is_some_and(|layout| is_left_out && layout.has_time(last))
+        {
+            rows.push(last.sample());
+        }
         if let Some(csv) = csv.as_deref_mut() {
             rows.iter().try_for_each(|row| csv.write(row))?;
         }
+        rows.clear();
         ended = match result {
-            Err(error) => {
-                write_last(simulation.now(), rows.last(), csv.as_deref_mut())?;
-                Some(Ended::NotFinite(error))
-            }
+            Err(error) => Some(Ended::NotFinite(error)),
             Ok(()) if simulation.step_number() >= steps => Some(Ended::Done),
             Ok(()) => {
                 let step = simulation.step_number();
                 watch(step, steps).is_break().then_some(Ended::Stopped)
             }
         };
-        rows.clear();
     }
     Ok((ended.unwrap_or(Ended::Done), stepping))
-}
-
-fn take_block(
-    simulation: &mut Simulation,
-    steps: u64,
-    block: usize,
-    mut each: impl FnMut(&Step),
-) -> Result<(), NotFinite> {
-    let end = steps.min(simulation.step_number() + block as u64);
-    while simulation.step_number() < end {
-        each(simulation.step()?);
-    }
-    Ok(())
-}
-
-/// Writes the row of the last finite step, unless it is written already: the last row is written whichever rows the layout
-/// leaves out between.
-fn write_last<W: Write>(
-    last: &Step,
-    written: Option<&Sample>,
-    csv: Option<&mut CsvWriter<W>>,
-) -> io::Result<()> {
-    let Some(csv) = csv else {
-        return Ok(());
-    };
-    let (step, every) = (last.number(), csv.layout().steps_between());
-    let is_written = written.is_some_and(|row| row.step == step) || step.is_multiple_of(every);
-    if !is_written && csv.layout().has_time(last) {
-        csv.write(&last.sample())
-    } else {
-        Ok(())
-    }
 }

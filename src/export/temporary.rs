@@ -94,12 +94,11 @@ fn remove_what_was_left(folder: &Path) {
 }
 
 fn is_temporary(name: &str) -> bool {
-    let drawn = name
-        .strip_prefix(PREFIX)
-        .and_then(|rest| rest.strip_suffix(SUFFIX));
-    drawn.is_some_and(|drawn| {
-        drawn.len() == DRAWN && drawn.bytes().all(|byte| byte.is_ascii_alphanumeric())
-    })
+    let rest = name.strip_prefix(PREFIX);
+    let drawn = rest
+        .and_then(|rest| rest.strip_suffix(SUFFIX))
+        .unwrap_or("");
+    drawn.len() == DRAWN && drawn.bytes().all(|byte| byte.is_ascii_alphanumeric())
 }
 
 #[cfg(test)]

@@ -102,39 +102,36 @@ const INSIDE: usize = 3;
 const LINE_PT: f64 = 0.9;
 const LOOSE: f64 = 0.3;
 
-/// As [`warning`], of the paths of `drawn`, of which `path` gives the lines on the page: of the runs, and where none of them is
-/// dense, of the exact motion.
+/// As [`warning`], of each `path` of `drawn`, whose points stand at a `place` on the page: of the runs, and where none of them
+/// is dense, of the exact motion.
 pub(super) fn of_paths(
     drawn: &[Drawn],
     request: &Request,
-    path: impl Fn(&Course) -> (Vec<Vec<Point>>, &Path),
+    path: fn(&Course) -> &Path,
+    place: impl Fn(&[f64; 3]) -> Point,
 ) -> Option<Dense> {
+    let dense = |drawn: &Drawn| {
+        let path = path(&drawn.course);
+        if path.points.len() < 2000 {
+            return None;
+        }
+        let lines = path.lines(&place);
+        let grid = Grid::inked(&lines, PLACE_PT, 0.0)?;
+        let area_pt2 = grid.area_pt2();
+        if grid.area_inside_pt2(INSIDE) < MOST * area_pt2 {
+            return None;
+        }
+        let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();
+        let share = (LOOSE * area_pt2 / (path.times * length_pt * LINE_PT)).min(0.5);
+        let window_s = share * (drawn.course.end_s - request.from_s);
+        Some(proposal(window_s, request, "its turns".to_owned()))
+    };
     let earliest = |is_exact: bool| {
         let drawn = drawn.iter().filter(|drawn| drawn.is_exact == is_exact);
-        let dense = drawn.filter_map(|drawn| {
-            let (lines, path) = path(&drawn.course);
-            path_warning(&lines, path, drawn.course.end_s, request)
-        });
+        let dense = drawn.filter_map(dense);
         dense.min_by(|a, b| a.to_s.total_cmp(&b.to_s))
     };
     earliest(false).or_else(|| earliest(true))
-}
-
-/// As [`warning`], of a `path` up to `end_s`, which is `lines` on the page.
-fn path_warning(lines: &[Vec<Point>], path: &Path, end_s: f64, request: &Request) -> Option<Dense> {
-    if path.points.len() < 2000 {
-        return None;
-    }
-    let grid = Grid::inked(lines, PLACE_PT, 0.0)?;
-    let area_pt2 = grid.area_pt2();
-    if grid.area_inside_pt2(INSIDE) < MOST * area_pt2 {
-        return None;
-    }
-    let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();
-    let share = (LOOSE * area_pt2 / (path.times * length_pt * LINE_PT)).min(0.5);
-    let window_s = share * (end_s - request.from_s);
-    let what = "its turns".to_owned();
-    Some(proposal(window_s, request, what))
 }
 
 fn proposal(window_s: f64, request: &Request, what: String) -> Dense {

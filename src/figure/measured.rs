@@ -274,8 +274,10 @@ fn turned(job: &Job<'_>, series: &measured::Series, place: usize) -> Result<Vec<
     match job.runs.first() {
         Some(run) if curve.quantity.is_direction => {
             let said = said(job, series, run, |_, _| ControlFlow::Continue(()))?;
-            let model = said.unwrap_or_default();
-            Ok(beside(curve, &model[place], |pair| pair.measured))
+            let model = said.and_then(|mut said| said.get_mut(place).map(std::mem::take));
+            Ok(beside(curve, &model.unwrap_or_default(), |pair| {
+                pair.measured
+            }))
         }
         _ => Ok(curve.points.clone()),
     }

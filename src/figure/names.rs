@@ -6,38 +6,29 @@ use super::page::letters;
 use super::request::{Job, Run};
 use crate::text::number::significant;
 
-/// What of a run may differ from the others.
-type Of<'a> = &'a dyn Fn(&Run) -> String;
-
 /// A name for each of the runs, as markup with room in the legend; empty where there is nothing to tell apart.
 pub(super) fn names(job: &Job<'_>) -> Vec<String> {
     let &Job { runs, request, .. } = job;
     let room_pt = longest_name(request.width_pt);
-    let differs = |of: Of<'_>| runs.iter().any(|run| of(run) != of(&runs[0]));
     let title = |run: &Run| run.scenario.file.title.clone();
     let scheme = |run: &Run| run.scenario.motion.scheme.name.to_owned();
-    let time_step = |run: &Run| step(run);
-    let parts: [(bool, Of<'_>); 3] = [
-        (differs(&title), &title),
-        (differs(&scheme), &scheme),
-        (differs(&time_step), &time_step),
-    ];
-    let is_alike = parts.iter().all(|(differs, _)| !differs);
+    let parts: [&dyn Fn(&Run) -> String; 3] = [&title, &scheme, &step];
+    let differs = parts.map(|of| runs.iter().any(|run| of(run) != of(&runs[0])));
     let name = |run: &Run| -> String {
-        if is_alike {
+        if differs == [false; 3] {
             return match (runs.len(), request.is_beside()) {
                 (1, false) => String::new(),
                 (1, true) => letters::escape(&scheme(run)),
                 _ => letters::shortened(&run.named, LABEL_PT, room_pt),
             };
         }
-        let differing = parts[..2].iter().filter(|(differs, _)| *differs);
-        let words: Vec<_> = differing.map(|(_, of)| of(run)).collect();
+        let words = (0..2).filter(|part| differs[*part]);
+        let words: Vec<_> = words.map(|part| parts[part](run)).collect();
         // The step comes as markup, and keeps its room; the title is cut.
-        let step = match (parts[2].0, words.is_empty()) {
+        let step = match (differs[2], words.is_empty()) {
             (false, _) => String::new(),
-            (true, true) => time_step(run),
-            (true, false) => format!(", {}", time_step(run)),
+            (true, true) => step(run),
+            (true, false) => format!(", {}", step(run)),
         };
         let rest = room_pt - super::page::ink::width(&step, LABEL_PT);
         letters::shortened(&words.join(", "), LABEL_PT, rest) + &step

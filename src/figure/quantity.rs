@@ -8,36 +8,25 @@ use crate::text::unit::Unit;
 
 /// The parts of a vector, by the numbers that keys give them.
 const PARTS: [(&str, &str); 3] = [("0", "*x*"), ("1", "*y*"), ("2", "*z*")];
-/// Columns whose readout has another name.
-const OTHER_NAMES: [(&str, &str); 1] = [("step", "steps")];
 
-/// The axis of a column, of a readout, or of a key of a scenario.
+/// The axis of a column, of a readout, or of a dotted key of a scenario: of the readout's value at the start, where there is
+/// such a readout.
 pub fn axis(name: &str) -> Axis {
-    let other = OTHER_NAMES.iter().find(|(column, _)| *column == name);
-    let readout = readouts::find(other.map_or(name, |(_, readout)| readout));
+    let last = name.rsplit('.').next().unwrap_or(name);
+    let readout = readouts::find(if last == "step" { "steps" } else { last });
+    let (words, unit) = words(name);
     match readout {
         Some(readout) if !readout.symbol.is_empty() => {
-            Axis::new(readout.symbol, unit_markup(readout.unit))
+            let symbol = if name.starts_with("start.") {
+                at_start(readout.symbol)
+            } else {
+                readout.symbol.to_owned()
+            };
+            Axis::new(symbol, unit_markup(readout.unit))
         }
-        Some(readout) => Axis::new(words(name).0, unit_markup(readout.unit)),
-        None => of_key(name),
+        Some(readout) if last == name => Axis::new(words, unit_markup(readout.unit)),
+        _ => Axis::new(words, unit_markup(unit)),
     }
-}
-
-/// The axis of a dotted key: of the readout's value at the start, where there is such a readout.
-fn of_key(key: &str) -> Axis {
-    let last = key.rsplit('.').next().unwrap_or(key);
-    let readout = readouts::find(last).filter(|readout| !readout.symbol.is_empty());
-    if let Some(readout) = readout {
-        let symbol = if key.starts_with("start.") {
-            at_start(readout.symbol)
-        } else {
-            readout.symbol.to_owned()
-        };
-        return Axis::new(symbol, unit_markup(readout.unit));
-    }
-    let (name, unit) = words(key);
-    Axis::new(name, unit_markup(unit))
 }
 
 /// The axis of a key of this `scenario`: a point or a part of the body is called by its name, "mass of weight", and L has the
@@ -101,9 +90,8 @@ pub fn words(name: &str) -> (String, &'static str) {
         parts.remove(0);
     }
     // A number at the end is a component, elsewhere a point, a part or a push.
-    let component = PARTS
-        .iter()
-        .find(|(number, _)| parts.last() == Some(number));
+    let mut components = PARTS.iter();
+    let component = components.find(|(number, _)| parts.last() == Some(number));
     if component.is_some() {
         parts.pop();
     }

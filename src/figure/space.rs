@@ -70,10 +70,8 @@ pub(super) fn scene(job: &Job<'_>, drawn: &[Drawn]) -> (Scene, Option<Dense>) {
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + EDGE;
     legend.draw_above(width_pt, EDGE, &mut items);
-    let dense = dense::of_paths(drawn, job.request, |course| {
-        let lines = course.path.lines(|at| space.place(&space.boxed(at)));
-        (lines, &course.path)
-    });
+    let place = |at: &[f64; 3]| space.place(&space.boxed(at));
+    let dense = dense::of_paths(drawn, job.request, |course| &course.path, place);
     (items, dense)
 }
 

@@ -138,15 +138,19 @@ impl Placed {
             return;
         }
         let mut taken = HashSet::new();
-        let mut is_kept = |point: &[f64; 2]| {
-            let place = self.place(point);
+        let mut is_kept = |index: &usize| {
+            let place = self.place(&series.points[*index]);
             let cell = [place.x, place.y].map(|length| (length / cell_pt).floor() as i64);
             self.frame.holds(place) && taken.insert(cell)
         };
-        let is_kept: Vec<bool> = series.points.iter().map(&mut is_kept).collect();
-        retain(&mut series.points, &is_kept);
-        let errors = series.errors.iter_mut();
-        errors.for_each(|errors| retain(errors, &is_kept));
+        let kept: Vec<usize> = (0..series.points.len()).filter(&mut is_kept).collect();
+        series.errors = [0, 1].map(|axis| {
+            let errors = kept
+                .iter()
+                .filter_map(|&index| series.errors[axis].get(index));
+            errors.copied().collect()
+        });
+        series.points = kept.iter().map(|&index| series.points[index]).collect();
     }
 
     /// The ends of the error bars along an axis of those points of `series` that are in the panel, cut off at its frame.
@@ -188,12 +192,6 @@ impl Panel {
             scene.write(&tick.label, LABEL_PT, place, 1.0);
         }
     }
-}
-
-/// Keeps the `items` that `is_kept` marks; there may be no items.
-fn retain<Item>(items: &mut Vec<Item>, is_kept: &[bool]) {
-    let mut kept = is_kept.iter();
-    items.retain(|_| kept.next() == Some(&true));
 }
 
 /// The frame and its ticks, on all four sides, inwards.

@@ -63,10 +63,8 @@ pub(super) fn above(job: &Job<'_>, drawn: &[Drawn], measured: Option<Series>) ->
 pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<Dense> {
     let layout = Layout::new(chart, 0.0);
     let placed = layout.panels.first()?;
-    dense::of_paths(drawn, request, |course| {
-        let lines = course.above.lines(|at| placed.place(&[at[0], at[1]]));
-        (lines, &course.above)
-    })
+    let place = |at: &[f64; 3]| placed.place(&[at[0], at[1]]);
+    dense::of_paths(drawn, request, |course| &course.above, place)
 }
 
 /// The circles between which the exact motion of the traced point stays, from above; none where pushes or edits change the

@@ -2,7 +2,7 @@
 
 use std::path::Path as FilePath;
 
-use super::{Item, Paint, Pen, Point, Scene};
+use super::{Item, Paint, Point, Scene};
 use super::{pdf, png, svg};
 use crate::text::printable::Shown;
 use thiserror::Error;
@@ -105,36 +105,26 @@ pub fn rounded(scene: &Scene) -> Result<Scene, Unwritable> {
 }
 
 fn rounded_item(item: &Item) -> Option<Item> {
-    let Item { path, words, .. } = item.clone().mapped(hundredths_of);
-    let clip = item.clip.map(|corners| corners.map(hundredths_of));
-    let paint = match &item.paint {
-        Paint::Stroke(pen) => Paint::Stroke(rounded_pen(pen)?),
-        fill => fill.clone(),
-    };
-    let is_place = |p: Point| p.x.abs() <= LARGEST_PT && p.y.abs() <= LARGEST_PT;
-    let is_sound = path
-        .points()
-        .chain(clip.into_iter().flatten())
-        .all(is_place);
-    is_sound.then_some(Item {
-        path,
-        paint,
-        clip,
-        words,
-    })
-}
-
-/// A dash of no length at all would never end: dashes that are too short to be seen make a solid line.
-fn rounded_pen(pen: &Pen) -> Option<Pen> {
-    let dash_pt: Vec<f64> = pen.dash_pt.iter().copied().map(hundredths).collect();
     let is_length = |length: &f64| (0.0..=LARGEST_PT).contains(length);
-    let is_sound = is_length(&pen.width_pt) && dash_pt.iter().all(is_length);
-    let is_dashed = dash_pt.iter().sum::<f64>() > 0.0;
-    is_sound.then(|| Pen {
-        width_pt: hundredths(pen.width_pt),
-        dash_pt: if is_dashed { dash_pt } else { vec![] },
-        ..*pen
-    })
+    let is_place = |p: Point| p.x.abs() <= LARGEST_PT && p.y.abs() <= LARGEST_PT;
+    let mut item = item.clone().mapped(hundredths_of);
+    item.clip = item.clip.map(|corners| corners.map(hundredths_of));
+    if let Paint::Stroke(pen) = &mut item.paint {
+        if !(is_length(&pen.width_pt) && pen.dash_pt.iter().all(is_length)) {
+            return None;
+        }
+        pen.width_pt = hundredths(pen.width_pt);
+        pen.dash_pt
+            .iter_mut()
+            .for_each(|length| *length = hundredths(*length));
+        // A dash of no length at all would never end: dashes that are too short to be seen make a solid line.
+        if pen.dash_pt.iter().sum::<f64>() <= 0.0 {
+            pen.dash_pt.clear();
+        }
+    }
+    let clip = item.clip.into_iter().flatten();
+    let is_sound = item.path.points().chain(clip).all(is_place);
+    is_sound.then_some(item)
 }
 
 fn hundredths_of(point: Point) -> Point {
@@ -151,7 +141,7 @@ pub fn hundredths(pt: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Color, Path};
+    use crate::figure::{Color, Path, Pen};
 
     fn page(items: Vec<Item>) -> Scene {
         Scene {

@@ -48,10 +48,8 @@ pub(super) struct Part {
 
 /// What a name is without saying whose number it is.
 fn bare(name: &str) -> &str {
-    let measured = name.strip_prefix(MEASURED);
-    measured
-        .or_else(|| name.strip_prefix(PREDICTED))
-        .unwrap_or(name)
+    let parts = [MEASURED, PREDICTED].map(|word| name.strip_prefix(word));
+    parts.into_iter().flatten().next().unwrap_or(name)
 }
 
 /// The quantities of a sweep in the order of its columns: all of them, or those that are asked for.
@@ -105,10 +103,8 @@ fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
 /// The column of the standard errors of `name`: measured_precession_uncertainty_rad_per_s of measured_precession_rad_per_s.
 fn uncertainty_of(table: &Table, name: &str) -> Option<String> {
     let of_name = |other: &&String| {
-        let Some((begin, unit)) = other.split_once(UNCERTAINTY) else {
-            return false;
-        };
-        name.starts_with(begin) && name.ends_with(unit)
+        let parts = other.split_once(UNCERTAINTY);
+        parts.is_some_and(|(begin, unit)| name.starts_with(begin) && name.ends_with(unit))
     };
     table.names().iter().find(of_name).cloned()
 }
