@@ -10,7 +10,8 @@ pub mod sweep;
 pub mod verify;
 pub mod writeup;
 
-use crate::scenario::ScenarioFile;
+use crate::scenario::{Document, Scenario, ScenarioFile};
+use toml::Value;
 
 /// `file` without its version, and without what is about the scenario as it stands alone, or about a screen.
 fn alone(file: ScenarioFile) -> ScenarioFile {
@@ -20,4 +21,14 @@ fn alone(file: ScenarioFile) -> ScenarioFile {
         view: None,
         ..file
     }
+}
+
+fn set(document: &mut Document, key: &str, value: Value) -> Result<(), String> {
+    let written = document.set_value(key, value);
+    written.map_err(|problem| problem.to_string())
+}
+
+fn checked(document: &Document) -> Result<Scenario, String> {
+    let scenario = document.scenario();
+    scenario.map_err(|problems| problems.in_one_line())
 }

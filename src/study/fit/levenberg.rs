@@ -27,11 +27,8 @@ pub enum Stop {
     Interrupted,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    pub from: f64,
-    pub to: f64,
-}
+/// The least and the greatest value of a parameter.
+pub type Bounds = (f64, f64);
 
 /// Where a search has ended.
 #[derive(Clone, Debug)]
@@ -111,7 +108,7 @@ fn held(p: &[f64], bounds: &[Bounds], slopes: &DMatrix<f64>, r: &DVector<f64>) -
     let pull = slopes.tr_mul(r); // upwards where it is positive
     let is_held = |index: usize| {
         let (at, pull) = (p[index], pull[index]);
-        at <= bounds[index].from && pull < 0.0 || at >= bounds[index].to && pull > 0.0
+        at <= bounds[index].0 && pull < 0.0 || at >= bounds[index].1 && pull > 0.0
     };
     (0..p.len()).map(is_held).collect()
 }
@@ -119,7 +116,7 @@ fn held(p: &[f64], bounds: &[Bounds], slopes: &DMatrix<f64>, r: &DVector<f64>) -
 fn projected(p: &[f64], step: &DVector<f64>, bounds: &[Bounds]) -> Vec<f64> {
     let moved = p.iter().zip(step.iter()).zip(bounds);
     moved
-        .map(|((p, step), bounds)| (p + step).clamp(bounds.from, bounds.to))
+        .map(|((p, step), (from, to))| (p + step).clamp(*from, *to))
         .collect()
 }
 
@@ -248,10 +245,7 @@ mod tests {
         fn tell(&self, _: u64, _: f64) {}
     }
 
-    const NONE: Bounds = Bounds {
-        from: f64::NEG_INFINITY,
-        to: f64::INFINITY,
-    };
+    const NONE: Bounds = (f64::NEG_INFINITY, f64::INFINITY);
 
     #[test]
     fn a_bent_valley_is_followed_to_its_end() {
@@ -262,13 +256,7 @@ mod tests {
 
     #[test]
     fn a_bound_is_held_and_the_rest_is_found_on_it() {
-        let bounds = [
-            NONE,
-            Bounds {
-                from: -1.0,
-                to: 0.5,
-            },
-        ];
+        let bounds = [NONE, (-1.0, 0.5)];
         let minimum = search(&Valley, &[-1.2, 0.0], &bounds).unwrap();
         assert_eq!(
             (minimum.failure, &minimum.held[..]),

@@ -12,7 +12,7 @@ use crate::measured::{
 use crate::run::Clock;
 use crate::scenario::dotted::overlap;
 use crate::scenario::{Document, Problem, Problems, Scenario};
-use crate::study::alone;
+use crate::study::{alone, checked, set};
 use crate::text::number::shortest;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -94,7 +94,7 @@ impl Model {
         match i64::try_from(steps) {
             Ok(steps) if last_s > Clock::end_s(&scenario) => {
                 let mut document = self.document(p)?;
-                write(&mut document, "motion.steps", Value::Integer(steps))?;
+                set(&mut document, "motion.steps", Value::Integer(steps))?;
                 checked(&document)
             }
             _ => Ok(scenario),
@@ -105,7 +105,7 @@ impl Model {
         let mut document = self.base.clone();
         for (free, &value) in self.free.iter().zip(p) {
             for key in &free.keys {
-                write(&mut document, key, Value::Float(value))?;
+                set(&mut document, key, Value::Float(value))?;
             }
         }
         Ok(document)
@@ -245,19 +245,9 @@ fn with_settings(
             (Value::Float(number), Some((_, by)), Some(sigma)) => Value::Float(number + by * sigma),
             _ => value.clone(),
         };
-        write(&mut document, &setting.key, value)?;
+        set(&mut document, &setting.key, value)?;
     }
     Ok(document)
-}
-
-fn write(document: &mut Document, key: &str, value: Value) -> Result<(), String> {
-    let written = document.set_value(key, value);
-    written.map_err(|problem| problem.to_string())
-}
-
-fn checked(document: &Document) -> Result<Scenario, String> {
-    let scenario = document.scenario();
-    scenario.map_err(|problems| problems.in_one_line())
 }
 
 /// Refuses data whose last row the run of `scenario` takes too many steps to come to.

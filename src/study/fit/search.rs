@@ -88,10 +88,7 @@ pub fn fit(model: &Model, go_on: GoOn<'_>, tell: &(dyn Fn(u64, f64) + Sync)) -> 
         return Err(NoFit::TooFew { data, keys });
     }
     let mut p: Vec<f64> = model.free.iter().map(|free| free.start).collect();
-    let bounds = model.free.iter().map(|free| Bounds {
-        from: free.from,
-        to: free.to,
-    });
+    let bounds = model.free.iter().map(|free| (free.from, free.to));
     let bounds: Vec<Bounds> = bounds.collect();
     let mut weights = Weights::at(model, &p, go_on)?;
     let changes = model.free.iter().map(|free| CHANGE * free.scale);

@@ -12,7 +12,7 @@ use crate::scenario::document::Document;
 use crate::scenario::dotted::{find, join, number_of_push};
 use crate::scenario::rescale::{MOST_STEPS, accumulates};
 use crate::scenario::{Problem, Problems, Scenario};
-use crate::study::alone;
+use crate::study::{alone, checked, set};
 use crate::text::number::{decimal, shortest};
 use serde::Serialize;
 use std::path::Path;
@@ -230,14 +230,10 @@ impl Sweep {
             if axis.key == TIME_STEP {
                 time_step_s = value.as_float();
             } else {
-                document
-                    .set_value(&axis.key, value.clone())
-                    .map_err(|problem| problem.to_string())?;
+                set(&mut document, &axis.key, value.clone())?;
             }
         }
-        let scenario = document
-            .scenario()
-            .map_err(|problems| problems.in_one_line())?;
+        let scenario = checked(&document)?;
         match time_step_s {
             Some(time_step_s) => at_time_step(&scenario, time_step_s),
             None => Ok(scenario),
