@@ -56,23 +56,20 @@ impl Compared {
     /// `series` against the `model`, the values of a run at the first points of each curve, up to `now_s`. `traced` is the
     /// traced point, body frame, m.
     pub fn new(series: &Series, model: &[Vec<f64>], now_s: f64, traced: &Vector3<f64>) -> Self {
-        let (mut sum, mut sums) = (Sum::default(), Vec::new());
-        let curves = series.curves.iter().zip(model);
-        let curves = curves.map(|(curve, model)| {
+        let mut compared = Self {
+            places: places(series, traced),
+            ..Self::default()
+        };
+        for (curve, model) in series.curves.iter().zip(model) {
             let reached = reached(series, curve, now_s).min(model.len());
             let shown = shown(series, curve, &model[..reached]);
-            sum.take(curve.quantity, &shown);
+            compared.sum.take(curve.quantity, &shown);
             let mut own = Sum::default();
             own.take(curve.quantity, &shown);
-            sums.push(own);
-            shown
-        });
-        Self {
-            curves: curves.collect(),
-            places: places(series, traced),
-            sum,
-            sums,
+            compared.sums.push(own);
+            compared.curves.push(shown);
         }
+        compared
     }
 }
 
@@ -124,15 +121,16 @@ impl Sum {
             let sigmas = residual / sigma;
             self.weighed += 1;
             self.chi_squared += sigmas * sigmas;
+            let own = Largest {
+                sigmas: sigmas.abs(),
+                quantity,
+                time_s: point.time_s,
+            };
             if self
                 .largest
-                .is_none_or(|largest| sigmas.abs() > largest.sigmas)
+                .is_none_or(|largest| own.sigmas > largest.sigmas)
             {
-                self.largest = Some(Largest {
-                    sigmas: sigmas.abs(),
-                    quantity,
-                    time_s: point.time_s,
-                });
+                self.largest = Some(own);
             }
         }
         if count > 0 {

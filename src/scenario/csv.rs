@@ -101,9 +101,8 @@ impl Csv {
                 break;
             }
             let line = self.line_of_names + reader.position().line() - 2;
-            let all = record.iter().enumerate();
-            let filled = all.filter(|(_, cell)| !cell.is_empty()).last();
-            let filled = filled.map_or(0, |(last, _)| last + 1);
+            let mut ends = (1..=record.len()).rev();
+            let filled = ends.find(|&end| !record[end - 1].is_empty()).unwrap_or(0);
             match self.names.len() {
                 0 => {
                     let names = record.iter().take(filled.max(1));

@@ -122,13 +122,9 @@ impl Body {
 
     /// The names of the points that have one, in the order in which the body lists them.
     pub fn names(&self) -> Vec<&str> {
-        let mut names: Vec<_> = self
-            .names
-            .iter()
-            .map(|(name, index)| (*index, name.as_str()))
-            .collect();
-        names.sort_unstable();
-        names.into_iter().map(|(_, name)| name).collect()
+        let mut names: Vec<&str> = self.names.keys().map(String::as_str).collect();
+        names.sort_by_cached_key(|name| self.names[*name]);
+        names
     }
 
     pub(super) fn find(&self, key: &str, name: &str) -> Result<usize, Vec<Problem>> {

@@ -57,7 +57,7 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Problems> {
 
 fn few_enough(file: &BodyFile) -> Result<(), Vec<Problem>> {
     let count = file.rim_points() + file.point.len() + OF_PART * file.part.len();
-    if count <= usize::try_from(MOST_POINTS).unwrap_or(usize::MAX) {
+    if count as i64 <= MOST_POINTS {
         return Ok(());
     }
     let parts = file.part.first();

@@ -19,19 +19,15 @@ pub fn at_time_step(file: &ScenarioFile, time_step_s: f64) -> Result<ScenarioFil
     let duration_s = file.motion.steps as f64 * written_for_s;
     if time_step_s > duration_s * (1.0 + 1e-9) {
         let value = toml::Value::Float(time_step_s);
-        let rule = format!(
-            "must not be longer than the whole run, {} s",
-            decimal(duration_s)
-        );
+        let length = decimal(duration_s);
+        let rule = format!("must not be longer than the whole run, {length} s");
         return Err(Problem::with_value("motion.time_step_s", &value, rule));
     }
     let mut other = file.clone();
-    let steps = (file.motion.steps as f64 * written_for_s / time_step_s).round();
+    let steps = (duration_s / time_step_s).round();
     if steps > MOST_STEPS {
-        return Err(Problem::at(
-            "motion.steps",
-            format!("would be {steps:e}: too many"),
-        ));
+        let rule = format!("would be {steps:e}: too many");
+        return Err(Problem::at("motion.steps", rule));
     }
     other.motion.steps = (steps as u64).max(1);
     other.motion.time_step_s = time_step_s;
@@ -50,11 +46,8 @@ pub fn can_be_rescaled(file: &ScenarioFile) -> bool {
 /// Whether a push of `scenario` accumulates step by step: at another time step it is another force.
 pub fn accumulates(scenario: &Scenario) -> bool {
     let edited = scenario.edits.iter().flat_map(Edit::pushes_set);
-    scenario
-        .pushes
-        .iter()
-        .chain(edited)
-        .any(|push| push.accumulates)
+    let mut pushes = scenario.pushes.iter().chain(edited);
+    pushes.any(|push| push.accumulates)
 }
 
 /// The most steps a run may be given by a length in seconds: whole numbers are exact up to here.

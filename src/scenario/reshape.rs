@@ -1,7 +1,6 @@
 //! A part that is to have another shape, or a direction that its file does not give: its table gets the dimensions that the
 //! new value asks for, as near to the old ones as there are.
 
-use super::dotted::find;
 use super::file::PartFile;
 use super::kind::vector;
 use super::solids::{self, DIMENSIONS, has_dimension};
@@ -11,39 +10,33 @@ use toml::{Table, Value};
 
 /// Prepares the file's `table` for a new `value` at `key`, which may belong to a part.
 pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
-    let mut names = key.split('.').skip(2);
-    let (Some(index), Some(name)) = (names.next(), names.next()) else {
+    let mut names = key.split('.');
+    let (Some("body"), Some("part")) = (names.next(), names.next()) else {
         return;
     };
-    let at = format!("body.part.{index}");
-    let (true, Some(Value::Table(written))) = (key.starts_with(&at), find(table, &at)) else {
+    let index = names.next().and_then(|index| index.parse::<usize>().ok());
+    let parts = table.get_mut("body").and_then(|body| body.get_mut("part"));
+    let part = parts
+        .zip(index)
+        .and_then(|(parts, index)| parts.get_mut(index));
+    let (Some(name), Some(Value::Table(part))) = (names.next(), part) else {
         return;
     };
-    let told = match (name, value.as_str()) {
-        ("axis", _) if names.next().is_some() && !written.contains_key("axis") => {
-            vec![("axis", vector(&Vector3::z()))]
+    match (name, value.as_str()) {
+        ("axis", _) if names.next().is_some() && !part.contains_key("axis") => {
+            part.insert("axis".to_owned(), vector(&Vector3::z()));
         }
         ("shape", Some(shape)) => {
-            let old: Result<PartFile, _> = written.clone().try_into();
-            old.map_or(Vec::new(), |old| dimensions(&old, shape))
+            let old: Result<PartFile, _> = part.clone().try_into();
+            let told = old.map_or(Vec::new(), |old| dimensions(&old, shape));
+            if !told.is_empty() {
+                part.retain(|key, _| !DIMENSIONS.contains(&key));
+            }
+            let told = told.into_iter();
+            part.extend(told.map(|(name, value)| (name.to_owned(), value)));
         }
-        _ => return,
-    };
-    let part = table.get_mut("body").and_then(|body| body.get_mut("part"));
-    let part = index
-        .parse::<usize>()
-        .ok()
-        .and_then(|index| part?.get_mut(index));
-    let Some(Value::Table(part)) = part else {
-        return;
-    };
-    if name == "shape" && !told.is_empty() {
-        part.retain(|key, _| !DIMENSIONS.contains(&key));
+        _ => {}
     }
-    part.extend(
-        told.into_iter()
-            .map(|(name, value)| (name.to_owned(), value)),
-    );
 }
 
 /// The dimensions that a part of the shape `shape` has in the place of `old`; none where there is no such shape, or no such

@@ -102,25 +102,18 @@ pub(super) fn part(file: &PartFile) -> Result<Part, Vec<Problem>> {
 /// The dimensions that are missing, and those that a solid of this form has not.
 fn wrong_dimensions(form: &Form, file: &PartFile) -> Vec<Problem> {
     let written = Table::try_from(file).unwrap_or_default();
-    let all = || [form.needs, form.may_have].concat().join(", ");
-    let wrong = |name: &'static str| {
-        let (needs, may) = (form.needs.contains(&name), form.may_have.contains(&name));
-        match written.get(name) {
-            None if needs => Some(Problem::at(
-                name,
-                format!("is missing: a part of shape {} has {}", form.name, all()),
-            )),
-            Some(value) if !needs && !may => Some(Problem::with_value(
-                name,
-                value,
-                format!(
-                    "does not go with shape {}, which has {}: leave it out",
-                    form.name,
-                    all()
-                ),
-            )),
-            _ => None,
+    let all = [form.needs, form.may_have].concat().join(", ");
+    let wrong = |name: &'static str| match (written.get(name), has_dimension(form.name, name)) {
+        (None, _) if form.needs.contains(&name) => {
+            let rule = format!("is missing: a part of shape {} has {all}", form.name);
+            Some(Problem::at(name, rule))
         }
+        (Some(value), false) => {
+            let shape = form.name;
+            let rule = format!("does not go with shape {shape}, which has {all}: leave it out");
+            Some(Problem::with_value(name, value, rule))
+        }
+        _ => None,
     };
     DIMENSIONS.into_iter().filter_map(wrong).collect()
 }

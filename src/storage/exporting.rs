@@ -41,6 +41,7 @@ pub struct Written {
     pub not_finite: Option<NotFinite>,
 }
 
+#[derive(Default)]
 struct Shared {
     step: AtomicU64,
     steps: u64,
@@ -79,11 +80,8 @@ impl Exporting {
         write: impl FnOnce(&Shared) -> Result<Written, String> + Send + 'static,
     ) -> io::Result<Self> {
         let shared = Arc::new(Shared {
-            step: AtomicU64::new(0),
             steps,
-            is_cancelled: AtomicBool::new(false),
-            has_ended: AtomicBool::new(false),
-            is_cut_off: AtomicBool::new(false),
+            ..Shared::default()
         });
         let (at_work, at_end) = (Arc::clone(&shared), Arc::clone(&shared));
         let work = move || {
@@ -223,11 +221,8 @@ mod tests {
     }
 
     fn wait(exporting: &Exporting) {
-        while !exporting
-            .worker
-            .as_ref()
-            .is_some_and(JoinHandle::is_finished)
-        {
+        let worker = exporting.worker.as_ref().unwrap();
+        while !worker.is_finished() {
             thread::yield_now();
         }
     }

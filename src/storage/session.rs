@@ -63,8 +63,8 @@ pub struct Session {
     _at_end: Registered,
 }
 
-/// Each asks the writer to save at once, and to answer.
-type Flushes = Sender<Sender<()>>;
+/// Each asks the writer to save at once and to answer, and tells whether it is to end then.
+type Flushes = Sender<(Sender<()>, bool)>;
 
 /// The content to save, and what has been saved.
 #[derive(Debug, Default)]
@@ -74,8 +74,6 @@ struct State {
     is_news: bool,
     kept: Option<Content>,
     trouble: Option<String>,
-    /// Whether the writer is to end after its next save.
-    ends: bool,
 }
 
 /// The result of looking for a session to resume.
@@ -233,7 +231,7 @@ impl Session {
             flushes,
             writer: Some(writer),
             _at_end: at_exit::hook(move |release| {
-                flush(&at_end, release.patience());
+                flush(&at_end, release.patience(), false);
             }),
         })
     }
@@ -255,7 +253,7 @@ impl Session {
     /// Saves at once, and gives up after 0.4 s. Returns whether saving was attempted in that time;
     /// [`trouble`](Self::trouble) tells whether it failed.
     pub fn flush(&self) -> bool {
-        flush(&self.flushes, PATIENCE)
+        flush(&self.flushes, PATIENCE, false)
     }
 
     /// Why the last attempt to save failed; `None` if it succeeded. The thread tries again every half second.
@@ -279,8 +277,7 @@ impl Session {
         let Some(writer) = self.writer.take() else {
             return true;
         };
-        locked(&self.state).ends = true;
-        let is_in_time = flush(&self.flushes, patience);
+        let is_in_time = flush(&self.flushes, patience, true);
         if is_in_time {
             let _ = writer.join();
         }
@@ -299,26 +296,29 @@ fn locked(state: &Mutex<State>) -> MutexGuard<'_, State> {
 }
 
 /// Makes the writer save, and waits for it at most `patience`. Returns whether it tried in that time.
-fn flush(flushes: &Flushes, patience: Duration) -> bool {
+fn flush(flushes: &Flushes, patience: Duration, ends: bool) -> bool {
     let (done, is_done) = channel();
-    let _ = flushes.send(done);
+    let _ = flushes.send((done, ends));
     is_done.recv_timeout(patience).is_ok()
 }
 
 /// The body of the writer. It returns when the session is closed; one that was never saved leaves nothing.
-fn keep_writing(slot: Slot, state: &Mutex<State>, flushes: &Receiver<Sender<()>>) {
+fn keep_writing(slot: Slot, state: &Mutex<State>, flushes: &Receiver<(Sender<()>, bool)>) {
     loop {
         let flushed = flushes.recv_timeout(PERIOD);
         // A flush saves even what has not changed, so that the session left last has the newest file.
         if flushed.is_ok() || locked(state).is_news {
             save(&slot, state);
         }
-        let ends = locked(state).ends;
-        if let Ok(done) = &flushed {
-            let _ = done.send(());
-        }
-        if ends || matches!(flushed, Err(RecvTimeoutError::Disconnected)) {
-            break;
+        match flushed {
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break,
+            Ok((done, ends)) => {
+                let _ = done.send(());
+                if ends {
+                    break;
+                }
+            }
         }
     }
     if locked(state).kept.is_none() {

@@ -113,12 +113,9 @@ impl Unit {
 /// `name` with `word` before its unit: `tilt_deg` becomes `tilt_uncertainty_deg`. Of the parts of a vector, whose names end
 /// with a number, the unit stands before that.
 pub fn with_word(name: &str, word: &str) -> String {
-    let place = name
-        .rsplit_once('.')
-        .filter(|(_, place)| !place.is_empty() && place.bytes().all(|byte| byte.is_ascii_digit()));
-    let (name, place) = match place {
-        Some((name, place)) => (name, format!(".{place}")),
-        None => (name, String::new()),
+    let (name, place) = match name.rsplit_once('.') {
+        Some((name, place)) if place.parse::<usize>().is_ok() => (name, format!(".{place}")),
+        _ => (name, String::new()),
     };
     let end = Unit::of(name).map_or("", |unit| unit.end);
     let stem = &name[..name.len() - end.len()];

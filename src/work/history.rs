@@ -11,7 +11,7 @@ use toml::Table;
 
 /// The most earlier runs that are kept.
 const MOST_RUNS: usize = 200;
-/// The most points that all kept runs of such a body as the present one would have together, which limits the memory.
+/// The most points that the kept runs have together where each has those of the present one; it limits the memory.
 const MOST_POINTS: usize = 200_000;
 
 /// One run of the history: its name, its journal, and the step at which the user left it.

@@ -29,9 +29,8 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
     };
     let moved = pushes.iter().enumerate();
     let moved = moved.filter_map(|(index, push)| now.push(index, push).transpose());
-    let push = moved
-        .collect::<Result<_, _>>()
-        .map_err(|problem| Problems::one(origin, problem))?;
+    let push: Result<_, _> = moved.collect();
+    let push = push.map_err(|problem| Problems::one(origin, problem))?;
     let old = &scenario.file;
     let time_s = number::significant(state.time_s, 7);
     let speed = old.view.as_ref().and_then(|view| view.speed);
