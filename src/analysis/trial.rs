@@ -17,7 +17,7 @@ const BLOCK: u64 = 4096;
 const TIMED: u64 = 1000;
 
 /// How a run went beside the exact motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trial {
     pub steps: u64,
     /// Largest distance of the traced point from where it should have been, m.
@@ -84,7 +84,10 @@ impl Trial {
     ) -> Option<Self> {
         let mut simulation = Simulation::new(Arc::clone(scenario));
         let mut truth = Truth::new(Arc::clone(scenario));
-        let mut trial = Self::nothing();
+        let mut trial = Self {
+            fastest_s: f64::INFINITY,
+            ..Self::default()
+        };
         let stride = stride(scenario.steps);
         let scale = Some(scenario.start.momentum.norm())
             .filter(|&size| size > 0.0)
@@ -131,20 +134,6 @@ impl Trial {
         // What is left at the end may be too few.
         if steps >= TIMED || (steps > 0 && self.fastest_s.is_infinite()) {
             self.fastest_s = self.fastest_s.min(duration.as_secs_f64() / steps as f64);
-        }
-    }
-
-    fn nothing() -> Self {
-        Self {
-            steps: 0,
-            most_distance_m: 0.0,
-            end_distance_m: 0.0,
-            energy_drift: None,
-            spin_drift: 0.0,
-            lz_drift: 0.0,
-            stepping: Duration::ZERO,
-            fastest_s: f64::INFINITY,
-            broke: None,
         }
     }
 

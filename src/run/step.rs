@@ -72,11 +72,6 @@ impl Step {
         self.number
     }
 
-    /// The number of edits of time step, scheme or gravity before it.
-    pub fn segment(&self) -> u64 {
-        self.segment
-    }
-
     /// Gravity, scheme and time step with which it was taken (at the start: those of the first).
     pub fn motion(&self) -> &Motion {
         &self.motion
