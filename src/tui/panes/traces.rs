@@ -312,18 +312,18 @@ impl Traces<'_> {
         };
         if let (Some(ghost), Some((recording, curve))) = (self.ghost, self.recorded_before(content))
         {
-            let before = shared.columns(recording, curve, &ghost.marks().edits);
+            let before = shared.columns(recording, curve, &ghost.marks.edits);
             let before = without_bands(before);
             draw(&mut dots, &before, scale, Stroke::Dotted, Ink::Ghost);
         }
         if let (Some(pinned), Content::Curve(curve)) = (self.pinned, content) {
-            let kept = shared.columns(pinned.recording(), curve, &pinned.marks().edits);
+            let kept = shared.columns(&pinned.recording, curve, &pinned.marks.edits);
             let kept = without_bands(kept);
             let ink = Ink::Faint(Role::Pinned);
             draw(&mut dots, &kept, scale, Stroke::LongAndShort, ink);
         }
         if let (Some(overlay), Content::Curve(curve)) = (self.run.overlay(), content) {
-            let exact = without_bands(shared.columns(overlay.recording(), curve, &[]));
+            let exact = without_bands(shared.columns(&overlay.recording, curve, &[]));
             let ink = Ink::Faint(Role::Exact);
             draw(&mut dots, &exact, scale, Stroke::Dashed, ink);
         }

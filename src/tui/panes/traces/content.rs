@@ -92,7 +92,7 @@ impl Traces<'_> {
     pub(super) fn recorded_before(&self, content: Content) -> Option<(&Recording, Curve)> {
         let ghost = self.ghost?;
         match content {
-            Content::Curve(curve) => Some((ghost.recording(), curve)),
+            Content::Curve(curve) => Some((&ghost.recording, curve)),
             Content::Measured(index) => self.measured?.recorded_before(index),
         }
     }

@@ -2,8 +2,6 @@
 
 use super::Traces;
 use super::content::Content;
-use crate::observe::ghost::Ghost;
-use crate::observe::overlay::Overlay;
 use crate::observe::recording::{Curve, Extent, Recording};
 use crate::observe::scale::Scale;
 use crate::observe::strip::Strip;
@@ -62,8 +60,8 @@ impl Traces<'_> {
             Content::Curve(curve) => Some((recording, curve)),
             Content::Measured(_) => None,
         };
-        let exact = self.run.overlay().map(Overlay::recording);
-        let pinned = self.pinned.map(Ghost::recording);
+        let exact = self.run.overlay().map(|overlay| &overlay.recording);
+        let pinned = self.pinned.map(|ghost| &ghost.recording);
         let recordings = [
             self.recorded(content),
             self.recorded_before(content),
