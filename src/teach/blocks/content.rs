@@ -26,7 +26,7 @@ impl Reader<'_> {
     pub(super) fn content(&self, known: &[&str]) -> Found<Content> {
         // As many empty lines before it as there are lines before it in the file: every line has its number there.
         let text = "\n".repeat(self.line) + self.inside;
-        let document = Document::parse(self.origin, &text).map_err(|problems| problems.list)?;
+        let document = Document::parse(&self.origin, &text).map_err(|problems| problems.list)?;
         let mut content = Content {
             document,
             word: self.word.to_owned(),
@@ -57,13 +57,11 @@ impl Content {
             return;
         }
         let key = problem.key.clone();
-        let placed = self.document.placed(vec![problem]).list;
-        for mut problem in placed {
+        for mut problem in self.document.placed(vec![problem]).list {
             problem.key = format!("{}.{key}", self.word);
-            match problem.place {
-                Some(_) => self.problems.push(problem),
-                None => self.problems.push(on_line(self.line, problem)),
-            }
+            let line = || format!("line {}", self.line);
+            problem.place.get_or_insert_with(line);
+            self.problems.push(problem);
         }
     }
 
