@@ -192,6 +192,12 @@ impl fmt::Display for Table<'_> {
             write!(f, " {energy:>9} {spin:>9} {lz:>9}")?;
             writeln!(f, " {:>8}", fixed(row.ns_per_step, 0))?;
         }
+        self.legend(f)
+    }
+}
+
+impl Table<'_> {
+    fn legend(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let energy = match self.energy_unit {
             Some(unit) => format!("in units of {unit}"),
             None => format!("{NONE}: neither weight nor kinetic energy to measure it by"),
