@@ -117,13 +117,9 @@ pub(super) fn setup(
                 command,
                 line: Some(content.line_of(name)),
             }),
-            Err(problems) => {
-                for problem in problems {
-                    let key = join(name, &problem.key);
-                    let key = key.trim_end_matches('.').to_owned();
-                    content.refuse(Problem { key, ..problem });
-                }
-            }
+            Err(problems) => problems
+                .into_iter()
+                .for_each(|problem| content.refuse_in(name, problem)),
         }
     }
     if content.get("go_to").is_some() && content.get(RUN_UNTIL).is_some() {

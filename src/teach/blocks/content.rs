@@ -2,6 +2,7 @@
 
 use super::{Found, Reader, expression};
 use crate::lab::command::COMMANDS;
+use crate::scenario::dotted::join;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem};
 use crate::teach::structure::on_line;
@@ -63,6 +64,12 @@ impl Content {
             problem.place.get_or_insert_with(line);
             self.problems.push(problem);
         }
+    }
+
+    /// The same of a problem whose key is one inside of the key `outer`.
+    pub(super) fn refuse_in(&mut self, outer: &str, problem: Problem) {
+        let key = join(outer, &problem.key).trim_end_matches('.').to_owned();
+        self.refuse(Problem { key, ..problem });
     }
 
     pub(super) fn refuse_whole(&mut self, rule: &str) {
