@@ -12,33 +12,32 @@ const TOO_FAR_RAD: f64 = 1.0;
 impl Health {
     /// In one sentence: whether the numbers hold, what is wrong with them, and what would mend it.
     pub fn sentence(&self, advice: Option<&Advice>) -> String {
-        let health = self;
-        let Some(most) = health.most_distance_m else {
+        let Some(most) = self.most_distance_m else {
             return "Not held against the exact motion, which would take too long or leaves the range of numbers.".to_owned();
         };
-        if health.arm_m == 0.0 {
+        if self.arm_m == 0.0 {
             return "Nothing can be said: the traced point is the pivot, which stands still in every run.".to_owned();
         }
-        let is_exact = health.scheme.order.is_none() && most == 0.0;
+        let is_exact = self.scheme.order.is_none() && most == 0.0;
         let far = format!(
             "{} m ({} % of its arm)",
             short(most),
-            short(100.0 * most / health.arm_m)
+            short(100.0 * most / self.arm_m)
         );
-        let mend = advice.map_or(String::new(), |advice| how_to_mend(health, advice));
-        if health.point_holds() == Some(false) {
+        let mend = advice.map_or(String::new(), |advice| how_to_mend(self, advice));
+        if self.point_holds() == Some(false) {
             return format!(
                 "Do not believe this run: {}, and the traced point is up to {far} off the exact motion{mend}.",
-                cause(health)
+                cause(self)
             );
         }
-        if let Some(swing) = health.swing.filter(|swing| !swing.is_right()) {
+        if let Some(swing) = self.swing.filter(|swing| !swing.is_right()) {
             return format!(
                 "The traced point holds, and the nutation does not: the point has kept within {far} of the exact motion, but {swing}{}{mend}.",
-                cause_of_swing(health)
+                cause_of_swing(self)
             );
         }
-        let picture = picture(health);
+        let picture = picture(self);
         if is_exact {
             format!("The numbers hold: the run is the exact motion itself{picture}.")
         } else {
