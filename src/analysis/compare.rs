@@ -4,7 +4,7 @@ use super::Trial;
 use crate::cores;
 use crate::physics::SchemeInfo;
 use crate::run::EnergyUnit;
-use crate::run::resample::resampled;
+use crate::run::resampled;
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, exponent, fixed, shortest};
 use serde::{Serialize, Serializer};

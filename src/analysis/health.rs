@@ -11,7 +11,7 @@ use super::swings::Swing;
 use super::trial::Deviation;
 use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
-use crate::run::resample::resampled;
+use crate::run::resampled;
 use crate::run::{Clock, EnergyUnit, Simulation, Step};
 use crate::scenario::{Edit, Motion, Scenario, rescale};
 use crate::text::ladder::rung;

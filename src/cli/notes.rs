@@ -10,7 +10,7 @@ use crate::storage::session::{self, Listed};
 use crate::teach::class::KeptLessons;
 use crate::teach::clock::{self, Clock};
 use crate::teach::predictions::Place;
-use crate::teach::{Asked, Lesson, answers, reading};
+use crate::teach::{Asked, Lesson, handout, reading};
 use crate::text::printable::{printable, printable_lines};
 use crate::text::wrap::wrapped;
 use anyhow::bail;
@@ -47,7 +47,7 @@ pub(super) fn answers(args: &LessonArgs, name: &str) -> anyhow::Result<ExitCode>
     write(args, |interruption| {
         watched(interruption, |go_on| {
             let lab = new_lab(args.look)?;
-            answers::answers(&lesson, &place, lab, go_on)
+            handout::answers(&lesson, &place, lab, go_on)
                 .map_err(|problem| refused(&lesson, problem))
         })
     })

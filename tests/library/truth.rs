@@ -5,7 +5,7 @@ use crate::support::dice::Dice;
 use differential_equations::prelude::*;
 use gyrolab::physics::exact::Kind;
 use gyrolab::physics::{SchemeInfo, State};
-use gyrolab::run::resample::resampled;
+use gyrolab::run::resampled;
 use gyrolab::run::{Simulation, Truth};
 use gyrolab::scenario::file::{EditFile, PushFile};
 use gyrolab::scenario::{Document, Scenario};

@@ -8,7 +8,7 @@ use crate::analysis::at_end::readouts;
 use crate::analysis::readouts::{Readout, Value as Readable};
 use crate::export::comments::commented;
 use crate::run::Clock;
-use crate::run::resample::resampled;
+use crate::run::resampled;
 use crate::scenario::document::Document;
 use crate::scenario::dotted::{find, join, number_of_push};
 use crate::scenario::file::ScenarioFile;
