@@ -37,8 +37,8 @@ pub struct Between {
     /// One over the moment across the axle, 1/(kg m²).
     per_across: f64,
     equations: Equations,
-    is_first_order: bool,
-    is_exact: bool,
+    /// The order of the scheme; `None` of the exact motion.
+    order: Option<u32>,
     /// Whether the azimuth's way has to be followed in every time step.
     may_turn_far: bool,
     /// The greatest height of the axle, less the least, that the start leads to, where that counts as no swing.
@@ -78,34 +78,21 @@ impl Between {
             rates: [step.angular_velocity().norm(), axle_rate],
         };
         let (period_s, range) = swing_of_height(step, &top, load, &swing);
-        let hides_turn = 2.0 * motion.time_step_s >= period_s;
-        if hides_turn || !is_followed(motion.scheme, &equations) {
-            return None;
-        }
-        let rate_error = 0.5 * motion.time_step_s * pull.norm() * swing.level();
-        if motion.scheme.order == Some(1) && range * PI / period_s < BEYOND_ERROR * rate_error {
+        if !is_followed(motion.scheme, &equations, &swing, period_s, range) {
             return None;
         }
         let is_steady = range < (STEADY * swing.level().powi(2)).max(LEAST_SWING);
+        let confirmed_by = if is_steady { 1.0 } else { 1e-3 * range }.min(ROUNDING);
         let (climb, bend) = (swing.climb(), swing.bend(&pull));
         let starts_at_turn = !is_steady && climb.abs() <= AT_TURN * motion.time_step_s * bend.abs();
-        let is_rising = if starts_at_turn {
-            bend > 0.0
-        } else {
-            climb > 0.0
-        };
+        let is_rising = if starts_at_turn { bend } else { climb } > 0.0;
         Some(Self {
             per_across,
             equations,
             may_turn_far: axle_rate * motion.time_step_s > HIDES_RAD,
-            is_first_order: motion.scheme.order == Some(1),
-            is_exact: motion.scheme.order.is_none(),
+            order: motion.scheme.order,
             steady_swing: is_steady.then_some(range),
-            confirmed_by: if is_steady {
-                ROUNDING
-            } else {
-                (1e-3 * range).min(ROUNDING)
-            },
+            confirmed_by,
             start,
             now: start,
             missed: 0,
@@ -187,10 +174,10 @@ impl Between {
     /// What the error of a scheme may do to a single turning point, s. Where the scheme lets the tilt drift, highest points
     /// come late and lowest ones early, so that half nutations have another length than whole ones have halves.
     fn lag_s(&self, line: &StraightLine) -> f64 {
-        if line.between >= 3 || self.is_exact {
+        if line.between >= 3 || self.order.is_none() {
             return 0.0; // more of them show it
         }
-        if self.is_first_order {
+        if self.order == Some(1) {
             return 0.5 * self.equations.time_step_s;
         }
         if line.intervals.is_multiple_of(2) {
@@ -280,8 +267,20 @@ fn swing_of_height(
     (period_s, if range.is_finite() { range } else { 0.0 })
 }
 
-/// Whether the time step is short enough to follow, by the equations of motion, what `scheme` computes from row to row.
-fn is_followed(scheme: &SchemeInfo, equations: &Equations) -> bool {
+/// Whether the time step is short enough to follow, by the equations of motion, what `scheme` computes from row to row; the
+/// height swings in `period_s` by `range`, and as `swing` at first.
+fn is_followed(
+    scheme: &SchemeInfo,
+    equations: &Equations,
+    swing: &Swing,
+    period_s: f64,
+    range: f64,
+) -> bool {
+    let rate_error = 0.5 * equations.time_step_s * equations.pull.norm() * swing.level();
+    let is_lost = scheme.order == Some(1) && range * PI / period_s < BEYOND_ERROR * rate_error;
+    if is_lost || 2.0 * equations.time_step_s >= period_s {
+        return false;
+    }
     let [spin, axle_rate] = equations.rates.map(|rate| rate * equations.time_step_s);
     match (scheme.order, scheme.turns_exactly) {
         (None, _) => axle_rate < TOO_FAR_RAD,

@@ -4,7 +4,7 @@ use super::Trial;
 use crate::cores;
 use crate::physics::SchemeInfo;
 use crate::run::EnergyUnit;
-use crate::run::resample::resampled;
+use crate::run::resampled;
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, exponent, fixed, shortest};
 use serde::{Serialize, Serializer};
@@ -192,6 +192,12 @@ impl fmt::Display for Table<'_> {
             write!(f, " {energy:>9} {spin:>9} {lz:>9}")?;
             writeln!(f, " {:>8}", fixed(row.ns_per_step, 0))?;
         }
+        self.legend(f)
+    }
+}
+
+impl Table<'_> {
+    fn legend(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let energy = match self.energy_unit {
             Some(unit) => format!("in units of {unit}"),
             None => format!("{NONE}: neither weight nor kinetic energy to measure it by"),

@@ -11,7 +11,7 @@ use super::swings::Swing;
 use super::trial::Deviation;
 use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
-use crate::run::resample::resampled;
+use crate::run::resampled;
 use crate::run::{Clock, EnergyUnit, Simulation, Step};
 use crate::scenario::{Edit, Motion, Scenario, rescale};
 use crate::text::ladder::rung;
@@ -290,34 +290,26 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
         };
     }
     let better = better_scheme(scenario);
+    let with_better = |time_step_s, tried_s| Advice::Scheme {
+        name: better.name,
+        time_step_s,
+        tried_s,
+    };
     if rescale::accumulates(scenario) {
         // At another time step it would be another run.
         return if better != scheme && holds(own, better) {
-            Advice::Scheme {
-                name: better.name,
-                time_step_s: own,
-                tried_s: own,
-            }
+            with_better(own, own)
         } else {
             Advice::BoundToItsTimeStep
         };
     }
-    let mut tried_s = own;
-    for step in finer_time_steps(scenario) {
-        if holds(step, scheme) {
-            return Advice::TimeStep(step);
-        }
-        tried_s = step;
+    if let Some(step) = finer_time_steps(scenario).find(|&step| holds(step, scheme)) {
+        return Advice::TimeStep(step);
     }
+    let tried_s = finer_time_steps(scenario).last().unwrap_or(own);
     let mut steps = std::iter::once(own).chain(finer_time_steps(scenario));
-    match steps.find(|&step| better != scheme && holds(step, better)) {
-        Some(time_step_s) => Advice::Scheme {
-            name: better.name,
-            time_step_s,
-            tried_s,
-        },
-        None => Advice::Nothing,
-    }
+    let found = steps.find(|&step| better != scheme && holds(step, better));
+    found.map_or(Advice::Nothing, |step| with_better(step, tried_s))
 }
 
 /// The scheme that is tried where a time step is not to be mended.

@@ -67,9 +67,7 @@ impl Readouts {
     ) -> Self {
         let step = simulation.now();
         let state = step.after();
-        // Under friction neither rate lasts: there is no one number that a measurement could come near to.
-        let is_lasting = health.slowing.is_none();
-        Self {
+        let mut readouts = Self {
             title: step.scenario().file.title.clone(),
             scheme: step.motion().scheme.name,
             scheme_kind: simulation.remark(),
@@ -83,17 +81,24 @@ impl Readouts {
             advice: advice.copied(),
             theory: monitor.theory(state.time_s),
             extremes: monitor.extremes,
-            precession: is_lasting
-                .then(|| monitor.instruments.precession_rad_per_s())
-                .flatten(),
-            nutation: is_lasting
-                .then(|| monitor.instruments.nutation_period_s())
-                .flatten(),
-            tilt_swing: monitor.tilt_swing_deg(),
+            precession: None,
+            nutation: None,
+            tilt_swing: None,
             frozen: monitor.frozen,
             since: monitor.since,
             stepping: None,
+        };
+        readouts.read_measured(monitor);
+        readouts
+    }
+
+    fn read_measured(&mut self, monitor: &Monitor) {
+        // Under friction neither rate lasts: there is no one number that a measurement could come near to.
+        if self.health.slowing.is_none() {
+            self.precession = monitor.instruments.precession_rad_per_s();
+            self.nutation = monitor.instruments.nutation_period_s();
         }
+        self.tilt_swing = monitor.tilt_swing_deg();
     }
 
     /// Reads those of `source` off `simulation` again, which `monitor` has followed on; the others stay as they are, where
@@ -101,13 +106,7 @@ impl Readouts {
     pub fn read_again(&mut self, source: Source, simulation: &Simulation, monitor: &mut Monitor) {
         match source {
             Source::EveryStep => self.extremes = monitor.extremes,
-            Source::Measured => {
-                if self.health.slowing.is_none() {
-                    self.precession = monitor.instruments.precession_rad_per_s();
-                    self.nutation = monitor.instruments.nutation_period_s();
-                }
-                self.tilt_swing = monitor.tilt_swing_deg();
-            }
+            Source::Measured => self.read_measured(monitor),
             Source::Exact => {
                 let deviation = monitor.beside.deviation(simulation.state());
                 self.health.deviation = deviation;

@@ -17,7 +17,7 @@ const BLOCK: u64 = 4096;
 const TIMED: u64 = 1000;
 
 /// How a run went beside the exact motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trial {
     pub steps: u64,
     /// Largest distance of the traced point from where it should have been, m.
@@ -84,27 +84,22 @@ impl Trial {
     ) -> Option<Self> {
         let mut simulation = Simulation::new(Arc::clone(scenario));
         let mut truth = Truth::new(Arc::clone(scenario));
-        let mut trial = Self::nothing();
+        let mut trial = Self {
+            fastest_s: f64::INFINITY,
+            ..Self::default()
+        };
         let stride = stride(scenario.steps);
-        let scale = Some(scenario.start.momentum.norm())
-            .filter(|&size| size > 0.0)
-            .unwrap_or(1.0);
-        let mut next_look = 0;
+        let momentum = scenario.start.momentum.norm();
+        let scale = if momentum > 0.0 { momentum } else { 1.0 };
         let mut states = Vec::new();
         let mut timed = (0, Duration::ZERO);
         while simulation.step_number() < scenario.steps && trial.broke.is_none() {
-            if simulation.step_number() == next_look {
-                next_look = scenario.steps.min(next_look.saturating_add(stride));
-            }
+            let looks = simulation.step_number() / stride + 1;
+            let next_look = scenario.steps.min(looks.saturating_mul(stride));
             let next = next_look.min(simulation.step_number() + BLOCK);
             states.clear();
             let begin = Instant::now();
-            while simulation.step_number() < next && trial.broke.is_none() {
-                match simulation.step() {
-                    Ok(step) => states.push(*step.after()),
-                    Err(error) => trial.broke = Some(error),
-                }
-            }
+            trial.broke = take_steps(&mut simulation, next, &mut states).err();
             timed = (timed.0 + states.len() as u64, timed.1 + begin.elapsed());
             if timed.0 >= TIMED {
                 trial.time(timed);
@@ -116,9 +111,7 @@ impl Trial {
             if next == next_look || trial.broke.is_some() {
                 trial.read_off(simulation.now());
             }
-            if watch(simulation.step_number()).is_break() {
-                return None;
-            }
+            watch(simulation.step_number()).continue_value()?;
         }
         trial.steps = simulation.step_number();
         trial.time(timed);
@@ -131,20 +124,6 @@ impl Trial {
         // What is left at the end may be too few.
         if steps >= TIMED || (steps > 0 && self.fastest_s.is_infinite()) {
             self.fastest_s = self.fastest_s.min(duration.as_secs_f64() / steps as f64);
-        }
-    }
-
-    fn nothing() -> Self {
-        Self {
-            steps: 0,
-            most_distance_m: 0.0,
-            end_distance_m: 0.0,
-            energy_drift: None,
-            spin_drift: 0.0,
-            lz_drift: 0.0,
-            stepping: Duration::ZERO,
-            fastest_s: f64::INFINITY,
-            broke: None,
         }
     }
 
@@ -161,6 +140,14 @@ impl Trial {
         let drift = step.energy_drift().map(f64::abs);
         self.energy_drift = drift.map(|drift| drift.max(self.energy_drift.unwrap_or(0.0)));
     }
+}
+
+/// Steps up to the step `end`, and keeps the states on the way.
+fn take_steps(run: &mut Simulation, end: u64, states: &mut Vec<State>) -> Result<(), NotFinite> {
+    while run.step_number() < end {
+        states.push(*run.step()?.after());
+    }
+    Ok(())
 }
 
 /// The greater of two numbers; NaN, of a run that could not be followed, is kept.

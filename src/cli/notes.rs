@@ -10,7 +10,7 @@ use crate::storage::session::{self, Listed};
 use crate::teach::class::KeptLessons;
 use crate::teach::clock::{self, Clock};
 use crate::teach::predictions::Place;
-use crate::teach::{Asked, Lesson, answers, reading};
+use crate::teach::{Asked, Lesson, handout, reading};
 use crate::text::printable::{printable, printable_lines};
 use crate::text::wrap::wrapped;
 use anyhow::{bail, ensure};
@@ -42,7 +42,7 @@ pub(super) fn answers(args: &LessonArgs, name: &str) -> anyhow::Result<ExitCode>
         bail!("no session holds a prediction for {name}: gyrolab lesson {name} opens it");
     };
     write(args, |go_on| {
-        answers::answers(&lesson, &place, new_lab(args.look)?, go_on)
+        handout::answers(&lesson, &place, new_lab(args.look)?, go_on)
             .map_err(|problem| refused(&lesson, problem))
     })
 }

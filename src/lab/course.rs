@@ -238,7 +238,7 @@ mod tests {
             (Place::Start, 0),
         ] {
             player.go_to(place).unwrap();
-            player.playback.finish();
+            player.playback.finish_part(|| false);
             assert_eq!(player.playback.step_number(), step, "{place:?}");
         }
         assert!(player.step_at(-1.0).is_err() && player.step_at(f64::NAN).is_err());
@@ -256,7 +256,7 @@ mod tests {
         let later = Expression::condition("steps >= 9").unwrap();
         let done = player.run_until(&later).unwrap();
         assert_eq!(done.under_way, Some(UnderWay::Playing));
-        assert_eq!(player.playback.finish(), Some(Halt::Fulfilled));
+        assert_eq!(player.playback.finish_part(|| false), Some(Halt::Fulfilled));
         assert_eq!(player.playback.step_number(), 9);
     }
 

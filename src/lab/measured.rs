@@ -190,7 +190,7 @@ impl Player {
         if let Some(beside) = &mut self.measured {
             // What the ghost shows is kept beside it.
             let is_ghost =
-                |ghost: &Ghost| Arc::ptr_eq(ghost.scenario(), self.playback.run().scenario());
+                |ghost: &Ghost| Arc::ptr_eq(&ghost.scenario, self.playback.run().scenario());
             beside.begin_again(scenario, self.ghost.as_ref().is_some_and(is_ghost));
         }
     }

@@ -292,8 +292,8 @@ impl Player {
     pub(super) fn reference(&self) -> Option<Reference> {
         self.pinned.as_ref().map(|pinned| match pinned {
             Pinned::Present => Reference::Present,
-            Pinned::Before(run) => Reference::Run(Arc::clone(run.scenario()), run.furthest()),
-            Pinned::Returning(run) => Reference::Run(Arc::clone(run.scenario()), run.furthest()),
+            Pinned::Before(run) => Reference::Run(Arc::clone(&run.scenario), run.furthest),
+            Pinned::Returning(run) => Reference::Run(Arc::clone(&run.scenario), run.furthest),
         })
     }
 

@@ -116,11 +116,6 @@ impl Camera {
     pub fn project(&self, point: &Vector3<f64>) -> (f64, f64) {
         self.view().project(point)
     }
-
-    /// How much farther from the eye than the pivot `point` (world frame, m) is, m.
-    pub fn depth(&self, point: &Vector3<f64>) -> f64 {
-        self.view().depth(point)
-    }
 }
 
 /// A camera whose angles are known by their sines and cosines.
@@ -144,6 +139,7 @@ impl View {
         Vector3::new(self.cos_yaw, self.sin_yaw, 0.0)
     }
 
+    /// How much farther from the eye than the pivot `point` (world frame, m) is, m.
     pub fn depth(&self, point: &Vector3<f64>) -> f64 {
         let depth = self.cos_yaw * point.y - self.sin_yaw * point.x;
         self.cos_pitch * depth - self.sin_pitch * point.z
@@ -171,7 +167,7 @@ mod tests {
             pitch_deg: 0.0,
         };
         assert_eq!(side.project(&Vector3::new(1.0, 2.0, 3.0)), (1.0, 3.0));
-        assert_eq!(side.depth(&Vector3::new(1.0, 2.0, 3.0)), 2.0);
+        assert_eq!(side.view().depth(&Vector3::new(1.0, 2.0, 3.0)), 2.0);
     }
 
     #[test]
@@ -179,7 +175,7 @@ mod tests {
         let camera = Camera::default();
         let at = Vector3::new(0.3, -1.2, 0.7);
         let (right, up) = camera.project(&at);
-        let length = right.hypot(up).hypot(camera.depth(&at));
+        let length = right.hypot(up).hypot(camera.view().depth(&at));
         assert!((length - at.norm()).abs() < 1e-12);
     }
 

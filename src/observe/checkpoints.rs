@@ -22,8 +22,8 @@ pub struct Checkpoint {
 }
 
 pub struct Checkpoints {
-    start: Checkpoint,
-    later: Vec<Checkpoint>,
+    /// In order; the first is that of the start.
+    stored: Vec<Checkpoint>,
     spacing: u64,
     most: usize,
 }
@@ -47,8 +47,7 @@ impl Checkpoints {
     pub fn new(simulation: &Simulation, monitor: &Monitor) -> Self {
         let points = simulation.scenario().body.mechanics.points().len();
         Self {
-            start: Checkpoint::of(simulation, monitor),
-            later: Vec::new(),
+            stored: vec![Checkpoint::of(simulation, monitor)],
             spacing: SPACING,
             most: (MEMORY / (PER_CHECKPOINT + PER_POINT * points)).max(FEWEST),
         }
@@ -63,27 +62,24 @@ impl Checkpoints {
     }
 
     fn keep(&mut self, simulation: &Simulation, monitor: &Monitor) {
-        let last = self.later.last().unwrap_or(&self.start);
-        if last.step() >= simulation.step_number() {
+        if self.before(u64::MAX).step() >= simulation.step_number() {
             return; // this step is stored already
         }
-        self.later.push(Checkpoint::of(simulation, monitor));
-        if self.later.len() > self.most {
+        self.stored.push(Checkpoint::of(simulation, monitor));
+        if self.stored.len() > self.most + 1 {
             self.spacing *= 2;
             let spacing = self.spacing;
             let stays = |stored: &Checkpoint| stored.step().is_multiple_of(spacing);
-            self.later.retain(stays);
+            self.stored.retain(stays);
         }
     }
 
     pub fn before(&self, step: u64) -> &Checkpoint {
-        let earlier = self.later.partition_point(|stored| stored.step() <= step);
-        earlier
-            .checked_sub(1)
-            .map_or(&self.start, |last| &self.later[last])
+        let begun = self.stored.partition_point(|stored| stored.step() <= step);
+        &self.stored[begun.saturating_sub(1)]
     }
 
     pub fn cut_back(&mut self, step: u64) {
-        self.later.retain(|stored| stored.step() <= step);
+        self.stored.retain(|stored| stored.step() <= step);
     }
 }

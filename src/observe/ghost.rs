@@ -11,11 +11,11 @@ use std::thread;
 
 #[derive(Clone, Debug)]
 pub struct Ghost {
-    recording: Recording,
-    path: Path,
-    marks: Marks,
-    scenario: Arc<Scenario>,
-    furthest: u64,
+    pub recording: Recording,
+    pub path: Path,
+    pub marks: Marks,
+    pub scenario: Arc<Scenario>,
+    pub furthest: u64,
 }
 
 impl Ghost {
@@ -31,35 +31,15 @@ impl Ghost {
         }
     }
 
-    pub fn scenario(&self) -> &Arc<Scenario> {
-        &self.scenario
-    }
-
-    pub fn furthest(&self) -> u64 {
-        self.furthest
-    }
-
     pub fn end_s(&self) -> f64 {
         self.recording.whole().map_or(0.0, |whole| whole.end_s)
-    }
-
-    pub fn recording(&self) -> &Recording {
-        &self.recording
-    }
-
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    pub fn marks(&self) -> &Marks {
-        &self.marks
     }
 }
 
 /// The pictures of a run that is played again in the background. Dropping it ends that.
 pub struct GhostToBe {
-    scenario: Arc<Scenario>,
-    furthest: u64,
+    pub scenario: Arc<Scenario>,
+    pub furthest: u64,
     made: Arc<Mutex<Option<Ghost>>>,
 }
 
@@ -89,14 +69,6 @@ impl GhostToBe {
             furthest,
             made,
         }
-    }
-
-    pub fn scenario(&self) -> &Arc<Scenario> {
-        &self.scenario
-    }
-
-    pub fn furthest(&self) -> u64 {
-        self.furthest
     }
 
     pub fn take(&self) -> Option<Ghost> {

@@ -6,13 +6,13 @@
 
 mod pictures;
 
-use super::checkpoints::Checkpoints;
+use super::checkpoints::{Checkpoint, Checkpoints};
 use super::overlay::Overlay;
 use super::path::Path;
 use super::recording::{Moment, Recording};
 use crate::analysis::cost::{integration_rad_per_s, is_affordable};
 use crate::analysis::readouts::Source;
-use crate::analysis::{Health, Instruments, Monitor, Readouts, Theory};
+use crate::analysis::{Health, Monitor, Readouts};
 use crate::physics::{State, Workings};
 use crate::run::{NotFinite, Simulation};
 use crate::scenario::Scenario;
@@ -44,12 +44,6 @@ pub struct LiveRun {
     keeps_workings: bool,
     /// The workings that were asked for last without having been kept, and of which step they are.
     explained: Option<(u64, Arc<Workings>)>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Played {
-    pub stepped_s: f64,
-    pub end: PlayEnd,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,42 +119,45 @@ impl LiveRun {
             self.set_overlay(self.shows_exact);
         }
         let latest = self.pictures.go_to(step, here);
-        self.stand_before(latest, here);
+        self.stand_before(latest);
         self.pictures.keep(self.simulation.step_number());
     }
 
     /// A copy of the run at the last stored state that is at `step` or before, to step through what it has been through.
     pub(super) fn again_before(&self, step: u64) -> Simulation {
-        let stored = &self.checkpoints.before(step).simulation;
-        let here = self.simulation.step_number();
-        if (stored.step_number()..=step).contains(&here) && !self.simulation.has_ended() {
+        let Some(stored) = self.stored_before(step) else {
             return self.simulation.clone();
-        }
-        let mut again = stored.clone();
+        };
+        let mut again = stored.simulation.clone();
         if !Arc::ptr_eq(again.scenario(), self.scenario()) {
             again.go_on_in(Arc::clone(self.scenario()));
         }
         again
     }
 
-    /// Puts the run at the latest stored state that is not later than `latest`: a checkpoint, or the present one, which is
-    /// at step `here`.
-    fn stand_before(&mut self, latest: u64, here: u64) {
-        let stored = self.checkpoints.before(latest);
-        let stored_at = stored.simulation.step_number();
-        if (stored_at..=latest).contains(&here) && !self.simulation.has_ended() {
+    /// The last checkpoint that is at `step` or before; `None` where the present state is the later one.
+    fn stored_before(&self, step: u64) -> Option<&Checkpoint> {
+        let stored = self.checkpoints.before(step);
+        let here = self.simulation.step_number();
+        let is_nearer = (stored.simulation.step_number()..=step).contains(&here);
+        (!is_nearer || self.simulation.has_ended()).then_some(stored)
+    }
+
+    /// Puts the run at the latest stored state that is not later than `latest`: a checkpoint, or the present one.
+    fn stand_before(&mut self, latest: u64) {
+        let Some(stored) = self.stored_before(latest) else {
             return;
-        }
+        };
         let scenario = Arc::clone(self.simulation.scenario());
-        self.simulation = stored.simulation.clone();
-        self.monitor = stored.monitor.clone();
+        (self.simulation, self.monitor) = (stored.simulation.clone(), stored.monitor.clone());
         self.simulation.keep_workings(self.keeps_workings);
         self.pictures.stand_at(self.simulation.now());
         self.adopt(&scenario);
     }
 
-    /// Makes `scenario` the one that the simulation and its measurements follow from the present step on.
-    fn adopt(&mut self, scenario: &Arc<Scenario>) {
+    /// Makes `scenario`, which has the same past, the one that the simulation and its measurements follow from the present
+    /// step on. The pictures stay: where it leads to other numbers, [`go_on_in`](Self::go_on_in) is to be called.
+    pub fn adopt(&mut self, scenario: &Arc<Scenario>) {
         if !Arc::ptr_eq(self.simulation.scenario(), scenario) {
             self.simulation.go_on_in(Arc::clone(scenario));
             self.monitor.beside.go_on_in(scenario);
@@ -182,8 +179,7 @@ impl LiveRun {
         self.explained = None;
         self.checkpoints.cut_back(self.pictures.followed_to);
         if self.simulation.has_ended() {
-            let here = self.simulation.step_number();
-            self.stand_before(here, here);
+            self.stand_before(self.simulation.step_number());
         }
         self.adopt(scenario);
         let now_s = self.now().time_s;
@@ -194,11 +190,6 @@ impl LiveRun {
         }
     }
 
-    /// Replaces the scenario by one that leads to the same numbers at every step: another title, length or `[view]`.
-    pub fn describe_as(&mut self, scenario: &Arc<Scenario>) {
-        self.adopt(scenario);
-    }
-
     /// Plays for `time_s` simulated seconds, in whole steps. It ends earlier at the step `stop`, at a step where
     /// `is_fulfilled` returns true, or when `enough` returns true because the time for computing is used up.
     pub fn play(
@@ -207,11 +198,11 @@ impl LiveRun {
         stop: u64,
         mut enough: impl FnMut() -> bool,
         mut is_fulfilled: impl FnMut(&mut Self) -> bool,
-    ) -> Played {
+    ) -> PlayEnd {
         let begin_s = self.now().time_s;
         let look_every = self.steps_per_look();
         let mut until_look = look_every;
-        let end = loop {
+        loop {
             let time_step_s = self.simulation.motion().time_step_s;
             if self.now().time_s + time_step_s - begin_s > time_s + ROUNDING * time_step_s {
                 break PlayEnd::InTime;
@@ -232,10 +223,6 @@ impl LiveRun {
                 }
                 until_look = look_every;
             }
-        };
-        Played {
-            stepped_s: self.now().time_s - begin_s,
-            end,
         }
     }
 
@@ -289,7 +276,7 @@ impl LiveRun {
 
     /// Where the exact motion stands, where it is shown and has come as far as the run.
     pub fn exact_now(&self) -> Option<&Moment> {
-        let now = self.overlay.as_ref()?.now();
+        let now = &self.overlay.as_ref()?.now;
         (now.time_s >= self.now().time_s).then_some(now)
     }
 
@@ -312,14 +299,6 @@ impl LiveRun {
     /// Reads those of `source` off it again, of `readouts` that were read at an earlier step.
     pub fn read_again(&mut self, readouts: &mut Readouts, source: Source) {
         readouts.read_again(source, &self.simulation, &mut self.monitor);
-    }
-
-    pub fn theory(&mut self) -> Option<Theory> {
-        self.monitor.theory(self.now().time_s)
-    }
-
-    pub fn instruments(&self) -> &Instruments {
-        &self.monitor.instruments
     }
 
     /// Whether the workings of every step to come are kept, as whoever shows them wants it while the run goes on.

@@ -9,21 +9,14 @@ const MOST_STEPS: u64 = 4_000_000;
 /// What a point of a body costs in one of these steps, as an integration's cost is counted.
 const COST_OF_A_POINT: u64 = 30;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Missing {
+    #[error("the run has not been there")]
     NotReached,
+    #[error("its steps take so long that they are only computed by going there")]
     TooFar,
+    #[error("the tilt turns nowhere on that side")]
     NoTurn,
-}
-
-impl std::fmt::Display for Missing {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::NotReached => "the run has not been there",
-            Self::TooFar => "its steps take so long that they are only computed by going there",
-            Self::NoTurn => "the tilt turns nowhere on that side",
-        })
-    }
 }
 
 /// The numbers at `step` of `run`: those that its CSV has in that row.
@@ -35,7 +28,9 @@ pub fn sample(run: &LiveRun, step: u64) -> Result<Sample, Missing> {
         return Err(Missing::NotReached);
     }
     let mut steps = Steps::before(run, step)?;
-    steps.go_to(step)?;
+    while steps.step_number() < step {
+        steps.step()?;
+    }
     Ok(steps.simulation.sample())
 }
 
@@ -105,13 +100,6 @@ impl Steps {
             self.change = change;
         }
         Ok(turned.then_some(before))
-    }
-
-    fn go_to(&mut self, step: u64) -> Result<(), Missing> {
-        while self.step_number() < step {
-            self.step()?;
-        }
-        Ok(())
     }
 }
 

@@ -16,25 +16,19 @@ impl Marks {
     pub fn of(scenario: &Scenario) -> Self {
         let mut edits = Vec::new();
         let mut stretches = Vec::new();
-        // Each push with the time of its last edit, s.
-        let mut pushes: Vec<_> = scenario.pushes.iter().map(|push| (0.0, push)).collect();
+        let (mut begin_s, mut pushes) = (0.0, &scenario.pushes);
         for (time_s, edit) in Clock::edits(scenario) {
             if edits.last() != Some(&time_s) {
                 edits.push(time_s);
             }
-            for &place in &edit.set_pushes {
-                let now = (time_s, &edit.pushes[place]);
-                match pushes.get_mut(place) {
-                    Some(slot) => {
-                        let (begin_s, push) = std::mem::replace(slot, now);
-                        stretches.extend(between(push, scenario, (begin_s, time_s)));
-                    }
-                    None => pushes.push(now),
-                }
+            if !edit.set_pushes.is_empty() {
+                let acting = pushes.iter();
+                stretches.extend(acting.filter_map(|push| acts(push, scenario, begin_s, time_s)));
+                (begin_s, pushes) = (time_s, &edit.pushes);
             }
         }
-        let to_the_end = |(begin_s, push)| between(push, scenario, (begin_s, f64::INFINITY));
-        stretches.extend(pushes.into_iter().filter_map(to_the_end));
+        let last = pushes.iter();
+        stretches.extend(last.filter_map(|push| acts(push, scenario, begin_s, f64::INFINITY)));
         Self {
             pushes: joined(stretches),
             edits,
@@ -42,9 +36,10 @@ impl Marks {
     }
 }
 
-fn between(push: &Push, scenario: &Scenario, interval: (f64, f64)) -> Option<(f64, f64)> {
+/// When `push` acts between two times, s.
+fn acts(push: &Push, scenario: &Scenario, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
     let (begin, end) = acts_s(push, scenario);
-    let (begin, end) = (begin.max(interval.0), end.min(interval.1));
+    let (begin, end) = (begin.max(from_s), end.min(to_s));
     (begin < end && push.force.norm() > 0.0).then_some((begin, end))
 }
 

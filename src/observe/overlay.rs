@@ -17,9 +17,9 @@ pub struct Overlay {
     /// Least time between two samples, s.
     time_step_s: f64,
     samples: u64,
-    now: Moment,
-    recording: Recording,
-    path: Path,
+    pub now: Moment,
+    pub recording: Recording,
+    pub path: Path,
     has_ended: bool,
 }
 
@@ -87,17 +87,5 @@ impl Overlay {
     /// Whether it has not come as far as `time_s` (s), and goes on.
     pub fn is_before(&self, time_s: f64) -> bool {
         !self.has_ended && self.now.time_s < time_s
-    }
-
-    pub fn now(&self) -> &Moment {
-        &self.now
-    }
-
-    pub fn recording(&self) -> &Recording {
-        &self.recording
-    }
-
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 }

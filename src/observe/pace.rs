@@ -52,10 +52,7 @@ impl Pace {
             Speed::Times(times) if !(times > 0.0 && times.is_finite()) => return,
             speed => self.speed = speed,
         }
-        self.owed_s = 0.0;
-        if let Speed::Times(speed) = self.speed {
-            self.achieved = speed;
-        }
+        self.set_running(self.running);
     }
 
     pub fn speed(&self) -> Speed {

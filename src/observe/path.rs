@@ -89,10 +89,7 @@ impl Path {
         for visit in self.visits.drain(kept..) {
             self.is_visited[visit.cell as usize] = false;
         }
-        self.radius = self
-            .dots()
-            .map(|(x, y)| libm::hypot(x, y))
-            .fold(0.0, f64::max);
+        self.radius = self.radius_about(0.0, 0.0);
     }
 
     pub fn stand_at(&mut self, position: &Vector3<f64>) {

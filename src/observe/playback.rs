@@ -2,7 +2,7 @@
 
 mod to_step;
 
-use super::live::{LiveRun, PlayEnd, Played};
+use super::live::{LiveRun, PlayEnd};
 use super::pace::{Pace, Speed};
 use super::reading::Reading;
 use crate::physics::Workings;
@@ -64,6 +64,11 @@ impl Playback {
 
     pub fn set_end(&mut self, end_s: f64) {
         self.end_s = end_s;
+        self.renew_stop();
+    }
+
+    /// Takes the next stop from the run, unless one was requested.
+    fn renew_stop(&mut self) {
         if !self.hurries && self.until.is_none() {
             self.stop = self.next_stop();
         }
@@ -89,11 +94,10 @@ impl Playback {
         self.stop = self.next_stop();
     }
 
+    /// Replaces the scenario by one that leads to the same numbers at every step: another title, length or `[view]`.
     pub fn describe_as(&mut self, scenario: &Arc<Scenario>) {
-        self.run.describe_as(scenario);
-        if !self.hurries && self.until.is_none() {
-            self.stop = self.next_stop();
-        }
+        self.run.adopt(scenario);
+        self.renew_stop();
     }
 
     /// Plays the simulated time that is due after `wall` of wall time, but steps no longer than 12 ms after `now`, as `clock`
@@ -116,13 +120,8 @@ impl Playback {
         self.play(owed_s, wall, || clock() >= now + longest)
     }
 
-    /// Plays to the requested step, or until the condition holds, however long that takes. Returns why the playback
-    /// stopped; `None` if nothing was requested.
-    pub fn finish(&mut self) -> Option<Halt> {
-        self.finish_part(|| false)
-    }
-
-    /// As [`finish`](Self::finish), but only until `enough` returns true: then `None`, and there is more to play.
+    /// Plays to the requested step, or until the condition holds, however long that takes, or until `enough` returns true.
+    /// Returns why the playback stopped; `None` if nothing was requested, or there is more to play.
     pub fn finish_part(&mut self, enough: impl FnMut() -> bool) -> Option<Halt> {
         if self.hurries || self.until.is_some() {
             self.play(f64::INFINITY, Duration::ZERO, enough)
@@ -134,13 +133,13 @@ impl Playback {
     /// Plays `owed_s` of simulated time, or until `enough` returns true. Returns why the playback stopped, if it did.
     fn play(&mut self, owed_s: f64, wall: Duration, enough: impl FnMut() -> bool) -> Option<Halt> {
         let end = if self.hurries {
-            self.run
-                .play(f64::INFINITY, self.stop, enough, |_| false)
-                .end
+            self.run.play(f64::INFINITY, self.stop, enough, |_| false)
         } else {
+            let begin_s = self.run.now().time_s;
             let mut until = self.until.as_mut();
             let is_fulfilled = |run: &mut LiveRun| until.as_mut().is_some_and(|until| until(run));
-            let Played { stepped_s, end } = self.run.play(owed_s, self.stop, enough, is_fulfilled);
+            let end = self.run.play(owed_s, self.stop, enough, is_fulfilled);
+            let stepped_s = self.run.now().time_s - begin_s;
             self.pace.spend(stepped_s, wall, end == PlayEnd::CutShort);
             end
         };
@@ -202,9 +201,7 @@ impl Playback {
     /// From now on it goes on at the end of the scenario's run.
     pub fn play_on(&mut self) {
         self.is_endless = true;
-        if !self.hurries && self.until.is_none() {
-            self.stop = self.next_stop();
-        }
+        self.renew_stop();
     }
 
     pub fn is_endless(&self) -> bool {

@@ -6,7 +6,7 @@ use super::pace::{Pace, Speed};
 use super::recording::Moment;
 use crate::analysis::{Measured, Readouts};
 use crate::physics::State;
-use crate::text::number::{exponent, fixed, shortest};
+use crate::text::number::{exponent, fixed, rounded, shortest};
 use std::time::Duration;
 
 pub const EVERY: Duration = Duration::from_millis(250);
@@ -47,21 +47,18 @@ fn pace_in_words(pace: &Pace) -> String {
     match (pace.is_running(), pace.speed()) {
         (false, Speed::Times(speed)) => format!("paused ×{}", short(speed)),
         (false, Speed::Top) => "paused, top".to_owned(),
-        (true, Speed::Top) => format!("► top ×{}", short(two_digits(pace.achieved()))),
+        (true, Speed::Top) => format!("► top ×{}", achieved(pace)),
         (true, Speed::Times(_)) if pace.falls_behind() => {
-            format!("► ×{} max", short(two_digits(pace.achieved())))
+            format!("► ×{} max", achieved(pace))
         }
         (true, Speed::Times(speed)) => format!("► ×{}", short(speed)),
     }
 }
 
-/// `number` rounded to two significant digits, since further digits change all the time.
-fn two_digits(number: f64) -> f64 {
-    if !(number > 0.0 && number.is_finite()) {
-        return 0.0;
-    }
-    let unit = libm::exp10(number.log10().floor() - 1.0);
-    (number / unit).round() * unit
+/// The speed that is reached; further digits than two change all the time.
+fn achieved(pace: &Pace) -> String {
+    let speed = rounded(pace.achieved(), 2);
+    short(if speed.is_finite() { speed } else { 0.0 })
 }
 
 /// The speed in few characters: 20, 0.002, 5e5.

@@ -73,10 +73,6 @@ impl Scale {
         (0..most).find(is_exact).unwrap_or(most)
     }
 
-    pub fn in_words(&self) -> String {
-        self.with_digits(self.decimals(), " .. ")
-    }
-
     /// Both ends in at most `width` columns: close together where there is no room for spaces, else as the middle and the
     /// distance of the ends from it, a middle of 0 left out if need be, and then with fewer digits, as long as no end is
     /// seen to be elsewhere. `None` where that has no room either.
@@ -89,7 +85,7 @@ impl Scale {
             let unit = libm::exp10(-(*digits as f64));
             (value - (value / unit).round() * unit).abs() <= UNSEEN * (self.high - self.low)
         };
-        let forms = (0..=digits).rev().flat_map(|digits| {
+        let mut forms = (0..=digits).rev().flat_map(|digits| {
             let both = is_true(self.low, &digits) && is_true(self.high, &digits);
             let words = [" .. ", ".."].map(|between| self.with_digits(digits, between));
             let both = both.then_some(words).into_iter().flatten();
@@ -98,7 +94,6 @@ impl Scale {
                 (around && middle == 0.0).then(|| format!("± {}", fixed(half, digits)));
             both.chain(around.then(|| about(digits))).chain(about_zero)
         });
-        let mut forms = forms;
         forms.find(fits)
     }
 
@@ -154,11 +149,17 @@ mod tests {
     #[test]
     fn a_calm_value_needs_few_digits() {
         let extent = Extent::of(29.999_999_75).and(Extent::of(30.000_000_02));
-        assert_eq!(Scale::around(extent, 0.02).in_words(), "29.99 .. 30.01");
+        assert_eq!(
+            Scale::around(extent, 0.02).in_words_within(40).unwrap(),
+            "29.99 .. 30.01"
+        );
         let constant = Scale::around(Extent::of(30.0), 0.02);
-        assert_eq!(constant.in_words(), "29.99 .. 30.01");
+        assert_eq!(constant.in_words_within(40).unwrap(), "29.99 .. 30.01");
         let wide = Extent::of(31.4).and(Extent::of(57.2));
-        assert_eq!(Scale::around(wide, 0.02).in_words(), "30 .. 60");
+        assert_eq!(
+            Scale::around(wide, 0.02).in_words_within(40).unwrap(),
+            "30 .. 60"
+        );
     }
 
     #[test]

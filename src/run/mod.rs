@@ -1,20 +1,17 @@
 //! A run: a scenario and its journal of edits, played forward from step 0.
 //!
 //! [`Simulation`] alone takes a run forward in time; the command line, exports, tests and the screen all use it.
-//! [`step`] is what it publishes of each time step. [`clock`] says what time a step has, [`pushes`] which
-//! forces act on it, [`Sample`] what of it leaves the program, [`energy`] what its drift is measured in. [`truth`] is the
-//! exact motion beside it, and [`resample`] the same run at another time step.
+//! [`step`] is what it publishes of each time step, and what its energy drift is measured in. [`clock`] says what time a
+//! step has, [`pushes`] which forces act on it, [`Sample`] what of it leaves the program. [`truth`] is the exact motion
+//! beside it, and [`resampled`] the same run at another time step.
 
 pub mod clock;
-pub mod energy;
 pub mod pushes;
-pub mod resample;
 pub mod simulation;
 pub mod step;
 pub mod truth;
 
-pub use clock::Clock;
-pub use energy::{EnergyScale, EnergyUnit};
+pub use clock::{Clock, resampled};
 pub use simulation::{NotFinite, Simulation};
-pub use step::{Sample, Step};
+pub use step::{EnergyScale, EnergyUnit, Sample, Step};
 pub use truth::Truth;

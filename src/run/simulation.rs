@@ -63,17 +63,15 @@ impl NotFinite {
 impl Simulation {
     /// The run of `scenario`, at step 0.
     pub fn new(scenario: Arc<Scenario>) -> Self {
-        let body = &scenario.body.mechanics;
         let (motion, state) = (scenario.motion, scenario.start);
         let loads = Loads {
             gravity: motion.gravity,
-            pushes: Vec::with_capacity(scenario.pushes.len()),
             friction: scenario.friction,
+            ..Loads::default()
         };
-        let mut scheme = motion.scheme.make(body);
+        let mut scheme = motion.scheme.make(&scenario.body.mechanics);
         scheme.load(&loads);
         scheme.start(&state);
-        let energy = EnergyAccount::new(&scenario);
         Self {
             scheme,
             pushes: scenario.pushes.iter().copied().collect(),
@@ -96,7 +94,7 @@ impl Simulation {
                 before: state,
                 after: state,
                 azimuth: Azimuth::start(&state.axle()),
-                energy,
+                energy: EnergyAccount::new(&scenario),
                 rotor_turn: 0.0,
                 workings: None,
                 derived: Derived::default(),

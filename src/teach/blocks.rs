@@ -43,28 +43,19 @@ const RUN_UNTIL: &str = "run_until";
 const KEEP: &str = "keep";
 /// The most choices of a prediction.
 const MOST_CHOICES: usize = 9;
-const LONGEST_LESSON: i64 = 600;
+const LONGEST_LESSON: u32 = 600;
 
 type Found<T> = Result<T, Vec<Problem>>;
 
+/// A block of the file `origin`.
 pub(super) struct Reader<'a> {
-    origin: &'a str,
-    word: &'a str,
-    inside: &'a str,
-    /// The line of the block's fence.
-    pub(super) line: usize,
-}
-
-impl<'a> Reader<'a> {
-    /// A block with `word` behind its fence, which stands on `line`, and `inside` between its fences.
-    pub(super) fn new(origin: &'a str, word: &'a str, inside: &'a str, line: usize) -> Self {
-        Self {
-            origin,
-            word,
-            inside,
-            line,
-        }
-    }
+    pub origin: String,
+    /// The word behind its fence.
+    pub word: &'a str,
+    /// What stands between its fences.
+    pub inside: &'a str,
+    /// The line of its fence.
+    pub line: usize,
 }
 
 fn expression(
@@ -90,20 +81,15 @@ fn expression(
 pub(super) fn head(reader: &Reader<'_>) -> Found<(String, Option<u32>)> {
     let mut content = reader.content(&["about", "minutes"])?;
     let about = content.line("about", false);
-    let minutes = content.get("minutes").map(|value| {
-        let whole = value
-            .as_integer()
-            .filter(|m| (1..=LONGEST_LESSON).contains(m));
-        whole.and_then(|m| u32::try_from(m).ok()).ok_or(value)
+    let stated = content.get("minutes");
+    let minutes = stated.as_ref().and_then(|value| {
+        let whole = u32::try_from(value.as_integer()?).ok()?;
+        Some(whole).filter(|minutes| (1..=LONGEST_LESSON).contains(minutes))
     });
-    let minutes = match minutes.transpose() {
-        Ok(minutes) => minutes,
-        Err(value) => {
-            let rule = format!("must be a whole number from 1 to {LONGEST_LESSON}");
-            content.refuse(Problem::with_value("minutes", &value, rule));
-            None
-        }
-    };
+    if let (Some(value), None) = (stated, minutes) {
+        let rule = format!("must be a whole number from 1 to {LONGEST_LESSON}");
+        content.refuse(Problem::with_value("minutes", &value, rule));
+    }
     content.finish((about, minutes))
 }
 
@@ -131,13 +117,9 @@ pub(super) fn setup(
                 command,
                 line: Some(content.line_of(name)),
             }),
-            Err(problems) => {
-                for problem in problems {
-                    let key = join(name, &problem.key);
-                    let key = key.trim_end_matches('.').to_owned();
-                    content.refuse(Problem { key, ..problem });
-                }
-            }
+            Err(problems) => problems
+                .into_iter()
+                .for_each(|problem| content.refuse_in(name, problem)),
         }
     }
     if content.get("go_to").is_some() && content.get(RUN_UNTIL).is_some() {
@@ -145,9 +127,8 @@ pub(super) fn setup(
         content.refuse(Problem::at(RUN_UNTIL, rule));
     }
     let keep = keep(&mut content, names, page, known_from);
-    let line = content.line;
     content.finish(Setup {
-        line,
+        line: reader.line,
         commands,
         keep,
     })
@@ -214,9 +195,8 @@ pub(super) fn predict(
             Asked::Choice(Vec::new())
         }
     };
-    let line = content.line;
     content.finish(Predict {
-        line,
+        line: reader.line,
         name,
         ask,
         asked,
@@ -263,9 +243,8 @@ pub(super) fn compare(
             name => find(name),
         },
     );
-    let line = content.line;
     content.finish(Compare {
-        line,
+        line: reader.line,
         prediction,
         with,
         text,
@@ -283,16 +262,13 @@ pub(super) fn check(
     if content.get("that").is_none() {
         content.refuse_whole("lacks that: the condition, such as \"t_s >= 60\"");
     }
-    let that = content.expression("that", true, find);
-    let line = content.line;
-    let made = that.map(|that| Check {
-        line,
+    let Some(that) = content.expression("that", true, find) else {
+        return Err(content.problems);
+    };
+    content.finish(Check {
+        line: reader.line,
         that,
         goal,
         hint,
-    });
-    match made {
-        Some(check) => content.finish(check),
-        None => Err(content.problems),
-    }
+    })
 }

@@ -54,6 +54,13 @@ impl KeptLessons {
     }
 }
 
+/// Says the first line of why a lesson could not be opened.
+fn tell(opened: Result<(), String>, lab: &mut Lab) {
+    if let Err(reason) = opened {
+        lab.refuse(reason.lines().next().unwrap_or_default());
+    }
+}
+
 impl Class {
     /// The lessons as the session of `lab` has kept them. The one that was taken is taken again, on its page; the run is
     /// left where it is.
@@ -121,42 +128,39 @@ impl Class {
     /// Does what `key` stands for. Returns the direction in which the page is to be scrolled, if that is what it means.
     pub fn act(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
         let mut scrolls = None;
+        let names = self.names();
         match (&mut self.shown, key) {
             (Shown::List { from, .. }, LessonKey::List) => {
                 // Back to the page; the run was left as it was.
                 let from = from.take();
                 self.shown = Shown::Nothing;
-                if let Some(Err(reason)) = from.map(|name| self.take(&name, lab)) {
-                    lab.refuse(reason.lines().next().unwrap_or_default());
-                }
+                let taken = from.map_or(Ok(()), |name| self.take(&name, lab));
+                tell(taken, lab);
             }
             (_, LessonKey::List) => self.open_list(),
             (Shown::List { selected, .. }, LessonKey::Leave) => {
                 self.selected = *selected;
                 self.shown = Shown::Nothing;
-                lab.refuse(
-                    "the lessons are closed: L lists them again, each stands where it was left",
-                );
+                let text =
+                    "the lessons are closed: L lists them again, each stands where it was left";
+                lab.refuse(text);
             }
             (_, LessonKey::Leave) => {
                 lab.refuse("nothing to close: L lists the lessons, Esc there leaves them; q quits");
             }
             (Shown::List { selected, .. }, LessonKey::Move(direction)) => {
-                *selected = selected.saturating_add_signed(direction.rows(10));
+                let last = names.len().saturating_sub(1);
+                *selected = selected.saturating_add_signed(direction.rows(10)).min(last);
             }
             (Shown::List { selected, .. }, LessonKey::Take) => {
-                let selected = *selected;
-                self.open_selected(selected, lab);
+                let name = names.get(*selected).cloned();
+                tell(name.map_or(Ok(()), |name| self.open(&name, None, lab)), lab);
             }
             (Shown::List { .. }, _) => {
                 lab.refuse("Enter opens the selected lesson, L goes back, Esc leaves the lessons");
             }
             (Shown::Nothing, _) => lab.refuse("no lesson is open: L lists them"),
             (Shown::Lesson(taken), key) => scrolls = taken.act(key, lab),
-        }
-        let last = self.names().len().saturating_sub(1);
-        if let Shown::List { selected, .. } = &mut self.shown {
-            *selected = (*selected).min(last);
         }
         self.show(lab);
         if key == LessonKey::List {
@@ -177,15 +181,6 @@ impl Class {
             selected: selected.unwrap_or(self.selected),
             from: here,
         };
-    }
-
-    fn open_selected(&mut self, selected: usize, lab: &mut Lab) {
-        let Some(name) = self.names().get(selected).cloned() else {
-            return;
-        };
-        if let Err(reason) = self.open(&name, None, lab) {
-            lab.refuse(reason.lines().next().unwrap_or_default());
-        }
     }
 
     /// The names of the list: the lessons that come with the program, then the files that were opened.

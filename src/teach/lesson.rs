@@ -6,7 +6,7 @@ use crate::lab::view::Part;
 use crate::work::expression::Expression;
 use serde::{Deserialize, Serialize};
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lesson {
     /// The name of a shipped lesson, or the file as the user named it.
     pub name: String,

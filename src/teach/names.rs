@@ -32,30 +32,25 @@ impl Names {
     /// # Errors
     /// Why no number can be kept under that name.
     pub(super) fn keep(&mut self, name: &str, from: usize) -> Result<(), String> {
-        if self.kept.len() == MOST_KEPT {
+        let mut characters = name.chars();
+        let begins = characters.next().is_some_and(|c| c.is_ascii_alphabetic());
+        let rule = if self.kept.len() == MOST_KEPT {
             return Err(format!(
                 "is one too many: a lesson keeps at most {MOST_KEPT} numbers"
             ));
-        }
-        let mut characters = name.chars();
-        let begins = characters.next().is_some_and(|c| c.is_ascii_alphabetic());
-        if !begins || !characters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
-            return Err(
-                "must begin with a letter and go on with letters, digits and _, none of them accented"
-                    .to_owned(),
-            );
-        }
-        if RESERVED.contains(&name) {
-            return Err("means something else in a lesson: choose another name".to_owned());
-        }
-        if readouts::find(name).is_some() || numbers::find(name).is_ok() {
-            return Err("is a number of the run already: choose another name".to_owned());
-        }
-        if self.is_kept(name) {
-            return Err("is kept twice: choose another name".to_owned());
-        }
-        self.kept.push((name.to_owned(), from));
-        Ok(())
+        } else if !begins || !characters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
+            "must begin with a letter and go on with letters, digits and _, none of them accented"
+        } else if RESERVED.contains(&name) {
+            "means something else in a lesson: choose another name"
+        } else if readouts::find(name).is_some() || numbers::find(name).is_ok() {
+            "is a number of the run already: choose another name"
+        } else if self.is_kept(name) {
+            "is kept twice: choose another name"
+        } else {
+            self.kept.push((name.to_owned(), from));
+            return Ok(());
+        };
+        Err(rule.to_owned())
     }
 
     /// Notes that from the page `page` on a run is open, if none was before.

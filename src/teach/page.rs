@@ -33,22 +33,17 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
             is_selected: index == selected,
             is_given: left.get(name).is_some_and(|place| place.has_ended),
         };
-        if index == selected {
-            sheet.seen = Some(sheet.paragraphs.len());
-        }
         let text = format!("{title}{minutes}{place}");
         sheet.paragraphs.push(Paragraph::new(kind, text));
-        if index == selected
-            && let Some(lesson) = &lesson
-            && !lesson.about.is_empty()
-        {
+        if index == selected {
+            let about = lesson.map_or(String::new(), |lesson| lesson.about);
             let kind = Kind::Item {
                 mark: "     ".to_owned(),
                 depth: 1,
             };
-            let about = Paragraph::new(kind, lesson.about.clone());
-            sheet.seen = Some(sheet.paragraphs.len());
-            sheet.paragraphs.push(about);
+            let about = Some(Paragraph::new(kind, about)).filter(|about| !about.text().is_empty());
+            sheet.paragraphs.extend(about);
+            sheet.seen = sheet.paragraphs.len().checked_sub(1);
         }
     }
     let keys = if shipped::LESSONS.is_empty() && names.is_empty() {

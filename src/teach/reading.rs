@@ -33,7 +33,10 @@ pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
         let rule = format!("has more than {MOST_BLOCKS} pages and blocks, the most of a lesson");
         return Err(one(Problem::at("", rule)));
     }
-    let mut assembly = Assembly::new(origin, &elements);
+    let mut assembly = Assembly::default();
+    assembly.lesson.origin = origin.to_owned();
+    assembly.lesson.name = origin.to_owned();
+    assembly.read_setups(&elements);
     for element in &elements {
         assembly.add(element);
     }
@@ -61,13 +64,10 @@ fn plain(text: &str, lines: &Lines) -> Result<(), Problem> {
 }
 
 /// A lesson that is being put together from the elements of its file.
-struct Assembly<'a> {
-    origin: &'a str,
-    title: Option<String>,
-    about: String,
-    minutes: Option<u32>,
-    introduction: Vec<Block>,
-    pages: Vec<Page>,
+#[derive(Default)]
+struct Assembly {
+    lesson: Lesson,
+    has_title: bool,
     /// The `lab` and `task` blocks by their lines. They were read before everything else, since they define the names
     /// of the numbers that are kept.
     setups: Vec<Setup>,
@@ -78,28 +78,18 @@ struct Assembly<'a> {
     found: Problems,
 }
 
-impl<'a> Assembly<'a> {
-    fn new(origin: &'a str, elements: &[Element<'_>]) -> Self {
-        let mut assembly = Self {
-            origin,
-            title: None,
-            about: String::new(),
-            minutes: None,
-            introduction: Vec::new(),
-            pages: Vec::new(),
-            setups: Vec::new(),
-            names: Names::default(),
-            predictions: BTreeSet::new(),
-            compares: Vec::new(),
-            has_head: false,
-            found: Problems::default(),
-        };
-        assembly.read_setups(elements);
-        assembly
-    }
-
+impl Assembly {
     fn refuse(&mut self, line: usize, problem: Problem) {
         self.found.add(|| on_line(line, problem));
+    }
+
+    fn reader<'a>(&self, word: &'a str, inside: &'a str, line: usize) -> Reader<'a> {
+        Reader {
+            origin: self.lesson.origin.clone(),
+            word,
+            inside,
+            line,
+        }
     }
 
     fn refuse_all(&mut self, problems: Vec<Problem>) {
@@ -122,21 +112,18 @@ impl<'a> Assembly<'a> {
             };
             let known_from = page + usize::from(word == "task");
             self.names.open_from(page);
-            let reader = Reader::new(self.origin, word, inside, element.line);
+            let reader = self.reader(word, inside, element.line);
             match blocks::setup(&reader, &mut self.names, page, known_from) {
                 Ok(setup) => {
                     if !is_opened && !setup.opens() {
                         let rule = "opens nothing, and there is nothing open before it: open = \"method-2\" says which run";
                         self.refuse(element.line, Problem::at(word, rule));
                     }
-                    is_opened = true;
                     self.setups.push(setup);
                 }
-                Err(problems) => {
-                    is_opened = true;
-                    self.refuse_all(problems);
-                }
+                Err(problems) => self.refuse_all(problems),
             }
+            is_opened = true;
         }
     }
 
@@ -150,8 +137,8 @@ impl<'a> Assembly<'a> {
                     self.refuse(line, Problem::at("##", rule));
                 }
                 self.need_title(line);
-                self.pages.push(Page {
-                    number: self.pages.len() + 1,
+                self.lesson.pages.push(Page {
+                    number: self.lesson.pages.len() + 1,
                     heading: words.clone(),
                     line,
                     blocks: Vec::new(),
@@ -168,29 +155,30 @@ impl<'a> Assembly<'a> {
     }
 
     fn add_title(&mut self, words: &str, line: usize) {
-        let rule = match (&self.title, words.is_empty()) {
-            (Some(_), _) => "is a second title: a lesson has one, and a page begins with ##",
-            (None, true) => "is a title without words: write them behind #",
-            (None, false) => "",
-        };
-        if !rule.is_empty() {
+        if self.has_title {
+            let rule = "is a second title: a lesson has one, and a page begins with ##";
+            return self.refuse(line, Problem::at("#", rule));
+        }
+        if words.is_empty() {
+            let rule = "is a title without words: write them behind #";
             self.refuse(line, Problem::at("#", rule));
         }
-        self.title.get_or_insert_with(|| words.to_owned());
+        self.has_title = true;
+        words.clone_into(&mut self.lesson.title);
     }
 
     /// Adds a problem, once, if the file has no title so far.
     fn need_title(&mut self, line: usize) {
-        if self.title.is_none() {
+        if !self.has_title {
             let rule = "comes before the title: a lesson begins with # and its title";
             self.refuse(line, Problem::at("", rule));
-            self.title = Some(String::new());
+            self.has_title = true;
         }
     }
 
     fn text(&mut self, source: &str, line: usize) -> Option<Text> {
         self.refuse_lost_headings(source, line);
-        let page = self.pages.len();
+        let page = self.lesson.pages.len();
         let read = Text::read(source, line, |name| self.names.find(name, page));
         read.map_err(|problems| self.refuse_all(problems)).ok()
     }
@@ -208,9 +196,9 @@ impl<'a> Assembly<'a> {
     }
 
     fn place(&mut self, block: Block) {
-        match self.pages.last_mut() {
+        match self.lesson.pages.last_mut() {
             Some(page) => page.blocks.push(block),
-            None => self.introduction.push(block),
+            None => self.lesson.introduction.push(block),
         }
     }
 
@@ -239,7 +227,7 @@ impl<'a> Assembly<'a> {
             }
             return;
         }
-        if word != "lesson" && self.pages.is_empty() {
+        if word != "lesson" && self.lesson.pages.is_empty() {
             let rule = "stands before the first page: write its heading, ## ..., above it";
             return self.refuse(line, Problem::at(word, rule));
         }
@@ -247,8 +235,8 @@ impl<'a> Assembly<'a> {
     }
 
     fn add_block(&mut self, word: &str, inside: &str, line: usize) {
-        let reader = Reader::new(self.origin, word, inside, line);
-        let page = self.pages.len();
+        let reader = self.reader(word, inside, line);
+        let page = self.lesson.pages.len();
         let find = |name: &str| self.names.find(name, page);
         let read = match word {
             "lesson" => return self.add_head(&reader),
@@ -276,7 +264,7 @@ impl<'a> Assembly<'a> {
 
     fn add_head(&mut self, reader: &Reader<'_>) {
         let line = reader.line;
-        let misplaced = match (self.has_head, self.pages.is_empty()) {
+        let misplaced = match (self.has_head, self.lesson.pages.is_empty()) {
             (true, _) => "stands twice: a lesson has one such block",
             (false, false) => "stands on a page: its place is below the title",
             (false, true) => "",
@@ -286,7 +274,7 @@ impl<'a> Assembly<'a> {
         }
         self.has_head = true;
         match blocks::head(reader) {
-            Ok((about, minutes)) => (self.about, self.minutes) = (about, minutes),
+            Ok(head) => (self.lesson.about, self.lesson.minutes) = head,
             Err(problems) => self.refuse_all(problems),
         }
     }
@@ -297,7 +285,7 @@ impl<'a> Assembly<'a> {
             Block::Task(_) => word == "task",
             _ => false,
         };
-        let page = self.pages.last();
+        let page = self.lesson.pages.last();
         if page.is_some_and(|page| page.blocks.iter().any(is_same)) {
             let rule = "stands twice on this page, which has one: begin another page with ##";
             return self.refuse(line, Problem::at(word, rule));
@@ -315,27 +303,19 @@ impl<'a> Assembly<'a> {
         for compare in std::mem::take(&mut self.compares) {
             self.check_compare(&compare);
         }
-        if self.title.is_none() {
+        if !self.has_title {
             let rule = "has no title: a lesson begins with # and its title";
             self.refuse(1, Problem::at("", rule));
         }
-        if self.pages.is_empty() {
+        if self.lesson.pages.is_empty() {
             let rule = "has no page: each begins with ## and its heading";
             self.refuse(1, Problem::at("", rule));
         }
         if self.found.list.is_empty() {
-            return Ok(Lesson {
-                name: self.origin.to_owned(),
-                origin: self.origin.to_owned(),
-                title: self.title.unwrap_or_default(),
-                about: self.about,
-                minutes: self.minutes,
-                introduction: self.introduction,
-                pages: self.pages,
-            });
+            return Ok(self.lesson);
         }
         self.found.list.sort_by_key(line_of);
-        Err(self.found.of(self.origin))
+        Err(self.found.of(self.lesson.origin))
     }
 
     /// Checks that the prediction of `compare` is asked for before it.
@@ -345,7 +325,7 @@ impl<'a> Assembly<'a> {
             let asked = asked.find(|predict| predict.name == compare.prediction)?;
             Some(asked.line)
         };
-        let asked = self.pages.iter().find_map(line_of);
+        let asked = self.lesson.pages.iter().find_map(line_of);
         let rule = match asked {
             Some(line) if line < compare.line => return,
             Some(line) => format!("is asked for later, on line {line}"),

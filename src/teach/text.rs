@@ -5,6 +5,7 @@
 //! in code, braces are braces.
 
 use super::names::{Kept, value};
+use super::structure::on_line;
 use crate::lab::Lab;
 use crate::scenario::Problem;
 use crate::text::number;
@@ -85,8 +86,10 @@ impl Text {
     ) -> Result<Self, Vec<Problem>> {
         let code = code_in(source);
         let is_code = |at: usize| {
-            let before = code.partition_point(|range| range.start <= at);
-            before > 0 && code[before - 1].contains(&at)
+            let begun = code.partition_point(|range| range.start <= at);
+            code[..begun]
+                .last()
+                .is_some_and(|range| range.contains(&at))
         };
         let (mut parts, mut problems) = (Vec::new(), Vec::new());
         let (mut plain, mut at) = (0, 0);
@@ -105,9 +108,7 @@ impl Text {
                 }
                 Err((key, rule)) => {
                     let lines = source[..open].matches('\n').count();
-                    let mut problem = Problem::at(key, rule);
-                    problem.place = Some(format!("line {}", line + lines));
-                    problems.push(problem);
+                    problems.push(on_line(line + lines, Problem::at(key, rule)));
                     if problems.len() == MOST_TOLD {
                         break;
                     }
@@ -116,11 +117,10 @@ impl Text {
         }
         parts.push(Piece::Plain(source[plain..].to_owned()));
         parts.retain(|part| !matches!(part, Piece::Plain(text) if text.is_empty()));
-        if problems.is_empty() {
-            Ok(Self { line, parts })
-        } else {
-            Err(problems)
+        if !problems.is_empty() {
+            return Err(problems);
         }
+        Ok(Self { line, parts })
     }
 
     pub(super) fn empty(line: usize) -> Self {

@@ -80,7 +80,7 @@ fn nudges_that_follow_each_other_keep_the_first_ones_time_and_ghost() {
             "nudge = {{ key = 'motion.gravity_m_per_s2', times = {times} }}"
         ));
         assert_eq!((desk.step(), ghost_s(&desk.lab)), (400, Some(40.0)));
-        let highest = |ghost: &gyrolab::observe::ghost::Ghost| ghost.recording().moments();
+        let highest = |ghost: &gyrolab::observe::ghost::Ghost| ghost.recording.moments();
         assert_eq!(desk.lab.player().ghost().map(highest), Some(401));
     }
     let edits = desk.scenario().file.edit;

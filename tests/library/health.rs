@@ -9,7 +9,7 @@ use gyrolab::analysis::health::{Advice, BELIEVED_WITHIN, Health, Picture, advise
 use gyrolab::analysis::remarks::remarks;
 use gyrolab::analysis::{Monitor, Trial};
 use gyrolab::physics::scheme::true_to;
-use gyrolab::run::resample::resampled;
+use gyrolab::run::resampled;
 use gyrolab::run::{Simulation, Truth};
 use gyrolab::scenario::presets::PRESETS;
 use gyrolab::scenario::{Document, Scenario, rescale};

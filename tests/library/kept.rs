@@ -212,11 +212,11 @@ fn the_pinned_run_comes_back_with_what_was_done_to_it() {
     await_pinned(&mut back);
     assert!(is_same(back.lab.content()));
     let again = back.lab.player().pinned().unwrap();
-    assert_eq!(again.furthest(), before.furthest());
+    assert_eq!(again.furthest, before.furthest);
     assert_eq!(again.end_s(), before.end_s());
-    assert_eq!(again.marks(), before.marks());
-    assert_eq!(again.scenario().file.push.len(), 1);
-    let dots = |ghost: &gyrolab::observe::ghost::Ghost| ghost.path().dots().collect::<Vec<_>>();
+    assert_eq!(again.marks, before.marks);
+    assert_eq!(again.scenario.file.push.len(), 1);
+    let dots = |ghost: &gyrolab::observe::ghost::Ghost| ghost.path.dots().collect::<Vec<_>>();
     assert_eq!(dots(again), dots(&before), "the same numbers");
     back.press(&[Key::Char('i')]);
     let none = resumed(&back.lab.content());

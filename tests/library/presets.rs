@@ -4,7 +4,7 @@ use crate::support::scenarios::preset as preset_named;
 use gyrolab::analysis::{Monitor, Readouts, Trial};
 use gyrolab::export::Column;
 use gyrolab::run::Simulation;
-use gyrolab::run::resample::resampled;
+use gyrolab::run::resampled;
 use gyrolab::scenario::Scenario;
 use gyrolab::scenario::presets::PRESETS;
 use std::collections::BTreeSet;

@@ -7,7 +7,7 @@ use gyrolab::export::{CsvWriter, stream};
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::physics::{Loads, SchemeInfo, State};
 use gyrolab::run::Simulation;
-use gyrolab::run::resample::resampled;
+use gyrolab::run::resampled;
 use gyrolab::scenario::Scenario;
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -6,7 +6,7 @@ use gyrolab::analysis::theory::Path;
 use gyrolab::analysis::{Health, Measured, Monitor, Readouts, Theory};
 use gyrolab::export::Summary;
 use gyrolab::physics::SchemeInfo;
-use gyrolab::run::resample::resampled;
+use gyrolab::run::resampled;
 use gyrolab::run::{Simulation, Truth};
 use gyrolab::scenario::Scenario;
 use std::f64::consts::TAU;

@@ -6,7 +6,7 @@ use crate::support::scenarios::{find_scheme, parse, preset};
 use differential_equations::prelude::*;
 use gyrolab::physics::State;
 use gyrolab::physics::exact::Kind;
-use gyrolab::run::resample::resampled;
+use gyrolab::run::resampled;
 use gyrolab::run::{Simulation, Truth};
 use gyrolab::scenario::file::{EditFile, PushFile, ScenarioFile};
 use gyrolab::scenario::{Document, Scenario};

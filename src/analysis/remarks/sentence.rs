@@ -8,40 +8,49 @@ use std::f64::consts::{PI, TAU};
 
 /// Radians a step beyond which no scheme that follows the rotation by polynomials keeps up.
 const TOO_FAR_RAD: f64 = 1.0;
+
 impl Health {
     /// In one sentence: whether the numbers hold, what is wrong with them, and what would mend it.
     pub fn sentence(&self, advice: Option<&Advice>) -> String {
-        sentence(self, advice)
+        let Some(most) = self.most_distance_m else {
+            return "Not held against the exact motion, which would take too long or leaves the range of numbers.".to_owned();
+        };
+        if self.arm_m == 0.0 {
+            return "Nothing can be said: the traced point is the pivot, which stands still in every run.".to_owned();
+        }
+        let is_exact = self.scheme.order.is_none() && most == 0.0;
+        let far = format!(
+            "{} m ({} % of its arm)",
+            short(most),
+            short(100.0 * most / self.arm_m)
+        );
+        let mend = advice.map_or(String::new(), |advice| how_to_mend(self, advice));
+        if self.point_holds() == Some(false) {
+            return format!(
+                "Do not believe this run: {}, and the traced point is up to {far} off the exact motion{mend}.",
+                cause(self)
+            );
+        }
+        if let Some(swing) = self.swing.filter(|swing| !swing.is_right()) {
+            return format!(
+                "The traced point holds, and the nutation does not: the point has kept within {far} of the exact motion, but {swing}{}{mend}.",
+                cause_of_swing(self)
+            );
+        }
+        let picture = picture(self);
+        if is_exact {
+            format!("The numbers hold: the run is the exact motion itself{picture}.")
+        } else {
+            format!(
+                "The numbers hold: the traced point has kept within {far} of the exact motion{picture}."
+            )
+        }
     }
 }
 
-fn sentence(health: &Health, advice: Option<&Advice>) -> String {
-    let Some(most) = health.most_distance_m else {
-        return "Not held against the exact motion, which would take too long or leaves the range of numbers.".to_owned();
-    };
-    if health.arm_m == 0.0 {
-        return "Nothing can be said: the traced point is the pivot, which stands still in every run.".to_owned();
-    }
-    let is_exact = health.scheme.order.is_none() && most == 0.0;
-    let far = format!(
-        "{} m ({} % of its arm)",
-        short(most),
-        short(100.0 * most / health.arm_m)
-    );
-    let mend = advice.map_or(String::new(), |advice| how_to_mend(health, advice));
-    if health.point_holds() == Some(false) {
-        return format!(
-            "Do not believe this run: {}, and the traced point is up to {far} off the exact motion{mend}.",
-            cause(health)
-        );
-    }
-    if let Some(swing) = health.swing.filter(|swing| !swing.is_right()) {
-        return format!(
-            "The traced point holds, and the nutation does not: the point has kept within {far} of the exact motion, but {swing}{}{mend}.",
-            cause_of_swing(health)
-        );
-    }
-    let picture = match health.picture {
+/// What the time step makes of the picture of the turning body, where that is not right.
+fn picture(health: &Health) -> String {
+    match health.picture {
         Picture::Right => String::new(),
         Picture::Unknown => {
             format!(" (in a step the body turns {})", health.picture)
@@ -51,13 +60,6 @@ fn sentence(health: &Health, advice: Option<&Advice>) -> String {
             short(health.turns_per_step),
             health.picture
         ),
-    };
-    if is_exact {
-        format!("The numbers hold: the run is the exact motion itself{picture}.")
-    } else {
-        format!(
-            "The numbers hold: the traced point has kept within {far} of the exact motion{picture}."
-        )
     }
 }
 
@@ -124,6 +126,7 @@ fn how_to_mend(health: &Health, advice: &Advice) -> String {
     } else {
         " throughout, with its edits of gravity and pushes at the same times,"
     };
+    let step_in = |time_step_s: &f64| format!("{} s{throughout}", shortest(*time_step_s));
     match advice {
         Advice::Holds => String::new(),
         Advice::Nothing => "; nothing that could be tried in reasonable time mends it".to_owned(),
@@ -131,32 +134,22 @@ fn how_to_mend(health: &Health, advice: &Advice) -> String {
             "; no other scheme mends it at this time step, and at another one its accumulating pushes make it another run"
                 .to_owned()
         }
-        Advice::TimeStep(step) => {
+        Advice::TimeStep(step) if health.can_be_rescaled => {
             let step = shortest(*step);
-            let option = if health.can_be_rescaled {
-format!(" (--time-step {step})")
-} else {
-String::new()
-};
-            format!("; a time step of {step} s{option}{throughout} mends it")
+            format!("; a time step of {step} s (--time-step {step}) mends it")
         }
-        Advice::Scheme {
-            name,
-            time_step_s,
-            tried_s,
-        } if time_step_s == tried_s => {
-            let step = shortest(*time_step_s);
-            format!("; the scheme {name} at {step} s{throughout} mends it")
-        }
+        Advice::TimeStep(step) => format!("; a time step of {} mends it", step_in(step)),
         Advice::Scheme {
             name,
             time_step_s,
             tried_s,
         } => {
-            let (step, tried) = (shortest(*time_step_s), shortest(*tried_s));
-            format!(
-                "; no time step down to {tried} s mends it, but the scheme {name} at {step} s{throughout} does"
-            )
+            let step = step_in(time_step_s);
+            if time_step_s == tried_s {
+                return format!("; the scheme {name} at {step} mends it");
+            }
+            let tried = shortest(*tried_s);
+            format!("; no time step down to {tried} s mends it, but the scheme {name} at {step} does")
         }
     }
 }

@@ -27,13 +27,6 @@ impl Playback {
         Ok(())
     }
 
-    /// Returns to step 0. The speed, whether the run goes on, and whether the exact motion is shown stay as they are.
-    pub fn restart(&mut self) {
-        let running = self.pace.is_running();
-        self.go_to(0);
-        self.set_running(running);
-    }
-
     /// Goes to `step` and stops there. A step that the run has reached before is usually shown at once; a later step, or a
     /// long way with a large body, takes several frames.
     pub fn go_to(&mut self, step: u64) {

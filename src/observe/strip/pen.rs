@@ -109,8 +109,7 @@ impl<'a> Pen<'a> {
         }
         let is_drawn = |drawn: &Drawn| drawn.extent.is_some();
         let first = self.columns.iter().position(is_drawn).unwrap_or(0);
-        let last = self.columns.iter().rposition(is_drawn).unwrap_or(0);
-        let ends = (first, last);
+        let ends = (first, self.columns.iter().rposition(is_drawn).unwrap_or(0));
         let all = 0..self.columns.len();
         let turns: Vec<_> = all
             .clone()

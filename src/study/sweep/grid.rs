@@ -7,7 +7,7 @@ use crate::analysis::at_end;
 use crate::analysis::readouts::{self, READOUTS, Readout, Source, Value as Readable};
 use crate::export::layout::commented;
 use crate::run::Clock;
-use crate::run::resample::resampled;
+use crate::run::resampled;
 use crate::scenario::document::Document;
 use crate::scenario::dotted::{find, join, number_of_push};
 use crate::scenario::rescale::{MOST_STEPS, accumulates};

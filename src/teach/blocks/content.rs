@@ -2,6 +2,7 @@
 
 use super::{Found, Reader, expression};
 use crate::lab::command::COMMANDS;
+use crate::scenario::dotted::join;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem};
 use crate::teach::structure::on_line;
@@ -26,7 +27,7 @@ impl Reader<'_> {
     pub(super) fn content(&self, known: &[&str]) -> Found<Content> {
         // As many empty lines before it as there are lines before it in the file: every line has its number there.
         let text = "\n".repeat(self.line) + self.inside;
-        let document = Document::parse(self.origin, &text).map_err(|problems| problems.list)?;
+        let document = Document::parse(&self.origin, &text).map_err(|problems| problems.list)?;
         let mut content = Content {
             document,
             word: self.word.to_owned(),
@@ -57,14 +58,18 @@ impl Content {
             return;
         }
         let key = problem.key.clone();
-        let placed = self.document.placed(vec![problem]).list;
-        for mut problem in placed {
+        for mut problem in self.document.placed(vec![problem]).list {
             problem.key = format!("{}.{key}", self.word);
-            match problem.place {
-                Some(_) => self.problems.push(problem),
-                None => self.problems.push(on_line(self.line, problem)),
-            }
+            let line = || format!("line {}", self.line);
+            problem.place.get_or_insert_with(line);
+            self.problems.push(problem);
         }
+    }
+
+    /// The same of a problem whose key is one inside of the key `outer`.
+    pub(super) fn refuse_in(&mut self, outer: &str, problem: Problem) {
+        let key = join(outer, &problem.key).trim_end_matches('.').to_owned();
+        self.refuse(Problem { key, ..problem });
     }
 
     pub(super) fn refuse_whole(&mut self, rule: &str) {

@@ -12,7 +12,6 @@ use crate::observe::ages::{Age, Ages};
 use crate::observe::camera::Zoom;
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
-use crate::observe::overlay::Overlay;
 use crate::observe::path::Path;
 use crate::observe::reading::Reading;
 use crate::observe::recording::Moment;
@@ -130,9 +129,9 @@ impl FromAbove<'_> {
     /// The plane of the picture, and the radius that it shows, m.
     fn plane(&self, picture: Rect) -> (Plane, f64) {
         let middle = self.circled().unwrap_or_default();
-        let exact = self.run.overlay().map(Overlay::path);
-        let before = self.ghost.map(Ghost::path);
-        let pinned = self.pinned.map(Ghost::path);
+        let exact = self.run.overlay().map(|overlay| &overlay.path);
+        let before = self.ghost.map(|ghost| &ghost.path);
+        let pinned = self.pinned.map(|ghost| &ghost.path);
         let paths = [Some(self.run.path()), exact, before, pinned];
         let about = |path: &Path| {
             if middle == Vector2::zeros() {
@@ -215,7 +214,7 @@ impl FromAbove<'_> {
             (self.ghost, before, Ink::Ghost),
             (self.pinned, dots::PINNED, pinned),
         ] {
-            let path = ghost.into_iter().flat_map(|ghost| ghost.path().dots());
+            let path = ghost.into_iter().flat_map(|ghost| ghost.path.dots());
             dots.dashed(path.map(|at| plane.dot(at)), dashes, ink);
         }
         let mut trail = Trail::new(&dots, Around::Nothing);
@@ -229,7 +228,7 @@ impl FromAbove<'_> {
         trail.follow(self.run.recording(), &ages, now, to_dot);
         trail.draw(&mut dots);
         if let Some(overlay) = self.run.overlay() {
-            let exact = overlay.path().dots().map(|at| plane.dot(at));
+            let exact = overlay.path.dots().map(|at| plane.dot(at));
             dots.dashed(exact, dots::EXACT, Ink::Faint(Role::Exact));
         }
         dots.render(&self.view.theme, buf);

@@ -253,9 +253,9 @@ impl<'a> Subject<'a> {
             }
         }
         for other in [self.ghost, self.pinned].into_iter().flatten() {
-            if let Some(whole) = other.recording().whole() {
+            if let Some(whole) = other.recording.whole() {
                 let z = whole.extent(Curve::Z);
-                circles.extend([z.min, z.max].map(|z| (other.path().radius(), z)));
+                circles.extend([z.min, z.max].map(|z| (other.path.radius(), z)));
             }
         }
         if let Some(axis) = self.state.momentum.try_normalize(f64::MIN_POSITIVE) {
@@ -324,7 +324,7 @@ impl<'a> Subject<'a> {
         trail.follow(self.run.recording(), &ages, now, to_dot);
         trail.draw(dots);
         if let Some(overlay) = self.run.overlay() {
-            let exact = overlay.recording().since(0.0);
+            let exact = overlay.recording.since(0.0);
             for (x, y) in exact.map(|block| scene.dot(&block.end())) {
                 dots.set(x, y, Ink::Faint(Role::Exact));
             }
@@ -336,7 +336,7 @@ impl<'a> Subject<'a> {
         let before = (Ink::Ghost, dots::of_run_before(self.view.marker), 3);
         let pinned = (Ink::Faint(Role::Pinned), dots::PINNED, 2);
         for (run, (ink, path, axle)) in [(self.ghost, before), (self.pinned, pinned)] {
-            let Some(recording) = run.map(Ghost::recording) else {
+            let Some(recording) = run.map(|run| &run.recording) else {
                 continue;
             };
             let places = recording.since(f64::NEG_INFINITY);

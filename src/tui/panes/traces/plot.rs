@@ -182,19 +182,19 @@ impl Traces<'_> {
         match (whose, content) {
             (Whose::Run, Content::Curve(curve)) => Some((self.run.recording(), curve)),
             (Whose::Run, Content::Measured(index)) => self.measured?.recorded(index),
-            (Whose::Before, Content::Curve(curve)) => Some((self.ghost?.recording(), curve)),
+            (Whose::Before, Content::Curve(curve)) => Some((&self.ghost?.recording, curve)),
             (Whose::Before, Content::Measured(index)) => {
                 self.ghost.and(self.measured)?.recorded_before(index)
             }
-            (Whose::Pinned, Content::Curve(curve)) => Some((self.pinned?.recording(), curve)),
-            (Whose::Exact, Content::Curve(curve)) => Some((self.run.overlay()?.recording(), curve)),
+            (Whose::Pinned, Content::Curve(curve)) => Some((&self.pinned?.recording, curve)),
+            (Whose::Exact, Content::Curve(curve)) => Some((&self.run.overlay()?.recording, curve)),
             (Whose::Pinned | Whose::Exact, Content::Measured(_)) => None,
         }
     }
 
     /// The times that no line of a curve crosses, s.
     fn cuts<'s>(&'s self, whose: Whose, marks: &'s Marks) -> &'s [f64] {
-        let edits = |ghost: Option<&'s Ghost>| ghost.map_or(&[][..], |ghost| &ghost.marks().edits);
+        let edits = |ghost: Option<&'s Ghost>| ghost.map_or(&[][..], |ghost| &ghost.marks.edits);
         match whose {
             Whose::Run => &marks.edits,
             Whose::Before => edits(self.ghost),
