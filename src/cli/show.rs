@@ -15,6 +15,7 @@ use anyhow::Context;
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
 #[derive(Debug, Args)]
 pub(super) struct ShowArgs {
@@ -95,15 +96,20 @@ pub(super) fn go_to(
     step: u64,
     interruption: &Interruption,
 ) -> Result<(), NotFinite> {
-    /// So few steps take no time that somebody who presses Ctrl-C would notice.
-    const PART: u64 = 10_000;
+    const LOOK: Duration = Duration::from_millis(100);
     let watch = interruption.meter();
+    let mut part = 1_u64;
     loop {
-        let here = lab.player().playback.step_number();
-        let arrived = lab.begin_at(here.saturating_add(PART).min(step));
+        let (here, begin) = (lab.player().playback.step_number(), Instant::now());
+        let arrived = lab.begin_at(here.saturating_add(part).min(step));
         let here = lab.player().playback.step_number();
         if arrived.is_err() || here >= step || watch(here, step).is_break() {
             return arrived;
         }
+        part = if begin.elapsed() < LOOK {
+            part.saturating_mul(2)
+        } else {
+            (part / 2).max(1)
+        };
     }
 }
