@@ -3,16 +3,15 @@
 mod others;
 
 use crate::support::dice::Dice;
+use crate::support::scenarios;
 use gyrolab::analysis::{Instruments, Measured, Monitor};
 use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::scenario::Scenario;
 use rayon::prelude::*;
 use std::sync::Arc;
 
 fn preset(name: &str, set: &[&str]) -> Arc<Scenario> {
-    let mut document = Document::open(name).unwrap();
-    set.iter().for_each(|set| document.set(set).unwrap());
-    Arc::new(document.scenario().unwrap())
+    Arc::new(scenarios::preset(name, set))
 }
 
 fn measured(scenario: &Arc<Scenario>) -> [Option<Measured>; 2] {
@@ -39,11 +38,7 @@ fn between(dice: &mut Dice, least: f64, most: f64) -> f64 {
 /// 1 and a random part more or less.
 fn about_one(dice: &mut Dice, least: f64, most: f64) -> f64 {
     let part = log_between(dice, least, most);
-    if dice.unit() < 0.5 {
-        1.0 - part
-    } else {
-        1.0 + part
-    }
+    1.0 + if dice.unit() < 0.5 { -part } else { part }
 }
 
 /// How a random run begins.
@@ -123,8 +118,7 @@ fn random(seed: u64) -> Option<Case> {
              [motion]\nscheme = 'exact'\ntime_step_s = {step}\nsteps = {steps}\n",
             2.0 * height
         );
-        let document = Document::parse("x.toml", &text).unwrap();
-        Arc::new(document.scenario().unwrap())
+        Arc::new(scenarios::parse(&text))
     };
     let theory = Monitor::new(Simulation::new(build(0.01, 1)).now()).theory(0.0)?;
     let truth = [theory.precession?, theory.nutation_period_s?];
@@ -156,20 +150,15 @@ fn stated_uncertainties_hold_the_truth_in_random_runs() {
                 continue;
             };
             let off = (measured.value - case.truth[which]).abs() / measured.uncertainty;
-            assert!(
-                off < 6.0,
-                "{name} of {seed}: {off} standard errors, {measured:?}"
-            );
+            assert!(off < 6.0, "{name} of {seed}: {off}, {measured:?}");
             errors.push(off);
         }
         errors.sort_by(f64::total_cmp);
         let (count, within) = (errors.len(), errors.partition_point(|&off| off <= 2.0));
         let median = errors[count / 2];
         println!("{name}: {count} given, {within} within 2 standard errors, median {median}");
-        assert!(
-            within as f64 >= 0.93 * count as f64,
-            "{name}: {within} of {count}"
-        );
+        let is_covered = within as f64 >= 0.93 * count as f64;
+        assert!(is_covered, "{name}: {within} of {count}");
         assert!(median >= 0.2, "{name} is padded: {median}");
         assert!(count >= 850, "{name} is withheld: {count} given");
     }
@@ -191,10 +180,8 @@ fn a_short_run_says_no_more_than_it_has_seen() {
     // A nutation takes 2.366 s.
     for (steps, known) in [(3000, true), (1000, false)] {
         let steps = format!("motion.steps={steps}");
-        let sleeping = preset(
-            "sleeping",
-            &["motion.scheme=exact", "motion.time_step_s=0.001", &steps],
-        );
+        let set = ["motion.scheme=exact", "motion.time_step_s=0.001", &steps];
+        let sleeping = preset("sleeping", &set);
         let found = measured(&sleeping);
         for (found, truth) in found.iter().zip([1.70342095, 2.36591637]) {
             assert_eq!(found.is_some(), known, "{steps}: {found:?}");
@@ -209,14 +196,8 @@ fn a_short_run_says_no_more_than_it_has_seen() {
 #[test]
 fn whole_turns_between_two_rows_are_counted() {
     // An unstable sleeper lingers upright and turns there, by more than a turn in each of these time steps.
-    let coarse = preset(
-        "sleeping-unstable",
-        &[
-            "motion.scheme=exact",
-            "motion.time_step_s=3.7",
-            "motion.steps=40",
-        ],
-    );
+    let motion = "motion={scheme='exact', time_step_s=3.7, steps=40}";
+    let coarse = preset("sleeping-unstable", &[motion]);
     let [precession, _] = measured(&coarse);
     let precession = precession.unwrap();
     let off = (precession.value - 2.36684257).abs() / precession.uncertainty;

@@ -31,10 +31,7 @@ impl Picture {
         let text = stage.picture();
         let row = |line: &str| {
             let mut row: Vec<char> = line.chars().collect();
-            assert!(
-                row.len() <= width,
-                "a row is wider than the screen:\n{text}"
-            );
+            assert!(row.len() <= width, "wider than the screen:\n{text}");
             row.resize(width, ' ');
             row
         };
@@ -44,11 +41,8 @@ impl Picture {
     }
 
     fn at(&self, x: usize, y: usize) -> char {
-        self.rows
-            .get(y)
-            .and_then(|row| row.get(x))
-            .copied()
-            .unwrap_or(' ')
+        let sign = self.rows.get(y).and_then(|row| row.get(x));
+        sign.copied().unwrap_or(' ')
     }
 
     /// The frames, or where one is broken.
@@ -64,15 +58,11 @@ impl Picture {
                 let bottom = bottom.unwrap_or(self.rows.len());
                 let corners = (self.at(x, bottom), self.at(right, bottom));
                 if corners != ('└', '┘') {
-                    return Err(format!(
-                        "the frame at {x}, {y} ends in {corners:?} at row {bottom}"
-                    ));
+                    return Err(format!("the frame at {x}, {y} ends in {corners:?}"));
                 }
-                if let Some(gap) = (y + 1..bottom).find(|row| !"│▲▼".contains(self.at(right, *row)))
-                {
-                    return Err(format!(
-                        "the right side of the frame at {x}, {y} is broken in row {gap}"
-                    ));
+                let is_gap = |row: &usize| !"│▲▼".contains(self.at(right, *row));
+                if let Some(gap) = (y + 1..bottom).find(is_gap) {
+                    return Err(format!("the frame at {x}, {y} is broken in row {gap}"));
                 }
                 frames.push(Frame {
                     left: x,
@@ -87,15 +77,13 @@ impl Picture {
 
     /// All words, with one blank between two of them, without frames.
     fn words(&self) -> String {
-        let words = self.rows.iter().map(|row| row.iter().collect::<String>());
-        words
-            .collect::<Vec<_>>()
-            .join(" ")
-            .replace('│', " ")
-            .split_whitespace()
-            .collect::<Vec<_>>()
-            .join(" ")
+        let rows = self.rows.iter().map(|row| row.iter().collect::<String>());
+        squeezed(&rows.collect::<Vec<_>>().join(" ").replace('│', " "))
     }
+}
+
+fn squeezed(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// What is wrong with the picture of `stage`.
@@ -103,12 +91,8 @@ fn trouble(stage: &Stage) -> Option<String> {
     let picture = Picture::of(stage);
     let is_ascii = stage.lab.view().marker == gyrolab::lab::view::markers::Marker::Ascii;
     let is_plain = stage.lab.on_top().mode == Mode::Lab && !hint::has_message(&stage.lab);
-    if is_plain
-        && picture
-            .rows
-            .first()
-            .is_none_or(|row| row.iter().all(|sign| *sign == ' '))
-    {
+    let mut title = picture.rows.first().into_iter().flatten();
+    if is_plain && title.all(|sign| *sign == ' ') {
         return Some("there is no title".to_owned());
     }
     if !is_ascii && is_plain {
@@ -126,10 +110,8 @@ fn trouble(stage: &Stage) -> Option<String> {
                 picture.at(*x, y) != ' ' && !frames.iter().any(is_in)
             });
             if let Some(x) = outside {
-                return Some(format!(
-                    "{:?} at {x}, {y} is outside of the frames",
-                    picture.at(x, y)
-                ));
+                let sign = picture.at(x, y);
+                return Some(format!("{sign:?} at {x}, {y} is outside of the frames"));
             }
         }
     }
@@ -141,11 +123,8 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
     if stage.lab.view().bare {
         return None; // no line of keys
     }
-    let last: String = picture
-        .rows
-        .get(stage.size.height as usize - 1)?
-        .iter()
-        .collect();
+    let last = picture.rows.get(stage.size.height as usize - 1)?;
+    let last: String = last.iter().collect();
     let rows = || {
         let of_panes = panes::PANES.iter().flat_map(|pane| pane.keys);
         BINDINGS.iter().chain(of_panes)
@@ -160,11 +139,8 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
         };
         let key = row.keys[0];
         // Where there is little room a key stands without its word.
-        [
-            format!("{key} {}", row.footer),
-            format!("{key} {otherwise}"),
-            key.to_string(),
-        ]
+        let [usual, other] = [row.footer, otherwise].map(|word| format!("{key} {word}"));
+        [usual, other, key.to_string()]
     };
     let esc = ["Esc close", "Esc clear", "Esc to the page"].map(str::to_owned);
     let mut items: Vec<_> = rows().flat_map(words).chain(esc).collect();
@@ -186,7 +162,6 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
 /// Where the message is neither shown whole nor cut off between dots.
 fn said_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
     let notice = stage.lab.notice()?;
-    let squeezed = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     let (notice, words) = (squeezed(&notice), picture.words());
     let is_cut = || {
         let begins = notice.char_indices().map(|(end, _)| &notice[..end]);
@@ -199,13 +174,8 @@ fn said_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
 #[track_caller]
 fn check(stage: &Stage, done: &str) {
     if let Some(trouble) = trouble(stage) {
-        let size = stage.size;
-        panic!(
-            "{done} at {}x{}: {trouble}\n{}",
-            size.width,
-            size.height,
-            stage.picture()
-        );
+        let (size, picture) = (stage.size.as_size(), stage.picture());
+        panic!("{done} at {size}: {trouble}\n{picture}");
     }
 }
 
@@ -247,10 +217,8 @@ fn keys(mode: Mode, pane: Pane) -> Vec<Key> {
         Mode::Lab => panes::keys(pane),
         _ => &[],
     };
-    let rows = own
-        .iter()
-        .chain(BINDINGS)
-        .filter(|row| row.modes.contains(&mode));
+    let rows = own.iter().chain(BINDINGS);
+    let rows = rows.filter(|row| row.modes.contains(&mode));
     let mut keys: Vec<Key> = Vec::new();
     for key in rows.flat_map(|row| row.keys) {
         if !keys.contains(key) {

@@ -1,6 +1,7 @@
 //! The rows and columns of a CSV, and whether one is still what its header says.
 
-use crate::support::scenarios::preset;
+use crate::support::scenarios::{parse, preset};
+use crate::support::words::has;
 use gyrolab::analysis::compare;
 use gyrolab::export::columns::COLUMNS;
 use gyrolab::export::layout::LayoutFile;
@@ -27,6 +28,14 @@ fn csv(scenario: &Scenario, file: LayoutFile) -> Vec<u8> {
 
 fn whole() -> LayoutFile {
     LayoutFile::default()
+}
+
+/// A row for every point.
+fn of_points() -> LayoutFile {
+    LayoutFile {
+        points: true,
+        ..whole()
+    }
 }
 
 fn verified(bytes: &[u8]) -> Result<Verified, Unverified> {
@@ -63,10 +72,7 @@ fn edited() -> Scenario {
     let text = preset("wobble-push", &["motion.steps=120"]).to_toml()
         + "[[edit]]\nstep = 40\nset = { \"motion.time_step_s\" = 0.05 }\n\
            [[edit]]\nstep = 60\nset = { \"motion.scheme\" = \"strang\", \"push.0.force_N\" = [0, 5, 0] }\n";
-    Document::parse("edited.toml", &text)
-        .unwrap()
-        .scenario()
-        .unwrap()
+    parse(&text)
 }
 
 fn names(names: &[&str]) -> Option<Vec<String>> {
@@ -89,11 +95,8 @@ fn a_cut_csv_has_the_lines_of_the_whole_one() {
     };
     let wanted = |steps: &[usize]| steps.iter().map(|&step| all[step + 1].clone()).collect();
     let of = |steps: &[usize]| -> Vec<String> { wanted(steps) };
-    assert_eq!(
-        cut(1, Some(0.3), Some(0.5)),
-        of(&[3, 4, 5]),
-        "0.3 s is 3 x 0.1 s"
-    );
+    // 0.3 s is 3 x 0.1 s.
+    assert_eq!(cut(1, Some(0.3), Some(0.5)), of(&[3, 4, 5]));
     assert_eq!(cut(30, None, None), of(&[0, 30, 60, 90, 100]));
     assert_eq!(cut(30, Some(0.1), None), of(&[30, 60, 90, 100]));
     assert_eq!(cut(30, None, Some(9.9)), of(&[0, 30, 60, 90]));
@@ -132,11 +135,7 @@ fn chosen_columns_are_those_of_the_whole_csv() {
 fn every_point_has_a_row() {
     let scenario = preset("method-2", &["motion.steps=3"]);
     let whole_rows = rows(&csv(&scenario, whole()));
-    let file = LayoutFile {
-        points: true,
-        ..whole()
-    };
-    let points = rows(&csv(&scenario, file));
+    let points = rows(&csv(&scenario, of_points()));
     let count = scenario.body.mechanics.points().len();
     assert_eq!(points.len(), 1 + 4 * count);
     assert!(points[1].starts_with("0,0.0,rim.0,0.5,"), "{}", points[1]);
@@ -159,23 +158,16 @@ fn every_point_has_a_row() {
 #[test]
 fn points_of_parts_have_their_parts_names_and_those_of_the_frame_no_spin() {
     let points = |name: &str| {
-        let file = LayoutFile {
-            points: true,
-            ..whole()
-        };
-        rows(&csv(
-            &preset(name, &["motion.steps=2", "motion.time_step_s=1e-4"]),
-            file,
-        ))
+        let scenario = preset(name, &["motion.steps=2", "motion.time_step_s=1e-4"]);
+        rows(&csv(&scenario, of_points()))
     };
     let ball = points("rugby-pass");
     assert!(ball.iter().any(|row| row.contains(",ball +z,")), "{ball:?}");
     assert!(!ball.iter().any(|row| row.contains(",rim.")), "{ball:?}");
     let gyroscope = points("lab-gyroscope");
     let of = |point: &str| -> Vec<[f64; 6]> {
-        let own = gyroscope
-            .iter()
-            .filter(|row| row.contains(&format!(",{point},")));
+        let named = format!(",{point},");
+        let own = gyroscope.iter().filter(|row| row.contains(&named));
         own.map(|row| {
             let cells: Vec<&str> = row.split(',').collect();
             [4, 5, 6, 7, 8, 9].map(|at| cells[at].parse().unwrap())
@@ -229,19 +221,21 @@ fn a_layout_that_cannot_be_is_refused_with_what_to_do() {
         points,
         ..whole()
     };
-    for (file, words) in [
+    for (list, points, words) in [
         (
-            columns(&["t_s", "z"], false),
+            &["t_s", "z"][..],
+            false,
             "no column named z: did you mean z_m?",
         ),
         (
-            columns(&["tilt_deg"], true),
+            &["tilt_deg"],
+            true,
             "no column named tilt_deg: there is step, ",
         ),
-        (columns(&["z_m", "z_m"], false), "z_m is named twice"),
-        (columns(&[], false), "must name a column"),
+        (&["z_m", "z_m"], false, "z_m is named twice"),
+        (&[], false, "must name a column"),
     ] {
-        assert!(error(file).contains(words), "{words}");
+        has(error(columns(list, points)), words);
     }
     let cut = |from_s, to_s| LayoutFile {
         from_s,
@@ -318,31 +312,21 @@ proptest! {
 fn lines_that_are_not_the_runs_are_found() {
     let text = String::from_utf8(GOOD.clone()).unwrap();
     let lines: Vec<&str> = text.lines().collect();
-    let names = lines
-        .iter()
-        .position(|line| line.starts_with("step,"))
-        .unwrap();
-    let at = names + 30; // the row of step 29
+    let names = lines.iter().position(|line| line.starts_with("step,"));
+    let at = names.unwrap() + 30; // the row of step 29
     let joined = |lines: &[&str]| (lines.join("\n") + "\n").into_bytes();
     let mut twice = lines.clone();
     twice.insert(at, lines[at]);
     let found = difference(&joined(&twice));
     assert_eq!(found.line, at as u64 + 2);
-    assert!(
-        found
-            .to_string()
-            .contains("the row of step 30: step is 29, computed 30"),
-        "{found}"
-    );
+    let words = "the row of step 30: step is 29, computed 30";
+    has(found.to_string(), words);
     let mut lost = lines.clone();
     lost.remove(at);
     assert_eq!(difference(&joined(&lost)).line, at as u64 + 1);
     let mut longer = lines.clone();
     longer.push("121,1,2");
-    let told = |bytes: &[u8], words: &str| {
-        let told = difference(bytes).to_string();
-        assert!(told.contains(words), "{told}");
-    };
+    let told = |bytes: &[u8], words: &str| has(difference(bytes).to_string(), words);
     told(&joined(&longer), "\"121,1,2\", where the computed rows");
     told(&joined(&lines[..at]), "it is cut off");
     let uneven = text.replace(lines[at], &format!("{},7", lines[at]));
@@ -379,11 +363,8 @@ fn an_edited_header_is_found_by_what_it_changes() {
         assert!(result.difference.is_some(), "{old}: {new}");
     }
     let thinned = format!("# # every = 2\n{text}");
-    assert!(
-        difference(thinned.as_bytes())
-            .to_string()
-            .contains("step is 1, computed 2")
-    );
+    let found = difference(thinned.as_bytes()).to_string();
+    has(found, "step is 1, computed 2");
     let other = text.replacen("gyrolab = \"", "gyrolab = \"9.", 1);
     let result = verified(other.as_bytes()).unwrap();
     assert_eq!(result.difference, None);
@@ -413,13 +394,12 @@ fn what_cannot_be_computed_again_is_refused_with_the_reason() {
             "no column named z: did you mean z_m?",
         ),
     ] {
-        let said = refused(bytes.as_bytes());
-        assert!(said.contains(words), "{words}: {said}");
+        has(refused(bytes.as_bytes()), words);
     }
     let go_on = |_, _| ControlFlow::Continue(());
     let missing = verify("nowhere/a.csv".as_ref(), no_fit, go_on);
     let missing = missing.unwrap_err().to_string();
-    assert!(missing.contains("there is no such file"), "{missing}");
+    has(missing, "there is no such file");
 }
 
 #[test]
@@ -442,19 +422,12 @@ fn a_run_that_ends_early_is_verified_up_to_there() {
 fn who_stops_it_is_obeyed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
-    std::fs::write(&path, &*GOOD).unwrap();
     let scenario = preset("method-2", &["motion.steps=20000"]);
-    std::fs::write(
-        &path,
-        csv(
-            &scenario,
-            LayoutFile {
-                every: 5000.try_into().ok(),
-                ..whole()
-            },
-        ),
-    )
-    .unwrap();
+    let thinned = LayoutFile {
+        every: 5000.try_into().ok(),
+        ..whole()
+    };
+    std::fs::write(&path, csv(&scenario, thinned)).unwrap();
     let stopped = verify(&path, no_fit, |_, _| ControlFlow::Break(()));
     assert!(matches!(stopped, Err(Unverified::Stopped)));
 }
@@ -476,10 +449,7 @@ fn the_errors_of_a_comparison_are_computed_again() {
     let error = format!("{:?}", table[2].error_m.unwrap());
     let wrong = good.replacen(&error, &format!("{error}1"), 1);
     let found = difference(wrong.as_bytes()).to_string();
-    assert!(
-        found.contains("scheme rk4, time_step_s 0.002: error_m is "),
-        "{found}"
-    );
+    has(&found, "scheme rk4, time_step_s 0.002: error_m is ");
     let lost: String = good.trim_end().rsplit_once('\n').unwrap().0.to_owned() + "\n";
     difference(lost.as_bytes());
     let unknown = good.replace("\nrk4,", "\nrk5,");

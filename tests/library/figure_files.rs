@@ -1,5 +1,6 @@
 //! A page as SVG, PDF and PNG: what the files hold, that hostile words cannot break them, and that the three agree.
 
+use crate::support::words::{has, has_all};
 use gyrolab::figure::page::ink::{BLACK, at, circle, pen};
 use gyrolab::figure::{
     Color, Format, Item, Paint, Path, Pen, Point, Scene, Segment, page::letters, write,
@@ -23,15 +24,8 @@ fn page(title: &str, words: &str) -> Scene {
         clip: Some([at(10.0, 40.0), at(60.0, 50.0)]),
         words: None,
     });
-    scene.fill(
-        Path::polygon([
-            at(70.0, 10.0),
-            at(80.0, 10.0),
-            at(80.0, 20.0),
-            at(70.0, 20.0),
-        ]),
-        BLACK,
-    );
+    let corners = [(70.0, 10.0), (80.0, 10.0), (80.0, 20.0), (70.0, 20.0)];
+    scene.fill(Path::polygon(corners.map(|(x, y)| at(x, y))), BLACK);
     scene.write(&letters::escape(words), 8.0, at(50.0, 58.0), 0.5);
     scene
 }
@@ -43,11 +37,8 @@ fn svg(scene: &Scene) -> String {
 /// The words of a PDF's drawing, not compressed.
 fn content(pdf: &[u8]) -> String {
     let find = |what: &[u8], from: usize| {
-        pdf[from..]
-            .windows(what.len())
-            .position(|part| part == what)
-            .unwrap()
-            + from
+        let mut parts = pdf[from..].windows(what.len());
+        parts.position(|part| part == what).unwrap() + from
     };
     let begin = find(b"\nstream\n", 0) + 8;
     let end = find(b"\nendstream", begin);
@@ -65,22 +56,19 @@ struct Picture {
 
 impl Picture {
     fn of(bytes: &[u8]) -> Self {
-        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
-            .read_info()
-            .unwrap();
+        let decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+        let mut reader = decoder.read_info().unwrap();
         let mut data = vec![0; reader.output_buffer_size().unwrap()];
         let frame = reader.next_frame(&mut data).unwrap();
         let step = frame.color_type.samples();
-        let dots = data
-            .chunks_exact(step)
-            .map(|dot| [dot[0], dot[1 % step], dot[2 % step]])
-            .collect();
+        let dots = data.chunks_exact(step);
+        let dots = dots.map(|dot| [dot[0], dot[1 % step], dot[2 % step]]);
         let size = reader.info().pixel_dims.unwrap();
         assert_eq!((size.xppu, size.unit), (size.yppu, png::Unit::Meter));
         Self {
             width: frame.width as usize,
             height: frame.height as usize,
-            dots,
+            dots: dots.collect(),
             dots_per_metre: size.xppu,
         }
     }
@@ -101,14 +89,13 @@ fn svg_has_a_size_on_paper_a_title_and_the_words_and_nothing_that_it_would_have_
     assert_eq!(root.attribute("height"), Some("21.17mm"));
     assert_eq!(root.attribute("viewBox"), Some("0 0 100 60"));
     let title = root.first_element_child().unwrap();
-    assert_eq!(
-        (title.tag_name().name(), title.text()),
-        ("title", Some("A title"))
-    );
-    let label = root
-        .descendants()
-        .find(|node| node.has_attribute("aria-label"))
-        .unwrap();
+    assert_eq!(title.tag_name().name(), "title");
+    assert_eq!(title.text(), Some("A title"));
+    let with = |name: &str| {
+        let mut nodes = root.descendants();
+        nodes.find(|node| node.has_attribute(name)).unwrap()
+    };
+    let label = with("aria-label");
     assert_eq!(label.attribute("aria-label"), Some("ab"));
     let names = ["svg", "title", "g", "path", "clipPath"];
     for node in root.descendants().filter(roxmltree::Node::is_element) {
@@ -117,37 +104,21 @@ fn svg_has_a_size_on_paper_a_title_and_the_words_and_nothing_that_it_would_have_
             assert!(!attribute.name().starts_with("on") && !attribute.name().ends_with("href"));
         }
     }
-    let clip = root
-        .descendants()
-        .find(|node| node.has_attribute("clip-path"))
-        .unwrap();
+    let clip = with("clip-path");
     let reference = clip.attribute("clip-path").unwrap();
-    let name = reference
-        .strip_prefix("url(#")
-        .unwrap()
-        .strip_suffix(')')
-        .unwrap();
-    let rectangle = root
-        .descendants()
-        .find(|node| node.attribute("id") == Some(name))
-        .unwrap();
-    assert_eq!(
-        rectangle.first_child().unwrap().attribute("d"),
-        Some("M10 40H60V50H10z")
-    );
+    let name = reference.strip_prefix("url(#").unwrap();
+    let name = name.strip_suffix(')').unwrap();
+    let with_value = |attribute: &str, value: &str| {
+        let mut nodes = root.descendants();
+        let is_it = |node: &roxmltree::Node<'_, '_>| node.attribute(attribute) == Some(value);
+        nodes.find(is_it).unwrap().first_element_child().unwrap()
+    };
+    let rectangle = with_value("id", name);
+    assert_eq!(rectangle.attribute("d"), Some("M10 40H60V50H10z"));
     assert_eq!(clip.attribute("stroke-dasharray"), Some("4 2"));
     assert_eq!(clip.attribute("stroke-width"), Some("2"));
-    let red = root
-        .descendants()
-        .find(|node| node.attribute("fill") == Some("#c81e1e"));
-    assert!(
-        red.unwrap()
-            .first_element_child()
-            .unwrap()
-            .attribute("d")
-            .unwrap()
-            .starts_with("M30 20c0 5.52")
-    );
+    let red = with_value("fill", "#c81e1e").attribute("d").unwrap();
+    assert!(red.starts_with("M30 20c0 5.52"), "{red}");
 }
 
 /// The places of a path in SVG, as a reader of it computes them.
@@ -160,11 +131,9 @@ fn places(data: &str) -> Vec<(f64, f64)> {
         let end = rest[1..]
             .find(|c: char| c.is_ascii_alphabetic())
             .map_or(rest.len(), |end| end + 1);
-        let numbers: Vec<f64> = rest[1..end]
-            .replace('-', " -")
-            .split_whitespace()
-            .map(|n| n.parse().unwrap())
-            .collect();
+        let numbers = rest[1..end].replace('-', " -");
+        let numbers = numbers.split_whitespace().map(|n| n.parse().unwrap());
+        let numbers: Vec<f64> = numbers.collect();
         rest = &rest[end..];
         let size = match command {
             'h' | 'v' | 'z' => 1,
@@ -181,12 +150,8 @@ fn places(data: &str) -> Vec<(f64, f64)> {
                 'v' => vec![(0.0, step[0])],
                 _ => step.chunks(2).map(|pair| (pair[0], pair[1])).collect(),
             };
-            let points: Vec<_> = steps
-                .iter()
-                .map(|step| (from.0 + step.0, from.1 + step.1))
-                .collect();
-            at = *points.last().unwrap();
-            places.extend(points);
+            places.extend(steps.iter().map(|step| (from.0 + step.0, from.1 + step.1)));
+            at = *places.last().unwrap();
         }
         match command {
             'M' => start = at,
@@ -209,31 +174,22 @@ fn the_places_in_svg_are_those_of_the_page() {
     ];
     let mut path = Path::polygon(corners);
     path.0.push(Segment::Line(at(1.0, 1.0)));
-    path.0
-        .push(Segment::Quadratic(at(5.0, 5.125), at(-6.07, 0.5)));
-    path.0
-        .push(Segment::Cubic(at(5.0, 5.12), at(-6.0, 0.0), at(0.0, 0.0)));
-    let expected: Vec<(f64, f64)> = path
-        .points()
-        .map(|p| ((p.x * 100.0).round() / 100.0, (p.y * 100.0).round() / 100.0))
-        .collect();
+    let quadratic = Segment::Quadratic(at(5.0, 5.125), at(-6.07, 0.5));
+    let cubic = Segment::Cubic(at(5.0, 5.12), at(-6.0, 0.0), at(0.0, 0.0));
+    path.0.extend([quadratic, cubic]);
+    let rounded = |x: f64| (x * 100.0).round() / 100.0;
+    let expected = path.points().map(|p| (rounded(p.x), rounded(p.y)));
+    let expected: Vec<_> = expected.collect();
     let mut scene = Scene::new(10.0, 10.0, "");
     scene.fill(path, RED);
     let text = svg(&scene);
-    let data = text
-        .rsplit("d=\"")
-        .next()
-        .unwrap()
-        .split('"')
-        .next()
-        .unwrap();
+    let (_, data) = text.rsplit_once("d=\"").unwrap();
+    let (data, _) = data.split_once('"').unwrap();
     let found = places(data);
     assert_eq!(found.len(), expected.len(), "{data}");
     for (found, expected) in found.iter().zip(&expected) {
-        assert!(
-            (found.0 - expected.0).abs() < 1e-6 && (found.1 - expected.1).abs() < 1e-6,
-            "{data}"
-        );
+        assert!((found.0 - expected.0).abs() < 1e-6, "{data}");
+        assert!((found.1 - expected.1).abs() < 1e-6, "{data}");
     }
 }
 
@@ -252,44 +208,27 @@ fn pdf_strokes_and_cuts_off_and_has_its_own_font() {
     assert_eq!(lines[0], "1 0 0 -1 0 60 cm");
     let dashed = "q\n10 40 50 10 re\nW\nn\n0 G\n2 w\n[4 2] 0 d\n0 45 m\n90 45 l\nS\nQ\n";
     assert!(drawing.contains(dashed), "{drawing}");
-    assert!(
-        drawing.contains("0.784 0.118 0.118 rg\n30 20 m\n30 25.52 25.52 30 20 30 c\n"),
-        "{drawing}"
+    has(
+        &drawing,
+        "0.784 0.118 0.118 rg\n30 20 m\n30 25.52 25.52 30 20 30 c\n",
     );
-    assert!(
-        drawing.contains("70 10 m\n80 10 l\n80 20 l\n70 20 l\nh\nf\n"),
-        "{drawing}"
-    );
-    assert!(
-        drawing.contains("/Span <<") && drawing.contains("/ActualText (ab)"),
-        "{drawing}"
-    );
+    has(&drawing, "70 10 m\n80 10 l\n80 20 l\n70 20 l\nh\nf\n");
+    has_all(&drawing, ["/Span <<", "/ActualText (ab)"]);
     // Two letters of a font that is in the file, upright on a page whose y runs down.
     let shown = "/R 8 Tf\n1 0 0 -1 ";
     assert!(drawing.contains(shown), "{drawing}");
-    for present in [
-        "/CIDFontType2",
-        "/FontFile2",
-        "/ToUnicode",
-        "+STIXTwoText-Regular",
-    ] {
-        assert!(text.contains(present), "{present}");
-    }
+    has_all(&text, ["/CIDFontType2", "/FontFile2", "/ToUnicode"]);
+    has(&text, "+STIXTwoText-Regular");
     assert!(!text.contains("STIXTwoText-Italic"));
-    assert_eq!(
-        drawing.matches(" BDC").count(),
-        drawing.matches("EMC").count()
-    );
+    let [begins, ends] = [" BDC", "EMC"].map(|mark| drawing.matches(mark).count());
+    assert_eq!(begins, ends);
 }
 
 #[test]
 fn png_has_the_dots_of_the_page() {
     let picture = Picture::of(&write(&page("A title", "ab"), Format::Png).unwrap());
-    assert_eq!(
-        (picture.width, picture.height),
-        (834, 500),
-        "100 pt x 60 pt at 600 dots an inch"
-    );
+    // 100 pt x 60 pt at 600 dots an inch.
+    assert_eq!((picture.width, picture.height), (834, 500));
     assert_eq!(picture.dots_per_metre, 23622);
     let (white, black, red) = ([255; 3], [0; 3], [200, 30, 30]);
     for (x, y, color) in [
@@ -309,12 +248,8 @@ fn png_has_the_dots_of_the_page() {
     }
     let in_label = (480..760)
         .flat_map(|x| (540..600).map(move |y| (f64::from(x) / 10.0 - 10.0, f64::from(y) / 10.0)));
-    assert!(
-        in_label
-            .filter(|(x, y)| picture.at(*x, *y) == black)
-            .count()
-            > 100
-    );
+    let is_black = |(x, y): &(f64, f64)| picture.at(*x, *y) == black;
+    assert!(in_label.filter(is_black).count() > 100);
     let grey = Scene::new(10.0, 10.0, "");
     let bytes = write(&grey, Format::Png).unwrap();
     assert_eq!(bytes[25], 0, "a page without colour is in grey");
@@ -323,13 +258,9 @@ fn png_has_the_dots_of_the_page() {
 
 #[test]
 fn words_cannot_break_a_file() {
-    for hostile in [
-        HOSTILE.to_owned(),
-        "<".repeat(100_000),
-        String::new(),
-        "\\\\(((".to_owned(),
-    ] {
-        let scene = page(&hostile, &hostile.chars().take(500).collect::<String>());
+    let long = "<".repeat(100_000);
+    for hostile in [HOSTILE, &long, "", "\\\\((("] {
+        let scene = page(hostile, &hostile.chars().take(500).collect::<String>());
         let text = svg(&scene);
         let document = roxmltree::Document::parse(&text).unwrap();
         let is_script = |node: roxmltree::Node<'_, '_>| node.tag_name().name() == "script";
@@ -342,11 +273,8 @@ fn words_cannot_break_a_file() {
         }
         let pdf = write(&scene, Format::Pdf).unwrap();
         let drawing = content(&pdf);
-        assert!(
-            hostile.is_empty() || drawing.ends_with("EMC\nQ"),
-            "{}",
-            &drawing[drawing.len() - 40..]
-        );
+        let is_whole = hostile.is_empty() || drawing.ends_with("EMC\nQ");
+        assert!(is_whole, "{}", &drawing[drawing.len() - 40..]);
         let picture = Picture::of(&write(&scene, Format::Png).unwrap());
         assert_eq!(picture.at(75.0, 15.0), [0; 3]);
     }
@@ -368,11 +296,8 @@ fn a_file_is_the_same_each_time_and_everywhere() {
         assert_eq!(crc32fast::hash(&stable), crc, "{format:?}");
     }
     let picture = Picture::of(&write(&page("A title", "Äß Ω"), Format::Png).unwrap());
-    assert_eq!(
-        crc32fast::hash(picture.dots.as_flattened()),
-        2_315_199_443,
-        "pixels"
-    );
+    let pixels = crc32fast::hash(picture.dots.as_flattened());
+    assert_eq!(pixels, 2_315_199_443);
 }
 
 #[test]
@@ -383,11 +308,8 @@ fn dashes_of_an_odd_number_and_of_no_length_are_drawn() {
             dash_pt: dash_pt.clone(),
             ..pen(4.0, BLACK)
         };
-        scene.stroke(
-            Path::polyline([at(0.0, 10.0), at(100.0, 10.0)]),
-            dashed,
-            None,
-        );
+        let line = Path::polyline([at(0.0, 10.0), at(100.0, 10.0)]);
+        scene.stroke(line, dashed, None);
         let picture = Picture::of(&write(&scene, Format::Png).unwrap());
         assert_eq!(picture.at(2.0, 10.0), [0; 3], "{dash_pt:?}");
         let is_gap = dash_pt == [5.0];

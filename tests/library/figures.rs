@@ -71,11 +71,11 @@ fn told(figure: &Figure) -> Vec<String> {
     figure.told().map(|told| told.to_string()).collect()
 }
 
-fn least(numbers: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn least(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(f64::INFINITY, f64::min)
 }
 
-fn most(numbers: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn most(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(f64::NEG_INFINITY, f64::max)
 }
 

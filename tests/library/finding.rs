@@ -18,19 +18,14 @@ fn open(size: Rect) -> Stage {
 fn the_help_does_the_entry_that_is_found() {
     let mut stage = open(SMALL);
     let step = stage.step();
-    stage
-        .press("?/one time step on")
-        .shows("help: one time step on_")
-        .press("\n")
-        .wait(0.1);
+    stage.press("?/one time step on");
+    stage.shows("help: one time step on_").press("\n").wait(0.1);
     assert_eq!(
         (stage.lab.on_top().mode, stage.step()),
         (Mode::Lab, step + 1)
     );
-    stage
-        .press("?export\n")
-        .shows("export steps 0 to")
-        .press(ESC);
+    stage.press("?export\n").shows("export steps 0 to");
+    stage.press(ESC);
     stage.press("?\u{1b}");
     assert_eq!(stage.lab.on_top().mode, Mode::Lab);
     for key in "?quit".chars() {
@@ -43,30 +38,20 @@ fn the_help_does_the_entry_that_is_found() {
 fn the_help_finds_how_curves_are_drawn_and_the_colours() {
     for word in ["dashed", "dotted", "light", "dark"] {
         let mut stage = open(SMALL);
-        stage
-            .press(&format!("?{word}"))
-            .shows_no("nothing has that");
+        stage.press(&format!("?{word}"));
+        stage.shows_no("nothing has that");
     }
 }
 
 #[test]
 fn letters_of_the_help_are_typed_and_esc_clears_them_first() {
     let mut stage = open(SMALL);
-    stage
-        .press("?")
-        .shows("help: type to search")
-        .shows("►")
-        .press("qkj")
-        .shows("help: qkj_ (0)");
-    stage
-        .shows("nothing has that")
-        .press("\n")
-        .shows("nothing is selected");
-    stage
-        .press(ESC)
-        .shows("help: type to search")
-        .press(ESC)
-        .shows_no("help: ");
+    stage.press("?").shows("help: type to search").shows("►");
+    stage.press("qkj").shows("help: qkj_ (0)");
+    stage.shows("nothing has that").press("\n");
+    stage.shows("nothing is selected");
+    stage.press(ESC).shows("help: type to search").press(ESC);
+    stage.shows_no("help: ");
     stage.press("?undo?").shows_no("help: ");
 }
 
@@ -110,9 +95,8 @@ fn the_keys_of_a_pane_stand_under_its_title_and_turn_to_it() {
 #[test]
 fn a_key_of_another_place_is_not_done_but_says_where_it_works() {
     let mut stage = open(SMALL);
-    stage
-        .press("?take what is typed\n")
-        .shows("in a dialog: this key works there");
+    stage.press("?take what is typed\n");
+    stage.shows("in a dialog: this key works there");
     assert_eq!(stage.lab.on_top().mode, Mode::Help);
     // Opened from the list, the help does the list's keys.
     stage.press(ESC).press(ESC).press("o?type a part\n");
@@ -133,25 +117,17 @@ fn the_selection_stops_at_both_ends_of_the_help() {
 #[test]
 fn values_are_found_by_their_names() {
     let mut stage = open(SMALL);
-    stage
-        .press("/grav")
-        .shows("/grav_ 1 of 1")
-        .shows("gravity")
-        .shows_no("scheme  ");
+    stage.press("/grav").shows("/grav_ 1 of 1").shows("gravity");
+    stage.shows_no("scheme  ");
     assert_eq!(stage.focus(), "parameters");
     // What is found is nudged at once, and typed.
     stage.press("→").shows("gravity 9.9");
-    stage
-        .press("\n")
-        .shows("motion.gravity_m_per_s2")
-        .press("1.6\n");
+    stage.press("\n").shows("motion.gravity_m_per_s2");
+    stage.press("1.6\n");
     let gravity = |stage: &Stage| stage.lab.player().motion().gravity;
     assert_eq!(gravity(&stage), 1.6);
-    stage
-        .shows("/grav 1 of 1")
-        .press(ESC)
-        .shows_no("/grav")
-        .shows("parameters ");
+    stage.shows("/grav 1 of 1").press(ESC).shows_no("/grav");
+    stage.shows("parameters ");
     assert_eq!(stage.focus(), "parameters");
     let selected = stage.lab.values().list.selected().unwrap();
     assert_eq!(selected.label(), "gravity");
@@ -163,16 +139,11 @@ fn values_are_found_by_their_names() {
 fn numbers_that_are_read_off_are_found_too() {
     let mut stage = open(SMALL);
     stage.press("/prec").shows("no value to set has it");
-    stage
-        .shows("read only:")
-        .shows("precession")
-        .shows("predicted");
+    stage.shows("read only:").shows("precession");
+    stage.shows("predicted");
     stage.shows_no("nutation");
-    stage
-        .press(ESC)
-        .press("/energy")
-        .shows("energy ")
-        .shows_no("precession");
+    stage.press(ESC).press("/energy").shows("energy ");
+    stage.shows_no("precession");
     let mut stage = open(LARGE);
     stage.press("e").press("f").press("/turns").shows("/step");
 }
@@ -180,14 +151,11 @@ fn numbers_that_are_read_off_are_found_too() {
 #[test]
 fn a_name_that_no_value_has_is_said_and_cleared() {
     let mut stage = open(SMALL);
-    stage
-        .press("e/qz")
-        .shows("/qz_ 0 of 0")
-        .shows("no value to set has it");
-    stage
-        .press("\n")
-        .shows("no value to set has that in its name")
-        .press("→");
+    stage.press("e/qz").shows("/qz_ 0 of 0");
+    stage.shows("no value to set has it");
+    stage.press("\n");
+    stage.shows("no value to set has that in its name");
+    stage.press("→");
     stage.lab.paste("x\n");
     stage.shows("/qzx_");
     stage.key(Key::Backspace);
@@ -199,22 +167,16 @@ fn a_name_that_no_value_has_is_said_and_cleared() {
         ("parameters", Mode::Lab)
     );
     // The push to come is found whatever was searched for.
-    stage
-        .press("/dt")
-        .press("\u{1b}")
-        .press("/dt\n\u{1b}")
-        .press("P")
-        .shows("next push");
+    stage.press("/dt").press("\u{1b}").press("/dt\n\u{1b}");
+    stage.press("P").shows("next push");
 }
 
 #[test]
 fn a_value_shows_all_the_digits_it_has() {
     const HEIGHT: &str = "0.565685424949238";
     let mut stage = open(SMALL);
-    stage
-        .press("/rim height")
-        .shows("body.rim.height_m")
-        .shows(&format!("={HEIGHT}"));
+    stage.press("/rim height").shows("body.rim.height_m");
+    stage.shows(&format!("={HEIGHT}"));
     let mut stage = open(Rect::new(0, 0, 160, 40));
     stage.press("ef").shows("0.5656854").shows("m  ");
     // Beside the other panes too, a value is not rounded where there is room.
@@ -230,21 +192,15 @@ fn a_value_shows_all_the_digits_it_has() {
 fn a_whole_number_keeps_all_its_digits() {
     let set = ["push=[{point='top', force_N=[0,0,1], first_step=123456789, steps=1}]"];
     let mut stage = Stage::open("method-2", &set, SMALL);
-    stage
-        .press("/first step")
-        .shows("first step 123456789")
-        .shows("=123456789");
+    stage.press("/first step").shows("first step 123456789");
+    stage.shows("=123456789");
 }
 
 #[test]
 fn the_frame_of_l_stands_beside_it_and_is_kept() {
     let mut stage = open(SMALL);
-    stage
-        .press("/lz")
-        .shows("Lz body")
-        .press("→\n")
-        .shows("Lz body, J s")
-        .press("500\n");
+    stage.press("/lz").shows("Lz body").press("→\n");
+    stage.shows("Lz body, J s").press("500\n");
     let file = stage.lab.player().run().scenario().file.clone();
     assert_eq!(
         file.start.momentum_frame,

@@ -15,12 +15,12 @@ fn model(name: &str, set: &[&str], free: &[&str], measured: Measured) -> Model {
     let mut document = Document::open(name).unwrap();
     document.set("motion.scheme=exact").unwrap();
     set.iter().for_each(|set| document.set(set).unwrap());
-    model_of(document, free, measured)
+    model_of(&document, free, measured)
 }
 
 #[track_caller]
-fn model_of(document: Document, free: &[&str], measured: Measured) -> Model {
-    try_model(&document, free, measured).unwrap_or_else(|problems| panic!("{problems}"))
+fn model_of(document: &Document, free: &[&str], measured: Measured) -> Model {
+    try_model(document, free, measured).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 fn try_model(document: &Document, free: &[&str], measured: Measured) -> Result<Model, Problems> {
@@ -40,7 +40,7 @@ fn fitted(model: &Model) -> Fit {
 /// The model of [`TOP`] with these settings.
 #[track_caller]
 fn top(set: &[&str], free: &[&str], data: &str) -> Model {
-    model_of(top_with(set), free, read("lab.csv", data).unwrap())
+    model_of(&top_with(set), free, read("lab.csv", data).unwrap())
 }
 
 #[track_caller]

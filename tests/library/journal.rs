@@ -1,11 +1,10 @@
 //! A run is a scenario and its journal: what an edit at a step changes, from which step on, and what it does not change.
 
-use crate::support::scenarios::parse;
+use crate::support::scenarios::{parse, preset};
 use gyrolab::export::{CsvWriter, Layout, stream};
 use gyrolab::physics::workings::Value;
 use gyrolab::physics::{Loads, SchemeInfo};
 use gyrolab::run::{Sample, Simulation};
-use gyrolab::scenario::Document;
 use std::fmt::Write;
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
@@ -94,17 +93,11 @@ fn segments_count_edits_of_time_step_scheme_and_gravity_from_the_next_row_on() {
         (20, "'motion.gravity_m_per_s2' = 1"),
         (25, "'motion.gravity_m_per_s2' = 2"),
     ];
-    let samples = samples(simulation(
-        "scheme = 'report'\ntime_step_s = 0.001\nsteps = 20",
-        &edits,
-    ));
-    let segments: Vec<_> = samples.iter().map(|sample| sample.segment).collect();
-    assert_eq!(
-        segments,
-        [
-            0, 1, 1, 1, 2, 2, 3, 3, 3, 3, 4, 4, 4, 6, 6, 6, 6, 6, 6, 6, 6
-        ]
-    );
+    let motion = "scheme = 'report'\ntime_step_s = 0.001\nsteps = 20";
+    let samples = samples(simulation(motion, &edits));
+    let segments = samples.iter().map(|sample| sample.segment.to_string());
+    let segments: String = segments.collect();
+    assert_eq!(segments, "011122333344466666666");
 }
 
 #[test]
@@ -153,10 +146,8 @@ fn an_edit_at_step_0_is_a_scenario_of_its_own() {
             format!("{FINE}\ngravity_m_per_s2 = 3"),
         ),
     ] {
-        let (edited, written) = (
-            samples(simulation(FINE, &[(0, set)])),
-            samples(simulation(&written, &[])),
-        );
+        let edited = samples(simulation(FINE, &[(0, set)]));
+        let written = samples(simulation(&written, &[]));
         assert_eq!(edited.len(), written.len());
         for (edited, written) in edited.iter().zip(&written).skip(1) {
             assert!(same(edited, written), "{set}: step {}", edited.step);
@@ -185,16 +176,10 @@ fn orientation_and_momentum_pass_from_scheme_to_scheme() {
         for step in 51..=60 {
             scheme.step(0.001, &mut state);
             edited.step_to(step).unwrap();
-            assert_eq!(
-                edited.state().orientation,
-                state.orientation,
-                "{first} to {second}"
-            );
-            assert_eq!(
-                edited.state().momentum,
-                state.momentum,
-                "{first} to {second}"
-            );
+            let seen = edited.state();
+            let case = format!("{first} to {second}");
+            assert_eq!(seen.orientation, state.orientation, "{case}");
+            assert_eq!(seen.momentum, state.momentum, "{case}");
         }
     }
 }
@@ -213,19 +198,12 @@ fn pushed_steps(motion: &str, edits: &[(u64, &str)]) -> Vec<(u64, f64)> {
         };
         let torque = torque.norm();
         if torque > 0.0 {
-            let one = simulation
-                .sample()
-                .position
-                .cross(&nalgebra::Vector3::new(0.0, -2.0, 0.0))
-                .norm();
+            let force = nalgebra::Vector3::new(0.0, -2.0, 0.0);
+            let one = simulation.sample().position.cross(&force).norm();
             pushed.push((simulation.step_number(), torque / one));
         }
     }
     pushed
-}
-
-fn numbers(pushed: &[(u64, f64)]) -> Vec<u64> {
-    pushed.iter().map(|(step, _)| *step).collect()
 }
 
 #[test]
@@ -235,76 +213,56 @@ fn pushes_counted_in_steps_hold_their_seconds_after_an_edit_of_the_time_step() {
             "scheme = 'report'\ntime_step_s = 0.1\nsteps = 500\n[[push]]\npoint = 'top'\nforce_N = [0, -2, 0]\nfirst_step = {first}\nsteps = {steps}\n"
         )
     };
-    // 200 steps of 0.1 s are 20 s: 4 s of them before the edit, 16 s or 320 steps of 0.05 s after it.
-    let edits = [(40, "'motion.time_step_s' = 0.05")];
-    assert_eq!(
-        numbers(&pushed_steps(&push(1, 200), &[])),
-        (1..=200).collect::<Vec<_>>()
-    );
-    assert_eq!(
-        numbers(&pushed_steps(&push(1, 200), &edits)),
-        (1..=360).collect::<Vec<_>>()
-    );
-    // From 5 s to 7 s, both after the edit.
-    assert_eq!(
-        numbers(&pushed_steps(&push(51, 20), &edits)),
-        (61..=100).collect::<Vec<_>>()
-    );
-    // Over before the edit.
-    assert_eq!(
-        numbers(&pushed_steps(&push(11, 20), &edits)),
-        (11..=30).collect::<Vec<_>>()
-    );
-    // A second edit counts in the seconds of the scenario's own time step too: 12 steps more to 4.6 s, the rest at 0.2 s.
-    let twice = [
-        (40, "'motion.time_step_s' = 0.05"),
-        (52, "'motion.time_step_s' = 0.2"),
-    ];
-    assert_eq!(
-        numbers(&pushed_steps(&push(1, 200), &twice)),
-        (1..=129).collect::<Vec<_>>()
-    );
+    let edits = &[(40, "'motion.time_step_s' = 0.05")][..];
+    let twice = [edits[0], (52, "'motion.time_step_s' = 0.2")];
+    for (first, steps, edits, pushed) in [
+        // 200 steps of 0.1 s are 20 s: 4 s of them before the edit, 16 s or 320 steps of 0.05 s after it.
+        (1, 200, &[][..], 1..=200),
+        (1, 200, edits, 1..=360),
+        // From 5 s to 7 s, both after the edit.
+        (51, 20, edits, 61..=100),
+        // Over before the edit.
+        (11, 20, edits, 11..=30),
+        // A second edit counts in the seconds of the scenario's own time step too: 12 steps more to 4.6 s, the rest at 0.2 s.
+        (1, 200, &twice, 1..=129),
+    ] {
+        let seen = pushed_steps(&push(first, steps), edits);
+        let seen = seen.iter().map(|(step, _)| *step);
+        assert!(seen.eq(pushed), "{first} {steps} {edits:?}");
+    }
 }
 
 #[test]
 fn an_accumulating_push_grows_by_the_clock_after_an_edit_of_the_time_step() {
     let push = "scheme = 'report'\ntime_step_s = 0.1\nsteps = 20\n[[push]]\npoint = 'top'\nforce_N = [0, -2, 0]\nfirst_step = 2\nsteps = 8\naccumulates = true\n";
-    let forces = |edits: &[(u64, &str)]| {
-        pushed_steps(push, edits)
-            .iter()
-            .map(|(_, force)| force.round())
-            .collect::<Vec<_>>()
-    };
-    let plain = [1, 2, 3, 4, 5, 6, 7, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8].map(f64::from);
-    assert_eq!(forces(&[]), plain);
     // From step 4 on every 0.1 s is two steps.
-    let edited = [1, 2, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8, 8, 8, 8, 8, 8, 8].map(f64::from);
-    assert_eq!(forces(&[(4, "'motion.time_step_s' = 0.05")]), edited);
+    let edits = [(4, "'motion.time_step_s' = 0.05")];
+    for (edits, forces) in [
+        (&[][..], "1234567888888888888"),
+        (&edits, "1234455667788888888"),
+    ] {
+        let seen = pushed_steps(push, edits);
+        let seen = seen.iter().map(|(_, force)| force.round().to_string());
+        assert_eq!(seen.collect::<String>(), forces);
+    }
 }
 
 #[test]
 fn a_push_in_steps_is_the_push_in_its_seconds() {
     let run = |window: &str, edits: &[(u64, &str)]| {
-        samples(simulation(
-            &format!("{FINE}\n[[push]]\npoint = 'top'\nforce_N = [3, 2, 1]\n{window}\n"),
-            edits,
-        ))
+        let push = format!("[[push]]\npoint = 'top'\nforce_N = [3, 2, 1]\n{window}");
+        samples(simulation(&format!("{FINE}\n{push}\n"), edits))
     };
     for edits in [
         &[][..],
         &[(30, "'motion.time_step_s' = 0.0007")],
         &[(0, "'motion.time_step_s' = 0.002")],
     ] {
-        let (steps, seconds) = (
-            run("first_step = 21\nsteps = 40", edits),
-            run("from_s = 0.02\nfor_s = 0.04", edits),
-        );
+        let steps = run("first_step = 21\nsteps = 40", edits);
+        let seconds = run("from_s = 0.02\nfor_s = 0.04", edits);
         for (steps, seconds) in steps.iter().zip(&seconds) {
-            assert!(
-                (steps.momentum - seconds.momentum).norm() < 1e-12,
-                "step {}",
-                steps.step
-            );
+            let off = (steps.momentum - seconds.momentum).norm();
+            assert!(off < 1e-12, "step {}", steps.step);
         }
     }
 }
@@ -341,46 +299,27 @@ fn the_energy_drift_leaves_out_the_work_of_pushes_and_of_edits_of_gravity() {
 #[test]
 fn the_azimuth_counts_every_turn_however_few_rows_there_are() {
     let azimuths = |every: u64| -> Vec<(u64, f64)> {
-        let scenario = Document::open("torque-free")
-            .and_then(|document| document.scenario())
-            .unwrap();
-        let mut simulation = Simulation::new(Arc::new(scenario));
+        let mut simulation = Simulation::new(Arc::new(preset("torque-free", &[])));
         let layout = Layout::every(NonZeroU64::new(every).unwrap());
         let scenario = Arc::clone(simulation.scenario());
         let mut csv = CsvWriter::with_layout(Vec::new(), &scenario, layout).unwrap();
-        stream::play(
-            &mut simulation,
-            4000,
-            Some(&mut csv),
-            |_| {},
-            |_, _| ControlFlow::Continue(()),
-        )
-        .unwrap();
+        let watch = |_, _| ControlFlow::Continue(());
+        stream::play(&mut simulation, 4000, Some(&mut csv), |_| {}, watch).unwrap();
         let bytes = csv.finish().unwrap();
         let mut rows = csv::ReaderBuilder::new()
             .comment(Some(b'#'))
             .from_reader(bytes.as_slice());
-        rows.records()
-            .map(|row| {
-                row.map(|row| (row[0].parse().unwrap(), row[12].parse().unwrap()))
-                    .unwrap()
-            })
+        let rows = rows.records().map(Result::unwrap);
+        rows.map(|row| (row[0].parse().unwrap(), row[12].parse().unwrap()))
             .collect()
     };
     let all = azimuths(1);
-    assert!(
-        all.last().unwrap().1.abs() > 3.0 * 360.0,
-        "several turns: {:?}",
-        all.last()
-    );
+    let last = all.last().unwrap().1;
+    assert!(last.abs() > 3.0 * 360.0, "several turns: {last}");
     for every in [7, 97, 1999] {
-        let some = azimuths(every);
-        let expected: Vec<_> = all
-            .iter()
-            .filter(|(step, _)| step % every == 0 || *step == 4000)
-            .copied()
-            .collect();
-        assert_eq!(some, expected, "--every {every}");
+        let mut expected = all.clone();
+        expected.retain(|(step, _)| step % every == 0 || *step == 4000);
+        assert_eq!(azimuths(every), expected, "--every {every}");
     }
 }
 
@@ -389,20 +328,13 @@ fn the_azimuth_counts_every_turn_however_few_rows_there_are() {
 fn an_edit_that_leads_nowhere_is_not_made() {
     let mut simulation = simulation(FINE, &[(50, "'motion.gravity_m_per_s2' = 1e307")]);
     simulation.step_to(50).unwrap();
-    let (sample, drift, motion) = (
-        simulation.sample(),
-        simulation.now().energy_drift(),
-        *simulation.motion(),
-    );
+    let all = |simulation: &Simulation| {
+        let drift = simulation.now().energy_drift();
+        (simulation.sample(), drift, *simulation.motion())
+    };
+    let before = all(&simulation);
     for _ in 0..3 {
         assert_eq!(simulation.step().unwrap_err().step, 51);
-        assert_eq!(
-            (
-                simulation.sample(),
-                simulation.now().energy_drift(),
-                *simulation.motion()
-            ),
-            (sample, drift, motion)
-        );
+        assert_eq!(all(&simulation), before);
     }
 }

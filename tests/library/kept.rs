@@ -1,29 +1,18 @@
 //! The lab as a session keeps it: what was done comes back, however much it was.
 
 use crate::support::desk::Desk;
-use gyrolab::lab::Lab;
+use crate::support::scenarios::{self, preset};
 use gyrolab::lab::command::{self, Command};
-use gyrolab::lab::view::View;
-use gyrolab::lab::view::markers::Marker;
-use gyrolab::lab::view::theme::{Background, Theme};
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::scenario::Document;
 use gyrolab::storage::session::Content;
 use gyrolab::tui::keymap::Key;
-use gyrolab::tui::{panes, screen};
+use gyrolab::tui::screen;
 use std::time::Duration;
-
-fn view(scenario: &Scenario) -> View {
-    let theme = Theme {
-        colour: false,
-        background: Background::Dark,
-    };
-    View::new(scenario, Marker::Braille, theme, &panes::IDS)
-}
 
 /// The lab as `content` has it, arrived where it was left.
 #[track_caller]
 fn resumed(content: &Content) -> Desk {
-    let mut desk = Desk::of(Lab::resumed(content, view).unwrap());
+    let mut desk = Desk::of(scenarios::resumed(content));
     desk.wait(2);
     desk
 }
@@ -58,10 +47,8 @@ fn what_is_kept_grows_with_the_number_of_acts() {
     let length = |count| pushed_backwards(count).lab.content().work.len();
     let (few, more, most) = (length(50), length(100), length(200));
     let (first, second) = (more - few, most - more);
-    assert!(
-        second.abs_diff(2 * first) < first / 10,
-        "{few} {more} {most}"
-    );
+    let is_even = second.abs_diff(2 * first) < first / 10;
+    assert!(is_even, "{few} {more} {most}");
 }
 
 /// The times (s) at which the pushes of the run begin that have been given in the lab, and how many edits there are.
@@ -74,10 +61,8 @@ fn done(desk: &Desk) -> (Vec<f64>, usize) {
 /// A lab that has begun to carry out the commands in `text`, the lines of a `[[do]]` each.
 fn with_script(preset: &str, text: &str) -> Desk {
     let mut desk = Desk::open(preset);
-    let file: String = text
-        .lines()
-        .map(|line| format!("[[do]]\n{line}\n"))
-        .collect();
+    let tables = text.lines().map(|line| format!("[[do]]\n{line}\n"));
+    let file: String = tables.collect();
     let document = Document::parse("demo.toml", &file).unwrap();
     desk.lab.take_commands(command::read(&document).unwrap());
     desk
@@ -107,9 +92,8 @@ fn what_is_shown_and_hidden_comes_back() {
         assert_eq!(back.lab.view().focus, desk.lab.view().focus);
     }
     // What the file hides, and the lab has shown again.
-    let mut document = Document::open("loops").unwrap();
-    document.set("view.hide=['traces']").unwrap();
-    let mut desk = Desk::with("loops", document.scenario().unwrap());
+    let hiding = preset("loops", &["view.hide=['traces']"]);
+    let mut desk = Desk::with("loops", hiding);
     desk.commands("hide = []");
     assert_eq!(resumed(&desk.lab.content()).lab.view().hidden, []);
 }
@@ -130,11 +114,8 @@ fn what_is_left_of_a_script_waits_for_space_and_goes_on() {
     let mut back = resumed(&back.lab.content());
     back.press(&[Key::Char(' ')]);
     seconds(&mut back, 3);
-    assert_eq!(
-        back.step(),
-        200,
-        "it plays until the condition holds, and waits"
-    );
+    // It plays until the condition holds, and waits.
+    assert_eq!(back.step(), 200);
     let mut waiting = resumed(&back.lab.content());
     waiting.press(&[Key::Char(' ')]);
     seconds(&mut waiting, 4);
@@ -150,8 +131,7 @@ fn what_is_left_of_a_script_waits_for_space_and_goes_on() {
 fn steps_under_way_in_a_script_come_back() {
     let mut desk = with_script("method-2", "step = 40000\nundo = 1");
     let content = desk.lab.content();
-    let mut back = Desk::of(Lab::resumed(&content, view).unwrap());
-    back.wait(2);
+    let mut back = resumed(&content);
     assert!(back.step() < 40_000, "it has not been told to go on");
     back.press(&[Key::Char(' ')]);
     assert_eq!(back.step(), 40_000);
@@ -164,10 +144,8 @@ fn esc_drops_what_is_left_of_a_script() {
     let mut desk = with_script("method-2", "wait_s = 5\nstep = 7");
     let mut back = resumed(&desk.lab.content());
     back.press(&[Key::Esc]);
-    assert_eq!(
-        back.lab.notice().as_deref(),
-        Some("stopped: 2 commands are left out")
-    );
+    let words = "stopped: 2 commands are left out";
+    assert_eq!(back.lab.notice().as_deref(), Some(words));
     seconds(&mut back, 10);
     assert_eq!((back.step(), back.lab.script().is_done()), (0, true));
     assert!(resumed(&back.lab.content()).lab.script().is_done());
@@ -176,7 +154,7 @@ fn esc_drops_what_is_left_of_a_script() {
         place: again.place.replace("step = 7", "stap = 7"),
         ..again
     };
-    let back = Lab::resumed(&broken, view).unwrap();
+    let back = scenarios::resumed(&broken);
     assert!(back.script().is_done());
     let told = back.notice().unwrap();
     assert!(told.contains("did you mean step?"), "{told}");
@@ -205,10 +183,8 @@ fn the_pinned_run_comes_back_with_what_was_done_to_it() {
     let mut back = resumed(&content);
     assert!(back.lab.player().is_pinned());
     let is_same = |now: Content| now.place == content.place && **now.work == **content.work;
-    assert!(
-        is_same(back.lab.content()),
-        "it is kept while it is made again"
-    );
+    let made_again = back.lab.content();
+    assert!(is_same(made_again), "it is kept while it is made again");
     await_pinned(&mut back);
     assert!(is_same(back.lab.content()));
     let again = back.lab.player().pinned().unwrap();

@@ -1,68 +1,41 @@
 //! The keys: the footer, the settings behind one key, the search of the help, and every key that a text names.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
+use crate::support::words::has;
 use gyrolab::lab::Mode;
 use gyrolab::tui::keymap::{BINDINGS, Key};
 use gyrolab::tui::panes::PANES;
-use gyrolab::tui::panes::help::found;
+use gyrolab::tui::panes::help::{Entry, found};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 fn footer(stage: &Stage) -> String {
-    stage
-        .picture()
-        .lines()
-        .last()
-        .unwrap_or_default()
-        .to_owned()
+    stage.picture().lines().last().unwrap().to_owned()
+}
+
+#[track_caller]
+fn footer_begins(stage: &Stage, words: &str) {
+    let footer = footer(stage);
+    assert!(footer.starts_with(words), "{footer}");
 }
 
 #[test]
 fn the_footer_has_the_keys_of_a_pane_once_that_was_touched() {
-    const ALL: [&str; 10] = [
-        "space go on",
-        "p push",
-        ". step",
-        "t exact",
-        "e edit",
-        "x export",
-        "f fill",
-        "o open",
-        "? help",
-        "q quit",
-    ];
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true");
-    let first = footer(&stage);
-    assert!(
-        first
-            .starts_with(" space go on . step p push t exact e edit x export f fill o open ? help"),
-        "{first}"
-    );
-    for word in ALL {
-        assert!(first.contains(word), "{word}: {first}");
-    }
+    let first = " space go on . step p push t exact e edit x export f fill o open ? help";
+    footer_begins(&stage, first);
+    has(footer(&stage), "q quit");
     stage.key(Key::Left);
     stage.wait(6.0);
-    let touched = footer(&stage);
-    assert!(
-        touched.starts_with(" Left cursor W zoom [ pan"),
-        "{touched}"
-    );
-    assert!(
-        touched.contains(" space . p t e x f o ? help q quit"),
-        "{touched}"
-    );
+    footer_begins(&stage, " Left cursor W zoom [ pan");
+    has(footer(&stage), " space . p t e x f o ? help q quit");
     // From the values, back to the run.
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("e");
-    assert!(footer(&stage).starts_with(" / find"), "{}", footer(&stage));
+    footer_begins(&stage, " / find");
     stage.key(Key::Esc);
-    assert!(
-        footer(&stage).starts_with(" space pause . step"),
-        "{}",
-        footer(&stage)
-    );
+    footer_begins(&stage, " space pause . step");
 }
 
 #[test]
@@ -80,29 +53,17 @@ fn one_dialog_holds_the_settings_with_their_values() {
     ] {
         stage.shows(words);
     }
-    stage
-        .press("↓↓↓→")
-        .shows("half-block")
-        .press("x←←")
-        .shows("ascii")
-        .shows_no("half-block");
-    stage
-        .press("↓↓↓")
-        .press("\n")
-        .shows("30 at most")
-        .press("\n")
-        .shows("2 at most")
-        .press("←")
-        .shows("30 at most");
+    stage.press("↓↓↓→").shows("half-block").press("x←←");
+    stage.shows("ascii").shows_no("half-block");
+    stage.press("↓↓↓").press("\n").shows("30 at most");
+    stage.press("\n").shows("2 at most").press("←");
+    stage.shows("30 at most");
     assert_eq!(stage.lab.view().fps, 30);
     stage.lab.set_fps(12);
     stage.press("→").shows("15 at most");
     stage.lab.set_fps(12);
-    stage
-        .press("←")
-        .shows("10 at most")
-        .press("\u{1b}")
-        .shows_no("at most");
+    stage.press("←").shows("10 at most").press("\u{1b}");
+    stage.shows_no("at most");
 }
 
 #[test]
@@ -141,15 +102,9 @@ fn the_help_finds_keys_by_words_that_are_not_theirs() {
         ("kick", "p"),
         ("screenshot", "X"),
     ] {
-        let found = found(search);
-        let names: Vec<_> = found
-            .iter()
-            .map(gyrolab::tui::panes::help::Entry::name)
-            .collect();
-        assert!(
-            names.iter().any(|name| name.starts_with(key)),
-            "{search}: {names:?}"
-        );
+        let names: Vec<_> = found(search).iter().map(Entry::name).collect();
+        let is_found = names.iter().any(|name| name.starts_with(key));
+        assert!(is_found, "{search}: {names:?}");
     }
 }
 
@@ -175,9 +130,8 @@ const SYMBOLS: [&str; 2] = ["the arrow F shows", "R turns every"];
 
 /// The keys that `text` names: in backticks or parentheses, before a verb or a colon, or in the first column of a list.
 fn named(text: &str) -> Vec<String> {
-    let text = SYMBOLS
-        .iter()
-        .fold(text.to_owned(), |text, symbol| text.replace(symbol, ""));
+    let without = |text: String, symbol: &&str| text.replace(symbol, "");
+    let text = SYMBOLS.iter().fold(text.to_owned(), without);
     let is_letter = |word: &str| word.len() == 1 && word.chars().all(|c| c.is_ascii_alphabetic());
     let words: Vec<_> = text.split_whitespace().collect();
     let mut named = Vec::new();
@@ -186,9 +140,8 @@ fn named(text: &str) -> Vec<String> {
             .trim_end_matches(['.', ',', ';', ':', ')'])
             .trim_start_matches('(');
         let bare = whole.trim_matches('`');
-        let next = words
-            .get(at + 1)
-            .map_or("", |next| next.trim_matches([',', '.', ';']));
+        let next = words.get(at + 1).copied().unwrap_or_default();
+        let next = next.trim_matches([',', '.', ';']);
         let is_named = whole == format!("`{bare}`")
             || word.trim_end_matches(['.', ',', ';', ':']) == format!("({bare})")
             || word.ends_with(':')
@@ -197,21 +150,16 @@ fn named(text: &str) -> Vec<String> {
             named.push(bare.to_owned());
         }
     }
-    let listed = text
-        .lines()
-        .filter_map(|line| line.trim_start().split_once("    "));
-    named.extend(
-        listed
-            .map(|(key, _)| key.to_owned())
-            .filter(|key| is_letter(key)),
-    );
+    let rows = text.lines().map(str::trim_start);
+    let listed = rows.filter_map(|line| Some(line.split_once("    ")?.0));
+    let listed = listed.filter(|key| is_letter(key));
+    named.extend(listed.map(str::to_owned));
     named
 }
 
 fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
+    let entries = fs::read_dir(folder).unwrap();
+    let entries = entries.map(|entry| entry.unwrap().path());
     let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
     let is_wanted = |path: &PathBuf| path.extension().is_some_and(|end| end == extension);
     let below = folders
@@ -223,16 +171,12 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
 /// The texts between quotation marks of `code`.
 fn literals(code: &str) -> Vec<String> {
     let code = code.split("#[cfg(test)]").next().unwrap_or_default();
-    let lines = code
-        .lines()
-        .filter(|line| !line.trim_start().starts_with("//"));
+    let is_code = |line: &&str| !line.trim_start().starts_with("//");
+    let lines = code.lines().filter(is_code);
     let code = lines.collect::<Vec<_>>().join("\n");
     let code = code.replace("\\\"", "'").replace("'\"'", "");
-    code.split('"')
-        .skip(1)
-        .step_by(2)
-        .map(str::to_owned)
-        .collect()
+    let literals = code.split('"').skip(1).step_by(2);
+    literals.map(str::to_owned).collect()
 }
 
 #[test]
@@ -247,11 +191,8 @@ fn every_key_that_a_text_names_is_a_key() {
             } else {
                 vec![read(&path)]
             };
-            texts.extend(
-                parts
-                    .into_iter()
-                    .map(|part| (path.display().to_string(), part)),
-            );
+            let name = path.display().to_string();
+            texts.extend(parts.into_iter().map(|part| (name.clone(), part)));
         }
     };
     add("src/cli/topics", "txt");
@@ -267,8 +208,6 @@ fn every_key_that_a_text_names_is_a_key() {
         }
     }
     assert!(count > 200, "{count}");
-    assert_eq!(
-        named("H hides it, (M) too; `k`: no; B: no"),
-        ["H", "M", "k", "B"]
-    );
+    let text = "H hides it, (M) too; `k`: no; B: no";
+    assert_eq!(named(text), ["H", "M", "k", "B"]);
 }

@@ -1,8 +1,8 @@
 //! Lessons that are taken beside the lab, from the keys to the picture.
 
+use crate::support::scenarios::resumed;
 use crate::support::stage::{LARGE, SMALL, Stage};
-use gyrolab::lab::Lab;
-use gyrolab::lab::view::markers::Marker;
+use crate::support::words::has;
 use gyrolab::lab::view::{Pane, Part};
 use gyrolab::teach::{Answer, Class, reading, shipped};
 use std::fs;
@@ -84,13 +84,18 @@ You were at {mine:.1} s.
 
 /// A stage with that lesson in a file, open on its page `page`.
 fn taken(page: usize) -> (Stage, tempfile::TempDir, String) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("swing.md");
-    fs::write(&path, LESSON).unwrap();
-    let name = path.display().to_string();
-    let mut stage = Stage::open("method-2", &[], SMALL);
+    let (mut stage, folder, name) = with(LESSON);
     stage.lesson(&name, page).arrive();
     (stage, folder, name)
+}
+
+/// A stage with a lesson of that text in a file: its folder and its path.
+fn with(text: &str) -> (Stage, tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("swing.md");
+    fs::write(&path, text).unwrap();
+    let name = path.display().to_string();
+    (Stage::open("method-2", &[], SMALL), folder, name)
 }
 
 #[test]
@@ -131,10 +136,8 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
 fn an_open_prediction_can_be_left_open() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("nn").arrive().shows("2 of 4");
-    stage
-        .shows("It is 5.0.")
-        .shows_no("You said: it")
-        .shows("You predicted nothing: page 1 asks");
+    stage.shows("It is 5.0.").shows_no("You said: it");
+    stage.shows("You predicted nothing: page 1 asks");
     // Where nothing else is said, a blank stands for the prediction.
     stage.shows("You said: ….");
 }
@@ -156,10 +159,8 @@ fn play_is_free_and_one_key_leads_back() {
 fn a_task_is_done_by_hand_or_shown() {
     let (mut stage, _folder, _) = taken(3);
     stage.shows("[ ] not yet: be at 4 s").shows_no("Hint");
-    stage
-        .press("h")
-        .shows("Hint: g goes to a time.")
-        .shows("[ ] not yet");
+    stage.press("h").shows("Hint: g goes to a time.");
+    stage.shows("[ ] not yet");
     stage.press("g3.95 s\n").arrive();
     stage.shows("[x] done").shows_no("Hint");
     stage.press("n").shows("You were at 4.0 s");
@@ -176,8 +177,7 @@ fn the_session_keeps_page_and_predictions() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("↓\n").press("nn").arrive();
     let content = stage.lab.content();
-    let view = |scenario: &_| crate::support::scenarios::view(scenario, Marker::Braille, false);
-    let mut lab = Lab::resumed(&content, view).unwrap();
+    let mut lab = resumed(&content);
     let (class, taken) = Class::resumed(&mut lab);
     taken.unwrap();
     let place = &class.taken().unwrap().place;
@@ -194,8 +194,7 @@ fn a_lesson_that_is_gone_leaves_the_lab_and_what_was_predicted() {
     stage.press("↓\n");
     let content = stage.lab.content();
     drop(folder);
-    let view = |scenario: &_| crate::support::scenarios::view(scenario, Marker::Braille, false);
-    let mut lab = Lab::resumed(&content, view).unwrap();
+    let mut lab = resumed(&content);
     let (_, taken) = Class::resumed(&mut lab);
     assert!(taken.unwrap_err().contains("swing.md"));
     let kept = lab.lessons.as_ref().unwrap();
@@ -227,10 +226,8 @@ fn a_file_that_could_keep_the_lab_waiting_is_refused() {
     assert!(refusal.contains("is not a regular file"), "{refusal}");
     fs::remove_file(&name).unwrap();
     fs::rename(&fifo, &name).unwrap();
-    stage
-        .wait(2.0)
-        .shows("the page stays as it was")
-        .shows("2 of 4");
+    stage.wait(2.0).shows("the page stays as it was");
+    stage.shows("2 of 4");
 }
 
 #[test]
@@ -259,17 +256,9 @@ x
 
 x
 "#;
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("long.md");
-    fs::write(&path, text).unwrap();
-    let mut stage = Stage::open("method-2", &[], SMALL);
-    let named = path.display().to_string();
-    let opened = stage.class.open(&named, Some(2), &mut stage.lab);
-    let refusal = opened.unwrap_err();
-    assert!(
-        refusal.contains("should open a run of its own"),
-        "{refusal}"
-    );
+    let (mut stage, _folder, name) = with(text);
+    let opened = stage.class.open(&name, Some(2), &mut stage.lab);
+    has(opened.unwrap_err(), "should open a run of its own");
     assert!(stage.lab.script().is_done());
 }
 
@@ -303,13 +292,10 @@ fn the_teacher_has_notes_the_next_page_and_a_clock() {
     let (mut stage, _folder, _) = taken(1);
     stage.size = LARGE;
     stage.shows_no("defended");
-    stage
-        .press("\u{e}")
-        .wait(61.0)
-        .shows("For the class: 1:01 since the beginning");
-    stage
-        .shows("| Let two answers be defended.")
-        .shows("Next page: Compare");
+    stage.press("\u{e}").wait(61.0);
+    stage.shows("For the class: 1:01 since the beginning");
+    stage.shows("| Let two answers be defended.");
+    stage.shows("Next page: Compare");
     stage.press("\u{e}").shows("left of 5 min");
     stage.press("\u{e}").shows_no("left of").shows("defended");
     stage.press("\u{e}").shows_no("defended");
@@ -318,12 +304,9 @@ fn the_teacher_has_notes_the_next_page_and_a_clock() {
 #[test]
 fn a_long_page_begins_at_its_top_and_scrolls() {
     let long = "\n\nOne more paragraph stands here.".repeat(30);
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("long.md");
     let text = format!("# Long\n\n## Page\n\n{long}\n\n## Two\n\nx\n\n## Three\n\nLast words.\n");
-    fs::write(&path, text).unwrap();
-    let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.lesson(&path.display().to_string(), 1);
+    let (mut stage, _folder, name) = with(&text);
+    stage.lesson(&name, 1);
     stage.shows("│Page").shows("PgDn: more");
     for _ in 0..20 {
         stage.key(gyrolab::tui::keymap::Key::PageDown);
@@ -371,11 +354,8 @@ x
 
 x
 "#;
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("step.md");
-    fs::write(&path, text).unwrap();
-    let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.lesson(&path.display().to_string(), 1).arrive();
+    let (mut stage, _folder, name) = with(text);
+    stage.lesson(&name, 1).arrive();
     stage.shows("1 of 7").shows(". next phase");
     assert_eq!(stage.focus(), "lesson");
     stage.press("..").shows("3 of 7");

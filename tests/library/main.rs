@@ -1,6 +1,8 @@
 //! The library: physics, files, runs, what they are worth, and the lab without a terminal.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+// What a text is held against may be borrowed or not.
+#![allow(clippy::needless_borrows_for_generic_args)]
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -52,37 +52,12 @@ enum Accident {
 }
 
 fn number() -> impl Strategy<Value = String> {
-    let strange = [
-        "0",
-        "-0.0",
-        "-1",
-        "1",
-        "2",
-        "1e308",
-        "-1e308",
-        "1e-308",
-        "5e-324",
-        "nan",
-        "inf",
-        "-inf",
-        "1e154",
-        "1e-154",
-        "1e100",
-        "1e-100",
-        "100000",
-        "9223372036854775807",
-        "-9223372036854775808",
-        "9223372036854775808",
-        "0x10",
-        "1_000",
-        "1e3",
-        "[]",
-        "{}",
-        "true",
-        "\"text\"",
-    ];
+    let strange = "0 -0.0 -1 1 2 1e308 -1e308 1e-308 5e-324 nan inf -inf 1e154 1e-154 1e100 \
+        1e-100 100000 9223372036854775807 -9223372036854775808 9223372036854775808 0x10 1_000 \
+        1e3 [] {} true \"text\"";
+    let strange: Vec<_> = strange.split(' ').collect();
     prop_oneof![
-        prop::sample::select(strange.to_vec()).prop_map(str::to_owned),
+        prop::sample::select(strange).prop_map(str::to_owned),
         any::<f64>().prop_map(|number| format!("{number:?}")),
         any::<i64>().prop_map(|number| number.to_string()),
         (-9.0..9.0f64, -20..20).prop_map(|(digits, power)| format!("{digits}e{power}")),
@@ -175,11 +150,9 @@ fn happen(text: &mut String, accident: &Accident) {
             }
         }
         Accident::Scheme(name) => {
+            let key = |name: &str| format!("scheme = \"{name}\"");
             for known in scheme::names() {
-                *text = text.replace(
-                    &format!("scheme = \"{known}\""),
-                    &format!("scheme = \"{name}\""),
-                );
+                *text = text.replace(&key(known), &key(name));
             }
         }
         Accident::Swap(..) | Accident::Double(_) => {}
@@ -188,22 +161,17 @@ fn happen(text: &mut String, accident: &Accident) {
 
 fn mangled() -> impl Strategy<Value = String> {
     let preset = prop::sample::select(PRESETS).prop_map(|preset| preset.text);
-    (
-        preset,
-        any::<bool>(),
-        prop::collection::vec(accident(), 1..5),
-    )
-        .prop_map(|(preset, more, accidents)| {
-            let mut text = if more {
-                with_more(preset)
-            } else {
-                preset.to_owned()
-            };
-            accidents
-                .iter()
-                .for_each(|accident| happen(&mut text, accident));
-            text
-        })
+    let text = prop_oneof![
+        preset.clone().prop_map(str::to_owned),
+        preset.prop_map(with_more)
+    ];
+    let accidents = prop::collection::vec(accident(), 1..5);
+    (text, accidents).prop_map(|(mut text, accidents)| {
+        for accident in &accidents {
+            happen(&mut text, accident);
+        }
+        text
+    })
 }
 
 fn load(text: &str) -> Result<Scenario, Problems> {
@@ -218,12 +186,8 @@ fn first_samples(scenario: Scenario, steps: u64) -> Vec<Sample> {
     let edited = scenario.edits.iter().map(|edit| edit.motion);
     let mut motions = std::iter::once(scenario.motion).chain(edited);
     let is_integrated = motions.any(|motion| motion.scheme.name == "exact");
-    let end = scenario.steps.min(steps);
-    let end = if is_integrated {
-        end.min(affordable)
-    } else {
-        end
-    };
+    let most = if is_integrated { affordable } else { steps };
+    let end = scenario.steps.min(steps).min(most);
     let mut simulation = Simulation::new(Arc::new(scenario));
     let mut samples = vec![simulation.sample()];
     while simulation.step_number() < end && simulation.step().is_ok() {
@@ -235,13 +199,9 @@ fn first_samples(scenario: Scenario, steps: u64) -> Vec<Sample> {
 fn check_samples(scenario: &Scenario, samples: &[Sample]) -> Result<(), TestCaseError> {
     for sample in samples {
         for column in COLUMNS {
+            let (step, name) = (sample.step, column.name);
             let number = column.value(scenario, sample);
-            prop_assert!(
-                number.is_finite(),
-                "step {}: {} = {number}",
-                sample.step,
-                column.name
-            );
+            prop_assert!(number.is_finite(), "step {step}: {name} = {number}");
         }
     }
     Ok(())
@@ -250,14 +210,9 @@ fn check_samples(scenario: &Scenario, samples: &[Sample]) -> Result<(), TestCase
 fn check_refusal(problems: &Problems) -> Result<(), TestCaseError> {
     let message = problems.to_string();
     prop_assert!(!problems.list.is_empty());
-    prop_assert!(
-        message.lines().all(|line| !line.trim().is_empty()),
-        "{message:?}"
-    );
-    prop_assert!(
-        !message.chars().any(|c| c != '\n' && is_steering(c)),
-        "{message:?}"
-    );
+    let is_full = message.lines().all(|line| !line.trim().is_empty());
+    let is_steering = message.chars().any(|c| c != '\n' && is_steering(c));
+    prop_assert!(is_full && !is_steering, "{message:?}");
     prop_assert!(message.contains("mangled.toml"), "{message:?}");
     Ok(())
 }
@@ -283,9 +238,8 @@ fn check_round_trip(scenario: &Scenario, samples: &[Sample]) -> Result<(), TestC
 
 fn bits(scenario: &Scenario, samples: &[Sample]) -> Vec<u64> {
     let of = |sample| {
-        COLUMNS
-            .iter()
-            .map(move |column| column.value(scenario, sample).to_bits())
+        let columns = COLUMNS.iter();
+        columns.map(move |column| column.value(scenario, sample).to_bits())
     };
     samples.iter().flat_map(of).collect()
 }

@@ -1,14 +1,15 @@
 //! Measured data beside a run in the lab, and drawn with runs on paper.
 
+use crate::figures::{least, most};
 use crate::support::desk::Desk;
-use crate::support::scenarios::{preset, view};
+use crate::support::scenarios::{preset, resumed};
 use crate::support::stage::{LARGE, SMALL, Stage};
+use crate::support::words::{has, has_all};
 use gyrolab::figure::kind::Kind;
 use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
-use gyrolab::figure::{Item, Paint};
+use gyrolab::figure::{Item, Paint, Point};
 use gyrolab::lab::Lab;
 use gyrolab::lab::measured::Sum;
-use gyrolab::lab::view::markers::Marker;
 use gyrolab::measured::{self, Measured, Quantity};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
@@ -95,10 +96,8 @@ fn the_numbers_are_those_of_the_residuals() {
     let mut desk = Desk::with("method-2", scenario);
     desk.commands(&format!("measured = '{}'\ngo_to = 200", path.display()));
     let sum = sum(&desk.lab);
-    assert!(
-        (sum.chi_squared - (9.0 + 19.0 * 0.25)).abs() < 1e-9,
-        "{sum:?}"
-    );
+    let off = sum.chi_squared - (9.0 + 19.0 * 0.25);
+    assert!(off.abs() < 1e-9, "{sum:?}");
     let largest = sum.largest.unwrap();
     assert!((largest.sigmas - 3.0).abs() < 1e-9 && (largest.time_s - 7.0).abs() < 1e-9);
 }
@@ -163,10 +162,7 @@ fn a_table_of_runs_and_what_is_outside_of_the_folder_are_refused() {
         desk.carry_out(&command[0]).unwrap_err().to_string()
     };
     let why = refused(&mut desk, "heidelberg-nutation");
-    assert!(
-        why.contains("table of runs") && why.contains("gyrolab fit"),
-        "{why}"
-    );
+    has_all(&why, ["table of runs", "gyrolab fit"]);
     let (folder, path) = file("t_s,x_m\n0,1\n");
     let inside = folder.path().join("inside");
     fs::create_dir(&inside).unwrap();
@@ -189,19 +185,15 @@ fn a_session_keeps_them_by_name() {
         path.display()
     ));
     let content = desk.lab.content();
-    let resumed = || Lab::resumed(&content, |scenario| view(scenario, Marker::Braille, false));
-    let mut again = Desk::of(resumed().unwrap());
+    let mut again = Desk::of(resumed(&content));
     again.wait(3);
     assert_eq!(sum(&again.lab).compared, 20);
     assert!(again.lab.view().residuals);
     drop(folder);
-    let without = resumed().unwrap();
+    let without = resumed(&content);
     assert!(without.player().measured().is_none());
     let notice = without.notice().unwrap();
-    assert!(
-        notice.contains("bench.csv") && notice.contains("no such file"),
-        "{notice}"
-    );
+    has_all(&notice, ["bench.csv", "no such file"]);
 }
 
 #[test]
@@ -211,15 +203,11 @@ fn a_scenario_names_the_data_beside_its_run() {
     desk.lab.begin_with_measured(None).unwrap();
     assert_eq!(sum(&desk.lab).points, 7);
     desk.commands("open = 'cusps'");
-    assert!(
-        desk.lab.player().measured().is_none(),
-        "they were of the other run"
-    );
+    // They were of the other run.
+    assert!(desk.lab.player().measured().is_none());
     desk.commands("measured = 'heidelberg-spin-decay'\nopen = 'loops'");
-    assert!(
-        desk.lab.player().measured().is_some(),
-        "they were chosen by hand"
-    );
+    // They were chosen by hand.
+    assert!(desk.lab.player().measured().is_some());
 }
 
 fn figure(kind: Option<&str>, text: &str) -> Figure {
@@ -277,18 +265,14 @@ fn what_the_run_is_known_to_say_is_not_computed_again() {
 fn rings(figure: &Figure) -> Vec<[f64; 2]> {
     let middle = |item: &Item| {
         let points: Vec<_> = item.path.points().collect();
-        let mean = |part: &dyn Fn(usize) -> f64| {
-            let all = (0..points.len()).map(part);
-            0.5 * (all.clone().fold(f64::INFINITY, f64::min)
-                + all.fold(f64::NEG_INFINITY, f64::max))
+        let ends = |part: fn(&Point) -> f64| {
+            let all = || points.iter().map(part);
+            (least(all()), most(all()))
         };
-        let wide = points
-            .iter()
-            .map(|at| at.x)
-            .fold(f64::NEG_INFINITY, f64::max)
-            - points.iter().map(|at| at.x).fold(f64::INFINITY, f64::min);
-        let is_ring = matches!(item.paint, Paint::Fill(color) if color.0 == [255; 3]) && wide < 4.0;
-        is_ring.then(|| [mean(&|i| points[i].x), mean(&|i| points[i].y)])
+        let (x, y) = (ends(|at| at.x), ends(|at| at.y));
+        let is_white = matches!(item.paint, Paint::Fill(color) if color.0 == [255; 3]);
+        let is_ring = is_white && x.1 - x.0 < 4.0;
+        is_ring.then(|| [x, y].map(|(low, high)| 0.5 * (low + high)))
     };
     let mut rings: Vec<_> = figure.scene.items.iter().filter_map(middle).collect();
     rings.pop();
@@ -313,11 +297,8 @@ fn points_are_drawn_at_their_places_on_paper() {
     let above = rings(&figure(Some("above"), &text));
     assert_eq!(above.len(), 20);
     for part in [0, 1] {
-        let values: Vec<_> = series.curves[part]
-            .points
-            .iter()
-            .map(|point| point.value)
-            .collect();
+        let points = series.curves[part].points.iter();
+        let values: Vec<_> = points.map(|point| point.value).collect();
         is_in_proportion(&values, &above, part);
     }
     let residuals = rings(&figure(Some("residuals"), &text));
@@ -328,20 +309,15 @@ fn points_are_drawn_at_their_places_on_paper() {
 /// Whether the numbers `part` of `places` stand in proportion to `values`: up where that is 1.
 #[track_caller]
 fn is_in_proportion(values: &[f64], places: &[[f64; 2]], part: usize) {
-    let least = (0..values.len())
-        .min_by(|a, b| values[*a].total_cmp(&values[*b]))
-        .unwrap();
-    let most = (0..values.len())
-        .max_by(|a, b| values[*a].total_cmp(&values[*b]))
-        .unwrap();
+    let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+    let least = (0..values.len()).min_by(by_value).unwrap();
+    let most = (0..values.len()).max_by(by_value).unwrap();
     let scale = (places[most][part] - places[least][part]) / (values[most] - values[least]);
     assert!(if part == 0 { scale > 0.0 } else { scale < 0.0 }, "{scale}");
     for (value, place) in values.iter().zip(places) {
         let wanted = places[least][part] + scale * (value - values[least]);
-        assert!(
-            (place[part] - wanted).abs() < 0.02,
-            "{value} at {place:?}, not {wanted}"
-        );
+        let off = (place[part] - wanted).abs();
+        assert!(off < 0.02, "{value} at {place:?}, not {wanted}");
     }
 }
 
@@ -364,29 +340,18 @@ fn a_point_without_uncertainty_has_no_bar() {
 #[test]
 fn a_figure_that_shows_no_point_says_so() {
     let warned = |kind: &str| {
-        figure(Some(kind), "t_s,spin_rpm\n0,5\n1,6\n")
-            .warnings
-            .into_iter()
-            .filter(|told| !told.contains("do not believe"))
-            .collect::<Vec<_>>()
-            .join("; ")
+        let mut told = figure(Some(kind), "t_s,spin_rpm\n0,5\n1,6\n").warnings;
+        told.retain(|told| !told.contains("do not believe"));
+        told.join("; ")
     };
-    assert!(
-        warned("traces").contains("--kind spin_rpm"),
-        "{}",
-        warned("traces")
-    );
-    assert!(warned("above").contains("tilt_deg and azimuth_deg"));
-    assert!(warned("3d").contains("not drawn in space"));
+    has(warned("traces"), "--kind spin_rpm");
+    has(warned("above"), "tilt_deg and azimuth_deg");
+    has(warned("3d"), "not drawn in space");
     assert_eq!(warned("spin_rpm"), "");
     // The run has 20 s.
     let longer = figure(None, "t_s,x_m\n5,0.5\n25,0.4\n").warnings;
-    assert_eq!(
-        longer[1..],
-        [
-            "the run ends at 20 s, before the last point of bench.csv at 25 s: --duration 25 draws the run up to there"
-        ]
-    );
+    let words = "the run ends at 20 s, before the last point of bench.csv at 25 s: --duration 25 draws the run up to there";
+    assert_eq!(longer[1..], [words]);
 }
 
 #[test]

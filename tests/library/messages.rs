@@ -1,15 +1,15 @@
 //! What the lab and the summary say: sentences that a newcomer took for wrong or could not make sense of.
 
 use crate::support::desk::Desk;
-use crate::support::scenarios::{preset, view};
+use crate::support::scenarios::{preset, resumed};
 use crate::support::stage::{LARGE, SMALL, Stage};
+use crate::support::words::{has, has_all};
 use gyrolab::analysis::Monitor;
 use gyrolab::analysis::health::Health;
 use gyrolab::analysis::remarks::{Remark, remarks};
-use gyrolab::lab::view::markers::Marker;
-use gyrolab::lab::{Lab, command};
+use gyrolab::lab::command;
 use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::scenario::Document;
 use gyrolab::tui::keymap::Key;
 use std::sync::Arc;
 use std::time::Duration;
@@ -25,6 +25,13 @@ fn health(scenario: &str, set: &[&str]) -> Health {
     monitor.health(simulation.now())
 }
 
+/// Waits until the search for advice is over.
+fn await_advice(stage: &Stage) {
+    while stage.lab.player().is_seeking_advice() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 fn said(remarks: &[Remark]) -> String {
     let long: Vec<_> = remarks.iter().map(|remark| remark.long.as_str()).collect();
     long.join(" · ")
@@ -35,10 +42,7 @@ fn a_damping_that_spoils_a_run_is_seen_in_the_line_about_the_numbers() {
     let health = health("cusps", &["motion.scheme=report"]);
     let remarks = remarks(&health, None);
     let line = said(&remarks);
-    assert!(
-        line.contains("nutation damped by 0.00441 % a step"),
-        "{line}"
-    );
+    has(&line, "nutation damped by 0.00441 % a step");
     assert!(!line.contains("as it should"), "{line}");
     let damped = remarks.iter().find(|one| one.long.contains("damped"));
     assert!(damped.is_some_and(|remark| remark.warns), "{line}");
@@ -46,27 +50,17 @@ fn a_damping_that_spoils_a_run_is_seen_in_the_line_about_the_numbers() {
 
 #[test]
 fn what_is_right_about_a_good_run_is_said() {
-    let line = said(&remarks(
-        &health(
-            "cusps",
-            &["motion.scheme=report", "motion.time_step_s=0.00005"],
-        ),
-        None,
-    ));
-    assert!(
-        line.contains("as far as it should") && line.contains("nutation ×1.0000 a step"),
-        "{line}"
-    );
+    let set = ["motion.scheme=report", "motion.time_step_s=0.00005"];
+    let line = said(&remarks(&health("cusps", &set), None));
+    has_all(&line, ["as far as it should", "nutation ×1.0000 a step"]);
 }
 
 #[test]
 fn a_nutation_that_is_lost_does_not_contradict_the_first_words() {
     let health = health("fast-top", &["motion.scheme=report"]);
     let sentence = health.sentence(None);
-    assert!(
-        sentence.starts_with("The traced point holds, and the nutation does not"),
-        "{sentence}"
-    );
+    let begin = "The traced point holds, and the nutation does not";
+    assert!(sentence.starts_with(begin), "{sentence}");
 }
 
 #[test]
@@ -94,11 +88,8 @@ fn a_wheel_that_is_strobed_is_no_fault_of_the_run() {
     let remarks = remarks(&good, None);
     assert_eq!(remarks[0].short, "0.109 turns a step");
     assert!(remarks.iter().all(|remark| !remark.warns), "{remarks:?}");
-    let last = remarks.last().map(|remark| remark.long.as_str());
-    assert_eq!(
-        last,
-        Some("the body's picture is strobed, the motion is not")
-    );
+    let words = "the body's picture is strobed, the motion is not";
+    assert_eq!(remarks.last().unwrap().long, words);
     for size in [SMALL, LARGE] {
         Stage::open("method-2", &["motion.time_step_s=0.0022"], size).shows_no(": strobed");
     }
@@ -118,7 +109,7 @@ fn numbers_that_are_no_longer_finite_are_told_with_what_helps() {
         }
         stage.commands("go_to = 1").wait(0.1);
         while is_advised && stage.lab.player().advice().is_none() {
-            std::thread::sleep(std::time::Duration::from_millis(5));
+            std::thread::sleep(Duration::from_millis(5));
             stage.wait(0.0);
         }
         stage.commands("go_to = 20").wait(1.0);
@@ -142,12 +133,9 @@ fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
     stage.commands("pause = true");
     stage.commands("go_to = 2000").wait(0.1);
     stage.shows("no longer finite at step 3: a time step or scheme that mends it is looked for");
-    while stage.lab.player().is_seeking_advice() {
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
-    stage
-        .wait(0.1)
-        .shows("no longer finite at step 3: a: srkn11b, dt 0.01 s mends it");
+    await_advice(&stage);
+    stage.wait(0.1);
+    stage.shows("no longer finite at step 3: a: srkn11b, dt 0.01 s mends it");
 }
 
 /// A run that stands still is not read again by itself: the search has to begin as soon as it may.
@@ -158,9 +146,7 @@ fn advice_is_looked_for_where_the_lab_opens_paused() {
     stage.lab.begin_at(300).unwrap();
     stage.lab.take_advice();
     assert!(stage.lab.player().is_seeking_advice());
-    while stage.lab.player().is_seeking_advice() {
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
+    await_advice(&stage);
     stage.wait(0.1).shows("a: dt 0.002 s mends it");
 }
 
@@ -169,9 +155,7 @@ fn a_time_step_that_is_in_force_mends_from_the_start() {
     let mut stage = Stage::open("wobble-push", &[], LARGE);
     stage.commands("pause = true\ngo_to = 300\nset = { 'motion.time_step_s' = 0.002 }");
     stage.lab.take_advice();
-    while stage.lab.player().is_seeking_advice() {
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
+    await_advice(&stage);
     stage.wait(0.1).shows("dt 0.002 s from the start mends it");
 }
 
@@ -182,12 +166,11 @@ fn a_figure_of_the_lab_speaks_of_its_keys() {
     stage.lab.files_mut().work_in(folder.path());
     stage.commands("pause = true\ngo_to = 900\nfigure = 'run.svg'");
     while stage.lab.files().is_exporting() {
-        std::thread::sleep(std::time::Duration::from_millis(5));
+        std::thread::sleep(Duration::from_millis(5));
         stage.wait(0.1);
     }
-    stage
-        .shows("off the exact motion; t, then X draws")
-        .shows_no("--exact");
+    stage.shows("off the exact motion; t, then X draws");
+    stage.shows_no("--exact");
 }
 
 #[test]
@@ -207,10 +190,7 @@ fn what_a_broken_scheme_leaves_is_not_shown_as_a_place() {
     stage.shows("rk4 breaks down: no rotation");
     let health = health("wobble-push", &["motion.scheme=rk4"]);
     let sentence = health.sentence(None);
-    assert!(
-        sentence.contains("the scheme rk4 breaks down"),
-        "{sentence}"
-    );
+    has(&sentence, "the scheme rk4 breaks down");
 }
 
 #[test]
@@ -231,8 +211,7 @@ fn space_pauses_commands_and_lets_them_go_on() {
     assert_eq!((desk.step(), desk.lab.script().count()), (paused, 2));
     // A session that is kept meanwhile has all of them.
     let content = desk.lab.content();
-    let view = |scenario: &Scenario| view(scenario, Marker::Braille, true);
-    let back = Lab::resumed(&content, view).unwrap();
+    let back = resumed(&content);
     assert_eq!(back.script().count(), 2);
     desk.press(&[Key::Char(' ')]);
     (0..40).for_each(|_| desk.pass(Duration::from_secs(1)));
@@ -290,19 +269,16 @@ fn undo_names_the_run_to_which_it_returns() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.commands("pause = true\ngo_to = 10\nset = { 'start.tilt_deg' = 30 }");
     stage.press("u");
-    assert_eq!(
-        stage.lab.notice().as_deref(),
-        Some("undone: this is the run before; U brings it again")
-    );
+    let words = "undone: this is the run before; U brings it again";
+    assert_eq!(stage.lab.notice().as_deref(), Some(words));
 }
 
 #[test]
 fn a_wrong_number_in_the_export_is_told_once() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.commands("pause = true\ngo_to = 10");
-    stage
-        .press("xabc")
-        .shows("without .csv: gyrolab run takes it as ./NAME only");
+    stage.press("xabc");
+    stage.shows("without .csv: gyrolab run takes it as ./NAME only");
     stage.press("\t0\n");
     let picture = stage.picture();
     assert_eq!(picture.matches("every must be").count(), 1, "{picture}");

@@ -1,6 +1,7 @@
 //! Pictures of single panes: the previous run, pushes, edits, parameters and forms.
 
 use crate::support::scenarios::{preset, view as seen};
+use crate::support::words::has_all;
 use gyrolab::lab::action::FieldEdit;
 use gyrolab::lab::form::{Field, Form};
 use gyrolab::lab::values::list::ValueList;
@@ -29,6 +30,10 @@ use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use std::sync::Arc;
 
+const COLOURS: Theme = Theme {
+    colour: true,
+    background: Background::Dark,
+};
 /// Size of the traces pane on an 80x24 screen.
 const STRIPS: (u16, u16) = (40, 19);
 /// Size of the view from above on an 80x24 screen.
@@ -144,14 +149,10 @@ fn the_run_before_lies_under_the_run() {
     let (now, ghost) = edited(4000);
     for marker in [Marker::Braille, Marker::Dot, Marker::Ascii] {
         let name = marker.name();
-        insta::assert_snapshot!(
-            format!("ghost_traces_{name}"),
-            traces(&now, Some(&ghost), None, marker)
-        );
-        insta::assert_snapshot!(
-            format!("ghost_from_above_{name}"),
-            from_above(&now, Some(&ghost), marker)
-        );
+        let strips = traces(&now, Some(&ghost), None, marker);
+        insta::assert_snapshot!(format!("ghost_traces_{name}"), strips);
+        let above = from_above(&now, Some(&ghost), marker);
+        insta::assert_snapshot!(format!("ghost_from_above_{name}"), above);
     }
 }
 
@@ -159,10 +160,8 @@ fn the_run_before_lies_under_the_run() {
 fn columns_with(picture: &str, signs: &str) -> Vec<usize> {
     let inside = |line: &str| -> Vec<usize> {
         let cells = line.chars().enumerate();
-        cells
-            .filter(|(_, c)| signs.contains(*c))
-            .map(|(x, _)| x - 1)
-            .collect()
+        let cells = cells.filter(|(_, c)| signs.contains(*c));
+        cells.map(|(x, _)| x - 1).collect()
     };
     let lines = picture.lines().filter(|line| line.starts_with(['│', '|']));
     let mut columns: Vec<_> = lines.flat_map(inside).collect();
@@ -175,20 +174,20 @@ fn columns_with(picture: &str, signs: &str) -> Vec<usize> {
 fn the_run_before_is_seen_wherever_the_run_does_not_hide_it() {
     // The height of a steady top is a level line: at every height it is as dense.
     for tilt_deg in 20..45 {
-        let before = run(
-            "steady-slow",
-            &[&format!("start.tilt_deg={tilt_deg}")],
-            "",
-            3000,
-        );
-        let now = run("steady-slow", &["start.tilt_deg=50"], "", 3000);
+        let steady = |tilt_deg| {
+            run(
+                "steady-slow",
+                &[&format!("start.tilt_deg={tilt_deg}")],
+                "",
+                3000,
+            )
+        };
+        let (before, now) = (steady(tilt_deg), steady(50));
         let picture = traces(&now, Some(&Ghost::of(&before)), None, Marker::Braille);
         let lines = picture.lines().skip_while(|line| !line.starts_with("│z"));
         let of_run = "⠉⠒⠤⣀";
-        let dots = lines
-            .flat_map(str::chars)
-            .filter(|c| ('\u{2801}'..='\u{28ff}').contains(c));
-        let dots = dots.filter(|c| !of_run.contains(*c)).count();
+        let is_dot = |c: &char| ('\u{2801}'..='\u{28ff}').contains(c) && !of_run.contains(*c);
+        let dots = lines.flat_map(str::chars).filter(is_dot).count();
         assert!(dots >= 10, "{tilt_deg} degrees: {dots}\n{picture}");
     }
 }
@@ -351,10 +350,8 @@ fn a_band_is_named_even_and_its_swings_are_found_below() {
     // Nothing in the band follows the swings that the columns cut at different places.
     let band: Vec<_> = picture.lines().rev().nth(2).unwrap().chars().collect();
     let inside = &band[1..band.len() - 1];
-    assert!(
-        inside.windows(3).all(|cells| cells[0] == cells[2]),
-        "{picture}"
-    );
+    let is_even = inside.windows(3).all(|cells| cells[0] == cells[2]);
+    assert!(is_even, "{picture}");
 }
 
 #[test]
@@ -371,9 +368,7 @@ fn no_mark_covers_the_word_for_a_push_straight_down() {
             assert!(picture.contains("F down"), "step {step}:\n{picture}");
             let (path, _) = picture.split_once("0.").unwrap(); // the legend begins with a scale in m
             let path = path.replace("from above", "");
-            let point = ['o', '*']
-                .into_iter()
-                .any(|mark| path.replace("down", "").contains(mark));
+            let point = path.replace("down", "").contains(['o', '*']);
             assert!(point, "step {step}, the word covers the point:\n{picture}");
         }
     }
@@ -399,24 +394,15 @@ fn a_push_that_acts_is_an_arrow() {
 
 /// The dots of the picture of a pane, column and row, without its frame.
 fn braille(picture: &str) -> Vec<(usize, usize)> {
-    const PLACES: [(usize, usize); 8] = [
-        (0, 0),
-        (0, 1),
-        (0, 2),
-        (1, 0),
-        (1, 1),
-        (1, 2),
-        (0, 3),
-        (1, 3),
-    ];
+    const ACROSS: [usize; 8] = [0, 0, 0, 1, 1, 1, 0, 1];
+    const DOWN: [usize; 8] = [0, 1, 2, 0, 1, 2, 3, 3];
     let mut dots = Vec::new();
     for (y, line) in picture.lines().enumerate() {
         for (x, sign) in line.chars().enumerate() {
-            let bits = u32::from(sign)
-                .checked_sub(0x2800)
-                .filter(|bits| *bits < 256);
-            let set = (0..8).filter(|bit| bits.is_some_and(|bits| bits >> bit & 1 == 1));
-            dots.extend(set.map(|bit| (2 * x + PLACES[bit].0, 4 * y + PLACES[bit].1)));
+            let bits = u32::from(sign).checked_sub(0x2800);
+            let bits = bits.filter(|bits| *bits < 256).unwrap_or(0);
+            let set = (0..8).filter(|bit| bits >> bit & 1 == 1);
+            dots.extend(set.map(|bit| (2 * x + ACROSS[bit], 4 * y + DOWN[bit])));
         }
     }
     dots
@@ -440,10 +426,8 @@ fn a_circle_is_round_to_a_dot() {
             let (across, down) = (extent(|dot| dot.0), extent(|dot| dot.1));
             assert!(across.abs_diff(down) <= 2, "{across} by {down}\n{picture}");
             let room = (2 * (size.0 - 2)).min(4 * (size.1 - 3)) as f64 * zoom;
-            assert!(
-                down as f64 > 0.85 * room - 4.0,
-                "{down} of {room}\n{picture}"
-            );
+            let is_large = down as f64 > 0.85 * room - 4.0;
+            assert!(is_large, "{down} of {room}\n{picture}");
         }
     }
 }
@@ -475,10 +459,8 @@ fn the_point_stays_in_the_picture_however_large_it_is() {
             let lines: Vec<_> = picture.lines().skip(1 + edge).collect();
             let inner = &lines[..lines.len() - 2 - edge];
             let is_here = |line: &&str| {
-                line.chars()
-                    .skip(1 + edge)
-                    .take(34 - 2 * edge)
-                    .any(|sign| sign == 'o')
+                let mut signs = line.chars().skip(1 + edge).take(34 - 2 * edge);
+                signs.any(|sign| sign == 'o')
             };
             assert!(inner.iter().any(is_here), "{steps} ×{zoom}\n{picture}");
         }
@@ -487,12 +469,8 @@ fn the_point_stays_in_the_picture_however_large_it_is() {
 
 #[test]
 fn the_nearer_mass_is_drawn_over_the_farther_one() {
-    let run = run(
-        "method-2",
-        &["start.tilt_deg=0", "start.momentum_Js=[0, 0, 1000]"],
-        "",
-        0,
-    );
+    let set = ["start.tilt_deg=0", "start.momentum_Js=[0, 0, 1000]"];
+    let run = run("method-2", &set, "", 0);
     let mut view = view(&run, Marker::Braille);
     (view.camera.yaw_deg, view.camera.pitch_deg) = (0.0, 0.0);
     let scene = |view: &View| {
@@ -561,11 +539,7 @@ fn drawn_parameters(list: &ValueList, (focus, filled): (bool, bool), size: (u16,
     let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
     let mut view = view(&now, Marker::Braille);
     view.filled = filled;
-    view.focus = if focus {
-        Pane::PARAMETERS
-    } else {
-        Pane::TRACES
-    };
+    view.focus = [Pane::TRACES, Pane::PARAMETERS][usize::from(focus)];
     let mut buf = Buffer::empty(Rect::new(0, 0, size.0, size.1));
     Parameters {
         scenario: now.scenario(),
@@ -594,25 +568,14 @@ fn the_parameters_are_an_editor_when_in_focus() {
     insta::assert_snapshot!("editor_last", shown(&last, (true, false), size));
     // Without the focus it is the plain list.
     let away = shown(&dt, (false, false), size);
-    assert!(
-        away.contains("precession") && away.contains("all values: e, then f"),
-        "{away}"
-    );
+    has_all(&away, ["precession", "all values: e, then f"]);
 }
 
 #[test]
 fn the_selected_line_is_seen_at_every_place_and_size() {
-    for size in [
-        (26, 3),
-        (26, 4),
-        (26, 5),
-        (26, 9),
-        (26, 19),
-        (30, 10),
-        (52, 12),
-        (80, 19),
-        (120, 40),
-    ] {
+    let narrow = [3, 4, 5, 9, 19].map(|height| (26, height));
+    let wide = [(30, 10), (52, 12), (80, 19), (120, 40)];
+    for size in narrow.into_iter().chain(wide) {
         for (key, ..) in VALUES {
             for filled in [false, true] {
                 let list = list(key);
@@ -622,43 +585,27 @@ fn the_selected_line_is_seen_at_every_place_and_size() {
                 let marked: Vec<_> = shown.split('►').skip(1).collect();
                 assert_eq!(marked.len(), 1, "{key} at {size:?}\n{shown}");
                 assert!(marked[0].starts_with(&*label), "{key}\n{shown}");
-                let reversed = Theme {
-                    colour: true,
-                    background: Background::Dark,
-                };
-                let reversed = reversed.style(Role::Selected).add_modifier;
-                let count = buf
-                    .content
-                    .iter()
-                    .filter(|cell| cell.modifier.contains(reversed));
-                assert!(count.count() >= 20, "{shown}");
+                let reversed = COLOURS.style(Role::Selected).add_modifier;
+                let is_reversed = |cell: &&Cell| cell.modifier.contains(reversed);
+                let count = buf.content.iter().filter(is_reversed).count();
+                assert!(count >= 20, "{shown}");
             }
         }
     }
 }
 
 fn question() -> Form {
-    let fields = vec![
-        Field::new("time step", "0.05 s"),
-        Field::new("steps", "4600"),
-    ];
-    let mut form = Form::new(
-        "motion.time_step_s",
-        fields,
-        "Enter takes it, Esc leaves it",
-    );
-    form.info = vec![
-        "now 0.1 s".to_owned(),
-        "a hundredth up or down: Left, Right".to_owned(),
-    ];
+    let fields = [("time step", "0.05 s"), ("steps", "4600")];
+    let fields = fields.map(|(label, text)| Field::new(label, text)).into();
+    let keys = "Enter takes it, Esc leaves it";
+    let mut form = Form::new("motion.time_step_s", fields, keys);
+    let info = ["now 0.1 s", "a hundredth up or down: Left, Right"];
+    form.info = info.map(str::to_owned).into();
     form
 }
 
 fn asked(form: &Form, size: (u16, u16)) -> String {
-    let theme = &Theme {
-        colour: true,
-        background: Background::Dark,
-    };
+    let theme = &COLOURS;
     drawn(FormPane { form, theme }, size)
 }
 
@@ -666,10 +613,8 @@ fn asked(form: &Form, size: (u16, u16)) -> String {
 fn a_form_asks_at_the_bottom() {
     let mut form = question();
     insta::assert_snapshot!("form", asked(&form, (60, 12)));
-    form.complaint = Some(
-        "motion.time_step_s (-0.1): must be greater than zero, or nothing would ever move"
-            .to_owned(),
-    );
+    let words = "motion.time_step_s (-0.1): must be greater than zero, or nothing would ever move";
+    form.complaint = Some(words.to_owned());
     insta::assert_snapshot!("form_refuses", asked(&form, (40, 12)));
     insta::assert_snapshot!("form_20x4", asked(&form, (20, 4)));
     form.edit_field(FieldEdit::Next);

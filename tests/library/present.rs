@@ -1,10 +1,11 @@
 //! A scenario that starts where a run stands goes on as the run does.
 
-use crate::support::scenarios::parse;
+use crate::support::scenarios::{parse, preset};
+use crate::support::words::has;
 use gyrolab::physics::State;
 use gyrolab::physics::observables::position;
 use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::scenario::Scenario;
 use gyrolab::work::restart::{in_force, scenario_from};
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -49,6 +50,7 @@ fn farthest_m(mut run: Simulation, steps: u64) -> f64 {
     farthest
 }
 
+const UPRIGHT: &str = "momentum_Js = [0, 1, 60]";
 const PUSHES: &str = "[[push]]\npoint = 'top'\nforce_N = [3, -1, 2]\nfirst_step = 20\nsteps = 60
 [[push]]\npoint = 'top'\nforce_N = [0, 2, 0]\nfrom_s = 2.52\nfor_s = 1.51
 [[push]]\npoint = 'side'\nforce_N = [1, 0, 0]\nfirst_step = 2\nsteps = 3
@@ -96,106 +98,63 @@ fn what_it_says_and_what_it_leaves_out() {
     let view = format!(
         "{PUSHES}[view]\nspeed = 5\nlook_at = 'z'\n[[expected]]\nreadout = 'z_m'\nat_step = 3\nvalue = 1\ntolerance = 9\n"
     );
-    let run = at(
-        &read(&text("rk4", 0.0, "momentum_Js = [0, 1, 60]", &view)),
-        42,
-    );
+    let run = at(&read(&text("rk4", 0.0, UPRIGHT, &view)), 42);
     let saved = here(&run).unwrap();
     let file = &saved.file;
     assert_eq!(file.title, "x, from t = 2.1 s");
-    assert_eq!(
-        (&file.about, file.expected.len(), file.motion.steps),
-        (&None, 0, 400)
-    );
+    assert_eq!((&file.about, file.motion.steps), (&None, 400));
+    assert!(file.expected.is_empty());
     let view = file.view.as_ref().unwrap();
     assert_eq!((view.speed, &view.look_at), (Some(5.0), &None));
-    let times: Vec<_> = file
-        .push
-        .iter()
-        .map(|push| (push.from_s.unwrap(), push.for_s.unwrap()))
-        .collect();
     // Steps 20 to 79 last until t = 3.95 s; the last push is over.
     let expected = [(0.0, 3.95 - 2.1), (2.52 - 2.1, 1.51)];
-    assert_eq!(times.len(), 2);
-    for ((from, long), (from_s, for_s)) in times.into_iter().zip(expected) {
-        assert!(
-            (from - from_s).abs() < 1e-12 && (long - for_s).abs() < 1e-12,
-            "{from} {long}"
-        );
+    assert_eq!(file.push.len(), 2);
+    for (push, (from_s, for_s)) in file.push.iter().zip(expected) {
+        assert!((push.from_s.unwrap() - from_s).abs() < 1e-12, "{push:?}");
+        assert!((push.for_s.unwrap() - for_s).abs() < 1e-12, "{push:?}");
     }
 }
 
 #[test]
 fn at_the_start_steps_stay_steps() {
-    let saved = here(&at(
-        &read(&text("report", 0.0, "momentum_Js = [0, 1, 60]", PUSHES)),
-        0,
-    ))
-    .unwrap();
-    assert_eq!(
-        (saved.file.push[0].first_step, saved.file.push[0].steps),
-        (Some(20), Some(60))
-    );
-    assert_eq!(saved.file.push[1].from_s, Some(2.52));
+    let scenario = read(&text("report", 0.0, UPRIGHT, PUSHES));
+    let pushes = here(&at(&scenario, 0)).unwrap().file.push;
+    let steps = (pushes[0].first_step, pushes[0].steps);
+    assert_eq!(steps, (Some(20), Some(60)));
+    assert_eq!(pushes[1].from_s, Some(2.52));
 }
 
 #[test]
 fn a_push_that_accumulates_moves_only_before_it_begins() {
     let push = "[[push]]\npoint = 'top'\nforce_N = [0, 0.1, 0]\nfirst_step = 20\nsteps = 6\naccumulates = true\n";
-    let scenario = read(&text("report", 0.0, "momentum_Js = [0, 1, 60]", push));
-    assert_eq!(
-        here(&at(&scenario, 5)).unwrap().file.push[0].first_step,
-        Some(15)
-    );
+    let scenario = read(&text("report", 0.0, UPRIGHT, push));
+    let moved = here(&at(&scenario, 5)).unwrap().file.push;
+    assert_eq!(moved[0].first_step, Some(15));
     assert!(farthest_m(at(&scenario, 19), 20) < 1e-9);
     for step in [20, 21, 300] {
         let refused = here(&at(&scenario, step)).unwrap_err();
-        assert!(
-            refused.contains("push.0: on \"top\" accumulates and has begun"),
-            "{refused}"
-        );
+        has(&refused, "push.0: on \"top\" accumulates and has begun");
     }
-    let edited = read(&text(
-        "report",
-        0.0,
-        "momentum_Js = [0, 1, 60]",
-        &format!("{push}{EDITS}").replace("'push.1.force_N'", "'push.0.force_N'"),
-    ));
-    assert!(
-        here(&at(&edited, 13))
-            .unwrap_err()
-            .contains("another time step")
-    );
+    let edits = EDITS.replace("'push.1.force_N'", "'push.0.force_N'");
+    let edited = read(&text("report", 0.0, UPRIGHT, &format!("{push}{edits}")));
+    has(here(&at(&edited, 13)).unwrap_err(), "another time step");
 }
 
 #[test]
 fn what_is_in_force_follows_the_edits() {
-    let run = read(&text(
-        "exact",
-        0.0,
-        "momentum_Js = [0, 1, 60]",
-        &format!("{PUSHES}{EDITS}"),
-    ));
+    let more = format!("{PUSHES}{EDITS}");
+    let run = read(&text("exact", 0.0, UPRIGHT, &more));
     let force = |step| in_force(&run, step).1[1].force.y;
     assert_eq!((force(29), force(30)), (2.0, 4.0));
-    assert_eq!(
-        (
-            in_force(&run, 11).0.time_step_s,
-            in_force(&run, 12).0.time_step_s
-        ),
-        (0.05, 0.03)
-    );
+    let time_step_s = |step| in_force(&run, step).0.time_step_s;
+    assert_eq!((time_step_s(11), time_step_s(12)), (0.05, 0.03));
 }
 
 #[test]
 fn at_another_time_step_it_lasts_as_long() {
-    let mut document = Document::open("method-2").unwrap();
-    document
-        .set("edit=[{step=50, set={\"motion.time_step_s\"=0.01}}]")
-        .unwrap();
-    let scenario = Arc::new(document.scenario().unwrap());
-    let mut run = Simulation::new(Arc::clone(&scenario));
-    run.step_to(60).unwrap();
+    let edit = "edit=[{step=50, set={\"motion.time_step_s\"=0.01}}]";
+    let scenario = Arc::new(preset("method-2", &[edit]));
+    let run = at(&scenario, 60);
     let saved = scenario_from(&scenario, run.state(), 60).unwrap();
     assert_eq!((saved.motion.time_step_s, saved.steps), (0.01, 23_000));
 }

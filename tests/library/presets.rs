@@ -1,5 +1,6 @@
 //! Every shipped preset: it is complete, and it does what it says.
 
+use crate::support::ground::names;
 use crate::support::scenarios::preset as preset_named;
 use gyrolab::analysis::{Monitor, Readouts, Trial};
 use gyrolab::export::Column;
@@ -16,49 +17,25 @@ use std::sync::Arc;
 #[test]
 fn the_table_of_presets_is_the_folder() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
-    let files: BTreeSet<String> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "toml")
-        })
-        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
+    let files = names(&folder).into_iter();
+    let files: BTreeSet<_> = files
+        .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
         .collect();
-    assert_eq!(
-        files,
-        PRESETS
-            .iter()
-            .map(|preset| preset.name.to_owned())
-            .collect()
-    );
+    let table = PRESETS.iter().map(|preset| preset.name.to_owned());
+    assert_eq!(files, table.collect());
 }
 
 #[test]
 fn every_preset_says_what_it_is_and_what_to_look_at() {
     for preset in PRESETS {
         let file = preset_named(preset.name, &[]).file;
-        assert!(
-            file.about.is_some_and(|about| about.len() > 80),
-            "{}",
-            preset.name
-        );
-        assert!(
-            file.source.is_some_and(|source| source.len() > 10),
-            "{}",
-            preset.name
-        );
         let look_at = file.view.and_then(|view| view.look_at);
-        assert!(
-            look_at.is_some_and(|line| line.len() > 20 && line.len() <= 160),
-            "{}",
-            preset.name
-        );
-        assert!(
-            file.expected.len() >= 2,
-            "{} has something to be held to",
-            preset.name
-        );
+        let lengths = [file.about, file.source, look_at].map(|text| text.unwrap().len());
+        let [about, source, look_at] = lengths;
+        assert!(about > 80 && source > 10, "{}", preset.name);
+        assert!((21..=160).contains(&look_at), "{}", preset.name);
+        // Something to be held to.
+        assert!(file.expected.len() >= 2, "{}", preset.name);
     }
 }
 
@@ -74,19 +51,8 @@ fn every_preset_does_what_it_expects() {
             let column = Column::find(&entry.readout).expect("a column");
             let value = column.value(simulation.scenario(), &simulation.sample());
             let off = (value - entry.value).abs();
-            println!(
-                "{} {} at step {}: off by {off:.1e}",
-                preset.name, entry.readout, entry.at_step
-            );
-            assert!(
-                off <= entry.tolerance,
-                "{}: {} at step {} is {value}, not {} within {:e}",
-                preset.name,
-                entry.readout,
-                entry.at_step,
-                entry.value,
-                entry.tolerance
-            );
+            let name = preset.name;
+            assert!(off <= entry.tolerance, "{name}: {value}, not {entry:?}");
         }
     }
 }
@@ -113,10 +79,13 @@ fn words(name: &str) -> String {
     file.about.unwrap() + &file.view.unwrap().look_at.unwrap()
 }
 
-/// A figure in a text of the preset `name`: `before` it, the number with so many decimals, and `after` it.
-fn figure(name: &str, before: &str, number: f64, decimals: usize, after: &str) {
-    let text = words(name);
-    let wanted = format!("{before}{number:.decimals$}{after}");
+/// A figure in a text of the preset `name`, whose place in `wanted` says with how many decimals: `{:.2}`.
+#[track_caller]
+fn figure(name: &str, wanted: &str, number: f64) {
+    let (before, rest) = wanted.split_once("{:.").unwrap();
+    let (decimals, after) = rest.split_once('}').unwrap();
+    let decimals: usize = decimals.parse().unwrap();
+    let (text, wanted) = (words(name), format!("{before}{number:.decimals$}{after}"));
     assert!(says(&text, &wanted), "{name}: no {wanted:?} in {text}");
 }
 
@@ -148,142 +117,108 @@ fn every_figure_in_the_texts_is_that_of_the_run() {
     const PRECESSION: &str = "predicted_precession_rad_per_s";
     const MEASURED: &str = "measured_precession_rad_per_s";
     let cusps = of("cusps");
-    figure("cusps", "tilt 30 to ", cusps(HIGHEST), 2, " degrees");
-    figure("cusps", "one arch in ", cusps(PERIOD), 4, " s");
-    figure("loops", "tilt 30 to ", of("loops")(HIGHEST), 2, " degrees");
-    figure("waves", "tilt 30 to ", of("waves")(HIGHEST), 2, " degrees");
+    figure("cusps", "tilt 30 to {:.2} degrees", cusps(HIGHEST));
+    figure("cusps", "one arch in {:.4} s", cusps(PERIOD));
+    figure("loops", "tilt 30 to {:.2} degrees", of("loops")(HIGHEST));
+    figure("waves", "tilt 30 to {:.2} degrees", of("waves")(HIGHEST));
     let falling = of("falling");
     figure(
         "falling",
-        "From 10 degrees down to ",
+        "From 10 degrees down to {:.2} and back",
         falling(HIGHEST),
-        2,
-        " and back",
     );
-    figure("falling", "and back in ", falling(PERIOD), 2, " s");
+    figure("falling", "and back in {:.2} s", falling(PERIOD));
     let fast = of("fast-top");
     figure(
         "fast-top",
-        "mgl/L3 = ",
+        "mgl/L3 = {:.3} rad/s",
         fast("fast_top_precession_rad_per_s"),
-        3,
-        " rad/s",
     );
     figure(
         "fast-top",
-        "Precession of ",
+        "Precession of {:.1} degrees a second",
         fast(PRECESSION).to_degrees(),
-        1,
-        " degrees a second",
     );
     let swing = fast("predicted_highest_tilt_deg") - fast("predicted_lowest_tilt_deg");
-    figure("fast-top", "swings by ", swing, 3, " degrees");
+    figure("fast-top", "swings by {:.3} degrees", swing);
     let unstable = of("sleeping-unstable");
     figure(
         "sleeping-unstable",
-        "is below ",
+        "is below {:.2}.",
         unstable("sleeping_limit_Js"),
-        2,
-        ".",
     );
     figure(
         "sleeping-unstable",
-        "it sinks to ",
+        "it sinks to {:.0} and rises again",
         unstable(HIGHEST),
-        0,
-        " and rises again",
     );
-    figure("sleeping-unstable", "every ", unstable(PERIOD), 1, " s");
+    figure("sleeping-unstable", "every {:.1} s", unstable(PERIOD));
     figure(
         "sleeping-unstable",
-        "then sinks to ",
+        "then sinks to {:.2} degrees",
         unstable(HIGHEST),
-        2,
-        " degrees",
     );
     let sleeping = of("sleeping");
-    figure(
-        "sleeping",
-        "L3 above ",
-        sleeping("sleeping_limit_Js"),
-        2,
-        ".",
-    );
-    figure(
-        "sleeping",
-        "between 1 and ",
-        sleeping(HIGHEST),
-        2,
-        " degrees",
-    );
+    figure("sleeping", "L3 above {:.2}.", sleeping("sleeping_limit_Js"));
+    figure("sleeping", "between 1 and {:.2} degrees", sleeping(HIGHEST));
     figure(
         "steady-slow",
-        "circle at ",
+        "circle at {:.4} rad/s",
         of("steady-slow")(MEASURED),
-        4,
-        " rad/s",
     );
     figure(
         "steady-fast",
-        "one, at ",
+        "one, at {:.3} rad/s",
         of("steady-fast")(MEASURED),
-        3,
-        " rad/s",
     );
     let free = of("torque-free");
-    figure("torque-free", "|L|/I1 = ", free(MEASURED), 2, " rad/s");
-    figure("torque-free", "fixed at ", free(HIGHEST), 0, " degrees");
+    figure("torque-free", "|L|/I1 = {:.2} rad/s", free(MEASURED));
+    figure("torque-free", "fixed at {:.0} degrees", free(HIGHEST));
     let first = of("method-1");
-    figure("method-1", "every ", first(PERIOD), 5, " s");
+    figure("method-1", "every {:.5} s", first(PERIOD));
     let faster = of("method-1-steeper")("turns_per_step") / first("turns_per_step");
     figure(
         "method-1-steeper",
-        " ",
+        " {:.1} % faster",
         100.0 * (faster - 1.0),
-        1,
-        " % faster",
     );
     let slow = of("method-2-slow");
     let turn_s = TAU / slow(PRECESSION);
-    figure("method-2-slow", "a turn takes ", turn_s, 0, " s");
+    figure("method-2-slow", "a turn takes {:.0} s", turn_s);
     let thousands = turn_s / slow("time_step_s") / 1000.0;
-    figure("method-2-slow", "is ", thousands, 0, ",000 of these");
+    figure("method-2-slow", "is {:.0},000 of these", thousands);
     let turned = slow("t_s") * slow(PRECESSION).to_degrees();
-    figure("method-2-slow", "its circle, ", turned, 0, " degrees");
+    figure("method-2-slow", "its circle, {:.0} degrees", turned);
     let second = of("method-2");
-    figure("method-2", "turns ", second("turns_per_step"), 2, " times");
-    figure("method-2", "one turn in ", TAU / second(MEASURED), 1, " s");
+    figure("method-2", "turns {:.2} times", second("turns_per_step"));
+    figure("method-2", "one turn in {:.1} s", TAU / second(MEASURED));
     let literal = preset_named("wobble-push-accumulating", &[]);
     let [pushed] = &literal.file.push[..] else {
         panic!("{} pushes", literal.file.push.len());
     };
     let force_down = -pushed.force_N[2];
     let name = "wobble-push-accumulating";
-    figure(name, "F(12,3) - ", force_down, 0, " on a force array");
-    figure(name, "grows by ", force_down, 0, " N");
+    figure(name, "F(12,3) - {:.0} on a force array", force_down);
+    figure(name, "grows by {:.0} N", force_down);
     let pushed_steps = pushed.steps.unwrap() as f64;
-    figure(name, "at each of ", pushed_steps, 0, " steps");
-    figure(name, "its first ", literal.steps as f64, 0, " steps");
+    figure(name, "at each of {:.0} steps", pushed_steps);
+    figure(name, "its first {:.0} steps", literal.steps as f64);
     let push = of("wobble-push");
     let percent = |z: f64| 100.0 * (z / 0.8 - 1.0);
     figure(
         "wobble-push",
-        "",
+        "{:.0} % lower",
         -percent(push("measured_lowest_z_m")),
-        0,
-        " % lower",
     );
     figure(
         "wobble-push",
-        "",
+        "{:.0} % higher",
         percent(push("measured_highest_z_m")),
-        0,
-        " % higher",
     );
     let truth = readouts_of(preset_named("wobble-push", &["motion.scheme=exact"]));
     let truth = |name: &str| truth.number(name).unwrap();
     let swing = truth("measured_highest_z_m") - truth("measured_lowest_z_m");
-    figure("wobble-push", "true one is ", 100.0 * swing / 0.8, 2, " %");
+    figure("wobble-push", "true one is {:.2} %", 100.0 * swing / 0.8);
 }
 
 /// When the tilt of the preset `name` first comes back to a turning point of the kind it began at, and when it first
@@ -309,46 +244,40 @@ fn turning_points_s(name: &str, set: &[&str]) -> Vec<f64> {
 #[test]
 fn the_figures_of_the_free_bodies_are_those_of_their_runs() {
     let nut = turning_points_s("wing-nut", &[]);
-    figure("wing-nut", "turns over every ", nut[0], 3, " s");
-    figure("wing-nut", "all at once: every ", nut[0], 3, " s");
+    figure("wing-nut", "turns over every {:.3} s", nut[0]);
+    figure("wing-nut", "all at once: every {:.3} s", nut[0]);
     let brick = turning_points_s("poinsot", &[]);
-    figure("poinsot", "from L, once in ", brick[1], 3, " s");
+    figure("poinsot", "from L, once in {:.3} s", brick[1]);
     let brick = readouts("poinsot");
     let least = brick.number("measured_lowest_tilt_deg").unwrap();
-    figure("poinsot", "between 40 and ", least, 2, " degrees");
+    figure("poinsot", "between 40 and {:.2} degrees", least);
     let caught = readouts_of(preset_named("phone", &["motion.steps=500"]));
     let edge = caught.number("tilt_deg").unwrap();
-    figure("phone", "screen at ", edge, 2, " degrees");
+    figure("phone", "screen at {:.2} degrees", edge);
     let pass = readouts("rugby-pass");
     // Free of forces the axle goes round L at |L|/I1, which theory gives about that axis.
     let about_momentum = pass.theory.unwrap().precession.unwrap();
     figure(
         "rugby-pass",
-        "line of L once in ",
+        "line of L once in {:.3} s",
         TAU / about_momentum,
-        3,
-        " s",
     );
     let spin = pass.number("spin_rpm").unwrap() * TAU / 60.0;
     figure(
         "rugby-pass",
-        "0.164 s, ",
+        "0.164 s, {:.2} times for each turn",
         about_momentum / spin,
-        2,
-        " times for each turn",
     );
     let earth = readouts("earth");
     let rate = -earth.number("measured_precession_rad_per_s").unwrap();
-    figure("earth", "backwards, once in ", TAU / rate, 2, " s");
+    figure("earth", "backwards, once in {:.2} s", TAU / rate);
     figure(
         "earth",
-        "stays at ",
+        "stays at {:.3} degrees",
         earth.number("tilt_deg").unwrap(),
-        3,
-        " degrees",
     );
     // 36 525 days of a century in a second.
-    figure("earth", "it would last ", 1e6 / 36525.0, 0, " millionths");
+    figure("earth", "it would last {:.0} millionths", 1e6 / 36525.0);
 }
 
 #[test]

@@ -2,10 +2,11 @@
 //! bit, and returning to an earlier step and going forward again gives the same numbers.
 
 use crate::support::desk::{Desk, commands};
+use crate::support::scenarios::preset;
 use gyrolab::observe::playback::Playback;
 use gyrolab::observe::recording::Curve;
 use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::scenario::Scenario;
 use proptest::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -44,18 +45,15 @@ const DEEDS: &[&str] = &[
 /// The bits of every number of a step.
 fn bits(simulation: &Simulation) -> Vec<u64> {
     let (state, sample) = (simulation.state(), simulation.sample());
-    let numbers = state
-        .orientation
-        .iter()
-        .chain(state.momentum.iter())
-        .copied();
+    let numbers = state.orientation.iter().chain(state.momentum.iter());
     let rest = [
         state.time_s,
         sample.azimuth_deg,
         sample.energy,
         simulation.now().energy_drift().unwrap_or(0.0),
     ];
-    let mut bits: Vec<_> = numbers.chain(rest).map(f64::to_bits).collect();
+    let numbers = numbers.copied().chain(rest);
+    let mut bits: Vec<_> = numbers.map(f64::to_bits).collect();
     bits.push(sample.segment);
     bits
 }
@@ -150,22 +148,12 @@ fn a_run_whose_numbers_have_ended_goes_on_once_it_is_mended() {
     desk.lab.files_mut().work_in(folder.path());
     desk.commands("go_to = 40\nset = { 'motion.scheme' = 'rk4' }\ngo_to = 2000");
     let ended_at = desk.simulation().step_number();
-    assert!(
-        (41..2000).contains(&ended_at) && desk.simulation().has_ended(),
-        "{ended_at}"
-    );
+    assert!((41..2000).contains(&ended_at), "{ended_at}");
+    assert!(desk.simulation().has_ended());
     desk.commands("go_to = 40\nset = { 'motion.time_step_s' = 0.001 }\nstep = 50");
-    assert_eq!(
-        desk.simulation().step_number(),
-        90,
-        "an edit before the end mends it"
-    );
+    assert_eq!(desk.step(), 90, "an edit before the end mends it");
     desk.commands(&format!("undo = 1\ngo_to = {}", ended_at + 9));
-    assert_eq!(
-        desk.simulation().step_number(),
-        ended_at,
-        "without it the run ends again"
-    );
+    assert_eq!(desk.step(), ended_at, "without it the run ends again");
 }
 
 #[test]
@@ -178,52 +166,37 @@ fn an_edit_after_which_no_step_is_finite_is_taken_back_without_a_trace() {
     assert_eq!(desk.simulation().step_number(), 60);
     desk.commands("undo = 1\nstep = 300");
     assert_eq!(desk.simulation().step_number(), 360);
-    let untouched = Document::open("wobble-push").unwrap().scenario().unwrap();
+    let untouched = preset("wobble-push", &[]);
     assert_eq!(replayed(untouched, 360), bits(desk.simulation()));
 }
 
 #[test]
 fn the_traces_of_a_long_run_are_whole_and_fine_after_every_seek() {
-    let mut document = Document::open("wobble-push").unwrap();
-    for set in [
-        "motion.time_step_s=0.001",
-        "motion.steps=400000",
-        "push.0.steps=150000",
-    ] {
-        document.set(set).unwrap();
-    }
-    let scenario = Arc::new(document.scenario().unwrap());
+    let motion = ["motion.time_step_s=0.001", "motion.steps=400000"];
+    let set = [&motion[..], &["push.0.steps=150000"]].concat();
+    let scenario = Arc::new(preset("wobble-push", &set));
     let mut playback = Playback::new(Arc::clone(&scenario), false);
     playback.begin_at(400_000).unwrap();
     for step in [
         399_990, 200_000, 199_999, 350_123, 17, 60_000, 400_000, 150_001,
     ] {
         playback.go_to(step);
-        assert_eq!(
-            (playback.step_number(), playback.steps_to_go()),
-            (step, None)
-        );
+        assert_eq!(playback.step_number(), step);
+        assert_eq!(playback.steps_to_go(), None);
         let now_s = playback.run().now().time_s;
         for share in [0.003, 0.05, 0.6, 1.0] {
             let since_s = now_s * (1.0 - share);
             let blocks: Vec<_> = playback.run().recording().since(since_s).collect();
             let steps = |a: f64, b: f64| ((b - a) / 0.001).round();
-            assert!(
-                blocks[0].begin_s <= since_s + 0.001
-                    && steps(blocks[blocks.len() - 1].end_s, now_s) == 0.0
-            );
-            assert!(
-                blocks
-                    .windows(2)
-                    .all(|pair| steps(pair[0].end_s, pair[1].begin_s) == 1.0),
-                "step {step}"
-            );
+            assert!(blocks[0].begin_s <= since_s + 0.001);
+            assert_eq!(steps(blocks[blocks.len() - 1].end_s, now_s), 0.0);
+            for pair in blocks.windows(2) {
+                let apart = steps(pair[0].end_s, pair[1].begin_s);
+                assert_eq!(apart, 1.0, "step {step}");
+            }
             let fine = (share * step as f64).min(256.0) * 0.9;
-            assert!(
-                blocks.len() as f64 >= fine,
-                "{} blocks for {share} at step {step}",
-                blocks.len()
-            );
+            let count = blocks.len() as f64;
+            assert!(count >= fine, "{count} for {share} at step {step}");
         }
         let mut straight = Simulation::new(Arc::clone(&scenario));
         straight.step_to(step).unwrap();

@@ -81,9 +81,8 @@ fn after_a_scheme_broke_down_the_last_whole_body_is_shown() {
     let set = ["motion.scheme=rk4", "motion.time_step_s=0.03"];
     let mut stage = Stage::open("method-2", &set, LARGE);
     stage.wait(2.0).shows("no longer finite at step 31");
-    stage
-        .shows("from above at step 29: then the scheme broke down")
-        .shows("3-D at step 29: then the scheme broke down");
+    stage.shows("from above at step 29: then the scheme broke down");
+    stage.shows("3-D at step 29: then the scheme broke down");
     let state = stage.lab.player().reading.state;
     assert!(state.is_a_rotation() && (state.time_s - 0.87).abs() < 1e-9);
     assert!(
@@ -96,9 +95,8 @@ fn after_a_scheme_broke_down_the_last_whole_body_is_shown() {
             .is_a_rotation()
     );
     stage.commands("go_to = 29").shows_no("broke down");
-    stage
-        .commands("go_to = 30")
-        .shows("3-D at step 29: then the scheme broke down");
+    stage.commands("go_to = 30");
+    stage.shows("3-D at step 29: then the scheme broke down");
     stage.commands("go_to = 3").shows_no("broke down");
     assert_eq!(
         stage.lab.player().reading.state,

@@ -88,8 +88,6 @@ fn a_long_message_has_the_rows_that_it_needs() {
         notice.len() > 38 && said(&stage).contains(&notice),
         "{notice}"
     );
-    stage
-        .shows_no("turns a step")
-        .wait(6.0)
-        .shows("turns a step");
+    stage.shows_no("turns a step").wait(6.0);
+    stage.shows("turns a step");
 }

@@ -1,7 +1,8 @@
 //! The step pane: a time step phase by phase. Its numbers are the run's.
 
-use crate::support::scenarios::{parse, preset};
+use crate::support::scenarios::{parse, preset, resumed};
 use crate::support::stage::{LARGE, SMALL, Stage};
+use crate::support::words::{has, has_all, has_no};
 use gyrolab::lab::view::step::Page;
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::physics::workings::{NAMES, Phase, Sums, Value};
@@ -38,10 +39,8 @@ fn printed(stage: &Stage, symbol: &str) -> Vec<String> {
     let line = picture.lines().find_map(|line| line.split_once(&start));
     let (_, rest) = line.unwrap_or_else(|| panic!("no {symbol} in\n{picture}"));
     let words = rest.split_whitespace();
-    words
-        .filter(|word| word.parse::<f64>().is_ok())
-        .map(str::to_owned)
-        .collect()
+    let numbers = words.filter(|word| word.parse::<f64>().is_ok());
+    numbers.map(str::to_owned).collect()
 }
 
 #[test]
@@ -58,26 +57,15 @@ fn the_numbers_printed_are_the_records() {
             assert!(decimals >= 3, "six digits of 707");
         }
         stage.commands("phase = 'new positions'\nsum_to = 12");
-        let shown: Vec<f64> = stage
-            .picture()
-            .lines()
-            .skip_while(|line| !line.contains("││top "))
-            .take(2)
-            .flat_map(|line| {
-                line.split("││")
-                    .nth(1)
-                    .unwrap()
-                    .split_whitespace()
-                    .filter_map(|word| word.parse().ok())
-                    .collect::<Vec<f64>>()
-            })
-            .collect();
+        let picture = stage.picture();
+        let rows = picture.lines().skip_while(|line| !line.contains("││top "));
+        let words = rows.take(2).flat_map(|line| {
+            let cell = line.split("││").nth(1).unwrap();
+            cell.split_whitespace()
+        });
+        let shown: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
         for (shown, exact) in shown[3..6].iter().zip(sample.position.iter()) {
-            assert!(
-                (shown - exact).abs() < 1e-4,
-                "{shown:?} {:?}",
-                sample.position
-            );
+            assert!((shown - exact).abs() < 1e-4, "{shown} for {exact}");
         }
     }
 }
@@ -117,9 +105,8 @@ fn v_shows_the_step_and_takes_it_away_again() {
         let before = stage.picture();
         stage.press("v");
         assert_eq!(stage.focus(), "step");
-        stage
-            .shows("No time step has been taken yet")
-            .shows("┌ 3-D");
+        stage.shows("No time step has been taken yet");
+        stage.shows("┌ 3-D");
         stage.press("v");
         assert_eq!(stage.picture(), before);
         stage.press("v\u{1b}");
@@ -173,9 +160,8 @@ fn the_points_add_up_one_by_one() {
     stage.commands("pause = true").press("v.");
     stage.shows("10 more: Down adds them up");
     stage.press("↓").shows("the first of 14 points gives");
-    stage
-        .press("↓↓")
-        .shows("the first 3 of 14 points add up to");
+    stage.press("↓↓");
+    stage.shows("the first 3 of 14 points add up to");
     stage.press("↑").shows("the first 2 of 14");
     stage.key(Key::PageDown);
     stage.shows("the first 12 of 14").shows("top");
@@ -189,41 +175,29 @@ fn the_points_add_up_one_by_one() {
 
 #[test]
 fn commands_and_files_say_it_too() {
-    let mut stage = Stage::open(
-        "method-2",
-        &["view.show=['step', 'above']", "view.phase='torque'"],
-        SMALL,
-    );
+    let set = ["view.show=['step', 'above']", "view.phase='torque'"];
+    let mut stage = Stage::open("method-2", &set, SMALL);
     stage.commands("pause = true\nstep = 3");
     stage.shows("┌ from above").shows("step 3: 6 of 7, torque");
-    stage
-        .commands("phase = 2")
-        .shows("step 3: 2 of 7, angular velocity");
+    stage.commands("phase = 2");
+    stage.shows("step 3: 2 of 7, angular velocity");
     stage.commands("phase = 'last'").shows("step 3: 7 of 7");
-    stage
-        .commands("phase = 'why'")
-        .shows("why sideways, not down?");
-    stage
-        .commands("fill = 'step'\nphase = 1\nsum_to = 4")
-        .shows("the first 4 of 14");
+    stage.commands("phase = 'why'");
+    stage.shows("why sideways, not down?");
+    stage.commands("fill = 'step'\nphase = 1\nsum_to = 4");
+    stage.shows("the first 4 of 14");
     stage.shows_no("from above");
     stage.commands(
         "set = { 'motion.scheme' = 'rk4' }\nstep = 1\nphase = 'slope 1: at the beginning'",
     );
     stage.shows("step 4: 1 of 6");
-    let mut stage = Stage::open(
-        "method-2",
-        &["view.fill='step'", "motion.scheme='rk4'"],
-        SMALL,
-    );
+    let set = ["view.fill='step'", "motion.scheme='rk4'"];
+    let mut stage = Stage::open("method-2", &set, SMALL);
     stage.commands("pause = true\nstep = 2");
     stage.shows("step 2: 1 of 6");
     let command = crate::support::desk::commands("phase = 'torque'");
     let refused = stage.lab.carry_out(&command[0]).unwrap_err().to_string();
-    assert!(
-        refused.contains("rk4 has no phase torque: it has slope 1"),
-        "{refused}"
-    );
+    has(&refused, "rk4 has no phase torque: it has slope 1");
 }
 
 #[test]
@@ -244,10 +218,8 @@ fn a_dip_of_rounding_is_none() {
     let mut stage = Stage::open("cusps", &["motion.scheme='report'"], SMALL);
     stage.commands("pause = true\nstep = 1\nshow = ['step', '3d']\nphase = 'why'");
     stage.shows("it has not moved").commands("step = 200");
-    stage
-        .shows_no("it has not moved")
-        .shows(" m ")
-        .shows("so far");
+    stage.shows_no("it has not moved").shows(" m ");
+    stage.shows("so far");
 }
 
 #[test]
@@ -305,16 +277,9 @@ fn no_size_is_too_small() {
     for page in ["1", "3", "5", "6", "'why'"] {
         for sum in ["'all'", "9"] {
             stage.commands(&format!("phase = {page}\nsum_to = {sum}"));
-            for (width, height) in [
-                (0, 0),
-                (1, 1),
-                (5, 3),
-                (12, 40),
-                (40, 12),
-                (52, 18),
-                (70, 24),
-                (300, 90),
-            ] {
+            let tiny = [(0, 0), (1, 1), (5, 3), (12, 40)];
+            let usual = [(40, 12), (52, 18), (70, 24), (300, 90)];
+            for (width, height) in tiny.into_iter().chain(usual) {
                 stage.size = Rect::new(0, 0, width, height);
                 screen::fit(&mut stage.lab, stage.size);
                 stage.picture();
@@ -328,10 +293,8 @@ fn its_place_is_as_wide_as_its_numbers() {
     use gyrolab::tui::layout::Layout;
     let widths = |stage: &Stage| -> Vec<(&'static str, u16)> {
         let panes = Layout::new(stage.size, stage.lab.view(), true).panes;
-        panes
-            .iter()
-            .map(|(pane, place)| (pane.id(), place.width))
-            .collect()
+        let widths = panes.iter().map(|(pane, place)| (pane.id(), place.width));
+        widths.collect()
     };
     let mut stage = Stage::open("method-2", &["view.show=['above', '3d', 'step']"], SMALL);
     stage.commands("pause = true");
@@ -352,49 +315,30 @@ fn its_place_is_as_wide_as_its_numbers() {
 
 #[test]
 fn a_phase_shows_its_own_arrows_in_space() {
-    let mut stage = Stage::open(
-        "falling",
-        &["motion.scheme='report'", "motion.time_step_s=0.2"],
-        LARGE,
-    );
+    let set = ["motion.scheme='report'", "motion.time_step_s=0.2"];
+    let mut stage = Stage::open("falling", &set, LARGE);
     stage.commands("pause = true\nstep = 2\nshow = ['3d', 'step']");
     for (page, shown, hidden) in [
         (
             2,
-            vec!["Ω angular velocity", "L angular momentum"],
-            vec!["torque  ", "u axis"],
+            "Ω angular velocity|L angular momentum",
+            "torque  |u axis",
         ),
-        (3, vec!["u axis of the turn"], vec!["L angular", "before"]),
-        (5, vec!["° dotted: before the step"], vec!["L angular"]),
-        (
-            6,
-            vec!["τ torque", "g weight"],
-            vec!["L angular", "Ω angular"],
-        ),
-        (
-            7,
-            vec!["L angular momentum", "dL along τ", "new L"],
-            vec!["Ω angular"],
-        ),
+        (3, "u axis of the turn", "L angular|before"),
+        (5, "° dotted: before the step", "L angular"),
+        (6, "τ torque|g weight", "L angular|Ω angular"),
+        (7, "L angular momentum|dL along τ|new L", "Ω angular"),
     ] {
         stage.commands(&format!("phase = {page}"));
         let picture = stage.picture();
-        let scene: String = picture
-            .lines()
-            .map(|line| line.split("││").next().unwrap_or_default().to_owned() + "\n")
-            .collect();
-        for words in shown {
-            assert!(scene.contains(words), "{words}\n{picture}");
-        }
-        for words in hidden {
-            assert!(!scene.contains(words), "{words}\n{picture}");
-        }
+        let first = |line: &str| line.split("││").next().unwrap().to_owned() + "\n";
+        let scene: String = picture.lines().map(first).collect();
+        has_all(&scene, shown.split('|'));
+        hidden.split('|').for_each(|words| has_no(&scene, words));
     }
     // Without the step pane it shows all of them.
-    stage
-        .commands("show = ['3d', 'above']")
-        .shows("Ω angular velocity")
-        .shows("dL = τ dt");
+    stage.commands("show = ['3d', 'above']");
+    stage.shows("Ω angular velocity").shows("dL = τ dt");
 }
 
 #[test]
@@ -425,35 +369,21 @@ fn a_large_body_is_shown_as_any_other() {
         lab.carry_out(&command).unwrap();
     }
     let picture = screen::text(&lab, true, (80, 24));
-    assert!(
-        picture.contains("the first 60000 of 100000 points"),
-        "{picture}"
-    );
+    has(&picture, "the first 60000 of 100000 points");
     assert!(picture.contains("││59999 "), "{picture}");
 }
 
 #[test]
 fn it_comes_back_with_the_session() {
-    use gyrolab::lab::Lab;
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true\nstep = 4").press("v....");
     stage.commands("phase = 'torque'\nsum_to = 3");
     let content = stage.lab.content();
-    let view = |scenario: &gyrolab::scenario::Scenario| {
-        crate::support::scenarios::view(
-            scenario,
-            gyrolab::lab::view::markers::Marker::Braille,
-            true,
-        )
-    };
-    let mut lab = Lab::resumed(&content, view).unwrap();
+    let mut lab = resumed(&content);
     screen::fit(&mut lab, SMALL);
     lab.take_changed();
     let picture = screen::text(&lab, true, (80, 24));
-    assert!(
-        picture.contains("6 of 7, torque") && picture.contains("the first 3 of 14"),
-        "{picture}"
-    );
+    has_all(&picture, ["6 of 7, torque", "the first 3 of 14"]);
     assert_eq!(lab.view().focus.id(), "step");
 }
 

@@ -22,14 +22,11 @@ fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
     let whole = SWEEP.replace("30,,,0.87,\n", "");
     assert!(of_table::warnings(&table(&whole), &[]).is_empty());
     // A logarithmic axis does not show 0.
-    let zero = whole
-        .replace("0.90,0.01", "0,0.01")
-        .replace("0.88,0.02", "900,0.02");
+    let zero = whole.replace("0.90,0.01", "0,0.01");
+    let zero = zero.replace("0.88,0.02", "900,0.02");
     let told = of_table::warnings(&table(&zero), &measured);
-    assert!(
-        told.len() == 1 && told[0].starts_with("in 1 of 3 rows"),
-        "{told:?}"
-    );
+    let is_told = told.len() == 1 && told[0].starts_with("in 1 of 3 rows");
+    assert!(is_told, "{told:?}");
     let names = |text: &str| chart(text).panels[0].series[0].name.clone();
     assert_eq!(names(&gappy), "theory (gaps: no prediction)");
     assert_eq!(names(SWEEP), "theory");
@@ -46,15 +43,9 @@ fn two_theories_of_one_quantity_have_two_marks() {
         .replace("0.87,\n", "0.87,0.8,\n")
         .replace("scenario = \"0.8,cusps", "scenario = \"cusps");
     let chart = chart(&both);
-    let marks = chart.panels[0]
-        .series
-        .iter()
-        .map(|series| series.style.mark);
-    let marks: Vec<_> = marks.collect();
-    assert_eq!(
-        marks,
-        [Some(Mark::Cross), Some(Mark::Plus), Some(Mark::Dot)]
-    );
+    let series = chart.panels[0].series.iter();
+    let marks: Vec<_> = series.map(|series| series.style.mark).collect();
+    assert_eq!(marks, [Mark::Cross, Mark::Plus, Mark::Dot].map(Some));
 }
 
 const SWEEP: &str = "\
@@ -157,10 +148,8 @@ fn a_curve_is_named_by_symbol_value_and_unit_of_its_key() {
         ("push.0.force_N.2", "measured, push 0 force *z* = −100 N"),
         ("motion.time_step_s", "measured, Δ*t* = −100 s"),
     ] {
-        let chart = chart(&two_keys(
-            key,
-            "-100.0,10,0.9,0.8,0.1\n-100.0,20,0.8,0.7,0.1\n",
-        ));
+        let rows = "-100.0,10,0.9,0.8,0.1\n-100.0,20,0.8,0.7,0.1\n";
+        let chart = chart(&two_keys(key, rows));
         assert_eq!(chart.panels[0].series[1].name, name);
     }
 }
@@ -170,16 +159,12 @@ fn a_curve_whose_runs_all_failed_says_so() {
     let rows = "report,10,0.9,0.8,0.1\nreport,20,0.8,0.7,0.1\nrk4,10,,,\nrk4,20,,,\n";
     let text = two_keys("motion.scheme", rows);
     let scene = chart(&text).scene();
-    says(
-        &scene,
-        &["measured, report", "rk4: no run could be measured"],
-    );
+    let failed = "rk4: no run could be measured";
+    says(&scene, &["measured, report", failed]);
     assert!(!words(&scene).contains(&"measured, rk4"));
     let told = of_table::warnings(&table(&text), &[]);
-    assert_eq!(
-        told,
-        ["the runs of 2 of 4 rows failed: they have no points"]
-    );
+    let words = "the runs of 2 of 4 rows failed: they have no points";
+    assert_eq!(told, [words]);
 }
 
 #[test]

@@ -2,9 +2,9 @@
 //! program itself runs in a pty.
 
 use crate::support::dice::Dice;
-use crate::support::ground::Ground;
+use crate::support::ground::{Ground, done};
 use crate::support::pty::Terminal;
-use crate::support::words::has_all;
+use crate::support::words::{has, has_all};
 use std::fs;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -67,15 +67,21 @@ fn go_to(lab: &mut Terminal, step: u64) {
     });
 }
 
+/// Presses the keys of steps, and waits for the step to which they lead.
+#[track_caller]
+fn steps(lab: &mut Terminal, keys: &str, step: u64) {
+    lab.press(keys);
+    lab.wait_for_step(step);
+}
+
 /// Gives the push to come, and waits for the message about it.
 #[track_caller]
 fn push(lab: &mut Terminal) {
     lab.ask("1", "1: now the key"); // what was said of the push before has gone
     lab.press("p");
     lab.wait_until("a push", |lab| {
-        ["pushed: ", "made way"]
-            .iter()
-            .any(|words| lab.words().contains(words))
+        let words = lab.words();
+        words.contains("pushed: ") || words.contains("made way")
     });
 }
 
@@ -100,20 +106,14 @@ fn exported(lab: &mut Terminal, name: &str) -> Vec<u8> {
 
 /// The CSV that `gyrolab run` writes for the file `name`.
 fn run(ground: &Ground, name: &str) -> Vec<u8> {
-    let output = ground.run(&format!("run {name} -o -"));
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{said}");
-    output.stdout
+    done(ground.run(&format!("run {name} -o -"))).stdout
 }
 
 /// Step, time and place of the axle top, as they are shown.
 fn shown(lab: &Terminal) -> [Vec<String>; 3] {
     let shown = ["x", "y", "z"].map(|axis| lab.values(axis));
-    assert!(
-        shown.iter().all(|value| !value.is_empty()),
-        "{}",
-        lab.screen()
-    );
+    let is_whole = shown.iter().all(|value| !value.is_empty());
+    assert!(is_whole, "{}", lab.screen());
     shown
 }
 
@@ -146,13 +146,9 @@ fn a_value_is_nudged_and_typed_refused_and_taken_back() {
     }
     lab.wait_for_step(100);
     let run = saved(&mut lab, "run.toml");
-    let edits: Vec<_> = run.match_indices("[[edit]]").collect();
-    assert_eq!(edits.len(), 1, "{run}");
-    assert!(
-        run[edits[0].0..].starts_with("[[edit]]\nstep = 100\n"),
-        "{run}"
-    );
-    assert!(run.contains("\"motion.time_step_s\" = 0.05"), "{run}");
+    assert_eq!(run.matches("[[edit]]").count(), 1, "{run}");
+    has(&run, "[[edit]]\nstep = 100\n");
+    has(&run, "\"motion.time_step_s\" = 0.05");
     lab.quit();
 }
 
@@ -166,8 +162,7 @@ fn another_tilt_begins_a_run_and_undo_goes_back_to_the_old_one() {
     set(&mut lab, "30");
     lab.wait_for("►tilt 30 deg");
     lab.wait_for_step(100); // played to the time at which the one before stood
-    lab.press("3.");
-    lab.wait_for_step(103);
+    steps(&mut lab, "3.", 103);
     lab.ask("u", "undone: this is the run before");
     lab.wait_for_step(100);
     lab.wait_for("►tilt 45 deg");
@@ -191,8 +186,7 @@ fn a_push_is_chosen_given_marked_and_saved() {
     lab.press(&format!("{DOWN}{RIGHT}"));
     lab.wait_for("►toward up");
     lab.ask("p", "pushed: 75 N on top, up, for 20 s");
-    lab.press("50.");
-    lab.wait_for_step(150);
+    steps(&mut lab, "50.", 150);
     lab.wait_for("═"); // below the traces, when it acts
     let run = saved(&mut lab, "run.toml");
     let push = &run[run.find("[[push]]").unwrap()..];
@@ -212,11 +206,9 @@ fn a_push_is_chosen_given_marked_and_saved() {
 fn forward_again_the_numbers_are_those_of_the_first_time() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 0);
-    lab.press("300.");
-    lab.wait_for_step(300);
+    steps(&mut lab, "300.", 300);
     push(&mut lab);
-    lab.press("100.");
-    lab.wait_for_step(400);
+    steps(&mut lab, "100.", 400);
     let first = (shown(&lab), exported(&mut lab, "first.csv"));
     lab.press(",");
     lab.wait_for_step(399);
@@ -267,18 +259,15 @@ fn an_export_is_the_run_that_was_saved() {
     let mut lab = paused_at(&ground, 50);
     push(&mut lab);
     select(&mut lab, 1);
-    lab.press("30.");
-    lab.wait_for_step(80);
+    steps(&mut lab, "30.", 80);
     lab.press(RIGHT);
-    lab.press("20.");
-    lab.wait_for_step(100);
+    steps(&mut lab, "20.", 100);
     lab.press("15,");
     lab.wait_for_step(85);
     lab.press(&format!("{DOWN}{DOWN}"));
     set(&mut lab, "0.025");
     lab.wait_for("►dt 0.025 s");
-    lab.press("200.");
-    lab.wait_for_step(285);
+    steps(&mut lab, "200.", 285);
     lab.ask("x", "286 rows, about");
     lab.ask("\t", "every 1_");
     for (every, words) in [("7", "42 rows, about"), ("0", "whole number, 1 or more")] {
@@ -313,19 +302,13 @@ fn the_present_state_is_saved_as_a_scenario_that_runs() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 50);
     push(&mut lab);
-    lab.press("100.");
-    lab.wait_for_step(150);
+    steps(&mut lab, "100.", 150);
     lab.ask("S", "save the present state");
     answer(&mut lab, "here.toml");
     lab.wait_for("the scenario is in");
     let z = shown(&lab)[2].last().cloned();
     lab.quit();
-    let checked = ground.run("check here.toml");
-    assert!(
-        checked.status.success(),
-        "{}",
-        String::from_utf8_lossy(&checked.stderr)
-    );
+    ground.stdout("check here.toml");
     assert!(run(&ground, "here.toml").starts_with(b"# "));
     let begins = ground.open("here.toml --paused");
     begins.wait_until("the z of the saved state", |begins| {
@@ -374,8 +357,7 @@ fn an_export_whose_folder_goes_away_says_so_and_the_lab_stays() {
     });
     fs::remove_dir_all(ground.file("gone")).unwrap();
     lab.wait_for("cannot write");
-    lab.press(".");
-    lab.wait_for_step(LONG + 1);
+    steps(&mut lab, ".", LONG + 1);
     lab.quit();
 }
 
@@ -389,23 +371,24 @@ fn long_run(ground: &Ground) -> Terminal {
     lab
 }
 
+fn begin_export(lab: &mut Terminal) {
+    lab.ask("x", "export steps 0 to");
+    answer(lab, "run.csv");
+    lab.wait_for("in the background");
+}
+
 #[test]
 fn an_export_is_stopped_by_esc_and_by_the_second_q_and_leaves_nothing() {
     let ground = Ground::new();
     let mut lab = long_run(&ground);
-    let begin = |lab: &mut Terminal| {
-        lab.ask("x", "export steps 0 to");
-        answer(lab, "run.csv");
-        lab.wait_for("in the background");
-    };
-    begin(&mut lab);
+    begin_export(&mut lab);
     lab.press(ESC); // it may close the notice
     lab.wait_until("the line without the notice", |lab| {
         !lab.words().contains("in the background")
     });
     lab.ask(ESC, "the export was stopped, and nothing was written");
     assert_eq!(ground.files(), ["state"]);
-    begin(&mut lab);
+    begin_export(&mut lab);
     lab.ask("q", "q again leaves it unfinished");
     lab.quit();
     assert_eq!(ground.files(), ["state"]);
@@ -417,9 +400,7 @@ fn a_line_that_is_lost_in_an_export_leaves_no_part_and_is_told_of() {
     all_at_once(&["HUP", "line"], |end| {
         let ground = Ground::new();
         let mut lab = long_run(&ground);
-        lab.ask("x", "export steps 0 to");
-        answer(&mut lab, "run.csv");
-        lab.wait_for("in the background");
+        begin_export(&mut lab);
         ended(&mut lab, end);
         assert_eq!(ground.files(), ["state"], "{end}");
         let lab = ground.open("--resume");
@@ -450,9 +431,8 @@ fn ended(lab: &mut Terminal, by: &str) {
 fn kept(ground: &Ground) -> String {
     let folder = ground.state().join("gyrolab");
     let names = ground.kept(".session").into_iter();
-    names
-        .filter_map(|name| fs::read_to_string(folder.join(name)).ok())
-        .collect()
+    let texts = names.filter_map(|name| fs::read_to_string(folder.join(name)).ok());
+    texts.collect()
 }
 
 #[test]
@@ -536,8 +516,7 @@ fn no_key_is_lost_when_the_size_changes_at_the_same_moment() {
     let mut lab = paused_at(&ground, 40);
     for step in 41..100 {
         lab.resize((80, 24 + step as u16 % 2));
-        lab.press(".");
-        lab.wait_for_step(step);
+        steps(&mut lab, ".", step);
     }
     lab.quit();
 }
@@ -585,8 +564,7 @@ fn what_is_pressed_just_before_the_end_is_kept() {
 fn keys_that_come_together_count_one_by_one() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 30);
-    lab.press("....5.,p..");
-    lab.wait_for_step(40);
+    steps(&mut lab, "....5.,p..", 40);
     let run = saved(&mut lab, "run.toml");
     assert!(run.contains("from_s = 3.8000000000000003"), "{run}");
     lab.quit();
@@ -609,8 +587,7 @@ fn after_every_end_there_is_all_that_was_done() {
         let ground = Ground::new();
         let mut lab = paused_at(&ground, 30);
         push(&mut lab);
-        lab.press("5.");
-        lab.wait_for_step(35);
+        steps(&mut lab, "5.", 35);
         ended(&mut lab, end);
         if end != "line" {
             lab.has_given_the_terminal_back();
@@ -626,13 +603,12 @@ fn after_every_end_there_is_all_that_was_done() {
 #[cfg(debug_assertions)]
 fn after_a_panic_there_is_all_that_was_done() {
     let ground = Ground::new();
-    let variables = [("GYROLAB_PANIC_AFTER_MS", "3000")];
-    let variables = [("TERM", "xterm"), ("LANG", "C.UTF-8"), variables[0]];
-    let mut lab = ground.open_with(&["--paused", "--at", "30"], &variables);
+    let panic = ("GYROLAB_PANIC_AFTER_MS", "3000");
+    let variables = [("TERM", "xterm"), ("LANG", "C.UTF-8"), panic];
+    let mut lab = ground.open_with("--paused --at 30", &variables);
     lab.wait_for("q quit");
     push(&mut lab);
-    lab.press("5.");
-    lab.wait_for_step(35);
+    steps(&mut lab, "5.", 35);
     assert_eq!(lab.wait_for_end().exit_code(), 101);
     lab.has_given_the_terminal_back();
     let mut lab = resumed(&ground);
@@ -658,8 +634,7 @@ fn a_shell_stops_it_and_brings_it_back() {
     lab.press("fg\r");
     lab.wait_for("q quit");
     lab.wait_for_step(30);
-    lab.press("5.");
-    lab.wait_for_step(35);
+    steps(&mut lab, "5.", 35);
     lab.forget();
     lab.press("q");
     lab.has_given_the_terminal_back();
@@ -736,11 +711,8 @@ fn without_a_place_for_sessions_the_lab_opens_and_says_so() {
     let ground = Ground::new();
     fs::write(ground.state(), "in the way").unwrap();
     for (args, words) in [
-        (
-            ["--paused", "--at", "30"].as_slice(),
-            "sessions cannot be kept in",
-        ),
-        (&["--resume"], "session not kept"),
+        ("--paused --at 30", "sessions cannot be kept in"),
+        ("--resume", "session not kept"),
     ] {
         let mut lab = ground.open(args);
         lab.wait_for(words);
@@ -862,8 +834,7 @@ fn is_used_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kep
         step,
         pushes,
     }];
-    lab.press(".");
-    lab.wait_for_step(step + 1);
+    steps(lab, ".", step + 1);
     let until = Instant::now() + Duration::from_millis(dice.whole(1000, 1900));
     while Instant::now() < until {
         let given = adds_something(lab, dice);
@@ -878,16 +849,12 @@ fn is_used_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kep
     let killed = Instant::now();
     lab.kill();
     let is_old = |seen: &&Observed| seen.at + Duration::from_secs(1) <= killed;
-    let Observed {
-        step: reached,
-        pushes,
-        ..
-    } = seen.iter().rfind(is_old).unwrap();
+    let old = seen.iter().rfind(is_old).unwrap();
     Kept {
         step,
         run,
-        reached: *reached,
-        pushes: *pushes,
+        reached: old.step,
+        pushes: old.pushes,
     }
 }
 

@@ -2,6 +2,8 @@
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+// What a text is held against may be borrowed or not.
+#![allow(clippy::needless_borrows_for_generic_args)]
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -1,7 +1,7 @@
 //! The manual's pages, and completion in the shells that are there.
 
-use crate::support::ground::{GYROLAB, Ground, done, failed, stdout};
-use crate::support::words::{has, has_all};
+use crate::support::ground::{GYROLAB, Ground, done, stdout};
+use crate::support::words::{has, has_all, has_no};
 use std::path::Path;
 use std::process::Command;
 
@@ -12,11 +12,9 @@ fn every_command_has_a_page_with_examples() {
     let commands = stdout(&help).split("Commands:\n").nth(1).unwrap();
     let commands = commands.split("\n\n").next().unwrap().lines();
     let commands = commands.filter_map(|line| line.strip_prefix("  "));
-    let commands: Vec<_> = commands
-        .filter(|line| !line.starts_with(' '))
-        .filter_map(|line| line.split(' ').next())
-        .filter(|name| *name != "help")
-        .collect();
+    let commands = commands.filter(|line| !line.starts_with(' '));
+    let mut commands: Vec<_> = commands.filter_map(|line| line.split(' ').next()).collect();
+    commands.retain(|name| *name != "help");
     assert!(commands.contains(&"verify"), "{commands:?}");
     done(ground.run("man --all -o man1"));
     for command in &commands {
@@ -30,60 +28,45 @@ fn every_command_has_a_page_with_examples() {
         assert!(stdout(&help).contains("Examples:\n"), "{command}");
     }
     let whole = ground.read("man1/gyrolab.1");
-    for section in [
-        "ENVIRONMENT",
-        "FILES",
-        "\"EXIT STATUS\"",
-        "\"KEYS IN THE LAB\"",
-    ] {
-        assert!(whole.contains(&format!(".SH {section}\n")), "{section}");
+    for section in "ENVIRONMENT|FILES|\"EXIT STATUS\"|\"KEYS IN THE LAB\"".split('|') {
+        has(&whole, format!(".SH {section}\n"));
     }
-    assert!(
-        !whole.contains("gyrolab\\-help"),
-        "a page that there is not"
-    );
-    let again = ground.run("man --all -o man1");
-    failed(&again, &["man1/gyrolab.1 exists; --force replaces it"]);
+    has_no(&whole, "gyrolab\\-help"); // a page that there is not
+    let words = "man1/gyrolab.1 exists; --force replaces it";
+    ground.refused("man --all -o man1", 1, &[words]);
     done(ground.run("man --all -o man1 --force"));
-    failed(&ground.run("man verfy"), &["did you mean verify?"]);
+    ground.refused("man verfy", 1, &["did you mean verify?"]);
 }
 
 /// The pages in roff are those of --all.
 #[test]
 fn the_manual_is_printed_as_text() {
     let ground = Ground::new();
-    let whole = done(ground.run("man"));
-    let page = done(ground.run("man run"));
-    assert!(stdout(&whole).contains("\n\nGYROLAB RUN\n\n"));
-    assert!(stdout(&page).contains("\nUsage: gyrolab run [OPTIONS] <SCENARIO>\n"));
-    for text in [stdout(&whole), stdout(&page)] {
+    let whole = ground.stdout("man");
+    let page = ground.stdout("man run");
+    has(&whole, "\n\nGYROLAB RUN\n\n");
+    has(&page, "\nUsage: gyrolab run [OPTIONS] <SCENARIO>\n");
+    for text in [&whole, &page] {
         let roff = |line: &&str| line.starts_with(".S") || line.contains("\\f");
         assert_eq!(text.lines().find(roff), None);
     }
     for section in ["ENVIRONMENT", "FILES", "EXIT STATUS", "KEYS IN THE LAB"] {
-        let title = format!("\n{section}\n");
-        assert!(stdout(&whole).contains(&title), "{section}");
+        has(&whole, format!("\n{section}\n"));
     }
     // A topic that is a command's, too, says where the options are.
-    let topic = done(ground.run("man sweep"));
-    let last = stdout(&topic).lines().last();
-    assert_eq!(
-        last,
-        Some("The options of the command: gyrolab sweep --help.")
-    );
+    let topic = ground.stdout("man sweep");
+    let words = "The options of the command: gyrolab sweep --help.";
+    assert_eq!(topic.lines().last(), Some(words));
 }
 
 #[test]
 fn no_line_is_wider_than_80_columns() {
     let ground = Ground::new();
-    let topics = [
-        "class", "csv", "fit", "friction", "lab", "numbers", "scenario", "schemes", "sweep", "run",
-    ];
-    for args in std::iter::once(vec!["man"]).chain(topics.map(|topic| vec!["man", topic])) {
-        let text = done(ground.run(&args));
+    let topics = " class csv fit friction lab numbers scenario schemes sweep run";
+    for topic in topics.split(' ') {
+        let text = ground.stdout(&format!("man {topic}"));
         let is_wide = |line: &&str| line.chars().count() > 80 && !line.starts_with("Usage: ");
-        let wide = stdout(&text).lines().find(is_wide);
-        assert_eq!(wide, None, "{args:?}");
+        assert_eq!(text.lines().find(is_wide), None, "{topic}");
     }
 }
 
@@ -117,10 +100,10 @@ fn the_topics_hold_the_tables_of_the_program() {
         ("numbers", "measured_precession_rad_per_s (rad/s)"),
         ("lab", "Take a step apart"),
     ] {
-        let page = done(ground.run(&format!("man {topic}")));
-        assert!(stdout(&page).contains(words), "{topic}: {words}");
+        let page = ground.stdout(&format!("man {topic}"));
+        has(&page, words);
         let is_unfilled = |line: &str| line.starts_with('{') && line.ends_with('}');
-        assert!(!stdout(&page).lines().any(is_unfilled), "{topic}");
+        assert!(!page.lines().any(is_unfilled), "{topic}");
     }
 }
 
@@ -128,10 +111,9 @@ fn the_topics_hold_the_tables_of_the_program() {
 #[test]
 fn the_manual_names_every_environment_variable() {
     let ground = Ground::new();
-    let manual = done(ground.run("man"));
-    let manual = stdout(&manual);
+    let manual = ground.stdout("man");
     // A library reads this one.
-    assert!(manual.contains("\n  RAYON_NUM_THREADS\n"));
+    has(&manual, "\n  RAYON_NUM_THREADS\n");
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut folders = vec![source];
     let mut found = 0;
@@ -179,8 +161,7 @@ fn bash_completes_presets_files_keys_values_and_names() {
         return;
     }
     let ground = Ground::new();
-    let script = done(ground.run("completions bash"));
-    ground.write("completion.bash", stdout(&script));
+    ground.write("completion.bash", &ground.stdout("completions bash"));
     ground.write("mine.toml", "");
     ground.write("mine.txt", "");
     ground.write("a file's.toml", "");
@@ -226,8 +207,8 @@ fn bash_completes_presets_files_keys_values_and_names() {
 fn zsh_and_fish_complete_keys() {
     let ground = Ground::new();
     for shell in ["zsh", "fish"] {
-        let script = done(ground.run(&format!("completions {shell}")));
-        ground.write(&format!("completion.{shell}"), stdout(&script));
+        let script = ground.stdout(&format!("completions {shell}"));
+        ground.write(&format!("completion.{shell}"), &script);
         if Command::new(shell).arg("--version").output().is_err() {
             continue;
         }

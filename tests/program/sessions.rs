@@ -1,10 +1,10 @@
 //! Sessions as the program keeps, lists and confines them: the program itself in a pty.
 
-use crate::support::ground::Ground;
+use crate::support::ground::{Ground, code, names, stderr};
 use crate::support::pty::Terminal;
+use crate::support::words::{has, has_all};
 use std::fs;
 use std::os::unix::fs::symlink;
-use std::process::Command;
 
 const ESC: &str = "\u{1b}";
 const CTRL_Z: &str = "\u{1a}";
@@ -91,21 +91,19 @@ fn a_session_of_another_version_is_named_and_left_alone() {
 
 #[test]
 fn a_command_behind_its_options_is_told_where_it_belongs() {
-    let output = Ground::new().run("--folder . run cusps");
-    assert_eq!(output.status.code(), Some(2));
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(
-        said,
-        "gyrolab: run is a command, and commands come before their options: gyrolab run ...; \
-         --folder is an option of the lab\n"
-    );
-    let output = Ground::new().run("--folder . sessions");
-    assert_eq!(output.status.code(), Some(1));
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(
-        said,
-        "gyrolab: sessions is a command, and commands come before their options: gyrolab sessions ...\n"
-    );
+    let words = |name: &str| {
+        format!(
+            "gyrolab: {name} is a command, and commands come before their options: gyrolab {name} ..."
+        )
+    };
+    for (name, more, end, with) in [
+        ("run", " cusps", "; --folder is an option of the lab", 2),
+        ("sessions", "", "", 1),
+    ] {
+        let output = Ground::new().run(&format!("--folder . {name}{more}"));
+        assert_eq!(code(&output), with);
+        assert_eq!(stderr(&output), format!("{}{end}\n", words(name)));
+    }
 }
 
 #[test]
@@ -119,19 +117,12 @@ fn sessions_are_listed_and_one_is_taken_by_its_name() {
     let mut first = ground.open("--resume 1");
     first.wait_for(AS_LEFT);
     first.wait_for_step(20);
-    let listed = ground.run("sessions");
-    let text = String::from_utf8(listed.stdout).unwrap();
-    let lines: Vec<_> = text.lines().map(str::to_owned).collect();
-    assert_eq!(lines.len(), 3, "{text}");
-    let line = |name: &str| lines.iter().find(|line| line.starts_with(name)).unwrap();
+    let text = ground.stdout("sessions");
+    assert_eq!(text.lines().count(), 3, "{text}");
+    let line = |name: &str| text.lines().find(|line| line.starts_with(name)).unwrap();
     let process = format!("by process {}", first.child.process_id().unwrap());
-    assert!(
-        line("1 ").contains(&process) && line("1 ").contains("(cusps)"),
-        "{text}"
-    );
-    for words in [" 30 ", " no ", "Method 2 (method-2)"] {
-        assert!(line("2 ").contains(words), "{words}: {text}");
-    }
+    has_all(line("1 "), [&process, "(cusps)"]);
+    has_all(line("2 "), [" 30 ", " no ", "Method 2 (method-2)"]);
     for (name, words) in [
         ("1", "it is open in another lab"),
         ("7", "there is no such session"),
@@ -148,13 +139,12 @@ fn confined(ground: &Ground) -> Terminal {
     let inside = ground.file("inside");
     if !inside.exists() {
         fs::create_dir(&inside).unwrap();
-        let preset = ground.run("presets cusps").stdout;
-        fs::write(ground.file("secret.toml"), &preset).unwrap();
-        fs::write(inside.join("own.toml"), &preset).unwrap();
+        let preset = ground.stdout("presets cusps");
+        ground.write("secret.toml", &preset);
+        ground.write("inside/own.toml", &preset);
         symlink(ground.file("secret.toml"), inside.join("out.toml")).unwrap();
         symlink(ground.file(""), inside.join("up")).unwrap();
-        let fifo = Command::new("mkfifo").arg(inside.join("pipe.csv")).status();
-        assert!(fifo.unwrap().success());
+        ground.make_fifo("inside/pipe.csv");
     }
     let folder = inside.to_str().unwrap();
     let lab = ground.open(&format!("--folder {folder} --paused --at 30"));
@@ -190,22 +180,10 @@ fn a_confined_lab_writes_in_its_folder_alone() {
     lab.wait_for("the run is in");
     lab.ask(CTRL_Z, "there is no shell to go back to");
     lab.quit();
-    let names = |folder: &str| {
-        let entries = fs::read_dir(ground.file(folder)).unwrap();
-        let mut names: Vec<_> = entries
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort_unstable();
-        names
-    };
     assert_eq!(ground.files(), ["inside", "secret.toml"], "no state folder");
-    assert_eq!(
-        names("inside"),
-        [
-            ".gyrolab", "new.toml", "out.toml", "own.toml", "pipe.csv", "up"
-        ]
-    );
-    assert!(names("inside/.gyrolab").contains(&"1.session".to_owned()));
+    let files = ".gyrolab new.toml out.toml own.toml pipe.csv up";
+    assert_eq!(names(&ground.file("inside")).join(" "), files);
+    assert!(ground.file("inside/.gyrolab/1.session").exists());
 }
 
 #[test]
@@ -221,12 +199,8 @@ fn a_confined_lab_reads_in_its_folder_alone() {
 
     let folder = ground.file("inside");
     let folder = folder.to_str().unwrap();
-    for scenario in [
-        "../secret.toml",
-        "out.toml",
-        "up/secret.toml",
-        "/dev/null.toml",
-    ] {
+    let outside = "../secret.toml out.toml up/secret.toml /dev/null.toml";
+    for scenario in outside.split(' ') {
         let mut lab = ground.open(&format!("--folder {folder} {scenario}"));
         assert_eq!(lab.wait_for_end().exit_code(), 1, "{scenario}");
         lab.wait_for("stays in its folder");
@@ -235,9 +209,8 @@ fn a_confined_lab_reads_in_its_folder_alone() {
     let piped = ground.run(&["--folder", folder, secret.to_str().unwrap()]);
     assert_eq!(piped.status.code(), Some(1));
 
-    let listed = ground.run(&format!("sessions --folder {folder}"));
-    let text = String::from_utf8(listed.stdout).unwrap();
-    assert!(text.contains("(own.toml)"), "{text}");
+    let listed = ground.stdout(&format!("sessions --folder {folder}"));
+    has(listed, "(own.toml)");
     let mut lab = ground.open(&format!("--folder {folder} --resume"));
     lab.wait_for(AS_LEFT);
     lab.quit();

@@ -1,19 +1,24 @@
 //! The program itself in a pty: what it does to a terminal, and how it gives it back at every end.
 
-use crate::support::ground::{Ground, done, stderr};
+use crate::support::ground::{Args, Ground, done, stderr};
 use crate::support::pty::{LEAVES_ALTERNATE_SCREEN, SHOWS_CURSOR, Terminal};
 use crate::support::words::has_all;
 use std::thread;
 use std::time::Duration;
 
+/// The lab in a new working directory, once its keys are on the screen.
+fn opened(args: impl Args) -> Terminal {
+    let terminal = Terminal::open(args);
+    terminal.wait_for("q quit");
+    terminal
+}
+
 #[test]
 fn it_opens_runs_and_leaves() {
-    let mut terminal = Terminal::open(&[]);
-    terminal.wait_for("q quit");
+    let mut terminal = opened("");
     terminal.wait_for("Method 2");
     terminal.wait_for("► ×20");
-    terminal.press("q");
-    assert_eq!(terminal.wait_for_end().exit_code(), 0);
+    terminal.quit();
     terminal.has_given_the_terminal_back();
 }
 
@@ -27,8 +32,7 @@ fn a_screen_is_prepared_in_one_command() {
 
 #[test]
 fn not_a_byte_while_it_stands_still() {
-    let terminal = Terminal::open("--paused");
-    terminal.wait_for("q quit");
+    let terminal = opened("--paused");
     thread::sleep(Duration::from_millis(300));
     let before = terminal.sent().len();
     thread::sleep(Duration::from_secs(2));
@@ -37,8 +41,7 @@ fn not_a_byte_while_it_stands_still() {
 
 #[test]
 fn keys_are_answered_at_top_speed() {
-    let mut terminal = Terminal::open("--set motion.steps=1000000000");
-    terminal.wait_for("q quit");
+    let mut terminal = opened("--set motion.steps=1000000000");
     terminal.press("99+");
     terminal.wait_for("top ×");
     terminal.press("?");
@@ -47,15 +50,13 @@ fn keys_are_answered_at_top_speed() {
 
 #[test]
 fn it_follows_the_size_of_the_screen() {
-    let mut terminal = Terminal::open("--paused");
-    terminal.wait_for("q quit");
+    let mut terminal = opened("--paused");
     for size in [(200, 50), (40, 10), (1, 1), (120, 30)] {
         terminal.resize(size);
         thread::sleep(Duration::from_millis(200));
     }
     terminal.wait_for("3-D");
-    terminal.press("q");
-    assert_eq!(terminal.wait_for_end().exit_code(), 0);
+    terminal.quit();
 }
 
 #[test]
@@ -73,17 +74,14 @@ fn a_window_of_any_size_is_drawn_within_little_memory() {
 #[test]
 fn signals_to_end_give_the_terminal_back() {
     for (signal, code) in [("TERM", 143), ("INT", 130), ("HUP", 129), ("QUIT", 131)] {
-        let mut terminal = Terminal::open("--fps 60");
-        terminal.wait_for("q quit");
+        let mut terminal = opened("--fps 60");
         terminal.signal(signal);
         assert_eq!(terminal.wait_for_end().exit_code(), code, "{signal}");
         terminal.has_given_the_terminal_back();
         let sent = terminal.sent_text();
         let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN).unwrap();
-        assert_eq!(
-            &sent[farewell..],
-            format!("{LEAVES_ALTERNATE_SCREEN}{SHOWS_CURSOR}")
-        );
+        let words = format!("{LEAVES_ALTERNATE_SCREEN}{SHOWS_CURSOR}");
+        assert_eq!(&sent[farewell..], words);
     }
 }
 
@@ -114,8 +112,7 @@ fn a_panic_in_the_background_waits_for_the_end_to_be_told() {
     terminal.wait_for("q quit");
     assert!(!terminal.sent_text().contains(LEAVES_ALTERNATE_SCREEN));
     assert!(!terminal.sent_text().contains("asked for"));
-    terminal.press("q");
-    assert_eq!(terminal.wait_for_end().exit_code(), 0);
+    terminal.quit();
     terminal.wait_until("the message", |terminal| {
         let sent = terminal.sent_text();
         let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN);
@@ -126,8 +123,7 @@ fn a_panic_in_the_background_waits_for_the_end_to_be_told() {
 #[test]
 fn a_lost_line_ends_it() {
     for _ in 0..3 {
-        let mut terminal = Terminal::open(&[]);
-        terminal.wait_for("q quit");
+        let mut terminal = opened("");
         terminal.lose_line();
         // By the signal, or by the frame that could not be written: whichever comes first.
         assert!([1, 129].contains(&terminal.wait_for_end().exit_code()));
@@ -155,8 +151,7 @@ fn a_line_lost_without_a_signal_ends_it_and_keeps_the_session() {
 
 #[test]
 fn keys_in_bulk_are_all_taken_at_once() {
-    let mut terminal = Terminal::open("--paused");
-    terminal.wait_for("q quit");
+    let mut terminal = opened("--paused");
     terminal.press(&".".repeat(2000));
     terminal.wait_for_step(2000);
     // More than a terminal holds, with sequences that come apart anywhere in it.
@@ -168,22 +163,13 @@ fn keys_in_bulk_are_all_taken_at_once() {
 
 #[test]
 fn a_sequence_that_never_ends_does_not_swallow_what_follows() {
-    let begun = [
-        "\u{1b}[200~",
-        "\u{1b}[<",
-        "\u{1b}[1;",
-        "\u{1b}]0;",
-        "\u{1b}P",
-        "\u{1b}O",
-    ];
+    let begun = ["[200~", "[<", "[1;", "]0;", "P", "O"];
     let cut_off = |begun: &str| {
-        let mut terminal = Terminal::open("--paused");
-        terminal.wait_for("q quit");
+        let mut terminal = opened("--paused");
         // Ctrl-C ends the lab, however soon it follows.
         terminal.press(&format!("{begun}abc\u{3}"));
         assert_eq!(terminal.wait_for_end().exit_code(), 0, "{begun:?}");
-        let mut terminal = Terminal::open("--paused");
-        terminal.wait_for("q quit");
+        let mut terminal = opened("--paused");
         // And after a while any key means what it says.
         terminal.press(begun);
         thread::sleep(Duration::from_millis(1500));
@@ -192,25 +178,22 @@ fn a_sequence_that_never_ends_does_not_swallow_what_follows() {
     };
     thread::scope(|scope| {
         for begun in begun {
-            scope.spawn(move || cut_off(begun));
+            scope.spawn(move || cut_off(&format!("\u{1b}{begun}")));
         }
     });
 }
 
 #[test]
 fn a_paste_into_a_field_is_cut_and_says_so() {
-    let mut terminal = Terminal::open("--paused --at 10");
-    terminal.wait_for("q quit");
+    let mut terminal = opened("--paused --at 10");
     let paste = |text: &str| format!("\u{1b}[200~{text}\u{1b}[201~");
     terminal.ask("x", "export steps 0 to 10");
     terminal.ask(&paste(&"q".repeat(20_000)), "at most 1000 characters");
     terminal.ask("\u{15}", "file");
     terminal.ask(&paste("from-the\n-clipboard.csv"), "from-the-clipboard.csv");
     terminal.ask("\r", "wrote 11 rows");
-    assert_eq!(
-        terminal.ground().files(),
-        ["from-the-clipboard.csv", "state"]
-    );
+    let files = ["from-the-clipboard.csv", "state"];
+    assert_eq!(terminal.ground().files(), files);
     terminal.ask("o/", "(");
     terminal.ask(&paste(&"x".repeat(20_000)), "at most 100 characters");
     terminal.ask("\u{15}\u{7f}", "nothing has that in its name");
@@ -253,9 +236,7 @@ fn without_threads_the_lab_opens_acts_and_ends() {
 #[test]
 fn nothing_is_saved_where_it_could_hang_the_lab_or_write_over_the_picture() {
     let mut terminal = Terminal::open("--paused --at 10");
-    let fifo = terminal.ground().file("fifo");
-    let made = std::process::Command::new("mkfifo").arg(fifo).status();
-    assert!(made.unwrap().success());
+    terminal.ground().make_fifo("fifo");
     terminal.wait_for("q quit");
     for (key, title) in [
         ("s", "save the run file"),
@@ -279,8 +260,7 @@ fn nothing_is_saved_where_it_could_hang_the_lab_or_write_over_the_picture() {
 #[test]
 #[ignore = "waits three seconds until the terminal is full"]
 fn a_terminal_that_takes_no_bytes_does_not_hold_up_the_end() {
-    let mut terminal = Terminal::open("--fps 60 --set motion.steps=1000000000");
-    terminal.wait_for("q quit");
+    let mut terminal = opened("--fps 60 --set motion.steps=1000000000");
     terminal.press("99+");
     terminal.set_stopped(true);
     thread::sleep(Duration::from_secs(3)); // until the pty is full and a frame hangs
@@ -291,8 +271,7 @@ fn a_terminal_that_takes_no_bytes_does_not_hold_up_the_end() {
 
 #[test]
 fn ctrl_l_draws_all_of_it_again() {
-    let mut terminal = Terminal::open("--paused");
-    terminal.wait_for("q quit");
+    let mut terminal = opened("--paused");
     thread::sleep(Duration::from_millis(300));
     terminal.forget();
     terminal.press("\u{c}");
@@ -302,8 +281,7 @@ fn ctrl_l_draws_all_of_it_again() {
 
 #[test]
 fn ctrl_z_gives_the_terminal_back_and_resuming_draws_all_of_it() {
-    let mut terminal = Terminal::open("--paused");
-    terminal.wait_for("q quit");
+    let mut terminal = opened("--paused");
     terminal.press("\u{1a}");
     terminal.has_given_the_terminal_back();
     thread::sleep(Duration::from_millis(300));
@@ -311,8 +289,7 @@ fn ctrl_z_gives_the_terminal_back_and_resuming_draws_all_of_it() {
     terminal.signal("CONT");
     terminal.wait_for("q quit");
     terminal.wait_for("Method 2");
-    terminal.press("q");
-    assert_eq!(terminal.wait_for_end().exit_code(), 0);
+    terminal.quit();
 }
 
 #[test]
@@ -323,10 +300,8 @@ fn no_color_means_no_colour_and_the_selection_still_shows() {
     terminal.press("o");
     terminal.wait_for("> method-2");
     let sent = terminal.sent_text();
-    assert!(
-        !sent.contains("\u{1b}[38;") && !sent.contains("\u{1b}[48;"),
-        "a colour"
-    );
+    let is_coloured = sent.contains("\u{1b}[38;") || sent.contains("\u{1b}[48;");
+    assert!(!is_coloured);
     assert!(sent.contains("\u{1b}[7m"), "no reversed selection");
 }
 

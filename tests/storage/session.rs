@@ -1,5 +1,7 @@
 //! Sessions on the disk, used by processes that run, quit and are killed.
 
+use crate::support::ground;
+use crate::support::words::has;
 use gyrolab::storage::at_exit::{self, Release};
 use gyrolab::storage::session::{Content, Found, Session, later, list, resume};
 use std::fs;
@@ -74,13 +76,9 @@ fn closed(session: Session) {
 }
 
 fn names(folder: &Path, end: &str) -> Vec<PathBuf> {
-    let mut names: Vec<_> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.to_str().unwrap().ends_with(end))
-        .collect();
-    names.sort_unstable();
-    names
+    let mut names = ground::names(folder);
+    names.retain(|name| name.ends_with(end));
+    names.into_iter().map(|name| folder.join(name)).collect()
 }
 
 fn only(folder: &Path, end: &str) -> PathBuf {
@@ -92,13 +90,9 @@ fn only(folder: &Path, end: &str) -> PathBuf {
 /// The file of the session that ends with that text: its place, then its work.
 fn file_of(folder: &Path, text: &str) -> PathBuf {
     let mut names = names(folder, ".session").into_iter();
-    names
-        .find(|path| {
-            fs::read_to_string(path)
-                .unwrap()
-                .ends_with(&format!("\n{text}"))
-        })
-        .unwrap()
+    let end = format!("\n{text}");
+    let is_it = |path: &PathBuf| fs::read_to_string(path).unwrap().ends_with(&end);
+    names.find(is_it).unwrap()
 }
 
 /// Sets the modification time of the file `path` so many `seconds` into the past.
@@ -125,11 +119,8 @@ fn an_empty_or_missing_folder_has_no_session() {
     assert_eq!(newest(&folder), None);
     drop(session);
     assert_eq!(newest(&folder), None);
-    assert_eq!(
-        names(&folder, ".lock").len(),
-        0,
-        "an empty session leaves nothing"
-    );
+    // An empty session leaves nothing.
+    assert_eq!(names(&folder, ".lock").len(), 0);
 }
 
 #[test]
@@ -210,11 +201,8 @@ fn the_newest_that_is_not_in_use_is_taken() {
     middle.note(content("middle", "2"));
     closed(middle);
     drop(new);
-    assert_eq!(
-        newest(&folder),
-        Some(pair("middle", "2")),
-        "its place is the newest"
-    );
+    // Its place is the newest.
+    assert_eq!(newest(&folder), Some(pair("middle", "2")));
 }
 
 #[test]
@@ -240,28 +228,26 @@ fn processes_that_resume_at_the_same_time_get_different_sessions() {
 #[test]
 fn what_is_damaged_is_left_alone_and_told_of() {
     type Damage = fn(&Path);
-    let damages: [(Damage, &str); 4] = [
-        (|path| cut(path, 3), "cut off"),
-        (|path| cut(path, 1000), "cut off"),
-        (|path| fs::write(path, [0; 100]).unwrap(), "cut off"),
-        (|path| fs::write(path, [0xff, 0xfe]).unwrap(), "cut off"),
+    let damages: [Damage; 4] = [
+        |path| cut(path, 3),
+        |path| cut(path, 1000),
+        |path| fs::write(path, [0; 100]).unwrap(),
+        |path| fs::write(path, [0xff, 0xfe]).unwrap(),
     ];
-    for (damage, words) in damages {
+    for damage in damages {
         let (_outer, folder) = folder();
         kept(&folder, "the one before", "");
         age(&only(&folder, ".session"), 100);
         let before = only(&folder, ".session");
         kept(&folder, "the newest", "here");
-        let newest = names(&folder, ".session")
-            .into_iter()
-            .find(|path| *path != before);
-        damage(&newest.unwrap());
+        let mut names = names(&folder, ".session").into_iter();
+        damage(&names.find(|path| *path != before).unwrap());
         let found = any(&folder);
         assert_eq!(found.resumed.unwrap().1.0, "the one before");
         let [alone] = found.left_alone.as_slice() else {
             panic!("{:?}", found.left_alone);
         };
-        assert!(alone.reason.contains(words), "{}", alone.reason);
+        has(&alone.reason, "cut off");
         assert!(alone.path.exists());
     }
 }
@@ -380,21 +366,14 @@ fn sessions_have_short_names_that_stay() {
     written(&second);
     assert_eq!(second.name(), "2");
     kept(&folder, "third", "");
-    let listed = list(&folder).unwrap();
-    let mut names: Vec<_> = listed
+    let mut listed = list(&folder).unwrap();
+    listed.sort_unstable_by(|a, b| a.name.cmp(&b.name));
+    let listed = listed
         .iter()
-        .map(|session| (session.name.as_str(), session.is_in_use, session.owner))
-        .collect();
-    names.sort_unstable();
+        .map(|session| (session.name.as_str(), session.is_in_use, session.owner));
     let own = std::process::id();
-    assert_eq!(
-        names,
-        [
-            ("1", false, None),
-            ("2", true, Some(own)),
-            ("3", false, None)
-        ]
-    );
+    let [first, third] = ["1", "3"].map(|name| (name, false, None));
+    assert!(listed.eq([first, ("2", true, Some(own)), third]));
     let found = resume(&folder, Some("1"), |content| Ok(texts(content))).unwrap();
     let (session, what) = found.resumed.unwrap();
     assert_eq!((what.0.as_str(), session.name()), ("first", "1"));
@@ -426,12 +405,10 @@ fn child() {
         return;
     };
     let found = any(Path::new(&folder));
-    let (session, was) = match found.resumed {
-        Some((session, what)) => (session, what.1),
-        None => (
-            Session::begin(Path::new(&folder)).unwrap(),
-            "new".to_owned(),
-        ),
+    let begin = || Session::begin(Path::new(&folder)).unwrap();
+    let (session, (_, was)) = match found.resumed {
+        Some(resumed) => resumed,
+        None => (begin(), pair("", "new")),
     };
     println!("\nbegins at {was}");
     for line in std::io::stdin().lines().map(Result::unwrap) {
@@ -499,11 +476,8 @@ fn a_process_that_is_killed_loses_a_second_at_most_and_frees_its_session() {
     assert_eq!(newest(&folder), Some(pair("run", "99")));
     let mut next = Other::begin(&folder);
     assert_eq!(next.hear("begins"), "begins at 99");
-    assert_eq!(
-        Other::begin(&folder).hear("begins"),
-        "begins at new",
-        "it is in use"
-    );
+    let third = Other::begin(&folder).hear("begins");
+    assert_eq!(third, "begins at new", "it is in use");
     next.kill();
 }
 

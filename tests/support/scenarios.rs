@@ -1,10 +1,12 @@
 //! Opens scenarios, and makes views of them.
 
+use gyrolab::lab::Lab;
 use gyrolab::lab::view::View;
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::physics::SchemeInfo;
 use gyrolab::scenario::{Document, Problems, Scenario};
+use gyrolab::storage::session::Content;
 
 /// The preset `name`, with each of `set` (`key=value`) set.
 #[track_caller]
@@ -30,6 +32,12 @@ pub fn parse(text: &str) -> Scenario {
 #[track_caller]
 pub fn find_scheme(name: &str) -> &'static SchemeInfo {
     SchemeInfo::find(name).unwrap()
+}
+
+/// The lab of the session `content`.
+#[track_caller]
+pub fn resumed(content: &Content) -> Lab {
+    Lab::resumed(content, |scenario| view(scenario, Marker::Braille, false)).unwrap()
 }
 
 /// A dark screen on which `scenario` is looked at, with colours or without.

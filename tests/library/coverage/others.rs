@@ -8,6 +8,7 @@
 
 use super::{Case, between, log_between, preset, random};
 use crate::support::dice::Dice;
+use crate::support::scenarios::parse;
 use gyrolab::analysis::{Instruments, Measured};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
@@ -76,17 +77,13 @@ fn stepped(seed: u64, scheme: &str, rows: [f64; 2]) -> Option<Pair> {
     let mut dice = dice(seed);
     let start = Simulation::new(Arc::clone(&scenario));
     let turn_s = TAU / start.now().angular_velocity().norm();
-    let quickest_s = if rows[0] < 2.0 {
-        truth[1]
+    let (quickest_s, lasts) = if rows[0] < 2.0 {
+        (truth[1], [20.0, 400.0])
     } else {
-        truth[1].min(turn_s)
+        (truth[1].min(turn_s), [0.6, 40.0])
     };
     let time_step_s = quickest_s / log_between(&mut dice, rows[0], rows[1]);
-    let nutations = if rows[0] < 2.0 {
-        log_between(&mut dice, 20.0, 400.0)
-    } else {
-        log_between(&mut dice, 0.6, 40.0)
-    };
+    let nutations = log_between(&mut dice, lasts[0], lasts[1]);
     let steps = (nutations * truth[1] / time_step_s).max(2.0) as u64;
     let run = |steps| measured(&again(&scenario, scheme, time_step_s, steps));
     Some(Pair {
@@ -118,8 +115,7 @@ fn lopsided(seed: u64) -> Option<Pair> {
             aside[0],
             aside[1],
         );
-        let document = Document::parse("x.toml", &text).unwrap();
-        Arc::new(document.scenario().unwrap())
+        Arc::new(parse(&text))
     };
     let guess_s = TAU * across / spin;
     let period_s = measured(&build(guess_s / 40.0, 800))?[0][1]?.value;
@@ -157,10 +153,8 @@ fn hold(what: &str, pairs: &[Pair], fewest: usize) {
         let count = off.len();
         println!("{what} {name}: {count} held, {within} within 2 standard errors, worst {worst:?}");
         assert!(count >= fewest, "{what} {name}: {count} held");
-        assert!(
-            within as f64 >= 0.93 * count as f64,
-            "{what} {name}: {within} of {count}"
-        );
+        let is_covered = within as f64 >= 0.93 * count as f64;
+        assert!(is_covered, "{what} {name}: {within} of {count}");
         let pair = pairs.iter().find(|pair| pair.seed == worst.1);
         let told = pair.map(|pair| (pair.short[which], pair.long.map(|both| both[which])));
         assert!(worst.0 < 6.0, "{what} {name}: {worst:?}, {told:?}");
@@ -211,8 +205,7 @@ fn tumbling(seed: u64) -> Option<[Measured; 2]> {
              [motion]\nscheme = 'exact'\ntime_step_s = {step}\nsteps = {steps}\n",
             aside[0], aside[1]
         );
-        let document = Document::parse("x.toml", &text).unwrap();
-        super::measured(&Arc::new(document.scenario().unwrap()))[1]
+        super::measured(&Arc::new(parse(&text)))[1]
     };
     let period_s = nutation(TAU / spin / 60.0, 2400)?.value;
     let (per_nutation, nutations) = (log_between(dice, 2.2, 60.0), log_between(dice, 16.0, 60.0));
@@ -243,16 +236,9 @@ fn a_nutation_that_only_the_scheme_makes_has_its_own_period() {
     // A steady start has none; the first order of the scheme makes a small one of it.
     for (spin_rpm, period_s) in [(300, 0.2031), (180, 0.348)] {
         let start = format!("start.spin_rpm={spin_rpm}");
-        let steady = preset(
-            "method-2",
-            &[
-                "start.tilt_deg=30",
-                &start,
-                "start.steady=true",
-                "motion.time_step_s=0.001",
-                "motion.steps=10000",
-            ],
-        );
+        let steady = ["start.tilt_deg=30", &start, "start.steady=true"];
+        let motion = ["motion.time_step_s=0.001", "motion.steps=10000"];
+        let steady = preset("method-2", &[&steady[..], &motion].concat());
         let [_, nutation] = measured(&steady).unwrap()[0];
         let nutation = nutation.unwrap();
         let off = (nutation.value - period_s).abs();
