@@ -32,7 +32,7 @@ impl Friction {
     }
 
     /// Whether the spin is rubbed.
-    pub fn is_on_spin(&self) -> bool {
+    pub(crate) fn is_on_spin(&self) -> bool {
         self.spin_dry > 0.0 || self.spin_viscous > 0.0 || self.spin_quadratic > 0.0
     }
 }
@@ -52,7 +52,7 @@ pub struct Damping {
 
 /// What friction does while the body stands at one orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Action {
+pub(crate) struct Action {
     /// Its part of the change of L, body frame, J s.
     pub impulse: Vector3<f64>,
     /// Its work, J: the impulse times the mean of ω before and after.
@@ -74,22 +74,22 @@ impl Damping {
     }
 
     /// The coefficients.
-    pub fn friction(&self) -> &Friction {
+    pub(crate) fn friction(&self) -> &Friction {
         &self.friction
     }
 
     /// Inertia about the pivot, body frame, kg m².
-    pub fn inertia(&self) -> &Matrix3<f64> {
+    pub(crate) fn inertia(&self) -> &Matrix3<f64> {
         &self.inertia
     }
 
     /// Inverse of the inertia about the pivot, body frame, 1/(kg m²).
-    pub fn inverse_inertia(&self) -> &Matrix3<f64> {
+    pub(crate) fn inverse_inertia(&self) -> &Matrix3<f64> {
         &self.inverse_inertia
     }
 
     /// The moment against a torque about the axle, kg m².
-    pub fn moment_along(&self) -> f64 {
+    pub(crate) fn moment_along(&self) -> f64 {
         self.along
     }
 
@@ -118,7 +118,7 @@ impl Damping {
 
     /// The torque about the axle with which the free motion of a body that turns by `omega` (body frame, rad/s) changes ω3,
     /// N m: what dry friction must hold against too. It is 0 of a body symmetric about its axle.
-    pub fn gyration(&self, omega: &Vector3<f64>) -> f64 {
+    pub(crate) fn gyration(&self, omega: &Vector3<f64>) -> f64 {
         let change = (self.inertia * omega).cross(omega);
         self.along * (self.inverse_inertia * change).z
     }
@@ -129,7 +129,7 @@ impl Damping {
     ///
     /// Friction about the axle meets the spin that there would be if the torque of `gyration` about the axle (N m) acted
     /// too, and had acted for the time `lead_s` before.
-    pub fn act(
+    pub(crate) fn act(
         &self,
         omega: &Vector3<f64>,
         torque: &Vector3<f64>,

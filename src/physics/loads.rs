@@ -45,7 +45,7 @@ pub fn torque(orientation: &Matrix3<f64>, moment: &Matrix3<f64>) -> Vector3<f64>
 
 /// εᵢⱼₖ mⱼₖ, twice the axial vector of the antisymmetric part of `m`: the sum of x × F where `m` is the sum of x Fᵀ.
 #[inline]
-pub fn axial(m: &Matrix3<f64>) -> Vector3<f64> {
+pub(crate) fn axial(m: &Matrix3<f64>) -> Vector3<f64> {
     Vector3::new(
         m[(1, 2)] - m[(2, 1)],
         m[(2, 0)] - m[(0, 2)],
@@ -56,7 +56,7 @@ pub fn axial(m: &Matrix3<f64>) -> Vector3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::{PointMass, rotation};
+    use crate::{PointMass, rotation};
 
     #[test]
     fn the_torque_is_the_sum_of_cross_products() {

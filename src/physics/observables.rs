@@ -152,7 +152,7 @@ mod tests {
     fn tilt_is_exact_near_the_vertical() {
         let tilted = |radians: f64| State {
             time_s: 0.0,
-            orientation: crate::physics::rotation::about(&Vector3::x(), radians),
+            orientation: crate::rotation::about(&Vector3::x(), radians),
             momentum: Vector3::zeros(),
         };
         for radians in [1e-9f64, 0.5, 3.0] {

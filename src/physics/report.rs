@@ -207,7 +207,7 @@ fn pairs_up_to_the_last_mass(body: &Body) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::{PointMass, rotation};
+    use crate::{PointMass, rotation};
 
     #[test]
     fn points_without_mass_are_carried_along_and_change_no_sum() {

@@ -11,7 +11,7 @@ pub fn crossed(v: &Vector3<f64>, matrix: &Matrix3<f64>) -> Matrix3<f64> {
 
 /// A rotation by an angle about an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AxisAngle {
+pub(crate) struct AxisAngle {
     /// The axis u, a unit vector.
     pub axis: Vector3<f64>,
     /// The angle, rad.

@@ -98,7 +98,7 @@ impl Loads {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::{PointForce, PointMass};
+    use crate::{PointForce, PointMass};
 
     fn square(sides: [f64; 2]) -> Vec<PointMass> {
         let [a, b] = sides;

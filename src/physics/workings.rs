@@ -93,7 +93,7 @@ pub struct Table {
 }
 
 /// Takes in the phases of a step.
-pub trait Listener {
+pub(crate) trait Listener {
     /// Whether it takes in anything.
     const LISTENS: bool;
 
@@ -103,7 +103,7 @@ pub trait Listener {
 
 /// The listener of a plain step.
 #[derive(Clone, Copy, Debug)]
-pub struct Nobody;
+pub(crate) struct Nobody;
 
 impl Listener for Nobody {
     const LISTENS: bool = false;
@@ -129,7 +129,7 @@ impl Workings {
 
 impl Phase {
     /// A phase that changes nothing of the state.
-    pub fn of(name: &'static str, formula: &'static str, quantities: Vec<Quantity>) -> Self {
+    pub(crate) fn of(name: &'static str, formula: &'static str, quantities: Vec<Quantity>) -> Self {
         Self {
             name,
             formula,
@@ -139,7 +139,7 @@ impl Phase {
     }
 
     /// The same, but for what it changes.
-    pub fn changing(self, changes: Changes) -> Self {
+    pub(crate) fn changing(self, changes: Changes) -> Self {
         Self { changes, ..self }
     }
 
@@ -164,7 +164,7 @@ impl Quantity {
 
 impl Table {
     /// An empty table of these columns: symbol and unit of each.
-    pub fn new(columns: &'static [(&'static str, &'static str)]) -> Self {
+    pub(crate) fn new(columns: &'static [(&'static str, &'static str)]) -> Self {
         Self {
             columns,
             points: Vec::new(),
@@ -173,7 +173,7 @@ impl Table {
     }
 
     /// Adds a row for the point of this index, as long as there are columns.
-    pub fn add<const COLUMNS: usize>(&mut self, point: usize, row: [f64; COLUMNS]) {
+    pub(crate) fn add<const COLUMNS: usize>(&mut self, point: usize, row: [f64; COLUMNS]) {
         debug_assert_eq!(COLUMNS, self.columns.len());
         self.points.push(point);
         self.cells.extend(row);

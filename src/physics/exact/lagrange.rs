@@ -38,8 +38,8 @@ use super::part::{Part, Sums};
 use super::phases;
 use super::theta::{Harmonics, Lattice, Parity, Zero};
 use super::turning::{Start, Turning};
-use crate::physics::trig::round;
-use crate::physics::workings::{Listener, Nobody};
+use crate::trig::round;
+use crate::workings::{Listener, Nobody};
 use nalgebra::{Complex, Matrix3, Quaternion, UnitQuaternion, Vector3};
 use start::{InFrame, cayley_klein, frame_along, quaternion, start, up};
 
@@ -111,7 +111,11 @@ impl LagrangeTop {
     }
 
     /// The same, with each phase told to `listener`.
-    pub fn at_heard<L: Listener>(&self, t: f64, listener: &mut L) -> (Matrix3<f64>, Vector3<f64>) {
+    pub(super) fn at_heard<L: Listener>(
+        &self,
+        t: f64,
+        listener: &mut L,
+    ) -> (Matrix3<f64>, Vector3<f64>) {
         let sums = self.sums_at(t);
         let (alpha, beta) = sums.parameters();
         let norm2 = alpha.norm_sqr() + beta.norm_sqr();

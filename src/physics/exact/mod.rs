@@ -20,7 +20,7 @@ mod turning;
 
 pub use lagrange::LagrangeTop;
 pub use near::AT_ONCE;
-pub use scheme::Exact;
+pub(crate) use scheme::Exact;
 pub use taylor::AccurateMotion;
 
 use super::symmetry::SymmetricTop;
@@ -86,7 +86,7 @@ impl ExactMotion {
     }
 
     /// The same, with each phase told to `listener`.
-    pub fn at_heard<L: Listener>(&mut self, time_s: f64, listener: &mut L) -> State {
+    pub(crate) fn at_heard<L: Listener>(&mut self, time_s: f64, listener: &mut L) -> State {
         let t = time_s - self.begin_s;
         let (orientation, momentum) = match &mut self.solution {
             Solution::Closed(top) => top.at_heard(t, listener),

@@ -6,7 +6,7 @@
 
 use super::lagrange::LagrangeTop;
 use super::part::Part;
-use crate::physics::trig::kernels;
+use crate::trig::kernels;
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::{Complex, Matrix3, Vector3};
 

@@ -5,8 +5,8 @@
 //! friction is strong enough, with the torque that holds the spin at zero, until it is not strong enough any more.
 
 use super::series::{ORDER, convolve};
-use crate::physics::Damping;
-use crate::physics::loads::axial;
+use crate::Damping;
+use crate::loads::axial;
 use nalgebra::{Matrix3, Vector3};
 
 /// How the body rubs about its axle.

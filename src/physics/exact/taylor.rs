@@ -17,8 +17,8 @@
 
 use super::series::{ORDER, convolve};
 use super::sliding::{Before, Known, Sliding};
-use crate::physics::Damping;
-use crate::physics::loads::axial;
+use crate::Damping;
+use crate::loads::axial;
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// Size of the last term of a step against the whole: below rounding, so that rounding alone is left.
@@ -90,7 +90,7 @@ impl AccurateMotion {
     }
 
     /// As [`new`](Self::new), with the friction of `damping`, which is of this body.
-    pub fn damped(
+    pub(super) fn damped(
         inertia: Matrix3<f64>,
         moment: Matrix3<f64>,
         orientation: Matrix3<f64>,
@@ -122,12 +122,12 @@ impl AccurateMotion {
     }
 
     /// Whether there is friction.
-    pub fn has_friction(&self) -> bool {
+    pub(super) fn has_friction(&self) -> bool {
         self.friction.is_some()
     }
 
     /// The work of friction from the start to the time asked for last, J.
-    pub fn friction_work(&self) -> f64 {
+    pub(super) fn friction_work(&self) -> f64 {
         let rubbing = self.friction.as_ref();
         rubbing.map_or(0.0, |rubbing| rubbing.sliding.work(rubbing.asked_s))
     }
@@ -166,7 +166,7 @@ impl AccurateMotion {
     }
 
     /// The time about which the series was expanded that gave the state asked for last, s.
-    pub fn centre_s(&self) -> f64 {
+    pub(super) fn centre_s(&self) -> f64 {
         self.time
     }
 

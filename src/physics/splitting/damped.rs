@@ -10,9 +10,9 @@
 
 use super::free_body::{FreeBody, orthonormal};
 use super::phases;
-use crate::physics::loads::torque;
-use crate::physics::workings::Listener;
-use crate::physics::{Body, Damping, Loads, State, friction};
+use crate::loads::torque;
+use crate::workings::Listener;
+use crate::{Body, Damping, Loads, State, friction};
 use nalgebra::{Matrix3, Vector3};
 
 /// The splitting for one body under constant forces and friction.

@@ -2,8 +2,8 @@
 
 use super::damped::DampedStrang;
 use super::{Kind, Splitting};
-use crate::physics::workings::{Listener, Nobody, Phase};
-use crate::physics::{Body, Loads, Scheme, State};
+use crate::workings::{Listener, Nobody, Phase};
+use crate::{Body, Loads, Scheme, State};
 
 /// A splitting of one kind for one body; see [`super`].
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ impl SplittingScheme {
     #[inline]
     fn advance<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
         match &self.damped {
-            None => self.splitting.step_heard(state, dt, listener),
+            None => self.splitting.step(state, dt, listener),
             Some(damped) => self.work = damped.step(state, dt, listener),
         }
     }

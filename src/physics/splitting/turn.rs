@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::physics::trig::sin_cos;
+use crate::trig::sin_cos;
 
 /// Up to this square of the angle the series are used (an angle of 1.41).
 const SERIES_END: f64 = 2.0;

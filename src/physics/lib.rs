@@ -6,23 +6,24 @@
 //! from or who looks at them, and nothing here depends on the processor or on the C library: sine, cosine and arc tangent
 //! are compiled in, sums have a fixed order, and no multiply-add is fused.
 
-#![warn(missing_docs)]
+#![deny(missing_docs)]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-pub mod body;
+mod body;
 pub mod exact;
 pub mod friction;
 pub mod loads;
 pub mod observables;
 pub mod part;
 pub mod report;
-pub mod rk4;
+mod rk4;
 pub mod rotation;
 pub mod scheme;
-pub mod splitting;
-pub mod state;
-pub mod stepping;
+mod splitting;
+mod state;
+mod stepping;
 pub mod symmetry;
-pub mod trig;
+mod trig;
 pub mod workings;
 
 pub use body::{Body, BodyError, PointMass};
