@@ -5,8 +5,7 @@
 //!
 //! A time step cannot take this torque at its beginning: it would carry a spin that dry friction stops beyond zero, and
 //! feed one whose k1 dt/I3 is above 2. While the body does not turn, though, ω under a constant torque and friction is
-//! known in closed form: about the axle it is a Riccati equation, across it decays exponentially. Schemes take that
-//! ([`Damping::act`]).
+//! known in closed form: about the axle it is a Riccati equation, across it decays exponentially. Schemes take that.
 
 use super::Body;
 use super::workings::{Changes, Phase, Quantity};
@@ -40,11 +39,12 @@ impl Friction {
 /// Friction on one body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Damping {
-    friction: Friction,
-    inertia: Matrix3<f64>,
-    inverse_inertia: Matrix3<f64>,
+    pub(crate) friction: Friction,
+    /// About the pivot, body frame, kg m².
+    pub(crate) inertia: Matrix3<f64>,
+    pub(crate) inverse_inertia: Matrix3<f64>,
     /// The moment against a torque about the axle, kg m²: 1/(e3·I⁻¹e3).
-    along: f64,
+    pub(crate) along: f64,
     /// Across the axle, two directions square to each other in which a torque along one changes ω along it alone, each
     /// with the moment against it, kg m².
     across: [(Vector3<f64>, f64); 2],
@@ -71,26 +71,6 @@ impl Damping {
             along,
             across: across(&inverse),
         })
-    }
-
-    /// The coefficients.
-    pub(crate) fn friction(&self) -> &Friction {
-        &self.friction
-    }
-
-    /// Inertia about the pivot, body frame, kg m².
-    pub(crate) fn inertia(&self) -> &Matrix3<f64> {
-        &self.inertia
-    }
-
-    /// Inverse of the inertia about the pivot, body frame, 1/(kg m²).
-    pub(crate) fn inverse_inertia(&self) -> &Matrix3<f64> {
-        &self.inverse_inertia
-    }
-
-    /// The moment against a torque about the axle, kg m².
-    pub(crate) fn moment_along(&self) -> f64 {
-        self.along
     }
 
     /// The least moment against a torque of friction, kg m².

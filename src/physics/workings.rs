@@ -1,16 +1,37 @@
 //! What a scheme computes on the way of one time step, phase by phase, for whoever wants to see it.
 //!
-//! A scheme tells its phases to a [`Listener`]. Its step is written once, for any listener: the plain step is the one
-//! that [nobody](Nobody) listens to, and costs nothing more, the explained step is the one that fills a list of
-//! [phases](Phase). So the numbers shown are the very numbers that made the step.
+//! A scheme tells its phases to a listener. Its step is written once, for any listener: the plain step is the one that
+//! nobody listens to, and costs nothing more, the explained step is the one that fills a list of [phases](Phase). So the
+//! numbers shown are the very numbers that made the step.
 
-mod names;
 mod sums;
 
 use super::Loads;
 use nalgebra::{Matrix3, Vector3};
-pub use names::NAMES;
 pub use sums::Sums;
+
+/// Every name that a phase has, by which files and commands choose one: those of the report's scheme first, in its order.
+pub const NAMES: [&str; 19] = [
+    "inertia",
+    "angular velocity",
+    "axis and angle",
+    "rotation",
+    "new positions",
+    "torque",
+    "new momentum",
+    "friction",
+    "kick",
+    "free motion",
+    "spin about the axle",
+    "rounding taken out",
+    "new orientation",
+    "slope 1: at the beginning",
+    "slope 2: half way by slope 1",
+    "slope 3: half way by slope 2",
+    "slope 4: at the end by slope 3",
+    "theta functions",
+    "Taylor series",
+];
 
 /// The workings of one time step.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -92,12 +113,10 @@ pub struct Table {
     pub cells: Vec<f64>,
 }
 
-/// Takes in the phases of a step.
+/// Takes in the phases of a step, each of which is made only where it is listened to.
 pub(crate) trait Listener {
-    /// Whether it takes in anything.
     const LISTENS: bool;
 
-    /// Takes in the next phase, which is made only where it is listened to.
     fn hear(&mut self, phase: impl FnOnce() -> Phase);
 }
 
@@ -128,7 +147,6 @@ impl Workings {
 }
 
 impl Phase {
-    /// A phase that changes nothing of the state.
     pub(crate) fn of(name: &'static str, formula: &'static str, quantities: Vec<Quantity>) -> Self {
         Self {
             name,
@@ -138,7 +156,6 @@ impl Phase {
         }
     }
 
-    /// The same, but for what it changes.
     pub(crate) fn changing(self, changes: Changes) -> Self {
         Self { changes, ..self }
     }
@@ -163,7 +180,6 @@ impl Quantity {
 }
 
 impl Table {
-    /// An empty table of these columns: symbol and unit of each.
     pub(crate) fn new(columns: &'static [(&'static str, &'static str)]) -> Self {
         Self {
             columns,

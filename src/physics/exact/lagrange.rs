@@ -48,6 +48,8 @@ use start::{InFrame, cayley_klein, frame_along, quaternion, start, up};
 /// Errors: a few units of rounding in the state, plus t times a few units of rounding of the frequencies. A top that comes
 /// from afar within an angle d of the upright rest lingers there for a time that its start decides: rounding of the start
 /// then counts 1/d^2 times. (A start near that rest is held to rounding.)
+///
+/// Source: F. Klein and A. Sommerfeld, Ueber die Theorie des Kreisels, chapter VI.
 #[derive(Clone, Debug)]
 pub struct LagrangeTop {
     across: f64,

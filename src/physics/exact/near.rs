@@ -29,7 +29,7 @@ impl LagrangeTop {
         let per_s = [&self.alpha, &self.beta].map(|part| part.turns_per_s.abs());
         let per_s = per_s[0].max(per_s[1]).max(self.lattice.per_period);
         let latest = times.iter().fold(0.0_f64, |latest, t| latest.max(t.abs()));
-        if self.lattice.is_pulsed() || (latest + self.since_origin.abs()) * per_s > MOST_TURNS {
+        if self.lattice.pulsed || (latest + self.since_origin.abs()) * per_s > MOST_TURNS {
             return None;
         }
         let period = if self.lattice.per_period == 0.0 {

@@ -45,7 +45,6 @@ impl Pace {
 }
 
 impl Exact {
-    /// The scheme for `body`.
     pub fn new(body: &Body) -> Self {
         let (loads, pace) = (Loads::default(), Pace::default());
         Self {

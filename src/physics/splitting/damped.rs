@@ -59,7 +59,7 @@ impl DampedStrang {
     ) -> f64 {
         let q = &state.orientation;
         let torque = torque(q, &self.moment);
-        let omega = self.damping.inverse_inertia() * q.tr_mul(&state.momentum);
+        let omega = self.damping.inverse_inertia * q.tr_mul(&state.momentum);
         let gyration = if self.gyrates {
             self.damping.gyration(&omega)
         } else {

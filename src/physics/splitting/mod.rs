@@ -29,7 +29,6 @@ mod turn;
 
 pub use scheme::SplittingScheme;
 
-/// Which composition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Kick, free motion, kick: order 2 (G. Strang, SIAM J. Numer. Anal. 5, 506, 1968).

@@ -51,7 +51,7 @@ pub(super) fn axle_turn(
         "a and e turn about L by the angle |w|, w = L h/I₁",
         vec![
             Quantity::new("h", "s", duration_s),
-            Quantity::new("w", "rad", turn.vector()),
+            Quantity::new("w", "rad", turn.vector),
             Quantity::new("new a", "", *axle),
             Quantity::new("new e", "", *side),
         ],

@@ -1,11 +1,9 @@
-//! A composition as a scheme.
-
 use super::damped::DampedStrang;
 use super::{Kind, Splitting};
 use crate::workings::{Listener, Nobody, Phase};
 use crate::{Body, Loads, Scheme, State};
 
-/// A splitting of one kind for one body; see [`super`].
+/// A composition as a scheme.
 #[derive(Clone, Debug)]
 pub struct SplittingScheme {
     body: Body,
@@ -18,7 +16,6 @@ pub struct SplittingScheme {
 }
 
 impl SplittingScheme {
-    /// The scheme of that `kind` for `body`.
     pub fn new(kind: Kind, body: &Body) -> Self {
         let splitting = Splitting::new(kind, &body.inertia(), &Loads::default().moment(body));
         Self {
