@@ -57,7 +57,7 @@ impl Body {
     ///
     /// # Errors
     /// When the inertia about the pivot is singular (its smallest principal moment at most 1e-12 of the largest) or out of
-    /// the range of numbers. Nothing else is checked: a mass may be negative.
+    /// the range of numbers. The signs of the masses are not checked.
     pub fn new(points: Vec<PointMass>) -> Result<Self, BodyError> {
         let mass = points.iter().map(|p| p.mass).sum();
         let first_moment = points
