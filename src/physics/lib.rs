@@ -5,8 +5,8 @@
 //!
 //! - [`ExactMotion`] is the true motion: in closed form ([`LagrangeTop`]) where the body is symmetric about its axle and
 //!   every force acts on the axle, else by a Taylor series held to rounding ([`AccurateMotion`](exact::AccurateMotion)).
-//! - [`SCHEMES`](scheme::SCHEMES) lists the schemes. Each is a [`Scheme`], which steps a state, and explains a step with all
-//!   its numbers ([`workings`]).
+//! - [`SCHEMES`](scheme::SCHEMES) lists the schemes, each with order and source. They make a [`Scheme`], which steps a
+//!   state, and explains a step with all its numbers ([`workings`]).
 //! - [`observables`] and [`symmetry`]: what is read off a state, and the theory of the symmetric top.
 //!
 //! # Frames, units, numbers

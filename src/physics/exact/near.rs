@@ -19,7 +19,8 @@ const ROUNDER: f64 = 6755399441055744.0;
 const MOST_TURNS: f64 = 1e12;
 
 impl LagrangeTop {
-    /// Where the point `at` of the body (body frame, m) is at `times`, s after the start: x, y and z, m, world frame. `None`
+    /// Where the point `at` of the body (body frame, m) is at `times`, s after the start: x, y and z, m, world frame, within
+    /// 3e-15 of its distance from the pivot of where [`orientation_at`](Self::orientation_at) has it, in less time. `None`
     /// where the motion has no sines (near the separatrix), or a time is out of all proportion.
     pub fn positions_near(
         &self,
