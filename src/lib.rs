@@ -8,7 +8,7 @@
 //!
 //! - [`text`](mod@text): numbers and words as people read them, without control characters that a terminal would obey.
 //! - [`cores`]: work on all cores.
-//! - [`physics`]: body, state, loads, schemes, observables. It uses no file, no wall clock and no terminal.
+//! - [`physics`]: body, state, loads, schemes, observables: a crate of its own, in `src/physics`.
 //! - [`scenario`]: a TOML file becomes a checked [`Scenario`](scenario::Scenario); every refusal names file,
 //!   line, key, value and rule. The shipped presets live here too.
 //! - [`run`]: steps a scenario and its edits forward in time. No other module does.
@@ -39,7 +39,6 @@ pub mod figure;
 pub mod lab;
 pub mod measured;
 pub mod observe;
-pub mod physics;
 pub mod run;
 pub mod scenario;
 pub mod storage;
@@ -48,3 +47,5 @@ pub mod teach;
 pub mod text;
 pub mod tui;
 pub mod work;
+
+pub use gyrolab_physics as physics;

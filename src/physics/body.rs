@@ -15,6 +15,12 @@ pub struct PointMass {
     pub mass: f64,
 }
 
+impl PointMass {
+    pub(crate) fn new(at: Vector3<f64>, mass: f64) -> Self {
+        Self { at, mass }
+    }
+}
+
 /// A rigid body of point masses, with the sums over its points that do not change as it turns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
@@ -50,7 +56,8 @@ impl Body {
     /// The body made of `points` (body frame, upright pose).
     ///
     /// # Errors
-    /// When the inertia about the pivot is singular or out of the range of numbers.
+    /// When the inertia about the pivot is singular (its smallest principal moment at most 1e-12 of the largest) or out of
+    /// the range of numbers. The signs of the masses are not checked.
     pub fn new(points: Vec<PointMass>) -> Result<Self, BodyError> {
         let mass = points.iter().map(|p| p.mass).sum();
         let first_moment = points
@@ -72,7 +79,7 @@ impl Body {
 
     /// The body of which one part alone spins about the axle, with the moment `rotor` (kg m²) about it, while the rest of it
     /// tilts with the axle but does not spin. The body must be symmetric about its axle. The axle then moves as that of a
-    /// rigid body with the moment `rotor` about the axle, whose angular velocity is the rotor's.
+    /// rigid body with the moment `rotor` about the axle, whose angular velocity is the rotor's. The symmetry is not checked.
     ///
     /// # Errors
     /// When the inertia about the pivot is then singular.
@@ -167,10 +174,7 @@ mod tests {
     #[test]
     fn mass_on_one_line_through_the_pivot_is_singular() {
         let along = Vector3::new(0.3, -0.2, 0.9);
-        let line = [0.5, 1.0, 1.5].map(|s| PointMass {
-            at: along * s,
-            mass: 1.0,
-        });
+        let line = [0.5, 1.0, 1.5].map(|s| PointMass::new(along * s, 1.0));
         assert!(matches!(
             Body::new(line.to_vec()),
             Err(BodyError::Singular { .. })

@@ -5,8 +5,7 @@
 //!
 //! A time step cannot take this torque at its beginning: it would carry a spin that dry friction stops beyond zero, and
 //! feed one whose k1 dt/I3 is above 2. While the body does not turn, though, ω under a constant torque and friction is
-//! known in closed form: about the axle it is a Riccati equation, across it decays exponentially. Schemes take that
-//! ([`Damping::act`]).
+//! known in closed form: about the axle it is a Riccati equation, across it decays exponentially. Schemes take that.
 
 use super::Body;
 use super::workings::{Changes, Phase, Quantity};
@@ -32,7 +31,7 @@ impl Friction {
     }
 
     /// Whether the spin is rubbed.
-    pub fn is_on_spin(&self) -> bool {
+    pub(crate) fn is_on_spin(&self) -> bool {
         self.spin_dry > 0.0 || self.spin_viscous > 0.0 || self.spin_quadratic > 0.0
     }
 }
@@ -40,11 +39,12 @@ impl Friction {
 /// Friction on one body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Damping {
-    friction: Friction,
-    inertia: Matrix3<f64>,
-    inverse_inertia: Matrix3<f64>,
+    pub(crate) friction: Friction,
+    /// About the pivot, body frame, kg m².
+    pub(crate) inertia: Matrix3<f64>,
+    pub(crate) inverse_inertia: Matrix3<f64>,
     /// The moment against a torque about the axle, kg m²: 1/(e3·I⁻¹e3).
-    along: f64,
+    pub(crate) along: f64,
     /// Across the axle, two directions square to each other in which a torque along one changes ω along it alone, each
     /// with the moment against it, kg m².
     across: [(Vector3<f64>, f64); 2],
@@ -52,7 +52,7 @@ pub struct Damping {
 
 /// What friction does while the body stands at one orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Action {
+pub(crate) struct Action {
     /// Its part of the change of L, body frame, J s.
     pub impulse: Vector3<f64>,
     /// Its work, J: the impulse times the mean of ω before and after.
@@ -71,26 +71,6 @@ impl Damping {
             along,
             across: across(&inverse),
         })
-    }
-
-    /// The coefficients.
-    pub fn friction(&self) -> &Friction {
-        &self.friction
-    }
-
-    /// Inertia about the pivot, body frame, kg m².
-    pub fn inertia(&self) -> &Matrix3<f64> {
-        &self.inertia
-    }
-
-    /// Inverse of the inertia about the pivot, body frame, 1/(kg m²).
-    pub fn inverse_inertia(&self) -> &Matrix3<f64> {
-        &self.inverse_inertia
-    }
-
-    /// The moment against a torque about the axle, kg m².
-    pub fn moment_along(&self) -> f64 {
-        self.along
     }
 
     /// The least moment against a torque of friction, kg m².
@@ -118,7 +98,7 @@ impl Damping {
 
     /// The torque about the axle with which the free motion of a body that turns by `omega` (body frame, rad/s) changes ω3,
     /// N m: what dry friction must hold against too. It is 0 of a body symmetric about its axle.
-    pub fn gyration(&self, omega: &Vector3<f64>) -> f64 {
+    pub(crate) fn gyration(&self, omega: &Vector3<f64>) -> f64 {
         let change = (self.inertia * omega).cross(omega);
         self.along * (self.inverse_inertia * change).z
     }
@@ -129,7 +109,7 @@ impl Damping {
     ///
     /// Friction about the axle meets the spin that there would be if the torque of `gyration` about the axle (N m) acted
     /// too, and had acted for the time `lead_s` before.
-    pub fn act(
+    pub(crate) fn act(
         &self,
         omega: &Vector3<f64>,
         torque: &Vector3<f64>,

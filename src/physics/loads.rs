@@ -26,6 +26,9 @@ pub struct Loads {
 impl Loads {
     /// Σ x Fᵀ over all points, N m: x in the body frame, F in the world frame. With it the torque on the whole body
     /// follows from the orientation alone, see [`torque`].
+    ///
+    /// # Panics
+    /// When a push is on a point that `body` does not have.
     pub fn moment(&self, body: &Body) -> Matrix3<f64> {
         let weight = Vector3::new(0.0, 0.0, -self.gravity);
         let gravity = body.first_moment() * weight.transpose();
@@ -45,7 +48,7 @@ pub fn torque(orientation: &Matrix3<f64>, moment: &Matrix3<f64>) -> Vector3<f64>
 
 /// εᵢⱼₖ mⱼₖ, twice the axial vector of the antisymmetric part of `m`: the sum of x × F where `m` is the sum of x Fᵀ.
 #[inline]
-pub fn axial(m: &Matrix3<f64>) -> Vector3<f64> {
+pub(crate) fn axial(m: &Matrix3<f64>) -> Vector3<f64> {
     Vector3::new(
         m[(1, 2)] - m[(2, 1)],
         m[(2, 0)] - m[(0, 2)],
@@ -56,19 +59,13 @@ pub fn axial(m: &Matrix3<f64>) -> Vector3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::{PointMass, rotation};
+    use crate::{PointMass, rotation};
 
     #[test]
     fn the_torque_is_the_sum_of_cross_products() {
         let at = [[0.8, 0.1, 0.5], [-0.3, 0.7, 0.6], [0.0, 0.0, 1.1]];
-        let points: Vec<_> = at
-            .iter()
-            .map(|&a| PointMass {
-                at: Vector3::from(a),
-                mass: 0.5,
-            })
-            .collect();
-        let body = Body::new(points).unwrap();
+        let points = at.map(|at| PointMass::new(Vector3::from(at), 0.5));
+        let body = Body::new(points.to_vec()).unwrap();
         let push = PointForce {
             point: 2,
             force: Vector3::new(3.0, -4.0, 5.0),

@@ -7,6 +7,9 @@ use nalgebra::Vector3;
 pub const VERTICAL_WITHIN: f64 = 1e-12;
 
 /// Position of point `index` of the body, world frame, m.
+///
+/// # Panics
+/// When the body has no such point.
 pub fn position(body: &Body, state: &State, index: usize) -> Vector3<f64> {
     state.orientation * body.points()[index].at
 }
@@ -35,7 +38,7 @@ pub fn tilt_deg(state: &State) -> f64 {
     tilt_of(&state.axle())
 }
 
-/// Angle of `axle` from +z, degrees, 0 to 180.
+/// Angle of `axle` (world frame, of any length) from +z, degrees, 0 to 180, to a few units of rounding however small it is.
 pub fn tilt_of(axle: &Vector3<f64>) -> f64 {
     libm::atan2(libm::hypot(axle.x, axle.y), axle.z).to_degrees()
 }
@@ -152,7 +155,7 @@ mod tests {
     fn tilt_is_exact_near_the_vertical() {
         let tilted = |radians: f64| State {
             time_s: 0.0,
-            orientation: crate::physics::rotation::about(&Vector3::x(), radians),
+            orientation: crate::rotation::about(&Vector3::x(), radians),
             momentum: Vector3::zeros(),
         };
         for radians in [1e-9f64, 0.5, 3.0] {

@@ -161,10 +161,10 @@ pub struct Part {
 
 impl Part {
     /// The part of this shape and `mass` (kg), which is above 0, whose centre is at `centre` (body frame, m) and whose axis
-    /// has the direction `axis`, which is not zero.
+    /// has the direction `axis` (body frame, of any length but 0). Neither mass nor axis is checked.
     ///
     /// # Errors
-    /// Where no body of real masses has its moments, or they are no finite numbers.
+    /// Where no body of real masses has its moments (to 1e-12 of the largest), or they are no finite numbers.
     pub fn new(
         shape: Shape,
         mass: f64,
@@ -190,23 +190,10 @@ impl Part {
     pub fn points(&self) -> [PointMass; POINTS] {
         let mass = self.mass / 6.0;
         let [x, y, z] = [0, 1, 2].map(|i| self.directions.column(i) * self.distances[i]);
-        let point = |off: Vector3<f64>| PointMass {
-            at: self.centre + off,
-            mass,
-        };
-        let centre = PointMass {
-            at: self.centre,
-            mass: 0.0,
-        };
-        [
-            centre,
-            point(x),
-            point(-x),
-            point(y),
-            point(-y),
-            point(z),
-            point(-z),
-        ]
+        let six = [x, -x, y, -y, z, -z].map(|off| PointMass::new(self.centre + off, mass));
+        let mut points = [PointMass::new(self.centre, 0.0); POINTS];
+        points[1..].copy_from_slice(&six);
+        points
     }
 }
 

@@ -26,7 +26,7 @@ use wide::f64x2;
 mod phases;
 mod points;
 
-/// The report's scheme; see the module's text.
+/// The report's scheme, of order 1; see the [module's text](self).
 #[derive(Clone, Debug)]
 pub struct Report {
     body: Body,
@@ -59,6 +59,9 @@ impl Report {
     }
 
     /// Where the scheme has carried point `index`, world frame, m.
+    ///
+    /// # Panics
+    /// When the body has no such point, or before [`start`](Scheme::start).
     pub fn position(&self, index: usize) -> Vector3<f64> {
         let pair = &self.points[index / LANES];
         let lane = index % LANES;
@@ -207,7 +210,7 @@ fn pairs_up_to_the_last_mass(body: &Body) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::{PointMass, rotation};
+    use crate::{PointMass, rotation};
 
     #[test]
     fn points_without_mass_are_carried_along_and_change_no_sum() {
@@ -216,16 +219,10 @@ mod tests {
         let axle = at(0.0, 0.0, 1.5);
         // The last point with mass is in either lane, with points without mass before and after it.
         for without in [1, 2] {
-            let mut points: Vec<_> = ring.iter().map(|&at| PointMass { at, mass: 0.5 }).collect();
-            points.extend((0..without).map(|_| PointMass {
-                at: axle,
-                mass: 0.0,
-            }));
-            points.push(PointMass {
-                at: at(0.1, 0.2, 0.3),
-                mass: 2.0,
-            });
-            points.extend([0.0; 5].map(|mass| PointMass { at: axle, mass }));
+            let mut points = ring.map(|at| PointMass::new(at, 0.5)).to_vec();
+            points.resize(ring.len() + without, PointMass::new(axle, 0.0));
+            points.push(PointMass::new(at(0.1, 0.2, 0.3), 2.0));
+            points.extend([PointMass::new(axle, 0.0); 5]);
             let body = Body::new(points).unwrap();
             let mut state = State {
                 time_s: 0.0,

@@ -9,7 +9,6 @@ use super::workings::{Changes, Listener, Nobody, Phase, Quantity};
 use super::{Body, Damping, Loads, Scheme, State, loads::torque, rotation};
 use nalgebra::{Matrix3, Vector3};
 
-/// Runge-Kutta of order 4; see the module's text.
 #[derive(Clone, Debug)]
 pub struct Rk4 {
     inverse_inertia: Matrix3<f64>,
@@ -33,7 +32,6 @@ struct Slope {
 }
 
 impl Rk4 {
-    /// The scheme for `body`.
     pub fn new(body: &Body) -> Self {
         Self {
             inverse_inertia: body.inverse_inertia(),

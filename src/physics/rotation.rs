@@ -9,16 +9,12 @@ pub fn crossed(v: &Vector3<f64>, matrix: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::from_columns(&[0, 1, 2].map(|j| v.cross(&matrix.column(j))))
 }
 
-/// A rotation by an angle about an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AxisAngle {
-    /// The axis u, a unit vector.
+pub(crate) struct AxisAngle {
+    /// A unit vector.
     pub axis: Vector3<f64>,
-    /// The angle, rad.
     pub angle: f64,
-    /// Its sine.
     pub sine: f64,
-    /// Its cosine.
     pub cosine: f64,
 }
 
@@ -71,7 +67,8 @@ impl AxisAngle {
     }
 }
 
-/// The rotation about `vector` by the angle |`vector`| · `time`. The zero vector turns nothing.
+/// The rotation about `vector` by the angle |`vector`| · `time`, rad, to a few units of rounding of that angle. The zero
+/// vector turns nothing.
 pub fn about(vector: &Vector3<f64>, time: f64) -> Matrix3<f64> {
     AxisAngle::new(vector, time).map_or_else(Matrix3::identity, |turn| turn.matrix())
 }

@@ -1,4 +1,4 @@
-//! The table of the numerical schemes that there are. What each must do is [`stepping`](super::stepping)'s.
+//! The table of the numerical schemes. What each must do is [`Scheme`]'s.
 
 use super::exact::Exact;
 use super::splitting::{Kind, SplittingScheme};
@@ -8,7 +8,7 @@ use super::{Body, Friction, report::Report, rk4::Rk4};
 /// One row of the table of schemes.
 #[derive(Debug)]
 pub struct SchemeInfo {
-    /// The name in scenarios and on the command line.
+    /// Its name, by which [`find`](Self::find) finds it.
     pub name: &'static str,
     /// Order of convergence in dt; `None` where the time step makes no error.
     pub order: Option<u32>,

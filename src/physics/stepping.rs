@@ -2,16 +2,22 @@
 
 use super::{Loads, State, workings::Phase};
 
-/// A way to take the body one time step further.
+/// A way to take the body one time step further. [`SchemeInfo::make`](super::SchemeInfo::make) makes one.
+///
+/// Its [order](super::SchemeInfo::order) says how fast its error falls with dt. The orientation stays a rotation to rounding,
+/// and under vertical forces without friction L_z keeps every bit (`exact`: all but rounding).
 ///
 /// Orientation, L and t are all that passes from one scheme to another; whatever else a scheme keeps (the report's
 /// carries the points themselves) it makes anew in [`start`](Scheme::start).
 pub trait Scheme: Send {
-    /// Takes the run over at `state`: at its beginning, or from another scheme.
+    /// Takes the run over at `state`: at its beginning, or from another scheme. Comes before the first step.
     fn start(&mut self, state: &State);
 
     /// From now on these are the forces and the friction. Of friction a scheme must be given none that it
     /// [cannot be true to](super::scheme::SchemeInfo::admits).
+    ///
+    /// # Panics
+    /// Here or in a step, when a push is on a point that the body does not have.
     fn load(&mut self, loads: &Loads);
 
     /// Takes `state` `dt` seconds further, its time left as it is: time is the run's, which counts steps.

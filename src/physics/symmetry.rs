@@ -23,7 +23,7 @@ pub struct SymmetricTop {
 }
 
 impl SymmetricTop {
-    /// The moments of `body`, or `None` where it is lopsided.
+    /// The moments of `body`, or `None` where they, or its centre of mass, are off by more than 1e-9 of the whole.
     pub fn of(body: &Body) -> Option<Self> {
         let inertia = body.inertia();
         let largest = inertia.diagonal().amax();
@@ -53,22 +53,7 @@ impl SymmetricTop {
     pub fn kappa(&self) -> f64 {
         self.along / self.across
     }
-}
 
-/// The rates of steady precession, rad/s, the slow and the fast one: the roots of `across_cos` w² − `spin` w + `load` = 0,
-/// of I1 cos θ, L3 = I3 ω3 and M g l; neither as a small difference. No slow one where the top spins too slowly, no fast
-/// one for a level axle either.
-pub fn steady_precession(across_cos: f64, spin: f64, load: f64) -> (Option<f64>, Option<f64>) {
-    let discriminant = spin * spin - 4.0 * across_cos * load;
-    if discriminant < 0.0 {
-        return (None, None);
-    }
-    let larger = 0.5 * (spin + discriminant.sqrt().copysign(spin));
-    let fast = larger / across_cos;
-    (Some(load / larger), fast.is_finite().then_some(fast))
-}
-
-impl SymmetricTop {
     /// The angle between axle and L, rad, with which the top would precess slowly and steadily at the tilt and with the spin
     /// that it has in `state`: of L the part I1 w sin θ lies across the axle. `load` is that of [`Loads::on_axle`], N m, world
     /// frame. `None` where it spins too slowly for a steady precession.
@@ -83,9 +68,25 @@ impl SymmetricTop {
     }
 }
 
+/// The rates of steady precession, rad/s, the slow and the fast one: the roots of `across_cos` w² − `spin` w + `load` = 0,
+/// of I1 cos θ, L3 = I3 ω3 and M g l; neither as a small difference. No slow one where the top spins too slowly, no fast
+/// one for a level axle either. Without spin and load the slow one is not a number.
+pub fn steady_precession(across_cos: f64, spin: f64, load: f64) -> (Option<f64>, Option<f64>) {
+    let discriminant = spin * spin - 4.0 * across_cos * load;
+    if discriminant < 0.0 {
+        return (None, None);
+    }
+    let larger = 0.5 * (spin + discriminant.sqrt().copysign(spin));
+    let fast = larger / across_cos;
+    (Some(load / larger), fast.is_finite().then_some(fast))
+}
+
 impl Loads {
     /// Σ s F, N m, world frame, over all forces, s the height along the axle at which each acts: the torque is the axle
-    /// times this. `None` where a force acts off the axle. `body` must be symmetric.
+    /// times this. `None` where a force acts off the axle. `top` must be [that of](SymmetricTop::of) `body`.
+    ///
+    /// # Panics
+    /// When a push is on a point that `body` does not have.
     pub fn on_axle(&self, body: &Body, top: &SymmetricTop) -> Option<Vector3<f64>> {
         let weight = Vector3::new(0.0, 0.0, -self.gravity * top.first_moment);
         self.pushes.iter().try_fold(weight, |sum, push| {
@@ -98,7 +99,7 @@ impl Loads {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::{PointForce, PointMass};
+    use crate::{PointForce, PointMass};
 
     fn square(sides: [f64; 2]) -> Vec<PointMass> {
         let [a, b] = sides;
@@ -112,10 +113,7 @@ mod tests {
         ]
         .iter()
         .enumerate()
-        .map(|(i, &at)| PointMass {
-            at: Vector3::from(at),
-            mass: if i < 4 { 0.5 } else { 0.0 },
-        })
+        .map(|(i, &at)| PointMass::new(at.into(), if i < 4 { 0.5 } else { 0.0 }))
         .collect()
     }
 

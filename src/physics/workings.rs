@@ -1,16 +1,37 @@
 //! What a scheme computes on the way of one time step, phase by phase, for whoever wants to see it.
 //!
-//! A scheme tells its phases to a [`Listener`]. Its step is written once, for any listener: the plain step is the one
-//! that [nobody](Nobody) listens to, and costs nothing more, the explained step is the one that fills a list of
-//! [phases](Phase). So the numbers shown are the very numbers that made the step.
+//! A scheme tells its phases to a listener. Its step is written once, for any listener: the plain step is the one that
+//! nobody listens to, and costs nothing more, the explained step is the one that fills a list of [phases](Phase). So the
+//! numbers shown are the very numbers that made the step.
 
-mod names;
 mod sums;
 
 use super::Loads;
 use nalgebra::{Matrix3, Vector3};
-pub use names::NAMES;
 pub use sums::Sums;
+
+/// Every name that a phase has, by which files and commands choose one: those of the report's scheme first, in its order.
+pub const NAMES: [&str; 19] = [
+    "inertia",
+    "angular velocity",
+    "axis and angle",
+    "rotation",
+    "new positions",
+    "torque",
+    "new momentum",
+    "friction",
+    "kick",
+    "free motion",
+    "spin about the axle",
+    "rounding taken out",
+    "new orientation",
+    "slope 1: at the beginning",
+    "slope 2: half way by slope 1",
+    "slope 3: half way by slope 2",
+    "slope 4: at the end by slope 3",
+    "theta functions",
+    "Taylor series",
+];
 
 /// The workings of one time step.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -92,18 +113,16 @@ pub struct Table {
     pub cells: Vec<f64>,
 }
 
-/// Takes in the phases of a step.
-pub trait Listener {
-    /// Whether it takes in anything.
+/// Takes in the phases of a step, each of which is made only where it is listened to.
+pub(crate) trait Listener {
     const LISTENS: bool;
 
-    /// Takes in the next phase, which is made only where it is listened to.
     fn hear(&mut self, phase: impl FnOnce() -> Phase);
 }
 
 /// The listener of a plain step.
 #[derive(Clone, Copy, Debug)]
-pub struct Nobody;
+pub(crate) struct Nobody;
 
 impl Listener for Nobody {
     const LISTENS: bool = false;
@@ -128,8 +147,7 @@ impl Workings {
 }
 
 impl Phase {
-    /// A phase that changes nothing of the state.
-    pub fn of(name: &'static str, formula: &'static str, quantities: Vec<Quantity>) -> Self {
+    pub(crate) fn of(name: &'static str, formula: &'static str, quantities: Vec<Quantity>) -> Self {
         Self {
             name,
             formula,
@@ -138,8 +156,7 @@ impl Phase {
         }
     }
 
-    /// The same, but for what it changes.
-    pub fn changing(self, changes: Changes) -> Self {
+    pub(crate) fn changing(self, changes: Changes) -> Self {
         Self { changes, ..self }
     }
 
@@ -163,8 +180,7 @@ impl Quantity {
 }
 
 impl Table {
-    /// An empty table of these columns: symbol and unit of each.
-    pub fn new(columns: &'static [(&'static str, &'static str)]) -> Self {
+    pub(crate) fn new(columns: &'static [(&'static str, &'static str)]) -> Self {
         Self {
             columns,
             points: Vec::new(),
@@ -173,7 +189,7 @@ impl Table {
     }
 
     /// Adds a row for the point of this index, as long as there are columns.
-    pub fn add<const COLUMNS: usize>(&mut self, point: usize, row: [f64; COLUMNS]) {
+    pub(crate) fn add<const COLUMNS: usize>(&mut self, point: usize, row: [f64; COLUMNS]) {
         debug_assert_eq!(COLUMNS, self.columns.len());
         self.points.push(point);
         self.cells.extend(row);

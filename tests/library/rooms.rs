@@ -64,6 +64,9 @@ fn no_import_leads_upward() {
     let place = |room: &str| ORDER.iter().position(|name| *name == room);
     let mut upward = Vec::new();
     for source in sources() {
+        if source.room == "physics" {
+            continue; // a crate of its own, which knows no other room
+        }
         let Some(here) = place(&source.room) else {
             assert!(
                 ["lib", "main"].contains(&source.room.as_str()),

@@ -38,8 +38,8 @@ use super::part::{Part, Sums};
 use super::phases;
 use super::theta::{Harmonics, Lattice, Parity, Zero};
 use super::turning::{Start, Turning};
-use crate::physics::trig::round;
-use crate::physics::workings::{Listener, Nobody};
+use crate::trig::round;
+use crate::workings::{Listener, Nobody};
 use nalgebra::{Complex, Matrix3, Quaternion, UnitQuaternion, Vector3};
 use start::{InFrame, cayley_klein, frame_along, quaternion, start, up};
 
@@ -48,6 +48,8 @@ use start::{InFrame, cayley_klein, frame_along, quaternion, start, up};
 /// Errors: a few units of rounding in the state, plus t times a few units of rounding of the frequencies. A top that comes
 /// from afar within an angle d of the upright rest lingers there for a time that its start decides: rounding of the start
 /// then counts 1/d^2 times. (A start near that rest is held to rounding.)
+///
+/// Source: F. Klein and A. Sommerfeld, Ueber die Theorie des Kreisels, chapter VI.
 #[derive(Clone, Debug)]
 pub struct LagrangeTop {
     across: f64,
@@ -111,7 +113,11 @@ impl LagrangeTop {
     }
 
     /// The same, with each phase told to `listener`.
-    pub fn at_heard<L: Listener>(&self, t: f64, listener: &mut L) -> (Matrix3<f64>, Vector3<f64>) {
+    pub(super) fn at_heard<L: Listener>(
+        &self,
+        t: f64,
+        listener: &mut L,
+    ) -> (Matrix3<f64>, Vector3<f64>) {
         let sums = self.sums_at(t);
         let (alpha, beta) = sums.parameters();
         let norm2 = alpha.norm_sqr() + beta.norm_sqr();

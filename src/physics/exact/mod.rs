@@ -4,7 +4,7 @@
 //!   form by theta functions: any time, past or future, in one evaluation and without stepping.
 //! - [`AccurateMotion`]: any body under any constant forces and friction, by a Taylor series held to rounding.
 //!
-//! [`ExactMotion`] takes the one that serves; [`Exact`] makes a scheme of it.
+//! [`ExactMotion`] takes the one that serves; the scheme `exact` follows it.
 
 mod elliptic;
 mod lagrange;
@@ -20,7 +20,7 @@ mod turning;
 
 pub use lagrange::LagrangeTop;
 pub use near::AT_ONCE;
-pub use scheme::Exact;
+pub(crate) use scheme::Exact;
 pub use taylor::AccurateMotion;
 
 use super::symmetry::SymmetricTop;
@@ -28,7 +28,8 @@ use super::workings::{Listener, Nobody};
 use super::{Body, Damping, Loads, State};
 use nalgebra::{Matrix3, Vector3};
 
-/// The exact motion from one state on, while the loads stay as they are.
+/// The exact motion from one state on, while the loads stay as they are. Its accuracy is that of [`LagrangeTop`] or
+/// [`AccurateMotion`], whichever [`kind`](Self::kind) it is.
 #[derive(Clone, Debug)]
 pub struct ExactMotion {
     begin_s: f64,
@@ -56,6 +57,9 @@ pub enum Kind {
 
 impl ExactMotion {
     /// The motion of `body` under `loads` that is in `state` at the state's own time.
+    ///
+    /// # Panics
+    /// When a push is on a point that `body` does not have.
     pub fn new(body: &Body, loads: &Loads, state: &State) -> Self {
         let (turn, momentum) = (state.orientation, state.momentum);
         let top = SymmetricTop::of(body);
@@ -80,19 +84,19 @@ impl ExactMotion {
     }
 
     /// The state at `time_s`, s. In closed form any time costs the same; an integration goes there from the time asked
-    /// for last.
+    /// for last. Not a number where the integration [has given up](Self::has_given_up).
     pub fn at(&mut self, time_s: f64) -> State {
         self.at_heard(time_s, &mut Nobody)
     }
 
     /// The same, with each phase told to `listener`.
-    pub fn at_heard<L: Listener>(&mut self, time_s: f64, listener: &mut L) -> State {
+    pub(crate) fn at_heard<L: Listener>(&mut self, time_s: f64, listener: &mut L) -> State {
         let t = time_s - self.begin_s;
         let (orientation, momentum) = match &mut self.solution {
             Solution::Closed(top) => top.at_heard(t, listener),
             Solution::Integrated(motion) => {
                 let now = motion.advance(t);
-                listener.hear(|| phases::integrated(t, motion.centre_s(), &now));
+                listener.hear(|| phases::integrated(t, motion.time, &now));
                 now
             }
             Solution::None => (
@@ -135,14 +139,14 @@ impl ExactMotion {
     pub fn kind(&self) -> Kind {
         match &self.solution {
             Solution::Closed(_) => Kind::Closed,
-            Solution::Integrated(motion) if motion.has_friction() => Kind::Rubbing,
+            Solution::Integrated(motion) if motion.friction.is_some() => Kind::Rubbing,
             Solution::Integrated(_) | Solution::None => Kind::Integrated,
         }
     }
 
     /// Whether a time was asked for to which the integration would have taken too long: from there on it is no number.
     pub fn has_given_up(&self) -> bool {
-        matches!(&self.solution, Solution::Integrated(motion) if motion.has_given_up())
+        matches!(&self.solution, Solution::Integrated(motion) if motion.gave_up)
     }
 
     /// The work of friction from where it began to the time asked for last, J.

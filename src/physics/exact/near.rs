@@ -6,7 +6,7 @@
 
 use super::lagrange::LagrangeTop;
 use super::part::Part;
-use crate::physics::trig::kernels;
+use crate::trig::kernels;
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::{Complex, Matrix3, Vector3};
 
@@ -19,7 +19,8 @@ const ROUNDER: f64 = 6755399441055744.0;
 const MOST_TURNS: f64 = 1e12;
 
 impl LagrangeTop {
-    /// Where the point `at` of the body (body frame, m) is at `times`, s after the start: x, y and z, m, world frame. `None`
+    /// Where the point `at` of the body (body frame, m) is at `times`, s after the start: x, y and z, m, world frame, within
+    /// 3e-15 of its distance from the pivot of where [`orientation_at`](Self::orientation_at) has it, in less time. `None`
     /// where the motion has no sines (near the separatrix), or a time is out of all proportion.
     pub fn positions_near(
         &self,
@@ -29,7 +30,7 @@ impl LagrangeTop {
         let per_s = [&self.alpha, &self.beta].map(|part| part.turns_per_s.abs());
         let per_s = per_s[0].max(per_s[1]).max(self.lattice.per_period);
         let latest = times.iter().fold(0.0_f64, |latest, t| latest.max(t.abs()));
-        if self.lattice.is_pulsed() || (latest + self.since_origin.abs()) * per_s > MOST_TURNS {
+        if self.lattice.pulsed || (latest + self.since_origin.abs()) * per_s > MOST_TURNS {
             return None;
         }
         let period = if self.lattice.per_period == 0.0 {

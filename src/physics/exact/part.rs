@@ -1,7 +1,7 @@
 //! The two Cayley-Klein parameters of a top (see [`lagrange`](super::lagrange)) as functions of time.
 
 use super::theta::{Harmonics, Wave};
-use crate::physics::trig::round;
+use crate::trig::round;
 use core::f64::consts::TAU;
 use nalgebra::Complex;
 

@@ -1,6 +1,6 @@
 //! The phases of a step along the exact motion, with their numbers.
 
-use crate::physics::workings::{Changes, Phase, Quantity};
+use crate::workings::{Changes, Phase, Quantity};
 use nalgebra::{Complex, Matrix3, Quaternion, Vector3};
 
 /// Cayley and Klein's parameters, short of the common factor by which |α|² + |β|² is `norm2` instead of 1.

@@ -1,8 +1,8 @@
 //! The exact motion as a scheme: the time step only says where the rows stand.
 
 use super::{ExactMotion, Kind};
-use crate::physics::workings::{Listener, Nobody, Phase};
-use crate::physics::{Body, Loads, Scheme, State};
+use crate::workings::{Listener, Nobody, Phase};
+use crate::{Body, Loads, Scheme, State};
 
 /// Exact motion, anew from every change of the loads; see [`super`].
 #[derive(Clone, Debug)]
@@ -45,7 +45,6 @@ impl Pace {
 }
 
 impl Exact {
-    /// The scheme for `body`.
     pub fn new(body: &Body) -> Self {
         let (loads, pace) = (Loads::default(), Pace::default());
         Self {

@@ -5,8 +5,8 @@
 //! friction is strong enough, with the torque that holds the spin at zero, until it is not strong enough any more.
 
 use super::series::{ORDER, convolve};
-use crate::physics::Damping;
-use crate::physics::loads::axial;
+use crate::Damping;
+use crate::loads::axial;
 use nalgebra::{Matrix3, Vector3};
 
 /// How the body rubs about its axle.
@@ -79,12 +79,12 @@ impl Sliding {
     /// Decides how the body rubs from here on: it stands as `matrix` says and has the momentum `momentum` (world frame,
     /// J s), from which the spin is taken where it has stopped; momenta are of the size `unit`.
     pub fn begin(&mut self, matrix: &Matrix3<f64>, momentum: &mut Vector3<f64>, unit: f64) {
-        let friction = self.damping.friction();
+        let friction = &self.damping.friction;
         if friction.spin_dry == 0.0 && friction.spin_quadratic == 0.0 {
             return;
         }
         let omega = self.omega(matrix, momentum);
-        let along = self.damping.moment_along();
+        let along = self.damping.along;
         let (was, ends) = (self.contact, std::mem::take(&mut self.ends));
         let has_stopped = ends || was == Contact::Holds;
         if !has_stopped && omega.z.abs() * along > STOPPED * unit {
@@ -95,7 +95,7 @@ impl Sliding {
         let omega = self.omega(matrix, momentum);
         let load = axial(&(matrix * self.moment));
         let swing = self.swing(&omega);
-        let gyration = omega.cross(&(self.damping.inertia() * omega));
+        let gyration = omega.cross(&(self.damping.inertia * omega));
         let hold = self.hold(&(matrix.tr_mul(&load) + swing - gyration));
         let is_strong_enough = match was {
             Contact::Holds => !ends,
@@ -132,7 +132,7 @@ impl Sliding {
         let swing = self.swing(&omega);
         let about = match self.contact {
             Contact::Holds => {
-                let inertia = self.damping.inertia();
+                let inertia = self.damping.inertia;
                 let load = convolve(k, |i, j| known.matrix[i].tr_mul(&self.load[j]));
                 let gyration =
                     convolve(k, |i, j| known.omega[i].cross(&(inertia * known.omega[j])));
@@ -155,7 +155,7 @@ impl Sliding {
     }
 
     fn event_within(&self, radius: f64) -> Option<f64> {
-        let dry = self.damping.friction().spin_dry;
+        let dry = self.damping.friction.spin_dry;
         let left = |t: f64| match self.contact {
             Contact::Smooth => f64::INFINITY,
             Contact::Slips(sign) => sign * value(&self.spin, t),
@@ -189,12 +189,12 @@ impl Sliding {
     }
 
     fn omega(&self, matrix: &Matrix3<f64>, momentum: &Vector3<f64>) -> Vector3<f64> {
-        self.damping.inverse_inertia() * matrix.tr_mul(momentum)
+        self.damping.inverse_inertia * matrix.tr_mul(momentum)
     }
 
     /// Coefficient `k` of the torque about the axle while the spin has this `sign`.
     fn slows(&self, k: usize, sign: f64) -> f64 {
-        let friction = self.damping.friction();
+        let friction = &self.damping.friction;
         let square = convolve(k, |i, j| self.spin[i] * self.spin[j]);
         let dry = if k == 0 { friction.spin_dry } else { 0.0 };
         -sign * (dry + friction.spin_quadratic * square) - friction.spin_viscous * self.spin[k]
@@ -202,13 +202,13 @@ impl Sliding {
 
     /// Friction's torque across the axle.
     fn swing(&self, omega: &Vector3<f64>) -> Vector3<f64> {
-        Vector3::new(omega.x, omega.y, 0.0) * -self.damping.friction().swing_viscous
+        Vector3::new(omega.x, omega.y, 0.0) * -self.damping.friction.swing_viscous
     }
 
     /// The torque about the axle that keeps ω3 as it is where dL/dt in the body frame is `change` without it.
     fn hold(&self, change: &Vector3<f64>) -> f64 {
-        let rate = self.damping.inverse_inertia() * change;
-        -self.damping.moment_along() * rate.z
+        let rate = self.damping.inverse_inertia * change;
+        -self.damping.along * rate.z
     }
 }
 

@@ -17,8 +17,8 @@
 
 use super::series::{ORDER, convolve};
 use super::sliding::{Before, Known, Sliding};
-use crate::physics::Damping;
-use crate::physics::loads::axial;
+use crate::Damping;
+use crate::loads::axial;
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// Size of the last term of a step against the whole: below rounding, so that rounding alone is left.
@@ -29,25 +29,28 @@ const MOST_SERIES: u32 = 200_000;
 /// Motion of a rigid body about a fixed point under constant forces at body points, integrated to rounding.
 ///
 /// Errors: about 1e-15 per radian turned; where the motion itself parts neighbouring starts, that much more.
+///
+/// Source: A. Jorba and M. Zou, Experimental Mathematics 14 (2005) 99-117.
 #[derive(Clone, Debug)]
 pub struct AccurateMotion {
     inverse_inertia: Matrix3<f64>,
     moment: Matrix3<f64>,
     momentum_unit: f64,
-    time: f64,
+    /// The centre of the series.
+    pub(super) time: f64,
     /// How far from `time` the series holds, s, to either side.
     radius: f64,
     turn: [Quaternion<f64>; ORDER + 1],
     momentum: [Vector3<f64>; ORDER + 1],
     /// What rounding has kept out of `momentum[0]`. A fast top turns an error of L into an angle that grows with time.
     carry: Vector3<f64>,
-    friction: Option<Box<Rubbing>>,
-    gave_up: bool,
+    pub(super) friction: Option<Box<Rubbing>>,
+    pub(super) gave_up: bool,
 }
 
 /// Friction, and where to go back to: what it has stopped cannot be followed backwards.
 #[derive(Clone, Debug)]
-struct Rubbing {
+pub(super) struct Rubbing {
     sliding: Sliding,
     /// Centres of the series so far, every `apart`-th of them; the first is the start.
     centres: Vec<Centre>,
@@ -90,7 +93,7 @@ impl AccurateMotion {
     }
 
     /// As [`new`](Self::new), with the friction of `damping`, which is of this body.
-    pub fn damped(
+    pub(super) fn damped(
         inertia: Matrix3<f64>,
         moment: Matrix3<f64>,
         orientation: Matrix3<f64>,
@@ -121,13 +124,8 @@ impl AccurateMotion {
         Some(motion)
     }
 
-    /// Whether there is friction.
-    pub fn has_friction(&self) -> bool {
-        self.friction.is_some()
-    }
-
     /// The work of friction from the start to the time asked for last, J.
-    pub fn friction_work(&self) -> f64 {
+    pub(super) fn friction_work(&self) -> f64 {
         let rubbing = self.friction.as_ref();
         rubbing.map_or(0.0, |rubbing| rubbing.sliding.work(rubbing.asked_s))
     }
@@ -137,7 +135,7 @@ impl AccurateMotion {
     /// Asking for times in order costs one short polynomial each; going back integrates back, or where there is friction
     /// on from an earlier time. Not a number for a time that is not finite, or that is too far for the turning of the body
     /// to be told apart by it, or with friction before the start; nor from the first time on to which the body turns by more
-    /// than 2e5 to 6e5 rad from the time asked for before: then it [has given up](Self::has_given_up).
+    /// than 2e5 to 6e5 rad from the time asked for before: then it has given up.
     pub fn advance(&mut self, t: f64) -> (Matrix3<f64>, Vector3<f64>) {
         if t < self.time || t - self.time > self.radius {
             self.go_to_centre(t);
@@ -158,16 +156,6 @@ impl AccurateMotion {
             rotation(turn.normalize()),
             self.momentum[0] + (change + self.carry),
         )
-    }
-
-    /// Whether a time was asked for to which the integration would have taken too long.
-    pub fn has_given_up(&self) -> bool {
-        self.gave_up
-    }
-
-    /// The time about which the series was expanded that gave the state asked for last, s.
-    pub fn centre_s(&self) -> f64 {
-        self.time
     }
 
     /// One step; false if time would stand still.

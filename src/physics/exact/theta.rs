@@ -50,7 +50,8 @@ pub struct Zero {
 /// The period lattice of the motion: which of the two sums to use, with its nome, and how its argument runs with time.
 #[derive(Clone, Copy, Debug)]
 pub struct Lattice {
-    pulsed: bool,
+    /// Whether it is summed over pulses, and not over harmonics.
+    pub pulsed: bool,
     m: f64,
     one_minus_m: f64,
     quarter: f64,
@@ -116,11 +117,6 @@ impl Lattice {
             period,
             per_period: 1.0 / period,
         }
-    }
-
-    /// Whether it is summed over pulses, and not over harmonics.
-    pub fn is_pulsed(&self) -> bool {
-        self.pulsed
     }
 
     /// Time since the turning point that squared sine and cosine of the amplitude place the state at, s.

@@ -2,8 +2,8 @@
 
 use super::Report;
 use super::points::{Inertia, LANES, Moments, Pair};
-use crate::physics::rotation::AxisAngle;
-use crate::physics::workings::{Changes, Phase, Quantity, Table};
+use crate::rotation::AxisAngle;
+use crate::workings::{Changes, Phase, Quantity, Table};
 use nalgebra::{Matrix3, Vector3};
 use wide::f64x2;
 

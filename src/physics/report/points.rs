@@ -142,7 +142,7 @@ impl Inertia {
     }
 
     /// I⁻¹ L, by cofactors: one division, and exact to a few units in the last place for any inertia that
-    /// [`Body`](crate::physics::Body) lets pass.
+    /// [`Body`](crate::Body) lets pass.
     #[inline]
     pub fn solve(&self, momentum: &Vector3<f64>) -> Vector3<f64> {
         let ([a, b], [h, g]) = (self.xx_yy.to_array(), self.xy_xz.to_array());

@@ -10,9 +10,9 @@
 
 use super::free_body::{FreeBody, orthonormal};
 use super::phases;
-use crate::physics::loads::torque;
-use crate::physics::workings::Listener;
-use crate::physics::{Body, Damping, Loads, State, friction};
+use crate::loads::torque;
+use crate::workings::Listener;
+use crate::{Body, Damping, Loads, State, friction};
 use nalgebra::{Matrix3, Vector3};
 
 /// The splitting for one body under constant forces and friction.
@@ -59,7 +59,7 @@ impl DampedStrang {
     ) -> f64 {
         let q = &state.orientation;
         let torque = torque(q, &self.moment);
-        let omega = self.damping.inverse_inertia() * q.tr_mul(&state.momentum);
+        let omega = self.damping.inverse_inertia * q.tr_mul(&state.momentum);
         let gyration = if self.gyrates {
             self.damping.gyration(&omega)
         } else {

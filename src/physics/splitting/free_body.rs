@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::jacobi::{Jacobi, carlson_rj};
 use super::principal::{ROUNDING, principal_axes};
 use super::turn::Turn;
-use crate::physics::trig::sin_cos;
+use crate::trig::sin_cos;
 
 /// A rigid body that turns about a fixed point without torque.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@
 //! In this form p and q are equals: it does not matter which is the larger, nothing happens where they pass each other
 //! (k = 1, the separatrix), and p = q = 0 is S = t.
 
-use crate::physics::trig::sin_cos;
+use crate::trig::sin_cos;
 
 /// The levels of the arithmetic-geometric mean: it converges quadratically, even from 1 and 1e-150 in eleven.
 const LEVELS: usize = 16;

@@ -12,15 +12,15 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::State;
-use crate::physics::loads::torque;
-use crate::physics::trig::sin_cos;
-use crate::physics::workings::{Listener, Nobody};
+use crate::loads::torque;
+use crate::trig::sin_cos;
+use crate::workings::Listener;
 use free_body::{FreeBody, SymmetricBody, orthonormal};
 use principal::ROUNDING;
 use turn::Turn;
 
 mod damped;
-pub mod free_body;
+mod free_body;
 mod jacobi;
 mod phases;
 mod principal;
@@ -29,7 +29,6 @@ mod turn;
 
 pub use scheme::SplittingScheme;
 
-/// Which composition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Kick, free motion, kick: order 2 (G. Strang, SIAM J. Numer. Anal. 5, 506, 1968).
@@ -115,27 +114,19 @@ impl Splitting {
     }
 
     /// One step of `h` seconds, forwards or backwards. L along a direction in which no force has a part across the others
-    /// (the vertical, under vertical forces) keeps every bit. `time_s` is moved by h; who needs it without the rounding
-    /// of a sum sets it.
+    /// (the vertical, under vertical forces) keeps every bit.
     #[inline]
-    pub fn step(&self, state: &mut State, h: f64) {
-        self.step_heard(state, h, &mut Nobody);
-    }
-
-    /// The same, with each phase told to `listener`.
-    #[inline]
-    pub fn step_heard<L: Listener>(&self, state: &mut State, h: f64, listener: &mut L) {
+    pub fn step<L: Listener>(&self, state: &mut State, h: f64, listener: &mut L) {
         match &self.top {
             Top::Axle(top) => top.step(self.stages, state, h, listener),
             Top::Any(top) => top.step(self.stages, state, h, listener),
         }
-        state.time_s += h;
     }
 }
 
 /// The third row, if the others are rounding beside it: all forces act on the body's z axis, the axle.
 ///
-/// Why not the wider tolerance of [`symmetry`](crate::physics::symmetry): what is off the axle is dropped here from every
+/// Why not the wider tolerance of [`symmetry`](crate::symmetry): what is off the axle is dropped here from every
 /// kick, so it must be no more than the rounding of the sums.
 fn force_on_axle(moment: &Matrix3<f64>) -> Option<Vector3<f64>> {
     let row = |i: usize| moment.row(i).transpose();

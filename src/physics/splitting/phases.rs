@@ -1,7 +1,7 @@
 //! The phases of a step of a splitting scheme, with their numbers.
 
 use super::turn::Turn;
-use crate::physics::workings::{Changes, Phase, Quantity};
+use crate::workings::{Changes, Phase, Quantity};
 use nalgebra::{Matrix3, Vector3};
 
 /// Of a symmetric body: the spin that it has more than its turning about L, done once a step.
@@ -51,7 +51,7 @@ pub(super) fn axle_turn(
         "a and e turn about L by the angle |w|, w = L h/I₁",
         vec![
             Quantity::new("h", "s", duration_s),
-            Quantity::new("w", "rad", turn.vector()),
+            Quantity::new("w", "rad", turn.vector),
             Quantity::new("new a", "", *axle),
             Quantity::new("new e", "", *side),
         ],

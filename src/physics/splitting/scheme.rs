@@ -1,11 +1,9 @@
-//! A composition as a scheme.
-
 use super::damped::DampedStrang;
 use super::{Kind, Splitting};
-use crate::physics::workings::{Listener, Nobody, Phase};
-use crate::physics::{Body, Loads, Scheme, State};
+use crate::workings::{Listener, Nobody, Phase};
+use crate::{Body, Loads, Scheme, State};
 
-/// A splitting of one kind for one body; see [`super`].
+/// A composition as a scheme.
 #[derive(Clone, Debug)]
 pub struct SplittingScheme {
     body: Body,
@@ -18,7 +16,6 @@ pub struct SplittingScheme {
 }
 
 impl SplittingScheme {
-    /// The scheme of that `kind` for `body`.
     pub fn new(kind: Kind, body: &Body) -> Self {
         let splitting = Splitting::new(kind, &body.inertia(), &Loads::default().moment(body));
         Self {
@@ -33,7 +30,7 @@ impl SplittingScheme {
     #[inline]
     fn advance<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
         match &self.damped {
-            None => self.splitting.step_heard(state, dt, listener),
+            None => self.splitting.step(state, dt, listener),
             Some(damped) => self.work = damped.step(state, dt, listener),
         }
     }

@@ -1,6 +1,7 @@
 use std::f64::consts::PI;
 
 use super::*;
+use crate::workings::Nobody;
 
 const GRAVITY: f64 = 9.8;
 
@@ -80,7 +81,7 @@ fn tilted(momentum: [f64; 3]) -> State {
 fn run(kind: Kind, (inertia, moment): Body, start: State, seconds: f64, steps: u32) -> State {
     let scheme = Splitting::new(kind, &inertia, &moment);
     let mut state = start;
-    (0..steps).for_each(|_| scheme.step(&mut state, seconds / f64::from(steps)));
+    (0..steps).for_each(|_| scheme.step(&mut state, seconds / f64::from(steps), &mut Nobody));
     state
 }
 
@@ -163,7 +164,7 @@ fn energy_changes(scheme: &Splitting, body: &Body, h: f64, [first, rest]: [u32; 
     let start = energy(body, &state);
     let changes = [first, rest].map(|steps| {
         (0..steps).fold(0.0_f64, |most, _| {
-            scheme.step(&mut state, h);
+            scheme.step(&mut state, h, &mut Nobody);
             most.max((energy(body, &state) - start).abs() / start.abs())
         })
     });
@@ -244,7 +245,7 @@ fn axle_and_any_top_agree() {
         assert!(matches!(scheme.top, Top::Axle(_)));
         let (mut quick, mut slow) = (tilted([2.0, -5.0, 30.0]), tilted([2.0, -5.0, 30.0]));
         for _ in 0..steps {
-            scheme.step(&mut quick, h);
+            scheme.step(&mut quick, h, &mut Nobody);
             general.step(kind.stages(), &mut slow, h, &mut Nobody);
         }
         assert!(
@@ -288,8 +289,8 @@ fn a_fresh_scheme_continues_bit_for_bit() {
         let mut whole = tilted([0.0, 0.0, 100.0]);
         let mut parts = whole;
         for _ in 0..50 {
-            scheme.step(&mut whole, 0.02);
-            Splitting::new(Kind::Srkn11b, &inertia, &moment).step(&mut parts, 0.02);
+            scheme.step(&mut whole, 0.02, &mut Nobody);
+            Splitting::new(Kind::Srkn11b, &inertia, &moment).step(&mut parts, 0.02, &mut Nobody);
         }
         assert_eq!(whole, parts, "{name}");
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::physics::trig::sin_cos;
+use crate::trig::sin_cos;
 
 /// Up to this square of the angle the series are used (an angle of 1.41).
 const SERIES_END: f64 = 2.0;
@@ -10,7 +10,8 @@ const SERIES_END: f64 = 2.0;
 /// The rotation by a rotation vector w: v + s w x v + c w x (w x v), s = sin|w| / |w|, c = (1 - cos|w|) / |w|^2.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn {
-    vector: Vector3<f64>,
+    /// Axis times angle, rad.
+    pub vector: Vector3<f64>,
     sine: f64,
     versine: f64,
 }
@@ -30,11 +31,6 @@ impl Turn {
             sine,
             versine,
         }
-    }
-
-    /// Axis times angle, rad.
-    pub fn vector(&self) -> Vector3<f64> {
-        self.vector
     }
 
     /// The vector turned.

@@ -1,6 +1,6 @@
 //! The state at the start, in the frame along the vertical of the load.
 
-use crate::physics::exact::turning::Start;
+use crate::exact::turning::Start;
 use nalgebra::{Complex, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// The direction that the energy and the constant part of L refer to, of a length near one: against the load, or along L
