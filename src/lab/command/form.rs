@@ -280,9 +280,7 @@ fn of_view(key: &str, value: &Value) -> Result<Value, Vec<Problem>> {
     for problem in &mut problems.list {
         problem.key = problem.key[key.len()..].trim_start_matches('.').to_owned();
     }
-    problems
-        .or(value.clone())
-        .map_err(|problems| problems.list)
+    problems.or(value.clone()).map_err(|problems| problems.list)
 }
 
 fn not_zero(value: &Value, most: i64) -> Result<(), String> {
