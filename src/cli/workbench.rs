@@ -93,7 +93,10 @@ fn open_at(
     let (mut lab, session) = match args.resume.as_deref() {
         Some("") => come_back(args, confined.as_ref(), folder.clone())?,
         Some(session) => come_back_to(session, args, confined.as_ref(), folder.clone())?,
-        None => (new(args, name)?, folder.clone().and_then(begun)),
+        None => (
+            new(args, name)?,
+            folder.clone().and_then(|folder| begun(&folder)),
+        ),
     };
     chosen.tell(&mut lab);
     if let Ok(folder) = folder {

@@ -70,7 +70,7 @@ impl Course {
             && self.end_s <= end_s + rounding_s(end_s)
             && end_s <= self.wanted.end_s(scenario)
             && (self.wanted.path || !wanted.path)
-            && columns.all(|column| self.place(*column).is_some());
+            && columns.all(|column| self.place(column).is_some());
         is_all.then(|| Self {
             end_s: self.end_s.min(end_s),
             ..self.clone()

@@ -772,7 +772,7 @@ proptest! {
             title: names.1.clone(),
             width_pt: width_mm * 72.0 / 25.4,
             x: Axis { is_log: logs.0, ..Axis::new("*t*", "s") },
-            panels: vec![Panel { y: Axis { is_log: logs.1, ..Axis::new("*x*", "m") }, series: series.collect(), slope, ..Panel::default() }],
+            panels: vec![Panel { y: Axis { is_log: logs.1, ..Axis::new("*x*", "m") }, series: series.collect(), slope }],
             is_true_to_scale: false,
             are_read_off: true,
         };

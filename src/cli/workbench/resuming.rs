@@ -115,7 +115,7 @@ pub(super) fn come_back(
     };
     let mut lab = new(args, DEFAULT)?;
     lab.tell(why_none);
-    Ok((lab, folder.and_then(begun)))
+    Ok((lab, folder.and_then(|folder| begun(&folder))))
 }
 
 /// Says that newer sessions are open in other labs, of the processes `owners`. A line that has died without a word keeps
@@ -131,8 +131,8 @@ fn in_use(owners: &[u32]) -> String {
     )
 }
 
-pub(super) fn begun(folder: PathBuf) -> Result<Session, String> {
-    Session::begin(&folder).map_err(told)
+pub(super) fn begun(folder: &Path) -> Result<Session, String> {
+    Session::begin(folder).map_err(told)
 }
 
 fn told(error: impl std::fmt::Display) -> String {

@@ -30,6 +30,9 @@ pub enum Stop {
 /// The least and the greatest value of a parameter.
 pub type Bounds = (f64, f64);
 
+/// A place where the sum is less, and the residuals there.
+type Better = (Vec<f64>, DVector<f64>);
+
 /// Where a search has ended.
 #[derive(Clone, Debug)]
 pub struct Minimum {
@@ -163,7 +166,7 @@ impl<'a> Linear<'a> {
         }
     }
 
-    /// The place to which the longest step leads that reduces the sum, and the residuals there; `None` where there is none.
+    /// Where the longest step leads that reduces the sum; `None` where there is none.
     fn better(
         &self,
         problem: &dyn Problem,
@@ -171,7 +174,7 @@ impl<'a> Linear<'a> {
         r: &DVector<f64>,
         bounds: &[Bounds],
         damping: &mut f64,
-    ) -> Result<Option<(Vec<f64>, DVector<f64>)>, Stop> {
+    ) -> Result<Option<Better>, Stop> {
         let (sum, mut growth) = (r.norm_squared(), 2.0);
         loop {
             let trial = projected(p, &self.step(*damping), bounds);

@@ -286,7 +286,7 @@ fn measured(
                 );
             }
             Some(readout) if found.iter().any(|other| other.name == readout.name) => {
-                refuse("is named twice")
+                refuse("is named twice");
             }
             Some(readout) if axes.iter().any(|axis| axis.key == readout.name) => {
                 refuse("varies, and has its column already");
