@@ -199,68 +199,65 @@ mod tests {
     use crate::scenario::Document;
     use toml::Value;
 
-    fn one(key: &str, value: f64) -> Table {
-        Table::from_iter([(key.to_owned(), Value::Float(value))])
-    }
-
     fn opened(name: &str) -> Arc<Scenario> {
         Arc::new(Document::open(name).unwrap().scenario().unwrap())
+    }
+
+    fn method_2() -> History {
+        History::new("method-2", &opened("method-2"))
     }
 
     fn leave(history: &mut History, step: u64) {
         history.set_left_at(step, &NextPush::of(&opened("method-2")));
     }
 
-    fn begin_with_tilt(history: &mut History, step: u64, tilt_deg: f64) {
-        leave(history, step);
-        history
-            .begin_with(&one("start.tilt_deg", tilt_deg), false)
-            .unwrap();
+    fn begin_with_tilt(history: &mut History, left_at: u64, tilt_deg: f64, is_again: bool) {
+        leave(history, left_at);
+        let set = Table::from_iter([("start.tilt_deg".to_owned(), tilt_deg.into())]);
+        history.begin_with(&set, is_again).unwrap();
     }
 
     fn set(history: &mut History, step: u64, key: &str, value: f64) -> Arc<Scenario> {
-        let act = Act::set(key, Value::Float(value));
+        let act = Act::set(key, value.into());
         history.act(step, act, false).unwrap()
     }
 
     fn time_step(history: &History) -> f64 {
         let scenario = history.present().journal.scenario().unwrap();
-        scenario
-            .edits
-            .last()
-            .map_or(scenario.motion.time_step_s, |edit| edit.motion.time_step_s)
+        let edit = scenario.edits.last();
+        edit.map_or(scenario.motion, |edit| edit.motion).time_step_s
     }
 
-    fn tilt(history: &History) -> Option<f64> {
-        history.present().journal.file().start.tilt_deg
+    /// The step at which the present run was left, and its start tilt.
+    fn place(history: &History) -> (u64, Option<f64>) {
+        let run = history.present();
+        (run.left_at, run.journal.file().start.tilt_deg)
+    }
+
+    /// Takes an edit of the same run back, and gives its step; `None` for a whole run taken back.
+    fn undone(history: &mut History) -> Option<u64> {
+        match history.undo().unwrap() {
+            Reversal::SameRun { step, .. } => Some(step),
+            Reversal::OtherRun => None,
+        }
     }
 
     #[test]
     fn undo_and_redo_go_through_all_acts_and_runs_in_order() {
-        let mut history = History::new("method-2", &opened("method-2"));
+        let mut history = method_2();
         set(&mut history, 40, "motion.time_step_s", 0.05);
-        begin_with_tilt(&mut history, 90, 30.0);
+        begin_with_tilt(&mut history, 90, 30.0, false);
         set(&mut history, 7, "motion.time_step_s", 0.02);
         leave(&mut history, 9);
         history.begin("cusps", &opened("cusps"));
-        assert_eq!(history.undo(), Some(Reversal::OtherRun));
-        assert_eq!((history.present().left_at, tilt(&history)), (9, Some(30.0)));
-        let Some(Reversal::SameRun { step: 7, .. }) = history.undo() else {
-            panic!()
-        };
-        assert_eq!(
-            time_step(&history),
-            0.05,
-            "the new run moves as the old one did when it was left"
-        );
-        assert_eq!(history.undo(), Some(Reversal::OtherRun));
-        assert_eq!(
-            (history.present().left_at, tilt(&history)),
-            (90, Some(45.0))
-        );
-        let Some(Reversal::SameRun { step: 40, .. }) = history.undo() else {
-            panic!()
-        };
+        assert_eq!(undone(&mut history), None);
+        assert_eq!(place(&history), (9, Some(30.0)));
+        assert_eq!(undone(&mut history), Some(7));
+        // The new run moves as the old one did when it was left.
+        assert_eq!(time_step(&history), 0.05);
+        assert_eq!(undone(&mut history), None);
+        assert_eq!(place(&history), (90, Some(45.0)));
+        assert_eq!(undone(&mut history), Some(40));
         assert_eq!(history.undo(), None);
         for _ in 0..4 {
             assert!(history.redo().is_some());
@@ -271,21 +268,15 @@ mod tests {
 
     #[test]
     fn undo_takes_the_advice_back_before_the_edits_that_it_kept() {
-        let mut history = History::new("method-2", &opened("method-2"));
+        let mut history = method_2();
         let edited = set(&mut history, 40, "motion.gravity_m_per_s2", 5.0);
         leave(&mut history, 90);
         history.begin_as_advised(&edited);
         set(&mut history, 7, "motion.time_step_s", 0.02);
-        assert!(matches!(
-            history.undo(),
-            Some(Reversal::SameRun { step: 7, .. })
-        ));
-        assert_eq!(history.undo(), Some(Reversal::OtherRun));
+        assert_eq!(undone(&mut history), Some(7));
+        assert_eq!(undone(&mut history), None);
         assert_eq!(history.present().left_at, 90);
-        assert!(matches!(
-            history.undo(),
-            Some(Reversal::SameRun { step: 40, .. })
-        ));
+        assert_eq!(undone(&mut history), Some(40));
         for _ in 0..3 {
             assert!(history.redo().is_some());
         }
@@ -294,8 +285,8 @@ mod tests {
 
     #[test]
     fn a_new_act_leaves_nothing_to_redo() {
-        let mut history = History::new("method-2", &opened("method-2"));
-        begin_with_tilt(&mut history, 90, 30.0);
+        let mut history = method_2();
+        begin_with_tilt(&mut history, 90, 30.0, false);
         history.undo();
         set(&mut history, 5, "motion.gravity_m_per_s2", 1.0);
         assert_eq!(history.redo(), None);
@@ -303,47 +294,39 @@ mod tests {
 
     #[test]
     fn nudging_a_run_again_replaces_it() {
-        let mut history = History::new("method-2", &opened("method-2"));
-        begin_with_tilt(&mut history, 90, 30.0);
-        for tilt_deg in [31.0, 32.0] {
-            leave(&mut history, 5);
-            history
-                .begin_with(&one("start.tilt_deg", tilt_deg), true)
-                .unwrap();
-        }
-        assert_eq!(tilt(&history), Some(32.0));
-        assert_eq!(history.undo(), Some(Reversal::OtherRun));
-        assert_eq!(
-            (history.present().left_at, tilt(&history)),
-            (90, Some(45.0))
-        );
+        let mut history = method_2();
+        begin_with_tilt(&mut history, 90, 30.0, false);
+        begin_with_tilt(&mut history, 5, 31.0, true);
+        begin_with_tilt(&mut history, 5, 32.0, true);
+        assert_eq!(place(&history).1, Some(32.0));
+        assert_eq!(undone(&mut history), None);
+        assert_eq!(place(&history), (90, Some(45.0)));
         assert_eq!(history.undo(), None);
     }
 
     #[test]
     fn redo_brings_the_new_run_back_and_not_an_edit_undone_before_it() {
-        let mut history = History::new("method-2", &opened("method-2"));
+        let mut history = method_2();
         set(&mut history, 40, "motion.time_step_s", 0.05);
         history.undo();
-        begin_with_tilt(&mut history, 90, 30.0);
+        begin_with_tilt(&mut history, 90, 30.0, false);
         history.undo();
         assert_eq!(history.redo(), Some(Reversal::OtherRun));
-        assert_eq!(tilt(&history), Some(30.0));
+        assert_eq!(place(&history).1, Some(30.0));
     }
 
     #[test]
     fn a_refused_edit_changes_nothing() {
-        let mut history = History::new("method-2", &opened("method-2"));
+        let mut history = method_2();
         let before = history.clone();
-        history
-            .act(5, Act::set("motion.time_step_s", Value::Float(-1.0)), false)
-            .unwrap_err();
-        history
-            .begin_with(&one("body.rim.radius_m", -1.0), false)
-            .unwrap_err();
-        history
-            .act(5, Act::set("motion.steps", Value::Integer(0)), false)
-            .unwrap_err();
+        for (key, value) in [
+            ("motion.time_step_s", Value::Float(-1.0)),
+            ("motion.steps", Value::Integer(0)),
+        ] {
+            history.act(5, Act::set(key, value), false).unwrap_err();
+        }
+        let set = Table::from_iter([("body.rim.radius_m".to_owned(), Value::Float(-1.0))]);
+        history.begin_with(&set, false).unwrap_err();
         assert_eq!(history, before);
     }
 }

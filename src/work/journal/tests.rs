@@ -7,6 +7,15 @@ fn journal(name: &str) -> Journal {
     Journal::of(Document::open(name).unwrap().scenario().unwrap().file)
 }
 
+/// The run of method-2 after these acts, each at its step.
+fn after(acts: impl IntoIterator<Item = (u64, Act)>) -> Journal {
+    let mut journal = journal("method-2");
+    for (step, act) in acts {
+        journal.act(step, act, false).unwrap();
+    }
+    journal
+}
+
 fn push(from_s: f64) -> Act {
     Act::Push(pushed(from_s))
 }
@@ -41,37 +50,41 @@ fn counts(journal: &Journal) -> (usize, usize) {
 
 #[test]
 fn an_act_drops_entries_at_later_steps_until_it_is_undone() {
-    let mut journal = journal("method-2");
-    journal.act(10, gravity(1.0), false).unwrap();
-    journal.act(50, push(5.0), false).unwrap();
-    journal.act(60, title("Mine"), false).unwrap();
-    journal.act(20, gravity(2.0), false).unwrap();
+    let mut journal = after([
+        (10, gravity(1.0)),
+        (50, push(5.0)),
+        (60, title("Mine")),
+        (20, gravity(2.0)),
+    ]);
     assert_eq!(counts(&journal), (2, 0));
     assert_eq!(journal.file().title, "Mine");
     assert_eq!(journal.undo().unwrap().0, 20);
     assert_eq!(counts(&journal), (1, 1));
     journal.redo().unwrap();
     assert_eq!(counts(&journal), (2, 0));
-    let edits_until = |step| journal.scenario_until(step).unwrap().edits.len();
-    // An act at the last step is included.
-    assert_eq!((edits_until(15), edits_until(20)), (1, 2));
     assert_eq!(journal.later_than(15), 1);
 }
 
 #[test]
-fn the_run_up_to_a_step_ends_there() {
-    let mut journal = journal("method-2");
-    for step in [5, 10, 10, 20] {
-        journal.act(step, gravity(step as f64), false).unwrap();
-    }
+fn the_run_up_to_a_step_ends_there_and_has_its_description() {
+    let mut journal = after([5, 10, 10, 20].map(|step| (step, gravity(step as f64))));
     journal.act(30, push(5.0), false).unwrap();
     journal.act(40, title("Mine"), false).unwrap();
-    for (step, edits, pushes) in [(0, 0, 0), (4, 0, 0), (5, 1, 0), (15, 2, 0), (50, 3, 1)] {
+    for (step, edits, pushes) in [
+        (0, 0, 0),
+        (4, 0, 0),
+        (5, 1, 0),
+        (15, 2, 0),
+        (20, 3, 0),
+        (50, 3, 1),
+    ] {
         let run = journal.scenario_until(step).unwrap();
         let found = (run.steps, run.edits.len(), run.pushes.len());
         assert_eq!(found, (step.max(1), edits, pushes));
         assert_eq!(run.file.title, "Mine");
     }
+    let begun = journal.begun_with(10, &one("start.tilt_deg", 3.0));
+    assert_eq!(begun.unwrap().1.file.title, "Mine");
 }
 
 #[test]
@@ -106,33 +119,9 @@ fn the_act_is_written_last() {
         act: gravity(1.0),
     };
     let text = serde_json::to_string(&entry).unwrap();
-    assert!(text.find("\"act\"") > text.find("\"is_chained\""), "{text}");
-    assert!(text.find("\"act\"") > text.find("\"from_file\""), "{text}");
-}
-
-#[test]
-fn a_description_belongs_to_every_step() {
-    let mut journal = journal("method-2");
-    journal.act(500, title("Mine"), false).unwrap();
-    assert_eq!(journal.scenario_until(100).unwrap().file.title, "Mine");
-    let begun = journal.begun_with(100, &one("start.tilt_deg", 3.0));
-    assert_eq!(begun.unwrap().1.file.title, "Mine");
-}
-
-#[test]
-fn undo_restores_the_edits_of_the_file() {
-    let edits = "[[edit]]\nstep = 60\nset = { 'motion.gravity_m_per_s2' = 1 }\n".repeat(2);
-    let text = format!("{}\n{edits}", presets::find("method-2").unwrap().text);
-    let file = Document::parse("edited", &text)
-        .unwrap()
-        .scenario()
-        .unwrap()
-        .file;
-    let mut journal = Journal::of(file.clone());
-    journal.act(70, title(&file.title), false).unwrap();
-    journal.act(50, gravity(2.0), false).unwrap();
-    journal.undo();
-    assert_eq!(journal.file(), file);
+    for earlier in ["\"is_chained\"", "\"from_file\""] {
+        assert!(text.find("\"act\"") > text.find(earlier), "{text}");
+    }
 }
 
 #[test]
@@ -151,9 +140,7 @@ fn pushes_added_at_one_step_keep_their_order() {
 
 #[test]
 fn redo_does_not_panic_in_a_journal_edited_by_hand() {
-    let mut journal = journal("method-2");
-    journal.act(5, gravity(3.0), false).unwrap();
-    journal.act(3, gravity(4.0), false).unwrap();
+    let mut journal = after([(5, gravity(3.0)), (3, gravity(4.0))]);
     journal.undo();
     journal.log.clear();
     assert!(journal.redo().is_some());
@@ -161,9 +148,7 @@ fn redo_does_not_panic_in_a_journal_edited_by_hand() {
 
 #[test]
 fn undo_takes_all_nudges_of_a_chain_back() {
-    let mut journal = journal("method-2");
-    journal.act(5, push(0.5), false).unwrap();
-    journal.act(10, gravity(1.0), false).unwrap();
+    let mut journal = after([(5, push(0.5)), (10, gravity(1.0))]);
     journal.act(12, gravity(2.0), true).unwrap();
     journal.act(14, gravity(3.0), true).unwrap();
     let whole = journal.file();
@@ -176,15 +161,10 @@ fn undo_takes_all_nudges_of_a_chain_back() {
 
 #[test]
 fn edits_at_one_step_are_joined_unless_the_file_had_them_apart() {
-    let mut journal = journal("method-2");
-    journal.act(10, gravity(1.0), false).unwrap();
-    journal.act(10, gravity(2.0), false).unwrap();
-    journal
-        .act(10, Act::set("motion.scheme", "rk4".into()), false)
-        .unwrap();
-    assert_eq!(journal.file().edit.len(), 1);
-    assert_eq!(journal.file().edit[0].set.len(), 2);
+    let scheme = Act::set("motion.scheme", "rk4".into());
+    let journal = after([gravity(1.0), gravity(2.0), scheme].map(|act| (10, act)));
     let mut file = journal.file();
+    assert_eq!((file.edit.len(), file.edit[0].set.len()), (1, 2));
     file.edit.push(EditFile {
         step: 10,
         set: one("motion.gravity_m_per_s2", 3.0),
@@ -195,47 +175,43 @@ fn edits_at_one_step_are_joined_unless_the_file_had_them_apart() {
 #[test]
 fn a_new_push_keeps_the_numbers_of_pushes_that_edits_added() {
     let mut file = journal("method-2").file();
-    let added = "[edit]\npoint = 'top'\nforce_N = [0, 1, 0]\nfor_s = 2"
-        .parse::<Table>()
-        .unwrap();
+    let added = "push = { point = 'top', force_N = [0, 1, 0], for_s = 2 }";
+    let added = added.parse::<Table>().unwrap();
     file.edit.push(EditFile {
         step: 3,
-        set: one("push.0", added["edit"].clone()),
+        set: one("push.0", added["push"].clone()),
     });
-    let mut journal = Journal::of(file);
-    let scenario = journal.act(9, push(0.9), false).unwrap();
-    assert_eq!(scenario.edits.last().unwrap().pushes.len(), 2);
-    assert_eq!(scenario.edits[0].pushes.len(), 1);
-    assert_eq!(scenario.pushes.len(), 0);
+    let scenario = Journal::of(file).act(9, push(0.9), false).unwrap();
+    let pushes: Vec<_> = scenario
+        .edits
+        .iter()
+        .map(|edit| edit.pushes.len())
+        .collect();
+    assert_eq!((scenario.pushes.len(), pushes), (0, vec![1, 2]));
 }
 
 #[test]
 fn a_new_run_begins_with_the_settings_of_the_old_one() {
     let mut journal = journal("wobble-push");
-    journal
-        .act(40, Act::set("motion.time_step_s", 0.05.into()), false)
-        .unwrap();
-    journal.act(50, push(4.5), false).unwrap();
-    journal
-        .act(55, Act::set("push.1.force_N.0", 3.0.into()), false)
-        .unwrap();
-    journal.act(60, gravity(1.6), false).unwrap();
-    let (begun, scenario) = journal
-        .begun_with(60, &one("start.tilt_deg", 10.0))
-        .unwrap();
-    assert_eq!(
-        (scenario.motion.time_step_s, scenario.motion.gravity),
-        (0.05, 1.6)
-    );
+    for (step, act) in [
+        (40, Act::set("motion.time_step_s", 0.05.into())),
+        (50, push(4.5)),
+        (55, Act::set("push.1.force_N.0", 3.0.into())),
+        (60, gravity(1.6)),
+    ] {
+        journal.act(step, act, false).unwrap();
+    }
+    let begun_at = |step| {
+        journal
+            .begun_with(step, &one("start.tilt_deg", 10.0))
+            .unwrap()
+    };
+    let (begun, scenario) = begun_at(60);
+    let motion = &scenario.motion;
+    assert_eq!((motion.time_step_s, motion.gravity), (0.05, 1.6));
     assert_eq!((scenario.pushes.len(), scenario.edits.len()), (1, 0));
+    // The push keeps its times in seconds.
     let push = &begun.base().push[0];
-    assert_eq!(
-        (push.from_s, push.for_s),
-        (Some(0.0), Some(20.0)),
-        "the push keeps its times in seconds"
-    );
-    let (_, earlier) = journal
-        .begun_with(39, &one("start.tilt_deg", 10.0))
-        .unwrap();
-    assert_eq!(earlier.motion.time_step_s, 0.1);
+    assert_eq!((push.from_s, push.for_s), (Some(0.0), Some(20.0)));
+    assert_eq!(begun_at(39).1.motion.time_step_s, 0.1);
 }
