@@ -70,41 +70,40 @@ fn turns_deg(angle_deg: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn at(values: &[f64]) -> Vec<Point> {
+    fn between(name: &str, values: &[f64], model: &[f64]) -> Vec<Residual> {
         let point = |(row, &value)| Point {
             row,
             value,
             sigma: Some(2.0),
         };
-        values.iter().enumerate().map(point).collect()
-    }
-
-    fn azimuth(values: &[f64], model: &[f64]) -> Vec<f64> {
-        let azimuth = Quantity::find("azimuth_deg");
-        let all = residuals(azimuth, &at(values), model);
-        all.iter().map(Residual::value).collect()
+        let points: Vec<_> = values.iter().enumerate().map(point).collect();
+        residuals(Quantity::find(name), &points, model)
     }
 
     #[test]
-    fn directions_are_taken_at_the_nearest_turn() {
-        let model = [-10.0, 170.0, 350.0, 530.0];
-        assert_eq!(
-            azimuth(&[352.0, 171.0, 349.0, 172.0], &model),
-            [2.0, 1.0, -1.0, 2.0]
-        );
-    }
-
-    #[test]
-    fn counted_turns_stay_counted() {
-        // The model turns twice as fast: read as directions, the values would fit it.
-        let (measured, model) = ([360.0, 540.0, 720.0, 900.0], [0.0, 540.0, 1080.0, 1620.0]);
-        assert_eq!(azimuth(&measured, &model), [0.0, -360.0, -720.0, -1080.0]);
+    fn directions_are_taken_at_the_nearest_turn_and_counted_turns_stay_counted() {
+        for (measured, model, expected) in [
+            (
+                [352.0, 171.0, 349.0, 172.0],
+                [-10.0, 170.0, 350.0, 530.0],
+                [2.0, 1.0, -1.0, 2.0],
+            ),
+            // The model turns twice as fast: read as directions, the values would fit it.
+            (
+                [360.0, 540.0, 720.0, 900.0],
+                [0.0, 540.0, 1080.0, 1620.0],
+                [0.0, -360.0, -720.0, -1080.0],
+            ),
+        ] {
+            let all = between("azimuth_deg", &measured, &model);
+            let values: Vec<_> = all.iter().map(Residual::value).collect();
+            assert_eq!(values, expected);
+        }
     }
 
     #[test]
     fn a_tilt_is_taken_as_it_is() {
-        let tilt = Quantity::find("tilt_deg");
-        let all = residuals(tilt, &at(&[1.0, 5.0]), &[2.0, 361.0]);
+        let all = between("tilt_deg", &[1.0, 5.0], &[2.0, 361.0]);
         assert_eq!(all[1].value(), -356.0);
         assert_eq!(all[0].in_sigmas(), Some(-0.5));
     }

@@ -201,6 +201,14 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
+    fn steps(first: u64, count: u64, accumulates: bool) -> Push {
+        push(Window::Steps { first, count }, accumulates)
+    }
+
+    fn seconds(from_s: f64, for_s: f64) -> Push {
+        push(Window::Time { from_s, for_s }, false)
+    }
+
     fn push(window: Window, accumulates: bool) -> Push {
         Push {
             point: 0,
@@ -210,139 +218,81 @@ mod tests {
         }
     }
 
-    fn factors(push: Push, counting: Counting, clock: &Clock, steps: u64) -> Vec<f64> {
+    fn factors(push: Push, counting: Counting, dt: f64, steps: u64) -> Vec<f64> {
+        let clock = Clock::new(dt);
         (1..=steps)
-            .map(|step| factor(&push, counting, &Stretch::step(step, clock)))
+            .map(|step| factor(&push, counting, &Stretch::step(step, &clock)))
             .collect()
     }
 
-    #[test]
-    fn a_push_of_200_steps_acts_on_steps_1_to_200() {
-        let factors = factors(
-            push(
-                Window::Steps {
-                    first: 1,
-                    count: 200,
-                },
-                false,
-            ),
-            Counting::Steps,
-            &Clock::new(0.1),
-            202,
-        );
-        assert!(factors[..200].iter().all(|&factor| factor == 1.0));
-        assert_eq!(factors[200..], [0.0, 0.0]);
+    /// The times from `begin` on at which the forces of `push` change.
+    fn changes(push: Push, counting: Counting, begin: f64, end: f64) -> Vec<f64> {
+        let change = |&begin: &f64| {
+            let step = 1;
+            next_change(&[push], counting, &Stretch { step, begin, end })
+        };
+        std::iter::successors(change(&begin), change).collect()
     }
 
     #[test]
-    fn an_accumulating_push_grows_and_stays() {
-        let window = Window::Steps { first: 2, count: 3 };
-        let factors = factors(push(window, true), Counting::Steps, &Clock::new(0.1), 6);
-        assert_eq!(factors, [0.0, 1.0, 2.0, 3.0, 3.0, 3.0]);
+    fn a_push_acts_on_its_own_steps_and_an_accumulating_one_grows_and_stays() {
+        let plain = factors(steps(1, 200, false), Counting::Steps, 0.1, 202);
+        assert!(plain[..200].iter().all(|&factor| factor == 1.0));
+        assert_eq!(plain[200..], [0.0, 0.0]);
+        let grown = factors(steps(2, 3, true), Counting::Steps, 0.1, 6);
+        assert_eq!(grown, [0.0, 1.0, 2.0, 3.0, 3.0, 3.0]);
     }
 
     #[test]
     fn seconds_on_the_steps_give_the_same_factors_as_steps() {
         for dt in [0.1, 0.001, 1.0 / 3.0, 0.7e-3] {
-            let clock = Clock::new(dt);
-            let steps = push(Window::Steps { first: 4, count: 7 }, false);
-            let time = push(
-                Window::Time {
-                    from_s: 3.0 * dt,
-                    for_s: 7.0 * dt,
-                },
-                false,
-            );
-            let by_steps = factors(steps, Counting::Steps, &clock, 20);
-            assert_eq!(
-                by_steps,
-                factors(time, Counting::Steps, &clock, 20),
-                "dt {dt}"
-            );
-            let seconds = Counting::Seconds { written_for_s: dt };
-            assert_eq!(by_steps, factors(steps, seconds, &clock, 20), "dt {dt}");
+            let steps = steps(4, 7, false);
+            let by_steps = factors(steps, Counting::Steps, dt, 20);
+            let written = seconds(3.0 * dt, 7.0 * dt);
+            assert_eq!(by_steps, factors(written, Counting::Steps, dt, 20), "{dt}");
+            let counting = Counting::Seconds { written_for_s: dt };
+            assert_eq!(by_steps, factors(steps, counting, dt, 20), "{dt}");
         }
     }
 
     #[test]
     fn the_impulse_is_right_at_every_time_step() {
         for dt in [0.001, 0.01, 0.03, 0.1, 0.7] {
-            let time = push(
-                Window::Time {
-                    from_s: 0.02,
-                    for_s: 0.05,
-                },
-                false,
-            );
-            let impulse: f64 = factors(time, Counting::Steps, &Clock::new(dt), 200)
-                .iter()
-                .map(|f| f * dt)
-                .sum();
+            let factors = factors(seconds(0.02, 0.05), Counting::Steps, dt, 200);
+            let impulse: f64 = factors.iter().map(|f| f * dt).sum();
             assert!((impulse - 0.05).abs() < 1e-12, "dt {dt}: {impulse}");
         }
     }
 
     #[test]
     fn an_accumulating_push_has_the_same_impulse_at_every_time_step() {
-        let window = Window::Steps { first: 2, count: 3 };
         let seconds = Counting::Seconds { written_for_s: 0.1 };
         // 1 + 2 + 3 tenths and 3 for the rest of 2.4 s.
         let impulse = 0.1 * (1.0 + 2.0 + 3.0) + 3.0 * 2.0;
         for dt in [0.8, 0.3, 0.24, 0.16, 0.1, 0.075, 0.01] {
-            let steps = (2.4 / dt + 0.5) as u64;
-            let factors = factors(push(window, true), seconds, &Clock::new(dt), steps);
+            let factors = factors(steps(2, 3, true), seconds, dt, (2.4 / dt + 0.5) as u64);
             let sum = factors.iter().sum::<f64>() * dt;
             assert!((sum - impulse).abs() < 1e-12, "dt {dt}: {sum}");
-            if dt <= 0.1 && dt != 0.075 {
-                assert!(
-                    factors.iter().all(|factor| factor.fract() == 0.0),
-                    "dt {dt}"
-                );
-            }
+            let is_whole = factors.iter().all(|factor| factor.fract() == 0.0);
+            assert!(is_whole || dt > 0.1 || dt == 0.075, "dt {dt}");
         }
-    }
-
-    #[test]
-    fn an_accumulating_push_changes_where_its_own_steps_end() {
-        let pushes = [push(Window::Steps { first: 2, count: 3 }, true)];
-        let seconds = Counting::Seconds { written_for_s: 0.1 };
-        let mut stretch = Stretch {
-            step: 1,
-            begin: 0.0,
-            end: 1.0,
-        };
-        let mut changes = Vec::new();
-        while let Some(change) = next_change(&pushes, seconds, &stretch) {
-            changes.push(change);
-            stretch.begin = change;
-        }
-        assert_eq!(changes, [0.1, 0.2, 0.1 * 3.0, 0.4]);
-        assert_eq!(next_change(&pushes, Counting::Steps, &stretch), None);
     }
 
     #[test]
     fn the_next_change_is_inside_the_step_only() {
-        let pushes = [push(
-            Window::Time {
-                from_s: 0.02,
-                for_s: 0.05,
-            },
-            false,
-        )];
-        let change = |begin, end| {
-            next_change(
-                &pushes,
-                Counting::Steps,
-                &Stretch {
-                    step: 1,
-                    begin,
-                    end,
-                },
-            )
-        };
-        assert_eq!(change(0.0, 0.1), Some(0.02));
-        assert_eq!(change(0.02, 0.1), Some(0.02 + 0.05));
-        assert_eq!(change(0.07, 0.1), None);
-        assert_eq!(change(0.0, 0.02), None);
+        let grown = steps(2, 3, true);
+        let seconds_of = Counting::Seconds { written_for_s: 0.1 };
+        let times = [0.1, 0.2, 0.1 * 3.0, 0.4];
+        assert_eq!(changes(grown, seconds_of, 0.0, 1.0), times);
+        assert!(changes(grown, Counting::Steps, 0.4, 1.0).is_empty());
+        for (begin, end, expected) in [
+            (0.0, 0.1, &[0.02, 0.02 + 0.05][..]),
+            (0.02, 0.1, &[0.02 + 0.05]),
+            (0.07, 0.1, &[]),
+            (0.0, 0.02, &[]),
+        ] {
+            let found = changes(seconds(0.02, 0.05), Counting::Steps, begin, end);
+            assert_eq!(found, expected, "{begin} {end}");
+        }
     }
 }
