@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn a_hundredth_is_a_rung() {
-        let cases = [
+        for (size, step) in [
             (1000.0, 10.0),
             (999.0, 5.0),
             (1.0, 0.01),
@@ -100,8 +100,7 @@ mod tests {
             (0.1, 0.001),
             (7.0, 0.05),
             (3e-9, 2e-11),
-        ];
-        for (size, step) in cases {
+        ] {
             assert_eq!(hundredth(size), Some(step), "{size}");
         }
         assert_eq!(hundredth(0.0), None);

@@ -41,13 +41,9 @@ mod tests {
 
     #[test]
     fn what_users_can_mend_comes_with_what_to_do() {
-        let [denied, missing, full, late] = [
-            ErrorKind::PermissionDenied,
-            ErrorKind::NotFound,
-            ErrorKind::StorageFull,
-            ErrorKind::TimedOut,
-        ]
-        .map(Error::from);
+        use ErrorKind::{NotFound, PermissionDenied, StorageFull, TimedOut};
+        let kinds = [PermissionDenied, NotFound, StorageFull, TimedOut];
+        let [denied, missing, full, late] = kinds.map(Error::from);
         assert!(unread(&missing).contains("check the name"));
         assert!(unread(&denied).contains("permissions"));
         assert!(unread(&late).starts_with("cannot be read: "));

@@ -214,18 +214,39 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn what_is_rounded_to_zero_has_no_minus() {
-        for number in [-0.0, -1e-300, -4e-7] {
-            assert_eq!(fixed(number, 6), "0.000000");
-            assert_eq!(signed(number, 6), "+0.000000");
-            assert_eq!(decimal(number), "0");
+    fn numbers_are_short_and_what_is_rounded_to_zero_has_no_minus() {
+        let zeros = [-0.0, -1e-300, -4e-7].map(|n| [fixed(n, 6), signed(n, 6), decimal(n)]);
+        assert_eq!(zeros, [["0.000000", "+0.000000", "0"]; 3]);
+        for (text, expected) in [
+            (exponent(-0.0, 1), "0.0e0"),
+            (fixed(-6e-7, 6), "-0.000001"),
+            (fixed(-0.4, 0), "0"),
+            (fixed(-10.0, 0), "-10"),
+            (fixed(0.886033, 6), "0.886033"),
+            (fixed(1.5e300, 9), "1.500000e300"),
+            (signed(-6e-7, 6), "-0.000001"),
+            (signed(0.116, 4), "+0.1160"),
+            (signed_exponent(-2.4e-9, 1), "-2.4e-9"),
+            (shortest(0.1), "0.1"),
+            (shortest(20.0), "20"),
+            (shortest(1e-7), "1e-7"),
+            (shortest(1e308), "1e308"),
+            (shortest(f64::NAN), "n/a"),
+            (short(34.4321), "34.4"),
+            (short(5e-324), "4.9e-324"),
+            (times(106.7), "107"),
+            (significant(-0.0, 3), "0"),
+            (significant(421.0 * 0.1, 7), "42.1"),
+            (significant(0.0, 7), "0"),
+            (significant(1e-9 / 3.0, 7), "3.333333e-10"),
+            (decimal(0.1 * 3.0), "0.3"),
+            (decimal(230.0), "230"),
+            (decimal(1.13e6), "1.130e6"),
+        ] {
+            assert_eq!(text, expected);
         }
-        assert_eq!(exponent(-0.0, 1), "0.0e0");
-        assert_eq!(significant(-0.0, 3), "0");
-        assert_eq!(fixed(-6e-7, 6), "-0.000001");
-        assert_eq!(signed(-6e-7, 6), "-0.000001");
-        assert_eq!(fixed(-0.4, 0), "0");
-        assert_eq!(fixed(-10.0, 0), "-10");
+        assert_eq!(rounded(1234.0, 2), 1200.0);
+        assert!(rounded(f64::NAN, 2).is_nan());
     }
 
     #[test]
@@ -281,33 +302,5 @@ mod tests {
         fn the_shortest_reads_back(number in any::<f64>().prop_filter("finite", |n| n.is_finite())) {
             prop_assert_eq!(shortest(number).parse::<f64>().unwrap(), number);
         }
-    }
-
-    #[test]
-    fn ordinary_numbers_look_ordinary() {
-        assert_eq!(fixed(0.886033, 6), "0.886033");
-        assert_eq!(fixed(1.5e300, 9), "1.500000e300");
-        assert_eq!(signed(0.116, 4), "+0.1160");
-        assert_eq!(signed_exponent(-2.4e-9, 1), "-2.4e-9");
-        assert_eq!(shortest(0.1), "0.1");
-        assert_eq!(shortest(1e308), "1e308");
-        assert_eq!(short(34.4321), "34.4");
-        assert_eq!(short(5e-324), "4.9e-324");
-        assert_eq!(times(106.7), "107");
-        assert_eq!(shortest(f64::NAN), "n/a");
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        assert_eq!(shortest(20.0), "20");
-        assert_eq!(shortest(1e-7), "1e-7");
-        assert_eq!(significant(421.0 * 0.1, 7), "42.1");
-        assert_eq!(significant(0.0, 7), "0");
-        assert_eq!(significant(1e-9 / 3.0, 7), "3.333333e-10");
-        assert_eq!(rounded(1234.0, 2), 1200.0);
-        assert_eq!(decimal(0.1 * 3.0), "0.3");
-        assert_eq!(decimal(230.0), "230");
-        assert_eq!(decimal(1.13e6), "1.130e6");
-        assert!(rounded(f64::NAN, 2).is_nan());
     }
 }

@@ -26,10 +26,8 @@ mod tests {
 
     #[test]
     fn lines_break_between_words() {
-        assert_eq!(
-            wrapped("a fast  top\nsleeps", 6),
-            ["a fast", "top", "sleeps"]
-        );
+        let lines = wrapped("a fast  top\nsleeps", 6);
+        assert_eq!(lines, ["a fast", "top", "sleeps"]);
         assert_eq!(wrapped("", 6), [""]);
         assert_eq!(wrapped("half-turn", 6), ["half-t", "urn"]);
     }
