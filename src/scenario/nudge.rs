@@ -92,17 +92,9 @@ mod tests {
 
     #[test]
     fn a_hundredth_is_a_rung() {
-        for (size, step) in [
-            (1000.0, 10.0),
-            (999.0, 5.0),
-            (1.0, 0.01),
-            (0.8, 0.005),
-            (0.1, 0.001),
-            (7.0, 0.05),
-            (3e-9, 2e-11),
-        ] {
-            assert_eq!(hundredth(size), Some(step), "{size}");
-        }
+        let sizes = [1000.0, 999.0, 1.0, 0.8, 0.1, 7.0, 3e-9];
+        let rungs = [10.0, 5.0, 0.01, 0.005, 0.001, 0.05, 2e-11];
+        assert_eq!(sizes.map(hundredth), rungs.map(Some));
         assert_eq!(hundredth(0.0), None);
         assert_eq!(hundredth(f64::MIN_POSITIVE / 1e15), None);
         assert_eq!(number(0.0, 0.0, Nudge::Hundredth(0.5), -1), Some(-0.5));
@@ -111,10 +103,8 @@ mod tests {
 
     #[test]
     fn whole_numbers_move_by_one_at_least() {
-        assert_eq!(
-            (whole(3, 1), whole(3, -3), whole(2300, 1), whole(2300, -10)),
-            (4, 0, 2320, 2100)
-        );
+        let moved = [(3, 1), (3, -3), (2300, 1), (2300, -10)].map(|(n, by)| whole(n, by));
+        assert_eq!(moved, [4, 0, 2320, 2100]);
         assert_eq!(whole(i64::MAX, i32::MAX), i64::MAX);
         assert_eq!(whole(i64::MIN, i32::MIN), i64::MIN);
     }

@@ -58,18 +58,9 @@ mod tests {
 
     #[test]
     fn the_number_below_is_the_nearest_of_the_ladder() {
-        for (value, below) in [
-            (1.0, 1.0),
-            (0.01 * 100.0, 1.0),
-            (1.99, 1.0),
-            (4.9, 2.0),
-            (9.99, 5.0),
-            (0.3, 0.2),
-            (7e-11, 5e-11),
-            (0.0, 0.0),
-        ] {
-            assert_eq!(at_or_below(value), below, "{value}");
-        }
+        let values = [1.0, 0.01 * 100.0, 1.99, 4.9, 9.99, 0.3, 7e-11, 0.0];
+        let below = [1.0, 1.0, 1.0, 2.0, 5.0, 0.2, 5e-11, 0.0];
+        assert_eq!(values.map(at_or_below), below);
         assert_eq!([-12, -1, 0, 1, 17].map(rung), [1e-4, 0.5, 1.0, 2.0, 5e5]);
     }
 }
