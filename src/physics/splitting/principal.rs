@@ -89,9 +89,8 @@ mod tests {
         ] {
             let inertia = turn * Matrix3::from_diagonal(&moments.into()) * turn.transpose();
             let (found, axes) = principal_axes(&inertia);
-            assert!(
-                (axes * Matrix3::from_diagonal(&found) * axes.transpose() - inertia).norm() < 2e-15
-            );
+            let again = axes * Matrix3::from_diagonal(&found) * axes.transpose();
+            assert!((again - inertia).norm() < 2e-15);
             assert!((axes.transpose() * axes - Matrix3::identity()).norm() < 1e-15);
             assert!((axes.determinant() - 1.0).abs() < 1e-15);
         }

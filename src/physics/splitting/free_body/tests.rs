@@ -25,71 +25,55 @@ impl Random {
     }
 }
 
-/// Euler's equations and the quaternion's, by Taylor series of the order 50 in steps of a radian at the most: more steps of the same kind
-/// would add up their rounding.
-fn integrated(
-    inertia: &Matrix3<f64>,
-    start: &Matrix3<f64>,
-    momentum: &Vector3<f64>,
-    t: f64,
-) -> Matrix3<f64> {
-    let inverse = inertia.try_inverse().unwrap();
-    let steps = (t.abs() * inverse.norm() * momentum.norm()).ceil().max(1.0);
-    let mut m = start.tr_mul(momentum);
-    let mut q = Vector4::new(1.0, 0.0, 0.0, 0.0);
-    for _ in 0..steps as usize {
-        (m, q) = taylor_step(&inverse, m, q, t / steps);
+/// Inertia, start, angular momentum and time.
+#[derive(Debug)]
+struct Motion(Matrix3<f64>, Matrix3<f64>, Vector3<f64>, f64);
+
+impl Motion {
+    /// Euler's equations and the quaternion's, by Taylor series of the order 50 in steps of a radian at the most: more steps of the
+    /// same kind would add up their rounding. The terms are kept with their powers of the step, so that none is too large.
+    fn integrated(&self) -> Matrix3<f64> {
+        let Self(inertia, start, momentum, t) = self;
+        let inverse = inertia.try_inverse().unwrap();
+        let steps = (t.abs() * inverse.norm() * momentum.norm()).ceil().max(1.0);
+        let (mut m, mut q) = (start.tr_mul(momentum), Quaternion::identity().coords);
+        for _ in 0..steps as usize {
+            let (mut ms, mut ws, mut qs) = (vec![m], vec![inverse * m], vec![q]);
+            for n in 0..50 {
+                let over = t / steps / (n + 1) as f64;
+                let dm: Vector3<f64> = (0..=n).map(|k| ms[k].cross(&ws[n - k])).sum();
+                let product =
+                    |k| (Quaternion::from(qs[k]) * Quaternion::from_imag(ws[n - k])).coords;
+                let dq: Vector4<f64> = (0..=n).map(product).sum();
+                ms.push(dm * over);
+                ws.push(inverse * ms[n + 1]);
+                qs.push(dq * (0.5 * over));
+            }
+            (m, q) = (ms.iter().rev().sum(), qs.iter().rev().sum());
+            q /= q.norm();
+        }
+        let turn = UnitQuaternion::from_quaternion(Quaternion::from(q));
+        start * turn.to_rotation_matrix().matrix()
     }
-    let turn = UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3]));
-    start * turn.to_rotation_matrix().matrix()
-}
 
-/// The terms are kept with their powers of h, so that none is too large.
-fn taylor_step(
-    inverse: &Matrix3<f64>,
-    m: Vector3<f64>,
-    q: Vector4<f64>,
-    h: f64,
-) -> (Vector3<f64>, Vector4<f64>) {
-    let (mut ms, mut ws, mut qs) = (vec![m], vec![inverse * m], vec![q]);
-    for n in 0..50 {
-        let over = h / (n + 1) as f64;
-        let dm: Vector3<f64> = (0..=n).map(|k| ms[k].cross(&ws[n - k])).sum();
-        let dq: Vector4<f64> = (0..=n).map(|k| times_pure(&qs[k], &ws[n - k])).sum();
-        ms.push(dm * over);
-        ws.push(inverse * ms[n + 1]);
-        qs.push(dq * (0.5 * over));
+    fn advanced(&self) -> Matrix3<f64> {
+        let Self(inertia, start, momentum, t) = self;
+        let mut q = *start;
+        FreeBody::new(inertia).advance(&mut q, momentum, *t);
+        q
     }
-    let (m, q): (Vector3<f64>, Vector4<f64>) = (ms.iter().rev().sum(), qs.iter().rev().sum());
-    (m, q / q.norm())
-}
 
-/// The quaternion product q w, w without real part.
-fn times_pure(q: &Vector4<f64>, w: &Vector3<f64>) -> Vector4<f64> {
-    let v = Vector3::new(q[1], q[2], q[3]);
-    let vector = w * q[0] + v.cross(w);
-    Vector4::new(-v.dot(w), vector.x, vector.y, vector.z)
-}
+    fn is_near(&self, expected: &Matrix3<f64>, bound: f64) {
+        let error = (self.advanced() - expected).norm();
+        assert!(error < bound, "{error:e}, not below {bound:e}: {self:?}");
+    }
 
-fn advanced(
-    inertia: &Matrix3<f64>,
-    start: &Matrix3<f64>,
-    momentum: &Vector3<f64>,
-    t: f64,
-) -> Matrix3<f64> {
-    let mut q = *start;
-    FreeBody::new(inertia).advance(&mut q, momentum, t);
-    q
-}
-
-/// The distance from the integration, in units of what rounding the inertia and the time alone can make of it.
-fn error(inertia: &Matrix3<f64>, start: &Matrix3<f64>, momentum: &Vector3<f64>, t: f64) -> f64 {
-    let q = advanced(inertia, start, momentum, t);
-    assert!(
-        (q.tr_mul(&q) - Matrix3::identity()).norm() < 4e-15,
-        "not orthonormal: {q}"
-    );
-    (q - integrated(inertia, start, momentum, t)).norm()
+    fn is_as_integrated(&self, bound: f64) {
+        let q = self.advanced();
+        let off = (q.tr_mul(&q) - Matrix3::identity()).norm();
+        assert!(off < 4e-15, "not orthonormal: {q}");
+        self.is_near(&self.integrated(), bound);
+    }
 }
 
 fn diagonal(a: f64, b: f64, c: f64) -> Matrix3<f64> {
@@ -112,49 +96,39 @@ fn random_bodies_move_as_integrated() {
         let inertia = Matrix3::from_diagonal(&moments.into());
         let (start, momentum) = (random.rotation(), random.vector() * random.size());
         let t = 20.0 * random.number() * inertia.diagonal().min() / momentum.norm();
-        let error = error(&inertia, &start, &momentum, t);
-        assert!(error < 1e-13, "{error:e} {inertia} {momentum} {t}");
+        Motion(inertia, start, momentum, t).is_as_integrated(1e-13);
     }
 }
 
 #[test]
 fn bodies_with_tilted_principal_axes_move_as_integrated() {
     let mut random = Random(2);
-    for i in 0..300 {
+    for _ in 0..300 {
         let axes = random.rotation();
-        let moments = Vector3::new(random.size(), random.size(), random.size());
+        let moments = Vector3::from_fn(|_, _| random.size());
         let inertia = axes * Matrix3::from_diagonal(&moments) * axes.transpose();
         let inertia = (inertia + inertia.transpose()) * 0.5;
         let (start, momentum) = (random.rotation(), random.vector());
         let t = 5.0 * random.number() * moments.min() / momentum.norm();
         // The matrix is rounded in parts of its largest moment; the smallest turns the body fastest.
         let condition = moments.max() / moments.min();
-        let error = error(&inertia, &start, &momentum, t);
-        assert!(
-            error < 2e-14 + 5e-16 * condition,
-            "{i}: {error:e} {condition} {inertia} {momentum} {t}"
-        );
+        Motion(inertia, start, momentum, t).is_as_integrated(2e-14 + 5e-16 * condition);
     }
 }
 
 #[test]
 fn symmetric_bodies_about_any_axis() {
     let mut random = Random(3);
-    for (a, b, c) in [
-        (2.0, 2.0, 1.0),
-        (2.0, 1.0, 2.0),
-        (1.0, 2.0, 2.0),
-        (1.0, 1.0, 1.9),
-        (1.0, 1.9, 1.0),
-        (1.9, 1.0, 1.0),
-        (1.0, 1.0, 1.0),
-    ] {
-        let inertia = diagonal(a, b, c);
-        assert!(matches!(FreeBody::new(&inertia), FreeBody::Symmetric(_)));
-        for _ in 0..20 {
-            let (start, momentum) = (random.rotation(), random.vector());
-            let error = error(&inertia, &start, &momentum, 12.0 * random.number());
-            assert!(error < 2e-14, "{a} {b} {c}: {error:e}");
+    for (across, along) in [(2.0, 1.0), (1.0, 1.9), (1.0, 1.0)] {
+        for axis in [2, 1, 0] {
+            let mut moments = Vector3::from_element(across);
+            moments[axis] = along;
+            let inertia = Matrix3::from_diagonal(&moments);
+            assert!(matches!(FreeBody::new(&inertia), FreeBody::Symmetric(_)));
+            for _ in 0..20 {
+                let (start, momentum) = (random.rotation(), random.vector());
+                Motion(inertia, start, momentum, 12.0 * random.number()).is_as_integrated(2e-14);
+            }
         }
     }
 }
@@ -165,27 +139,22 @@ fn nearly_symmetric_bodies_go_over_continuously() {
     let mut random = Random(4);
     for exponent in 1..=16 {
         let delta = libm::pow(10.0, -f64::from(exponent));
-        for moments in [
-            [2.0, 2.0 + delta, 1.0],
-            [1.0, 1.0 + delta, 1.9],
-            [1.0 + delta, 1.9, 1.0],
-            [1.0, 1.0 + delta, 1.0 - delta],
+        // Below the limit the moments are taken as equal, which is a change of 1e-14 of the rates.
+        let is_taken_as_equal = f64::from(u8::from(delta <= ROUNDING));
+        for inertia in [
+            diagonal(2.0, 2.0 + delta, 1.0),
+            diagonal(1.0, 1.0 + delta, 1.9),
+            diagonal(1.0 + delta, 1.9, 1.0),
+            diagonal(1.0, 1.0 + delta, 1.0 - delta),
         ] {
-            let inertia = Matrix3::from_diagonal(&moments.into());
             for _ in 0..10 {
-                let (start, momentum) = (random.rotation(), random.vector());
-                let t = 12.0 * random.number();
-                let error = error(&inertia, &start, &momentum, t);
-                // Below the limit the moments are taken as equal, which is a change of 1e-14 of the rates.
-                let taken_as_equal = if delta <= ROUNDING {
-                    delta * 12.0 * 1.8
-                } else {
-                    0.0
-                };
-                assert!(
-                    error < 2e-14 + taken_as_equal,
-                    "{delta:e} {moments:?}: {error:e}"
+                let motion = Motion(
+                    inertia,
+                    random.rotation(),
+                    random.vector(),
+                    12.0 * random.number(),
                 );
+                motion.is_as_integrated(2e-14 + is_taken_as_equal * delta * 12.0 * 1.8);
             }
         }
     }
@@ -195,20 +164,14 @@ fn nearly_symmetric_bodies_go_over_continuously() {
 #[test]
 fn the_separatrix_and_its_neighbourhood() {
     let start = Random(5).rotation();
-    let body = diagonal(1.0, 2.0, 3.0);
-    // m1^2 (1/I1 - 1/I2) = m3^2 (1/I2 - 1/I3)
-    let on = Vector3::new(1.0, 0.7, 3.0_f64.sqrt());
     for off in [0.0, 1e-16, -1e-15, 1e-12, -1e-9, 1e-6, -1e-4, 1e-2] {
-        for t in [0.1, -1.0, 4.0, 8.0] {
-            let m = Vector3::new(on.x + off, on.y, on.z);
-            let momentum = start * m;
+        for t in [0.1, -1.0, 4.0, 8.0_f64] {
+            // m1^2 (1/I1 - 1/I2) = m3^2 (1/I2 - 1/I3)
+            let m = Vector3::new(1.0 + off, 0.7, 3.0_f64.sqrt());
             // Neighbours part by up to e^(lambda t).
-            let growth = libm::exp(m.norm() * (0.5 * (0.5 - 1.0 / 3.0_f64)).sqrt() * f64::abs(t));
-            let error = error(&body, &start, &momentum, t);
-            assert!(
-                error < 4e-15 * (growth + 20.0 * f64::abs(t)),
-                "{off:e} {t}: {error:e}, growth {growth}"
-            );
+            let growth = libm::exp(m.norm() * (0.5 * (0.5 - 1.0 / 3.0_f64)).sqrt() * t.abs());
+            Motion(diagonal(1.0, 2.0, 3.0), start, start * m, t)
+                .is_as_integrated(4e-15 * (growth + 20.0 * t.abs()));
         }
     }
 }
@@ -216,33 +179,21 @@ fn the_separatrix_and_its_neighbourhood() {
 #[test]
 fn rotation_about_a_principal_axis_is_uniform() {
     let start = Random(6).rotation();
-    let moments = [1.0, 2.0, 3.0];
-    for (i, moment) in moments.into_iter().enumerate() {
+    for (i, moment) in [1.0, 2.0, 3.0].into_iter().enumerate() {
         for offset in [0.0, 1e-300, 1e-160, 1e-20, 1e-9] {
-            let mut m = Vector3::from_element(offset);
-            m[i] = -1.5;
-            for t in [0.3, -2.0, 9.0, 1e3] {
-                if i == 1 && t > 10.0 {
-                    continue; // unstable: the rounding of L has grown
+            for t in [0.3, -2.0, 9.0, 1e3_f64] {
+                let is_unstable = i == 1;
+                if is_unstable && t > 10.0 {
+                    continue; // the rounding of L has grown
                 }
+                let mut m = Vector3::from_element(offset);
+                m[i] = -1.5;
                 let axis: Vector3<f64> = start.column(i).into();
                 let expected = Turn::new(axis * (-1.5 / moment * t)).of_columns(&start);
-                let found = advanced(
-                    &Matrix3::from_diagonal(&moments.into()),
-                    &start,
-                    &(start * m),
-                    t,
-                );
-                let growth = if i == 1 {
-                    libm::exp(0.5 * f64::abs(t))
-                } else {
-                    1.0
-                };
-                let error = (found - expected).norm();
-                assert!(
-                    error < 4e-15 * (growth + f64::abs(t)) + 10.0 * offset * growth,
-                    "{i} {offset:e} {t}: {error:e}"
-                );
+                let rate = if is_unstable { 0.5 } else { 0.0 };
+                let growth = libm::exp(rate * t.abs());
+                let bound = 4e-15 * (growth + t.abs()) + 10.0 * offset * growth;
+                Motion(diagonal(1.0, 2.0, 3.0), start, start * m, t).is_near(&expected, bound);
             }
         }
     }
@@ -251,21 +202,16 @@ fn rotation_about_a_principal_axis_is_uniform() {
 #[test]
 fn without_momentum_or_time_nothing_moves() {
     let start = Random(7).rotation();
-    for inertia in [
-        diagonal(1.0, 2.0, 3.0),
-        diagonal(1.0, 1.0, 2.0),
-        diagonal(1.0, 1.0, 1.0),
-    ] {
-        for momentum in [
-            Vector3::zeros(),
-            Vector3::from_element(1e-200),
-            Vector3::from_element(f64::MIN_POSITIVE),
+    for moments in [[1.0, 2.0, 3.0], [1.0, 1.0, 2.0], [1.0, 1.0, 1.0]] {
+        for (momentum, t) in [
+            ([0.0; 3], 10.0),
+            ([1e-200; 3], 10.0),
+            ([f64::MIN_POSITIVE; 3], 10.0),
+            ([1.0, 2.0, 3.0], 0.0),
         ] {
-            assert!((advanced(&inertia, &start, &momentum, 10.0) - start).norm() < 2e-15);
+            let inertia = Matrix3::from_diagonal(&moments.into());
+            Motion(inertia, start, momentum.into(), t).is_near(&start, 2e-15);
         }
-        assert!(
-            (advanced(&inertia, &start, &Vector3::new(1.0, 2.0, 3.0), 0.0) - start).norm() < 2e-15
-        );
     }
 }
 
@@ -284,20 +230,14 @@ fn a_long_time_is_right_to_the_rounding_of_its_phase() {
         -0.03655680643254755,
         0.14982542018036293,
     );
-    let end = Matrix3::new(
-        0.4684376567870589,
-        0.8165008404719185,
-        -0.33747968711094295,
-        -0.5791458398236233,
-        0.5722488692992537,
-        0.5806215013248438,
-        0.6672003131885051,
-        -0.0765350187455135,
-        0.74093598440539,
-    );
+    let end = Matrix3::from([
+        [0.4684376567870589, 0.8165008404719185, -0.33747968711094295],
+        [-0.5791458398236233, 0.5722488692992537, 0.5806215013248438],
+        [0.6672003131885051, -0.0765350187455135, 0.74093598440539],
+    ])
+    .transpose();
     let momentum = Vector3::new(-0.8183922430644153, 0.701990341551568, 0.0883562620096785);
-    let error = (advanced(&inertia, &start, &momentum, 2048.0) - end).norm();
-    assert!(error < 3e-13, "{error:e}");
+    Motion(inertia, start, momentum, 2048.0).is_near(&end, 3e-13);
 }
 
 /// The count of the periods: at once or in parts.
@@ -305,11 +245,8 @@ fn a_long_time_is_right_to_the_rounding_of_its_phase() {
 fn long_times_are_many_short_ones() {
     let mut random = Random(9);
     for i in 0..100 {
-        let inertia = diagonal(
-            1.0 + 0.9 * random.number(),
-            3.0 + random.number(),
-            6.0 + 1.5 * random.number(),
-        );
+        let [a, b, c] = [0; 3].map(|_| random.number());
+        let inertia = diagonal(1.0 + 0.9 * a, 3.0 + b, 6.0 + 1.5 * c);
         let (start, momentum) = (random.rotation(), random.vector());
         let body = FreeBody::new(&inertia);
         let (mut at_once, mut in_parts) = (start, start);
@@ -336,7 +273,7 @@ fn nonsense_does_not_panic() {
             (body, Vector3::from_element(value), 1.0),
             (body, momentum, value),
         ] {
-            let _ = advanced(&inertia, &Matrix3::identity(), &momentum, t);
+            let _ = Motion(inertia, Matrix3::identity(), momentum, t).advanced();
         }
     }
 }
