@@ -105,19 +105,12 @@ mod tests {
 
     /// The contract's words, taken literally.
     fn by_arc_tangents(axles: &[Vector3<f64>]) -> f64 {
-        let mut sum = axles[0].y.atan2(axles[0].x).to_degrees();
-        for pair in axles.windows(2) {
-            let change = (pair[1].y.atan2(pair[1].x) - pair[0].y.atan2(pair[0].x)).to_degrees();
-            let wrapped = if change > 180.0 {
-                change - 360.0
-            } else if change <= -180.0 {
-                change + 360.0
-            } else {
-                change
-            };
-            sum += wrapped;
-        }
-        sum
+        let azimuth = |axle: &Vector3<f64>| axle.y.atan2(axle.x).to_degrees();
+        let changes = axles
+            .windows(2)
+            .map(|pair| azimuth(&pair[1]) - azimuth(&pair[0]));
+        let wrapped = changes.map(|change| change - 360.0 * ((change - 180.0) / 360.0).ceil());
+        azimuth(&axles[0]) + wrapped.sum::<f64>()
     }
 
     proptest! {

@@ -101,20 +101,13 @@ mod tests {
     use super::*;
     use crate::{PointForce, PointMass};
 
-    fn square(sides: [f64; 2]) -> Vec<PointMass> {
-        let [a, b] = sides;
-        [
-            [a, 0.0, 1.0],
-            [-a, 0.0, 1.0],
-            [0.0, b, 1.0],
-            [0.0, -b, 1.0],
-            [0.0, 0.0, 2.0],
-            [1.0, 0.0, 0.0],
-        ]
-        .iter()
-        .enumerate()
-        .map(|(i, &at)| PointMass::new(at.into(), if i < 4 { 0.5 } else { 0.0 }))
-        .collect()
+    fn square([a, b]: [f64; 2]) -> Vec<PointMass> {
+        let mut points = vec![PointMass::new(Vector3::new(0.0, 0.0, 2.0), 0.0); 6];
+        points[5].at = Vector3::x();
+        for (i, x, y) in [(0, a, 0.0), (1, -a, 0.0), (2, 0.0, b), (3, 0.0, -b)] {
+            points[i] = PointMass::new(Vector3::new(x, y, 1.0), 0.5);
+        }
+        points
     }
 
     #[test]
@@ -122,10 +115,8 @@ mod tests {
         let top = SymmetricTop::of(&Body::new(square([0.8, 0.8])).unwrap()).unwrap();
         assert!((top.along - 2.0 * 0.64).abs() < 1e-15 && (top.across - 2.64).abs() < 1e-15);
         assert_eq!(top.first_moment, 2.0);
-        assert_eq!(
-            SymmetricTop::of(&Body::new(square([0.8, 0.81])).unwrap()),
-            None
-        );
+        let oblong = Body::new(square([0.8, 0.81])).unwrap();
+        assert_eq!(SymmetricTop::of(&oblong), None);
     }
 
     #[test]
