@@ -277,15 +277,4 @@ mod tests {
         assert!(fault(&"-".repeat(500)).1.contains("deep"));
         assert!(fault(&"1".repeat(2000)).1.contains("1000"));
     }
-
-    #[test]
-    fn a_wrong_name_is_told_with_its_column() {
-        let expression = Expression::condition("z_m > 1 and tilt_dg > 3").unwrap();
-        let find = |name: &str| match name {
-            "z_m" => Ok(()),
-            other => Err(format!("what is {other}?")),
-        };
-        let fault = expression.bind(find).unwrap_err();
-        assert_eq!(fault.to_string(), "column 13: what is tilt_dg?");
-    }
 }
