@@ -99,16 +99,10 @@ fn ranges(drawn: &[Drawn], size: &Axis) -> [(f64, f64); 3] {
 
 /// Left, upper, right and lower end of what is drawn, pt.
 fn extent(scene: &Scene) -> (f64, f64, f64, f64) {
-    let points = scene.items.iter().flat_map(|item| item.path.points());
-    let none = (
-        f64::INFINITY,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        f64::NEG_INFINITY,
-    );
-    points.fold(none, |(left, top, right, bottom), p| {
-        (left.min(p.x), top.min(p.y), right.max(p.x), bottom.max(p.y))
-    })
+    let points = || scene.items.iter().flat_map(|item| item.path.points());
+    let ends = |of: fn(Point) -> f64| super::extent(points().map(of)).unwrap_or_default();
+    let ((left, right), (top, bottom)) = (ends(|p| p.x), ends(|p| p.y));
+    (left, top, right, bottom)
 }
 
 impl Space {

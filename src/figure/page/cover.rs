@@ -3,6 +3,7 @@
 //! The ink is put into a grid of square cells, the boundary of the inked cells is followed, and its steps are made straight
 //! again. The grid is finer than the dots of a printer, and what it cannot tell apart is one area.
 
+use super::ink::at;
 use super::line::simplified;
 use super::scene::{Path, Point, Segment};
 use crate::figure::extent;
@@ -82,10 +83,7 @@ impl Grid {
         let (columns, rows) = (count(left, right), count(top, bottom));
         let fits = columns * rows <= MOST_CELLS;
         fits.then(|| Self {
-            origin: Point {
-                x: left - margin,
-                y: top - margin,
-            },
+            origin: at(left - margin, top - margin),
             cell_pt,
             columns: columns as usize,
             is_inked: vec![false; columns as usize * rows as usize],
@@ -169,12 +167,10 @@ impl Grid {
                 continue;
             }
             let corners = simplified(&outline, SMOOTH);
-            let place = |p: &Point| Point {
-                x: self.origin.x + p.x * self.cell_pt,
-                y: self.origin.y + p.y * self.cell_pt,
-            };
-            path.0
-                .extend(Path::polyline(corners[..corners.len() - 1].iter().map(place)).0);
+            let cells = |count: f64| count * self.cell_pt;
+            let place = |p: &Point| at(self.origin.x + cells(p.x), self.origin.y + cells(p.y));
+            let corners = corners[..corners.len() - 1].iter().map(place);
+            path.0.extend(Path::polyline(corners).0);
             path.0.push(Segment::Close);
         }
         path
@@ -226,8 +222,8 @@ mod tests {
 
     /// How often the outlines wind about a place; whether to the right or to the left does not matter.
     fn winding(area: &Path, x: f64, y: f64) -> i32 {
-        let (mut count, mut at, mut start) =
-            (0, Point { x: 0.0, y: 0.0 }, Point { x: 0.0, y: 0.0 });
+        let (mut count, mut start) = (0, at(0.0, 0.0));
+        let mut at = start;
         for segment in &area.0 {
             let to = segment.end().unwrap_or(start);
             if let Segment::Move(_) = segment {
@@ -268,7 +264,7 @@ mod tests {
             tries in prop::collection::vec((-2.0_f64..14.0, -2.0_f64..14.0), 300),
             width in 0.4_f64..3.0,
         ) {
-            let line: Vec<Point> = places.into_iter().map(|(x, y)| Point { x, y }).collect();
+            let line: Vec<Point> = places.into_iter().map(|(x, y)| at(x, y)).collect();
             let lines = [line[..line.len() / 2].to_vec(), line[line.len() / 2..].to_vec()];
             let area = area(&lines, width);
             for (x, y) in tries {
@@ -283,13 +279,9 @@ mod tests {
 
     #[test]
     fn what_has_no_place_covers_nothing() {
-        let far = |x: f64| vec![Point { x: 0.0, y: 0.0 }, Point { x, y: 1.0 }];
-        for line in [
-            vec![],
-            far(f64::NAN)[1..].to_vec(),
-            far(f64::INFINITY),
-            far(1e12),
-        ] {
+        let far = |x: f64| vec![at(0.0, 0.0), at(x, 1.0)];
+        let nowhere = far(f64::NAN)[1..].to_vec();
+        for line in [vec![], nowhere, far(f64::INFINITY), far(1e12)] {
             assert_eq!(area(&[line], 0.7), Path::default());
         }
         assert!(!area(&[far(f64::NAN), far(3.0)], 0.7).0.is_empty());

@@ -2,6 +2,7 @@
 
 use std::path::Path as FilePath;
 
+use super::ink::at;
 use super::{Item, Paint, Point, Scene};
 use super::{pdf, png, svg};
 use crate::text::printable::Shown;
@@ -128,10 +129,7 @@ fn rounded_item(item: &Item) -> Option<Item> {
 }
 
 fn hundredths_of(point: Point) -> Point {
-    Point {
-        x: hundredths(point.x),
-        y: hundredths(point.y),
-    }
+    at(hundredths(point.x), hundredths(point.y))
 }
 
 pub fn hundredths(pt: f64) -> f64 {
@@ -152,10 +150,9 @@ mod tests {
         }
     }
 
-    fn line(to: Point, pen: Pen) -> Item {
-        let path = Path::polyline([Point { x: 0.0, y: 0.0 }, to]);
+    fn line(x: f64, y: f64, pen: Pen) -> Item {
         Item {
-            path,
+            path: Path::polyline([at(0.0, 0.0), at(x, y)]),
             paint: Paint::Stroke(pen),
             clip: None,
             words: None,
@@ -189,15 +186,13 @@ mod tests {
     #[test]
     fn places_that_no_file_can_say_are_refused() {
         for bad in [f64::NAN, f64::INFINITY, -1e300, 20_001.0] {
-            let scene = page(vec![
-                line(Point { x: 1.0, y: 1.0 }, pen(1.0, &[])),
-                line(Point { x: bad, y: 1.0 }, pen(1.0, &[])),
-            ]);
+            let lines = [1.0, bad].map(|x| line(x, 1.0, pen(1.0, &[])));
+            let scene = page(lines.to_vec());
             for format in [Format::Svg, Format::Pdf, Format::Png] {
                 assert_eq!(write(&scene, format), Err(Unwritable::Place(1)));
             }
             for pen in [pen(bad, &[]), pen(1.0, &[1.0, bad])] {
-                let scene = page(vec![line(Point { x: 1.0, y: 1.0 }, pen)]);
+                let scene = page(vec![line(1.0, 1.0, pen)]);
                 assert_eq!(rounded(&scene), Err(Unwritable::Place(0)));
             }
         }
@@ -219,27 +214,12 @@ mod tests {
 
     #[test]
     fn a_page_is_rounded_to_hundredths() {
-        let scene = page(vec![line(
-            Point {
-                x: 1.23456,
-                y: -0.001,
-            },
-            pen(0.555, &[2.0001, 0.999]),
-        )]);
+        let scene = page(vec![line(1.23456, -0.001, pen(0.555, &[2.0001, 0.999]))]);
         let round = rounded(&scene).unwrap();
-        assert_eq!(
-            round.items[0],
-            line(Point { x: 1.23, y: 0.0 }, pen(0.56, &[2.0, 1.0]))
-        );
+        assert_eq!(round.items[0], line(1.23, 0.0, pen(0.56, &[2.0, 1.0])));
         assert!(round.items[0].path.points().all(|p| p.y.is_sign_positive()));
         assert_eq!(rounded(&round), Ok(round.clone()));
-        let dots = rounded(&page(vec![line(
-            Point { x: 1.0, y: 1.0 },
-            pen(1.0, &[0.001, 0.001]),
-        )]));
-        assert_eq!(
-            dots.unwrap().items[0],
-            line(Point { x: 1.0, y: 1.0 }, pen(1.0, &[]))
-        );
+        let dots = rounded(&page(vec![line(1.0, 1.0, pen(1.0, &[0.001, 0.001]))]));
+        assert_eq!(dots.unwrap().items[0], line(1.0, 1.0, pen(1.0, &[])));
     }
 }

@@ -6,6 +6,7 @@ use tiny_skia::{
     StrokeDash, Transform,
 };
 
+use super::ink::at;
 use super::svg::MITER_LIMIT;
 use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment, Unwritable};
 use crate::text::printable::printable;
@@ -116,19 +117,10 @@ impl Easel {
         let Some([from, to]) = wanted else {
             return;
         };
-        if self
-            .clip
-            .as_ref()
-            .is_some_and(|(corners, _)| wanted == Some(*corners))
-        {
+        if self.clip.as_ref().map(|(corners, _)| *corners) == wanted {
             return;
         }
-        let rectangle = [
-            from,
-            Point { x: to.x, ..from },
-            to,
-            Point { y: to.y, ..from },
-        ];
+        let rectangle = [from, at(to.x, from.y), to, at(from.x, to.y)];
         let mask = Mask::new(self.sheet.width(), self.sheet.height());
         self.clip = mask.map(|mut mask| {
             if let Some(path) = outline(&Path::polygon(rectangle)) {

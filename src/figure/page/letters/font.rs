@@ -53,13 +53,9 @@ impl Font {
     /// Left, lowest, right and highest place of any letter, thousandths of the size.
     pub fn bounds(&self) -> [i16; 4] {
         let all = self.glyphs.iter().map(|glyph| glyph.bounds);
-        all.fold([0; 4], |a, b| {
-            [
-                a[0].min(b[0]),
-                a[1].min(b[1]),
-                a[2].max(b[2]),
-                a[3].max(b[3]),
-            ]
+        all.fold([0; 4], |[left, low, right, high], b| {
+            let (left, low) = (left.min(b[0]), low.min(b[1]));
+            [left, low, right.max(b[2]), high.max(b[3])]
         })
     }
 
@@ -133,22 +129,17 @@ impl Glyph {
         let mut contours: Vec<Vec<(i16, i16, bool)>> = Vec::new();
         let point = |p: Point, is_on: bool| (p.x as i16, -p.y as i16, is_on);
         for segment in &letter.outline.0 {
-            match *segment {
-                Segment::Move(to) => contours.push(vec![point(to, true)]),
-                Segment::Line(to) => {
-                    let contour = contours.last_mut().into_iter();
-                    contour.for_each(|contour| contour.push(point(to, true)));
-                }
-                Segment::Quadratic(control, to) => {
-                    let points = [point(control, false), point(to, true)];
-                    contours
-                        .last_mut()
-                        .into_iter()
-                        .for_each(|it| it.extend(points));
-                }
-                // The table has none, and a contour is closed by itself.
-                Segment::Cubic(..) | Segment::Close => {}
+            if let Segment::Move(_) = segment {
+                contours.push(Vec::new());
             }
+            let contour = contours.last_mut().into_iter();
+            let points = match *segment {
+                Segment::Move(to) | Segment::Line(to) => vec![point(to, true)],
+                Segment::Quadratic(control, to) => vec![point(control, false), point(to, true)],
+                // The table has none, and a contour is closed by itself.
+                Segment::Cubic(..) | Segment::Close => vec![],
+            };
+            contour.for_each(|contour| contour.extend(&points));
         }
         for contour in &mut contours {
             if contour.len() > 1 && contour.first() == contour.last() {
@@ -228,6 +219,7 @@ fn sum(table: &[u8]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::extent;
     use crate::figure::page::letters::table::REGULAR;
 
     /// The tables of a font file by their names.
@@ -274,18 +266,13 @@ mod tests {
         let drawn = REGULAR.letter('g').unwrap();
         let glyph = Glyph::of(&drawn);
         let [left, low, right, high] = glyph.bounds;
-        let (mut x, mut y) = (
-            (f64::INFINITY, f64::NEG_INFINITY),
-            (f64::INFINITY, f64::NEG_INFINITY),
+        let points = || drawn.outline.points();
+        let (x, y) = (
+            extent(points().map(|p| p.x)),
+            extent(points().map(|p| -p.y)),
         );
-        for point in drawn.outline.points() {
-            x = (x.0.min(point.x), x.1.max(point.x));
-            y = (y.0.min(-point.y), y.1.max(-point.y));
-        }
-        assert_eq!(
-            (x, y),
-            ((left.into(), right.into()), (low.into(), high.into()))
-        );
+        assert_eq!(x, Some((left.into(), right.into())));
+        assert_eq!(y, Some((low.into(), high.into())));
         assert_eq!(f64::from(glyph.advance), drawn.advance);
         assert!(glyph.contours.iter().all(|contour| contour[0].2));
     }

@@ -2,6 +2,7 @@
 
 use super::table::{self, ITALIC, REGULAR, UNITS};
 use super::{Label, Placed};
+use crate::figure::page::ink::at;
 use crate::figure::{Path, Point};
 
 /// Size of a sub- or superscript, as a share of its text's size.
@@ -34,6 +35,7 @@ struct Before {
     overhang_pt: f64,
 }
 
+#[derive(Default)]
 pub struct Setter {
     label: Label,
     /// Where the next letter begins, pt.
@@ -51,14 +53,8 @@ pub struct Setter {
 impl Setter {
     pub fn new(size_pt: f64) -> Self {
         Self {
-            label: Label::default(),
-            x_pt: 0.0,
             size_pt,
-            baseline_pt: 0.0,
-            is_italic: false,
-            scripts: vec![],
-            before: None,
-            ended: None,
+            ..Self::default()
         }
     }
 
@@ -82,14 +78,9 @@ impl Setter {
         let drawn = drawn.unwrap_or_else(missing);
         let scale = self.size_pt / UNITS;
         self.x_pt += self.gap(style, letter);
-        let origin = Point {
-            x: self.x_pt,
-            y: self.baseline_pt,
-        };
-        let outline = drawn.outline.mapped(|p| Point {
-            x: origin.x + p.x * scale,
-            y: origin.y + p.y * scale,
-        });
+        let origin = at(self.x_pt, self.baseline_pt);
+        let placed = |p: Point| at(origin.x + p.x * scale, origin.y + p.y * scale);
+        let outline = drawn.outline.mapped(placed);
         self.x_pt += drawn.advance * scale;
         let mut right_pt = self.x_pt;
         for point in outline.points() {
@@ -167,17 +158,15 @@ impl Setter {
 
 /// An upright box, drawn as a line around nothing: the inner contour runs against the outer one.
 pub fn missing() -> table::Letter {
-    let contour = |corners: [(f64, f64); 4]| Path::polygon(corners.map(|(x, y)| Point { x, y }));
-    let mut outline = contour([(70.0, 0.0), (530.0, 0.0), (530.0, -656.0), (70.0, -656.0)]);
-    outline.0.extend(
-        contour([
-            (110.0, -40.0),
-            (110.0, -616.0),
-            (490.0, -616.0),
-            (490.0, -40.0),
-        ])
-        .0,
-    );
+    let contour = |corners: [[f64; 2]; 4]| Path::polygon(corners.map(|[x, y]| at(x, y)));
+    let mut outline = contour([[70.0, 0.0], [530.0, 0.0], [530.0, -656.0], [70.0, -656.0]]);
+    let inner = [
+        [110.0, -40.0],
+        [110.0, -616.0],
+        [490.0, -616.0],
+        [490.0, -40.0],
+    ];
+    outline.0.extend(contour(inner).0);
     table::Letter {
         advance: BOX,
         outline,

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use crate::figure::page::ink::at;
 use crate::figure::{Path, Point, Segment};
 
 /// How large the tables draw a letter: lengths are thousandths of its size.
@@ -102,11 +103,8 @@ impl Style {
             let code = u32::from_str_radix(fields.next()?, 16).ok()?;
             let right: f64 = fields.next()?.parse().ok()?;
             let up: f64 = fields.next()?.parse().ok()?;
-            let part = self.numbered(code)?.outline.mapped(|p| Point {
-                x: p.x + right,
-                y: p.y - up,
-            });
-            whole.0.extend(part.0);
+            let part = self.numbered(code)?.outline;
+            whole.0.extend(part.mapped(|p| at(p.x + right, p.y - up)).0);
         }
         Some(whole)
     }
@@ -135,7 +133,7 @@ fn kerned(line: &str) -> Option<((u32, u32), f64)> {
 fn read_outline(data: &str) -> Option<Path> {
     let mut numbers = Numbers(data);
     let mut path = Path::default();
-    let (mut at, mut start) = (Point { x: 0.0, y: 0.0 }, Point { x: 0.0, y: 0.0 });
+    let (mut here, mut start) = (at(0.0, 0.0), at(0.0, 0.0));
     let mut command = ' ';
     while let Some(next) = numbers.0.chars().next() {
         if next.is_ascii_alphabetic() {
@@ -143,21 +141,15 @@ fn read_outline(data: &str) -> Option<Path> {
             numbers.0 = &numbers.0[1..];
         }
         let segment = match command {
-            'm' => Segment::Move(numbers.point(at)?),
-            'l' => Segment::Line(numbers.point(at)?),
-            'h' => Segment::Line(Point {
-                x: at.x + numbers.next()?,
-                ..at
-            }),
-            'v' => Segment::Line(Point {
-                y: at.y - numbers.next()?,
-                ..at
-            }),
-            'q' => Segment::Quadratic(numbers.point(at)?, numbers.point(at)?),
+            'm' => Segment::Move(numbers.point(here)?),
+            'l' => Segment::Line(numbers.point(here)?),
+            'h' => Segment::Line(at(here.x + numbers.next()?, here.y)),
+            'v' => Segment::Line(at(here.x, here.y - numbers.next()?)),
+            'q' => Segment::Quadratic(numbers.point(here)?, numbers.point(here)?),
             'z' => Segment::Close,
             _ => return None,
         };
-        at = segment.end().unwrap_or(start);
+        here = segment.end().unwrap_or(start);
         if let Segment::Move(to) = segment {
             start = to;
         }
@@ -186,13 +178,10 @@ impl Numbers<'_> {
         number.parse().ok()
     }
 
-    /// A place that is given from `at`, y up.
-    fn point(&mut self, at: Point) -> Option<Point> {
+    /// A place that is given from `here`, y up.
+    fn point(&mut self, here: Point) -> Option<Point> {
         let (right, up) = (self.next()?, self.next()?);
-        Some(Point {
-            x: at.x + right,
-            y: at.y - up,
-        })
+        Some(at(here.x + right, here.y - up))
     }
 }
 
@@ -216,17 +205,16 @@ mod tests {
 
     #[test]
     fn an_outline_is_read_as_svg_does() {
-        let point = |x: f64, y: f64| Point { x, y };
         let path = read_outline("m1 2l3-4 1 1h-5v6q1 1-2 0zm9 9").unwrap();
         let expected = vec![
-            Segment::Move(point(1.0, -2.0)),
-            Segment::Line(point(4.0, 2.0)),
-            Segment::Line(point(5.0, 1.0)),
-            Segment::Line(point(0.0, 1.0)),
-            Segment::Line(point(0.0, -5.0)),
-            Segment::Quadratic(point(1.0, -6.0), point(-2.0, -5.0)),
+            Segment::Move(at(1.0, -2.0)),
+            Segment::Line(at(4.0, 2.0)),
+            Segment::Line(at(5.0, 1.0)),
+            Segment::Line(at(0.0, 1.0)),
+            Segment::Line(at(0.0, -5.0)),
+            Segment::Quadratic(at(1.0, -6.0), at(-2.0, -5.0)),
             Segment::Close,
-            Segment::Move(point(10.0, -11.0)),
+            Segment::Move(at(10.0, -11.0)),
         ];
         assert_eq!(path.0, expected);
         for broken in ["m1", "x", "m1 2z3", "1 2"] {
