@@ -330,40 +330,39 @@ mod tests {
     use super::*;
     use crate::scenario::Document;
 
-    /// Of wobble-push (steps of 0.1 s) in a stretch: the times of the curve, the number of places of the path, and the end
-    /// that was reached.
-    fn played(from_s: f64, to_s: f64) -> (Vec<f64>, usize, f64) {
-        let scenario = Document::open("wobble-push").unwrap().scenario().unwrap();
+    /// A stretch of `scenario`, and the points of its curve of z.
+    fn of_z(scenario: &Arc<Scenario>, from_s: f64, to_s: Option<f64>) -> (Course, Vec<[f64; 2]>) {
+        let column = Column::find("z_m").unwrap();
         let wanted = Wanted {
-            columns: vec![Column::find("z_m").unwrap()],
-            path: true,
+            columns: vec![column],
+            path: to_s.is_some(),
             from_s,
-            to_s: Some(to_s),
+            to_s,
         };
-        let course = play(&Arc::new(scenario), &wanted, |_, _| {
-            ControlFlow::Continue(())
-        });
-        let course = course.unwrap();
-        let points = course.points(Column::find("z_m").unwrap());
-        let times = points
-            .iter()
-            .map(|point| (point[0] * 1e6).round() / 1e6)
-            .collect();
-        assert_eq!(course.is_empty, course.path.points.is_empty());
-        (times, course.path.points.len(), course.end_s)
+        let course = play(scenario, &wanted, |_, _| ControlFlow::Continue(())).unwrap();
+        let points = course.points(column);
+        (course, points)
     }
 
     #[test]
     fn a_curve_reaches_both_ends_of_its_stretch() {
-        assert_eq!(
-            played(20.05, 20.25),
-            (vec![20.0, 20.1, 20.2, 20.3], 2, 20.25)
-        );
-        // No step lies between them.
-        assert_eq!(played(20.02, 20.08), (vec![20.0, 20.1], 0, 20.08));
-        // They are at steps: nothing more is needed.
-        assert_eq!(played(20.0, 20.2), (vec![20.0, 20.1, 20.2], 3, 20.2));
-        assert_eq!(played(0.0, 0.15), (vec![0.0, 0.1, 0.2], 2, 0.15));
+        // Its steps are of 0.1 s.
+        let scenario = Document::open("wobble-push").unwrap().scenario().unwrap();
+        let scenario = Arc::new(scenario);
+        for (from_s, to_s, times, places) in [
+            (20.05, 20.25, vec![20.0, 20.1, 20.2, 20.3], 2),
+            // No step lies between them.
+            (20.02, 20.08, vec![20.0, 20.1], 0),
+            // They are at steps: nothing more is needed.
+            (20.0, 20.2, vec![20.0, 20.1, 20.2], 3),
+            (0.0, 0.15, vec![0.0, 0.1, 0.2], 2),
+        ] {
+            let (course, points) = of_z(&scenario, from_s, Some(to_s));
+            let rounded = points.iter().map(|at| (at[0] * 1e6).round() / 1e6);
+            assert_eq!(rounded.collect::<Vec<_>>(), times);
+            assert_eq!((course.path.points.len(), course.end_s), (places, to_s));
+            assert_eq!(course.is_empty, course.path.points.is_empty());
+        }
     }
 
     #[test]
@@ -371,15 +370,7 @@ mod tests {
         let mut document = Document::open("wobble-push").unwrap();
         document.set("motion.steps=50000").unwrap();
         let scenario = Arc::new(document.scenario().unwrap());
-        let column = Column::find("z_m").unwrap();
-        let wanted = Wanted {
-            columns: vec![column],
-            path: false,
-            from_s: 0.0,
-            to_s: None,
-        };
-        let course = play(&scenario, &wanted, |_, _| ControlFlow::Continue(())).unwrap();
-        let points = course.points(column);
+        let (_, points) = of_z(&scenario, 0.0, None);
         assert!(points.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
         let mut run = Simulation::new(Arc::clone(&scenario));
         // Each fiftieth of the run has its extremes near.

@@ -62,12 +62,12 @@ fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
     }
 }
 
-/// Those of `rows` that have a place along the axis below, from left to right.
-fn from_left(rows: &Rows, along: &[f64]) -> Rows {
-    let rows = rows.iter().copied();
-    let mut rows: Rows = rows.filter(|&row| along[row].is_finite()).collect();
-    rows.sort_by(|&a, &b| along[a].total_cmp(&along[b]));
-    rows
+/// The points of those of `rows` that have a place along the axis below, from left to right.
+fn points(rows: &Rows, along: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
+    let points = rows.iter().map(|&row| [along[row], values[row]]);
+    let mut points: Vec<_> = points.filter(|[along, _]| along.is_finite()).collect();
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    points
 }
 
 /// The rows of each text, in the order in which the texts come first.

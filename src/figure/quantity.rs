@@ -130,55 +130,48 @@ mod tests {
 
     #[test]
     fn columns_have_symbols_and_units() {
-        let written = |name: &str| {
-            let axis = axis(name);
-            (axis.name, axis.unit)
-        };
-        let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
-        assert_eq!(written("Lx_Js"), pair("*L*_{*x*}", "J s"));
-        assert_eq!(written("start.spin_rpm"), pair("*ω*_{3,0}", "rpm"));
-        assert_eq!(written("wz_rad_per_s"), pair("*ω*_{*z*}", "rad s^{−1}"));
-        assert_eq!(written("tilt_deg"), pair("*θ*", "°"));
-        assert_eq!(
-            written("steps_per_second"),
-            pair("steps per second", "s^{−1}")
-        );
-        assert_eq!(written("start.tilt_deg"), pair("*θ*_{0}", "°"));
-        assert_eq!(written("motion.time_step_s"), pair("Δ*t*", "s"));
-        assert_eq!(
-            written("start.momentum_Js.2"),
-            pair("start momentum *z*", "J s")
-        );
-        assert_eq!(
-            written("motion.gravity_m_per_s2"),
-            pair("gravity", "m s^{−2}")
-        );
+        for (column, name, unit) in [
+            ("Lx_Js", "*L*_{*x*}", "J s"),
+            ("start.spin_rpm", "*ω*_{3,0}", "rpm"),
+            ("wz_rad_per_s", "*ω*_{*z*}", "rad s^{−1}"),
+            ("tilt_deg", "*θ*", "°"),
+            ("steps_per_second", "steps per second", "s^{−1}"),
+            ("start.tilt_deg", "*θ*_{0}", "°"),
+            ("motion.time_step_s", "Δ*t*", "s"),
+            ("start.momentum_Js.2", "start momentum *z*", "J s"),
+            ("motion.gravity_m_per_s2", "gravity", "m s^{−2}"),
+        ] {
+            let axis = axis(column);
+            assert_eq!((&*axis.name, &*axis.unit), (name, unit), "{column}");
+        }
     }
 
     #[test]
     fn a_part_of_the_body_is_called_by_its_name() {
         let text =
             "[[body.point]]\nname = \"a_b\"\n[[body.part]]\n[[body.part]]\nname = \"ball\"\n";
-        let scenario = text.parse().unwrap();
-        let written = |key: &str| {
-            let axis = axis_in(&scenario, key);
-            format!("{} ({})", axis.name, axis.unit)
-        };
-        assert_eq!(written("body.point.0.at_m.2"), "*z* of a\\_b (m)");
-        assert_eq!(written("body.point.0.mass_kg"), "mass of a\\_b (kg)");
-        assert_eq!(
-            written("body.part.1.moments_kg_m2.2"),
-            "moments *z* of ball (kg m^{2})"
-        );
-        assert_eq!(written("start.momentum_Js.2"), "start momentum *z* (J s)");
-        for (frame, symbol) in [("world", "*L*_{*z*,0} (J s)"), ("body", "*L*_{3,0} (J s)")] {
-            let start = format!("[start]\nmomentum_frame = \"{frame}\"\n");
-            let axis = axis_in(&start.parse().unwrap(), "start.momentum_Js.2");
-            assert_eq!(format!("{} ({})", axis.name, axis.unit), symbol);
+        let [world, body] = [
+            "start.momentum_frame='world'",
+            "start.momentum_frame='body'",
+        ];
+        for (scenario, key, written) in [
+            (text, "body.point.0.at_m.2", "*z* of a\\_b (m)"),
+            (text, "body.point.0.mass_kg", "mass of a\\_b (kg)"),
+            (
+                text,
+                "body.part.1.moments_kg_m2.2",
+                "moments *z* of ball (kg m^{2})",
+            ),
+            (text, "start.momentum_Js.2", "start momentum *z* (J s)"),
+            (world, "start.momentum_Js.2", "*L*_{*z*,0} (J s)"),
+            (body, "start.momentum_Js.2", "*L*_{3,0} (J s)"),
+            // Without a name it is called by its number.
+            (text, "body.part.0.mass_kg", "part 0 mass (kg)"),
+            (text, "start.tilt_deg", "*θ*_{0} (°)"),
+        ] {
+            let axis = axis_in(&scenario.parse().unwrap(), key);
+            assert_eq!(format!("{} ({})", axis.name, axis.unit), written, "{key}");
         }
-        // Without a name it is called by its number.
-        assert_eq!(written("body.part.0.mass_kg"), "part 0 mass (kg)");
-        assert_eq!(written("start.tilt_deg"), "*θ*_{0} (°)");
     }
 
     #[test]

@@ -285,41 +285,31 @@ mod tests {
     }
 
     #[test]
-    fn ordinary_ranges_have_ordinary_labels() {
-        let time = Ticks::linear(0.0, 230.0, at_most(6));
-        assert_eq!(labels(&time), ["0", "50", "100", "150", "200"]);
-        assert_eq!(time.power, 0);
-        let height = Ticks::linear(-0.95, 0.93, at_most(5));
-        assert_eq!(labels(&height), ["−0.5", "0.0", "0.5"]);
+    fn a_label_is_the_number_of_its_tick() {
         let tenths = Ticks::linear(0.0, 0.41, at_most(9));
         assert_eq!(labels(&tenths)[3], "0.15");
         assert!(tenths.major.iter().any(|tick| tick.at == 0.15));
     }
 
     #[test]
-    fn large_and_small_numbers_leave_a_power_to_the_title() {
-        let long = Ticks::linear(0.0, 100_000.0, at_most(6));
-        assert_eq!(
-            (labels(&long), long.power),
-            (vec!["0", "20", "40", "60", "80", "100"], 3)
-        );
-        let small = Ticks::linear(0.0, 4e-9, at_most(5));
-        assert_eq!(
-            (labels(&small), small.power),
-            (vec!["0", "1", "2", "3", "4"], -9)
-        );
-    }
-
-    #[test]
-    fn numbers_that_differ_in_far_digits_leave_an_offset_to_the_title() {
-        let ticks = Ticks::linear(30.000_000_1, 30.000_000_5, at_most(5));
-        assert_eq!(labels(&ticks), ["0", "100", "200", "300", "400"]);
-        assert_eq!(ticks.power, -9);
-        assert_eq!(ticks.offset.as_deref(), Some("30.0000001"));
-    }
-
-    #[test]
-    fn an_offset_of_many_digits_has_a_power_of_ten() {
+    fn labels_leave_a_power_or_an_offset_to_the_title() {
+        let far = [30.000_000_1, 30.000_000_5];
+        for ([low, high], most, expected, power, offset) in [
+            ([0.0, 230.0], 6, "0 50 100 150 200", 0, None),
+            ([-0.95, 0.93], 5, "−0.5 0.0 0.5", 0, None),
+            ([0.0, 100_000.0], 6, "0 20 40 60 80 100", 3, None),
+            ([0.0, 4e-9], 5, "0 1 2 3 4", -9, None),
+            (far, 5, "0 100 200 300 400", -9, Some("30.0000001")),
+        ] {
+            let ticks = Ticks::linear(low, high, at_most(most));
+            let found = (
+                labels(&ticks).join(" "),
+                ticks.power,
+                ticks.offset.as_deref(),
+            );
+            assert_eq!(found, (expected.to_owned(), power, offset));
+        }
+        // An offset of many digits has a power of ten.
         let offset = |at: f64| Ticks::linear(at, at + 1e-7 * at, at_most(5)).offset;
         assert!(offset(1e-30).unwrap().ends_with("·10^{−30}"));
         assert!(offset(1e30).unwrap().ends_with("·10^{30}"));

@@ -1,6 +1,6 @@
 //! Errors of schemes over their time steps, with their slopes.
 
-use super::{Rows, from_left, grouped, numbers};
+use super::{Rows, grouped, numbers, points};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::ticks;
 use crate::figure::chart::{Axis, Panel, Series, Style};
@@ -23,8 +23,7 @@ pub(super) fn drawn(
         let values = numbers(table, name)?;
         let mut best: Option<(usize, f64)> = None;
         let curve = |(index, (scheme, rows)): (usize, &(String, Rows))| {
-            let rows = from_left(rows, &steps);
-            let points: Vec<_> = rows.iter().map(|&row| [steps[row], values[row]]).collect();
+            let points = points(rows, &steps, &values);
             let slope = slope(&points);
             best = slope
                 .filter(|it| best.is_none_or(|best| *it > best))
@@ -152,19 +151,20 @@ mod tests {
     }
 
     #[test]
-    fn a_slope_is_told_where_the_error_falls_evenly_over_three_points() {
-        assert_eq!(slope(&errors(&[2.0, 2.01, 1.99, 2.4])), Some((3, 2.0)));
-        assert_eq!(slope(&errors(&[0.02, -0.1, 4.0, 3.9])), Some((2, 4.0)));
-        assert_eq!(slope(&errors(&[10.9, 11.1])), Some((2, 11.0)));
-    }
-
-    #[test]
-    fn no_slope_is_told_where_it_falls_by_leaps() {
-        // strang on method-2: between its coarsest steps the error falls by a factor of 280, and rises then.
-        assert_eq!(slope(&errors(&[0.78, -2.19, 8.16])), None);
-        assert_eq!(slope(&errors(&[1.0, 2.0, 4.0])), None);
-        // srkn11b on method-2: it has not come to its order yet.
-        assert_eq!(slope(&errors(&[5.98, 4.98, 3.18])), None);
-        assert_eq!(slope(&errors(&[2.0])), None);
+    fn a_slope_is_told_where_the_error_falls_evenly_over_three_points_and_not_by_leaps() {
+        let evenly: &[(&[f64], _)] = &[
+            (&[2.0, 2.01, 1.99, 2.4], Some((3, 2.0))),
+            (&[0.02, -0.1, 4.0, 3.9], Some((2, 4.0))),
+            (&[10.9, 11.1], Some((2, 11.0))),
+            // strang on method-2: between its coarsest steps the error falls by a factor of 280, and rises then.
+            (&[0.78, -2.19, 8.16], None),
+            (&[1.0, 2.0, 4.0], None),
+            // srkn11b on method-2: it has not come to its order yet.
+            (&[5.98, 4.98, 3.18], None),
+            (&[2.0], None),
+        ];
+        for (slopes, told) in evenly {
+            assert_eq!(slope(&errors(slopes)), *told, "{slopes:?}");
+        }
     }
 }

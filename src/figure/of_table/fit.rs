@@ -1,6 +1,6 @@
 //! What was measured, on the model that was fitted to it; below, what is left of it.
 
-use super::{Rows, from_left, grouped, numbers, within_room};
+use super::{Rows, grouped, numbers, points, within_room};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::ticks::{power_of_ten, with_minus};
 use crate::figure::chart::{Axis, Panel, Series, Style};
@@ -192,10 +192,10 @@ impl Drawing<'_> {
     fn series(&self, column: &str, rows: &Rows) -> Result<Series, String> {
         let values = numbers(self.table, column)?;
         let errors = numbers(self.table, "uncertainty")?;
-        let rows = from_left(rows, &self.x);
+        let errors = points(rows, &self.x, &errors).into_iter();
         Ok(Series {
-            points: rows.iter().map(|&row| [self.x[row], values[row]]).collect(),
-            errors: [Vec::new(), rows.iter().map(|&row| errors[row]).collect()],
+            points: points(rows, &self.x, &values),
+            errors: [Vec::new(), errors.map(|[_, error]| error).collect()],
             ..Series::default()
         })
     }

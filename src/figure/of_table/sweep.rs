@@ -3,7 +3,7 @@
 mod columns;
 mod curves;
 
-use super::{from_left, numbers, within_room};
+use super::{numbers, points, within_room};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::{Axis, Panel, Series, Style};
 use crate::figure::extent;
@@ -204,34 +204,23 @@ impl Drawing<'_> {
         let errors = errors.map(|name| numbers(self.table, name)).transpose()?;
         let is_other = part.role == Role::Value && self.has_measured;
         let curves = self.curves.iter().map(|curve| {
-            let rows = from_left(&curve.rows, self.along);
             let (name, style) = match part.role {
                 _ if is_other => (self.name(OTHER, &[]), Style::specks(curve.index)),
                 role => {
-                    let word = if self.has_theory {
-                        part.word(false)
-                    } else {
-                        String::new()
+                    let word = self.has_theory.then(|| part.word(false));
+                    let style = match role {
+                        Role::Measured => Style::points(curve.index),
+                        _ => Style::marked_line(curve.index),
                     };
-                    let style = if role == Role::Measured {
-                        Style::points(curve.index)
-                    } else {
-                        Style::marked_line(curve.index)
-                    };
-                    (self.name(&word, &curve.settings), style)
+                    let name = self.name(&word.unwrap_or_default(), &curve.settings);
+                    (name, style)
                 }
             };
-            let errors = errors
-                .iter()
-                .flat_map(|errors| rows.iter().map(|&row| errors[row].abs()));
+            let errors = errors.iter();
+            let errors = errors.flat_map(|errors| points(&curve.rows, self.along, errors));
             Series {
-                name,
-                errors: [Vec::new(), errors.collect()],
-                points: rows
-                    .iter()
-                    .map(|&row| [self.along[row], values[row]])
-                    .collect(),
-                style,
+                errors: [Vec::new(), errors.map(|[_, error]| error.abs()).collect()],
+                ..Series::new(name, points(&curve.rows, self.along, values), style)
             }
         });
         let has_some = |series: &Series| series.points.iter().any(|point| point[1].is_finite());
@@ -240,13 +229,8 @@ impl Drawing<'_> {
 
     /// The lines of the theory `part`, the one at `place` of its panel: one for all curves for which it says the same.
     fn theory(&self, part: &Part, values: &[f64], place: usize, is_alone: bool) -> Vec<Series> {
-        let each = self.curves.iter().map(|curve| {
-            let rows = from_left(&curve.rows, self.along).into_iter();
-            (
-                curve,
-                rows.map(|row| [self.along[row], values[row]]).collect(),
-            )
-        });
+        let points = |curve: &Curve| points(&curve.rows, self.along, values);
+        let each = self.curves.iter().map(|curve| (curve, points(curve)));
         let gaps = if self.has_gaps { IN_GAPS } else { "" };
         let lines = curves::lines(each).into_iter().map(|line| {
             // The curves are told apart by the points: of theory it is said once how it is drawn.
@@ -275,13 +259,9 @@ impl Drawing<'_> {
         };
         let failed = self.curves.iter().filter(|curve| !has_point(curve));
         let failed = failed.map(|curve| {
-            let name = self.name("", &curve.settings);
+            let markup = format!("{}: {FAILED}", self.name("", &curve.settings));
             let plain = self.name(FAILED, &curve.settings);
-            Series::named(within_room(
-                format!("{name}: {FAILED}"),
-                &plain,
-                self.room_pt,
-            ))
+            Series::named(within_room(markup, &plain, self.room_pt))
         });
         Ok(failed.collect())
     }

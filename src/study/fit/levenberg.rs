@@ -231,18 +231,13 @@ mod tests {
 
     impl Problem for Valley {
         fn residuals(&self, p: &[f64]) -> Result<DVector<f64>, Stop> {
-            Ok(DVector::from_vec(vec![
-                1.0 - p[0],
-                10.0 * (p[1] - p[0] * p[0]),
-            ]))
+            let below = 10.0 * (p[1] - p[0] * p[0]);
+            Ok(DVector::from_vec(vec![1.0 - p[0], below]))
         }
 
         fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop> {
-            Ok(DMatrix::from_row_slice(
-                2,
-                2,
-                &[1.0, 0.0, 20.0 * p[0], -10.0],
-            ))
+            let slopes = [1.0, 0.0, 20.0 * p[0], -10.0];
+            Ok(DMatrix::from_row_slice(2, 2, &slopes))
         }
 
         fn tell(&self, _: u64, _: f64) {}
@@ -261,10 +256,8 @@ mod tests {
     fn a_bound_is_held_and_the_rest_is_found_on_it() {
         let bounds = [NONE, (-1.0, 0.5)];
         let minimum = search(&Valley, &[-1.2, 0.0], &bounds).unwrap();
-        assert_eq!(
-            (minimum.failure, &minimum.held[..]),
-            (None, &[false, true][..])
-        );
+        assert_eq!(minimum.failure, None);
+        assert_eq!(minimum.held, [false, true]);
         // On y = 1/2 the sum (1 - x)² + 100 (1/2 - x²)² is least at the root of its slope.
         let slope = |x: f64| -2.0 * (1.0 - x) - 400.0 * x * (0.5 - x * x);
         assert_eq!(minimum.p[1], 0.5);

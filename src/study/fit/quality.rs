@@ -9,7 +9,7 @@ pub(super) const RARE: f64 = 0.01;
 /// fewer, two data that agree by chance would make the keys as sure as one likes.
 pub(super) const LEAST_FREEDOM: u64 = 3;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quality {
     /// The sum of the squared residuals in units of their uncertainties; `None` where none are stated.
     pub chi_squared: Option<f64>,
@@ -40,10 +40,8 @@ impl Quality {
     /// How well a model fits: `sum` is the sum of the squared residuals in the units of `weights`.
     pub(super) fn of(sum: f64, freedom: u64, weights: &Weights) -> Self {
         let mut quality = Self {
-            chi_squared: None,
             degrees_of_freedom: freedom,
-            probability: None,
-            scatter: None,
+            ..Self::default()
         };
         if weights.are_stated {
             let probability = checked_gamma_ur(0.5 * freedom as f64, 0.5 * sum).ok();

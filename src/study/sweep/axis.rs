@@ -227,23 +227,21 @@ mod tests {
         let values = axis("motion.time_step_s=0.01..0.1:10").unwrap();
         assert_eq!(values[..4], ["0.01", "0.02", "0.03", "0.04"]);
         assert_eq!((values.len(), values[9].as_str()), (10, "0.1"));
-        assert_eq!(
-            axis("motion.gravity_m_per_s2=1..-1:3").unwrap(),
-            ["1.0", "0.0", "-1.0"]
-        );
-        assert_eq!(axis("body.rim.points=4..12:3").unwrap(), ["4", "8", "12"]);
     }
 
     #[test]
-    fn values_are_toml_or_else_text() {
-        assert_eq!(
-            axis("motion.scheme=report,rk4").unwrap(),
-            ["\"report\"", "\"rk4\""]
-        );
-        assert_eq!(axis("motion.time_step_s=1, 0.5").unwrap(), ["1.0", "0.5"]);
-        let forces = axis("push.0.force_N=[0,0,-50],[0, 0, 50]").unwrap();
-        assert_eq!(forces, ["[0, 0, -50]", "[0, 0, 50]"]);
-        assert_eq!(axis("title=\"a,b\",c").unwrap(), ["\"a,b\"", "\"c\""]);
+    fn values_are_those_of_a_range_or_toml_or_else_text() {
+        let forces = "push.0.force_N=[0,0,-50],[0, 0, 50]";
+        for (argument, values) in [
+            ("motion.gravity_m_per_s2=1..-1:3", "1.0; 0.0; -1.0"),
+            ("body.rim.points=4..12:3", "4; 8; 12"),
+            ("motion.scheme=report,rk4", "\"report\"; \"rk4\""),
+            ("motion.time_step_s=1, 0.5", "1.0; 0.5"),
+            (forces, "[0, 0, -50]; [0, 0, 50]"),
+            ("title=\"a,b\",c", "\"a,b\"; \"c\""),
+        ] {
+            assert_eq!(axis(argument).unwrap().join("; "), values, "{argument}");
+        }
     }
 
     #[test]

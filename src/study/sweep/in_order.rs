@@ -76,14 +76,11 @@ mod tests {
     #[test]
     fn results_come_in_order_and_each_once() {
         let mut seen = Vec::new();
-        in_order(
-            3..40_000,
-            |index, _| Some(index * index),
-            |results| {
-                seen.extend(results);
-                ControlFlow::Continue(())
-            },
-        );
+        let take = |results: Vec<u64>| {
+            seen.extend(results);
+            ControlFlow::Continue(())
+        };
+        in_order(3..40_000, |index, _| Some(index * index), take);
         assert!(seen.into_iter().eq((3..40_000).map(|index| index * index)));
     }
 

@@ -202,6 +202,7 @@ fn locked(part: &Path) -> Result<File, SweepFileError> {
 }
 
 /// The content of a file, compared with a sweep.
+#[derive(Default)]
 pub(super) struct There {
     /// How many rows at its beginning are those of the sweep.
     pub rows: u64,
@@ -218,11 +219,8 @@ impl There {
     /// Reads `file` up to the first line that is no row of `sweep`.
     pub(super) fn of(file: &File, sweep: &Sweep) -> io::Result<Self> {
         let mut there = Self {
-            rows: 0,
-            empty: EmptyRows::default(),
-            bytes: 0,
             length: file.metadata()?.len(),
-            other: None,
+            ..Self::default()
         };
         let mut reader = BufReader::with_capacity(1 << 16, file);
         reader.rewind()?;
@@ -281,15 +279,11 @@ pub(super) fn first_difference(there: &str, wanted: &str) -> Option<String> {
     const MOST_SHOWN: usize = 60;
     const BEFORE: usize = 30;
     let lines: [Vec<&str>; 2] = [there, wanted].map(|text| text.split('\n').collect());
-    let all = 0..lines[0].len().max(lines[1].len());
-    let at = all
-        .into_iter()
-        .find(|&at| lines[0].get(at) != lines[1].get(at))?;
+    let mut all = 0..lines[0].len().max(lines[1].len());
+    let at = all.find(|&at| lines[0].get(at) != lines[1].get(at))?;
     let [there, wanted] = lines.map(|lines| lines.get(at).copied().unwrap_or_default());
-    let same = there
-        .chars()
-        .zip(wanted.chars())
-        .take_while(|(a, b)| a == b);
+    let pairs = there.chars().zip(wanted.chars());
+    let same = pairs.take_while(|(a, b)| a == b);
     let begin = same.count().saturating_sub(BEFORE);
     let dots = if begin > 0 { "..." } else { "" };
     let shown = |line: &str| brief(&line.chars().skip(begin).collect::<String>(), MOST_SHOWN);

@@ -103,11 +103,9 @@ mod tests {
         let truth = Truth::new(Arc::new(scenario));
         let (low, high) = truth.motion().closed_form().unwrap().tilt_range();
         let tilt_deg = range("cusps", 20.0).tilt_deg;
-        let is_near = |a: f64, b: f64| (a - b).abs() < 1e-5;
-        assert!(
-            is_near(tilt_deg.0, low.to_degrees()) && is_near(tilt_deg.1, high.to_degrees()),
-            "{tilt_deg:?}"
-        );
+        let is_near = |a: f64, b: f64| (a - b.to_degrees()).abs() < 1e-5;
+        let are_near = is_near(tilt_deg.0, low) && is_near(tilt_deg.1, high);
+        assert!(are_near, "{tilt_deg:?}");
     }
 
     #[test]

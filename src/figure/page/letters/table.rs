@@ -20,10 +20,11 @@ pub struct Letter {
     pub outline: Path,
 }
 
+#[derive(Default)]
 pub struct Style {
     lines: BTreeMap<u32, &'static str>,
-    left_class: BTreeMap<u32, u32>,
-    right_class: BTreeMap<u32, u32>,
+    /// The classes of letters at the left and at the right of a pair.
+    classes: [BTreeMap<u32, u32>; 2],
     kerning: BTreeMap<(u32, u32), f64>,
 }
 
@@ -41,22 +42,16 @@ impl Style {
     fn new(letters: &'static str, kerning: &str) -> Self {
         let mut style = Self {
             lines: letters.lines().filter_map(numbered).collect(),
-            left_class: BTreeMap::new(),
-            right_class: BTreeMap::new(),
-            kerning: BTreeMap::new(),
+            ..Self::default()
         };
-        let (mut lefts, mut rights) = (0, 0);
+        let mut counts = [0; 2];
         for line in kerning.lines() {
-            if let Some(members) = line.strip_prefix("left ") {
-                style
-                    .left_class
-                    .extend(codes(members).map(|code| (code, lefts)));
-                lefts += 1;
-            } else if let Some(members) = line.strip_prefix("right ") {
-                style
-                    .right_class
-                    .extend(codes(members).map(|code| (code, rights)));
-                rights += 1;
+            let (word, members) = line.split_once(' ').unwrap_or_default();
+            let side = ["left", "right"].iter().position(|side| *side == word);
+            if let Some(side) = side {
+                let classed = codes(members).map(|code| (code, counts[side]));
+                style.classes[side].extend(classed);
+                counts[side] += 1;
             } else {
                 style.kerning.extend(kerned(line));
             }
@@ -71,14 +66,10 @@ impl Style {
 
     /// By how much the right letter of a pair is moved to the right, in thousandths of their size; mostly not at all.
     pub fn kerning(&self, left: char, right: char) -> f64 {
-        let classes = (
-            self.left_class.get(&left.into()),
-            self.right_class.get(&right.into()),
-        );
-        let (Some(left), Some(right)) = classes else {
-            return 0.0;
-        };
-        self.kerning.get(&(*left, *right)).copied().unwrap_or(0.0)
+        let class = |side: usize, letter: char| self.classes[side].get(&letter.into()).copied();
+        let pair = class(0, left).zip(class(1, right));
+        let kerning = pair.and_then(|pair| self.kerning.get(&pair));
+        kerning.copied().unwrap_or(0.0)
     }
 
     fn numbered(&self, code: u32) -> Option<Letter> {
