@@ -161,15 +161,9 @@ pub(super) fn residuals(
     let end_s = request.to_s.unwrap_or(job.end_s().max(last_s));
     let margin_s = MARGIN * (end_s - request.from_s);
     let range = (request.from_s - margin_s, end_s + margin_s);
-    let mut panels: Vec<Panel> = series
-        .curves
-        .iter()
-        .map(|curve| empty(curve, range))
-        .collect();
-    let shown = series
-        .curves
-        .iter()
-        .map(|curve| drawn(job, series, &curve.points));
+    let curves = || series.curves.iter();
+    let mut panels: Vec<Panel> = curves().map(|curve| empty(curve, range)).collect();
+    let shown = curves().map(|curve| drawn(job, series, &curve.points));
     let count = shown.map(|shown| shown.points.len()).sum();
     for (index, (run, run_name)) in runs.iter().zip(names(job)).enumerate() {
         let Some(model) = said(job, series, run, &mut watch)? else {
@@ -195,11 +189,8 @@ pub(super) fn residuals(
 /// The panel of the residuals of `curve` with the line of zero alone.
 fn empty(curve: &Curve, range: (f64, f64)) -> Panel {
     let axis = quantity::axis(curve.quantity.name);
-    Panel {
-        y: Axis::new(format!("{}, measured − run", axis.name), axis.unit),
-        series: vec![Series::level(range)],
-        slope: None,
-    }
+    let y = Axis::new(format!("{}, measured − run", axis.name), axis.unit);
+    Panel::new(y, vec![Series::level(range)])
 }
 
 /// What `run` says of each curve of `series`; `None` where `watch` stopped it.

@@ -80,10 +80,8 @@ impl Table {
         let head = File::open(path).and_then(|file| Head::read(&mut BufReader::new(file)));
         let head = head.map_err(|error| refused(Problem::at("", unread(&error))))?;
         let names = String::from_utf8_lossy(head.names()).into_owned();
-        let names: Vec<&str> = names
-            .split(',')
-            .map(|name| name.trim_matches('"'))
-            .collect();
+        let names = names.split(',').map(|name| name.trim_matches('"'));
+        let names: Vec<&str> = names.collect();
         let header = head.header().unwrap_or_default();
         let Some((subject, title)) = subject(&header, &names) else {
             return Ok(None);

@@ -1,7 +1,7 @@
 //! The line of a series on the page, without the points that nobody could see.
 
 use super::layout::Placed;
-use super::{Series, Style};
+use super::{Panel, Series, Style};
 use crate::figure::page::cover::{self, Grid};
 use crate::figure::page::ink::{Frame, at};
 use crate::figure::page::line::{clipped, simplified};
@@ -49,8 +49,14 @@ impl Placed {
         }
     }
 
+    /// Whether nothing of `panel` is in `frame`.
+    pub fn is_clear(&self, frame: &Frame, panel: &Panel) -> bool {
+        let mut series = panel.series.iter();
+        series.all(|series| !self.has_in(frame, series))
+    }
+
     /// Whether something of `series` is in `frame`.
-    pub fn has_in(&self, frame: &Frame, series: &Series) -> bool {
+    fn has_in(&self, frame: &Frame, series: &Series) -> bool {
         let is_in = |points: &[[f64; 2]]| {
             let places = points.iter().map(|point| self.place(point));
             !clipped(places, frame).is_empty()

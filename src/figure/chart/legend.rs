@@ -113,11 +113,7 @@ impl Legend {
                 bottom: top + height,
             })
         });
-        let is_free = |corner: &Frame| {
-            let around = corner.grown(FREE);
-            let mut series = panel.series.iter();
-            series.all(|series| !placed.has_in(&around, series))
-        };
+        let is_free = |corner: &Frame| placed.is_clear(&corner.grown(FREE), panel);
         corners.into_iter().find(is_free)
     }
 

@@ -52,6 +52,13 @@ pub struct Panel {
     pub slope: Option<f64>,
 }
 
+impl Panel {
+    pub fn new(y: Axis, series: Vec<Series>) -> Self {
+        let slope = None;
+        Self { y, series, slope }
+    }
+}
+
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
     /// Its name in the legend, as markup; empty for none.

@@ -32,10 +32,7 @@ pub fn draw(panel: &Panel, placed: &Placed, taken: Option<&Frame>, scene: &mut S
         let around = triangle.frame().grown(FREE);
         around.corners().iter().all(|corner| inside.holds(*corner))
             && taken.is_none_or(|taken| !taken.meets(&around))
-            && !panel
-                .series
-                .iter()
-                .any(|series| placed.has_in(&around, series))
+            && placed.is_clear(&around, panel)
     };
     let mut triangles = LENGTHS
         .iter()

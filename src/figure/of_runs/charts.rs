@@ -27,11 +27,8 @@ pub(super) fn over_time(job: &Job<'_>, columns: &[&'static Column], drawn: &[Dra
             }
             Series::new(&drawn.name, points, style)
         };
-        Panel {
-            y: size::axis(job.runs, column.name),
-            series: drawn.iter().map(curve).collect(),
-            slope: None,
-        }
+        let y = size::axis(job.runs, column.name);
+        Panel::new(y, drawn.iter().map(curve).collect())
     };
     job.chart(x, columns.iter().map(panel).collect())
 }
@@ -49,11 +46,7 @@ pub(super) fn above(job: &Job<'_>, drawn: &[Drawn], measured: Option<Series>) ->
     if let (true, [run]) = (job.request.exact, job.runs) {
         series.extend(limits(run, job.request.width_pt / (x.1 - x.0)));
     }
-    let panel = Panel {
-        y: quantity::axis("y_m").within(y),
-        series,
-        slope: None,
-    };
+    let panel = Panel::new(quantity::axis("y_m").within(y), series);
     Chart {
         is_true_to_scale: true,
         ..job.chart(quantity::axis("x_m").within(x), vec![panel])

@@ -225,11 +225,7 @@ impl Drawing<'_> {
                 ..self.series("measured", rows)?
             });
         }
-        Ok(Panel {
-            y: quantity::axis(name),
-            series,
-            slope: None,
-        })
+        Ok(Panel::new(quantity::axis(name), series))
     }
 
     /// The panel of what is left, in units of the uncertainties where all are stated.
@@ -252,10 +248,6 @@ impl Drawing<'_> {
             left.style = Style::points(index);
             series.push(left);
         }
-        Ok(Panel {
-            y: Axis::new("residual", unit),
-            series,
-            slope: None,
-        })
+        Ok(Panel::new(Axis::new("residual", unit), series))
     }
 }

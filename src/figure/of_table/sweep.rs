@@ -183,14 +183,11 @@ impl Drawing<'_> {
             }
         }
         let values = series.iter().flat_map(|series| &series.points);
-        Ok(Panel {
-            y: Axis {
-                is_log: spans_decades(values.map(|point| point[1]), DECADES),
-                ..columns::axis(quantity)
-            },
-            series,
-            slope: None,
-        })
+        let y = Axis {
+            is_log: spans_decades(values.map(|point| point[1]), DECADES),
+            ..columns::axis(quantity)
+        };
+        Ok(Panel::new(y, series))
     }
 
     /// What a curve with these `settings` is called in the legend.

@@ -162,12 +162,9 @@ fn number(value: f64) -> String {
     let cents = hundredths(value);
     let (whole, rest) = (cents.abs() / 100, cents.abs() % 100);
     let sign = if cents < 0 { "-" } else { "" };
-    match (whole, rest % 10) {
-        (whole, _) if rest == 0 => format!("{sign}{whole}"),
-        (0, 0) => format!("{sign}.{}", rest / 10),
-        (0, _) => format!("{sign}.{rest:02}"),
-        (whole, 0) => format!("{sign}{whole}.{}", rest / 10),
-        (whole, _) => format!("{sign}{whole}.{rest:02}"),
+    match rest {
+        0 => format!("{sign}{whole}"),
+        _ => sign.to_owned() + format!("{whole}.{rest:02}").trim_matches('0'),
     }
 }
 

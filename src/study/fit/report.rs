@@ -71,8 +71,7 @@ impl Report<'_> {
                 key.remark().to_owned(),
             ]
         });
-        let head = ["key", "value", "start", "bounds", ""].map(str::to_owned);
-        write_table(f, &std::iter::once(head).chain(rows).collect::<Vec<_>>())
+        write_table(f, ["key", "value", "start", "bounds", ""], rows)
     }
 
     fn correlations(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -119,7 +118,6 @@ impl Report<'_> {
             "residual",
             "in sigmas",
         ];
-        let head = std::iter::once(head.map(str::to_owned));
         match all.len() {
             0..=MOST => writeln!(f, "\nResiduals:")?,
             count => writeln!(
@@ -127,7 +125,7 @@ impl Report<'_> {
                 "\nThe {MOST} of {count} residuals that are furthest off:"
             )?,
         }
-        write_table(f, &head.chain(rows).collect::<Vec<_>>())
+        write_table(f, head, rows)
     }
 
     fn json(&self) -> Value {
@@ -215,12 +213,19 @@ impl Serialize for Report<'_> {
     }
 }
 
-/// Rows of cells in columns that are as wide as their widest cell; the first is the head.
-fn write_table<const N: usize>(f: &mut fmt::Formatter<'_>, rows: &[[String; N]]) -> fmt::Result {
+/// A head and rows of cells in columns that are as wide as their widest cell.
+fn write_table<const N: usize>(
+    f: &mut fmt::Formatter<'_>,
+    head: [&str; N],
+    rows: impl Iterator<Item = [String; N]>,
+) -> fmt::Result {
+    let rows: Vec<_> = std::iter::once(head.map(str::to_owned))
+        .chain(rows)
+        .collect();
     let width = |cell: &String| cell.chars().count();
     let widest = |column: usize| rows.iter().map(|row| width(&row[column])).max();
     let widths: Vec<usize> = (0..N).filter_map(widest).collect();
-    for row in rows {
+    for row in &rows {
         let cells = row.iter().zip(&widths);
         let cells = cells.map(|(cell, most)| {
             let room = " ".repeat(most - width(cell));

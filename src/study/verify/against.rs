@@ -221,8 +221,6 @@ fn fields(line: &[u8], delimiter: u8) -> Vec<String> {
 }
 
 fn shown(line: &[u8]) -> String {
-    brief(
-        String::from_utf8_lossy(line).trim_end_matches(['\r', '\n']),
-        MOST_SHOWN,
-    )
+    let text = String::from_utf8_lossy(line);
+    brief(text.trim_end_matches(['\r', '\n']), MOST_SHOWN)
 }

@@ -54,11 +54,8 @@ impl Beside {
     ) -> Result<bool, String> {
         self.end_s = end_s;
         let reached = self.reached();
-        let values = at_times(
-            reached.series().map_err(|e| e.to_string())?,
-            scenario,
-            go_on,
-        );
+        let series = reached.series().map_err(|error| error.to_string())?;
+        let values = at_times(series, scenario, go_on);
         let Some(values) = values.map_err(|error| error.to_string())? else {
             return Ok(false);
         };
@@ -140,11 +137,8 @@ impl Beside {
 fn write_row(page: &mut String, name: &str, own: &Sum) -> fmt::Result {
     let chi_squared = (own.weighed > 0).then(|| significant(own.chi_squared, 4));
     let largest = own.largest.map(|largest| {
-        let (sigmas, time_s) = (
-            significant(largest.sigmas, 3),
-            significant(largest.time_s, 9),
-        );
-        format!("{sigmas} at {time_s} s")
+        let time_s = significant(largest.time_s, 9);
+        format!("{} at {time_s} s", significant(largest.sigmas, 3))
     });
     let rms = own.scatter.first();
     let rms = rms.map(|(quantity, rms)| format!("{} {}", significant(*rms, 3), quantity.unit()));

@@ -40,11 +40,8 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     if let Some(broken) = &writeup.broken {
         writeln!(page, "{}.\n", escaped(&sentence(&broken.to_string())))?;
     }
-    writeln!(
-        page,
-        "{}\n",
-        escaped(&readouts.health.sentence(readouts.advice.as_ref()))
-    )?;
+    let believed = readouts.health.sentence(readouts.advice.as_ref());
+    writeln!(page, "{}\n", escaped(&believed))?;
     writeln!(page, "## Measured beside theory\n")?;
     let range = ExactRange::new(&writeup.scenario, readouts.sample.time_s);
     write_quantities(&mut page, &rows(&writeup.scenario, readouts, range))?;
@@ -69,17 +66,13 @@ fn write_setup(page: &mut String, writeup: &Writeup) -> fmt::Result {
     let body = &scenario.body.mechanics;
     let mass = significant(body.mass(), 6);
     let centre = significant(body.first_moment().norm() / body.mass(), 6);
-    row(
-        "body",
-        &format!("{mass} kg; centre of mass {centre} m from the pivot"),
-    )?;
+    let whole = format!("{mass} kg; centre of mass {centre} m from the pivot");
+    row("body", &whole)?;
     row("moments of inertia about the pivot", &moments(scenario))?;
     let name = scenario.file.trace.as_deref().unwrap_or("top");
     let from_pivot = significant(body.points()[scenario.trace].at.norm(), 6);
-    row(
-        "traced point",
-        &format!("{name}, {from_pivot} m from the pivot"),
-    )?;
+    let traced = format!("{name}, {from_pivot} m from the pivot");
+    row("traced point", &traced)?;
     row("start", &start(scenario))?;
     let gravity = shortest(scenario.motion.gravity);
     row("gravity", &format!("{gravity} m/s^2"))?;
@@ -215,16 +208,11 @@ fn copyright() -> (&'static str, &'static str) {
 
 fn write_run_file(page: &mut String, run_file: &str) -> fmt::Result {
     writeln!(page, "## The run file\n")?;
-    match run_file.lines().count() {
-        lines if lines > MOST_LINES => {
-            writeln!(page, "`{RUN_FILE}`, {lines} lines.")
-        }
-        _ => writeln!(
-            page,
-            "`{RUN_FILE}`:\n\n```toml\n{}\n```",
-            run_file.trim_end()
-        ),
+    let (lines, run_file) = (run_file.lines().count(), run_file.trim_end());
+    if lines > MOST_LINES {
+        return writeln!(page, "`{RUN_FILE}`, {lines} lines.");
     }
+    writeln!(page, "`{RUN_FILE}`:\n\n```toml\n{run_file}\n```")
 }
 
 /// `text` with a capital letter at its beginning.

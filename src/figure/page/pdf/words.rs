@@ -186,11 +186,8 @@ impl OfPage {
 /// Six capital letters that tell a font of some letters from one of others.
 fn tag(letters: &BTreeSet<char>) -> String {
     // FNV-1a: Fowler, Noll and Vo.
-    let mixed = letters
-        .iter()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |mixed, &letter| {
-            (mixed ^ u64::from(letter)).wrapping_mul(0x0100_0000_01b3)
-        });
+    let mix = |mixed: u64, &c: &char| (mixed ^ u64::from(c)).wrapping_mul(0x0100_0000_01b3);
+    let mixed = letters.iter().fold(0xcbf2_9ce4_8422_2325_u64, mix);
     let letter = |place: u32| char::from(b'A' + (mixed / 26_u64.pow(place) % 26) as u8);
     (0..6).map(letter).collect()
 }
