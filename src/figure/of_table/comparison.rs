@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn a_slope_is_told_where_the_error_falls_evenly_over_three_points_and_not_by_leaps() {
-        let evenly: &[(&[f64], _)] = &[
+        let told: &[(&[f64], _)] = &[
             (&[2.0, 2.01, 1.99, 2.4], Some((3, 2.0))),
             (&[0.02, -0.1, 4.0, 3.9], Some((2, 4.0))),
             (&[10.9, 11.1], Some((2, 11.0))),
@@ -163,8 +163,8 @@ mod tests {
             (&[5.98, 4.98, 3.18], None),
             (&[2.0], None),
         ];
-        for (slopes, told) in evenly {
-            assert_eq!(slope(&errors(slopes)), *told, "{slopes:?}");
+        for (slopes, expected) in told {
+            assert_eq!(slope(&errors(slopes)), *expected, "{slopes:?}");
         }
     }
 }
