@@ -2,7 +2,7 @@
 
 use super::keymap::Mode;
 use super::layout::Layout;
-use super::panes::{browser, chrome, timeline::Timeline, traces::Traces};
+use super::panes::{Seen, browser, chrome, timeline::Timeline, traces::Traces};
 use super::press::press;
 use super::screen;
 use crate::lab::action::{Action, Direction, LessonKey};
@@ -138,7 +138,7 @@ fn pane_at(layout: &Layout, at: Position) -> Option<(Pane, Rect)> {
 
 /// Sets the cursor on the traces to the time at `at`, where there is one.
 fn read_off(place: Rect, at: Position, lab: &mut Lab) {
-    if let Some(time_s) = Traces::of(lab).time_s(place, at) {
+    if let Some(time_s) = Traces(Seen::of(lab)).time_s(place, at) {
         let to = CursorTo::Place(Place::Time(time_s));
         lab.carry_out_now(&Command::Cursor(to));
     }

@@ -17,6 +17,7 @@ use gyrolab::observe::reading::Reading;
 use gyrolab::observe::recording::Curve;
 use gyrolab::observe::strip::Strip;
 use gyrolab::scenario::{Document, presets};
+use gyrolab::tui::panes::Seen;
 use gyrolab::tui::panes::form::FormPane;
 use gyrolab::tui::panes::from_above::FromAbove;
 use gyrolab::tui::panes::parameters::Parameters;
@@ -71,23 +72,21 @@ fn text(buf: &Buffer) -> String {
 fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: Marker) -> String {
     let mut view = view(run, marker);
     view.look.window_s = window_s.unwrap_or(view.window_s);
-    let detail = undivided(run, &view);
-    let pane = Traces {
-        ghost,
-        ..traces_of(run, &view, &detail)
-    };
-    drawn(pane, STRIPS)
+    let alone = seen_alone(run, &view);
+    drawn(Traces(Seen { ghost, ..alone }), STRIPS)
 }
 
-/// The strips of `run` alone.
-fn traces_of<'a>(run: &'a LiveRun, view: &'a View, detail: &'a Detail) -> Traces<'a> {
-    Traces {
+/// `run` alone.
+fn seen_alone<'a>(run: &'a LiveRun, view: &'a View) -> Seen<'a> {
+    Seen {
+        view,
         run,
         ghost: None,
         pinned: None,
         measured: None,
-        view,
-        detail,
+        reading: None,
+        explained: None,
+        detail: undivided(run, view),
         cursor: None,
     }
 }
@@ -106,35 +105,8 @@ fn undivided(run: &LiveRun, view: &View) -> Detail {
 
 fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
     let view = view(run, marker);
-    let pane = FromAbove {
-        ghost,
-        ..pane_above(run, &view)
-    };
-    drawn(pane, ROUND)
-}
-
-/// The pane of `run` alone.
-fn pane_above<'a>(run: &'a LiveRun, view: &'a View) -> FromAbove<'a> {
-    FromAbove {
-        run,
-        ghost: None,
-        pinned: None,
-        measured: None,
-        view,
-        reading: None,
-    }
-}
-
-/// The scene in space of `run` alone.
-fn in_space<'a>(run: &'a LiveRun, view: &'a View) -> ThreeD<'a> {
-    ThreeD {
-        run,
-        view,
-        reading: None,
-        explained: None,
-        ghost: None,
-        pinned: None,
-    }
+    let alone = seen_alone(run, &view);
+    drawn(FromAbove(Seen { ghost, ..alone }), ROUND)
 }
 
 /// An edited run after `steps`, and the previous run, which had less tilt and lasted 7 s.
@@ -276,14 +248,15 @@ fn fast_and_slow_motion_are_both_seen() {
     // The push makes the axle swing every 1.97 s, 23 times in the first 46 s and twice in a column of the lower strips.
     let now = run("wobble-push", &[], "", 460);
     let view = &view(&now, Marker::Braille);
-    let detail = &Detail {
+    let detail = Detail {
         curve: Curve::Tilt,
         begin_s: 20.0,
         window_s: 20.0,
         swing_s: None,
         is_snapshot: false,
     };
-    let panes = |size| drawn(traces_of(&now, view, detail), size);
+    let alone = seen_alone(&now, view);
+    let panes = |size| drawn(Traces(Seen { detail, ..alone }), size);
     insta::assert_snapshot!("fast_and_slow_27x19", panes((27, 19)));
     insta::assert_snapshot!("fast_and_slow_100x45", panes((100, 45)));
 }
@@ -313,8 +286,9 @@ fn divided(now: &LiveRun, marker: Marker, buf: &mut Buffer) {
     let view = &view(now, marker);
     let wanted = Wanted::following(view.window_s);
     let readouts = LiveRun::new(Arc::clone(now.scenario())).readouts();
-    let detail = &Detail::new(now, &readouts, &wanted, None);
-    traces_of(now, view, detail).render(buf.area, buf);
+    let detail = Detail::new(now, &readouts, &wanted, None);
+    let alone = seen_alone(now, view);
+    Traces(Seen { detail, ..alone }).render(buf.area, buf);
 }
 
 #[test]
@@ -363,7 +337,7 @@ fn no_mark_covers_the_word_for_a_push_straight_down() {
             now.step().unwrap();
             now.follow_exact(|| false);
             let view = view(&now, Marker::Braille);
-            let pane = pane_above(&now, &view);
+            let pane = FromAbove(seen_alone(&now, &view));
             let picture = drawn(pane, (width, height));
             assert!(picture.contains("F down"), "step {step}:\n{picture}");
             let (path, _) = picture.split_once("0.").unwrap(); // the legend begins with a scale in m
@@ -382,14 +356,14 @@ fn a_push_that_acts_is_an_arrow() {
         let above = from_above(&now, None, Marker::Braille);
         insta::assert_snapshot!(format!("push_{name}_from_above"), above);
         let view = &view(&now, Marker::Braille);
-        let scene = drawn(in_space(&now, view), ROUND);
+        let scene = drawn(ThreeD(seen_alone(&now, view)), ROUND);
         assert!(scene.contains('F'), "{scene}");
         insta::assert_snapshot!(format!("push_{name}_3d"), scene);
     }
     let over = run("wobble-push", &[], "", 201);
     assert!(!from_above(&over, None, Marker::Braille).contains('F'));
     let view = &view(&over, Marker::Braille);
-    assert!(!drawn(in_space(&over, view), ROUND).contains('F'));
+    assert!(!drawn(ThreeD(seen_alone(&over, view)), ROUND).contains('F'));
 }
 
 /// The dots of the picture of a pane, column and row, without its frame.
@@ -416,7 +390,7 @@ fn a_circle_is_round_to_a_dot() {
         let mut view = view(&run, Marker::Braille);
         view.look.zoom.above = zoom;
         for size in [(36, 19), (80, 20), (47, 23), (30, 40)] {
-            let pane = pane_above(&run, &view);
+            let pane = FromAbove(seen_alone(&run, &view));
             let picture = drawn(pane, size);
             let dots = braille(&picture);
             let extent = |along: fn(&(usize, usize)) -> usize| {
@@ -452,7 +426,7 @@ fn the_point_stays_in_the_picture_however_large_it_is() {
         for zoom in [0.5, 1.0, 2.0, 5.0, 100.0] {
             let mut view = view(&run, Marker::Dot);
             view.look.zoom.above = zoom;
-            let pane = pane_above(&run, &view);
+            let pane = FromAbove(seen_alone(&run, &view));
             let picture = drawn(pane, ROUND);
             // Where it is enlarged, not at the edge either, where it would be put if it were outside.
             let edge = usize::from(zoom > 1.0);
@@ -474,7 +448,7 @@ fn the_nearer_mass_is_drawn_over_the_farther_one() {
     let mut view = view(&run, Marker::Braille);
     (view.camera.yaw_deg, view.camera.pitch_deg) = (0.0, 0.0);
     let scene = |view: &View| {
-        let picture = drawn(in_space(&run, view), (60, 24));
+        let picture = drawn(ThreeD(seen_alone(&run, view)), (60, 24));
         // The legend has these signs too.
         let above_legend = picture.split("L angular momentum").next();
         above_legend.unwrap_or_default().to_owned()
@@ -657,15 +631,16 @@ proptest! {
         let around = Rect::new(0, 0, width + 6, height + 6);
         let inside = Rect::new(3, 3, width, height);
         let read = Reading::new(&mut now, &Pace::new(1.0, false));
-        let (run, view, ghost, reading) = (&now, &view, Some(&ghost), Some(&read));
+        let (ghost, reading) = (Some(&ghost), Some(&read));
         let window = share * window_s;
-        let detail = &Detail { curve: Curve::Tilt, begin_s, window_s: window, swing_s: None, is_snapshot: false };
+        let detail = Detail { curve: Curve::Tilt, begin_s, window_s: window, swing_s: None, is_snapshot: false };
+        let alone = seen_alone(&now, &view);
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {
-                0 => Traces { ghost, ..traces_of(run, view, detail) }.render(inside, &mut buf),
-                1 => FromAbove { ghost, reading, ..pane_above(run, view) }.render(inside, &mut buf),
-                _ => ThreeD { reading, ..in_space(run, view) }.render(inside, &mut buf),
+                0 => Traces(Seen { ghost, detail, ..alone }).render(inside, &mut buf),
+                1 => FromAbove(Seen { ghost, reading, ..alone }).render(inside, &mut buf),
+                _ => ThreeD(Seen { reading, ..alone }).render(inside, &mut buf),
             }
             for position in around.positions().filter(|position| !inside.contains(*position)) {
                 prop_assert_eq!(buf[position].symbol(), "#", "{:?} of pane {}", position, pane);

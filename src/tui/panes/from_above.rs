@@ -3,17 +3,13 @@
 //! It shows where the point is, and the shape of its last swings behind it, as a line. The turn before them and all
 //! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
 
-use super::{PaneRow, Width, frame, round_title, write};
-use crate::lab::measured::Beside;
+use super::{PaneRow, Seen, Width, frame, round_title, write};
+use crate::lab::view::Pane;
 use crate::lab::view::markers::Marker;
-use crate::lab::view::{Pane, View};
 use crate::measured::Place;
 use crate::observe::ages::{Age, Ages};
 use crate::observe::camera::Zoom;
-use crate::observe::ghost::Ghost;
-use crate::observe::live::LiveRun;
 use crate::observe::path::Path;
-use crate::observe::reading::Reading;
 use crate::observe::recording::Moment;
 use crate::run::Clock;
 use crate::text::wrap::columns;
@@ -68,37 +64,20 @@ pub const ROW: PaneRow = PaneRow {
     rank: 1,
     least: (27, 17),
     draw: |lab, area, buf| {
-        FromAbove {
-            run: lab.player().run(),
-            ghost: lab.player().ghost(),
-            pinned: lab.player().pinned(),
-            measured: lab.player().measured(),
-            view: lab.view(),
-            reading: Some(&lab.player().reading),
-        }
-        .render(area, buf);
+        FromAbove(Seen::of(lab)).render(area, buf);
     },
     keys: ZOOM_KEYS,
 };
 
-pub struct FromAbove<'a> {
-    pub run: &'a LiveRun,
-    /// The run before, faint under it.
-    pub ghost: Option<&'a Ghost>,
-    /// The run that was pinned as the reference, unless it is the present one.
-    pub pinned: Option<&'a Ghost>,
-    pub measured: Option<&'a Beside>,
-    pub view: &'a View,
-    /// The latest reading of the run, if it is read at all: by it the path is recent or old.
-    pub reading: Option<&'a Reading>,
-}
+/// The path of a run from above.
+pub struct FromAbove<'a>(pub Seen<'a>);
 
 impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let zoom = self.view.zoom.above;
-        let title = round_title(ROW.title, zoom, self.reading, area.width);
-        let has_focus = self.view.focus == ROW.id;
-        let inside = frame(&title, area, has_focus, &self.view.theme, buf);
+        let zoom = self.0.view.zoom.above;
+        let title = round_title(ROW.title, zoom, self.0.reading, area.width);
+        let has_focus = self.0.view.focus == ROW.id;
+        let inside = frame(&title, area, has_focus, &self.0.view.theme, buf);
         if inside.height < 2 || inside.width == 0 {
             return;
         }
@@ -118,7 +97,7 @@ impl Widget for FromAbove<'_> {
                 1 => cell,
                 width => places.place(cell, width as u16),
             };
-            let push = self.view.theme.style(Role::Push);
+            let push = self.0.view.theme.style(Role::Push);
             write(picture, cell, sign, push, buf);
         }
         self.write_legend(&plane, legend, buf);
@@ -129,10 +108,10 @@ impl FromAbove<'_> {
     /// The plane of the picture, and the radius that it shows, m.
     fn plane(&self, picture: Rect) -> (Plane, f64) {
         let middle = self.circled().unwrap_or_default();
-        let exact = self.run.overlay().map(|overlay| &overlay.path);
-        let before = self.ghost.map(|ghost| &ghost.path);
-        let pinned = self.pinned.map(|ghost| &ghost.path);
-        let paths = [Some(self.run.path()), exact, before, pinned];
+        let exact = self.0.run.overlay().map(|overlay| &overlay.path);
+        let before = self.0.ghost.map(|ghost| &ghost.path);
+        let pinned = self.0.pinned.map(|ghost| &ghost.path);
+        let paths = [Some(self.0.run.path()), exact, before, pinned];
         let about = |path: &Path| {
             if middle == Vector2::zeros() {
                 path.radius()
@@ -145,9 +124,9 @@ impl FromAbove<'_> {
         let radius = radii.chain(away).fold(LEAST, f64::max);
         // In steps of 5 %, so that the scale does not change all the time.
         let radius = libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02;
-        let zoom = self.view.zoom.above;
+        let zoom = self.0.view.zoom.above;
         let half = radius / zoom;
-        let plane = |middle| Plane::new(picture, self.view.marker, middle, (half, half));
+        let plane = |middle| Plane::new(picture, self.0.view.marker, middle, (half, half));
         let whole = plane((middle.x, middle.y));
         if zoom <= 1.0 {
             return (whole, half);
@@ -160,7 +139,7 @@ impl FromAbove<'_> {
     /// The place from above around which the axle circles: where the line of L is, at the height of the traced point, as
     /// long as gravity cannot turn L noticeably within the run; `None` where the circle is about the vertical.
     fn circled(&self) -> Option<Vector2<f64>> {
-        let scenario = self.run.scenario();
+        let scenario = self.0.run.scenario();
         let momentum = scenario.start.momentum;
         let axis = momentum.try_normalize(f64::MIN_POSITIVE)?;
         let at = scenario.body.mechanics.points()[scenario.trace].at;
@@ -172,8 +151,8 @@ impl FromAbove<'_> {
     }
 
     fn ages(&self, across: f64) -> Ages {
-        let ages = self.reading.map(|reading| Ages::of(&reading.readouts));
-        let turn_dots = TAU * self.run.path().radius() * across;
+        let ages = self.0.reading.map(|reading| Ages::of(&reading.readouts));
+        let turn_dots = TAU * self.0.run.path().radius() * across;
         ages.unwrap_or(Ages::UNKNOWN).on_picture(turn_dots)
     }
 
@@ -181,9 +160,9 @@ impl FromAbove<'_> {
     /// is that of the latest reading, so that not every frame has to be sent. Where the scheme has broken down, it is
     /// the last moment before.
     fn now(&self, across: f64) -> Moment {
-        let scenario = self.run.scenario();
+        let scenario = self.0.run.scenario();
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
-        match self.reading {
+        match self.0.reading {
             Some(reading) if reading.last_whole.is_some() => Moment::new(&reading.state, &traced),
             Some(reading) if self.ages(across).are_crowded => {
                 let extremes = &reading.readouts.extremes;
@@ -192,57 +171,59 @@ impl FromAbove<'_> {
                 if swing_dots > LARGE_SWING {
                     Moment::new(&reading.state, &traced)
                 } else {
-                    *self.run.now()
+                    *self.0.run.now()
                 }
             }
-            _ => *self.run.now(),
+            _ => *self.0.run.now(),
         }
     }
 
     /// The exact motion at `time_s` (s), the moment that is shown; `None` where it is not shown, or has not come so far yet.
     fn exact_at(&self, time_s: f64) -> Option<&Moment> {
-        let read = self.reading.and_then(|reading| reading.exact.as_ref());
-        let known = [self.run.exact_now(), read].into_iter().flatten();
+        let read = self.0.reading.and_then(|reading| reading.exact.as_ref());
+        let known = [self.0.run.exact_now(), read].into_iter().flatten();
         known.into_iter().find(|exact| exact.time_s == time_s)
     }
 
     fn path(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) {
-        let mut dots = Dots::new(picture, self.view.marker);
-        let before = dots::of_run_before(self.view.marker);
+        let mut dots = Dots::new(picture, self.0.view.marker);
+        let before = dots::of_run_before(self.0.view.marker);
         let pinned = Ink::Faint(Role::Pinned);
         for (ghost, dashes, ink) in [
-            (self.ghost, before, Ink::Ghost),
-            (self.pinned, dots::PINNED, pinned),
+            (self.0.ghost, before, Ink::Ghost),
+            (self.0.pinned, dots::PINNED, pinned),
         ] {
             let path = ghost.into_iter().flat_map(|ghost| ghost.path.dots());
             dots.dashed(path.map(|at| plane.dot(at)), dashes, ink);
         }
         let mut trail = Trail::new(&dots, Around::Nothing);
-        for at in self.run.path().dots() {
+        for at in self.0.run.path().dots() {
             trail.dot(plane.dot(at), Age::Old);
         }
         let ages = self.ages(plane.scale.0);
         let now = self.now(plane.scale.0);
         let now = (now.time_s, &now.position);
         let to_dot = |at: &Vector3<f64>| plane.dot((at.x, at.y));
-        trail.follow(self.run.recording(), &ages, now, to_dot);
+        trail.follow(self.0.run.recording(), &ages, now, to_dot);
         trail.draw(&mut dots);
-        if let Some(overlay) = self.run.overlay() {
+        if let Some(overlay) = self.0.run.overlay() {
             let exact = overlay.path.dots().map(|at| plane.dot(at));
             dots.dashed(exact, dots::EXACT, Ink::Faint(Role::Exact));
         }
-        dots.render(&self.view.theme, buf);
+        dots.render(&self.0.view.theme, buf);
     }
 
     /// The measured places; none where the columns of the data do not say them.
     fn places(&self) -> &[Place] {
-        self.measured.map_or(&[], |beside| &beside.compared.places)
+        self.0
+            .measured
+            .map_or(&[], |beside| &beside.compared.places)
     }
 
     /// The measured places: those at times that the run has not reached are faint.
     fn points(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) {
-        let now_s = self.run.now().time_s;
-        let mut points = Points::new(picture, self.view.marker);
+        let now_s = self.0.run.now().time_s;
+        let mut points = Points::new(picture, self.0.view.marker);
         for place in self.places() {
             let cell = |x: f64, y: f64| {
                 let (column, row) = plane.dot((x, y));
@@ -262,7 +243,7 @@ impl FromAbove<'_> {
             let [of_x, of_y] = place.sigmas;
             points.add(cell(x, y), of_x.map(level), of_y.map(upright), role);
         }
-        points.render(&self.view.theme, buf);
+        points.render(&self.0.view.theme, buf);
     }
 
     /// Each push that acts: a line from the pushed point. Returns its head, or a word where it is straight up or down, and
@@ -274,9 +255,9 @@ impl FromAbove<'_> {
         picture: Rect,
         buf: &mut Buffer,
     ) -> Vec<((u16, u16), &'static str)> {
-        let simulation = self.run.simulation();
-        let points = self.run.scenario().body.mechanics.points();
-        let mut dots = Dots::new(picture, self.view.marker);
+        let simulation = self.0.run.simulation();
+        let points = self.0.run.scenario().body.mechanics.points();
+        let mut dots = Dots::new(picture, self.0.view.marker);
         let mut signs = Vec::new();
         for push in simulation.loads().pushes.iter().take(MOST_PUSHES) {
             let at = simulation.state().orientation * points[push.point].at;
@@ -292,7 +273,7 @@ impl FromAbove<'_> {
                 None => signs.push(upright(plane.cell((at.x, at.y)), push.force.z, picture)),
             }
         }
-        dots.render(&self.view.theme, buf);
+        dots.render(&self.0.view.theme, buf);
         signs
     }
 
@@ -300,7 +281,7 @@ impl FromAbove<'_> {
     fn marks(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) -> Labels {
         let mut places = Labels::new(picture);
         let mut mark = |cell, sign: &str, role| {
-            write(picture, cell, sign, self.view.theme.style(role), buf);
+            write(picture, cell, sign, self.0.view.theme.style(role), buf);
             places.take(cell);
         };
         let (right, middle) = (picture.width - 1, picture.height / 2);
@@ -332,7 +313,7 @@ impl FromAbove<'_> {
         let room = width.saturating_sub(columns(&self.bar(plane, width)) + 1);
         let words = self.words();
         let legend = Self::in_fewest_lines(&words, width, room, most);
-        if words.contains(&BEFORE) || self.ghost.is_some() {
+        if words.contains(&BEFORE) || self.0.ghost.is_some() {
             return legend;
         }
         // The path before the last swings is dotted too: said where it costs no line.
@@ -359,7 +340,7 @@ impl FromAbove<'_> {
 
     /// The legend and the scale on `area`, which has as many rows as the legend has lines.
     fn write_legend(&self, plane: &Plane, area: Rect, buf: &mut Buffer) {
-        let style = self.view.theme.style(Role::Quiet);
+        let style = self.0.view.theme.style(Role::Quiet);
         let last = area.height.saturating_sub(1);
         let bar = self.bar(plane, area.width as usize);
         write(area, (0, last), &bar, style, buf);
@@ -377,7 +358,7 @@ impl FromAbove<'_> {
     /// The scale: a line of a round length.
     fn bar(&self, plane: &Plane, width: usize) -> String {
         // The longer legend beside it leaves less room for the bar.
-        let share = if self.run.overlay().is_some() {
+        let share = if self.0.run.overlay().is_some() {
             0.25
         } else {
             0.4
@@ -388,17 +369,17 @@ impl FromAbove<'_> {
     /// What is drawn, the most important first, at length and in short.
     fn words(&self) -> Vec<[&'static str; 2]> {
         let mut words = vec![["o now"; 2]];
-        if self.run.overlay().is_some() {
+        if self.0.run.overlay().is_some() {
             words.extend([["e exact"; 2], ["* both"; 2]]);
         }
-        if self.pinned.is_some() {
+        if self.0.pinned.is_some() {
             words.push(["long dashes: pinned", "-- pinned"]);
         }
-        if self.ghost.is_some() {
+        if self.0.ghost.is_some() {
             words.push(["dotted: other run", "dotted: other"]);
         }
         if !self.places().is_empty() {
-            words.push(match self.view.marker {
+            words.push(match self.0.view.marker {
                 Marker::Ascii => ["X measured"; 2],
                 _ => ["× measured"; 2],
             });

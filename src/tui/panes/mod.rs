@@ -18,9 +18,15 @@ pub mod timeline;
 pub mod traces;
 
 use crate::lab::Lab;
-use crate::lab::view::Pane;
+use crate::lab::explained::Explained;
+use crate::lab::measured::Beside;
 use crate::lab::view::theme::Theme;
+use crate::lab::view::{Pane, View};
+use crate::observe::detail::Detail;
+use crate::observe::ghost::Ghost;
+use crate::observe::live::LiveRun;
 use crate::observe::reading::Reading;
+use crate::run::Sample;
 use crate::text::printable::printable;
 use crate::text::wrap::{columns, wrapped};
 use crate::tui::keymap::Binding;
@@ -106,6 +112,42 @@ pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
     };
     let others = beside.iter().chain(turns);
     own.iter().chain(others.filter(is_free))
+}
+
+/// What the panes of the motion draw: a run, the runs and data beside it, and how they are looked at.
+#[derive(Clone, Copy)]
+pub struct Seen<'a> {
+    pub view: &'a View,
+    pub run: &'a LiveRun,
+    /// The run before.
+    pub ghost: Option<&'a Ghost>,
+    /// The run that was pinned as the reference, unless it is the present one.
+    pub pinned: Option<&'a Ghost>,
+    pub measured: Option<&'a Beside>,
+    /// The latest reading of the run, if it is read at all: by it a path is recent or old. The scene in space is that of
+    /// its time: a turning wheel changes most of the picture, which would load a slow line in every frame.
+    pub reading: Option<&'a Reading>,
+    /// The time step that the step pane takes apart: the scene in space shows what its page is about.
+    pub explained: Option<&'a Explained>,
+    pub detail: Detail,
+    pub cursor: Option<&'a Sample>,
+}
+
+impl<'a> Seen<'a> {
+    pub fn of(lab: &'a Lab) -> Self {
+        let player = lab.player();
+        Self {
+            view: lab.view(),
+            run: player.run(),
+            ghost: player.ghost(),
+            pinned: player.pinned(),
+            measured: player.measured(),
+            reading: Some(&player.reading),
+            explained: player.explained(),
+            detail: player.detail,
+            cursor: player.cursor(),
+        }
+    }
 }
 
 /// Draws a frame with a title, marked where the pane has the focus; returns the area inside.

@@ -7,14 +7,11 @@ mod arrows;
 mod body;
 mod way;
 
-use super::{PaneRow, Width, frame, round_title, write};
-use crate::lab::explained::Explained;
-use crate::lab::view::{Pane, View};
+use super::{PaneRow, Seen, Width, frame, round_title, write};
+use crate::lab::view::Pane;
 use crate::observe::ages::Ages;
 use crate::observe::camera::Zoom;
-use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
-use crate::observe::reading::Reading;
 use crate::observe::recording::Curve;
 use crate::physics::friction::Damping;
 use crate::physics::{State, loads, observables};
@@ -65,44 +62,26 @@ pub const ROW: PaneRow = PaneRow {
     rank: 3,
     least: (40, 17),
     draw: |lab, area, buf| {
-        ThreeD {
-            run: lab.player().run(),
-            view: lab.view(),
-            reading: Some(&lab.player().reading),
-            explained: lab.player().explained(),
-            ghost: lab.player().ghost(),
-            pinned: lab.player().pinned(),
-        }
-        .render(area, buf);
+        ThreeD(Seen::of(lab)).render(area, buf);
     },
     keys: ZOOM_KEYS,
 };
 
-pub struct ThreeD<'a> {
-    pub run: &'a LiveRun,
-    pub view: &'a View,
-    /// The latest reading of the run, if it is read at all. The scene and the age of the path are those of its time: a
-    /// turning wheel changes most of the picture, which would load a slow line in every frame.
-    pub reading: Option<&'a Reading>,
-    /// The time step that the step pane takes apart: the scene shows what its page is about.
-    pub explained: Option<&'a Explained>,
-    pub ghost: Option<&'a Ghost>,
-    /// The run that was pinned as the reference, unless it is the present one.
-    pub pinned: Option<&'a Ghost>,
-}
+/// The scene of a run.
+pub struct ThreeD<'a>(pub Seen<'a>);
 
 type Label = (&'static str, Role, Vector3<f64>);
 
 impl Widget for ThreeD<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let theme = &self.view.theme;
-        let zoom = self.view.zoom.three_d;
-        let title = round_title(ROW.title, zoom, self.reading, area.width);
-        let inside = frame(&title, area, self.view.focus == ROW.id, theme, buf);
+        let theme = &self.0.view.theme;
+        let zoom = self.0.view.zoom.three_d;
+        let title = round_title(ROW.title, zoom, self.0.reading, area.width);
+        let inside = frame(&title, area, self.0.view.focus == ROW.id, theme, buf);
         if inside.height < 2 || inside.width == 0 {
             return;
         }
-        let subject = Subject::of(&self);
+        let subject = Subject::of(self.0);
         let most = (inside.height / ROWS_A_LINE).max(1) as usize;
         let lines = subject.legend_lines(inside.width as usize, most) as u16;
         let [picture, legend] = split_rows(inside, inside.height - lines);
@@ -113,10 +92,7 @@ impl Widget for ThreeD<'_> {
 
 /// The run at the time of the picture, and what several parts of the picture need of it.
 struct Subject<'a> {
-    run: &'a LiveRun,
-    ghost: Option<&'a Ghost>,
-    pinned: Option<&'a Ghost>,
-    view: &'a View,
+    seen: Seen<'a>,
     ages: Ages,
     state: &'a State,
     /// Where the traced point is.
@@ -135,22 +111,19 @@ struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    fn of(pane: &ThreeD<'a>) -> Self {
-        let run = pane.run;
+    fn of(seen: Seen<'a>) -> Self {
+        let run = seen.run;
         let mechanics = &run.scenario().body.mechanics;
-        let state = match pane.reading {
+        let state = match seen.reading {
             Some(reading) => &reading.state,
             None => run.simulation().state(),
         };
-        let ages = pane.reading.map(|reading| Ages::of(&reading.readouts));
+        let ages = seen.reading.map(|reading| Ages::of(&reading.readouts));
         let shape = Shape::of(run);
         let reach = shape.reach();
         let [torque, change] = torques(run, state);
         Self {
-            run,
-            ghost: pane.ghost,
-            pinned: pane.pinned,
-            view: pane.view,
+            seen,
             ages: ages.unwrap_or(Ages::UNKNOWN),
             state,
             position: observables::position(mechanics, state, run.scenario().trace),
@@ -159,14 +132,14 @@ impl<'a> Subject<'a> {
             shape,
             torque,
             change,
-            shown_phase: Shown::of(pane.explained, pane.view),
+            shown_phase: Shown::of(seen.explained, seen.view),
         }
     }
 
     fn draw(&self, picture: Rect, buf: &mut Buffer) {
-        let (theme, marker) = (&self.view.theme, self.view.marker);
+        let (theme, marker) = (&self.seen.view.theme, self.seen.view.marker);
         let mut dots = Dots::new(picture, marker);
-        let mut scene = Scene::new(picture, marker, self.view.camera, &self.shown());
+        let mut scene = Scene::new(picture, marker, self.seen.view.camera, &self.shown());
         let mut labels = self.ground(&mut scene);
         self.other_runs(&mut scene, &mut dots);
         self.path(&scene, &mut dots);
@@ -209,15 +182,15 @@ impl<'a> Subject<'a> {
     /// What the scene needs to show: the body as it precesses at the tilts that it has had, L, and the ground.
     fn shown(&self) -> scene::Shown {
         let circles = self.circles();
-        let (sin, cos) = self.view.camera.pitch_deg.to_radians().sin_cos();
+        let (sin, cos) = self.seen.view.camera.pitch_deg.to_radians().sin_cos();
         let end = |side: f64| move |&(radius, z): &(f64, f64)| z * cos + side * radius * sin.abs();
         let lowest = circles.iter().map(end(-1.0)).fold(0.0, f64::min);
         let highest = circles.iter().map(end(1.0)).fold(0.0, f64::max);
         let widest = circles.iter().map(|circle| circle.0).fold(0.0, f64::max);
-        let zoom = self.view.zoom.three_d;
+        let zoom = self.seen.view.zoom.three_d;
         let half = [widest, 0.5 * (highest - lowest)].map(|half| MARGIN * half / zoom);
         let middle = if zoom > 1.0 {
-            let (right, up) = self.view.camera.project(&self.wheel());
+            let (right, up) = self.seen.view.camera.project(&self.wheel());
             (Zoom::middle(right, half[0]), Zoom::middle(up, half[1]))
         } else {
             (0.0, 0.5 * (lowest + highest))
@@ -231,7 +204,7 @@ impl<'a> Subject<'a> {
 
     /// Circles about the vertical around all that is drawn, radius and height.
     fn circles(&self) -> Vec<(f64, f64)> {
-        let tilts = self.run.recording().whole();
+        let tilts = self.seen.run.recording().whole();
         let tilts = tilts.map_or((0.0, 0.0), |whole| {
             let tilt = whole.extent(Curve::Tilt);
             (tilt.min, tilt.max)
@@ -252,7 +225,7 @@ impl<'a> Subject<'a> {
                 }));
             }
         }
-        for other in [self.ghost, self.pinned].into_iter().flatten() {
+        for other in [self.seen.ghost, self.seen.pinned].into_iter().flatten() {
             if let Some(whole) = other.recording.whole() {
                 let z = whole.extent(Curve::Z);
                 circles.extend([z.min, z.max].map(|z| (other.path.radius(), z)));
@@ -309,8 +282,8 @@ impl<'a> Subject<'a> {
 
     /// Whether the pivot carries a weight that is off it, so that a stand is seen under it.
     fn stands(&self) -> bool {
-        let body = &self.run.scenario().body.mechanics;
-        let weight = self.run.simulation().loads().gravity.abs() * body.first_moment().norm();
+        let body = &self.seen.run.scenario().body.mechanics;
+        let weight = self.seen.run.simulation().loads().gravity.abs() * body.first_moment().norm();
         weight > 0.0
     }
 
@@ -319,11 +292,11 @@ impl<'a> Subject<'a> {
         let now = (self.state.time_s, &self.position);
         let ages = self
             .ages
-            .on_picture(TAU * self.run.path().radius() * scene.plane.scale.0);
+            .on_picture(TAU * self.seen.run.path().radius() * scene.plane.scale.0);
         let to_dot = |at: &Vector3<f64>| scene.dot(at);
-        trail.follow(self.run.recording(), &ages, now, to_dot);
+        trail.follow(self.seen.run.recording(), &ages, now, to_dot);
         trail.draw(dots);
-        if let Some(overlay) = self.run.overlay() {
+        if let Some(overlay) = self.seen.run.overlay() {
             let exact = overlay.recording.since(0.0);
             for (x, y) in exact.map(|block| scene.dot(&block.end())) {
                 dots.set(x, y, Ink::Faint(Role::Exact));
@@ -333,9 +306,9 @@ impl<'a> Subject<'a> {
 
     /// The paths of the run before and of the pinned one, and a line from the pivot to where each is at this time.
     fn other_runs(&self, scene: &mut Scene, dots: &mut Dots) {
-        let before = (Ink::Ghost, dots::of_run_before(self.view.marker), 3);
+        let before = (Ink::Ghost, dots::of_run_before(self.seen.view.marker), 3);
         let pinned = (Ink::Faint(Role::Pinned), dots::PINNED, 2);
-        for (run, (ink, path, axle)) in [(self.ghost, before), (self.pinned, pinned)] {
+        for (run, (ink, path, axle)) in [(self.seen.ghost, before), (self.seen.pinned, pinned)] {
             let Some(recording) = run.map(|run| &run.recording) else {
                 continue;
             };

@@ -7,16 +7,10 @@ mod curve;
 mod groups;
 mod plot;
 
-use super::{PaneRow, Width, frame, write};
-use crate::lab::Lab;
+use super::{PaneRow, Seen, Width, frame, write};
 use crate::lab::action::{Action, Direction};
-use crate::lab::measured::Beside;
-use crate::lab::view::{Pane, View};
-use crate::observe::detail::Detail;
-use crate::observe::ghost::Ghost;
-use crate::observe::live::LiveRun;
+use crate::lab::view::Pane;
 use crate::observe::marks::Marks;
-use crate::run::Sample;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::points::{Ends, Points};
@@ -54,7 +48,7 @@ pub const ROW: PaneRow = PaneRow {
     rank: 0,
     least: (27, 0),
     draw: |lab, area, buf| {
-        Traces::of(lab).render(area, buf);
+        Traces(Seen::of(lab)).render(area, buf);
     },
     keys: KEYS,
 };
@@ -80,35 +74,13 @@ const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Home], Action::WholeView, "whole", "show the run again as at first: no cursor, no zoom"),
 ];
 
-pub struct Traces<'a> {
-    pub run: &'a LiveRun,
-    pub ghost: Option<&'a Ghost>,
-    /// The run that was pinned as the reference, unless it is the present one.
-    pub pinned: Option<&'a Ghost>,
-    pub measured: Option<&'a Beside>,
-    pub view: &'a View,
-    pub detail: &'a Detail,
-    pub cursor: Option<&'a Sample>,
-}
-
-impl<'a> Traces<'a> {
-    pub fn of(lab: &'a Lab) -> Self {
-        Self {
-            run: lab.player().run(),
-            ghost: lab.player().ghost(),
-            pinned: lab.player().pinned(),
-            measured: lab.player().measured(),
-            view: lab.view(),
-            detail: &lab.player().detail,
-            cursor: lab.player().cursor(),
-        }
-    }
-}
+/// The strips of a run.
+pub struct Traces<'a>(pub Seen<'a>);
 
 impl Widget for Traces<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let inside = area.inner(Margin::new(1, 1));
-        let marks = Marks::of(self.run.scenario());
+        let marks = Marks::of(self.0.run.scenario());
         let (beside, groups) = if inside.is_empty() {
             (0, Vec::new())
         } else {
@@ -121,8 +93,8 @@ impl Widget for Traces<'_> {
         let plots: Vec<_> = plots.collect();
         let has_band = plots.iter().any(|plot| plot.has_band);
         let title = self.title(has_band, area.width.saturating_sub(4) as usize);
-        let theme = &self.view.theme;
-        frame(&title, area, self.view.focus == ROW.id, theme, buf);
+        let theme = &self.0.view.theme;
+        frame(&title, area, self.0.view.focus == ROW.id, theme, buf);
         for plot in &plots {
             self.strip(plot, &marks, buf);
         }
@@ -150,7 +122,7 @@ impl Traces<'_> {
     fn strip(&self, plot: &Plot, marks: &Marks, buf: &mut Buffer) {
         let at_cursor = self.at_cursor(plot);
         let (name, unit) = self.named(plot.content);
-        let style = self.view.theme.style(plot.content.role());
+        let style = self.0.view.theme.style(plot.content.role());
         let after = write(plot.area, (0, 0), &name, style, buf);
         let is_beside = plot.sheet.x > plot.area.x;
         if is_beside {
@@ -159,22 +131,22 @@ impl Traces<'_> {
             let value = at_cursor.as_ref().map(|(_, value)| value.as_str());
             self.label_above(plot, unit, value, after, buf);
         }
-        let mut dots = Dots::new(plot.sheet, self.view.marker);
+        let mut dots = Dots::new(plot.sheet, self.0.view.marker);
         if plot.is_residual {
             self.draw_zero(plot, &mut dots);
         }
         for (columns, stroke, ink) in &plot.curves {
             curve::draw(&mut dots, columns, &plot.scale, *stroke, *ink);
         }
-        dots.render(&self.view.theme, buf);
+        dots.render(&self.0.view.theme, buf);
         self.draw_points(plot, buf);
         if let Some((column, value)) = at_cursor {
             self.cursor(column, value.as_str(), is_beside, plot.sheet, buf);
         }
-        let quiet = self.view.theme.style(Role::Quiet);
-        let across = self.view.marker.dots().0;
+        let quiet = self.0.view.theme.style(Role::Quiet);
+        let across = self.0.view.marker.dots().0;
         let column = |time_s: f64| plot.strip.column(time_s).map(|column| column / across);
-        if let Some(now) = column(self.run.now().time_s) {
+        if let Some(now) = column(self.0.run.now().time_s) {
             upright(now as u16 + 1, PEN, quiet, plot.sheet, buf);
         }
         for edit in marks.edits.iter().filter_map(|edit_s| column(*edit_s)) {
@@ -184,9 +156,9 @@ impl Traces<'_> {
 
     /// What stands beside a strip besides its name: its unit, what it shows, and its values.
     fn label_beside(&self, plot: &Plot, unit: &str, buf: &mut Buffer) {
-        let quiet = self.view.theme.style(Role::Quiet);
+        let quiet = self.0.view.theme.style(Role::Quiet);
         let further = match plot {
-            Plot { is_zoom: true, .. } if self.detail.is_snapshot => [unit, ZOOM, HELD[2]],
+            Plot { is_zoom: true, .. } if self.0.detail.is_snapshot => [unit, ZOOM, HELD[2]],
             Plot { is_zoom: true, .. } => [unit, ZOOM, ""],
             Plot {
                 is_residual: true, ..
@@ -215,7 +187,7 @@ impl Traces<'_> {
         after: u16,
         buf: &mut Buffer,
     ) {
-        let theme = &self.view.theme;
+        let theme = &self.0.view.theme;
         let quiet = theme.style(Role::Quiet);
         let line = plot.area;
         let less_run = if plot.is_residual { LESS_RUN } else { "" };
@@ -245,7 +217,7 @@ impl Traces<'_> {
             .scale
             .in_words_within(room.saturating_sub(unit.len() + 2));
         let range = format!(" {} {unit}", range.unwrap_or_default());
-        let words: &[&str] = match (plot.is_zoom, self.detail.is_snapshot) {
+        let words: &[&str] = match (plot.is_zoom, self.0.detail.is_snapshot) {
             (true, true) => &HELD,
             (true, false) => &[ZOOM],
             (false, _) if plot.has_band => &BAND,
@@ -270,10 +242,10 @@ impl Traces<'_> {
         let all = self.points(plot.content).unwrap_or_default();
         let begin = all.partition_point(|point| point.time_s < strip.begin_s);
         let end = all.partition_point(|point| point.time_s <= strip.end_s());
-        let across = self.view.marker.dots().0;
+        let across = self.0.view.marker.dots().0;
         let height = f64::from(sheet.height);
         let row = |value: f64| plot.scale.from_top(value) * height;
-        let mut points = Points::new(sheet, self.view.marker);
+        let mut points = Points::new(sheet, self.0.view.marker);
         for point in &all[begin..end.max(begin)] {
             let value = if plot.is_residual {
                 point.residual()
@@ -295,12 +267,12 @@ impl Traces<'_> {
             let at = ((column / across) as f64, at);
             points.add(at, None, point.sigma.map(ends), role);
         }
-        points.render(&self.view.theme, buf);
+        points.render(&self.0.view.theme, buf);
     }
 
     /// The cursor: a line, and the value there where that does not stand above the strip.
     fn cursor(&self, column: u16, value: &str, is_beside: bool, sheet: Rect, buf: &mut Buffer) {
-        let style = self.view.theme.style(Role::Focus);
+        let style = self.0.view.theme.style(Role::Focus);
         upright(column, CURSOR, style, sheet, buf);
         if is_beside {
             let width = value.len() as u16;

@@ -68,8 +68,8 @@ impl Subject<'_> {
     /// L and Ω from the pivot, the weight at the centre of mass, its torque at the pivot, at the tip of L where L goes, and
     /// the pushes that act: each with its letter, its origin and its length.
     fn arrows(&self) -> Vec<(&'static str, Vector3<f64>, Vector3<f64>)> {
-        let (state, loads) = (self.state, self.run.simulation().loads());
-        let body = &self.run.scenario().body.mechanics;
+        let (state, loads) = (self.state, self.seen.run.simulation().loads());
+        let body = &self.seen.run.scenario().body.mechanics;
         let (reach, arm) = (self.reach, self.arm);
         let direction = |vector: &Vector3<f64>| vector.try_normalize(f64::MIN_POSITIVE);
         let pivot = Vector3::zeros();
@@ -106,14 +106,14 @@ impl Subject<'_> {
     /// Lines that the legend takes of `width` columns, at most `most`. They are as many while a push acts as between
     /// pushes.
     pub(super) fn legend_lines(&self, width: usize, most: usize) -> usize {
-        let has_pushes = !self.run.scenario().pushes.is_empty();
+        let has_pushes = !self.seen.run.scenario().pushes.is_empty();
         self.legend_in(width, most, has_pushes).len().max(1)
     }
 
     /// What the letters and signs mean, in as many words as there is room for.
     pub(super) fn legend(&self, area: Rect, buf: &mut Buffer) {
-        let theme = &self.view.theme;
-        let is_pushed = !self.run.simulation().loads().pushes.is_empty();
+        let theme = &self.seen.view.theme;
+        let is_pushed = !self.seen.run.simulation().loads().pushes.is_empty();
         let lines = self.legend_in(area.width as usize, area.height as usize, is_pushed);
         for (line, y) in lines.iter().zip(0..area.height) {
             let mut x = 0;
@@ -152,7 +152,7 @@ impl Subject<'_> {
     }
 
     fn arrows_in_words(&self, is_pushed: bool) -> Vec<Words> {
-        let loads = self.run.simulation().loads();
+        let loads = self.seen.run.simulation().loads();
         let is_rubbed = !loads.friction.is_none();
         let letters = ["L", "Ω", "g", "τ", "dL", "F"].into_iter();
         let words = |letter| {
@@ -175,7 +175,7 @@ impl Subject<'_> {
     /// What is drawn besides the arrows.
     #[rustfmt::skip]
     fn signs_in_words(&self) -> Vec<Words> {
-        let is_top = self.run.scenario().file.trace.is_none();
+        let is_top = self.seen.run.scenario().file.trace.is_none();
         let all = [
             (true, ["+ pivot"; 3], Role::Heading),
             (true, ["thick: axle", "", ""], Role::Focus),
@@ -184,9 +184,9 @@ impl Subject<'_> {
             (true, ["►▲ its way", "", ""], Role::Focus),
             (self.shape.rim.is_some(), ["■ hub", "■ hub", ""], Role::Heading),
             (true, ["O o · masses, near to far", "O o · masses", ""], Role::Text),
-            (self.run.overlay().is_some(), ["dots: exact motion", "dots: exact", "dots: exact"], Role::Exact),
-            (self.pinned.is_some(), ["long dashes: pinned", "-- pinned", "-- pinned"], Role::Pinned),
-            (self.ghost.is_some(), ["dotted: other run", "dotted: other", "dotted: other"], Role::Ghost),
+            (self.seen.run.overlay().is_some(), ["dots: exact motion", "dots: exact", "dots: exact"], Role::Exact),
+            (self.seen.pinned.is_some(), ["long dashes: pinned", "-- pinned", "-- pinned"], Role::Pinned),
+            (self.seen.ghost.is_some(), ["dotted: other run", "dotted: other", "dotted: other"], Role::Ghost),
         ];
         let drawn = all.into_iter().filter(|(is_drawn, ..)| *is_drawn);
         drawn.map(|(_, words, role)| (words, role)).collect()
@@ -315,7 +315,7 @@ impl Subject<'_> {
             self.body_before(shown.before(), scene);
         }
         if let Some(point) = shown.point {
-            let points = self.run.scenario().body.mechanics.points();
+            let points = self.seen.run.scenario().body.mechanics.points();
             let Some(point) = points.get(point) else {
                 return labels;
             };
@@ -355,7 +355,7 @@ impl Subject<'_> {
             letter => meaning(letter).0,
         };
         let has = |letter: &&&str| match **letter {
-            "F" => !self.run.simulation().loads().pushes.is_empty(),
+            "F" => !self.seen.run.simulation().loads().pushes.is_empty(),
             "u" => shown.direction("u").is_some(),
             "new L" => false, // the arrow says it
             _ => true,

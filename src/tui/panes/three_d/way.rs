@@ -31,7 +31,7 @@ impl Subject<'_> {
     pub(super) fn way(&self, scene: &Scene) -> Way {
         let until = self.state.time_s;
         let [turn, recent] = [Age::Turn, Age::Recent].map(|age| self.ages.since(age, until));
-        let blocks = self.run.recording().since(turn);
+        let blocks = self.seen.run.recording().since(turn);
         let blocks = blocks.filter(|block| block.end_s >= turn && block.end_s <= until);
         let blocks: Vec<_> = blocks.collect();
         let now = scene.dot(&self.position);

@@ -40,25 +40,25 @@ const ZOOM_BAR: &str = "▀";
 impl Traces<'_> {
     /// What is drawn: the point, the runs beside it, and a band, as far as there is room.
     pub(super) fn title(&self, has_band: bool, room: usize) -> String {
-        if let Some(cursor) = self.cursor {
+        if let Some(cursor) = self.0.cursor {
             let (step, time_s) = (cursor.step, decimal(cursor.time_s));
             return format!("step {step} at {time_s} s");
         }
-        let point = self.run.scenario().file.trace.as_deref();
+        let point = self.0.run.scenario().file.trace.as_deref();
         let point = point.unwrap_or("axle top");
-        let has_exact = self.run.overlay().is_some();
+        let has_exact = self.0.run.overlay().is_some();
         let beside = [
             (has_exact, EXACT),
-            (self.run.shows_exact() && !has_exact, NO_EXACT),
-            (self.ghost.is_some(), OTHER),
-            (self.pinned.is_some(), PINNED),
+            (self.0.run.shows_exact() && !has_exact, NO_EXACT),
+            (self.0.ghost.is_some(), OTHER),
+            (self.0.pinned.is_some(), PINNED),
         ];
         let shown: Vec<_> = beside.iter().filter(|(is_shown, _)| *is_shown).collect();
         let legend = |length: usize| shown.iter().map(move |(_, legends)| legends[length]);
         let long: Vec<_> = [ROW.title].into_iter().chain(legend(0)).collect();
         let long = format!("{point} {}", long.join(", "));
         let mut titles = Vec::new();
-        if has_band && self.ghost.is_none() && self.pinned.is_none() {
+        if has_band && self.0.ghost.is_none() && self.0.pinned.is_none() {
             titles.push(format!("{long}; {}", BANDS[0]));
             titles.extend((!has_exact).then(|| format!("{point}; {}", BANDS[1])));
         }
@@ -83,7 +83,7 @@ impl Traces<'_> {
         buf: &mut Buffer,
     ) {
         let mut pushed = self.pushed(marks, strip, border.width);
-        let style = self.view.theme.style(Role::Push);
+        let style = self.0.view.theme.style(Role::Push);
         let mut put = |x: usize, text, style: Style| write(border, (x as u16, 0), text, style, buf);
         for x in (0..pushed.len()).filter(|x| pushed[*x]) {
             put(x, BAR, style);
@@ -97,12 +97,13 @@ impl Traces<'_> {
         let Some(zoomed) = zoomed.filter(|zoomed| !zoomed.is_empty()) else {
             return;
         };
-        let across = self.view.marker.dots().0;
+        let across = self.0.view.marker.dots().0;
         let cells = zoomed.start / across..(zoomed.end - 1) / across + 1;
         let style = self
+            .0
             .view
             .theme
-            .style(Content::Curve(self.detail.curve).role());
+            .style(Content::Curve(self.0.detail.curve).role());
         for x in cells.clone() {
             put(x, ZOOM_BAR, style);
         }
@@ -113,12 +114,13 @@ impl Traces<'_> {
 
     /// Which of `width` cells of `strip` show times at which a push acts, up to where there is something to see.
     fn pushed(&self, marks: &Marks, strip: &Strip, width: u16) -> Vec<bool> {
-        let across = self.view.marker.dots().0;
+        let across = self.0.view.marker.dots().0;
         let reach_s = self
+            .0
             .run
             .now()
             .time_s
-            .max(self.ghost.map_or(0.0, Ghost::end_s));
+            .max(self.0.ghost.map_or(0.0, Ghost::end_s));
         let shown = |&(begin_s, end_s): &(f64, f64)| strip.shown(begin_s, end_s.min(reach_s));
         let mut pushed = vec![false; width as usize];
         for column in marks.pushes.iter().flat_map(shown) {

@@ -45,16 +45,16 @@ impl Traces<'_> {
 
     /// The strips that there is room for, and where they stand.
     pub(super) fn groups(&self, inside: Rect, beside: u16) -> Vec<Group> {
-        let across = self.view.marker.dots().0;
+        let across = self.0.view.marker.dots().0;
         let columns = (inside.width - beside) as usize * across;
-        let now_s = self.run.now().time_s;
-        let long = match self.view.since_s {
-            Some(since_s) => Strip::new(since_s, self.view.window_s, columns),
-            None => Strip::following(now_s, self.view.window_s, columns),
+        let now_s = self.0.run.now().time_s;
+        let long = match self.0.view.since_s {
+            Some(since_s) => Strip::new(since_s, self.0.view.window_s, columns),
+            None => Strip::following(now_s, self.0.view.window_s, columns),
         };
-        let at_s = self.cursor.map_or(now_s, |cursor| cursor.time_s);
-        let short = self.detail.strip(columns, across > 1, at_s);
-        let is_zoom = short.window_s < ALL * self.view.window_s;
+        let at_s = self.0.cursor.map_or(now_s, |cursor| cursor.time_s);
+        let short = self.0.detail.strip(columns, across > 1, at_s);
+        let is_zoom = short.window_s < ALL * self.0.view.window_s;
         let (upper, lower) = self.shown(inside.height, is_zoom, beside > 0);
         let weight: u16 = lower.iter().map(|content| self.weight(*content)).sum();
         let height = match (upper.is_empty(), lower.is_empty()) {
@@ -95,7 +95,7 @@ impl Traces<'_> {
     fn weight(&self, content: Content) -> u16 {
         match self.points(content) {
             Some(_) => WITH_POINTS,
-            None => 1 + u16::from(self.measured.is_some()),
+            None => 1 + u16::from(self.0.measured.is_some()),
         }
     }
 
@@ -106,13 +106,19 @@ impl Traces<'_> {
     fn shown(&self, height: u16, has_zoom: bool, is_beside: bool) -> (Vec<Content>, Vec<Content>) {
         let least = |content: &Content| match (self.points(*content), is_beside) {
             (Some(_), _) => STRIP_WITH_POINTS,
-            (None, true) if self.measured.is_none() => 1,
+            (None, true) if self.0.measured.is_none() => 1,
             (None, _) => STRIP,
         };
-        let first = Content::Curve(self.detail.curve);
+        let first = Content::Curve(self.0.detail.curve);
         let measured = self.measured_contents();
         let mut by_worth = measured.clone();
-        let curves = [self.detail.curve, Curve::X, Curve::Z, Curve::Tilt, Curve::Y];
+        let curves = [
+            self.0.detail.curve,
+            Curve::X,
+            Curve::Z,
+            Curve::Tilt,
+            Curve::Y,
+        ];
         for content in curves.map(Content::Curve) {
             if !by_worth.contains(&content) {
                 by_worth.push(content);
@@ -154,7 +160,7 @@ impl Traces<'_> {
         let groups = self.groups(inside, beside);
         let group = groups.iter().find(|group| group.area.contains(at))?;
         let cell = (at.x - inside.x).checked_sub(beside)?;
-        let across = self.view.marker.dots().0;
+        let across = self.0.view.marker.dots().0;
         let column = cell as usize * across + (across - 1) / 2;
         Some(group.strip.time_s(column))
     }

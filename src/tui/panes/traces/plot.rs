@@ -85,7 +85,7 @@ impl Traces<'_> {
     pub(super) fn plots(&self, group: &Group, beside: u16, marks: &Marks) -> Vec<Plot> {
         let plot = |&(content, area): &(Content, Rect)| {
             let is_residual =
-                self.view.residuals && !group.is_zoom && self.index(content).is_some();
+                self.0.view.residuals && !group.is_zoom && self.index(content).is_some();
             let above = u16::from(beside == 0);
             Plot {
                 content,
@@ -145,7 +145,9 @@ impl Traces<'_> {
     /// Leaves out what was recorded beyond where the run stands: what follows the run may have been further.
     fn end_at_run(&self, plot: &Plot, columns: &mut [Option<Column>]) {
         if let Content::Measured(_) = plot.content {
-            let shown = plot.strip.shown(plot.strip.begin_s, self.run.now().time_s);
+            let shown = plot
+                .strip
+                .shown(plot.strip.begin_s, self.0.run.now().time_s);
             columns
                 .iter_mut()
                 .skip(shown.end)
@@ -154,7 +156,7 @@ impl Traces<'_> {
     }
 
     fn has_band(&self, plot: &Plot, columns: &[Option<Column>]) -> bool {
-        let (across, down) = self.view.marker.dots();
+        let (across, down) = self.0.view.marker.dots();
         let rows = f64::from(plot.area.height) * down as f64;
         // A band of large dots hides the curve as soon as it is one dot high.
         let thinnest = across.min(THINNEST_BAND) as f64;
@@ -164,13 +166,13 @@ impl Traces<'_> {
     }
 
     fn look(&self, whose: Whose, content: Content) -> (Stroke, Ink) {
-        let (across, down) = self.view.marker.dots();
+        let (across, down) = self.0.view.marker.dots();
         match whose {
             Whose::Before => (Stroke::Dotted, Ink::Ghost),
             Whose::Pinned => (Stroke::LongAndShort, Ink::Faint(Role::Pinned)),
             Whose::Exact => (Stroke::Dashed, Ink::Faint(Role::Exact)),
             // The dots of a filled band and the dashes of the exact motion look different only where dots are small.
-            Whose::Run if self.run.overlay().is_some() && across * down <= 2 => {
+            Whose::Run if self.0.run.overlay().is_some() && across * down <= 2 => {
                 (Stroke::Edges, Ink::Strong(content.role()))
             }
             Whose::Run => (Stroke::Full, Ink::Strong(content.role())),
@@ -180,14 +182,16 @@ impl Traces<'_> {
     /// The recording that has what `content` shows of `whose` motion, where that is shown, and which of its curves it is.
     fn recorded(&self, whose: Whose, content: Content) -> Option<(&Recording, Curve)> {
         match (whose, content) {
-            (Whose::Run, Content::Curve(curve)) => Some((self.run.recording(), curve)),
-            (Whose::Run, Content::Measured(index)) => self.measured?.recorded(index),
-            (Whose::Before, Content::Curve(curve)) => Some((&self.ghost?.recording, curve)),
+            (Whose::Run, Content::Curve(curve)) => Some((self.0.run.recording(), curve)),
+            (Whose::Run, Content::Measured(index)) => self.0.measured?.recorded(index),
+            (Whose::Before, Content::Curve(curve)) => Some((&self.0.ghost?.recording, curve)),
             (Whose::Before, Content::Measured(index)) => {
-                self.ghost.and(self.measured)?.recorded_before(index)
+                self.0.ghost.and(self.0.measured)?.recorded_before(index)
             }
-            (Whose::Pinned, Content::Curve(curve)) => Some((&self.pinned?.recording, curve)),
-            (Whose::Exact, Content::Curve(curve)) => Some((&self.run.overlay()?.recording, curve)),
+            (Whose::Pinned, Content::Curve(curve)) => Some((&self.0.pinned?.recording, curve)),
+            (Whose::Exact, Content::Curve(curve)) => {
+                Some((&self.0.run.overlay()?.recording, curve))
+            }
             (Whose::Pinned | Whose::Exact, Content::Measured(_)) => None,
         }
     }
@@ -197,8 +201,8 @@ impl Traces<'_> {
         let edits = |ghost: Option<&'s Ghost>| ghost.map_or(&[][..], |ghost| &ghost.marks.edits);
         match whose {
             Whose::Run => &marks.edits,
-            Whose::Before => edits(self.ghost),
-            Whose::Pinned => edits(self.pinned),
+            Whose::Before => edits(self.0.ghost),
+            Whose::Pinned => edits(self.0.pinned),
             Whose::Exact => &[],
         }
     }
@@ -206,6 +210,7 @@ impl Traces<'_> {
     /// What was measured, the curves that every run has before the others.
     pub(super) fn measured_contents(&self) -> Vec<Content> {
         let quantities = self
+            .0
             .measured
             .map_or(0, |beside| beside.quantities().count());
         let others = (0..quantities).map(Content::Measured);
@@ -220,7 +225,7 @@ impl Traces<'_> {
         match content {
             Content::Measured(index) => Some(index),
             Content::Curve(curve) => {
-                let mut quantities = self.measured?.quantities();
+                let mut quantities = self.0.measured?.quantities();
                 quantities.position(|quantity| quantity.name == curve.column())
             }
         }
@@ -229,7 +234,7 @@ impl Traces<'_> {
     /// The measured values of what `content` shows; none where it was not measured.
     pub(super) fn points(&self, content: Content) -> Option<&[Shown]> {
         let index = self.index(content)?;
-        let curves = &self.measured?.compared.curves;
+        let curves = &self.0.measured?.compared.curves;
         curves.get(index).map(Vec::as_slice)
     }
 
@@ -238,7 +243,7 @@ impl Traces<'_> {
         match content {
             Content::Curve(curve) => (curve.name().to_owned(), curve.unit()),
             Content::Measured(index) => {
-                let quantities = self.measured.map(Beside::quantities);
+                let quantities = self.0.measured.map(Beside::quantities);
                 let quantity = quantities.and_then(|mut quantities| quantities.nth(index));
                 quantity.map_or_else(Default::default, |quantity| {
                     (quantity.words(), quantity.unit())
@@ -256,8 +261,8 @@ impl Traces<'_> {
 
     /// The column (of cells) of the cursor on `plot`, and the value there with its unit, where it is known.
     pub(super) fn at_cursor(&self, plot: &Plot) -> Option<(u16, String)> {
-        let cursor = self.cursor?;
-        let column = plot.strip.column(cursor.time_s)? / self.view.marker.dots().0;
+        let cursor = self.0.cursor?;
+        let column = plot.strip.column(cursor.time_s)? / self.0.view.marker.dots().0;
         let value = match plot.content {
             Content::Curve(curve) => Some(curve.at(cursor)),
             Content::Measured(_) => self.value_at(plot.content, cursor.time_s),
@@ -269,8 +274,8 @@ impl Traces<'_> {
 
     /// The range of values of a strip, magnified as the view wants it: of the whole run, or of the time of `strip` alone.
     pub(super) fn scale(&self, content: Content, strip: Option<&Strip>) -> Scale {
-        let now = self.run.now();
-        let about = match (self.cursor, content) {
+        let now = self.0.run.now();
+        let about = match (self.0.cursor, content) {
             (Some(cursor), Content::Curve(curve)) => curve.at(cursor),
             (None, Content::Curve(curve)) => now.value(curve),
             (_, Content::Measured(_)) => self.value_at(content, now.time_s).unwrap_or(0.0),
@@ -279,8 +284,8 @@ impl Traces<'_> {
     }
 
     fn magnified(&self, scale: Scale, about: f64) -> Scale {
-        if self.view.magnified > 1.0 {
-            scale.zoomed(self.view.magnified, about)
+        if self.0.view.magnified > 1.0 {
+            scale.zoomed(self.0.view.magnified, about)
         } else {
             scale
         }
@@ -290,7 +295,7 @@ impl Traces<'_> {
     fn whole_scale(&self, content: Content, strip: Option<&Strip>) -> Scale {
         let extent = self.extent(content, strip);
         let size = extent.max.abs().max(extent.min.abs());
-        let arm_m = self.run.scenario().arm_m();
+        let arm_m = self.0.run.scenario().arm_m();
         let least = match content {
             Content::Curve(Curve::X | Curve::Y) if strip.is_none() => {
                 let [x, y] =
