@@ -162,20 +162,21 @@ impl Points {
 mod tests {
     use super::*;
 
-    const AREA: Rect = Rect {
-        x: 0,
-        y: 0,
-        width: 7,
-        height: 5,
-    };
+    type Point = ((f64, f64), Option<Ends>, Option<Ends>);
 
-    fn drawn(points: &Points, behind: &str) -> Vec<String> {
-        let mut buf = Buffer::empty(AREA);
-        for y in 0..AREA.height {
+    /// The lines of a picture of `points` over lines of `behind`.
+    fn drawn(marker: Marker, points: &[Point], behind: &str) -> Vec<String> {
+        let area = Rect::new(0, 0, 7, 5);
+        let mut sheet = Points::new(area, marker);
+        for &(at, level, upright) in points {
+            sheet.add(at, level, upright, Role::Measured);
+        }
+        let mut buf = Buffer::empty(area);
+        for y in 0..area.height {
             buf.set_string(0, y, behind, Theme::PLAIN.style(Role::Text));
         }
-        points.render(&Theme::PLAIN, &mut buf);
-        let lines = buf.content.chunks(AREA.width.into());
+        sheet.render(&Theme::PLAIN, &mut buf);
+        let lines = buf.content.chunks(area.width.into());
         let text = |line: &[ratatui::buffer::Cell]| {
             let line: String = line.iter().map(ratatui::buffer::Cell::symbol).collect();
             line.trim_end().to_owned()
@@ -185,43 +186,39 @@ mod tests {
 
     #[test]
     fn a_bar_is_drawn_where_it_is_larger_than_the_cell_of_its_mark() {
-        let mut points = Points::new(AREA, Marker::Braille);
-        points.add((1.5, 2.5), None, Some((0.5, 4.5)), Role::Measured);
-        points.add(
-            (4.5, 2.5),
-            Some((3.2, 5.9)),
-            Some((2.1, 2.9)),
-            Role::Measured,
-        );
-        assert_eq!(drawn(&points, ""), [" ┬", " │", " × ├×┤", " │", " ┴"]);
-        let mut points = Points::new(AREA, Marker::Ascii);
-        points.add(
-            (1.5, 1.5),
-            Some((0.0, 2.5)),
-            Some((-3.0, 2.5)),
-            Role::Measured,
-        );
-        assert_eq!(drawn(&points, ""), [" |", "|X|", " -", "", ""]);
+        let points = [
+            ((1.5, 2.5), None, Some((0.5, 4.5))),
+            ((4.5, 2.5), Some((3.2, 5.9)), Some((2.1, 2.9))),
+        ];
+        let shown = drawn(Marker::Braille, &points, "");
+        assert_eq!(shown, [" ┬", " │", " × ├×┤", " │", " ┴"]);
+        let both = [((1.5, 1.5), Some((0.0, 2.5)), Some((-3.0, 2.5)))];
+        let shown = drawn(Marker::Ascii, &both, "");
+        assert_eq!(shown, [" |", "|X|", " -", "", ""]);
     }
 
     #[test]
     fn a_mark_outside_is_left_out_and_its_bar_is_cut_off() {
-        let mut points = Points::new(AREA, Marker::Braille);
-        points.add((2.0, -3.0), None, Some((-5.0, 1.5)), Role::Measured);
-        points.add((f64::NAN, 2.0), None, None, Role::Measured);
-        points.add((6.5, 9.0), None, Some((8.0, 10.0)), Role::Measured);
-        assert_eq!(drawn(&points, ""), ["  │", "  ┴", "", "", ""]);
+        let points = [
+            ((2.0, -3.0), None, Some((-5.0, 1.5))),
+            ((f64::NAN, 2.0), None, None),
+            ((6.5, 9.0), None, Some((8.0, 10.0))),
+        ];
+        let shown = drawn(Marker::Braille, &points, "");
+        assert_eq!(shown, ["  │", "  ┴", "", "", ""]);
     }
 
     #[test]
     fn the_curve_is_seen_between_points_that_stand_close_together() {
-        let mut points = Points::new(AREA, Marker::Braille);
-        (0..7).for_each(|x| points.add((f64::from(x), 0.0), None, None, Role::Measured));
-        assert_eq!(drawn(&points, ".......")[0], "×...×..");
-        assert_eq!(drawn(&points, "")[0], "×××××××");
-        assert_eq!(drawn(&points, "... ...")[0], "×..××..");
-        let mut points = Points::new(AREA, Marker::Braille);
-        points.add((2.0, 0.0), Some((1.0, 4.0)), None, Role::Measured);
-        assert_eq!(drawn(&points, ".. . ..")[0], "..×.┤..");
+        let row = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|x| ((x, 0.0), None, None));
+        let barred = [((2.0, 0.0), Some((1.0, 4.0)), None)];
+        for (points, behind, wanted) in [
+            (&row[..], ".......", "×...×.."),
+            (&row, "", "×××××××"),
+            (&row, "... ...", "×..××.."),
+            (&barred, ".. . ..", "..×.┤.."),
+        ] {
+            assert_eq!(drawn(Marker::Braille, points, behind)[0], wanted);
+        }
     }
 }

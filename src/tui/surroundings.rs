@@ -61,39 +61,38 @@ pub fn theme(choice: ColourChoice, variable: impl Fn(&str) -> Option<String>) ->
 mod tests {
     use super::*;
 
-    fn with<'a>(variables: &'a [(&str, &str)]) -> impl Fn(&str) -> Option<String> + 'a {
-        |wanted| {
-            variables
-                .iter()
-                .find(|(name, _)| *name == wanted)
-                .map(|(_, value)| (*value).to_owned())
+    /// The variables of `NAME=VALUE NAME=VALUE`.
+    fn with(variables: &str) -> impl Fn(&str) -> Option<String> {
+        move |wanted| {
+            let mut pairs = variables.split(' ').filter_map(|pair| pair.split_once('='));
+            let found = pairs.find(|(name, _)| *name == wanted);
+            found.map(|(_, value)| value.to_owned())
         }
     }
 
     #[test]
     fn the_locale_decides_on_ascii() {
-        let cases: [(&[(&str, &str)], Marker); 5] = [
-            (
-                &[("LANG", "de_DE.UTF-8"), ("TERM", "xterm")],
-                Marker::Braille,
-            ),
-            (&[("LANG", "de_DE.UTF-8"), ("LC_ALL", "C")], Marker::Ascii),
-            (&[("LC_ALL", ""), ("LANG", "C.utf8")], Marker::Braille),
-            (&[("LANG", "C.UTF-8"), ("TERM", "linux")], Marker::HalfBlock),
-            (&[], Marker::Ascii),
-        ];
-        for (variables, wanted) in cases {
+        for (variables, wanted) in [
+            ("LANG=de_DE.UTF-8 TERM=xterm", Marker::Braille),
+            ("LANG=de_DE.UTF-8 LC_ALL=C", Marker::Ascii),
+            ("LC_ALL= LANG=C.utf8", Marker::Braille),
+            ("LANG=C.UTF-8 TERM=linux", Marker::HalfBlock),
+            ("", Marker::Ascii),
+        ] {
             assert_eq!(marker(with(variables)), wanted, "{variables:?}");
         }
     }
 
     #[test]
     fn no_color_is_honoured_unless_colour_is_asked_for() {
-        let no_color = with(&[("NO_COLOR", "1"), ("TERM", "xterm")]);
-        assert!(!theme(ColourChoice::Auto, &no_color).colour);
-        assert!(theme(ColourChoice::Always, &no_color).colour);
-        let empty = with(&[("NO_COLOR", ""), ("TERM", "xterm")]);
-        assert!(theme(ColourChoice::Auto, &empty).colour);
-        assert!(!theme(ColourChoice::Never, &empty).colour);
+        for (variables, choice, wanted) in [
+            ("NO_COLOR=1 TERM=xterm", ColourChoice::Auto, false),
+            ("NO_COLOR=1 TERM=xterm", ColourChoice::Always, true),
+            ("NO_COLOR= TERM=xterm", ColourChoice::Auto, true),
+            ("NO_COLOR= TERM=xterm", ColourChoice::Never, false),
+        ] {
+            let colour = theme(choice, with(variables)).colour;
+            assert_eq!(colour, wanted, "{variables:?} {choice:?}");
+        }
     }
 }

@@ -93,23 +93,17 @@ fn colour(role: Role, background: Background) -> Color {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use Role::*;
 
     #[test]
     fn nothing_else_on_the_traces_has_the_colour_of_the_exact_motion() {
-        use Role::{
-            Exact, Ghost, Measured, Old, OldTrack, Path, Pinned, Push, Quiet, Recent, Track,
-            Warning, X, Y, Z,
-        };
         for background in [Background::Dark, Background::Light] {
             for role in [
                 X, Y, Z, Path, Recent, Old, Track, OldTrack, Push, Warning, Ghost, Pinned, Quiet,
                 Measured,
             ] {
-                assert_ne!(
-                    colour(role, background),
-                    colour(Exact, background),
-                    "{role:?} on {background:?}"
-                );
+                let both = [role, Exact].map(|role| colour(role, background));
+                assert_ne!(both[0], both[1], "{role:?} on {background:?}");
             }
         }
     }
@@ -142,7 +136,6 @@ mod tests {
             });
             1.05 / (0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2] + 0.05)
         };
-        use Role::{Exact, Focus, OldTrack, Push, Track, Warning, X, Y, Z};
         for role in [X, Y, Z, Exact, Warning, Push, Focus, Track, OldTrack] {
             let colour = colour(role, Background::Light);
             let contrast = rgb(colour).map_or(21.0, contrast);

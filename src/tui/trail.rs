@@ -221,29 +221,26 @@ mod tests {
 
     const WIDTH: u16 = 60;
 
-    /// How many dots there are in each column of cells of what `trail` draws.
-    fn drawn(trail: &Trail, mut dots: Dots) -> Vec<u32> {
-        trail.draw(&mut dots);
-        let area = Rect::new(0, 0, WIDTH, 10);
-        let mut buf = Buffer::empty(area);
+    const AREA: Rect = Rect::new(0, 0, WIDTH, 10);
+
+    /// How many dots there are in each column of cells of the trail of a point that moves from the left to the right in
+    /// 120 s, at places `at` says by the time.
+    fn drawn(at: impl Fn(f64) -> (f64, f64)) -> Vec<u32> {
+        let mut dots = Dots::new(AREA, Marker::Braille);
+        trail(&dots, at).draw(&mut dots);
+        let mut buf = Buffer::empty(AREA);
         dots.render(&Theme::PLAIN, &mut buf);
         let in_cell = |x, y| {
             let sign = buf[(x, y)].symbol().chars().next().unwrap_or(' ');
-            u32::from(sign)
-                .checked_sub(0x2800)
-                .map_or(0, u32::count_ones)
+            let bits = u32::from(sign).checked_sub(0x2800);
+            bits.map_or(0, u32::count_ones)
         };
         (0..WIDTH)
             .map(|x| (0..10).map(|y| in_cell(x, y)).sum())
             .collect()
     }
 
-    fn sheet() -> Dots {
-        Dots::new(Rect::new(0, 0, WIDTH, 10), Marker::Braille)
-    }
-
-    /// A trail of a point that moves from the left to the right in 120 s, at places `at` says by the time.
-    fn trail(at: impl Fn(f64) -> (f64, f64)) -> Trail {
+    fn trail(dots: &Dots, at: impl Fn(f64) -> (f64, f64)) -> Trail {
         let mut recording = Recording::default();
         let moment = |step: u32| {
             let time_s = f64::from(step) * 0.05;
@@ -257,7 +254,7 @@ mod tests {
         (0..2400).for_each(|step| recording.push(&moment(step)));
         let now = moment(2400);
         let ages = Ages::new(Some(2.0), Some(60.0));
-        let mut trail = Trail::new(&sheet(), Around::Nothing);
+        let mut trail = Trail::new(dots, Around::Nothing);
         let to_dot = |at: &Vector3<f64>| (at.x, at.y);
         trail.follow(&recording, &ages, (now.time_s, &now.position), to_dot);
         trail
@@ -266,14 +263,11 @@ mod tests {
     #[test]
     fn the_newest_dots_are_denser_than_the_old_ones() {
         for slope in [0.0, 0.3, 0.1] {
-            let columns = drawn(&trail(|t| (t, 2.0 + slope * t)), sheet());
+            let columns = drawn(|t| (t, 2.0 + slope * t));
             let density =
                 |columns: &[u32]| columns.iter().sum::<u32>() as f64 / (2 * columns.len()) as f64;
-            let (old, turn, recent) = (
-                density(&columns[..25]),
-                density(&columns[30..45]),
-                density(&columns[50..59]),
-            );
+            let parts = [&columns[..25], &columns[30..45], &columns[50..59]];
+            let [old, turn, recent] = parts.map(density);
             assert!(old > 0.2 && old < 0.5, "{old}");
             assert!(turn > old + 0.2, "{old} {turn}");
             assert!(recent > turn + 0.15, "{turn} {recent}");
@@ -284,7 +278,7 @@ mod tests {
     fn an_old_area_is_sparse_and_the_last_swings_are_a_line() {
         // Twice up and down in each dot.
         let zigzag = |t: f64| (t, 20.0 + 15.0 * libm::sin(12.0 * t));
-        let columns = drawn(&trail(zigzag), sheet());
+        let columns = drawn(zigzag);
         let old: u32 = columns[10..25].iter().sum();
         let area = 15.0 * 2.0 * 30.0;
         assert!(f64::from(old) < 0.25 * area, "{old} of {area}");
@@ -296,7 +290,7 @@ mod tests {
     #[test]
     fn where_the_point_dwelt_the_path_is_denser() {
         // It stands still at x = 20 for a while.
-        let columns = drawn(&trail(|t| (t.min(20.0).max(t - 20.0), 7.0)), sheet());
+        let columns = drawn(|t| (t.min(20.0).max(t - 20.0), 7.0));
         assert!(columns[10] > columns[5], "{columns:?}");
     }
 }

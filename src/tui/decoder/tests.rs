@@ -14,6 +14,27 @@ fn all(decoder: &mut Decoder) -> Vec<Typed> {
     std::iter::from_fn(|| decoder.take_typed()).collect()
 }
 
+/// A decoder to which `bytes` came, and when.
+fn fed(bytes: &[u8]) -> (Decoder, Instant) {
+    let (mut decoder, begin) = (Decoder::default(), Instant::now());
+    decoder.feed(bytes, begin);
+    (decoder, begin)
+}
+
+/// `text` is known as `wanted` as a whole, cut anywhere, byte by byte, and twice before another key.
+fn is_known(text: &str, wanted: &Typed) {
+    let (bytes, once) = (text.as_bytes(), [wanted.clone()]);
+    for cut in 0..bytes.len() {
+        let (begin, end) = bytes.split_at(cut);
+        assert_eq!(typed(&[begin, end]), once, "{text:?} cut at {cut}");
+    }
+    let pieces: Vec<_> = bytes.chunks(1).collect();
+    assert_eq!(typed(&pieces), once, "{text:?} byte by byte");
+    let twice = [bytes, bytes, b"x"].concat();
+    let thrice = [wanted.clone(), wanted.clone(), Typed::Key(Key::Char('x'))];
+    assert_eq!(typed(&[&twice]), thrice, "{text:?} twice");
+}
+
 fn keys(keys: &[Key]) -> Vec<Typed> {
     keys.iter().copied().map(Typed::Key).collect()
 }
@@ -53,12 +74,7 @@ fn every_key_is_known_however_its_sequence_comes_apart() {
     ];
     for (key, texts) in cases {
         for text in *texts {
-            let bytes = text.as_bytes();
-            assert_eq!(typed(&[bytes]), keys(&[*key]), "{text:?}");
-            let pieces: Vec<_> = bytes.chunks(1).collect();
-            assert_eq!(typed(&pieces), keys(&[*key]), "{text:?} byte by byte");
-            let twice = [bytes, bytes, b"x"].concat();
-            assert_eq!(typed(&[&twice]), keys(&[*key, *key, Char('x')]), "{text:?}");
+            is_known(text, &Typed::Key(*key));
         }
     }
 }
@@ -91,35 +107,25 @@ fn what_is_no_key_is_passed_over_as_a_whole() {
         "\u{1b}]0;a title\u{7}",
         "\u{1b}P>|a terminal\u{1b}\\",
     ] {
-        let with_key = format!("{text}x");
-        assert_eq!(
-            typed(&[with_key.as_bytes()]),
-            keys(&[Key::Char('x')]),
-            "{text:?}"
-        );
+        let with_key = format!("{text}x").into_bytes();
+        assert_eq!(typed(&[&with_key]), keys(&[Key::Char('x')]), "{text:?}");
     }
-}
-
-#[test]
-fn bytes_that_are_no_text_are_passed_over() {
-    for garbage in [
-        &b"\xff\x80\xc3x"[..],
+    let no_text: [&[u8]; 4] = [
+        b"\xff\x80\xc3x",
         b"\xe9\x80x",
         b"\xf4\x90\x80\x80x",
         b"\xc0x",
-    ] {
-        assert_eq!(typed(&[garbage]), keys(&[Key::Char('x')]), "{garbage:?}");
+    ];
+    for bytes in no_text {
+        assert_eq!(typed(&[bytes]), keys(&[Key::Char('x')]), "{bytes:?}");
     }
 }
 
 #[test]
 fn escape_is_a_key_after_a_moment_and_loses_none_that_follows() {
-    let (mut decoder, begin) = (Decoder::default(), Instant::now());
-    decoder.feed(b"\x1b", begin);
-    assert_eq!(
-        (decoder.ready(), decoder.deadline()),
-        (0, Some(begin + GAP))
-    );
+    let (mut decoder, begin) = fed(b"\x1b");
+    assert_eq!(decoder.ready(), 0);
+    assert_eq!(decoder.deadline(), Some(begin + GAP));
     decoder.expire(begin + GAP / 2);
     assert_eq!(decoder.ready(), 0);
     decoder.expire(begin + GAP);
@@ -128,17 +134,20 @@ fn escape_is_a_key_after_a_moment_and_loses_none_that_follows() {
     // A sequence that comes too late is no sequence.
     decoder.feed(b"\x1b", begin);
     decoder.feed(b"[A", begin + 2 * GAP);
-    assert_eq!(
-        all(&mut decoder),
-        keys(&[Key::Esc, Key::Char('['), Key::Char('A')])
-    );
-    assert_eq!(typed(&[b"\x1bq"]), keys(&[Key::Esc, Key::Char('q')]));
-    assert_eq!(typed(&[b"\x1b\x1b[A"]), keys(&[Key::Esc, Key::Up]));
-    assert_eq!(typed(&[b"\x1b\x03"]), keys(&[Key::Esc, Key::Ctrl('c')]));
-    assert_eq!(
-        typed(&["\u{1b}ü".as_bytes()]),
-        keys(&[Key::Esc, Key::Char('ü')])
-    );
+    let late = [Key::Esc, Key::Char('['), Key::Char('A')];
+    assert_eq!(all(&mut decoder), keys(&late));
+    for (text, key) in [
+        ("\u{1b}q", Key::Char('q')),
+        ("\u{1b}\u{1b}[A", Key::Up),
+        ("\u{1b}\u{3}", Key::Ctrl('c')),
+        ("\u{1b}ü", Key::Char('ü')),
+    ] {
+        assert_eq!(
+            typed(&[text.as_bytes()]),
+            keys(&[Key::Esc, key]),
+            "{text:?}"
+        );
+    }
     decoder.feed(b"\x1bP", begin);
     decoder.expire(begin + GAP);
     assert_eq!(all(&mut decoder), keys(&[Key::Esc, Key::Char('P')]));
@@ -154,20 +163,16 @@ fn a_sequence_without_an_end_is_given_up() {
         "\u{1b}P",
         "\u{1b}O",
     ] {
-        let begun_bytes = begun.as_bytes();
-        let both = [begun_bytes, b"\x03"].concat();
-        let ends = |typed: &[Typed]| typed.last() == Some(&Typed::Key(Key::Ctrl('c')));
-        assert!(ends(&typed(&[&both])), "{begun:?}");
-        let (mut decoder, begin) = (Decoder::default(), Instant::now());
-        decoder.feed(begun_bytes, begin);
+        let last = typed(&[begun.as_bytes(), b"\x03"]).pop();
+        assert_eq!(last, Some(Typed::Key(Key::Ctrl('c'))), "{begun:?}");
+        let (mut decoder, begin) = fed(begun.as_bytes());
         decoder.expire(begin + GAP);
         all(&mut decoder);
         decoder.feed(b"x", begin + GAP);
         assert_eq!(all(&mut decoder), keys(&[Key::Char('x')]), "{begun:?}");
     }
     // Nor do keys that are held down keep it alive for ever.
-    let (mut decoder, begin) = (Decoder::default(), Instant::now());
-    decoder.feed(b"\x1b]", begin);
+    let (mut decoder, begin) = fed(b"\x1b]");
     for number in 1..100 {
         decoder.feed(b"j", begin + GAP / 2 * number);
     }
@@ -177,8 +182,7 @@ fn a_sequence_without_an_end_is_given_up() {
 #[test]
 fn the_time_of_a_sequence_is_its_own() {
     // Every piece ends within a sequence: none of them waits longer than a moment.
-    let (mut decoder, begin) = (Decoder::default(), Instant::now());
-    decoder.feed(b"\x1b[", begin);
+    let (mut decoder, begin) = fed(b"\x1b[");
     for number in 1..=100 {
         decoder.feed(b"A\x1b[", begin + GAP / 2 * number);
     }
@@ -199,20 +203,17 @@ fn a_long_sequence_takes_no_room() {
 
 #[test]
 fn a_paste_comes_as_one() {
-    let paste = |text: &str| vec![Typed::Paste(text.to_owned())];
+    let paste = |text: &str| Typed::Paste(text.to_owned());
     let text = "\u{1b}[200~a ü\u{1b}[20q\u{1b}\u{1b}[201~";
-    assert_eq!(typed(&[text.as_bytes()]), paste("a ü\u{1b}[20q\u{1b}"));
-    let pieces: Vec<_> = text.as_bytes().chunks(1).collect();
-    assert_eq!(typed(&pieces), paste("a ü\u{1b}[20q\u{1b}"));
+    is_known(text, &paste("a ü\u{1b}[20q\u{1b}"));
     let unfinished = b"\x1b[200~a\x03";
     assert_eq!(typed(&[unfinished]), keys(&[Key::Ctrl('c')]));
-    let (mut decoder, begin) = (Decoder::default(), Instant::now());
-    decoder.feed(b"\x1b[200~", begin);
+    let (mut decoder, begin) = fed(b"\x1b[200~");
     decoder.feed(&b"1".repeat(1 << 20), begin);
     decoder.expire(begin + GAP);
     assert_eq!(decoder.ready(), 0);
     decoder.expire(begin + GAP_IN_PASTE);
-    assert_eq!(all(&mut decoder), paste(&"1".repeat(LONGEST_PASTE)));
+    assert_eq!(all(&mut decoder), [paste(&"1".repeat(LONGEST_PASTE))]);
 }
 
 proptest! {
@@ -246,10 +247,6 @@ fn the_mouse_is_known_however_its_report_comes_apart() {
         ("\u{1b}[<65;65535;65535M", Did::WheelDown, 65534, 65534),
     ];
     for (report, did, x, y) in cases {
-        let wanted = [Typed::Mouse(Mouse { did, x, y })];
-        for cut in 1..report.len() {
-            let (begin, end) = report.as_bytes().split_at(cut);
-            assert_eq!(typed(&[begin, end]), wanted, "{report:?} cut at {cut}");
-        }
+        is_known(report, &Typed::Mouse(Mouse { did, x, y }));
     }
 }

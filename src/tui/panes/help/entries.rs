@@ -176,10 +176,8 @@ mod tests {
     #[test]
     fn a_group_is_listed_in_one_piece() {
         let entries = entries();
-        let groups: Vec<_> = entries
-            .chunk_by(|one, next| one.group == next.group)
-            .map(|group| group[0].group)
-            .collect();
+        let groups = entries.chunk_by(|one, next| one.group == next.group);
+        let groups: Vec<_> = groups.map(|group| group[0].group).collect();
         for (index, group) in groups.iter().enumerate() {
             assert!(!groups[..index].contains(group), "{group}");
         }
@@ -188,7 +186,6 @@ mod tests {
 
     #[test]
     fn a_search_finds_keys_texts_and_words_the_best_first() {
-        let first = |search: &str| found(search)[0].name();
         for (search, name) in [
             ("p", "p"),
             ("P", "P"),
@@ -201,7 +198,7 @@ mod tests {
             ("time step on", "."),
             ("magnify", "z"),
         ] {
-            assert_eq!(first(search), name, "{search}");
+            assert_eq!(found(search)[0].name(), name, "{search}");
         }
         assert!(found("xyzzy").is_empty());
         assert_eq!(found("  ").len(), entries().len());

@@ -1,6 +1,6 @@
 //! The words about each phase of a time step, for every scheme.
 
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Words {
     pub name: &'static str,
     /// What happens in it, in one sentence.
@@ -10,14 +10,6 @@ pub struct Words {
     /// Where that is to be seen in the 3-D view; empty where nothing is.
     pub seen: &'static str,
 }
-
-/// The words about a phase that has none here.
-const OTHER: Words = Words {
-    name: "",
-    happens: "",
-    changes: "",
-    seen: "",
-};
 
 const fn words(
     name: &'static str,
@@ -56,8 +48,10 @@ const TABLE: &[Words] = &[
     words("Taylor series", "Orientation and momentum at the time t, from a series that is exact to the last digits.", "how the body stands, and L", "the body before (°) and after"),
 ];
 
-pub fn of(name: &str) -> &'static Words {
-    TABLE.iter().find(|row| row.name == name).unwrap_or(&OTHER)
+/// The words about the phase of this `name`; empty where there are none.
+pub fn of(name: &str) -> Words {
+    let found = TABLE.iter().find(|row| row.name == name);
+    found.copied().unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -68,7 +62,7 @@ mod tests {
     #[test]
     fn every_phase_has_words() {
         for name in NAMES {
-            assert_ne!(of(name), &OTHER, "{name}");
+            assert_ne!(of(name), Words::default(), "{name}");
         }
         assert_eq!(TABLE.len(), NAMES.len());
     }
