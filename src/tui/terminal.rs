@@ -216,9 +216,13 @@ impl Write for Counted {
     }
 }
 
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Waits for the pen; for ever where a signal is ending the process: nothing may be drawn after the terminal is given back.
 fn pen() -> MutexGuard<'static, ()> {
-    let pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
+    let pen = locked(&PEN);
     while ENDING.load(Ordering::SeqCst) {
         thread::park();
     }
@@ -258,7 +262,7 @@ pub fn leave() {
 }
 
 fn print_panics() {
-    let panics = std::mem::take(&mut *PANICS.lock().unwrap_or_else(PoisonError::into_inner));
+    let panics = std::mem::take(&mut *locked(&PANICS));
     for panic in panics {
         let _ = writeln!(io::stderr(), "gyrolab: in the background, {panic}");
     }
@@ -290,8 +294,7 @@ fn guard() -> io::Result<()> {
                 leave();
                 before(panic);
             } else if ENTERED.load(Ordering::SeqCst) {
-                let mut panics = PANICS.lock().unwrap_or_else(PoisonError::into_inner);
-                panics.push(panic.to_string());
+                locked(&PANICS).push(panic.to_string());
             } else {
                 before(panic);
             }
@@ -299,7 +302,7 @@ fn guard() -> io::Result<()> {
         let ends = [SIGHUP, SIGTERM, SIGINT, SIGQUIT];
         result = Signals::new(ends.iter().chain(&[SIGTSTP, SIGCONT, SIGWINCH, SIGXFSZ])).map(
             |signals| {
-                *SIGNALS.lock().unwrap_or_else(PoisonError::into_inner) = Some(signals);
+                *locked(&SIGNALS) = Some(signals);
                 // If the system gives no thread, the loop handles signals: see listen_without_thread().
                 let _ = thread::Builder::new()
                     .name("signals".to_owned())
@@ -313,10 +316,7 @@ fn guard() -> io::Result<()> {
 /// Handles signals on a thread of its own. It ends the process without the loop, which may hang or fail on a terminal that
 /// has hung up.
 fn listen() {
-    let mut signals = SIGNALS
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .take();
+    let mut signals = locked(&SIGNALS).take();
     for signal in signals.iter_mut().flat_map(Signals::forever) {
         handle(signal);
         keyboard::wake();
@@ -325,7 +325,7 @@ fn listen() {
 
 /// Handles pending signals, if there is no thread for [`listen`].
 fn listen_without_thread() {
-    let mut signals = SIGNALS.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut signals = locked(&SIGNALS);
     let pending: Vec<_> = signals.iter_mut().flat_map(Signals::pending).collect();
     drop(signals);
     pending.into_iter().for_each(handle);

@@ -1,6 +1,6 @@
 //! The list of presets and files, with a preview of what is selected.
 
-use super::{frame_on_top, write};
+use super::{frame_on_top, longest, write};
 use crate::lab::Lab;
 use crate::lab::browser::Browser;
 use crate::lab::preview::Preview;
@@ -75,11 +75,9 @@ fn keys(files: usize, others: usize, width: usize) -> String {
         format!("/ filters, Enter opens; {files}{others}"),
         format!("{KEYS}; {files}"),
         format!("/ filters, Enter opens; {files}"),
+        KEYS.to_owned(),
     ];
-    let mut forms = forms.into_iter();
-    forms
-        .find(|form| form.len() <= width)
-        .unwrap_or(KEYS.to_owned())
+    longest(forms, width)
 }
 
 fn filter_line(browser: &Browser, is_typed: bool, theme: &Theme, area: Rect, buf: &mut Buffer) {

@@ -1,6 +1,6 @@
 //! The lines around the panes: title, health and keys.
 
-use super::{shortened, write};
+use super::{longest, shortened, write};
 use crate::analysis::remarks::{Remark, remarks};
 use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
@@ -82,9 +82,7 @@ fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
         format!("t {t} s  step {step}  {pace} "),
         format!("t {t} s step {step} {moves}"),
     ];
-    let fits = |clock: &&String| clock.chars().count() <= width;
-    let clock = clocks.iter().find(fits).unwrap_or(&clocks[2]);
-    shortened(clock, width).into_owned()
+    shortened(&longest(clocks, width), width).into_owned()
 }
 
 /// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.

@@ -3,7 +3,7 @@
 //! It shows where the point is, and the shape of its last swings behind it, as a line. The turn before them and all
 //! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
 
-use super::{PaneRow, Seen, Width, frame, round_title, write};
+use super::{MOST_PUSHES, PaneRow, ROWS_A_LINE, Seen, Width, frame, round_title, write};
 use crate::lab::view::Pane;
 use crate::lab::view::markers::Marker;
 use crate::measured::Place;
@@ -31,8 +31,6 @@ use std::f64::consts::TAU;
 const ARROW: f64 = 0.35;
 /// A force with a horizontal part smaller than this share of it counts as straight up or down.
 const UPRIGHT: f64 = 0.1;
-/// The most pushes that are drawn at one time.
-const MOST_PUSHES: usize = 20;
 
 /// The least radius shown, m. The path of a point that stays on the vertical has no radius.
 const LEAST: f64 = 1e-6;
@@ -49,8 +47,7 @@ const ON_AXLE: f64 = 1e-6;
 /// Swings larger than this, dots, cover each other where they are close together.
 const LARGE_SWING: f64 = 4.0;
 
-/// Rows of the pane for each line of its legend, and the most lines.
-const ROWS_A_LINE: u16 = 5;
+/// The most lines of the legend.
 const MOST_LINES: u16 = 3;
 
 /// What stands between two words of a legend at length, and in short.

@@ -87,23 +87,19 @@ const NOT_KEPT: &str = "session not kept";
 /// What stands in the line of hints. That the session is not kept stands there as long as it is so.
 fn said(lab: &Lab) -> (String, Role) {
     let on_top = lab.on_top();
-    let (text, role) = match (on_top.count, lab.notice()) {
-        (Some(MOST_COUNTED), _) => (
-            format!("{MOST_COUNTED} is the most that is counted: now the key; Esc forgets it"),
-            Role::Focus,
-        ),
-        (Some(count), _) => (
-            format!("{count}: now the key, such as . for that many steps; Esc forgets it"),
-            Role::Focus,
-        ),
-        (None, Some(notice)) => (notice, Role::Focus),
-        (None, None) => match on_top.notice.trouble() {
-            Some(trouble) => return (trouble.to_owned(), Role::Warning),
-            None => (lab.note().into_owned(), Role::Text),
-        },
+    let message = match on_top.count {
+        Some(MOST_COUNTED) => Some(format!(
+            "{MOST_COUNTED} is the most that is counted: now the key; Esc forgets it"
+        )),
+        Some(count) => Some(format!(
+            "{count}: now the key, such as . for that many steps; Esc forgets it"
+        )),
+        None => lab.notice(),
     };
-    match on_top.notice.trouble() {
-        Some(_) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), role),
-        None => (text, role),
+    match (message, on_top.notice.trouble()) {
+        (Some(text), Some(_)) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), Role::Focus),
+        (Some(text), None) => (text, Role::Focus),
+        (None, Some(trouble)) => (trouble.to_owned(), Role::Warning),
+        (None, None) => (lab.note().into_owned(), Role::Text),
     }
 }

@@ -1,5 +1,6 @@
 //! The line about the measured data beside the run: their mark and their file, and how far they are from the run.
 
+use super::chrome::SEPARATOR;
 use super::{shortened, write};
 use crate::lab::Lab;
 use crate::lab::measured::{Beside, Sum};
@@ -12,7 +13,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use std::path::Path;
 
-const SEPARATOR: &str = " · ";
 /// The fewest columns to which a file's name is shortened.
 const LEAST_NAME: usize = 12;
 

@@ -184,9 +184,19 @@ pub(super) fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, widt
         format!("{title} at step {step}, then broken"),
         format!("{title}, step {step}"),
     ];
-    let room = width.saturating_sub(4) as usize;
-    let fitting = forms.iter().find(|form| columns(form) <= room);
-    fitting.unwrap_or(&forms[2]).clone()
+    longest(forms, width.saturating_sub(4).into())
+}
+
+/// The first of `forms`, the longest first, that fits in `width` columns; else the last.
+pub(super) fn longest(forms: impl IntoIterator<Item = String>, width: usize) -> String {
+    let mut last = String::new();
+    for form in forms {
+        last = form;
+        if columns(&last) <= width {
+            break;
+        }
+    }
+    last
 }
 
 /// As [`frame`], on top of whatever is there.
@@ -214,6 +224,19 @@ pub(super) fn write(
     let style = style.remove_modifier(weight);
     let (end, _) = buf.set_stringn(area.x + x, area.y + y, text, room, style);
     end - area.x
+}
+
+/// Rows of a round pane for each line of its legend.
+const ROWS_A_LINE: u16 = 5;
+/// The most pushes that a picture shows at one time.
+const MOST_PUSHES: usize = 20;
+
+/// Takes the last of the highest rank out of `items`, but none of rank 0; whether there was one.
+fn leave_one_out<T>(items: &mut Vec<T>, rank: impl Fn(&T) -> u8) -> bool {
+    let ranks = items.iter().map(rank).enumerate();
+    let last = ranks.max_by_key(|&(_, rank)| rank);
+    let last = last.filter(|&(_, rank)| rank > 0);
+    last.map(|(index, _)| items.remove(index)).is_some()
 }
 
 /// Stands for the rest of a text. Not every terminal's font has a single character for it.

@@ -7,7 +7,7 @@ mod arrows;
 mod body;
 mod way;
 
-use super::{PaneRow, Seen, Width, frame, round_title, write};
+use super::{PaneRow, ROWS_A_LINE, Seen, Width, frame, round_title, write};
 use crate::lab::view::Pane;
 use crate::observe::ages::Ages;
 use crate::observe::camera::Zoom;
@@ -50,8 +50,6 @@ const TILT_DEG: f64 = 5.0;
 const MARGIN: f64 = 1.06;
 /// A torque smaller than this share of the largest torque of the weight counts as zero.
 const NO_TORQUE: f64 = 1e-9;
-/// Rows of the pane for each line of its legend.
-const ROWS_A_LINE: u16 = 5;
 /// Straight pieces of a circle.
 const PARTS: usize = 72;
 

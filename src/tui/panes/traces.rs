@@ -7,7 +7,7 @@ mod curve;
 mod groups;
 mod plot;
 
-use super::{PaneRow, Seen, Width, frame, write};
+use super::{PaneRow, Seen, Width, frame, longest, write};
 use crate::lab::action::{Action, Direction};
 use crate::lab::view::Pane;
 use crate::observe::marks::Marks;
@@ -223,9 +223,8 @@ impl Traces<'_> {
             (false, _) if plot.has_band => &BAND,
             (false, _) => &[],
         };
-        let fits = |word: &&&str| range.chars().count() + word.len() < room;
-        let word = words.iter().find(fits).copied().unwrap_or_default();
-        format!("{range} {word}")
+        let words = words.iter().chain(&[""]);
+        longest(words.map(|word| format!("{range} {word}")), room)
     }
 
     /// The line of the residual 0.

@@ -1,6 +1,7 @@
 //! Which lines are shown: of the values that can be edited all or those that a search finds, and of all lines those for
 //! which there is room.
 
+use super::super::leave_one_out;
 use super::ROW;
 use super::lines::{
     COLUMN, Line, PREDICTED, VALUE_END, heading, in_pane, now_lines, watched_lines,
@@ -153,12 +154,8 @@ pub(super) fn by_group(lines: &[Line], height: usize) -> Option<Vec<&[Line]>> {
 
 /// The lines for which there is room, the least important left out.
 pub(super) fn fitting(mut lines: Vec<Line>, room: usize) -> Vec<Line> {
-    while lines.len() > room {
-        let ranks = lines.iter().map(|line| line.rank).enumerate();
-        match ranks.max_by_key(|&(_, rank)| rank) {
-            Some((index, 1..)) => drop(lines.remove(index)),
-            _ => break, // all of it matters: the rest is cut off
-        }
+    // Where all of it matters, the rest is cut off.
+    while lines.len() > room && leave_one_out(&mut lines, |line| line.rank) {
         lines = without_empty_groups(lines);
     }
     lines

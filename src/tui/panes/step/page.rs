@@ -1,6 +1,6 @@
 //! A page of text in sections, of which the least important are left out where the screen is too small for all.
 
-use super::super::write;
+use super::super::{leave_one_out, write};
 use crate::lab::view::theme::Theme;
 use crate::text::wrap::wrapped;
 use crate::tui::theme::Role;
@@ -71,13 +71,7 @@ pub fn height(sections: &[Section]) -> usize {
 
 /// Leaves sections out, those of the highest rank first, until no more than `room` lines are left, or only those of rank 0.
 pub fn fit(sections: &mut Vec<Section>, room: usize) {
-    while height(sections) > room {
-        let ranks = sections.iter().map(|section| section.rank).enumerate();
-        match ranks.max_by_key(|&(_, rank)| rank) {
-            Some((index, 1..)) => drop(sections.remove(index)),
-            _ => return,
-        }
-    }
+    while height(sections) > room && leave_one_out(sections, |section| section.rank) {}
 }
 
 /// Puts an empty line before each section that wants one, if `room` holds all of them.

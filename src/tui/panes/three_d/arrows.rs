@@ -1,6 +1,7 @@
 //! The arrows of the scene, and the line that says what their letters mean. Where the step pane is shown, only the arrows
 //! that its phase is about, the axis of its turn, and the body as it stood before the step.
 
+use super::super::MOST_PUSHES;
 use super::body::Sign;
 use super::{CHANGE, Label, MOMENTUM, Subject, write};
 use crate::lab::explained::{Explained, table_of};
@@ -21,8 +22,6 @@ const OMEGA: f64 = 1.17;
 const WEIGHT: f64 = 0.35;
 const TORQUE: f64 = 0.5;
 const PUSH: f64 = 0.4;
-/// The most pushes that are drawn at one time.
-const MOST_PUSHES: usize = 20;
 /// How far the axis of a turn goes beyond the body on both sides, as a share of its size.
 const AXIS: f64 = 1.0;
 /// Directions that differ by less than this, rad, are drawn as one.

@@ -1,6 +1,7 @@
 //! What stands on the frame: the title above, which says what is drawn, and below bars with a word at each, where pushes
 //! act on the run and where the time is that the strip of the fast motion shows.
 
+use super::super::longest;
 use super::plot::Content;
 use super::{ROW, Traces, ZOOM, write};
 use crate::observe::ghost::Ghost;
@@ -68,8 +69,8 @@ impl Traces<'_> {
             shortest = legend(length).collect::<Vec<_>>().join(" ");
             titles.push(format!("{point} {shortest}"));
         }
-        let fits = |title: &String| title.chars().count() <= room;
-        titles.into_iter().find(fits).unwrap_or(shortest)
+        titles.push(shortest);
+        longest(titles, room)
     }
 
     /// Draws where pushes act, and the time of the strip `zoomed`, on the `border` below `strip`, with the words beside them
