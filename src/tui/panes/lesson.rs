@@ -266,19 +266,18 @@ mod tests {
             is_selected: true,
             is_given: false,
         };
-        let choice = Paragraph::new(choice, "is ten times smaller");
-        assert_eq!(
-            texts(&choice, 16),
-            ["> [ ] is ten", "      times", "      smaller"]
-        );
         let item = Kind::Item {
             mark: "-".to_owned(),
             depth: 2,
         };
-        let item = Paragraph::new(item, "one two");
-        assert_eq!(texts(&item, 8), ["  - one", "    two"]);
-        let code = Paragraph::new(Kind::Code, "a   b\nc");
-        assert_eq!(texts(&code, 8), ["  a   b", "  c"]);
+        let choices = ["> [ ] is ten", "      times", "      smaller"];
+        for (kind, text, width, wanted) in [
+            (choice, "is ten times smaller", 16, &choices[..]),
+            (item, "one two", 8, &["  - one", "    two"]),
+            (Kind::Code, "a   b\nc", 8, &["  a   b", "  c"]),
+        ] {
+            assert_eq!(texts(&Paragraph::new(kind, text), width), wanted);
+        }
     }
 
     #[test]

@@ -168,9 +168,18 @@ mod tests {
 
     #[test]
     fn each_thing_has_a_sign_of_its_own() {
-        assert_eq!(drawn(&timeline(40.0, 80.0)), "──═════─█───:────····");
-        assert_eq!(drawn(&timeline(0.0, 0.0)), "█·═════·····:········");
-        assert_eq!(drawn(&timeline(100.0, 100.0)), "──═════─────:───────█");
+        for (now_s, furthest_s, line) in [
+            (40.0, 80.0, "──═════─█───:────····"),
+            (0.0, 0.0, "█·═════·····:········"),
+            (100.0, 100.0, "──═════─────:───────█"),
+            (150.0, 150.0, "─═══──:───│────█·····"), // twice as long
+        ] {
+            assert_eq!(drawn(&timeline(now_s, furthest_s)), line);
+        }
+        let mut endless = timeline(0.0, 0.0);
+        endless.marks.pushes = vec![(50.0, f64::INFINITY)];
+        endless.marks.edits.clear();
+        assert_eq!(drawn(&endless), "█·········═══════════");
     }
 
     #[test]
@@ -186,19 +195,9 @@ mod tests {
 
     #[test]
     fn a_run_that_goes_on_beyond_its_end_doubles_the_line() {
-        let beyond = timeline(150.0, 150.0);
-        assert_eq!(beyond.whole_s(), 200.0);
-        assert_eq!(drawn(&beyond), "─═══──:───│────█·····");
-        assert_eq!(timeline(100.0, 100.0).whole_s(), 100.0);
-        assert_eq!(timeline(0.0, 201.0).whole_s(), 400.0);
-    }
-
-    #[test]
-    fn a_push_without_end_ends_with_the_line() {
-        let mut endless = timeline(0.0, 0.0);
-        endless.marks.pushes = vec![(50.0, f64::INFINITY)];
-        endless.marks.edits.clear();
-        assert_eq!(drawn(&endless), "█·········═══════════");
+        for (furthest_s, whole_s) in [(100.0, 100.0), (150.0, 200.0), (201.0, 400.0)] {
+            assert_eq!(timeline(0.0, furthest_s).whole_s(), whole_s);
+        }
     }
 
     #[test]

@@ -122,12 +122,17 @@ mod tests {
     use ratatui::buffer::Buffer;
     use ratatui::layout::Rect;
 
-    /// The two rows of cells that `columns` are drawn on.
-    fn drawn(columns: &[Option<Column>], scale: &Scale, stroke: Stroke) -> [String; 2] {
+    /// The two rows of cells on which 40 columns are drawn, `column` says which, on a strip from `low` to `high`.
+    fn drawn(
+        column: impl Fn(usize) -> Column,
+        (low, high): (f64, f64),
+        stroke: Stroke,
+    ) -> [String; 2] {
         let area = Rect::new(0, 0, 20, 2);
         let mut dots = Dots::new(area, Marker::Braille);
-        let ink = Ink::Strong(Role::Text);
-        draw(&mut dots, columns, scale, stroke, ink);
+        let columns: Vec<_> = (0..40).map(|x| Some(column(x))).collect();
+        let (scale, ink) = (Scale { low, high }, Ink::Strong(Role::Text));
+        draw(&mut dots, &columns, &scale, stroke, ink);
         let mut buf = Buffer::empty(area);
         dots.render(&Theme::PLAIN, &mut buf);
         [0, 1].map(|y| (0..20).map(|x| buf[(x, y)].symbol()).collect())
@@ -135,42 +140,22 @@ mod tests {
 
     #[test]
     fn a_constant_in_the_middle_of_its_strip_is_one_line_whatever_its_rounding() {
-        let scale = Scale {
-            low: 29.99,
-            high: 30.01,
+        let column = |x: usize| Column {
+            extent: Extent::of(30.0 + 1e-13 * (x % 3) as f64 - 1e-13),
+            band: None,
         };
-        let column = |x: usize| {
-            let value = 30.0 + 1e-13 * (x % 3) as f64 - 1e-13;
-            Some(Column {
-                extent: Extent::of(value),
-                band: None,
-            })
-        };
-        let columns: Vec<_> = (0..40).map(column).collect();
-        assert_eq!(
-            drawn(&columns, &scale, Stroke::Full),
-            [" ".repeat(20), "⠉".repeat(20)]
-        );
+        let shown = drawn(column, (29.99, 30.01), Stroke::Full);
+        assert_eq!(shown, [" ".repeat(20), "⠉".repeat(20)]);
     }
 
     #[test]
     fn a_band_that_goes_on_beyond_its_strip_has_no_edge_there() {
-        let extent = Extent {
-            min: -1.0,
-            max: 9.0,
-        };
-        let columns = [Some(Column {
-            extent,
-            band: Some(extent),
-        }); 40];
-        let scale = Scale {
-            low: 0.0,
-            high: 8.0,
-        };
-        let [above, below] = drawn(&columns, &scale, Stroke::Full);
+        let extent = Extent::of(-1.0).and(Extent::of(9.0));
+        let band = Some(extent);
+        let of = |stroke| drawn(|_| Column { extent, band }, (0.0, 8.0), stroke);
+        let [above, below] = of(Stroke::Full);
         assert_eq!(above, below);
         assert!(!above.contains('⠉'), "{above}");
-        let empty = [" ".repeat(20), " ".repeat(20)];
-        assert_eq!(drawn(&columns, &scale, Stroke::Edges), empty);
+        assert_eq!(of(Stroke::Edges), [" ".repeat(20), " ".repeat(20)]);
     }
 }
