@@ -137,12 +137,13 @@ impl Decoder {
     /// Drops the unfinished sequence. Esc, or Esc and one more key, count as typed; a longer sequence cannot have been
     /// typed so fast and is ignored.
     fn give_up(&mut self) {
-        let keys: &[u8] = match self.pending.as_slice() {
-            [ESC] => &[ESC],
-            [ESC, other] if other.is_ascii_graphic() => &[ESC, *other],
-            _ => &[],
+        let count = match self.pending.as_slice() {
+            [ESC] => 1,
+            [ESC, other] if other.is_ascii_graphic() => 2,
+            _ => 0,
         };
-        let keys = keys.iter().copied().map(|byte| Typed::Key(key_of(byte)));
+        let keys = self.pending[..count].iter();
+        let keys = keys.map(|byte| Typed::Key(key_of(*byte)));
         self.typed.extend(keys);
         self.pending.clear();
     }

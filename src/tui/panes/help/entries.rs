@@ -95,15 +95,12 @@ fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
 
 /// Every entry, group by group.
 pub fn entries() -> Vec<Entry> {
-    let of_lab = |group| {
-        let rows = BINDINGS.iter().filter(move |row| row.modes[0] == Mode::Lab);
-        let rows = rows.filter(move |row| purpose(row.action) == group);
-        rows.map(move |row| key(group, None, row))
-    };
     let of_mode = |(mode, group)| {
         let rows = BINDINGS.iter().filter(move |row| row.modes[0] == mode);
+        let rows = rows.filter(move |row| mode != Mode::Lab || purpose(row.action) == group);
         rows.map(move |row| key(group, None, row))
     };
+    let of_lab = PURPOSES.map(|group| (Mode::Lab, group)).into_iter();
     let of_pane = PANES.iter().flat_map(|pane| {
         let rows = pane.keys.iter();
         rows.map(|row| key(pane.title, Some(pane.id), row))
@@ -115,7 +112,7 @@ pub fn entries() -> Vec<Entry> {
         short: word,
         text: meaning,
     });
-    let keys = PURPOSES.into_iter().flat_map(of_lab).chain(of_pane);
+    let keys = of_lab.flat_map(of_mode).chain(of_pane);
     keys.chain(words)
         .chain(PLACES.into_iter().flat_map(of_mode))
         .collect()
