@@ -20,13 +20,13 @@ pub const MOST_EDITS: usize = 10_000;
 pub const MOST_PRODUCT: usize = 1_000_000;
 
 /// The most tables that a file may ask for. A few letters ask for one, and it takes 2 kB.
-const MOST_TABLES: usize = 70_000;
+const MOST_TABLES: usize = 120_000;
 
 /// The most lines and elements of arrays that a file may have.
-const MOST_VALUES: usize = 350_000;
+const MOST_VALUES: usize = 800_000;
 
-/// Refuses a `text` with more tables or values than a file may have, which would take more than 200 MB, or than `times` as
-/// many: the header of a CSV writes as several lines what may stand on one in its scenario.
+/// Refuses a `text` with more tables or values than a file may have, which would take far more memory than a scenario of its
+/// length, or than `times` as many: the header of a CSV writes as several lines what may stand on one in its scenario.
 pub fn few_enough(text: &str, times: usize) -> Result<(), Problem> {
     let (most_tables, most_values) = (times * MOST_TABLES, times * MOST_VALUES);
     let (mut tables, mut values, mut heading) = (0, 0, "");
