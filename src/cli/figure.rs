@@ -5,13 +5,13 @@ use super::layout::time;
 use super::progress::{self, Interrupted, Interruption};
 use super::scenario::scenario_of;
 use super::values::positive;
-use super::{complain, refuse, tell};
+use super::{ended_by, refuse, tell};
 use crate::analysis::cost;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Request, Run};
 use crate::figure::table::Table;
 use crate::figure::{self, Format, PT_PER_MM, of_table};
-use crate::measured::{self, Measured};
+use crate::measured;
 use crate::physics::scheme;
 use crate::text::printable::{Shown, printable};
 use anyhow::{bail, ensure};
@@ -111,15 +111,11 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
         mm(figure.scene.height_pt),
         Shown(&args.output)
     ));
-    let Some(error) = figure.broke else {
-        return Ok(ExitCode::SUCCESS);
-    };
-    complain(&anyhow::anyhow!(error));
-    Ok(ExitCode::FAILURE)
+    Ok(ended_by(figure.broke.map(anyhow::Error::msg)))
 }
 
 enum Subject {
-    Runs(Vec<Run>, Kind, Option<Arc<Measured>>),
+    Runs(Vec<Run>, Request),
     Table(Table),
 }
 
@@ -137,9 +133,15 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
                 Some(measured) => Kind::measured(measured.series()?),
                 None => Kind::traces(),
             };
-            let kind = kind.unwrap_or(usual);
-            let measured = measured.map(Arc::new);
-            Ok(Subject::Runs(runs(args)?, kind, measured))
+            let request = Request {
+                kind: kind.unwrap_or(usual),
+                from_s: args.from.unwrap_or(0.0),
+                to_s: args.to,
+                exact: args.exact,
+                measured: measured.map(Arc::new),
+                width_pt: args.width * PT_PER_MM,
+            };
+            Ok(Subject::Runs(runs(args)?, request))
         }
         (Some(_), 2..) => {
             bail!("the table of a comparison, of a sweep or of a fit is drawn alone: give one file")
@@ -199,17 +201,9 @@ fn drawn(
     args: &FigureArgs,
     interruption: &Interruption,
 ) -> anyhow::Result<Figure> {
-    let (runs, kind, measured) = match subject {
-        Subject::Runs(runs, kind, measured) => (runs, kind, measured),
+    let (runs, request) = match subject {
+        Subject::Runs(runs, request) => (runs, request),
         Subject::Table(table) => return drawn_table(table, args),
-    };
-    let request = Request {
-        kind: kind.clone(),
-        from_s: args.from.unwrap_or(0.0),
-        to_s: args.to,
-        exact: args.exact,
-        measured: measured.clone(),
-        width_pt: args.width * PT_PER_MM,
     };
     for run in runs.iter().filter(|run| run.named.ends_with(".csv")) {
         tell(format_args!(
@@ -218,7 +212,7 @@ fn drawn(
             run.scenario.steps
         ));
     }
-    let figure = of_runs::figure(runs, &request, interruption.meter());
+    let figure = of_runs::figure(runs, request, interruption.meter());
     Ok(figure.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?)
 }
 

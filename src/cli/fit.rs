@@ -4,7 +4,7 @@ use super::args::Changes;
 use super::commands::{Cli, Command};
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::scenario::change;
-use super::{one_on_stdout, print_result, tell};
+use super::{one_on_stdout, print_result, tell_of_rows};
 use crate::export::Destination;
 use crate::measured::{self, Measured};
 use crate::scenario::{Document, Problem, Problems};
@@ -12,7 +12,7 @@ use crate::study::fit::report::Report;
 use crate::study::fit::table::{self, Asked};
 use crate::study::fit::{Fit, Free, Model, NoFit, fit as fitted};
 use crate::study::verify::Unverified;
-use crate::text::number::{counted, shortest, significant};
+use crate::text::number::{shortest, significant};
 use crate::text::printable::{Shown, brief};
 use anyhow::{Context, anyhow, bail};
 use clap::{Args, Parser};
@@ -177,7 +177,7 @@ fn chosen(mut measured: Measured, rows: Option<&Rows>) -> Result<Measured, Probl
     let Some(rows) = rows else {
         return Ok(measured);
     };
-    let count = measured.rows();
+    let count = measured.lines.len();
     let refused = |rule: String| {
         let mut problem = Problem::at("", rule);
         problem.place = Some(format!("--rows {}", brief(&rows.text, 80)));
@@ -192,8 +192,7 @@ fn chosen(mut measured: Measured, rows: Option<&Rows>) -> Result<Measured, Probl
         let mut ranges = rows.ranges.iter();
         ranges.any(|(first, last)| (*first..=*last).contains(&number))
     };
-    measured.keep_rows(|row| has(row + 1));
-    if measured.count() == 0 {
+    if measured.keep_rows(|row| has(row + 1)) == 0 {
         return Err(refused("these rows hold no measured value".to_owned()));
     }
     Ok(measured)
@@ -246,8 +245,7 @@ fn tell_of(report: &Report<'_>, args: &FitArgs) -> anyhow::Result<ExitCode> {
     let output = args.output.as_deref();
     print_result(report, output, args.json)?;
     if let Some(path) = output.filter(|path| !Destination::is_for_stdout(path)) {
-        let rows = counted(report.fit.residuals.len() as u64, "row");
-        tell(format_args!("gyrolab: {rows} in {}", Shown(path)));
+        tell_of_rows(report.fit.residuals.len() as u64, path);
     }
     Ok(ExitCode::SUCCESS)
 }

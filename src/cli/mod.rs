@@ -32,7 +32,8 @@ mod writeup;
 use crate::export::destination::Destination;
 use crate::export::destination::DestinationError;
 use crate::scenario::presets;
-use crate::text::printable::{is_steering, printable, printable_lines};
+use crate::text::number::counted;
+use crate::text::printable::{Shown, is_steering, printable, printable_lines};
 use anyhow::Context;
 use args::WorkbenchArgs;
 use clap::builder::StyledStr;
@@ -73,10 +74,7 @@ fn ended(result: anyhow::Result<ExitCode>) -> ExitCode {
         Ok(code) => code,
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) if error.is::<Interrupted>() => ExitCode::from(INTERRUPTED),
-        Err(error) => {
-            complain(&error);
-            ExitCode::FAILURE
-        }
+        Err(error) => ended_by(Some(error)),
     }
 }
 
@@ -201,10 +199,7 @@ fn misused(error: &clap::Error) -> ExitCode {
         (true, false) => io::stdout().write_all(plain.as_bytes()),
     };
     match printed.context(NO_STDOUT) {
-        Err(error) if is_help && !is_closed_pipe(&error) => {
-            complain(&error);
-            ExitCode::FAILURE
-        }
+        Err(error) if is_help && !is_closed_pipe(&error) => ended_by(Some(error)),
         _ => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
     }
 }
@@ -262,6 +257,20 @@ fn print_result<T: Display + Serialize>(
 /// Prints `text` on stderr; a stderr that cannot be written ends nothing.
 fn tell(text: impl Display) {
     let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Says how many rows are in the file `path`.
+fn tell_of_rows(rows: u64, path: &Path) {
+    let rows = counted(rows, "row");
+    tell(format_args!("gyrolab: {rows} in {}", Shown(path)));
+}
+
+/// How a command ends whose run `broke` off: it has written what there is before that.
+fn ended_by(broke: Option<anyhow::Error>) -> ExitCode {
+    broke.map_or(ExitCode::SUCCESS, |error| {
+        complain(&error);
+        ExitCode::FAILURE
+    })
 }
 
 fn complain(error: &anyhow::Error) {

@@ -4,7 +4,7 @@ use super::args::{LengthArgs, ScenarioArgs};
 use super::layout::LayoutArgs;
 use super::progress::{self, Interrupted, Interruption};
 use super::scenario::scenario_of;
-use super::{complain, one_on_stdout, print_result, tell};
+use super::{ended_by, one_on_stdout, print_result, tell_of_rows};
 use crate::analysis::health::advise;
 use crate::analysis::{Monitor, Readouts};
 use crate::export::stream::{self, Ended};
@@ -12,9 +12,9 @@ use crate::export::{CsvWriter, Summary};
 use crate::run::{Clock, Simulation, Step};
 use crate::scenario::Scenario;
 use crate::text::advice::advised;
-use crate::text::number::{counted, shortest};
+use crate::text::number::shortest;
 use crate::text::printable::Shown;
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use std::cell::RefCell;
 use std::io::{self, Write};
@@ -76,16 +76,11 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let summary = Summary::new(played.readouts(), played.wall).with_time_steps_of(&scenario);
     print_result(&summary, args.output.as_deref(), args.json)?;
     if let Some(rows) = played.rows.filter(|_| !to_stdout) {
-        let rows = counted(rows, "row");
-        tell(format_args!("gyrolab: {rows} in {}", Shown(output_path)));
+        tell_of_rows(rows, output_path);
     }
-    match played.ended {
-        Ended::NotFinite(error) => {
-            complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));
-            Ok(ExitCode::FAILURE)
-        }
-        Ended::Done | Ended::Stopped => Ok(ExitCode::SUCCESS),
-    }
+    let name = args.scenario.scenario.clone();
+    let broke = played.ended.not_finite();
+    Ok(ended_by(broke.map(|error| anyhow!(error).context(name))))
 }
 
 fn cannot_write(path: &Path) -> String {

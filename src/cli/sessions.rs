@@ -12,6 +12,7 @@ use std::process::ExitCode;
 use std::time::{Duration, SystemTime};
 
 pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
+    let within = |folder| Confined::within(folder).with_context(|| named(folder));
     let confined = folder.map(within).transpose()?;
     let folder = folder_of(confined.as_ref()).map_err(anyhow::Error::msg)?;
     let sessions = session::list(&folder)?;
@@ -46,8 +47,8 @@ pub(super) fn folder_of(confined: Option<&Confined>) -> Result<PathBuf, String> 
     }
 }
 
-fn within(folder: &Path) -> anyhow::Result<Confined> {
-    Confined::within(folder).with_context(|| format!("--folder {}", Shown(folder)))
+pub(super) fn named(folder: &Path) -> String {
+    format!("--folder {}", Shown(folder))
 }
 
 fn row(session: &Listed, now: SystemTime) -> [String; 5] {

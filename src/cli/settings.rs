@@ -7,11 +7,12 @@ use super::tell;
 use crate::lab::Lab;
 use crate::lab::view::markers::Marker;
 use crate::scenario::Problems;
-use crate::storage::settings::{self, Read, Settings};
+use crate::storage::settings::{self, Read};
 use crate::text::printable::printable_lines;
 use crate::tui::surroundings;
 use clap::ValueEnum;
 use std::path::Path;
+use toml::{Table, Value};
 
 pub(super) struct Chosen {
     config: Read,
@@ -30,15 +31,17 @@ pub(super) fn read(folder: Option<&Path>, is_confined: bool) -> Chosen {
 impl Chosen {
     /// `args` with the settings for which it has no option.
     pub(super) fn complete(&self, args: &WorkbenchArgs) -> WorkbenchArgs {
-        let remembered = shown_here(self.remembered.settings.clone());
-        let settings = self.config.settings.clone().or(remembered);
+        let mut settings = shown_here(self.remembered.settings.clone());
+        settings.extend(self.config.settings.clone());
+        let value = |key: &str| settings.get(key);
         let mut args = args.clone();
-        args.fps = args.fps.or(settings.fps);
+        let fps = || u32::try_from(value("fps")?.as_integer()?).ok();
+        args.fps = args.fps.or_else(fps);
         args.look = Look {
-            color: args.look.color.or_else(|| option(settings.colour)),
-            background: args.look.background.or_else(|| option(settings.background)),
-            markers: args.look.markers.or_else(|| option(settings.marker)),
-            no_mouse: args.look.no_mouse || settings.mouse == Some(false),
+            color: args.look.color.or_else(|| option(value("colour"))),
+            background: args.look.background.or_else(|| option(value("background"))),
+            markers: args.look.markers.or_else(|| option(value("marker"))),
+            no_mouse: args.look.no_mouse || value("mouse") == Some(&Value::Boolean(false)),
         };
         args
     }
@@ -74,24 +77,19 @@ fn in_one_line(problems: &Problems) -> String {
 
 /// The remembered `settings` that this terminal can show: dots that were chosen on another terminal may need more, and
 /// NO_COLOR takes away colours that were chosen elsewhere.
-fn shown_here(settings: Settings) -> Settings {
+fn shown_here(mut settings: Table) -> Table {
     let usual = surroundings::marker(variable);
-    let can_be_shown = |name: &String| {
-        let marker = Marker::ALL.into_iter().find(|marker| marker.name() == name);
-        marker.is_some_and(|marker| marker.needs_no_more_than(usual))
-    };
-    let is_allowed =
-        |colour: &String| colour != "always" || !surroundings::refuses_colour(variable);
-    Settings {
-        marker: settings.marker.filter(can_be_shown),
-        colour: settings.colour.filter(is_allowed),
-        ..settings
-    }
+    settings.retain(|key, value| match key {
+        "marker" => option(Some(value)).is_some_and(|it: Marker| it.needs_no_more_than(usual)),
+        "colour" => value.as_str() != Some("always") || !surroundings::refuses_colour(variable),
+        _ => true,
+    });
+    settings
 }
 
-/// The option called `name`, which the table of settings has checked.
-fn option<T: ValueEnum>(name: Option<String>) -> Option<T> {
-    T::from_str(&name?, false).ok()
+/// The option that `value` names, which the table of settings has checked.
+fn option<T: ValueEnum>(value: Option<&Value>) -> Option<T> {
+    T::from_str(value?.as_str()?, false).ok()
 }
 
 #[cfg(test)]
@@ -106,7 +104,7 @@ mod tests {
         let Some((_, Kind::OneOf(words), _)) = row else {
             return false;
         };
-        let is_option = |word: &&str| option::<T>(Some((*word).to_owned())).is_some();
+        let is_option = |word: &&str| option::<T>(Some(&(*word).into())).is_some();
         words.iter().all(is_option) && words.len() == T::value_variants().len()
     }
 

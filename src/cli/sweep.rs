@@ -4,7 +4,7 @@ use super::args::Changes;
 use super::info::listed;
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::scenario::change;
-use super::{print, tell};
+use super::{print, tell, tell_of_rows};
 use crate::scenario::presets::{self, PRESETS};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
@@ -68,7 +68,7 @@ pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
         (None, Some(output)) if !args.join.is_empty() => {
             let (sweep, empty) = join(&args.join, output, args.force)?;
             tell_of_empty(&empty, &sweep, &progress::interruption()?);
-            tell_of_rows(&sweep, output);
+            tell_of_rows(sweep.rows(), output);
             Ok(ExitCode::SUCCESS)
         }
         _ => print(&list()?),
@@ -91,7 +91,7 @@ fn list() -> anyhow::Result<String> {
 fn document(name: &str) -> Result<Document, Problems> {
     match shipped::find(name) {
         Some(sweep) => Document::parse(&format!("presets/sweeps/{name}.toml"), sweep.text),
-        None if is_neither(name) => {
+        None if !name.contains(['/', '.']) && presets::find(name).is_none() => {
             let sweeps = SWEEPS.iter().map(|sweep| sweep.name);
             let near = nearest(name, sweeps.chain(PRESETS.iter().map(|preset| preset.name)));
             let rule = format!(
@@ -101,10 +101,6 @@ fn document(name: &str) -> Result<Document, Problems> {
         }
         None => Document::open(name),
     }
-}
-
-fn is_neither(name: &str) -> bool {
-    !name.contains(['/', '.']) && presets::find(name).is_none()
 }
 
 /// The sweep that the command line means.
@@ -194,7 +190,7 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
         bail!(Interrupted);
     }
     part.keep()?;
-    tell_of_rows(sweep, output);
+    tell_of_rows(sweep.rows(), output);
     Ok(ExitCode::SUCCESS)
 }
 
@@ -211,11 +207,6 @@ fn tell_of_part(sweep: &Sweep, part: &PartFile) {
     tell(format_args!(
         "gyrolab: going on behind {rows} of {all} rows in {path}{empty}"
     ));
-}
-
-fn tell_of_rows(sweep: &Sweep, output: &Path) {
-    let rows = counted(sweep.rows(), "row");
-    tell(format_args!("gyrolab: {rows} in {}", Shown(output)));
 }
 
 /// Says how many rows hold no readouts, and of the first few which points they are, and why.

@@ -40,7 +40,8 @@ pub(super) fn open_lesson(lesson: &Lesson, page: &Page, look: Look) -> anyhow::R
 
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
-    let confined = args.folder.as_deref().map(confined_to).transpose()?;
+    let enter = |folder| Confined::enter(folder).with_context(|| sessions::named(folder));
+    let confined = args.folder.as_deref().map(enter).transpose()?;
     if let Some(folder) = &confined {
         folder
             .check(Path::new(name))
@@ -152,10 +153,6 @@ fn moment(args: &WorkbenchArgs) -> String {
         (None, Some(step)) => format!("at step {step}"),
         (None, None) => "at the end of the run".to_owned(),
     }
-}
-
-fn confined_to(folder: &Path) -> anyhow::Result<Confined> {
-    Confined::enter(folder).with_context(|| format!("--folder {}", Shown(folder)))
 }
 
 /// A lab with what `name` names, as the command line wants it.

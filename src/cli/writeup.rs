@@ -4,7 +4,7 @@ use super::args::{LengthArgs, ScenarioArgs};
 use super::progress::{self, Interrupted, Interruption};
 use super::run::{Played, played};
 use super::scenario::scenario_of;
-use super::{complain, tell};
+use super::{ended_by, tell};
 use crate::export::stream::Ended;
 use crate::export::{CsvWriter, Folder};
 use crate::figure::course::Recorder;
@@ -16,7 +16,7 @@ use crate::study::writeup::{Beside, CSV, Writeup};
 use crate::text::advice::advised;
 use crate::text::printable::{Shown, printable};
 use crate::work::changed::Original;
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, anyhow, ensure};
 use clap::Args;
 use std::fs::{self, File};
 use std::path::PathBuf;
@@ -77,11 +77,9 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
             printable(&others.join(", "))
         ));
     }
-    let Some(error) = writeup.broken else {
-        return Ok(ExitCode::SUCCESS);
-    };
-    complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));
-    Ok(ExitCode::FAILURE)
+    let name = args.scenario.scenario.clone();
+    let broken = writeup.broken;
+    Ok(ended_by(broken.map(|error| anyhow!(error).context(name))))
 }
 
 /// The write-up of the run of `scenario` that was `played`, and of which the `recorder` has its figures.
@@ -92,11 +90,8 @@ fn written(
     mut beside: Option<Beside>,
     interruption: &Interruption,
 ) -> anyhow::Result<Writeup> {
-    let broken = match played.ended {
-        Ended::NotFinite(error) => Some(error),
-        Ended::Done => None,
-        Ended::Stopped => bail!(Interrupted),
-    };
+    ensure!(played.ended != Ended::Stopped, Interrupted);
+    let broken = played.ended.not_finite();
     let readouts = played.readouts();
     if let Some(beside) = &mut beside {
         let end_s = readouts.sample.time_s;

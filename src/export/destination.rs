@@ -46,7 +46,7 @@ pub enum DestinationError {
 }
 
 impl DestinationError {
-    pub(super) fn refused(path: &Path, error: io::Error) -> Self {
+    pub fn refused(path: &Path, error: io::Error) -> Self {
         Self::Refused {
             path: path.to_owned(),
             error,

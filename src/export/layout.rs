@@ -5,8 +5,8 @@
 
 use super::columns::{COLUMNS, Column, POINT_COLUMNS};
 use crate::run::{Clock, Step};
-use crate::scenario::Scenario;
 use crate::scenario::problem::nearest;
+use crate::scenario::{Problem, Scenario};
 use crate::text::number::shortest;
 use crate::text::printable::printable;
 use serde::{Deserialize, Serialize};
@@ -48,16 +48,6 @@ impl Default for Layout {
     }
 }
 
-/// Why there is no such layout.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{key}: {rule}")]
-pub struct LayoutError {
-    /// The key, as in [`LayoutFile`].
-    pub key: &'static str,
-    /// What is wrong, and what to do.
-    pub rule: String,
-}
-
 fn is_false(flag: &bool) -> bool {
     !flag
 }
@@ -67,7 +57,7 @@ impl LayoutFile {
     ///
     /// # Errors
     /// When a column does not exist or is named twice, or when no time can lie between the two ends.
-    pub fn check(mut self) -> Result<Layout, LayoutError> {
+    pub fn check(mut self) -> Result<Layout, Problem> {
         // No run is longer, and TOML has no larger number.
         let most = NonZeroU64::new(i64::MAX as u64).unwrap_or(NonZeroU64::MAX);
         let every = self.every.filter(|every| every.get() > 1);
@@ -75,7 +65,7 @@ impl LayoutFile {
         for (key, bound) in [("from_s", self.from_s), ("to_s", self.to_s)] {
             if let Some(seconds) = bound.filter(|seconds| !seconds.is_finite() || *seconds < 0.0) {
                 let rule = format!("{seconds:?} must be a time in seconds, 0 or more");
-                return Err(LayoutError { key, rule });
+                return Err(Problem::at(key, rule));
             }
         }
         if let (Some(from_s), Some(to_s)) = (self.from_s, self.to_s)
@@ -83,7 +73,7 @@ impl LayoutFile {
         {
             let [from_s, to_s] = [from_s, to_s].map(shortest);
             let rule = format!("{to_s} s is before the first row's time, {from_s} s");
-            return Err(LayoutError { key: "to_s", rule });
+            return Err(Problem::at("to_s", rule));
         }
         let columns = match (&self.columns, self.points) {
             (None, false) => COLUMNS.iter().collect(),
@@ -102,11 +92,8 @@ impl LayoutFile {
 fn chosen(
     names: &[String],
     all: &(impl Iterator<Item = &'static Column> + Clone),
-) -> Result<Vec<&'static Column>, LayoutError> {
-    let wrong = |rule: String| LayoutError {
-        key: "columns",
-        rule,
-    };
+) -> Result<Vec<&'static Column>, Problem> {
+    let wrong = |rule: String| Problem::at("columns", rule);
     if names.is_empty() {
         return Err(wrong("must name a column".to_owned()));
     }
@@ -195,13 +182,11 @@ impl Layout {
     ///
     /// # Errors
     /// When a line above the run file is none of a layout, or asks for something that does not exist.
-    pub fn read(header: &str) -> Result<Self, LayoutError> {
-        let file: LayoutFile =
-            toml::from_str(&above_run_file(header)).map_err(|error| LayoutError {
-                key: "the lines above the run file",
-                rule: error.message().to_owned(),
-            })?;
-        file.check()
+    pub fn read(header: &str) -> Result<Self, Problem> {
+        let file: Result<LayoutFile, _> = toml::from_str(&above_run_file(header));
+        let wrong =
+            |error: toml::de::Error| Problem::at("the lines above the run file", error.message());
+        file.map_err(wrong)?.check()
     }
 }
 

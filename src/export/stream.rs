@@ -18,6 +18,15 @@ pub enum Ended {
     NotFinite(NotFinite),
 }
 
+impl Ended {
+    pub fn not_finite(self) -> Option<NotFinite> {
+        match self {
+            Self::NotFinite(error) => Some(error),
+            Self::Done | Self::Stopped => None,
+        }
+    }
+}
+
 /// Plays `simulation` to the step `steps`. To `csv`, if given, it writes the rows that the layout of the CSV asks for, from
 /// the present step on. It calls `each` with every step, and `watch` with the step reached and the last one after each block of
 /// steps; `watch` may stop it.

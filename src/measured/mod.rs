@@ -36,6 +36,8 @@ pub struct Measured {
     pub origin: String,
     /// Its comments before the columns' names, without their marks: where the data come from.
     pub about: String,
+    /// The line of each row.
+    pub lines: Vec<u64>,
     pub data: Data,
 }
 
@@ -49,7 +51,6 @@ pub enum Data {
 pub struct Series {
     /// The time of each row, s: not negative, and none before the row above.
     pub times_s: Vec<f64>,
-    pub lines: Vec<u64>,
     /// A curve for each column, in the order of the file.
     pub curves: Vec<Curve>,
 }
@@ -68,7 +69,6 @@ pub struct Table {
     pub settings: Vec<Setting>,
     /// The columns that were measured, in the order of the file.
     pub readouts: Vec<Column>,
-    pub lines: Vec<u64>,
 }
 
 /// A key of the scenario that a table's rows set.
@@ -111,36 +111,19 @@ impl Measured {
         }
     }
 
-    pub fn rows(&self) -> usize {
-        match &self.data {
-            Data::Series(series) => series.lines.len(),
-            Data::Table(table) => table.lines.len(),
-        }
-    }
-
-    /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts.
-    pub fn keep_rows(&mut self, is_kept: impl Fn(usize) -> bool) {
-        let keep = |points: &mut Vec<Point>| points.retain(|point| is_kept(point.row));
+    /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts, and returns how many values that are.
+    pub fn keep_rows(&mut self, is_kept: impl Fn(usize) -> bool) -> usize {
+        let keep = |points: &mut Vec<Point>| {
+            points.retain(|point| is_kept(point.row));
+            points.len()
+        };
         match &mut self.data {
-            Data::Series(series) => series
-                .curves
-                .iter_mut()
-                .for_each(|curve| keep(&mut curve.points)),
-            Data::Table(table) => table
-                .readouts
-                .iter_mut()
-                .for_each(|column| keep(&mut column.points)),
-        }
-    }
-
-    pub fn count(&self) -> usize {
-        match &self.data {
-            Data::Series(series) => series.curves.iter().map(|curve| curve.points.len()).sum(),
-            Data::Table(table) => table
-                .readouts
-                .iter()
-                .map(|column| column.points.len())
-                .sum(),
+            Data::Series(Series { curves, .. }) => {
+                (curves.iter_mut().map(|it| keep(&mut it.points))).sum()
+            }
+            Data::Table(Table { readouts, .. }) => {
+                (readouts.iter_mut().map(|it| keep(&mut it.points))).sum()
+            }
         }
     }
 }

@@ -30,10 +30,6 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    fn lines(&self) -> Vec<u64> {
-        self.cells.rows.iter().map(|(line, _)| *line).collect()
-    }
-
     pub fn series(&mut self, columns: &[Named]) -> Series {
         let time = columns.iter().find(|column| matches!(column.is, Is::Time));
         let times_s = time.map_or_else(Vec::new, |column| self.times(column));
@@ -47,7 +43,6 @@ impl<'a> Numbers<'a> {
         Series {
             curves: curves.collect(),
             times_s,
-            lines: self.lines(),
         }
     }
 
@@ -63,11 +58,7 @@ impl<'a> Numbers<'a> {
                 Is::Time | Is::Count | Is::Quantity(_) => {}
             }
         }
-        Table {
-            settings,
-            readouts,
-            lines: self.lines(),
-        }
+        Table { settings, readouts }
     }
 
     fn times(&mut self, column: &Named) -> Vec<f64> {

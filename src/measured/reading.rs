@@ -62,13 +62,14 @@ pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
     } else {
         Data::Table(numbers.table(&columns))
     };
-    let measured = Measured {
+    let mut measured = Measured {
         origin: origin.to_owned(),
         about: cells.header.clone(),
+        lines: cells.rows.iter().map(|(line, _)| *line).collect(),
         data,
     };
     let mut found = numbers.found;
-    if found.list.is_empty() && measured.count() == 0 {
+    if found.list.is_empty() && measured.keep_rows(|_| true) == 0 {
         found.add(|| {
             Problem::at(
                 "",

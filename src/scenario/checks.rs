@@ -1,8 +1,9 @@
 //! From the file's shape to a [`Scenario`] whose numbers make sense together.
 
+use super::dotted::is_in;
 use super::edits::edits;
 use super::file::{BodyFile, ScenarioFile};
-use super::keys::{TOP, is_under};
+use super::keys::TOP;
 use super::model::{Body, Motion, Scenario};
 use super::parts::{body, motion, pushes};
 use super::problem::{Problem, Problems, listed};
@@ -64,10 +65,12 @@ fn started(
 /// Adds the unknown names of points in `table` to the problems `found` with its keys, so that both are printed together.
 /// Where the body itself is wrong, its points are unknown and nothing is added.
 pub fn names(table: &toml::Table, found: &mut Problems) {
-    let is_of_body = |key: &str| key == "body" || is_under(key, "body");
     let file = table.get("body").filter(|_| {
         let wrong = found.list.iter();
-        found.more == 0 && wrong.into_iter().all(|problem| !is_of_body(&problem.key))
+        found.more == 0
+            && wrong
+                .into_iter()
+                .all(|problem| !is_in(&problem.key, "body"))
     });
     let file = file.and_then(|body| body.clone().try_into::<BodyFile>().ok());
     let Some(Ok(body)) = file.map(|file| body(&file)) else {

@@ -1,7 +1,7 @@
 //! A scenario's text, where it came from, and what `--set` changed in it.
 
 use super::checks;
-use super::dotted::{find, is_in, set_key};
+use super::dotted::{find, is_in, overlap, set_key};
 use super::head::{read_text, text_of_file};
 use super::limits;
 use super::problem::{PRESETS, Problem, Problems, nearest};
@@ -215,7 +215,7 @@ impl Document {
     fn setting_behind(&self, key: &str, written: &toml::Table) -> Option<&Setting> {
         let last =
             |wanted: &dyn Fn(&str) -> bool| self.set.iter().rev().find(|set| wanted(&set.key));
-        last(&|set| is_in(key, set) || is_in(set, key)).or_else(|| {
+        last(&|set| overlap(key, set)).or_else(|| {
             let table = key.rsplit_once('.')?.0;
             let is_new = find(written, table).is_none();
             last(&|set| is_new && is_in(set, table))

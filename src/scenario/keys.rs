@@ -5,13 +5,13 @@
 
 mod check;
 
+use super::dotted::is_in;
 pub use super::kind::{Kind, PITCH_DEG, Range, ZOOM};
 use super::limits::MOST_POINTS;
 use super::problem::nearest;
 use super::screen::{ALL_ROWS, DETAILS, FILLING, HIDEABLE, PANES, PHASES};
 use super::solids;
 use crate::physics::scheme;
-pub(super) use check::is_under;
 pub use check::{check, check_part};
 use toml::Value;
 
@@ -283,7 +283,8 @@ fn only(is_it: impl Fn(&str) -> bool) -> Option<&'static str> {
 /// Whether the dotted `key` leads to a table of keys, or to an element of an array of such.
 pub fn is_table(key: &str) -> bool {
     let pattern = pattern(key);
-    KEYS.iter().any(|known| is_under(known.path, &pattern))
+    KEYS.iter()
+        .any(|known| known.path != pattern && is_in(known.path, &pattern))
 }
 
 /// What setting a key does to a run.

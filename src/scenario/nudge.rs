@@ -35,6 +35,15 @@ fn decimals(value: f64) -> usize {
     text.split_once('.').map_or(0, |(_, behind)| behind.len())
 }
 
+/// The element `times` places after the one that `is_now`; after the last comes the first. Where none is, the first follows and
+/// the last precedes it. `None` for an empty list.
+pub(crate) fn cycled<T>(list: &[T], is_now: impl Fn(&T) -> bool, times: i32) -> Option<&T> {
+    let count = i64::try_from(list.len()).ok().filter(|count| *count > 0)?;
+    let now = list.iter().position(is_now).map(|now| now as i64);
+    let now = now.unwrap_or(if times < 0 { 0 } else { -1 });
+    list.get((now + i64::from(times)).rem_euclid(count) as usize)
+}
+
 /// The largest rung not above a hundredth of `size`; `None` where that is nothing.
 fn hundredth(size: f64) -> Option<f64> {
     let step = at_or_below(size / 100.0);

@@ -17,28 +17,33 @@ pub(super) struct Form {
     may_have: &'static [&'static str],
 }
 
-const fn form(name: &'static str, needs: &'static [&'static str]) -> Form {
+const fn form(
+    name: &'static str,
+    needs: &'static [&'static str],
+    may_have: &'static [&'static str],
+) -> Form {
     Form {
         name,
         needs,
-        may_have: &[],
+        may_have,
     }
 }
 
 /// Every shape there is.
 pub(super) static FORMS: [Form; 9] = [
-    form("ring", &["radius_m"]),
-    Form {
-        may_have: &["length_m"],
-        ..form("cylinder", &["radius_m"])
-    },
-    form("tube", &["inner_radius_m", "outer_radius_m", "length_m"]),
-    form("rod", &["length_m"]),
-    form("ball", &["radius_m"]),
-    form("shell", &["radius_m"]),
-    form("cone", &["radius_m", "length_m"]),
-    form("block", &["size_m"]),
-    form("moments", &["moments_kg_m2"]),
+    form("ring", &["radius_m"], &[]),
+    form("cylinder", &["radius_m"], &["length_m"]),
+    form(
+        "tube",
+        &["inner_radius_m", "outer_radius_m", "length_m"],
+        &[],
+    ),
+    form("rod", &["length_m"], &[]),
+    form("ball", &["radius_m"], &[]),
+    form("shell", &["radius_m"], &[]),
+    form("cone", &["radius_m", "length_m"], &[]),
+    form("block", &["size_m"], &[]),
+    form("moments", &["moments_kg_m2"], &[]),
 ];
 
 /// The dimensions of any shape, in the order of the table of keys.

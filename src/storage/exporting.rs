@@ -64,7 +64,7 @@ impl Exporting {
         layout: Layout,
         replace: bool,
     ) -> Result<Self, DestinationError> {
-        let refused = |error| refused(path, error);
+        let refused = |error| DestinationError::refused(path, error);
         let destination = Destination::open_file(path, replace)?;
         let csv = CsvWriter::with_layout(destination, &scenario, layout).map_err(refused)?;
         let path = std::path::absolute(path).map_err(refused)?;
@@ -176,7 +176,7 @@ fn write(
 ) -> Result<Written, String> {
     let mut simulation = Simulation::new(scenario);
     let watch = |step, _| shared.reach(step);
-    let cannot_write = |error| refused(&path, error).fact();
+    let cannot_write = |error| DestinationError::refused(&path, error).fact();
     let played = stream::play(&mut simulation, shared.steps, Some(&mut csv), |_| {}, watch);
     let (ended, _) = played.map_err(cannot_write)?;
     let rows = csv.count();
@@ -191,18 +191,8 @@ fn write(
         rows: Some(rows),
         warnings: Vec::new(),
         bytes,
-        not_finite: match ended {
-            Ended::NotFinite(error) => Some(error),
-            Ended::Done | Ended::Stopped => None,
-        },
+        not_finite: ended.not_finite(),
     })
-}
-
-fn refused(path: &Path, error: io::Error) -> DestinationError {
-    DestinationError::Refused {
-        path: path.to_owned(),
-        error,
-    }
 }
 
 #[cfg(test)]

@@ -10,7 +10,6 @@ use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
 use crate::text::printable::Shown;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
-use serde::Deserialize;
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -43,34 +42,11 @@ pub const KEYS: [(&str, Kind, &str); 5] = [
     ("mouse", Flag, "whether the lab takes the mouse"),
 ];
 
-/// The settings that a file holds; `None` for those that it does not hold.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
-pub struct Settings {
-    pub marker: Option<String>,
-    pub colour: Option<String>,
-    pub background: Option<String>,
-    pub fps: Option<u32>,
-    pub mouse: Option<bool>,
-}
-
-impl Settings {
-    /// The settings of this file, and for those that it does not hold the ones of `other`.
-    pub fn or(self, other: Self) -> Self {
-        Self {
-            marker: self.marker.or(other.marker),
-            colour: self.colour.or(other.colour),
-            background: self.background.or(other.background),
-            fps: self.fps.or(other.fps),
-            mouse: self.mouse.or(other.mouse),
-        }
-    }
-}
-
 /// The settings of one file, and what is wrong with it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Read {
-    /// Those of its settings that break no rule.
-    pub settings: Settings,
+    /// Those of its settings that break no rule, by the keys of [`KEYS`].
+    pub settings: Table,
     /// What is wrong with the others.
     pub problems: Option<Problems>,
 }
@@ -90,15 +66,15 @@ fn checked(path: &Path, read: io::Result<Vec<u8>>) -> Read {
     };
     match document {
         Ok(document) => {
-            let (good, found) = sifted(document.table());
+            let (settings, found) = sifted(document.table());
             let placed = found.or(()).map_err(|found| document.placed(found));
             Read {
-                settings: good.try_into().unwrap_or_default(),
+                settings,
                 problems: placed.err(),
             }
         }
         Err(problems) => Read {
-            settings: Settings::default(),
+            settings: Table::new(),
             problems: Some(problems),
         },
     }
@@ -182,7 +158,7 @@ mod tests {
         fs::write(&target, "marker = 'dot'\n").unwrap();
         symlink(&target, home.path().join(FILE)).unwrap();
         let found = read(home.path());
-        assert_eq!(found.settings, Settings::default());
+        assert!(found.settings.is_empty());
         let told = found.problems.unwrap().to_string();
         assert!(told.contains("symbolic link"), "{told}");
         let trouble = remember(home.path(), "marker", "ascii".into()).unwrap_err();
@@ -191,7 +167,7 @@ mod tests {
         // The user's own file may be a link.
         let config = home.path().join("config.toml");
         symlink(&target, &config).unwrap();
-        assert_eq!(read_config(&config).settings.marker.as_deref(), Some("dot"));
+        assert_eq!(read_config(&config).settings["marker"], "dot".into());
     }
 
     #[test]
@@ -201,7 +177,7 @@ mod tests {
         let text = "fps = 5\nmarkers = 'dot'\nbackground = 'gray'\nmouse = 1\n";
         fs::write(&path, text).unwrap();
         let found = read_config(&path);
-        assert_eq!(found.settings.fps, Some(5));
+        assert_eq!(found.settings["fps"], 5.into());
         let told = found.problems.unwrap().to_string();
         for words in [
             "config.toml:2: markers: unknown key: did you mean marker?",
@@ -217,6 +193,6 @@ mod tests {
         fs::write(home.path().join(FILE), text).unwrap();
         remember(home.path(), "colour", "never".into()).unwrap();
         let found = read(home.path());
-        assert_eq!((found.problems, found.settings.fps), (None, Some(5)));
+        assert_eq!((found.problems, &found.settings["fps"]), (None, &5.into()));
     }
 }

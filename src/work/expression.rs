@@ -80,10 +80,6 @@ fn truth(holds: bool) -> f64 {
 }
 
 impl Operator {
-    fn joins_conditions(&self) -> bool {
-        self.power < COMPARES
-    }
-
     /// The result where one side alone decides it, whatever the other is.
     fn decided_by(&self, side: Option<f64>) -> Option<f64> {
         match (self.power, side?) {

@@ -59,7 +59,7 @@ impl History {
     pub fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
         Self {
             past: Vec::new(),
-            present: RunRecord::new(name, Journal::of(scenario.file.clone()), scenario),
+            present: RunRecord::new(name, scenario),
             undone: Vec::new(),
         }
     }
@@ -88,8 +88,7 @@ impl History {
 
     /// Leaves the present run and begins that of `scenario`, opened as `name`.
     pub fn begin(&mut self, name: &str, scenario: &Arc<Scenario>) {
-        let journal = Journal::of(scenario.file.clone());
-        self.begin_run(RunRecord::new(name, journal, scenario));
+        self.begin_run(RunRecord::new(name, scenario));
     }
 
     /// Leaves the present run and begins that of `scenario`, which follows the advice about it: one undo returns to the
@@ -135,8 +134,8 @@ impl History {
     pub fn begin_with(&mut self, set: &Table, is_again: bool) -> Result<Arc<Scenario>, Problems> {
         let replaced = self.past.last().filter(|_| is_again);
         let left = replaced.unwrap_or(&self.present);
-        let (journal, scenario) = left.journal.begun_with(left.left_at, set)?;
-        let record = RunRecord::new(&left.name, journal, &scenario);
+        let scenario = left.journal.begun_with(left.left_at, set)?;
+        let record = RunRecord::new(&left.name, &scenario);
         if replaced.is_some() {
             self.present = record;
             self.undone.clear();
@@ -181,14 +180,14 @@ impl History {
 }
 
 impl RunRecord {
-    fn new(name: &str, journal: Journal, scenario: &Scenario) -> Self {
+    fn new(name: &str, scenario: &Scenario) -> Self {
         Self {
             name: name.to_owned(),
             left_at: 0,
             end_s: Clock::end_s(scenario),
             next_push: None,
             is_advised: false,
-            journal,
+            journal: Journal::of(scenario.file.clone()),
         }
     }
 }

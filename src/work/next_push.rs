@@ -127,11 +127,12 @@ impl NextPush {
         match field {
             Field::Point => {
                 let names = scenario.body.names();
-                let point = cycled(&names, |name| **name == *self.point, times);
+                let point = nudge::cycled(&names, |name| **name == *self.point, times);
                 next.point = point.copied().unwrap_or_default().to_owned();
             }
             Field::Toward => {
-                let toward = cycled(&Toward::NAMED, |(_, toward)| *toward == self.toward, times);
+                let toward =
+                    nudge::cycled(&Toward::NAMED, |(_, toward)| *toward == self.toward, times);
                 next.toward = toward.map_or(self.toward, |(_, toward)| *toward);
             }
             Field::Size => next.size_N = climbed(self.size_N, times),
@@ -209,14 +210,6 @@ impl NextPush {
         let [point, size, toward, length] = Field::ALL.map(|field| self.shown(field));
         format!("{size} N on {point}, {toward}, for {length} s")
     }
-}
-
-/// The element `times` places after the one that `is_present`; after the last comes the first. `None` for an empty list.
-fn cycled<T>(list: &[T], is_present: impl Fn(&T) -> bool, times: i32) -> Option<&T> {
-    let now = list.iter().position(is_present);
-    let now = now.map_or(-1, |now| now as i64);
-    let count = i64::try_from(list.len()).ok().filter(|count| *count > 0)?;
-    list.get((now + i64::from(times)).rem_euclid(count) as usize)
 }
 
 #[cfg(test)]

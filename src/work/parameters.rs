@@ -288,16 +288,11 @@ impl Parameter {
 
     /// The choice `times` places after the present one; after the last comes the first.
     fn cycled(&self, times: i32) -> Result<String, String> {
-        let count = self.choices.len() as i64;
         let is_now = |choice: &String| Some(choice.as_str()) == self.value.as_str();
-        let now = self.choices.iter().position(is_now).map(|now| now as i64);
-        if count == 0 || (count == 1 && now.is_some()) {
-            return Err("has no other choice".to_owned());
-        }
-        // A value that is no choice is followed by the first choice and preceded by the last.
-        let now = now.unwrap_or(if times < 0 { 0 } else { -1 });
-        let next = (now + i64::from(times)).rem_euclid(count);
-        Ok(self.choices[next as usize].clone())
+        let next = nudge::cycled(&self.choices, is_now, times);
+        let next = next.filter(|next| self.choices.len() > 1 || !is_now(next));
+        let next = next.ok_or("has no other choice")?;
+        Ok(next.clone())
     }
 
     /// The value that the user typed: a number with or without its unit, a word, true or false, or text.

@@ -1,6 +1,7 @@
 //! The files and messages that the README and the manual show are what the program takes and says.
 
 use crate::support::ground::Ground;
+use gyrolab::storage::settings;
 
 /// The blocks of `kind` in the README, in order.
 fn blocks(kind: &str) -> Vec<String> {
@@ -136,9 +137,8 @@ fn the_steady_start_is_steady() {
 fn the_settings_are_good_and_all_of_them_are_shown() {
     let ground = Ground::new();
     ground.write("config.toml", &example("lab", "marker = "));
-    let read = gyrolab::storage::settings::read_config(&ground.file("config.toml"));
+    let read = settings::read_config(&ground.file("config.toml"));
     assert_eq!(read.problems, None);
-    let settings = read.settings;
-    assert!(settings.marker.is_some() && settings.colour.is_some());
-    assert!(settings.background.is_some() && settings.fps.is_some() && settings.mouse.is_some());
+    let is_shown = |(key, ..): &(&str, _, _)| read.settings.contains_key(*key);
+    assert!(settings::KEYS.iter().all(is_shown));
 }

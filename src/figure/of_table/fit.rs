@@ -146,7 +146,6 @@ fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
         sigma: None,
     };
     let series = measured::Series {
-        lines: vec![0; times_s.len()],
         curves: vec![Curve {
             quantity,
             points: (0..times_s.len()).map(point).collect(),

@@ -42,7 +42,7 @@ pub(super) struct Fields {
     known: &'static [(&'static str, Form)],
     alone: Alone,
     /// What several fields must fulfil: the field that is refused, and why.
-    rule: fn(&Table) -> Result<(), (&'static str, String)>,
+    rule: fn(&Table) -> Result<(), Problem>,
 }
 
 /// What may stand in the place of a table.
@@ -109,10 +109,8 @@ pub(super) const NEXT_PUSH: Form = Form::Fields(Fields {
     alone: Alone::Nothing,
     rule: |table| {
         if table.is_empty() {
-            return Err((
-                "",
-                "must hold one of point, force_N, toward, for_s".to_owned(),
-            ));
+            let rule = "must hold one of point, force_N, toward, for_s";
+            return Err(Problem::at("", rule));
         }
         has_one_direction(table)
     },
@@ -146,8 +144,7 @@ pub(super) const EXPORT: Form = Form::Fields(Fields {
         let mut layout = table.clone();
         layout.retain(|key, _| !["path", "to_step", "force"].contains(&key));
         let layout: LayoutFile = layout.try_into().unwrap_or_default();
-        let checked = layout.check().map(|_| ());
-        checked.map_err(|error| (error.key, error.rule))
+        layout.check().map(drop)
     },
 });
 pub(super) const FIGURE: Form = Form::Fields(Fields {
@@ -162,7 +159,9 @@ pub(super) const FIGURE: Form = Form::Fields(Fields {
     rule: |table| {
         let path = table.get("path").and_then(Value::as_str);
         let format = Format::of(Path::new(path.unwrap_or_default()));
-        format.map_or_else(|refusal| Err(("", refusal.to_string())), |_| Ok(()))
+        format
+            .map(drop)
+            .map_err(|refusal| Problem::at("", refusal.to_string()))
     },
 });
 pub(super) const SAVE: Form = Form::Fields(Fields {
@@ -172,7 +171,7 @@ pub(super) const SAVE: Form = Form::Fields(Fields {
         let is_from_here = table.get("from_here").and_then(Value::as_bool);
         if is_from_here == Some(true) && table.contains_key("to_step") {
             let rule = "has no place beside from_here, which saves the present state";
-            return Err(("to_step", rule.to_owned()));
+            return Err(Problem::at("to_step", rule));
         }
         Ok(())
     },
@@ -224,10 +223,10 @@ impl Fields {
             problems.push(Problem::at(first, format!("is missing: {meaning}")));
         }
         if problems.is_empty()
-            && let Err((name, rule)) = (self.rule)(&table)
+            && let Err(Problem { key, rule, .. }) = (self.rule)(&table)
         {
-            let value = table.get(name).unwrap_or(value);
-            problems.push(Problem::with_value(name, value, rule));
+            let value = table.get(&key).unwrap_or(value);
+            problems.push(Problem::with_value(key, value, rule));
         }
         if problems.is_empty() {
             Ok(Value::Table(table))
@@ -315,11 +314,11 @@ fn are_names(value: &Value) -> Result<(), String> {
     list.iter().try_for_each(|name| Line.check(name))
 }
 
-fn has_one_direction(table: &Table) -> Result<(), (&'static str, String)> {
+fn has_one_direction(table: &Table) -> Result<(), Problem> {
     let is_vector = table.get("force_N").is_some_and(Value::is_array);
     if is_vector && table.contains_key("toward") {
         let rule = "has no place beside a force of three numbers, which has a direction";
-        return Err(("toward", rule.to_owned()));
+        return Err(Problem::at("toward", rule));
     }
     Ok(())
 }

@@ -110,11 +110,6 @@ fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Problems
     }
 }
 
-pub(in crate::scenario) fn is_under(path: &str, table: &str) -> bool {
-    path.strip_prefix(table)
-        .is_some_and(|rest| rest.starts_with('.'))
-}
-
 /// The names that may stand in the tables of the pattern `under`, each once.
 fn names(under: &str) -> Vec<&'static str> {
     let mut names: Vec<_> = below(under)

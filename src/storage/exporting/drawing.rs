@@ -1,6 +1,6 @@
 //! Draws a figure of a run in the background.
 
-use super::{Exporting, Shared, Written, refused};
+use super::{Exporting, Shared, Written};
 use crate::export::destination::{Destination, DestinationError};
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, EXACT_BESIDE, Request, Run};
@@ -30,7 +30,7 @@ impl Exporting {
         drawn: Drawn,
         replace: bool,
     ) -> Result<Self, DestinationError> {
-        let refused = |error| refused(path, error);
+        let refused = |error| DestinationError::refused(path, error);
         let output = Destination::open_file(path, replace)?;
         let path = std::path::absolute(path).map_err(refused)?;
         let (steps, drawn_to) = (scenario.steps, path.clone());

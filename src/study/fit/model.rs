@@ -180,11 +180,7 @@ impl Model {
 
     /// A row in words: its number, from 1, and its line in the file.
     pub fn row(&self, row: usize) -> String {
-        let lines = match &self.measured.data {
-            Data::Series(series) => &series.lines,
-            Data::Table(table) => &table.lines,
-        };
-        let line = lines.get(row).copied().unwrap_or_default();
+        let line = self.measured.lines.get(row).copied().unwrap_or_default();
         format!("row {} (line {line} of the data)", row + 1)
     }
 
@@ -260,7 +256,7 @@ fn too_far(measured: &Measured, series: &Series, scenario: &Scenario) -> Problem
             shortest(scenario.motion.time_step_s)
         ),
     );
-    problem.place = series.lines.last().map(|line| format!("line {line}"));
+    problem.place = measured.lines.last().map(|line| format!("line {line}"));
     Problems::one(measured.origin.clone(), problem)
 }
 

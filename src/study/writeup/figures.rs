@@ -7,6 +7,7 @@ use crate::figure::course::{Course, Recorder, Wanted};
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Known, Request, Run};
 use crate::figure::{COLUMN_PT, Scene};
+use crate::measured::Series;
 use crate::run::Clock;
 use crate::scenario::Scenario;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
@@ -131,7 +132,8 @@ fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -
 /// The figures of what was measured, and of measured less run.
 fn of_data(beside: &Beside, whole: &Request, also: &str) -> Vec<Planned> {
     let measured = beside.reached();
-    let Some(series) = measured.series().ok().filter(|_| measured.count() > 0) else {
+    let has_points = |it: &&Series| it.curves.iter().any(|curve| !curve.points.is_empty());
+    let Some(series) = measured.series().ok().filter(has_points) else {
         return Vec::new();
     };
     let last_s = series.times_s.last().copied().unwrap_or_default();

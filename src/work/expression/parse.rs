@@ -1,6 +1,6 @@
 //! Parses an expression: its tokens, and the tree of operators.
 
-use super::{Fault, MULTIPLIES, Node, OPERATORS, Operator};
+use super::{COMPARES, Fault, MULTIPLIES, Node, OPERATORS, Operator};
 use std::fmt;
 
 /// How deep parentheses and signs may be nested.
@@ -168,7 +168,7 @@ impl Parser {
 
     fn check_side(operator: &Operator, side: &Node, at: usize, column: usize) -> Result<(), Fault> {
         let name = operator.name;
-        match (operator.joins_conditions(), side.is_condition()) {
+        match (operator.power < COMPARES, side.is_condition()) {
             (true, false) => Self::fault(at, format!("{name} joins comparisons, not numbers")),
             (false, true) => {
                 let rule = format!("{name} takes numbers, not comparisons: join those with and");

@@ -172,11 +172,10 @@ impl Journal {
         self.base.push.len() + added.len()
     }
 
-    /// A new run with the values of `set` and an empty journal. From its start on it has the gravity, scheme, time step and
-    /// pushes that this run has at `step`.
-    pub fn begun_with(&self, step: u64, set: &Table) -> Result<(Self, Arc<Scenario>), Problems> {
-        let scenario = Arc::new(parameters::changed_all(&self.settings_at(step)?, set)?);
-        Ok((Self::of(scenario.file.clone()), scenario))
+    /// A new run with the values of `set`. From its start on it has the gravity, scheme, time step and pushes that this run
+    /// has at `step`.
+    pub fn begun_with(&self, step: u64, set: &Table) -> Result<Arc<Scenario>, Problems> {
+        parameters::changed_all(&self.settings_at(step)?, set).map(Arc::new)
     }
 
     /// The base with gravity, scheme, time step and its own pushes as they are at `step`, without added pushes. The base

@@ -84,7 +84,7 @@ fn the_run_up_to_a_step_ends_there_and_has_its_description() {
         assert_eq!(run.file.title, "Mine");
     }
     let begun = journal.begun_with(10, &one("start.tilt_deg", 3.0));
-    assert_eq!(begun.unwrap().1.file.title, "Mine");
+    assert_eq!(begun.unwrap().file.title, "Mine");
 }
 
 #[test]
@@ -206,12 +206,12 @@ fn a_new_run_begins_with_the_settings_of_the_old_one() {
             .begun_with(step, &one("start.tilt_deg", 10.0))
             .unwrap()
     };
-    let (begun, scenario) = begun_at(60);
+    let scenario = begun_at(60);
     let motion = &scenario.motion;
     assert_eq!((motion.time_step_s, motion.gravity), (0.05, 1.6));
     assert_eq!((scenario.pushes.len(), scenario.edits.len()), (1, 0));
     // The push keeps its times in seconds.
-    let push = &begun.base().push[0];
+    let push = &scenario.file.push[0];
     assert_eq!((push.from_s, push.for_s), (Some(0.0), Some(20.0)));
-    assert_eq!(begun_at(39).1.motion.time_step_s, 0.1);
+    assert_eq!(begun_at(39).motion.time_step_s, 0.1);
 }
