@@ -186,7 +186,7 @@ fn near_exact(
 mod tests {
     use super::*;
     use crate::run::Simulation;
-    use crate::scenario::Document;
+    use crate::scenario::presets;
 
     #[test]
     fn the_largest_distance_is_that_of_all_steps_within_rounding() {
@@ -198,9 +198,7 @@ mod tests {
             ("sleeping", &["motion.steps=600", "motion.scheme=report"]),
             ("wing-nut", &["motion.steps=300", "motion.scheme=report"]),
         ] {
-            let mut document = Document::open(preset).unwrap();
-            sets.iter().for_each(|set| document.set(set).unwrap());
-            let scenario = Arc::new(document.scenario().unwrap());
+            let scenario = presets::scenario(preset, sets);
             let mut simulation = Simulation::new(Arc::clone(&scenario));
             let mut truth = Truth::new(Arc::clone(&scenario));
             let (mut most_m, mut beside) = (0.0_f64, Beside::new(&scenario));

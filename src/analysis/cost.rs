@@ -59,36 +59,32 @@ fn has_closed_form(scenario: &Scenario) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Document;
-
-    /// The wheel of a preset with a point `aside` m off its axle, which is pushed.
-    fn pushed_beside_the_axle(aside: f64) -> Scenario {
-        let mut document = Document::open("method-2").unwrap();
-        for set in [
-            format!("body.point.2={{name='aside',at_m=[{aside:e},0,1.5],mass_kg=0}}"),
-            "push.0={point='aside',force_N=[1,0,0],from_s=1,for_s=1}".to_owned(),
-        ] {
-            document.set(&set).unwrap();
-        }
-        document.scenario().unwrap()
-    }
+    use crate::scenario::presets::scenario;
 
     #[test]
     fn strong_friction_is_as_dear_as_fast_turning() {
-        let rubbed = |coefficient: f64| {
-            let mut document = Document::open("first-dip").unwrap();
-            let set = format!("friction.spin_viscous_Nms={coefficient:e}");
-            document.set(&set).unwrap();
-            document.scenario().unwrap()
-        };
-        assert!(is_affordable(&rubbed(10.0)));
-        assert!(!is_affordable(&rubbed(1e6)));
+        for (set, is_cheap) in [
+            ("friction.spin_viscous_Nms=10.0", true),
+            ("friction.spin_viscous_Nms=1e6", false),
+        ] {
+            assert_eq!(
+                is_affordable(&scenario("first-dip", &[set])),
+                is_cheap,
+                "{set}"
+            );
+        }
     }
 
     #[test]
     fn a_push_as_near_to_the_axle_as_the_closed_form_takes_costs_no_integration() {
-        assert_eq!(integration_rad(&pushed_beside_the_axle(0.0)), 0.0);
-        assert_eq!(integration_rad(&pushed_beside_the_axle(1e-12)), 0.0);
-        assert!(integration_rad(&pushed_beside_the_axle(1e-3)) > 0.0);
+        for (aside_m, is_free) in [(0.0, true), (1e-12, true), (1e-3, false)] {
+            let point = format!("body.point.2={{name='aside',at_m=[{aside_m:e},0,1.5],mass_kg=0}}");
+            let push = "push.0={point='aside',force_N=[1,0,0],from_s=1,for_s=1}";
+            let rad = integration_rad(&scenario("method-2", &[&point, push]));
+            assert!(
+                if is_free { rad == 0.0 } else { rad > 0.0 },
+                "{aside_m} m: {rad}"
+            );
+        }
     }
 }

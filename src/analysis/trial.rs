@@ -171,7 +171,7 @@ fn stride(steps: u64) -> u64 {
 mod tests {
     use super::*;
     use crate::physics::exact::Kind;
-    use crate::scenario::Document;
+    use crate::scenario::presets;
 
     #[test]
     fn the_distance_alone_is_that_of_the_whole_deviation_to_the_last_bit() {
@@ -186,9 +186,7 @@ mod tests {
             ("sleeping", &["motion.gravity_m_per_s2=-9.8"], Kind::Closed),
             ("method-2", &pushed_aside, Kind::Integrated),
         ] {
-            let mut document = Document::open(preset).unwrap();
-            sets.iter().for_each(|set| document.set(set).unwrap());
-            let scenario = Arc::new(document.scenario().unwrap());
+            let scenario = presets::scenario(preset, sets);
             let mut simulation = Simulation::new(Arc::clone(&scenario));
             let truths = || Truth::new(Arc::clone(&scenario));
             let (mut whole, mut alone) = (truths(), truths());

@@ -187,15 +187,17 @@ fn highest_s(recording: &Recording, curve: Curve, begin_s: f64, swing_s: f64) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Document;
-    use std::sync::Arc;
 
-    fn at(preset: &str, steps: u64) -> (LiveRun, Readouts) {
-        let document = Document::open(preset).unwrap();
-        let mut run = LiveRun::new(Arc::new(document.scenario().unwrap()));
-        (0..steps).for_each(|_| run.step().unwrap());
+    fn detail(run: &mut LiveRun, wanted: &Wanted, before: Option<&Detail>) -> Detail {
         let readouts = run.readouts();
-        (run, readouts)
+        Detail::new(run, &readouts, wanted, before)
+    }
+
+    /// A preset after this many steps, and its window in a long one of `long_s`.
+    fn at(preset: &str, steps: u64, long_s: f64) -> (LiveRun, Detail) {
+        let mut run = LiveRun::played(preset, steps);
+        let detail = detail(&mut run, &Wanted::following(long_s), None);
+        (run, detail)
     }
 
     #[test]
@@ -206,19 +208,12 @@ mod tests {
             ("method-1", 900),
             ("wobble-push", 180),
         ] {
-            let (run, readouts) = at(preset, steps);
-            let detail = Detail::new(&run, &readouts, &Wanted::following(230.0), None);
-            let Some(swing_s) = readouts.swing_s() else {
-                panic!("{preset} has no swings");
-            };
-            let swings = detail.window_s / swing_s;
+            let (mut run, detail) = at(preset, steps, 230.0);
+            let swings = detail.window_s / run.readouts().swing_s().unwrap();
             assert!((4.0..=12.1).contains(&swings), "{preset}: {swings}");
             assert_eq!(ladder::at_or_below(detail.window_s), detail.window_s);
-            let now_s = run.now().time_s;
-            assert!(
-                (detail.begin_s..=detail.begin_s + detail.window_s).contains(&now_s),
-                "{preset}"
-            );
+            let shown = detail.begin_s..=detail.begin_s + detail.window_s;
+            assert!(shown.contains(&run.now().time_s), "{preset}");
         }
     }
 
@@ -231,23 +226,17 @@ mod tests {
             ("wobble-push", 0),
             ("wing-nut", 1),
         ] {
-            let (mut run, _) = at(preset, 0);
+            let mut run = LiveRun::played(preset, 0);
             let end_s = run.scenario().steps as f64 * run.scenario().motion.time_step_s;
             let mut before: Option<Detail> = None;
             let mut changes = 0;
             for step in 0..run.scenario().steps.min(2500) {
                 run.step().unwrap();
-                if !step.is_multiple_of(20) {
-                    continue;
+                if step.is_multiple_of(20) {
+                    let detail = detail(&mut run, &Wanted::following(end_s), before.as_ref());
+                    changes += u32::from(before.is_some_and(|before| before.curve != detail.curve));
+                    before = Some(detail);
                 }
-                let wanted = Wanted::following(end_s);
-                let detail = {
-                    let readouts = run.readouts();
-                    Detail::new(&run, &readouts, &wanted, before.as_ref())
-                };
-                let is_other = |before: &Detail| before.curve != detail.curve;
-                changes += u32::from(before.as_ref().is_some_and(is_other));
-                before = Some(detail);
             }
             assert!(changes <= most, "{preset}: {changes} changes");
         }
@@ -255,36 +244,25 @@ mod tests {
 
     #[test]
     fn held_it_begins_at_the_top_of_a_swing_each_time() {
-        let (mut run, _) = at("cusps", 9000);
+        let mut run = LiveRun::played("cusps", 9000);
         let held = Wanted {
             place: Placement::Latest,
             ..Wanted::following(230.0)
         };
         for _ in 0..5 {
-            (0..237).for_each(|_| run.step().unwrap());
-            let readouts = run.readouts();
-            let detail = Detail::new(&run, &readouts, &held, None);
+            run.step_to(run.simulation().step_number() + 237).unwrap();
+            let detail = detail(&mut run, &held, None);
             assert!(detail.begin_s + detail.window_s <= run.now().time_s);
-            let tilt = |time_s| {
-                let mut blocks = run.recording().between(time_s, time_s);
-                blocks
-                    .next()
-                    .map(|block| block.extent(Curve::Tilt).max)
-                    .unwrap()
-            };
+            let mut blocks = run.recording().between(detail.begin_s, detail.begin_s);
+            let tilt = blocks.next().unwrap().extent(Curve::Tilt).max;
             let highest = run.recording().whole().unwrap().extent(Curve::Tilt).max;
-            assert!(
-                (tilt(detail.begin_s) - highest).abs() < 0.05,
-                "{}",
-                tilt(detail.begin_s)
-            );
+            assert!((tilt - highest).abs() < 0.05, "{tilt}");
         }
     }
 
     #[test]
     fn where_only_x_swings_it_is_x_that_is_shown() {
-        let (run, readouts) = at("torque-free", 20_000);
-        let detail = Detail::new(&run, &readouts, &Wanted::following(20.0), None);
+        let (run, detail) = at("torque-free", 20_000, 20.0);
         assert_eq!(detail.curve, Curve::X);
         let strip = Strip::new(detail.begin_s, detail.window_s, 100);
         let columns = strip.blocks(run.recording()).columns(Curve::X, &[]);
@@ -295,15 +273,13 @@ mod tests {
     #[test]
     fn a_swing_is_at_least_five_small_dots_wide_or_eight_cells() {
         for (preset, steps) in [("method-1", 900), ("wobble-push", 900), ("poinsot", 5000)] {
-            let (run, readouts) = at(preset, steps);
-            let detail = Detail::new(&run, &readouts, &Wanted::following(15.0), None);
+            let (run, detail) = at(preset, steps, 15.0);
             let now_s = run.now().time_s;
             for (columns, is_small, least) in [(50, true, 5.0), (25, false, 8.0)] {
                 let strip = detail.strip(columns, is_small, now_s);
-                let swing_s = detail.swing_s.unwrap();
-                let width = columns as f64 * swing_s / strip.window_s;
+                let swings = strip.window_s / detail.swing_s.unwrap();
+                let width = columns as f64 / swings;
                 assert!(width >= least, "{preset}: {width} columns a swing");
-                let swings = strip.window_s / swing_s;
                 assert!(swings >= 3.0, "{preset}: {swings} swings");
                 assert!(strip.column(now_s).is_some(), "{preset}: {strip:?}");
             }
@@ -312,15 +288,13 @@ mod tests {
 
     #[test]
     fn a_motion_without_swings_is_shown_at_length() {
-        let (run, readouts) = at("steady-slow", 0);
+        let mut run = LiveRun::played("steady-slow", 0);
         let calm = Readouts {
             nutation: None,
             theory: None,
-            ..readouts
+            ..run.readouts()
         };
-        assert_eq!(
-            Detail::new(&run, &calm, &Wanted::following(230.0), None).window_s,
-            230.0
-        );
+        let detail = Detail::new(&run, &calm, &Wanted::following(230.0), None);
+        assert_eq!(detail.window_s, 230.0);
     }
 }

@@ -58,33 +58,24 @@ impl Dip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Document;
-
-    fn scenario(preset: &str) -> Arc<Scenario> {
-        let document = Document::open(preset).unwrap();
-        Arc::new(document.scenario().unwrap())
-    }
+    use crate::scenario::presets::scenario;
 
     #[test]
     fn a_released_top_dips_and_comes_up_to_its_side() {
         // A nutation of the preset cusps takes 0.8225 s, and its tilt goes from 30 to 36.689 degrees.
-        let cusps = scenario("cusps");
+        let cusps = scenario("cusps", &[]);
         let steps = (0.8225 / cusps.motion.time_step_s) as usize;
-        let dip = Dip::of(&cusps, 1_000_000).unwrap();
-        assert!(dip.is_whole);
+        let Dip { way_m, is_whole } = Dip::of(&cusps, 1_000_000).unwrap();
+        assert!(is_whole);
         assert!(
-            dip.way_m.len().abs_diff(steps) <= steps / 20 + 3,
+            way_m.len().abs_diff(steps) <= steps / 20 + 3,
             "{}",
-            dip.way_m.len()
+            way_m.len()
         );
-        let deepest = dip.way_m.iter().map(|(_, down)| *down).fold(0.0, f64::max);
-        let arm = cusps.arm_m();
-        let expected = arm * 6.689_f64.to_radians().sin();
-        assert!(
-            (deepest / expected - 1.0).abs() < 0.15,
-            "{deepest} {expected}"
-        );
-        let (side, down) = dip.way_m[dip.way_m.len() - 1];
+        let deepest = way_m.iter().map(|(_, down)| *down).fold(0.0, f64::max);
+        let part = deepest / (cusps.arm_m() * 6.689_f64.to_radians().sin());
+        assert!((part - 1.0).abs() < 0.15, "{part}");
+        let (side, down) = way_m[way_m.len() - 1];
         assert!(
             side > deepest && down.abs() < 1e-2 * deepest,
             "{side} {down}"
@@ -93,7 +84,7 @@ mod tests {
 
     #[test]
     fn it_goes_no_further_than_the_run_and_an_upright_axle_has_none() {
-        assert_eq!(Dip::of(&scenario("cusps"), 7).unwrap().way_m.len(), 8);
-        assert_eq!(Dip::of(&scenario("method-1"), 100), None);
+        assert_eq!(Dip::of(&scenario("cusps", &[]), 7).unwrap().way_m.len(), 8);
+        assert_eq!(Dip::of(&scenario("method-1", &[]), 100), None);
     }
 }

@@ -363,3 +363,13 @@ impl LiveRun {
         &self.pictures.path
     }
 }
+
+#[cfg(test)]
+impl LiveRun {
+    /// The run of a preset at the step `steps`.
+    pub fn played(preset: &str, steps: u64) -> Self {
+        let mut run = Self::new(crate::scenario::presets::scenario(preset, &[]));
+        run.step_to(steps).unwrap();
+        run
+    }
+}

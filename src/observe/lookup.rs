@@ -106,23 +106,13 @@ impl Steps {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Document;
-    use std::sync::Arc;
-
-    fn played(preset: &str, steps: u64) -> LiveRun {
-        let document = Document::open(preset).unwrap();
-        let mut run = LiveRun::new(Arc::new(document.scenario().unwrap()));
-        (0..steps).for_each(|_| run.step().unwrap());
-        run
-    }
 
     #[test]
     fn the_numbers_of_an_earlier_step_are_those_that_it_had() {
         let samples: Vec<_> = (0..=700)
-            .map(|steps| played("cusps", steps))
-            .map(|run| run.simulation().sample())
+            .map(|steps| LiveRun::played("cusps", steps).simulation().sample())
             .collect();
-        let run = played("cusps", 700);
+        let run = LiveRun::played("cusps", 700);
         for step in [0, 1, 255, 256, 257, 699, 700] {
             assert_eq!(sample(&run, step).unwrap(), samples[step as usize]);
         }
@@ -132,29 +122,25 @@ mod tests {
     #[test]
     fn turns_of_the_tilt_are_found_on_both_sides() {
         // It is highest at the cusps, every 0.8225 s, and lowest between them.
-        let run = played("cusps", 3000);
-        let mut turns = vec![];
-        let mut at = 0;
-        while let Ok(turn) = turn(&run, at, true) {
-            turns.push(turn);
-            at = turn;
-        }
+        let run = LiveRun::played("cusps", 3000);
+        let next = |&at: &u64| turn(&run, at, true).ok();
+        let turns: Vec<_> = std::iter::successors(Some(0), next).skip(1).collect();
         assert_eq!(turns.len(), 7, "{turns:?}");
         for (index, &turn) in turns.iter().enumerate() {
             let expected = 411.25 * (index + 1) as f64;
             assert!((turn as f64 - expected).abs() < 2.0, "{turns:?}");
         }
         for pair in turns.windows(2) {
-            assert_eq!(super::turn(&run, pair[1], false), Ok(pair[0]));
-            assert_eq!(super::turn(&run, pair[1] - 1, false), Ok(pair[0]));
+            assert_eq!(turn(&run, pair[1], false), Ok(pair[0]));
+            assert_eq!(turn(&run, pair[1] - 1, false), Ok(pair[0]));
         }
-        assert_eq!(super::turn(&run, turns[0], false), Err(Missing::NoTurn));
-        assert_eq!(super::turn(&run, turns[6], true), Err(Missing::NoTurn));
+        assert_eq!(turn(&run, turns[0], false), Err(Missing::NoTurn));
+        assert_eq!(turn(&run, turns[6], true), Err(Missing::NoTurn));
     }
 
     #[test]
     fn a_turn_that_is_nowhere_is_not_looked_for_without_end() {
-        let run = played("torque-free", 400_000);
+        let run = LiveRun::played("torque-free", 400_000);
         assert_eq!(turn(&run, 1000, false), Err(Missing::NoTurn));
         assert_eq!(turn(&run, 400_000, false), Err(Missing::TooFar));
     }

@@ -58,54 +58,43 @@ fn joined(mut stretches: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Document;
+    use crate::scenario::{Document, presets};
 
-    fn marks(preset: &str, more: &str) -> Marks {
-        let text = crate::scenario::presets::find(preset).unwrap().text;
-        let text = format!("{text}\n{more}");
+    /// Pushes and edits of a preset with these edits: the step of each, and what it sets.
+    fn marks(preset: &str, edits: &[(u64, &str)]) -> Marks {
+        let mut text = presets::find(preset).unwrap().text.to_owned();
+        for (step, set) in edits {
+            text += &format!("\n[[edit]]\nstep = {step}\nset = {{ {set} }}");
+        }
         let document = Document::parse("marks.toml", &text).unwrap();
         Marks::of(&document.scenario().unwrap())
     }
 
-    fn near(stretch: (f64, f64), begin: f64, end: f64) -> bool {
-        (stretch.0 - begin).abs() < 1e-9 && (stretch.1 - end).abs() < 1e-9
-    }
-
     #[test]
-    fn a_push_of_steps_has_the_seconds_of_its_steps() {
-        let marks = marks("wobble-push", "");
-        assert_eq!(marks.pushes.len(), 1);
-        assert!(near(marks.pushes[0], 0.0, 20.0), "{marks:?}");
-        assert!(marks.edits.is_empty());
-    }
-
-    #[test]
-    fn an_accumulating_push_does_not_end() {
-        let marks = marks("wobble-push-accumulating", "");
-        assert_eq!(marks.pushes, [(0.0, f64::INFINITY)]);
-    }
-
-    #[test]
-    fn pushes_keep_their_seconds_over_an_edit_of_the_time_step() {
+    fn pushes_have_the_seconds_of_their_steps_over_all_edits() {
+        let endless = [(0.0, f64::INFINITY)];
+        assert_eq!(marks("wobble-push-accumulating", &[]).pushes, endless);
         // Step 40 is at 4 s; from there on a step is 0.05 s long.
-        let edits = "[[edit]]\nstep = 40\nset = { 'motion.time_step_s' = 0.05 }\n\
-                     [[edit]]\nstep = 60\nset = { 'motion.gravity_m_per_s2' = 9 }";
-        let marks = marks("wobble-push", edits);
-        assert_eq!(marks.pushes.len(), 1);
-        assert!(near(marks.pushes[0], 0.0, 20.0), "{marks:?}");
-        assert_eq!(marks.edits, [4.0, 5.0]);
-    }
-
-    #[test]
-    fn an_edit_of_a_push_acts_from_its_step_on() {
-        // Taken away at 5 s; another one at 6 to 8 s.
-        let edits = "[[edit]]\nstep = 50\nset = { 'push.0.force_N' = [0, 0, 0] }\n\
-                     [[edit]]\nstep = 55\nset = { 'push.0' = \
-                     { point = 'top', force_N = [1, 0, 0], from_s = 6, for_s = 2 } }";
-        let marks = marks("wobble-push", edits);
-        assert_eq!(marks.pushes.len(), 2);
-        assert!(near(marks.pushes[0], 0.0, 5.0), "{marks:?}");
-        assert!(near(marks.pushes[1], 6.0, 8.0), "{marks:?}");
-        assert_eq!(marks.edits, [5.0, 5.5]);
+        let shorter = [
+            (40, "'motion.time_step_s' = 0.05"),
+            (60, "'motion.gravity_m_per_s2' = 9"),
+        ];
+        let another = "'push.0' = { point = 'top', force_N = [1, 0, 0], from_s = 6, for_s = 2 }";
+        let taken_away = [(50, "'push.0.force_N' = [0, 0, 0]"), (55, another)];
+        for (edits, pushes, edits_s) in [
+            (&[][..], &[(0.0, 20.0)][..], &[][..]),
+            (&shorter, &[(0.0, 20.0)], &[4.0, 5.0]),
+            (&taken_away, &[(0.0, 5.0), (6.0, 8.0)], &[5.0, 5.5]),
+        ] {
+            let marks = marks("wobble-push", edits);
+            assert_eq!(marks.pushes.len(), pushes.len(), "{edits:?}: {marks:?}");
+            for (stretch, expected) in marks.pushes.iter().zip(pushes) {
+                let off_s = (stretch.0 - expected.0)
+                    .abs()
+                    .max((stretch.1 - expected.1).abs());
+                assert!(off_s < 1e-9, "{edits:?}: {marks:?}");
+            }
+            assert_eq!(marks.edits, edits_s, "{edits:?}");
+        }
     }
 }

@@ -155,61 +155,53 @@ mod tests {
     fn extents(shape: Shape) -> [(f64, f64); 3] {
         let part = part(shape);
         let lines = lines(&part);
-        let own = lines.iter().flat_map(|line| &line.points);
-        let own: Vec<_> = own
-            .map(|at| part.directions.tr_mul(&(at - part.centre)))
-            .collect();
-        [0, 1, 2].map(|i| {
-            let along = || own.iter().map(|at| at[i]);
-            (
-                along().fold(f64::INFINITY, f64::min),
-                along().fold(f64::NEG_INFINITY, f64::max),
-            )
+        let points = lines.iter().flat_map(|line| &line.points);
+        let own = points.map(|at| part.directions.tr_mul(&(at - part.centre)));
+        let none = [(f64::INFINITY, f64::NEG_INFINITY); 3];
+        own.fold(none, |reach, at| {
+            std::array::from_fn(|i| (reach[i].0.min(at[i]), reach[i].1.max(at[i])))
         })
     }
 
     #[test]
     fn lines_reach_as_far_as_the_solid() {
         let (radius, length) = (0.5, 0.8);
-        let cases = [
-            (Shape::Ring { radius }, [0.5, 0.5, 0.0]),
-            (Shape::Cylinder { radius, length }, [0.5, 0.5, 0.4]),
+        let (inner, outer) = (0.2, 0.5);
+        let size = Vector3::new(0.2, 0.4, 0.6);
+        let both = |half: [f64; 3]| half.map(|half| (-half, half));
+        // Of a shell of radius R the moments are 2 R²/3, three times: they are seen as the thin ellipsoid that has them.
+        let moments = Vector3::repeat(2.0 / 3.0 * 0.25);
+        for (shape, expected) in [
+            (Shape::Ring { radius }, both([0.5, 0.5, 0.0])),
+            (Shape::Cylinder { radius, length }, both([0.5, 0.5, 0.4])),
             (
                 Shape::Tube {
-                    inner: 0.2,
-                    outer: 0.5,
+                    inner,
+                    outer,
                     length,
                 },
-                [0.5, 0.5, 0.4],
+                both([0.5, 0.5, 0.4]),
             ),
-            (Shape::Rod { length }, [0.0, 0.0, 0.4]),
-            (Shape::Ball { radius }, [0.5; 3]),
+            (Shape::Rod { length }, both([0.0, 0.0, 0.4])),
+            (Shape::Ball { radius }, both([0.5; 3])),
+            (Shape::Block { size }, both([0.1, 0.2, 0.3])),
+            (Shape::Moments(moments), both([0.5; 3])),
+            // The apex of a cone is against its axis, three quarters of its length from the centre.
             (
-                Shape::Block {
-                    size: Vector3::new(0.2, 0.4, 0.6),
-                },
-                [0.1, 0.2, 0.3],
+                Shape::Cone { radius, length },
+                [(-0.5, 0.5), (-0.5, 0.5), (-0.6, 0.2)],
             ),
-        ];
-        for (shape, half) in cases {
-            for ((least, most), half) in extents(shape).into_iter().zip(half) {
-                assert!(
-                    (most - half).abs() < 1e-15 && (least + half).abs() < 1e-15,
-                    "{shape:?}"
-                );
+        ] {
+            for ((least, most), (low, high)) in extents(shape).into_iter().zip(expected) {
+                let is_near = (most - high).abs() < 1e-15 && (least - low).abs() < 1e-15;
+                assert!(is_near, "{shape:?}: {least} to {most}");
             }
         }
-        // The apex of a cone is against its axis, three quarters of its length from the centre.
-        let [_, _, along] = extents(Shape::Cone { radius, length });
-        assert!((along.0 + 0.6).abs() < 1e-15 && (along.1 - 0.2).abs() < 1e-15);
     }
 
     #[test]
-    fn moments_are_seen_as_the_thin_ellipsoid_that_has_them() {
-        // Of a shell of radius R they are 2 R²/3, three times.
-        let seen = extents(Shape::Moments(Vector3::repeat(2.0 / 3.0 * 0.25)));
-        assert!(seen.iter().all(|(_, most)| (most - 0.5).abs() < 1e-15));
-        // A + B = C: a disk.
+    fn moments_of_a_disk_are_seen_as_one() {
+        // A + B = C.
         let flat = extents(Shape::Moments(Vector3::new(1.0, 2.0, 3.0)));
         assert!(flat[2].0.abs() < 1e-15 && flat[2].1.abs() < 1e-15);
         assert!(flat[0].1 > 1.0 && flat[1].1 > 1.0);
@@ -217,10 +209,8 @@ mod tests {
 
     #[test]
     fn a_disk_is_one_circle_and_its_mark() {
-        let disk = lines(&part(Shape::Cylinder {
-            radius: 1.0,
-            length: 0.0,
-        }));
+        let (radius, length) = (1.0, 0.0);
+        let disk = lines(&part(Shape::Cylinder { radius, length }));
         assert_eq!(disk.len(), 2);
         assert!(disk[1].is_mark);
     }

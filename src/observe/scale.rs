@@ -148,66 +148,56 @@ mod tests {
 
     #[test]
     fn a_calm_value_needs_few_digits() {
-        let extent = Extent::of(29.999_999_75).and(Extent::of(30.000_000_02));
-        assert_eq!(
-            Scale::around(extent, 0.02).in_words_within(40).unwrap(),
-            "29.99 .. 30.01"
-        );
-        let constant = Scale::around(Extent::of(30.0), 0.02);
-        assert_eq!(constant.in_words_within(40).unwrap(), "29.99 .. 30.01");
-        let wide = Extent::of(31.4).and(Extent::of(57.2));
-        assert_eq!(
-            Scale::around(wide, 0.02).in_words_within(40).unwrap(),
-            "30 .. 60"
-        );
+        for (low, high, words) in [
+            (29.999_999_75, 30.000_000_02, "29.99 .. 30.01"),
+            (30.0, 30.0, "29.99 .. 30.01"),
+            (31.4, 57.2, "30 .. 60"),
+        ] {
+            let scale = Scale::around(Extent::of(low).and(Extent::of(high)), 0.02);
+            assert_eq!(scale.in_words_within(40).unwrap(), words);
+        }
     }
 
     #[test]
     fn ends_have_fewer_digits_where_there_is_little_room() {
-        let scale = Scale {
-            low: 29.998_75,
-            high: 30.001_25,
-        };
-        let within = |width| scale.in_words_within(width).unwrap_or_default();
-        assert_eq!(within(30), "29.99875 .. 30.00125");
-        assert_eq!(within(20), "29.99875 .. 30.00125");
-        assert_eq!(within(19), "29.99875..30.00125");
-        assert_eq!(within(17), "29.9988..30.0012");
-        assert_eq!(within(16), "29.9988..30.0012");
-        assert_eq!(
-            within(15),
-            "",
-            "with fewer digits the ends would be elsewhere"
-        );
-        let z = Scale {
-            low: 0.6,
-            high: 0.95,
-        };
-        let within = |width| z.in_words_within(width).unwrap_or_default();
-        assert_eq!(within(12), "0.60 .. 0.95");
-        assert_eq!(within(10), "0.60..0.95");
-        assert_eq!(within(9), "", "not 0.8 ± 0.2");
-        for width in 0..40 {
-            assert!(within(width).chars().count() <= width);
+        // With fewer digits than the last ones have, the ends would be elsewhere.
+        for (low, high, width, words) in [
+            (29.998_75, 30.001_25, 30, "29.99875 .. 30.00125"),
+            (29.998_75, 30.001_25, 20, "29.99875 .. 30.00125"),
+            (29.998_75, 30.001_25, 19, "29.99875..30.00125"),
+            (29.998_75, 30.001_25, 17, "29.9988..30.0012"),
+            (29.998_75, 30.001_25, 16, "29.9988..30.0012"),
+            (29.998_75, 30.001_25, 15, ""),
+            (0.6, 0.95, 12, "0.60 .. 0.95"),
+            (0.6, 0.95, 10, "0.60..0.95"),
+            (0.6, 0.95, 9, ""),
+        ] {
+            let scale = Scale { low, high };
+            let within = |width| scale.in_words_within(width).unwrap_or_default();
+            assert_eq!(within(width), words, "{scale:?} within {width}");
+            assert!((0..40).all(|width| within(width).chars().count() <= width));
         }
     }
 
     #[test]
     fn ticks_are_round_and_no_more_than_there_is_room_for() {
-        assert_eq!(ticks(0.0, 230.0, 6), [0.0, 50.0, 100.0, 150.0, 200.0]);
-        assert_eq!(ticks(0.0, 230.0, 2), [0.0, 200.0]);
-        assert_eq!(ticks(-0.8, 0.8, 5), [-0.5, 0.0, 0.5]);
-        assert_eq!(ticks(12.25, 12.35, 3), [12.25, 12.3, 12.35]);
-        assert!(ticks(1.0, 1.0, 5).is_empty() && ticks(0.0, f64::INFINITY, 5).is_empty());
-        assert!(ticks(0.0, 1.0, 0).is_empty());
+        for (low, high, most, expected) in [
+            (0.0, 230.0, 6, &[0.0, 50.0, 100.0, 150.0, 200.0][..]),
+            (0.0, 230.0, 2, &[0.0, 200.0]),
+            (-0.8, 0.8, 5, &[-0.5, 0.0, 0.5]),
+            (12.25, 12.35, 3, &[12.25, 12.3, 12.35]),
+            (1.0, 1.0, 5, &[]),
+            (0.0, f64::INFINITY, 5, &[]),
+            (0.0, 1.0, 0, &[]),
+        ] {
+            assert_eq!(ticks(low, high, most), expected, "{low} to {high}");
+        }
     }
 
     #[test]
     fn a_zoomed_scale_keeps_its_value_in_place() {
-        let scale = Scale {
-            low: 0.0,
-            high: 8.0,
-        };
+        let (low, high) = (0.0, 8.0);
+        let scale = Scale { low, high };
         let zoomed = scale.zoomed(4.0, 2.0);
         assert_eq!((zoomed.low, zoomed.high), (1.5, 3.5));
         assert_eq!(scale.from_top(2.0), zoomed.from_top(2.0));

@@ -123,26 +123,26 @@ impl Blocks {
 
 #[cfg(test)]
 mod tests {
-    use super::super::recording::Moment;
     use super::*;
-    use nalgebra::Vector3;
     use proptest::prelude::*;
 
-    fn recorded(values: &[f64], dt: f64) -> Recording {
+    fn drawn(strip: Strip, values: &[f64]) -> Vec<Option<Column>> {
         let mut recording = Recording::default();
         for (step, &x) in values.iter().enumerate() {
-            let position = Vector3::new(x, 0.0, 0.0);
-            recording.push(&Moment {
-                time_s: step as f64 * dt,
-                position,
-                axle_height: 1.0,
-            });
+            recording.push_values(step as f64, [x, 0.0, 0.0, -1.0]);
         }
-        recording
+        strip.blocks(&recording).columns(Curve::X, &[])
     }
 
-    fn x(strip: Strip, recording: &Recording) -> Vec<Option<Column>> {
-        strip.blocks(recording).columns(Curve::X, &[])
+    /// On 100 columns the bands, where there are any, of 1000 steps of a sine of `period` steps.
+    fn bands(period: f64) -> Vec<Option<Extent>> {
+        let sine = |step: u32| libm::sin(f64::from(step) / period * std::f64::consts::TAU);
+        let values: Vec<f64> = (0..1000).map(sine).collect();
+        let columns = drawn(Strip::new(0.0, 1000.0, 100), &values);
+        columns
+            .iter()
+            .map(|column| column.and_then(|column| column.band))
+            .collect()
     }
 
     proptest! {
@@ -150,13 +150,10 @@ mod tests {
         fn every_sub_steps_extremes_are_drawn(
             values in prop::collection::vec(-1.0..1.0f64, 2..9_000), columns in 1usize..300
         ) {
-            let recording = recorded(&values, 1.0);
             let now = (values.len() - 1) as f64;
-            let drawn = x(Strip::following(now, now, columns), &recording);
-            let of = |pick: fn(&Extent) -> f64| drawn.iter().flatten().map(|column| pick(&column.extent)).collect::<Vec<_>>();
-            let (lowest, highest) = (of(|e| e.min), of(|e| e.max));
-            prop_assert_eq!(lowest.into_iter().fold(2.0, f64::min), values.iter().copied().fold(2.0, f64::min));
-            prop_assert_eq!(highest.into_iter().fold(-2.0, f64::max), values.iter().copied().fold(-2.0, f64::max));
+            let drawn = drawn(Strip::following(now, now, columns), &values);
+            let whole = drawn.iter().flatten().map(|column| column.extent).reduce(Extent::and);
+            prop_assert_eq!(whole, values.iter().copied().map(Extent::of).reduce(Extent::and));
             prop_assert!(drawn.iter().all(Option::is_some), "a gap in a whole run");
             let has_all = |c: &Column| {
                 let band = c.band.unwrap_or(c.extent);
@@ -184,37 +181,32 @@ mod tests {
         );
     }
 
-    /// Columns of which 1000 steps of a sine of `period` steps are bands, of 100.
-    fn bands(period: f64) -> usize {
-        let sine = |step: u32| (f64::from(step) / period * std::f64::consts::TAU).sin();
-        let values: Vec<f64> = (0..1000).map(sine).collect();
-        let drawn = x(Strip::new(0.0, 1000.0, 100), &recorded(&values, 1.0));
-        for band in drawn.iter().flatten().filter_map(|column| column.band) {
-            assert!(band.max > 0.9 && band.min < -0.9, "{band:?} of {period}");
-        }
-        drawn
-            .iter()
-            .flatten()
-            .filter(|column| column.band.is_some())
-            .count()
-    }
-
     #[test]
     fn swings_are_a_band_where_five_columns_hold_a_whole_one() {
-        assert_eq!([25.0, 10.0, 7.3, 2.5].map(bands), [100; 4]);
-        assert_eq!([60.0, 100.0, 1000.0].map(bands), [0; 3]);
+        for (period, count) in [
+            (25.0, 100),
+            (10.0, 100),
+            (7.3, 100),
+            (2.5, 100),
+            (60.0, 0),
+            (100.0, 0),
+            (1000.0, 0),
+        ] {
+            let bands: Vec<_> = bands(period).into_iter().flatten().collect();
+            assert_eq!(bands.len(), count, "{period}");
+            let is_whole = |band: &Extent| band.max > 0.9 && band.min < -0.9;
+            assert!(bands.iter().all(is_whole), "{bands:?} of {period}");
+        }
     }
 
     #[test]
     fn line_and_band_do_not_take_turns() {
         // As fast as can be drawn: of 13 columns some have five turns and some have six.
         for period in [50.0, 52.0] {
-            let swing = |step: u32| libm::sin(f64::from(step) / period * std::f64::consts::TAU);
-            let values: Vec<f64> = (0..1000).map(swing).collect();
-            let drawn = x(Strip::new(0.0, 1000.0, 100), &recorded(&values, 1.0));
-            let is_band = |column: &Option<Column>| column.is_some_and(|c| c.band.is_some());
-            let pairs = drawn.windows(2);
-            let changes = pairs.filter(|pair| is_band(&pair[0]) != is_band(&pair[1]));
+            let bands = bands(period);
+            let changes = bands
+                .windows(2)
+                .filter(|pair| pair[0].is_some() != pair[1].is_some());
             let changes = changes.count();
             assert!(changes <= 2, "{period}: {changes}");
         }

@@ -55,13 +55,16 @@ mod tests {
 
     #[test]
     fn it_counts_up_and_down() {
-        let since = Duration::from_secs(61);
-        assert_eq!(Clock::Up.shown(since, None), "1:01 since the beginning");
-        assert_eq!(Clock::Down.shown(since, Some(2)), "0:59 left of 2 min");
-        assert_eq!(Clock::Down.shown(since, Some(1)), "0:01 over time");
+        for (clock, minutes, shown) in [
+            (Clock::Up, None, "1:01 since the beginning"),
+            (Clock::Down, Some(2), "0:59 left of 2 min"),
+            (Clock::Down, Some(1), "0:01 over time"),
+        ] {
+            assert_eq!(clock.shown(Duration::from_secs(61), minutes), shown);
+        }
+        assert_eq!(Clock::Day.shown(Duration::ZERO, None).len(), 5);
         assert_eq!(Clock::Up.next(None), Some(Clock::Day));
         assert_eq!(Clock::Up.next(Some(5)), Some(Clock::Down));
         assert_eq!(Clock::Day.next(Some(5)), None);
-        assert_eq!(Clock::Day.shown(since, None).len(), 5);
     }
 }

@@ -143,30 +143,21 @@ mod tests {
             mark: mark.to_owned(),
             depth,
         };
-        let kinds: Vec<_> = read
-            .iter()
-            .map(|paragraph| paragraph.kind.clone())
-            .collect();
+        let kinds_and_texts = read.iter().map(|read| (read.kind.clone(), read.text()));
         let expected = [
-            Kind::Text,
-            item("1.", 1),
-            item("2.", 1),
-            item("-", 2),
-            Kind::Code,
+            (Kind::Text, "The fast top turns p."),
+            (item("1.", 1), "one"),
+            (item("2.", 1), "two"),
+            (item("-", 2), "deep"),
+            (Kind::Code, "a  b\n"),
         ];
-        assert_eq!(kinds, expected);
-        let texts: Vec<_> = read.iter().map(Paragraph::text).collect();
-        let expected = ["The fast top turns p.", "one", "two", "deep", "a  b\n"];
-        assert_eq!(texts, expected);
+        assert!(
+            kinds_and_texts.eq(expected.map(|(kind, text)| (kind, text.to_owned()))),
+            "{read:?}"
+        );
         let looks: Vec<_> = read[0].words.iter().map(|words| words.look).collect();
-        let expected = [
-            Look::Plain,
-            Look::Strong,
-            Look::Plain,
-            Look::Code,
-            Look::Plain,
-        ];
-        assert_eq!(looks, expected);
+        let plain = Look::Plain;
+        assert_eq!(looks, [plain, Look::Strong, plain, Look::Code, plain]);
     }
 
     #[test]

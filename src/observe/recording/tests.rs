@@ -1,23 +1,25 @@
 use super::level::WHOLE;
 use super::*;
-use nalgebra::Vector3;
 use proptest::prelude::*;
 
-fn moment(step: u64, value: f64) -> Moment {
-    Moment {
-        time_s: step as f64,
-        position: Vector3::new(value, 0.0, 0.0),
-        axle_height: value,
-    }
+fn push(recording: &mut Recording, step: u64, value: f64) {
+    recording.push_values(step as f64, [value, 0.0, 0.0, -value]);
 }
 
 fn recorded(values: &[f64]) -> Recording {
     let mut recording = Recording::default();
-    values
-        .iter()
-        .zip(0..)
-        .for_each(|(&value, step)| recording.push(&moment(step, value)));
+    let values = values.iter().zip(0..);
+    values.for_each(|(&value, step)| push(&mut recording, step, value));
     recording
+}
+
+/// Checks that `blocks` begin at `since` or before, and follow each other without a gap; the end of the last one.
+fn end_of(blocks: &[Block], since: f64) -> f64 {
+    assert!(blocks[0].begin_s <= since);
+    for pair in blocks.windows(2) {
+        assert_eq!(pair[0].end_s + 1.0, pair[1].begin_s);
+    }
+    blocks[blocks.len() - 1].end_s
 }
 
 proptest! {
@@ -26,11 +28,7 @@ proptest! {
         let recording = recorded(&vec![0.0; length]);
         let since = (share * length as f64).floor();
         let blocks: Vec<_> = recording.since(since).collect();
-        prop_assert!(blocks[0].begin_s <= since);
-        prop_assert_eq!(blocks[blocks.len() - 1].end_s, (length - 1) as f64);
-        for pair in blocks.windows(2) {
-            prop_assert_eq!(pair[0].end_s + 1.0, pair[1].begin_s);
-        }
+        prop_assert_eq!(end_of(&blocks, since), (length - 1) as f64);
         prop_assert!(blocks.len() <= 4 * FINEST as usize + 16);
     }
 
@@ -75,20 +73,6 @@ proptest! {
     }
 }
 
-/// Checks that from `since` on every moment is in exactly one block, and that the blocks are in order.
-fn covers(recording: &Recording, since: f64) -> Result<(), TestCaseError> {
-    let blocks: Vec<_> = recording.since(since).collect();
-    prop_assert!(blocks[0].begin_s <= since);
-    prop_assert_eq!(
-        blocks[blocks.len() - 1].end_s,
-        (recording.moments() - 1) as f64
-    );
-    for pair in blocks.windows(2) {
-        prop_assert_eq!(pair[0].end_s + 1.0, pair[1].begin_s);
-    }
-    Ok(())
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
@@ -97,7 +81,7 @@ proptest! {
     ) {
         let value = |step: u64| if step == (at * length as f64) as u64 { 7.0 } else { (step as f64 * 0.01).sin() };
         let mut recording = Recording::default();
-        (0..length).for_each(|step| recording.push(&moment(step, value(step))));
+        (0..length).for_each(|step| push(&mut recording, step, value(step)));
         prop_assert_eq!(recording.coarse_since(), None);
         for share in shares {
             let wanted = 1 + (share * (length - 1) as f64) as u64;
@@ -107,44 +91,38 @@ proptest! {
                 prop_assert!(wanted - from <= length / 8, "{} of {}", wanted - from, length);
                 kept = recording.cut_back(from);
             }
-            (kept..wanted).for_each(|step| recording.push(&moment(step, value(step))));
+            (kept..wanted).for_each(|step| push(&mut recording, step, value(step)));
             prop_assert_eq!(recording.moments(), wanted);
             prop_assert_eq!(recording.coarse_since(), None);
             for since in [0.0, 0.4, 0.9, 0.999] {
                 let since = (since * wanted as f64).floor();
-                covers(&recording, since)?;
-                let blocks = recording.since(since).count() as f64;
-                prop_assert!(blocks >= (wanted as f64 - since).min(0.45 * COARSE as f64), "{blocks} since {since} of {wanted}");
+                let blocks: Vec<_> = recording.since(since).collect();
+                prop_assert_eq!(end_of(&blocks, since), (wanted - 1) as f64);
+                let (blocks, steps) = (blocks.len() as f64, wanted as f64 - since);
+                prop_assert!(blocks >= steps.min(0.45 * COARSE as f64), "{blocks} since {since} of {wanted}");
             }
             let largest = (0..wanted).map(value).fold(-1.0, f64::max);
             prop_assert_eq!(recording.whole().unwrap().extents[0].max, largest);
-            (wanted..length).for_each(|step| recording.push(&moment(step, value(step))));
-            covers(&recording, 0.0)?;
+            (wanted..length).for_each(|step| push(&mut recording, step, value(step)));
+            let blocks: Vec<_> = recording.since(0.0).collect();
+            prop_assert_eq!(end_of(&blocks, 0.0), (recording.moments() - 1) as f64);
         }
     }
 }
 
 #[test]
 fn a_block_knows_how_often_the_curve_turns() {
+    let turns = |recording: &Recording| recording.whole().unwrap().turns(Curve::X);
     // Ten swings of a triangle about 5, from 0 to 10 and back in 20 steps each.
     let triangle = |step: u64| (10.0 - (step % 20) as f64).abs();
     let values: Vec<f64> = (0..=200).map(triangle).collect();
     let recording = recorded(&values);
-    let whole = recording.whole().unwrap();
-    assert_eq!((whole.moments(), whole.turns(Curve::X)), (201, 19));
-    let turns: u32 = recording
-        .since(0.0)
-        .map(|block| block.turns(Curve::X))
-        .sum();
-    assert_eq!(turns, 19);
+    assert_eq!(recording.whole().unwrap().moments(), 201);
+    assert_eq!(turns(&recording), 19);
+    let blocks = recording.since(0.0).map(|block| block.turns(Curve::X));
+    assert_eq!(blocks.sum::<u32>(), 19);
     // It stands still, and goes on in the same direction: no turn.
-    assert_eq!(
-        recorded(&[0.0, 1.0, 1.0, 2.0, 2.0, 1.0])
-            .whole()
-            .unwrap()
-            .turns(Curve::X),
-        1
-    );
+    assert_eq!(turns(&recorded(&[0.0, 1.0, 1.0, 2.0, 2.0, 1.0])), 1);
 }
 
 #[test]
@@ -152,19 +130,13 @@ fn a_stretch_long_ago_has_more_blocks_than_a_part_of_all() {
     let values: Vec<f64> = (0..100_000).map(f64::from).collect();
     let recording = recorded(&values);
     let blocks: Vec<_> = recording.between(10_000.0, 11_000.0).collect();
-    assert!(blocks[0].begin_s <= 10_000.0 && blocks[blocks.len() - 1].end_s >= 11_000.0);
-    assert!(
-        blocks
-            .windows(2)
-            .all(|pair| pair[0].end_s + 1.0 == pair[1].begin_s)
-    );
+    assert!(end_of(&blocks, 10_000.0) >= 11_000.0);
     assert!((100..200).contains(&blocks.len()), "{}", blocks.len());
 }
 
 #[test]
 fn memory_is_bounded() {
-    let mut recording = Recording::default();
-    (0..1_000_000).for_each(|step| recording.push(&moment(step, 0.0)));
+    let recording = recorded(&vec![0.0; 1_000_000]);
     let stored = |level: &Level| level.count() - level.dropped();
     let stored: Vec<u64> = recording.levels.iter().map(stored).collect();
     assert_eq!(stored[0], 4096);
@@ -172,15 +144,7 @@ fn memory_is_bounded() {
     assert!(larger <= 2048 * 8 + 2 * WHOLE as u64, "{larger} blocks");
     // The smallest that there are cover the run without a gap.
     let blocks: Vec<_> = recording.finest().collect();
-    assert!(blocks[0].begin_s == 0.0 && blocks[blocks.len() - 1].end_s == 999_999.0);
-    assert!(
-        blocks
-            .windows(2)
-            .all(|pair| pair[0].end_s + 1.0 == pair[1].begin_s)
-    );
-    assert!(
-        blocks[blocks.len() - 4000..]
-            .iter()
-            .all(|block| block.moments() == 1)
-    );
+    assert_eq!(end_of(&blocks, 0.0), 999_999.0);
+    let newest = &blocks[blocks.len() - 4000..];
+    assert!(newest.iter().all(|block| block.moments() == 1));
 }
