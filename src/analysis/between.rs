@@ -20,8 +20,6 @@ const PASSES_RAD: f64 = 1e-7;
 const FOLLOWED_RAD: f64 = 1.0;
 /// A run that starts within this part of a time step of a turning point starts at it.
 const AT_TURN: f64 = 1e-6;
-/// Roundings in the rates of a run's own motion, in the time and in the azimuth of one turning point.
-const ROUNDINGS: [f64; 3] = [1.0, 1.0, 1.0];
 /// A time step in which the axle may turn by more than this (rad), and by half a turn as it passes the vertical, may hide
 /// a whole turn of the azimuth though its rows are near to one another.
 const HIDES_RAD: f64 = 1.5;
@@ -195,7 +193,7 @@ impl Between {
         let error = line.time_error_s(1.0).hypot(self.lag_s(&line)) * of_one;
         Some(Measured {
             value,
-            uncertainty: error.hypot(ROUNDINGS[0] * f64::EPSILON * value),
+            uncertainty: error.hypot(f64::EPSILON * value),
             nutations: line.intervals.div_ceil(2),
         })
     }
@@ -204,8 +202,7 @@ impl Between {
         if self.least_level < PASSES_RAD {
             return None;
         }
-        let of_rates =
-            ROUNDINGS[0] * f64::EPSILON * (self.equations.rates[0] + self.equations.rates[1]);
+        let of_rates = f64::EPSILON * (self.equations.rates[0] + self.equations.rates[1]);
         let Some(line) = self.line() else {
             return self.steady_precession(of_rates);
         };
@@ -232,8 +229,7 @@ impl Between {
         let (level, along) = (self.start.swing.level().powi(2), momentum.dot(&axle));
         // The azimuth's rate is (l_z - l3 u)/(1 - u²) at the height u.
         let by_height = (2.0 * axle.z * (momentum.z - along * axle.z) / level - along) / level;
-        let of_ends =
-            ROUNDINGS[2] * f64::EPSILON * (1.0 / level.sqrt() / time + self.equations.rates[1]);
+        let of_ends = f64::EPSILON * (1.0 / level.sqrt() / time + self.equations.rates[1]);
         let of_swing = 0.25 * by_height * swing;
         Some(Measured {
             value,

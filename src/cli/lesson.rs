@@ -95,8 +95,8 @@ pub(super) fn checked(file: &Path) -> anyhow::Result<Result<String, Problems>> {
     let lab = new_lab(Look::default())?;
     let played = play::check(&lesson, lab, &mut interruption.meter());
     interruption.may_act_at_once()?;
-    Ok(played.map(|played| {
-        for problem in played.unstated {
+    Ok(played.map(|unstated| {
+        for problem in unstated {
             let told = Problems::one(lesson.origin.clone(), problem).to_string();
             tell(printable_lines(&told));
         }

@@ -367,34 +367,7 @@ impl Simulation {
         }
         clock.step_at(time_s)
     }
-}
 
-fn step_of_edit(scenario: &Scenario, index: usize) -> u64 {
-    scenario.edits.get(index).map_or(u64::MAX, |edit| edit.step)
-}
-
-/// How the step counts of pushes are read: as steps, unless they were written for another time step.
-fn counting(scenario: &Scenario) -> Counting {
-    if scenario.written_for_s == scenario.motion.time_step_s {
-        Counting::Steps
-    } else {
-        Counting::in_seconds(scenario)
-    }
-}
-
-/// |L|² (J² s²) below which energy and traced point cannot leave the range of numbers; 0 where they could at any L.
-fn safe_below(scenario: &Scenario, gravity: f64) -> f64 {
-    const EDGE: f64 = 1e300;
-    let body = &scenario.body.mechanics;
-    let weight = gravity.abs() * body.first_moment().norm();
-    if weight < EDGE && scenario.arm_m() < EDGE {
-        EDGE / body.inverse_inertia().trace().max(1.0)
-    } else {
-        0.0
-    }
-}
-
-impl Simulation {
     /// When the next step ends, s.
     pub fn next_time_s(&self) -> f64 {
         let number = self.now.number;
@@ -427,5 +400,30 @@ impl Simulation {
         self.take_step()?;
         self.now.after.time_s = time_s; // and not the sum, whose last digit may differ
         Ok(())
+    }
+}
+
+fn step_of_edit(scenario: &Scenario, index: usize) -> u64 {
+    scenario.edits.get(index).map_or(u64::MAX, |edit| edit.step)
+}
+
+/// How the step counts of pushes are read: as steps, unless they were written for another time step.
+fn counting(scenario: &Scenario) -> Counting {
+    if scenario.written_for_s == scenario.motion.time_step_s {
+        Counting::Steps
+    } else {
+        Counting::in_seconds(scenario)
+    }
+}
+
+/// |L|² (J² s²) below which energy and traced point cannot leave the range of numbers; 0 where they could at any L.
+fn safe_below(scenario: &Scenario, gravity: f64) -> f64 {
+    const EDGE: f64 = 1e300;
+    let body = &scenario.body.mechanics;
+    let weight = gravity.abs() * body.first_moment().norm();
+    if weight < EDGE && scenario.arm_m() < EDGE {
+        EDGE / body.inverse_inertia().trace().max(1.0)
+    } else {
+        0.0
     }
 }

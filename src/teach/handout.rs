@@ -144,7 +144,7 @@ pub fn answers(
         walk.leave(page, go_on)?;
     }
     parts.push(format!("gyrolab {}", env!("CARGO_PKG_VERSION")));
-    Ok(parts.join("\n\n") + "\n")
+    Ok(joined(&parts))
 }
 
 /// The heading of a page, with what was asked and what came out; nothing where the page has neither.

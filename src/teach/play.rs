@@ -128,19 +128,14 @@ impl<'a> Walk<'a> {
     }
 }
 
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Played {
-    /// The numbers of its text that cannot be stated where they stand, and are shown as "n/a".
-    pub unstated: Vec<Problem>,
-}
-
-/// Plays `lesson` in a new `lab` to its end. Each check must hold once the task of its page is done, or where it has none
+/// Plays `lesson` in a new `lab` to its end. Returns the numbers of its text that cannot be stated where they stand, and are
+/// shown as "n/a". Each check must hold once the task of its page is done, or where it has none
 /// once its `lab` block is carried out, and must not hold without that block.
 ///
 /// # Errors
 /// What cannot be carried out, and every check that does not do what it should, with file and line. Where `go_on` broke
 /// off, the result means nothing.
-pub fn check(lesson: &Lesson, lab: Lab, go_on: GoOn<'_>) -> Result<Played, Problems> {
+pub fn check(lesson: &Lesson, lab: Lab, go_on: GoOn<'_>) -> Result<Vec<Problem>, Problems> {
     let mut walk = Walk::new(lesson, lab);
     let (mut found, mut unstated) = (Problems::default(), Problems::default());
     for page in &lesson.pages {

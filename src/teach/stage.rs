@@ -31,45 +31,41 @@ impl Lesson {
         kept: &Kept,
         predictions: &Predictions,
     ) -> Vec<Stage<'a>> {
-        let mut setups = Vec::new();
-        for page in self.pages.iter().take(number) {
-            let own = page.lab().into_iter();
-            let task = page.task().filter(|_| page.number < number);
-            for setup in own.chain(task) {
-                let is_hiding = if page.number == number {
-                    !predictions.are_locked_on(page)
-                } else {
-                    page.predicts().next().is_none()
-                };
-                setups.push(Stage {
-                    lesson: self,
-                    page,
-                    setup,
-                    is_hiding,
-                });
-            }
-        }
-        needed(setups, kept)
+        let before = self.pages.iter().take(number.saturating_sub(1));
+        let earlier = before.flat_map(|page| {
+            let setups = page.lab().into_iter().chain(page.task());
+            setups.map(move |setup| Stage {
+                lesson: self,
+                page,
+                setup,
+                is_hiding: page.predicts().next().is_none(),
+            })
+        });
+        let stages = earlier.chain(self.stage_of(number, predictions));
+        needed(stages.collect(), kept)
     }
 
     /// What to carry out on turning to the page `number` from the page before: its own `lab` block, where it has one.
     pub fn stage_of<'a>(&'a self, number: usize, predictions: &Predictions) -> Option<Stage<'a>> {
-        let page = self.page(number)?;
-        Some(Stage {
-            lesson: self,
-            page,
-            setup: page.lab()?,
-            is_hiding: !predictions.are_locked_on(page),
-        })
+        self.stage(number, Page::lab, predictions)
     }
 
     /// What to carry out on the page `number` to show how its task is done.
     pub fn task_of<'a>(&'a self, number: usize, predictions: &Predictions) -> Option<Stage<'a>> {
+        self.stage(number, Page::task, predictions)
+    }
+
+    fn stage(
+        &self,
+        number: usize,
+        setup: impl Fn(&Page) -> Option<&Setup>,
+        predictions: &Predictions,
+    ) -> Option<Stage<'_>> {
         let page = self.page(number)?;
         Some(Stage {
             lesson: self,
             page,
-            setup: page.task()?,
+            setup: setup(page)?,
             is_hiding: !predictions.are_locked_on(page),
         })
     }

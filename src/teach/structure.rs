@@ -154,7 +154,8 @@ impl<'a> Walk<'a, '_> {
                 Ok(())
             };
         }
-        let block = &self.text[range.clone()];
+        let text = self.text;
+        let block = &text[range.clone()];
         let inside = between_fences(block).ok_or_else(|| {
             let rule = format!("is not closed: a line {} must end it", fence_of(block));
             on_line(line, Problem::at(named(word), rule))
@@ -171,12 +172,9 @@ impl<'a> Walk<'a, '_> {
             );
             return Err(on_line(line, Problem::at(named(word), rule)));
         }
-        let begin = inside.as_ptr() as usize - self.text.as_ptr() as usize;
-        let (begin, end) = (begin, begin + inside.len());
-        let text = self.text;
-        let word_at = text[range.clone()].find(word).unwrap_or_default() + range.start;
-        let word = &text[word_at..word_at + word.len()];
-        self.add(Kind::Fenced(word, &text[begin..end]), range);
+        let word_at = block.find(word).unwrap_or_default();
+        let word = &block[word_at..word_at + word.len()];
+        self.add(Kind::Fenced(word, inside), range);
         Ok(())
     }
 }

@@ -20,7 +20,7 @@ const DIGITS: usize = 4;
 const MOST_DIGITS: usize = 12;
 const MOST_TOLD: usize = 100;
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Text {
     /// The line at which it begins in the file, from 1.
     pub line: usize,
@@ -63,17 +63,12 @@ impl Format {
             )
         };
         let digits = text.strip_prefix('.').ok_or_else(wrong)?;
-        let (digits, is_exponent) = match digits.strip_suffix('e') {
-            Some(digits) => (digits, true),
-            None => (digits, false),
+        let (digits, format): (_, fn(usize) -> Self) = match digits.strip_suffix('e') {
+            Some(digits) => (digits, Self::Exponent),
+            None => (digits, Self::Fixed),
         };
         let digits = digits.parse().ok().filter(|digits| *digits <= MOST_DIGITS);
-        let digits = digits.ok_or_else(wrong)?;
-        Ok(if is_exponent {
-            Self::Exponent(digits)
-        } else {
-            Self::Fixed(digits)
-        })
+        digits.map(format).ok_or_else(wrong)
     }
 }
 
@@ -121,13 +116,6 @@ impl Text {
             return Err(problems);
         }
         Ok(Self { line, parts })
-    }
-
-    pub(super) fn empty(line: usize) -> Self {
-        Self {
-            line,
-            parts: Vec::new(),
-        }
     }
 
     /// The text in Markdown, with the numbers of `lab` and those that were `kept`; "n/a" stands for a number that there is

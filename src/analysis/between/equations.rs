@@ -1,6 +1,6 @@
 //! The equations of motion of a symmetric top between two rows of its run.
 
-use super::{AT_TURN, ROUNDINGS};
+use super::AT_TURN;
 use crate::analysis::swing::{Interpolation, Swing};
 use crate::analysis::turns::Turn;
 use crate::physics::observables::Azimuth;
@@ -81,9 +81,8 @@ impl Equations {
         let way = self.way(&from, time);
         let (bend, level) = (swing.bend(&self.pull), swing.level());
         let time_s = before.time_s + time + off_s;
-        let [_, of_time, of_azimuth] = ROUNDINGS.map(|n| n * f64::EPSILON);
-        let rounding_s = of_time * (self.rates[1] / bend.abs() + time_s.abs());
-        let rounding = of_azimuth * (1.0 / level + self.rates[1] * time_s);
+        let rounding_s = f64::EPSILON * (self.rates[1] / bend.abs() + time_s.abs());
+        let rounding = f64::EPSILON * (1.0 / level + self.rates[1] * time_s);
         Turn {
             time_s,
             time_off_s: off_s,

@@ -121,20 +121,44 @@ fn uncertainty(measured: Option<Measured>) -> Option<f64> {
 /// What a row's formula gives: a number, yes or no, or a text.
 trait Given {
     const IS_TEXT: bool = false;
+
+    fn value(self) -> Value;
 }
 
-impl Given for f64 {}
+impl Given for f64 {
+    fn value(self) -> Value {
+        Some(self)
+            .filter(|number| number.is_finite())
+            .map_or(Value::Nothing, Value::Number)
+    }
+}
 
-impl Given for u64 {}
+impl Given for u64 {
+    fn value(self) -> Value {
+        Value::Whole(self)
+    }
+}
 
-impl Given for bool {}
+impl Given for bool {
+    fn value(self) -> Value {
+        Value::Flag(self)
+    }
+}
 
 impl Given for String {
     const IS_TEXT: bool = true;
+
+    fn value(self) -> Value {
+        Value::Text(self)
+    }
 }
 
 impl<T: Given> Given for Option<T> {
     const IS_TEXT: bool = T::IS_TEXT;
+
+    fn value(self) -> Value {
+        self.map_or(Value::Nothing, T::value)
+    }
 }
 
 /// Whether this formula gives a text.
@@ -153,7 +177,7 @@ macro_rules! readouts {
                 source: Source::$source,
                 is_text: is_text(&|$r: &Readouts| $get),
                 symbol: concat!($($symbol)?),
-                get: |$r| Value::from($get),
+                get: |$r| $get.value(),
             }),*
         ];
     };

@@ -34,10 +34,6 @@ impl Pane {
     /// The page of a lesson. It is shown as long as there is one.
     pub const LESSON: Self = Self("lesson");
 
-    pub const fn new(id: &'static str) -> Self {
-        Self(id)
-    }
-
     /// Its name in files, commands and sessions.
     pub const fn id(self) -> &'static str {
         self.0

@@ -128,7 +128,7 @@ impl Content {
                 ..on_line(line, problem)
             };
             self.problems.extend(problems.into_iter().map(inside));
-            Text::empty(line)
+            Text::default()
         })
     }
 
