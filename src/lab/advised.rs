@@ -4,7 +4,7 @@ use super::Lab;
 use super::answer::{Answer, Done};
 use super::player::Player;
 use crate::analysis::health::{Advice, advise};
-use crate::observe::advisor::Advisor;
+use crate::observe::background::Job;
 use crate::run::Simulation;
 use crate::scenario::Scenario;
 use crate::text::number::shortest;
@@ -62,7 +62,7 @@ impl Player {
 
     /// Takes the answer of the search for advice, if it has just come. Returns whether it has.
     pub(super) fn take_advice_news(&mut self) -> bool {
-        let has_come = self.advisor.as_mut().is_some_and(Advisor::take_news);
+        let has_come = self.advisor.as_mut().is_some_and(Job::take_news);
         if has_come {
             self.offer = self.advice().and_then(|advice| self.offered(advice));
         }

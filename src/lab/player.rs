@@ -6,7 +6,7 @@ use super::measured::Beside;
 use super::rerun::{Heading, Pinned, Replay};
 use crate::analysis::health::Advice;
 use crate::lab::view::View;
-use crate::observe::advisor::Advisor;
+use crate::observe::background::{self, Job};
 use crate::observe::detail::{Detail, Placement, Wanted};
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
@@ -37,7 +37,7 @@ pub struct Player {
     pub(super) measured: Option<Beside>,
     /// Whether to look for a scheme or time step that would make doubtful numbers right.
     pub(super) is_advised: bool,
-    pub(super) advisor: Option<Advisor>,
+    pub(super) advisor: Option<Job<Advice>>,
     pub(super) offer: Option<Offer>,
     /// Whether the step pane was shown when the run was last read, and the step that it takes apart.
     pub(super) explains: bool,
@@ -152,7 +152,7 @@ impl Player {
             && self.playback.steps_to_go().is_none()
             && self.reading.readouts.health.is_believed() == Some(false)
         {
-            self.advisor = Some(Advisor::ask(self.to_be_mended()));
+            self.advisor = Some(background::advice(self.to_be_mended()));
         }
         is_other.then_some(match self.detail.curve {
             Curve::Tilt => "the upper strip shows the tilt again: it swings",
@@ -219,7 +219,7 @@ impl Player {
 
     /// The scheme or time step that would make doubtful numbers right, if one has been found.
     pub fn advice(&self) -> Option<&Advice> {
-        self.advisor.as_ref()?.advice()
+        self.advisor.as_ref()?.answer()
     }
 
     /// Gravity, scheme and time step of the step to come.
@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn the_search_for_advice_about_a_run_ends_when_an_edit_begins_another() {
         let mut player = Player::new(scenario(), false);
-        let ask = |player: &mut Player| player.advisor = Some(Advisor::ask(scenario()));
+        let ask = |player: &mut Player| player.advisor = Some(background::advice(scenario()));
         ask(&mut player);
         player.begin(scenario(), false);
         assert!(player.advisor.is_none());

@@ -308,7 +308,7 @@ impl Player {
     /// Takes the pictures of the pinned run once they are made again. Returns whether they have come just now.
     pub(super) fn take_pinned_news(&mut self) -> bool {
         let made = match &self.pinned {
-            Some(Pinned::Returning(run)) => run.take(),
+            Some(Pinned::Returning(run)) => run.made(),
             _ => None,
         };
         let has_come = made.is_some();

@@ -1,13 +1,13 @@
 //! The pictures of the previous run, kept when an edit restarts the run, so that both can be compared, and the making of
 //! such pictures anew, in the background.
 
+use super::background::Job;
 use super::live::LiveRun;
 use super::marks::Marks;
 use super::path::Path;
 use super::recording::Recording;
 use crate::scenario::Scenario;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
+use std::sync::Arc;
 
 #[derive(Clone, Debug)]
 pub struct Ghost {
@@ -40,41 +40,26 @@ impl Ghost {
 pub struct GhostToBe {
     pub scenario: Arc<Scenario>,
     pub furthest: u64,
-    made: Arc<Mutex<Option<Ghost>>>,
+    job: Job<Ghost>,
 }
 
 impl GhostToBe {
     /// Begins to play `scenario` up to the step `furthest`, or up to where its numbers stop being finite.
     pub fn begin(scenario: Arc<Scenario>, furthest: u64) -> Self {
-        let made = Arc::new(Mutex::new(None));
-        let wanted = Arc::downgrade(&made);
         let played = Arc::clone(&scenario);
-        let play = move || {
+        let job = Job::begin("pinned", move |is_wanted| {
             let mut run = LiveRun::new(played);
-            run.play(
-                f64::INFINITY,
-                furthest,
-                || wanted.strong_count() == 0,
-                |_| false,
-            );
-            if let Some(made) = wanted.upgrade() {
-                let ghost = Ghost::of(&run);
-                *made.lock().unwrap_or_else(PoisonError::into_inner) = Some(ghost);
-            }
-        };
-        // If the system gives no thread, there are no pictures.
-        let _ = thread::Builder::new().name("pinned".to_owned()).spawn(play);
+            run.play(f64::INFINITY, furthest, || !is_wanted(), |_| false);
+            Some(Ghost::of(&run))
+        });
         Self {
             scenario,
             furthest,
-            made,
+            job,
         }
     }
 
-    pub fn take(&self) -> Option<Ghost> {
-        self.made
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .take()
+    pub fn made(&self) -> Option<Ghost> {
+        self.job.answer().cloned()
     }
 }

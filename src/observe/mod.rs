@@ -8,11 +8,11 @@
 //!   [`ages`] says which parts of a path are old.
 //! - [`lookup`] gives the numbers of any earlier step.
 //! - [`pace`] is the playback speed; [`playback`] plays the run at it until the next stop.
-//! - [`reading`] holds the numbers on the screen; [`advisor`] searches for a setting that makes them reliable.
+//! - [`reading`] holds the numbers on the screen; [`background`] searches for a setting that makes them reliable.
 //! - [`marks`] are the times of pushes and edits; [`ghost`] is the picture of the previous run.
 
-pub mod advisor;
 pub mod ages;
+pub mod background;
 pub mod camera;
 pub mod checkpoints;
 pub mod detail;

@@ -8,8 +8,9 @@ use std::time::Duration;
 /// The longest time that one frame counts: after a suspension, or on a slow line, the run does not make up for more.
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
-/// Rungs of the 1-2-5 ladder that are playback speeds: 1e-4 to 5e5 simulated seconds a second.
-const SPEEDS: RangeInclusive<i64> = -12..=17;
+/// The ends of the 1-2-5 ladder of playback speeds, simulated seconds a second.
+const SLOWEST: f64 = 1e-4;
+const FASTEST: f64 = 5e5;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -21,8 +22,16 @@ pub enum Speed {
 
 impl Speed {
     pub fn shifted(self, notches: i32) -> Self {
-        let next = if notches > 0 { faster } else { slower };
-        (0..notches.unsigned_abs()).fold(self, |speed, _| next(speed))
+        let next = match self {
+            Self::Top if notches >= 0 => return Self::Top,
+            Self::Top => climbed(FASTEST, notches + 1).max(SLOWEST),
+            Self::Times(now) => climbed(now, notches).max(SLOWEST.min(now)),
+        };
+        match next {
+            next if next <= FASTEST => Self::Times(next),
+            _ if notches > 0 => Self::Top,
+            _ => Self::Times(FASTEST),
+        }
     }
 }
 
@@ -107,31 +116,6 @@ impl Pace {
             }
             _ => {}
         }
-    }
-}
-
-fn ladder() -> impl DoubleEndedIterator<Item = f64> {
-    SPEEDS.map(rung)
-}
-
-fn faster(speed: Speed) -> Speed {
-    match speed {
-        Speed::Times(now) => ladder()
-            .find(|&next| next > now * 1.0001)
-            .map_or(Speed::Top, Speed::Times),
-        Speed::Top => Speed::Top,
-    }
-}
-
-fn slower(speed: Speed) -> Speed {
-    match speed {
-        Speed::Times(now) => Speed::Times(
-            ladder()
-                .rev()
-                .find(|&next| next < now * 0.9999)
-                .unwrap_or(now),
-        ),
-        Speed::Top => ladder().next_back().map_or(Speed::Top, Speed::Times),
     }
 }
 

@@ -11,9 +11,8 @@ pub fn paragraphs(source: &str, kind: &Kind) -> Vec<Paragraph> {
         words: Vec::new(),
         look: Look::Plain,
         lists: Vec::new(),
-        mark: None,
-        is_code: false,
-        is_heading: false,
+        mark: String::new(),
+        block: None,
     };
     for event in Parser::new(source) {
         pen.take(event);
@@ -30,9 +29,10 @@ struct Pen<'a> {
     look: Look,
     /// The lists that are open, each with the number of its next entry where it is numbered.
     lists: Vec<Option<u64>>,
-    mark: Option<String>,
-    is_code: bool,
-    is_heading: bool,
+    /// The mark of the entry that is read; after its first paragraph a blank.
+    mark: String,
+    /// Code or a heading.
+    block: Option<Kind>,
 }
 
 impl Pen<'_> {
@@ -58,23 +58,14 @@ impl Pen<'_> {
             Tag::Item => {
                 self.end();
                 let number = self.lists.last_mut().and_then(Option::as_mut);
-                self.mark = Some(match number {
-                    Some(number) => {
-                        *number += 1;
-                        format!("{}.", *number - 1)
-                    }
-                    None => "-".to_owned(),
+                self.mark = number.map_or("-".to_owned(), |number| {
+                    *number += 1;
+                    format!("{}.", *number - 1)
                 });
             }
-            Tag::CodeBlock(_) => {
-                self.end();
-                self.is_code = true;
-            }
-            Tag::Heading { .. } => {
-                self.end();
-                self.is_heading = true;
-            }
-            Tag::Paragraph => self.end(),
+            Tag::CodeBlock(_) => self.begin(Some(Kind::Code)),
+            Tag::Heading { .. } => self.begin(Some(Kind::Heading)),
+            Tag::Paragraph => self.begin(None),
             _ => {}
         }
     }
@@ -86,17 +77,17 @@ impl Pen<'_> {
                 self.end();
                 self.lists.pop();
             }
-            TagEnd::Item | TagEnd::Paragraph => self.end(),
-            TagEnd::CodeBlock => {
-                self.end();
-                self.is_code = false;
-            }
-            TagEnd::Heading(_) => {
-                self.end();
-                self.is_heading = false;
+            TagEnd::Item | TagEnd::Paragraph | TagEnd::CodeBlock | TagEnd::Heading(_) => {
+                self.begin(None);
             }
             _ => {}
         }
+    }
+
+    /// Ends the paragraph that is being read, and begins one of this kind, or of the usual one.
+    fn begin(&mut self, block: Option<Kind>) {
+        self.end();
+        self.block = block;
     }
 
     fn write(&mut self, text: &str, look: Look) {
@@ -116,14 +107,10 @@ impl Pen<'_> {
             return;
         }
         let depth = self.lists.len() as u16;
-        let kind = match self.mark.take() {
-            _ if self.is_code => Kind::Code,
-            _ if self.is_heading => Kind::Heading,
-            Some(mark) => Kind::Item { mark, depth },
-            None if depth > 0 => Kind::Item {
-                mark: " ".to_owned(),
-                depth,
-            },
+        let mark = std::mem::replace(&mut self.mark, " ".to_owned());
+        let kind = match &self.block {
+            Some(block) => block.clone(),
+            None if depth > 0 => Kind::Item { mark, depth },
             None => self.kind.clone(),
         };
         self.done.push(Paragraph { kind, words });
