@@ -17,9 +17,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// A scheme at one time step, over the whole scenario.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparisonRow {
-    /// The scheme's name.
     pub scheme: &'static str,
-    /// Time step, s.
     pub time_step_s: f64,
     /// Steps taken; fewer than asked for where the numbers stopped being finite.
     pub steps: u64,
@@ -138,7 +136,6 @@ fn order(coarse: &ComparisonRow, fine: &ComparisonRow, least_m: f64) -> Option<f
 /// The rows as a table for reading.
 #[derive(Clone, Copy, Debug)]
 pub struct Table<'a> {
-    /// The rows.
     pub rows: &'a [ComparisonRow],
     /// What the energy drifts are measured in; `None` where there is nothing to measure them by.
     pub energy_unit: Option<EnergyUnit>,
@@ -169,34 +166,7 @@ impl Table<'_> {
             "rows": rows?,
         }))
     }
-}
 
-impl fmt::Display for Table<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:<8} {:>10} {:>10}", "scheme", "dt s", "steps")?;
-        write!(f, " {:>9} {:>9} {:>6}", "error m", "at end m", "order")?;
-        writeln!(
-            f,
-            " {:>9} {:>9} {:>9} {:>8}",
-            "energy", "L.axle", "L_z", "ns/step"
-        )?;
-        for row in self.rows {
-            let order = row.order.map_or("-".to_owned(), |order| fixed(order, 2));
-            let number =
-                |number: Option<f64>| number.map_or(NONE.to_owned(), |number| exponent(number, 1));
-            let (error, at_end) = (number(row.error_m), number(row.error_at_end_m));
-            let (spin, lz) = (number(row.spin_drift), number(row.lz_drift));
-            let (energy, step) = (number(row.energy_drift), shortest(row.time_step_s));
-            write!(f, "{:<8} {step:>10} {:>10}", row.scheme, row.steps)?;
-            write!(f, " {error:>9} {at_end:>9} {order:>6}")?;
-            write!(f, " {energy:>9} {spin:>9} {lz:>9}")?;
-            writeln!(f, " {:>8}", fixed(row.ns_per_step, 0))?;
-        }
-        self.legend(f)
-    }
-}
-
-impl Table<'_> {
     fn legend(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let energy = match self.energy_unit {
             Some(unit) => format!("in units of {unit}"),
@@ -221,5 +191,30 @@ impl Table<'_> {
             f,
             "ns/step with every core at work: to be compared within the table only."
         )
+    }
+}
+
+impl fmt::Display for Table<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:<8} {:>10} {:>10}", "scheme", "dt s", "steps")?;
+        write!(f, " {:>9} {:>9} {:>6}", "error m", "at end m", "order")?;
+        writeln!(
+            f,
+            " {:>9} {:>9} {:>9} {:>8}",
+            "energy", "L.axle", "L_z", "ns/step"
+        )?;
+        for row in self.rows {
+            let order = row.order.map_or("-".to_owned(), |order| fixed(order, 2));
+            let number =
+                |number: Option<f64>| number.map_or(NONE.to_owned(), |number| exponent(number, 1));
+            let (error, at_end) = (number(row.error_m), number(row.error_at_end_m));
+            let (spin, lz) = (number(row.spin_drift), number(row.lz_drift));
+            let (energy, step) = (number(row.energy_drift), shortest(row.time_step_s));
+            write!(f, "{:<8} {step:>10} {:>10}", row.scheme, row.steps)?;
+            write!(f, " {error:>9} {at_end:>9} {order:>6}")?;
+            write!(f, " {energy:>9} {spin:>9} {lz:>9}")?;
+            writeln!(f, " {:>8}", fixed(row.ns_per_step, 0))?;
+        }
+        self.legend(f)
     }
 }

@@ -103,11 +103,11 @@ fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
         Advice::TimeStep(step) => {
             let step = shortest(*step);
             let long = if health.can_be_rescaled {
-                format!("--time-step {step} would mend it")
+                format!("--time-step {step}")
             } else {
-                format!("a time step of {step} s throughout would mend it")
+                format!("a time step of {step} s throughout")
             };
-            (long, format!("dt {step} s mends it"))
+            (long, format!("dt {step} s"))
         }
         Advice::Scheme {
             name,
@@ -115,20 +115,20 @@ fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
             tried_s,
         } => {
             let step = shortest(*time_step_s);
-            let long = match health.can_be_rescaled {
-                true => format!("--scheme {name} --time-step {step} would mend it"),
-                false if time_step_s == tried_s => {
-                    format!("--scheme {name} would mend it")
-                }
-                false => format!("{name} at {step} s throughout would mend it"),
+            let long = if health.can_be_rescaled {
+                format!("--scheme {name} --time-step {step}")
+            } else if time_step_s == tried_s {
+                format!("--scheme {name}")
+            } else {
+                format!("{name} at {step} s throughout")
             };
-            (long, format!("{name}, dt {step} s mends it"))
+            (long, format!("{name}, dt {step} s"))
         }
         Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
     };
     Some(Remark {
-        long,
-        short,
+        long: long + " would mend it",
+        short: short + " mends it",
         warns: false,
     })
 }
@@ -140,37 +140,29 @@ const LAG_IS_RIGHT: f64 = 1.05;
 fn swing_of(health: &Health, nutation: &Nutation) -> Vec<(bool, Remark)> {
     let changed = health.changed_nutation();
     let is_right = changed.is_none() && health.is_believed() != Some(false);
-    let lag = match nutation.lag_ratio {
-        // A lag that is right is not said beside what is wrong.
-        Some(..LAG_IS_RIGHT) => {
-            is_right.then(|| Remark::new("axle lags L as far as it should".to_owned(), false))
-        }
-        Some(ratio @ LAG_IS_RIGHT..2.0) => {
-            let text = format!("axle lags L {} % too far", short(100.0 * (ratio - 1.0)));
-            Some(Remark::new(text, true))
-        }
-        Some(ratio) => {
-            let text = format!("axle lags L {} times too far", times(ratio));
-            Some(Remark::new(text, true))
-        }
-        None => None,
+    let lag = nutation.lag_ratio.and_then(|ratio| {
+        let text = match ratio {
+            // A lag that is right is not said beside what is wrong.
+            ..LAG_IS_RIGHT if !is_right => return None,
+            ..LAG_IS_RIGHT => "axle lags L as far as it should".to_owned(),
+            ..2.0 => format!("axle lags L {} % too far", short(100.0 * (ratio - 1.0))),
+            _ => format!("axle lags L {} times too far", times(ratio)),
+        };
+        Some(Remark::new(text, ratio >= LAG_IS_RIGHT))
+    });
+    let factor = if let Some(left) = changed {
+        let (verb, percent) = change(nutation);
+        let verb = if verb == "damps" { "damped" } else { "fed" };
+        let gone = if left < 1e-3 { ": gone" } else { "" };
+        format!("nutation {verb} by {percent} % a step{gone}")
+    } else {
+        format!("nutation ×{} a step", fixed(nutation.multiplier, 4))
     };
-    let (verb, percent) = change(nutation);
-    let verb = if verb == "damps" { "damped" } else { "fed" };
-    let factor = match changed {
-        Some(left) => {
-            let gone = if left < 1e-3 { ": gone" } else { "" };
-            let text = format!("nutation {verb} by {percent} % a step{gone}");
-            Remark::new(text, true)
-        }
-        None => {
-            let text = format!("nutation ×{} a step", fixed(nutation.multiplier, 4));
-            Remark::new(text, false)
-        }
-    };
-    let lag = lag.map(|lag| (false, lag));
-    lag.into_iter()
-        .chain([(changed.is_some(), factor)])
+    let is_the_fault = changed.is_some();
+    let factor = (is_the_fault, Remark::new(factor, is_the_fault));
+    lag.map(|lag| (false, lag))
+        .into_iter()
+        .chain([factor])
         .collect()
 }
 

@@ -63,10 +63,12 @@ pub enum Axis {
 impl Axis {
     /// The axis that points along `up` (unit vector, world frame), opposite to a load or, without one, along L.
     fn new(up: Vector3<f64>, is_loaded: bool) -> Self {
-        match is_loaded {
-            _ if (up - Vector3::z()).norm() <= SAME_DIRECTION => Self::Z,
-            true => Self::AgainstLoad(up),
-            false => Self::Momentum,
+        if (up - Vector3::z()).norm() <= SAME_DIRECTION {
+            Self::Z
+        } else if is_loaded {
+            Self::AgainstLoad(up)
+        } else {
+            Self::Momentum
         }
     }
 }

@@ -113,12 +113,12 @@ impl TiltSwing {
         let above = top.tilt_deg + top.beyond - self.tilts.highest_deg;
         let below = self.tilts.lowest_deg - (bottom.tilt_deg - bottom.beyond);
         let bends = top.bend.powi(2) + bottom.bend.powi(2);
-        let unseen = match self.turns * STROBED > self.rows {
-            true => swing - self.earlier[0] + 20.0 * swing / (self.rows as f64).powi(2),
-            false if swing > 0.0 => {
-                above.max(0.0) + below.max(0.0) + BEYOND_PARABOLA * bends / swing
-            }
-            false => 0.0,
+        let unseen = if self.turns * STROBED > self.rows {
+            swing - self.earlier[0] + 20.0 * swing / (self.rows as f64).powi(2)
+        } else if swing > 0.0 {
+            above.max(0.0) + below.max(0.0) + BEYOND_PARABOLA * bends / swing
+        } else {
+            0.0
         };
         (self.turns >= LEAST_TURNS).then_some(Measured {
             value: swing,

@@ -45,15 +45,7 @@ pub struct Browser {
 }
 
 impl Browser {
-    /// Presets, and the scenario, run and CSV files in `folder`, with `name` selected.
-    pub fn new(folder: &Path, name: &str) -> Self {
-        let mut browser = Self::default();
-        browser.begin(folder, name, |_| true);
-        browser
-    }
-
-    /// Lists presets and files again, as [`new`](Self::new) does, but of the files only those for which `may_be_read`
-    /// is true.
+    /// Lists presets, and the scenario, run and CSV files in `folder` for which `may_be_read` is true, with `name` selected.
     pub fn begin(&mut self, folder: &Path, name: &str, may_be_read: impl Fn(&Path) -> bool) {
         self.passed.clear();
         self.first = folder.to_owned();

@@ -156,36 +156,28 @@ impl<'a> Walk<'a> {
         unstated: &mut Problems,
         go_on: GoOn<'_>,
     ) -> Result<(), Problem> {
-        let block = match page.task() {
-            Some(_) => "task",
-            None => "lab block",
+        let has_task = page.task().is_some();
+        let block = if has_task { "task" } else { "lab block" };
+        let states = |walk: &Self| -> Vec<(bool, String)> {
+            let state = |check: &Check| (walk.holds(check), walk.numbers_of(&check.that));
+            page.checks().map(state).collect()
         };
-        let holding = |walk: &Self| -> Vec<bool> { page.checks().map(|c| walk.holds(c)).collect() };
-        let mut before = holding(self);
+        let mut before = states(self);
         self.enter(page, go_on)?;
         self.unstated_on(page, unstated);
-        if page.task().is_some() {
-            before = holding(self);
+        if has_task {
+            before = states(self);
         }
-        let numbers = |walk: &Self| -> Vec<String> {
-            page.checks().map(|c| walk.numbers_of(&c.that)).collect()
-        };
-        let numbers_before = numbers(self);
         self.leave(page, go_on)?;
-        let after = numbers(self);
-        for (index, check) in page.checks().enumerate() {
-            let rule = match (before[index], self.holds(check)) {
-                (false, true) => continue,
-                (_, false) => format!(
-                    "does not hold after the {block} of its page: {}",
-                    after[index]
-                ),
-                (true, true) => format!(
+        for ((check, before), after) in page.checks().zip(before).zip(states(self)) {
+            let rule = match (before, after) {
+                ((false, _), (true, _)) => continue,
+                (_, (false, numbers)) => {
+                    format!("does not hold after the {block} of its page: {numbers}")
+                }
+                ((true, numbers), (true, after)) => format!(
                     "holds without the {block} of its page too, so it tells nothing: {}",
-                    match page.task() {
-                        Some(_) => &numbers_before[index],
-                        None => &after[index],
-                    }
+                    if has_task { numbers } else { after }
                 ),
             };
             let that = toml::Value::from(check.that.text());

@@ -10,8 +10,7 @@ use super::stage::Stage;
 use super::watch::Watch;
 use super::{reading, shipped};
 use crate::lab::Lab;
-use std::collections::BTreeMap;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
@@ -66,10 +65,8 @@ impl Taken {
             place.began_unix_s = unix_s;
         }
         let gone_before = Duration::from_secs(unix_s.saturating_sub(place.began_unix_s));
-        let watch = match shipped::find(&lesson.name) {
-            Some(_) => None,
-            None => Some(Watch::new(Path::new(&lesson.name))),
-        };
+        let is_file = shipped::find(&lesson.name).is_none();
+        let watch = is_file.then(|| Watch::new(Path::new(&lesson.name)));
         Self {
             lesson: Arc::new(lesson),
             watch,
@@ -141,23 +138,19 @@ impl Taken {
         let lesson = Arc::clone(&self.lesson);
         let page = self.place.page;
         let stages = lesson.stages_to(page, &self.place.kept, &self.place.predictions);
-        let last = match stages.last() {
-            Some(last) if last.page.number == page => Some(last),
-            _ => None,
-        };
+        let last = stages.last().filter(|last| last.page.number == page);
         let before = stages.len() - usize::from(last.is_some());
         let begin = Instant::now();
-        let mut is_late = false;
+        let is_late = || begin.elapsed() > LONGEST;
         for stage in &stages[..before] {
             stage.carry_out(lab, &mut self.place.kept, |_, _| {
-                is_late |= begin.elapsed() > LONGEST;
-                if is_late {
+                if is_late() {
                     ControlFlow::Break(())
                 } else {
                     ControlFlow::Continue(())
                 }
             })?;
-            if is_late {
+            if is_late() {
                 return Err(TOO_LONG.to_owned());
             }
         }

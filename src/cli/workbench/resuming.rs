@@ -59,7 +59,7 @@ fn resumed(
 ) -> Result<Lab, String> {
     let view =
         |scenario: &Scenario| View::new(scenario, marker(look.markers), theme(look), &panes::IDS);
-    Lab::resumed_in(content, confined, view).map_err(told)
+    Lab::resumed(content, confined, view).map_err(told)
 }
 
 /// The session called `name`, or an error that says why it cannot be had.

@@ -14,15 +14,8 @@ use toml::Value;
 impl Lab {
     /// The lab with `content`: on its way to the step where it stood, and paused there. `view` returns how its run is
     /// shown on this screen.
+    /// It reads and writes in the folder `confined` only, if one is given.
     pub fn resumed(
-        content: &Content,
-        view: impl FnOnce(&Scenario) -> View,
-    ) -> Result<Self, Unreadable> {
-        Self::resumed_in(content, None, view)
-    }
-
-    /// As [`resumed`](Self::resumed), for a lab that reads and writes in the folder `confined` only, if one is given.
-    pub fn resumed_in(
         content: &Content,
         confined: Option<&Confined>,
         view: impl FnOnce(&Scenario) -> View,
