@@ -1,8 +1,7 @@
 //! Playback speed: how much simulated time passes per wall time, whatever the time step.
 
-use crate::text::ladder::rung;
+use crate::text::ladder::climbed;
 use serde::{Deserialize, Serialize};
-use std::ops::RangeInclusive;
 use std::time::Duration;
 
 /// The longest time that one frame counts: after a suspension, or on a slow line, the run does not make up for more.

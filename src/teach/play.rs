@@ -144,8 +144,7 @@ pub fn check(lesson: &Lesson, lab: Lab, go_on: GoOn<'_>) -> Result<Vec<Problem>,
             break; // the pages to come stand on it
         }
     }
-    let unstated = unstated.list;
-    found.of(&lesson.origin).or(Played { unstated })
+    found.of(&lesson.origin).or(unstated.list)
 }
 
 impl<'a> Walk<'a> {
