@@ -100,11 +100,7 @@ pub enum Action {
     Choose,
     /// Begins to type the filter of the browser.
     Filter,
-    /// Types a character into a filter, the search of the help, or the dialog.
-    Type(char),
-    /// Removes the character before the cursor.
-    Erase,
-    /// Any other change in the field of a dialog.
+    /// Changes what is typed: the field of a dialog, a filter, or the search of the help.
     InField(FieldEdit),
     /// Accepts what is typed into the dialog.
     Accept,
@@ -143,9 +139,12 @@ pub enum LessonKey {
     Take,
 }
 
-/// A change in the field of a dialog that types no character.
+/// A change in the field of a dialog, or in a line without a cursor: there something can be typed, erased and cleared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldEdit {
+    Type(char),
+    /// Removes the character before the cursor.
+    Erase,
     Delete,
     Clear,
     Left,

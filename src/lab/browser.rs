@@ -1,6 +1,5 @@
 //! The browser: the list of presets and files, the filter, the selected entry and its preview.
 
-use super::form::type_into;
 use super::preview::{AT_ONCE, Loader, Preview, in_background, read};
 use crate::scenario::presets::PRESETS;
 use std::collections::HashSet;
@@ -87,11 +86,13 @@ impl Browser {
 
     /// Lists presets, and of `folder` the way up, folders and files, as far as `may_be_read` is true for them.
     fn list(&mut self, folder: &Path, may_be_read: impl Fn(&Path) -> bool) {
-        let presets = PRESETS.iter().map(|preset| Entry {
-            name: preset.name.to_owned(),
-            is_file: false,
-            is_folder: false,
-        });
+        let entry = |name, is_file, is_folder| Entry {
+            name,
+            is_file,
+            is_folder,
+        };
+        let presets = PRESETS.iter();
+        let presets = presets.map(|preset| entry(preset.name.to_owned(), false, false));
         let mut names = files(folder);
         names.retain(|name| may_be_read(Path::new(name)));
         self.others = 0;
@@ -105,16 +106,9 @@ impl Browser {
         let mut folders = folders(folder);
         folders.retain(|name| may_be_read(Path::new(name.trim_end_matches('/'))));
         let above = leads_up.then(|| ABOVE.to_owned());
-        let folders = above.into_iter().chain(folders).map(|name| Entry {
-            name,
-            is_file: false,
-            is_folder: true,
-        });
-        let files = names.into_iter().map(|name| Entry {
-            name,
-            is_file: true,
-            is_folder: false,
-        });
+        let folders = above.into_iter().chain(folders);
+        let folders = folders.map(|name| entry(name, false, true));
+        let files = names.into_iter().map(|name| entry(name, true, false));
         self.entries = presets.chain(folders).chain(files).collect();
         self.folder = folder.to_owned();
         self.preview = None;
@@ -229,28 +223,11 @@ impl Browser {
         self.load_preview();
     }
 
-    /// Adds a character to the filter if it has fewer than 100.
-    pub fn type_char(&mut self, typed: char) {
-        self.paste(typed.encode_utf8(&mut [0; 4]));
-    }
-
-    /// Adds `text` to the filter, up to 100 characters; returns whether all of it had room.
-    pub fn paste(&mut self, text: &str) -> bool {
-        let had_room = type_into(&mut self.filter, text);
+    /// Changes the filter, and selects the first entry that is then shown.
+    pub fn filter_by<T>(&mut self, change: impl FnOnce(&mut String) -> T) -> T {
+        let changed = change(&mut self.filter);
         self.refilter();
-        had_room
-    }
-
-    /// Removes the last character of the filter.
-    pub fn erase(&mut self) {
-        self.filter.pop();
-        self.refilter();
-    }
-
-    /// Removes the filter: all entries are shown.
-    pub fn clear_filter(&mut self) {
-        self.filter.clear();
-        self.refilter();
+        changed
     }
 
     /// Selects the first entry that is shown; without a filter, the one that is open.

@@ -176,16 +176,8 @@ impl Dialog {
             .map_err(|_| "every must be a whole number, 1 or more".to_owned())
     }
 
-    pub(super) fn type_char(&mut self, typed: char) {
-        self.edit(|form| form.type_char(typed));
-    }
-
     pub(super) fn paste(&mut self, text: &str) {
         self.edit(|form| form.paste(text));
-    }
-
-    pub(super) fn erase(&mut self) {
-        self.edit(Form::erase);
     }
 
     /// Changes what is typed, where anything is.
@@ -278,15 +270,15 @@ mod tests {
         let mut dialog = export();
         assert!(dialog.form.info[0].starts_with("2,301 rows"));
         dialog.edit_field(FieldEdit::Next);
-        dialog.type_char('1');
-        dialog.type_char('0');
+        dialog.edit_field(FieldEdit::Type('1'));
+        dialog.edit_field(FieldEdit::Type('0'));
         assert_eq!(dialog.every().unwrap().get(), 10);
         assert!(dialog.form.info[0].starts_with("231 rows"));
         dialog.edit_field(FieldEdit::Clear);
         assert!(dialog.form.info[0].starts_with("every must be"));
         dialog.paste("5");
         assert_eq!(dialog.every().unwrap().get(), 5);
-        dialog.erase();
+        dialog.edit_field(FieldEdit::Erase);
         assert!(dialog.every().is_err());
     }
 

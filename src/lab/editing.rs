@@ -34,7 +34,7 @@ impl Lab {
     }
 
     pub(super) fn choose_next_push(&mut self, next: NextPush) -> Done {
-        self.values.set_next_push(next);
+        self.values.next_push = next;
         self.list_parameters();
         Done::SILENT
     }
@@ -187,7 +187,7 @@ impl Lab {
         }
         let run = self.work.present();
         if let Some(push) = run.next_push.clone() {
-            self.values.set_next_push(push);
+            self.values.next_push = push;
             self.values.suit(self.player.run().scenario());
         }
         self.player.playback.set_end(run.end_s);
@@ -214,7 +214,7 @@ impl Lab {
     /// Shows the run of `scenario`, which was opened under another name than the run shown until now.
     fn show_another(&mut self, scenario: Arc<Scenario>) {
         self.view.fit(&scenario);
-        self.values.set_next_push(NextPush::of(&scenario));
+        self.values.next_push = NextPush::of(&scenario);
         self.player.open(scenario);
         self.scenario_has_changed();
     }

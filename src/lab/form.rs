@@ -64,6 +64,7 @@ impl Field {
         self.is_marked
     }
 
+    /// Inserts `typed` before the cursor. Characters that would control a terminal are refused.
     fn type_char(&mut self, typed: char) {
         if is_steering(typed) {
             return;
@@ -100,11 +101,6 @@ impl Form {
         self.fields.get(index).map_or("", Field::text)
     }
 
-    /// Inserts `typed` before the cursor. Characters that would control a terminal are refused.
-    pub fn type_char(&mut self, typed: char) {
-        self.edit(|field| field.type_char(typed));
-    }
-
     /// Inserts the pasted `text` before the cursor as if it had been typed. If the field is too short for it, the end is
     /// cut and the form says so.
     pub fn paste(&mut self, text: &str) {
@@ -124,11 +120,6 @@ impl Form {
         }
     }
 
-    /// Removes the character before the cursor, or the marked text.
-    pub fn erase(&mut self) {
-        self.take(InputRequest::DeletePrevChar);
-    }
-
     /// Marks the whole text of the field: typing then replaces it.
     pub fn mark(&mut self) {
         self.move_cursor(InputRequest::GoToEnd);
@@ -141,6 +132,8 @@ impl Form {
     pub fn edit_field(&mut self, edit: FieldEdit) {
         let count = self.fields.len().max(1);
         match edit {
+            FieldEdit::Type(typed) => self.edit(|field| field.type_char(typed)),
+            FieldEdit::Erase => self.take(InputRequest::DeletePrevChar),
             FieldEdit::Delete => self.take(InputRequest::DeleteNextChar),
             FieldEdit::Clear => self.take(InputRequest::DeleteLine),
             FieldEdit::Left => self.move_cursor(InputRequest::GoToPrevChar),
@@ -175,7 +168,7 @@ impl Form {
     }
 }
 
-/// The most characters of such a line.
+/// The most characters of a line without a cursor: a filter or a search.
 pub(super) const MOST_IN_LINE: usize = 100;
 
 /// Adds `text` to the line `typed`, without line ends and other control characters, up to 100 characters. Returns whether
@@ -187,128 +180,93 @@ pub(super) fn type_into(typed: &mut String, text: &str) -> bool {
     characters.next().is_none()
 }
 
+/// Changes `line`, which has no cursor: nothing moves in it.
+pub(super) fn edit_line(line: &mut String, edit: FieldEdit) {
+    match edit {
+        FieldEdit::Type(typed) => drop(type_into(line, typed.encode_utf8(&mut [0; 4]))),
+        FieldEdit::Erase => drop(line.pop()),
+        FieldEdit::Clear => line.clear(),
+        _ => {}
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use FieldEdit::{Clear, Delete, End, Erase, Home, Left, Next, Previous, Right, Type};
     use proptest::prelude::*;
 
     fn form(text: &str) -> Form {
-        Form::new(
-            "test",
-            vec![Field::new("a", text), Field::new("b", "")],
-            "Esc",
-        )
+        let fields = vec![Field::new("a", text), Field::new("b", "")];
+        Form::new("test", fields, "Esc")
+    }
+
+    /// What a character of the tests stands for: a key that edits, or itself.
+    fn edit(key: char) -> FieldEdit {
+        match key {
+            '«' => Home,
+            '»' => End,
+            '←' => Left,
+            '→' => Right,
+            '↓' => Next,
+            '↑' => Previous,
+            '⌫' => Erase,
+            '⌦' => Delete,
+            '∅' => Clear,
+            typed => Type(typed),
+        }
     }
 
     #[test]
-    fn typing_goes_where_the_cursor_is() {
-        let mut form = form("0.1");
-        form.edit_field(FieldEdit::End);
-        form.type_char('5');
-        form.edit_field(FieldEdit::Left);
-        form.edit_field(FieldEdit::Left);
-        form.erase();
-        assert_eq!(form.text(0), "015");
-        form.edit_field(FieldEdit::Home);
-        form.edit_field(FieldEdit::Delete);
-        form.type_char('速');
-        form.edit_field(FieldEdit::End);
-        form.type_char('ü');
-        assert_eq!(form.text(0), "速15ü");
-        form.erase();
-        form.erase();
-        form.erase();
-        form.erase();
-        form.erase();
-        form.edit_field(FieldEdit::Delete);
-        assert_eq!((form.text(0), form.fields[0].cursor()), ("", 0));
-        form.edit_field(FieldEdit::Clear);
-        assert_eq!(form.text(7), "");
-    }
-
-    #[test]
-    fn a_character_of_several_code_points_goes_at_once() {
-        let mut form = form("e\u{301}x");
-        form.edit_field(FieldEdit::Left);
-        form.edit_field(FieldEdit::Left);
-        assert_eq!(form.fields[0].cursor(), 0);
-        form.edit_field(FieldEdit::Delete);
-        assert_eq!(form.text(0), "x");
-    }
-
-    #[test]
-    fn what_is_typed_takes_the_place_of_what_was_there_unless_the_cursor_was_moved() {
-        let mut typed = form("45");
-        "30".chars().for_each(|c| typed.type_char(c));
-        assert_eq!(typed.text(0), "30");
-        let mut erased = form("45");
-        erased.erase();
-        assert_eq!(erased.text(0), "");
-        let mut moved = form("45");
-        moved.edit_field(FieldEdit::Left);
-        moved.type_char('.');
-        assert_eq!(moved.text(0), "4.5");
-    }
-
-    #[test]
-    fn fields_follow_one_another_in_a_ring() {
-        let mut form = form("x");
-        form.edit_field(FieldEdit::End);
-        form.edit_field(FieldEdit::Next);
-        form.type_char('y');
-        form.edit_field(FieldEdit::Next);
-        form.type_char('z');
-        form.edit_field(FieldEdit::Previous);
-        form.type_char('!');
-        assert_eq!((form.text(0), form.text(1)), ("xz", "y!"));
-        let mut none = Form::default();
-        none.edit_field(FieldEdit::Next);
-        none.edit_field(FieldEdit::Previous);
-        none.type_char('a');
-        assert_eq!(none.text(0), "");
-    }
-
-    #[test]
-    fn what_steers_a_terminal_is_refused() {
-        let mut form = form("");
-        for c in [
-            '\u{1b}', '\n', '\t', '\u{7f}', '\u{9b}', '\u{202e}', '\u{2066}',
+    fn keys_edit_the_field_that_is_selected() {
+        for (text, keys, edited, cursor) in [
+            // Typing goes where the cursor is.
+            ("0.1", "»5←←⌫", ["015", ""], 1),
+            ("0.1", "»5←←⌫«⌦速»ü", ["速15ü", ""], 4),
+            ("速15ü", "»⌫⌫⌫⌫⌫⌦", ["", ""], 0),
+            ("", "∅", ["", ""], 0),
+            // A character of several code points goes at once.
+            ("e\u{301}x", "←←", ["e\u{301}x", ""], 0),
+            ("e\u{301}x", "←←⌦", ["x", ""], 0),
+            // What is typed takes the place of what was there, unless the cursor was moved.
+            ("45", "30", ["30", ""], 2),
+            ("45", "⌫", ["", ""], 0),
+            ("45", "←.", ["4.5", ""], 2),
+            // Fields follow one another in a ring.
+            ("x", "»↓y↓z↑!", ["xz", "y!"], 2),
+            // What steers a terminal is refused.
+            ("", "\u{1b}\n\t\u{7f}\u{9b}\u{202e}\u{2066}", ["", ""], 0),
+            ("", "\\\"é速", ["\\\"é速", ""], 4),
         ] {
-            form.type_char(c);
+            let mut form = form(text);
+            keys.chars().for_each(|key| form.edit_field(edit(key)));
+            assert_eq!([form.text(0), form.text(1)], edited, "{text} {keys}");
+            assert_eq!(form.fields[form.selected].cursor(), cursor, "{text} {keys}");
+            assert_eq!(form.text(7), "");
         }
-        assert_eq!(form.text(0), "");
-        for c in ['\\', '"', 'é', '速'] {
-            form.type_char(c);
-        }
-        assert_eq!(form.text(0), "\\\"é速");
+        let mut none = Form::default();
+        "↓↑a".chars().for_each(|key| none.edit_field(edit(key)));
+        assert_eq!(none.text(0), "");
     }
 
     #[test]
     fn a_complaint_goes_with_the_next_change() {
         let mut form = form("x");
         form.complaint = Some("no".to_owned());
-        form.edit_field(FieldEdit::Left);
-        form.edit_field(FieldEdit::Next);
+        form.edit_field(Left);
+        form.edit_field(Next);
         assert!(form.complaint.is_some());
-        form.type_char('1');
+        form.edit_field(Type('1'));
         assert_eq!(form.complaint, None);
     }
 
     proptest! {
         #[test]
-        fn nothing_typed_breaks_it(keys in prop::collection::vec((0..10u8, any::<char>()), 0..60)) {
+        fn nothing_typed_breaks_it(keys in prop::collection::vec((0..10_usize, any::<char>()), 0..60)) {
             let mut form = form("速 top");
             for (key, c) in keys {
-                match key {
-                    0 => form.erase(),
-                    1 => form.edit_field(FieldEdit::Delete),
-                    2 => form.edit_field(FieldEdit::Left),
-                    3 => form.edit_field(FieldEdit::Right),
-                    4 => form.edit_field(FieldEdit::Home),
-                    5 => form.edit_field(FieldEdit::End),
-                    6 => form.edit_field(FieldEdit::Next),
-                    _ => form.type_char(c),
-                }
+                let edits = [Erase, Delete, Left, Right, Home, End, Next];
+                form.edit_field(edits.get(key).copied().unwrap_or(Type(c)));
                 let field = &form.fields[form.selected];
                 prop_assert!(field.cursor() <= field.text().chars().count());
             }

@@ -60,6 +60,7 @@ use crate::run::NotFinite;
 use crate::scenario::Scenario;
 use crate::storage::settings::remember;
 use action::LessonKey;
+use form::type_into;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -205,7 +206,9 @@ impl Lab {
     /// Takes a pasted text, where text is typed.
     pub fn paste(&mut self, text: &str) {
         match self.on_top.mode {
-            Mode::Find => self.values.type_name(text),
+            Mode::Find => {
+                self.values.list.filter_by(|line| type_into(line, text));
+            }
             _ => self.on_top.paste(text, self.now),
         }
         self.changed = true;

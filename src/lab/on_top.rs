@@ -4,8 +4,7 @@
 use super::action::FieldEdit;
 use super::browser::Browser;
 use super::dialog::Dialog;
-use super::form::MOST_IN_LINE;
-use super::form::type_into;
+use super::form::{MOST_IN_LINE, edit_line, type_into};
 use super::notice::Notice;
 use super::preview::Preview;
 use std::path::Path;
@@ -146,7 +145,7 @@ impl OnTop {
 
     /// Opens the help on top of the present mode, or closes it.
     pub(super) fn toggle_help(&mut self) {
-        self.help.clear();
+        self.help = HelpSearch::default();
         if self.mode == Mode::Help {
             self.mode = self.under_help;
         } else {
@@ -161,10 +160,10 @@ impl OnTop {
         match self.mode {
             Mode::Lab => return false,
             Mode::Find => self.mode = Mode::Lab,
-            Mode::Help if !self.help.text.is_empty() => self.help.clear(),
+            Mode::Help if !self.help.text.is_empty() => self.help = HelpSearch::default(),
             Mode::Help => self.toggle_help(),
             Mode::Filter => {
-                self.browser.clear_filter();
+                self.browser.filter_by(String::clear);
                 self.mode = Mode::Browser;
             }
             Mode::Browser if self.browser.forget_chosen() => {}
@@ -183,28 +182,11 @@ impl OnTop {
         }
     }
 
-    pub(super) fn type_char(&mut self, typed: char) {
-        match &mut self.dialog {
-            Some(dialog) => dialog.type_char(typed),
-            None if self.mode == Mode::Help => self.help.type_text(typed.encode_utf8(&mut [0; 4])),
-            None => self.browser.type_char(typed),
-        }
-    }
-
-    pub(super) fn erase(&mut self) {
-        match &mut self.dialog {
-            Some(dialog) => dialog.erase(),
-            None if self.mode == Mode::Help => self.help.erase(),
-            None => self.browser.erase(),
-        }
-    }
-
     pub(super) fn edit_field(&mut self, edit: FieldEdit) {
         match (&mut self.dialog, self.mode) {
             (Some(dialog), _) => dialog.edit_field(edit),
-            (None, Mode::Help) if edit == FieldEdit::Clear => self.help.clear(),
-            (None, Mode::Filter) if edit == FieldEdit::Clear => self.browser.clear_filter(),
-            _ => {} // the cursor moves in dialogs alone
+            (None, Mode::Help) => self.help.search(|line| edit_line(line, edit)),
+            (None, _) => self.browser.filter_by(|line| edit_line(line, edit)),
         }
     }
 
@@ -214,15 +196,16 @@ impl OnTop {
         self.clear();
         match (&mut self.dialog, self.mode) {
             (Some(dialog), _) => dialog.paste(text),
-            (None, Mode::Help) => self.help.type_text(text),
-            (None, Mode::Filter) => {
-                if !self.browser.paste(text) {
-                    let text = format!(
-                        "the filter takes at most {MOST_IN_LINE} characters: what was pasted is cut"
-                    );
-                    self.notice.say(text, now);
-                }
+            (None, Mode::Help) => {
+                self.help.search(|line| type_into(line, text));
             }
+            (None, Mode::Filter) if self.browser.filter_by(|line| type_into(line, text)) => {}
+            (None, Mode::Filter) => self.notice.say(
+                format!(
+                    "the filter takes at most {MOST_IN_LINE} characters: what was pasted is cut"
+                ),
+                now,
+            ),
             _ => {
                 let text = "what is pasted goes into fields and filters; here it does nothing";
                 self.notice.say(text, now);
@@ -239,23 +222,13 @@ pub struct HelpSearch {
 }
 
 impl HelpSearch {
-    /// Shows every entry; the first is selected.
-    pub(super) fn clear(&mut self) {
-        *self = Self::default();
-    }
-
-    /// Adds `text` to the text that is searched for, up to 100 characters; the first entry found is selected. `/` begins a
-    /// search in other panes: at the beginning it means nothing here.
-    pub(super) fn type_text(&mut self, text: &str) {
-        let begun = if self.text.is_empty() { "/" } else { "" };
-        type_into(&mut self.text, text.strip_prefix(begun).unwrap_or(text));
+    /// Changes the text that is searched for; the first entry found is selected. `/` begins a search in other panes: at
+    /// the beginning it means nothing here.
+    fn search<T>(&mut self, change: impl FnOnce(&mut String) -> T) -> T {
+        let changed = change(&mut self.text);
+        self.text = self.text.trim_start_matches('/').to_owned();
         self.selected = 0;
-    }
-
-    /// Removes the last character; the first entry found is selected.
-    pub(super) fn erase(&mut self) {
-        self.text.pop();
-        self.selected = 0;
+        changed
     }
 
     pub(super) fn shift(&mut self, rows: isize) {
@@ -283,7 +256,7 @@ mod tests {
         assert_eq!(on_top.mode, Mode::Help);
         assert!(on_top.close());
         on_top.mode = Mode::Filter;
-        on_top.type_char('x');
+        on_top.edit_field(FieldEdit::Type('x'));
         assert_eq!(
             (on_top.mode, on_top.browser.filter.as_str()),
             (Mode::Filter, "x")
@@ -352,10 +325,10 @@ mod tests {
         let mut on_top = OnTop::default();
         on_top.toggle_help();
         on_top.shift(3);
-        on_top.type_char('d');
+        on_top.edit_field(FieldEdit::Type('d'));
         on_top.paste("t\n", NOW);
         assert_eq!((on_top.help.text.as_str(), on_top.help.selected), ("dt", 0));
-        on_top.erase();
+        on_top.edit_field(FieldEdit::Erase);
         assert_eq!(on_top.help.text, "d");
         assert!(on_top.close() && on_top.mode == Mode::Help);
         assert_eq!(on_top.help.text, "");

@@ -236,9 +236,7 @@ fn begins_with_exact(scenario: &Scenario) -> Option<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::for_tests::scenario;
-    use crate::lab::view::markers::Marker;
-    use crate::lab::view::theme::{Background, Theme};
+    use crate::lab::for_tests::{scenario, view};
 
     #[test]
     fn a_run_that_was_played_stays_as_a_ghost() {
@@ -264,23 +262,21 @@ mod tests {
 
     #[test]
     fn the_search_for_advice_about_a_run_ends_when_an_edit_begins_another() {
-        let mut player = Player::new(scenario(), false);
-        let ask = |player: &mut Player| player.advisor = Some(background::advice(scenario()));
-        ask(&mut player);
-        player.begin(scenario(), false);
-        assert!(player.advisor.is_none());
-        ask(&mut player);
-        player.begin_with_act(&scenario(), false);
-        assert!(player.advisor.is_none());
+        let edits: [fn(&mut Player); 2] = [
+            |player| player.begin(scenario(), false),
+            |player| player.begin_with_act(&scenario(), false),
+        ];
+        for edit in edits {
+            let mut player = Player::new(scenario(), false);
+            player.advisor = Some(background::advice(scenario()));
+            edit(&mut player);
+            assert!(player.advisor.is_none());
+        }
     }
 
     #[test]
     fn advice_is_sought_where_the_run_stands_and_not_on_its_way() {
-        let theme = Theme {
-            colour: false,
-            background: Background::Dark,
-        };
-        let view = View::new(&scenario(), Marker::Braille, theme, &[]);
+        let view = view(&[]);
         let mut player = Player::new(scenario(), false);
         player.is_advised = true;
         player.return_to(100_000_000);
@@ -299,11 +295,7 @@ mod tests {
         player.return_to(100_000_000);
         assert!(player.playback.step_number() < 100_000_000);
         assert_eq!(player.step_to_keep(), 100_000_000);
-        assert!(
-            player
-                .in_words()
-                .is_some_and(|text| text.ends_with("Esc stops"))
-        );
+        assert!(player.in_words().unwrap().ends_with("Esc stops"));
         player.pause();
         assert_eq!(player.step_to_keep(), player.playback.step_number());
         assert_eq!(player.in_words(), None);

@@ -5,6 +5,7 @@ use super::action::{Action, Direction, FieldEdit, LessonKey};
 use super::answer::{Answer, Done};
 use super::command::{Command, CursorTo, Place, PushChoice};
 use super::dialog::Dialog;
+use super::form::edit_line;
 use super::on_top::{Cleared, Mode};
 use super::values::listed::ListedValue;
 use super::view::Pane;
@@ -110,8 +111,6 @@ impl Lab {
             Action::DoEntry => {} // tui has the entries, and carries it out
             Action::Choose => self.open_chosen(),
             Action::Filter => self.on_top.mode = Mode::Filter,
-            Action::Type(typed) => self.type_char(typed),
-            Action::Erase => self.erase(),
             Action::InField(edit) => self.edit_field(edit),
             Action::Accept if self.shows_settings() => self.change_setting(true),
             Action::Accept => return Ok(self.accept()),
@@ -174,24 +173,10 @@ impl Lab {
         self.on_top.open_browser(files.folder(), name, may_be_read);
     }
 
-    fn type_char(&mut self, typed: char) {
-        match self.on_top.mode {
-            Mode::Find => self.values.type_name(typed.encode_utf8(&mut [0; 4])),
-            _ => self.on_top.type_char(typed),
-        }
-    }
-
-    fn erase(&mut self) {
-        match self.on_top.mode {
-            Mode::Find => self.values.erase_name(),
-            _ => self.on_top.erase(),
-        }
-    }
-
     fn edit_field(&mut self, edit: FieldEdit) {
         match edit {
-            FieldEdit::Clear if self.on_top.mode == Mode::Find => {
-                self.values.forget_name();
+            edit if self.on_top.mode == Mode::Find => {
+                self.values.list.filter_by(|line| edit_line(line, edit));
             }
             FieldEdit::Left | FieldEdit::Right if self.shows_settings() => {
                 self.change_setting(edit == FieldEdit::Right);
@@ -236,7 +221,7 @@ impl Lab {
             }
             (Mode::Lab | Mode::Find, Pane::PARAMETERS) => {
                 let rows = direction.rows(PAGE) * times as isize;
-                self.values.shift(rows.signum() * times as isize);
+                self.values.list.shift(rows.signum() * times as isize);
             }
             (Mode::Lab, Pane::STEP) => self.one(self.other_sum(direction, times)?),
             (Mode::Lab, Pane::TRACES) if is_sideways => {
@@ -332,7 +317,8 @@ impl Lab {
         let is_filtered = self.on_top.mode == Mode::Lab && self.view.focus == Pane::PARAMETERS;
         // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
         let is_left = is_filtered && self.view.sheet.is_some();
-        if (is_found || is_filtered) && self.values.forget_name() && !is_left {
+        let forget = |line: &mut String| !std::mem::take(line).is_empty();
+        if (is_found || is_filtered) && self.values.list.filter_by(forget) && !is_left {
             self.on_top.close();
             return None;
         }
@@ -375,7 +361,7 @@ impl Lab {
     /// Moves the focus to the values and begins to search for one by a part of its name.
     fn find_value(&mut self) {
         self.view.turn_to(Pane::PARAMETERS);
-        self.values.forget_name();
+        self.values.list.filter_by(String::clear);
         self.on_top.mode = Mode::Find;
     }
 

@@ -5,7 +5,6 @@ pub mod list;
 pub mod listed;
 
 use super::command::{Command, Force, PushChoice};
-use super::form::type_into;
 use crate::observe::live::LiveRun;
 use crate::scenario::Scenario;
 use crate::work::journal::{Journal, number_of_push};
@@ -30,6 +29,7 @@ const ORDER: [&str; 6] = ["motion", "start", NEXT_PUSH, "body", "view", "scenari
 #[derive(Clone)]
 pub struct Values {
     pub list: ValueList,
+    /// The push to come; the list shows another one after the next [`list_again`](Self::list_again).
     pub next_push: NextPush,
     /// How many entries of the journal had acted when the list was made.
     entries_listed: usize,
@@ -73,33 +73,9 @@ impl Values {
         journal.count_by(step) != self.entries_listed
     }
 
-    pub(super) fn type_name(&mut self, text: &str) {
-        let mut name = self.list.name.to_owned();
-        type_into(&mut name, text);
-        self.list.filter(name);
-    }
-
-    /// Removes the last character of what is searched for.
-    pub(super) fn erase_name(&mut self) {
-        let mut name = self.list.name.to_owned();
-        name.pop();
-        self.list.filter(name);
-    }
-
-    /// Shows all values again; returns whether some were left out.
-    pub(super) fn forget_name(&mut self) -> bool {
-        let was_filtered = !self.list.name.is_empty();
-        self.list.filter(String::new());
-        was_filtered
-    }
-
-    pub(super) fn shift(&mut self, rows: isize) {
-        self.list.shift(rows);
-    }
-
     /// Selects the size of the push to come.
     pub(super) fn select_next_push(&mut self) {
-        self.list.filter(String::new());
+        self.list.filter_by(String::clear);
         self.list.select(NEXT_PUSH, Field::Size.label().0);
     }
 
@@ -135,11 +111,6 @@ impl Values {
     /// Records that something else was done: the next nudge is an act of its own.
     pub(super) fn forget_nudge(&mut self) {
         self.last_nudged = None;
-    }
-
-    /// Sets the push to come. The list shows it after the next [`list_again`](Self::list_again).
-    pub(super) fn set_next_push(&mut self, push: NextPush) {
-        self.next_push = push;
     }
 
     /// Makes the push to come act on a point that `scenario` has.

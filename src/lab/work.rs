@@ -261,15 +261,11 @@ impl Work {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Document;
+    use crate::lab::for_tests::{preset, scenario};
     use toml::Value;
 
-    fn opened(name: &str) -> Arc<Scenario> {
-        Arc::new(Document::open(name).unwrap().scenario().unwrap())
-    }
-
     fn work() -> Work {
-        Work::new("method-2", &opened("method-2"))
+        Work::new("method-2", &scenario())
     }
 
     fn time_step(value: f64) -> Act {
@@ -297,8 +293,8 @@ mod tests {
     #[test]
     fn undo_returns_to_the_file_that_was_opened_before() {
         let mut work = work();
-        work.open("cusps", &opened("cusps"));
-        work.compare_with_file(&opened("cusps"));
+        work.open("cusps", &preset("cusps"));
+        work.compare_with_file(&preset("cusps"));
         assert_eq!((work.name(), work.changed_from_file()), ("cusps", None));
         let Some(Turned::OtherRun {
             is_of_same_name,

@@ -132,7 +132,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Find], &[Right], Action::Move(Direction::Right), "", "nudge the value up"),
     row(&[Find], &[Enter], Action::Edit, "type it", "type the value that is found"),
     row(&[Help], &[Enter], Action::DoEntry, "do it", "do the entry that is selected"),
-    row(&[Filter, Find, Help, Dialog], &[Backspace, Ctrl('h')], Action::Erase, "", "take the last character away"),
+    row(&[Filter, Find, Help, Dialog], &[Backspace, Ctrl('h')], Action::InField(FieldEdit::Erase), "", "take the last character away"),
     row(&[Dialog], &[Enter], Action::Accept, "take it", "take what is typed"),
     row(&[Dialog], &[Delete, Ctrl('d')], Action::InField(FieldEdit::Delete), "", "take the character at the cursor away"),
     row(&[Filter, Find, Help, Dialog], &[Ctrl('u')], Action::InField(FieldEdit::Clear), "", "take all of it away"),
@@ -163,7 +163,9 @@ pub fn action(
     match (bound, mode, key) {
         (Some(row), _, _) => Some(row.action),
         (None, Lab, Char(digit)) => digit.to_digit(10).map(|digit| Action::Digit(digit as u8)),
-        (None, Filter | Find | Help | Dialog, Char(typed)) => Some(Action::Type(typed)),
+        (None, Filter | Find | Help | Dialog, Char(typed)) => {
+            Some(Action::InField(FieldEdit::Type(typed)))
+        }
         _ => None,
     }
 }

@@ -601,7 +601,7 @@ fn a_long_text_scrolls_in_its_field() {
     let mut form = Form::new("title", vec![Field::new("title", "")], "");
     "0123456789速い独楽abcdef"
         .chars()
-        .for_each(|c| form.type_char(c));
+        .for_each(|c| form.edit_field(FieldEdit::Type(c)));
     let field = |form: &Form| {
         let picture = asked(form, (20, 4));
         let line = picture.lines().nth(1).unwrap().to_owned();
@@ -656,7 +656,7 @@ proptest! {
         let around = Rect::new(0, 0, width + 6, height + 6);
         let inside = Rect::new(3, 3, width, height);
         let mut form = Form::new(&typed, vec![Field::new(&typed, ""); fields], "Esc");
-        typed.chars().for_each(|c| form.type_char(c));
+        typed.chars().for_each(|c| form.edit_field(FieldEdit::Type(c)));
         (0..left).for_each(|_| form.edit_field(FieldEdit::Left));
         (form.complaint, form.info) = (complaint, vec![typed.clone(); infos]);
         let theme = &Theme::PLAIN;

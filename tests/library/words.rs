@@ -204,7 +204,8 @@ fn the_list_of_files_has_those_that_hold_a_run() {
     let header: String = preset.lines().map(|line| format!("# {line}\n")).collect();
     write("run.csv", &format!("{header}step,t_s\n0,0\n"));
     write("table.csv", "a,b\n1,2\n");
-    let mut browser = Browser::new(folder.path(), "method-2");
+    let mut browser = gyrolab::lab::browser::Browser::default();
+    browser.begin(folder.path(), "method-2", |_| true);
     while browser.others == 0 {
         browser.take_what_was_read();
         thread::sleep(Duration::from_millis(5));
@@ -238,14 +239,18 @@ fn the_browser_goes_into_folders_and_comes_back() {
     // No way out of it.
     assert_eq!(shown(&browser), ["/runs/", "/first.toml"]);
     assert!(!browser.enter(may_be_read), "a preset is no folder");
-    assert!(browser.paste("runs/") && browser.enter(may_be_read));
+    let enter = |browser: &mut gyrolab::lab::browser::Browser, name: &str| {
+        browser.filter_by(|line| line.push_str(name));
+        browser.enter(may_be_read)
+    };
+    assert!(enter(&mut browser, "runs/"));
     assert_eq!(shown(&browser), ["../", "/runs/june/"]);
     // What is in the folder is selected.
     assert!(browser.enter(may_be_read));
     assert_eq!(shown(&browser), ["../", "/runs/june/mine.toml"]);
     assert!(browser.choice().unwrap().is_file);
     for above in ["/runs", ""] {
-        assert!(browser.paste("../") && browser.enter(may_be_read));
+        assert!(enter(&mut browser, "../"));
         let folder = browser.folder().map(Path::to_path_buf);
         let wanted = (!above.is_empty()).then(|| root.path().join("runs"));
         assert_eq!(folder, wanted);
@@ -256,7 +261,8 @@ fn the_browser_goes_into_folders_and_comes_back() {
     let runs = root.path().join("runs");
     browser.begin(&runs, "", |_| true);
     assert_eq!(shown(&browser)[0], "../");
-    assert!(browser.paste("../") && browser.enter(|_| true));
+    browser.filter_by(|line| line.push_str("../"));
+    assert!(browser.enter(|_| true));
     let wanted = std::fs::canonicalize(&runs).unwrap();
     assert_eq!(browser.folder(), wanted.parent());
     let back = browser.choice().unwrap().name.clone();

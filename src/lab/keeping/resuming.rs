@@ -34,7 +34,7 @@ impl Lab {
         }
         let file = lab.file_as_opened();
         lab.work = Work::resumed(work.history, &file);
-        lab.values.set_next_push(place.next_push.clone());
+        lab.values.next_push = place.next_push.clone();
         lab.values.suit(lab.player.run().scenario());
         let playback = &mut lab.player.playback;
         playback.set_end(lab.work.present().end_s);

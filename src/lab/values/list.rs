@@ -29,12 +29,13 @@ impl ValueList {
         }
     }
 
-    /// Shows only the values that have `name` in their group, label or key; all of them where it is empty. The selection
-    /// stays on its value, or moves to the first that is shown.
-    pub fn filter(&mut self, name: String) {
-        self.name = name;
+    /// Changes what is searched for: only values that have it in their group, label or key are shown, all of them where it
+    /// is empty. The selection stays on its value, or moves to the first that is shown.
+    pub(in crate::lab) fn filter_by<T>(&mut self, change: impl FnOnce(&mut String) -> T) -> T {
+        let changed = change(&mut self.name);
         self.search();
         self.keep_shown();
+        changed
     }
 
     /// Moves the selection by `rows` of the values that are shown; it stops at both ends.
@@ -100,8 +101,8 @@ mod tests {
     use crate::lab::for_tests::scenario;
     use crate::work::parameters::{parameters, table_of};
 
-    /// A value of a scenario that is listed as `label` of `group`.
-    fn value(group: &str, label: &str) -> ListedValue {
+    /// A value of a scenario that is listed under this group and label.
+    fn of((group, label): (&str, &str)) -> ListedValue {
         let scenario = scenario();
         let mut parameter = parameters(&table_of(&scenario.file), &scenario).remove(0);
         parameter.key.clear();
@@ -112,32 +113,28 @@ mod tests {
 
     fn list(values: &[(&str, &str)]) -> ValueList {
         let mut list = ValueList::default();
-        list.set(values.iter().map(|(g, l)| value(g, l)).collect());
+        list.set(values.iter().copied().map(of).collect());
         list
     }
 
-    fn selected(list: &ValueList) -> (String, String) {
+    fn selected(list: &ValueList) -> String {
         let value = list.selected().unwrap();
-        (value.group().to_owned(), value.label().into_owned())
-    }
-
-    fn named(group: &str, label: &str) -> (String, String) {
-        (group.to_owned(), label.to_owned())
+        format!("{} {}", value.group(), value.label())
     }
 
     #[test]
     fn the_selection_stays_on_its_value() {
         let mut list = list(&[("start", "tilt"), ("motion", "dt"), ("push 0", "steps")]);
         assert!(list.select("motion", "dt"));
-        list.set(vec![
-            value("body", "dt"),
-            value("start", "tilt"),
-            value("motion", "dt"),
-        ]);
-        assert_eq!(selected(&list), named("motion", "dt"));
+        list.set(
+            [("body", "dt"), ("start", "tilt"), ("motion", "dt")]
+                .map(of)
+                .into(),
+        );
+        assert_eq!(selected(&list), "motion dt");
         // Gone: the value that stands there now, or the last.
-        list.set(vec![value("start", "tilt"), value("start", "Lx")]);
-        assert_eq!(selected(&list), named("start", "Lx"));
+        list.set([("start", "tilt"), ("start", "Lx")].map(of).into());
+        assert_eq!(selected(&list), "start Lx");
         list.set(Vec::new());
         assert_eq!(list.selected(), None);
     }
@@ -145,24 +142,21 @@ mod tests {
     #[test]
     fn the_selection_stops_at_both_ends() {
         let mut list = list(&[("a", "1"), ("a", "2"), ("b", "1")]);
-        list.shift(1);
-        assert_eq!(selected(&list), named("a", "2"));
-        list.shift(1000);
-        assert_eq!(selected(&list), named("b", "1"));
-        list.shift(isize::MIN);
-        assert_eq!(selected(&list), named("a", "1"));
+        for (rows, reached) in [(1, "a 2"), (1000, "b 1"), (isize::MIN, "a 1")] {
+            list.shift(rows);
+            assert_eq!(selected(&list), reached);
+        }
         assert!(!list.select("c", "1"));
-        assert_eq!(selected(&list), named("a", "1"));
+        assert_eq!(selected(&list), "a 1");
         ValueList::default().shift(3);
     }
 
     #[test]
     fn only_values_with_the_name_are_shown_and_selected() {
         let mut list = list(&[("start", "tilt"), ("motion", "dt"), ("push 0", "steps")]);
-        let ListedValue::OfScenario(step) = &mut list.values[1] else {
-            panic!("no value of a scenario");
-        };
-        step.key = "motion.time_step_s".to_owned();
+        if let ListedValue::OfScenario(step) = &mut list.values[1] {
+            step.key = "motion.time_step_s".to_owned();
+        }
         for (name, shown) in [
             ("", 3),
             ("ti", 2),
@@ -170,17 +164,17 @@ mod tests {
             ("push st", 1),
             ("nothing", 0),
         ] {
-            list.filter(name.to_owned());
+            list.filter_by(|line| *line = name.to_owned());
             assert_eq!(list.shown().len(), shown, "{name}");
             assert_eq!(list.selected().is_some(), shown > 0, "{name}");
             list.shift(5);
             let last = list.shown().last().map(|(index, _)| *index);
             assert_eq!(last.unwrap_or(list.selected_index()), list.selected_index());
         }
-        list.filter("tilt".to_owned());
-        assert_eq!(selected(&list), named("start", "tilt"));
+        list.filter_by(|line| *line = "tilt".to_owned());
+        assert_eq!(selected(&list), "start tilt");
         // Found again among other values.
-        list.set(vec![value("a", "b"), value("start", "tilt")]);
-        assert_eq!(selected(&list), named("start", "tilt"));
+        list.set([("a", "b"), ("start", "tilt")].map(of).into());
+        assert_eq!(selected(&list), "start tilt");
     }
 }

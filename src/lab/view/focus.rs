@@ -108,30 +108,21 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::for_tests::scenario;
+    use crate::lab::for_tests;
     use crate::lab::view::Part;
-    use crate::lab::view::markers::Marker;
-    use crate::lab::view::theme::{Background, Theme};
 
-    static ALL: [Pane; 4] = [
-        Pane::TRACES,
-        Pane::FROM_ABOVE,
-        Pane::THREE_D,
-        Pane::PARAMETERS,
-    ];
-
+    /// A view of four panes, three of them side by side.
     fn view() -> View {
-        let theme = Theme {
-            colour: false,
-            background: Background::Dark,
-        };
-        View::new(&scenario(), Marker::Braille, theme, &ALL)
+        const TRACES: Pane = Pane::TRACES;
+        static ALL: [Pane; 4] = [TRACES, Pane::FROM_ABOVE, Pane::THREE_D, Pane::PARAMETERS];
+        let mut view = for_tests::view(&ALL);
+        view.side_by_side = vec![TRACES, Pane::FROM_ABOVE, Pane::PARAMETERS];
+        view
     }
 
     #[test]
     fn the_focus_goes_through_the_panes_on_the_screen_and_no_others() {
         let mut view = view();
-        view.side_by_side = vec![Pane::TRACES, Pane::FROM_ABOVE, Pane::PARAMETERS];
         let mut seen = Vec::new();
         for _ in 0..4 {
             seen.push(view.focus.id());
@@ -152,7 +143,6 @@ mod tests {
     #[test]
     fn a_pane_that_is_not_on_the_screen_fills_it_when_it_gets_the_focus() {
         let mut view = view();
-        view.side_by_side = vec![Pane::TRACES, Pane::FROM_ABOVE, Pane::PARAMETERS];
         view.turn_to(Pane::PARAMETERS);
         assert!(!view.filled);
         view.turn_to(Pane::THREE_D);
