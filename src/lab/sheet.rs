@@ -56,11 +56,11 @@ pub enum Kind {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Words {
     pub text: String,
-    pub look: Look,
+    pub emphasis: Emphasis,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Look {
+pub enum Emphasis {
     #[default]
     Plain,
     Strong,
@@ -73,7 +73,7 @@ impl Paragraph {
         let text = text.into();
         let words = vec![Words {
             text,
-            look: Look::Plain,
+            emphasis: Emphasis::Plain,
         }];
         Self { kind, words }
     }

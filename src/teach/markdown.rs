@@ -1,6 +1,6 @@
 //! Markdown as paragraphs for the page beside the run.
 
-use crate::lab::sheet::{Kind, Look, Paragraph, Words};
+use crate::lab::sheet::{Emphasis, Kind, Paragraph, Words};
 use pulldown_cmark::{Event, Parser, Tag, TagEnd};
 
 /// The paragraphs of `source`; plain ones become `kind`.
@@ -9,7 +9,7 @@ pub fn paragraphs(source: &str, kind: &Kind) -> Vec<Paragraph> {
         kind,
         done: Vec::new(),
         words: Vec::new(),
-        look: Look::Plain,
+        emphasis: Emphasis::Plain,
         lists: Vec::new(),
         mark: String::new(),
         block: None,
@@ -26,7 +26,7 @@ struct Pen<'a> {
     kind: &'a Kind,
     done: Vec<Paragraph>,
     words: Vec<Words>,
-    look: Look,
+    emphasis: Emphasis,
     /// The lists that are open, each with the number of its next entry where it is numbered.
     lists: Vec<Option<u64>>,
     /// The mark of the entry that is read; after its first paragraph a blank.
@@ -40,9 +40,9 @@ impl Pen<'_> {
         match event {
             Event::Start(tag) => self.start(&tag),
             Event::End(tag) => self.stop(tag),
-            Event::Text(text) => self.write(&text, self.look),
-            Event::Code(code) => self.write(&code, Look::Code),
-            Event::SoftBreak | Event::HardBreak => self.write(" ", self.look),
+            Event::Text(text) => self.write(&text, self.emphasis),
+            Event::Code(code) => self.write(&code, Emphasis::Code),
+            Event::SoftBreak | Event::HardBreak => self.write(" ", self.emphasis),
             // What a viewer of Markdown would show of them is nothing or a line.
             _ => {}
         }
@@ -50,7 +50,7 @@ impl Pen<'_> {
 
     fn start(&mut self, tag: &Tag<'_>) {
         match tag {
-            Tag::Strong | Tag::Emphasis => self.look = Look::Strong,
+            Tag::Strong | Tag::Emphasis => self.emphasis = Emphasis::Strong,
             Tag::List(first) => {
                 self.end();
                 self.lists.push(*first);
@@ -72,7 +72,7 @@ impl Pen<'_> {
 
     fn stop(&mut self, tag: TagEnd) {
         match tag {
-            TagEnd::Strong | TagEnd::Emphasis => self.look = Look::Plain,
+            TagEnd::Strong | TagEnd::Emphasis => self.emphasis = Emphasis::Plain,
             TagEnd::List(_) => {
                 self.end();
                 self.lists.pop();
@@ -90,12 +90,12 @@ impl Pen<'_> {
         self.block = block;
     }
 
-    fn write(&mut self, text: &str, look: Look) {
+    fn write(&mut self, text: &str, emphasis: Emphasis) {
         match self.words.last_mut() {
-            Some(words) if words.look == look => words.text.push_str(text),
+            Some(words) if words.emphasis == emphasis => words.text.push_str(text),
             _ => self.words.push(Words {
                 text: text.to_owned(),
-                look,
+                emphasis,
             }),
         }
     }
@@ -142,9 +142,9 @@ mod tests {
             kinds_and_texts.eq(expected.map(|(kind, text)| (kind, text.to_owned()))),
             "{read:?}"
         );
-        let looks: Vec<_> = read[0].words.iter().map(|words| words.look).collect();
-        let plain = Look::Plain;
-        assert_eq!(looks, [plain, Look::Strong, plain, Look::Code, plain]);
+        let looks: Vec<_> = read[0].words.iter().map(|words| words.emphasis).collect();
+        let plain = Emphasis::Plain;
+        assert_eq!(looks, [plain, Emphasis::Strong, plain, Emphasis::Code, plain]);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::{PaneRow, Width, frame, write};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
-use crate::lab::sheet::{Kind, Look, Paragraph, Sheet};
+use crate::lab::sheet::{Emphasis, Kind, Paragraph, Sheet};
 use crate::lab::view::Pane;
 use crate::lab::view::theme::Theme;
 use crate::text::wrap::{columns, wrapped};
@@ -181,10 +181,10 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<Line> {
         Kind::Code => text.lines().flat_map(|line| in_room(line, room)).collect(),
         _ => wrapped(&text, room),
     };
-    let mut looks = looks(paragraph).peekable();
+    let mut letters = letters(paragraph).peekable();
     let mut lines = Vec::with_capacity(texts.len());
     for (index, text) in texts.iter().enumerate() {
-        let mut pieces = pieces(text, &mut looks, style, theme);
+        let mut pieces = pieces(text, &mut letters, style, theme);
         let is_marked = index == 0 || paragraph.kind == Kind::Note;
         if is_marked && !mark.is_empty() {
             pieces.insert(0, (mark.clone(), style));
@@ -197,24 +197,24 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<Line> {
     lines
 }
 
-/// `text` in pieces of one style each. Its letters are the next of `looks`, but for the blanks between words.
+/// `text` in pieces of one style each. Its letters are the next of `letters`, but for the blanks between words.
 fn pieces(
     text: &str,
-    looks: &mut Peekable<impl Iterator<Item = (char, Look)>>,
+    letters: &mut Peekable<impl Iterator<Item = (char, Emphasis)>>,
     style: Style,
     theme: &Theme,
 ) -> Vec<(String, Style)> {
     let mut pieces: Vec<(String, Style)> = Vec::new();
     for letter in text.chars() {
-        while looks
+        while letters
             .next_if(|(other, _)| *other != letter && other.is_whitespace())
             .is_some()
         {}
-        let look = match letter {
-            ' ' => looks.peek().map(|(_, look)| *look),
-            _ => looks.next().map(|(_, look)| look),
+        let emphasis = match letter {
+            ' ' => letters.peek().map(|(_, emphasis)| *emphasis),
+            _ => letters.next().map(|(_, emphasis)| emphasis),
         };
-        let style = style.patch(styled(look.unwrap_or_default(), theme));
+        let style = style.patch(styled(emphasis.unwrap_or_default(), theme));
         match pieces.last_mut() {
             Some((piece, last)) if *last == style => piece.push(letter),
             _ => pieces.push((letter.to_string(), style)),
@@ -232,17 +232,17 @@ fn in_room(line: &str, room: usize) -> Vec<String> {
     }
 }
 
-/// The letters of a paragraph with their looks.
-fn looks(paragraph: &Paragraph) -> impl Iterator<Item = (char, Look)> {
+/// The letters of a paragraph with their emphasis.
+fn letters(paragraph: &Paragraph) -> impl Iterator<Item = (char, Emphasis)> {
     let pieces = paragraph.words.iter();
-    pieces.flat_map(|words| words.text.chars().map(|letter| (letter, words.look)))
+    pieces.flat_map(|words| words.text.chars().map(|letter| (letter, words.emphasis)))
 }
 
-fn styled(look: Look, theme: &Theme) -> Style {
-    match look {
-        Look::Plain => Style::new(),
-        Look::Strong => Style::new().add_modifier(Modifier::BOLD),
-        Look::Code => theme.style(Role::Focus),
+fn styled(emphasis: Emphasis, theme: &Theme) -> Style {
+    match emphasis {
+        Emphasis::Plain => Style::new(),
+        Emphasis::Strong => Style::new().add_modifier(Modifier::BOLD),
+        Emphasis::Code => theme.style(Role::Focus),
     }
 }
 
@@ -282,16 +282,16 @@ mod tests {
 
     #[test]
     fn words_keep_their_looks_over_line_ends() {
-        let words = |text: &str, look| Words {
+        let words = |text: &str, emphasis| Words {
             text: text.to_owned(),
-            look,
+            emphasis,
         };
         let paragraph = Paragraph {
             kind: Kind::Text,
             words: vec![
-                words("the ", Look::Plain),
-                words("fast top", Look::Strong),
-                words(" sleeps", Look::Plain),
+                words("the ", Emphasis::Plain),
+                words("fast top", Emphasis::Strong),
+                words(" sleeps", Emphasis::Plain),
             ],
         };
         let lines = lines_of(&paragraph, 10, &Theme::PLAIN);
