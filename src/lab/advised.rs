@@ -89,22 +89,15 @@ impl Player {
         }
     }
 
-    /// What would mend doubtful numbers, in words, with the key that does it; `None` where no remedy is known, or where
-    /// this run cannot be changed so.
-    pub fn offer(&self) -> Option<String> {
+    /// What would mend doubtful numbers, with the key that does it, at length and in short; `None` where no remedy is
+    /// known, or where this run cannot be changed so.
+    pub fn offer(&self) -> Option<[String; 2]> {
         let is_doubted = self.reading.readouts.health.is_believed() == Some(false);
-        let offer = self.offer.as_ref().filter(|_| is_doubted)?;
-        Some(format!(
-            "{}{} mends it: a takes it",
-            offer.what, offer.since
-        ))
-    }
-
-    /// As [`offer`](Self::offer), in fewer words.
-    pub fn offer_in_short(&self) -> Option<String> {
-        self.offer()?;
-        let offer = self.offer.as_ref()?;
-        Some(format!("a: {}{} mends it", offer.what, offer.since))
+        let Offer { what, since, .. } = self.offer.as_ref().filter(|_| is_doubted)?;
+        Some([
+            format!("{what}{since} mends it: a takes it"),
+            format!("a: {what}{since} mends it"),
+        ])
     }
 }
 
@@ -112,11 +105,8 @@ impl Lab {
     /// Begins the run anew as the advice says, and plays it to the same time. Where no advice has come yet, it is looked for
     /// at once.
     pub(super) fn follow_advice(&mut self) -> Answer {
-        if let Some(reason) = self
-            .player
-            .why_no_advice()
-            .filter(|_| !self.player.is_seeking_advice())
-        {
+        let reason = self.player.why_no_advice();
+        if let Some(reason) = reason.filter(|_| !self.player.is_seeking_advice()) {
             return Err(reason.into());
         }
         if self.player.offer.is_none() {

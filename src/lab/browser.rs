@@ -93,7 +93,8 @@ impl Browser {
         };
         let presets = PRESETS.iter();
         let presets = presets.map(|preset| entry(preset.name.to_owned(), false, false));
-        let mut names = files(folder);
+        let may_hold_one = |name: &str| name.ends_with(".toml") || name.ends_with(".csv");
+        let mut names = names_in(folder, Path::is_file, may_hold_one);
         names.retain(|name| may_be_read(Path::new(name)));
         self.others = 0;
         let searched = names.clone();
@@ -103,8 +104,9 @@ impl Browser {
         }));
         let leads_up =
             !self.passed.is_empty() || above(folder).is_some_and(|above| may_be_read(&above));
-        let mut folders = folders(folder);
-        folders.retain(|name| may_be_read(Path::new(name.trim_end_matches('/'))));
+        let mut folders = names_in(folder, Path::is_dir, |name| !name.starts_with('.'));
+        folders.retain(|name| may_be_read(Path::new(name)));
+        let folders = folders.into_iter().map(|name| name + "/");
         let above = leads_up.then(|| ABOVE.to_owned());
         let folders = above.into_iter().chain(folders);
         let folders = folders.map(|name| entry(name, false, true));
@@ -203,17 +205,13 @@ impl Browser {
         if is_shorter {
             self.load_preview();
         }
-        is_shorter | self.take_preview()
-    }
-
-    fn take_preview(&mut self) -> bool {
-        match (&mut self.preview, self.loader.take_answer()) {
-            (Some((_, preview @ Preview::Loading)), Some(news)) => {
-                *preview = news;
-                true
-            }
-            _ => false,
+        if let Some(news) = self.loader.take_answer()
+            && let Some((_, preview @ Preview::Loading)) = &mut self.preview
+        {
+            *preview = news;
+            return true;
         }
+        is_shorter
     }
 
     /// Moves the selection by `rows`; it stops at both ends.
@@ -232,14 +230,8 @@ impl Browser {
 
     /// Selects the first entry that is shown; without a filter, the one that is open.
     fn refilter(&mut self) {
-        let open = if self.filter.is_empty() {
-            self.entries
-                .iter()
-                .position(|entry| entry.name == self.open)
-        } else {
-            None
-        };
-        self.selected = open.unwrap_or(0);
+        let is_open = |entry: &Entry| self.filter.is_empty() && entry.name == self.open;
+        self.selected = self.entries.iter().position(is_open).unwrap_or(0);
         self.load_preview();
     }
 
@@ -265,22 +257,8 @@ const MOST_FILES: usize = 1000;
 /// How many bytes of a file are searched for its `[motion]`; a body of many points may stand before it.
 const HEAD: u64 = 1 << 20;
 
-/// The files in `folder` that may hold a scenario, as SCENARIO names them, in the order of their names.
-fn files(folder: &Path) -> Vec<String> {
-    let is_wanted = |name: &str| name.ends_with(".toml") || name.ends_with(".csv");
-    names(folder, Path::is_file, is_wanted)
-}
-
-/// The folders in `folder`, in the order of their names, each with a `/` at its end. Those that the system hides are left
-/// out.
-fn folders(folder: &Path) -> Vec<String> {
-    let mut names = names(folder, Path::is_dir, |name| !name.starts_with('.'));
-    names.iter_mut().for_each(|name| name.push('/'));
-    names
-}
-
-/// The paths of what is in `folder`, is of a kind and has a name that is wanted.
-fn names(
+/// The paths of what is in `folder`, is of a kind and has a name that is wanted, in the order of their names.
+fn names_in(
     folder: &Path,
     is_kind: fn(&Path) -> bool,
     is_wanted: impl Fn(&str) -> bool,

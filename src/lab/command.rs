@@ -428,7 +428,7 @@ impl Place {
 }
 
 /// A whole number, also as 1e7.
-pub(super) fn whole(text: &str) -> Option<u64> {
+fn whole(text: &str) -> Option<u64> {
     /// Floats are exact whole numbers up to here.
     const EXACT: f64 = 9e15;
     let float = || {

@@ -2,7 +2,6 @@
 
 use super::answer::{Answer, Done, UnderWay};
 use super::command::Place;
-use super::command::whole;
 use super::numbers::{self, Numbers};
 use super::player::Player;
 use crate::analysis::cost;
@@ -33,12 +32,7 @@ impl Player {
     }
 
     pub(super) fn go_to(&mut self, place: Place) -> Answer {
-        let step = match place {
-            Place::Step(step) => step,
-            Place::Time(time_s) => self.step_at(time_s)?,
-            Place::Start => 0,
-            Place::End => self.playback.end_step(),
-        };
+        let step = self.step_of(place)?;
         self.heading = None;
         let end = self.playback.end_step();
         let is_beyond = step > end && step > self.run().furthest();
@@ -55,8 +49,17 @@ impl Player {
         Ok(done.going_on(UnderWay::Going))
     }
 
+    pub(super) fn step_of(&self, place: Place) -> Result<u64, String> {
+        match place {
+            Place::Step(step) => Ok(step),
+            Place::Time(time_s) => self.step_at(time_s),
+            Place::Start => Ok(0),
+            Place::End => Ok(self.playback.end_step()),
+        }
+    }
+
     /// The step at `time_s`.
-    pub(super) fn step_at(&self, time_s: f64) -> Result<u64, String> {
+    fn step_at(&self, time_s: f64) -> Result<u64, String> {
         if time_s >= 0.0 && time_s.is_finite() {
             Ok(Simulation::step_at(self.run().scenario(), time_s))
         } else {
@@ -190,32 +193,20 @@ impl Player {
     /// The step that `text` means, seen from where the run stands.
     pub(super) fn step_meant(&self, text: &str) -> Result<u64, String> {
         let text = text.trim();
-        let here = self.playback.step_number();
-        let wrong = || format!("must be {WHERE}");
-        let digits = text.trim_start_matches(['+', '-']);
-        if let Some(time) = text.strip_suffix('s') {
-            let time_s: f64 = time.trim().parse().map_err(|_| wrong())?;
-            // With a sign the time counts from here, as steps do.
-            let from_s = if digits == text {
-                0.0
-            } else {
-                self.run().now().time_s
-            };
-            return self.step_at(from_s + time_s);
-        }
-        match text {
-            "start" => Ok(0),
-            "end" => Ok(self.playback.end_step()),
-            _ if text.starts_with('+') => whole(digits)
-                .map(|steps| here.saturating_add(steps))
-                .ok_or_else(wrong),
-            _ if text.starts_with('-') => whole(digits)
-                .map(|steps| here.saturating_sub(steps))
-                .ok_or_else(wrong),
-            _ if text.contains('.') => {
+        let (here, here_s) = (self.playback.step_number(), self.run().now().time_s);
+        let sign = text.chars().next().filter(|sign| "+-".contains(*sign));
+        let size = Place::parse(&text[sign.map_or(0, char::len_utf8)..]);
+        // With a sign it counts from here.
+        match (sign, size) {
+            (None, Some(place)) => self.step_of(place),
+            (Some('+'), Some(Place::Step(steps))) => Ok(here.saturating_add(steps)),
+            (_, Some(Place::Step(steps))) => Ok(here.saturating_sub(steps)),
+            (Some('+'), Some(Place::Time(time_s))) => self.step_at(here_s + time_s),
+            (_, Some(Place::Time(time_s))) => self.step_at(here_s - time_s),
+            (None, None) if text.contains('.') && !text.ends_with('s') => {
                 Err("must be a whole number of steps, or a time such as 12.5 s".to_owned())
             }
-            _ => whole(text).ok_or_else(wrong),
+            _ => Err(format!("must be {WHERE}")),
         }
     }
 }

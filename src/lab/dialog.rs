@@ -56,7 +56,7 @@ impl Dialog {
     /// Asks for a step or a time to go to.
     pub(super) fn go_to() -> Self {
         let fields = [("to", String::new())];
-        Self::new(Question::GoTo, "go to a step or a time", &fields, &[WHERE])
+        Self::new(Question::GoTo, "go to a step or a time", &fields, [WHERE])
     }
 
     /// Asks for the selected one of `values`; `None` if none is shown.
@@ -77,9 +77,8 @@ impl Dialog {
                 "it acts when p gives the push".to_owned(),
             ],
         };
-        let about: Vec<_> = about.iter().map(String::as_str).collect();
         let fields = [(label.as_str(), value.text())];
-        Some(Self::new(Question::Value, &title, &fields, &about))
+        Some(Self::new(Question::Value, &title, &fields, about))
     }
 
     /// Asks for the CSV file of the run `scenario`; it offers `path`.
@@ -89,7 +88,7 @@ impl Dialog {
             "export steps 0 to {}, where x was pressed, as CSV",
             scenario.steps
         );
-        let mut dialog = Self::new(Question::Export(scenario), &title, &fields, &[]);
+        let mut dialog = Self::new(Question::Export(scenario), &title, &fields, [""; 0]);
         dialog.show_estimate();
         dialog
     }
@@ -102,7 +101,7 @@ impl Dialog {
             "kind: traces, above, 3d, or columns such as tilt_deg,energy_J",
         ];
         let title = format!("draw steps 0 to {step}");
-        Self::new(Question::Figure(step), &title, &fields, &info)
+        Self::new(Question::Figure(step), &title, &fields, info)
     }
 
     /// Asks for the run file of the run up to `step`, which leaves out `later` actions; it offers `path`.
@@ -110,12 +109,9 @@ impl Dialog {
         let left_out =
             format!("without {later} later actions: go to the end of the run to have them in it");
         let up_to = format!("the run up to step {step}: gyrolab run FILE gives the same rows as x");
-        let info = match later {
-            0 => vec![up_to.as_str()],
-            _ => vec![up_to.as_str(), left_out.as_str()],
-        };
+        let info = [up_to].into_iter().chain((later > 0).then_some(left_out));
         let fields = [("file", path)];
-        Self::new(Question::SaveRun(step), "save the run file", &fields, &info)
+        Self::new(Question::SaveRun(step), "save the run file", &fields, info)
     }
 
     /// Asks for the file of the scenario `content`; it offers `path`.
@@ -123,18 +119,18 @@ impl Dialog {
         let info = "a scenario that starts from the state on the screen";
         let question = Question::SavePresent(content);
         let title = "save the present state";
-        Self::new(question, title, &[("file", path)], &[info])
+        Self::new(question, title, &[("file", path)], [info])
     }
 
     pub(super) fn number(title: &str, label: &str, about: &str) -> Self {
         let fields = [(label, String::new())];
-        Self::new(Question::Number, title, &fields, &[about])
+        Self::new(Question::Number, title, &fields, [about])
     }
 
     /// Lists the settings with the values that they have in `view`; the one of this number is selected.
     pub(super) fn settings(view: &View, selected: usize) -> Self {
         let info = "dots, colours, frames and mouse are remembered for the next time";
-        let mut dialog = Self::new(Question::Settings, "settings", &[], &[info]);
+        let mut dialog = Self::new(Question::Settings, "settings", &[], [info]);
         let fields = SETTINGS.iter();
         dialog.form.fields = fields
             .map(|setting| Field::choice(setting.label, &(setting.value)(view)))
@@ -145,14 +141,16 @@ impl Dialog {
     }
 
     /// A dialog with `fields`, each with its label and the text that it offers, and the lines `info` below them.
-    fn new(question: Question, title: &str, fields: &[(&str, String)], info: &[&str]) -> Self {
+    fn new(
+        question: Question,
+        title: &str,
+        fields: &[(&str, String)],
+        info: impl IntoIterator<Item: Into<String>>,
+    ) -> Self {
         let keys = if fields.len() > 1 { KEYS_OF_TWO } else { KEYS };
-        let fields = fields
-            .iter()
-            .map(|(label, text)| Field::new(label, text))
-            .collect();
-        let mut form = Form::new(title, fields, keys);
-        form.info = info.iter().map(|line| (*line).to_owned()).collect();
+        let fields = fields.iter().map(|(label, text)| Field::new(label, text));
+        let mut form = Form::new(title, fields.collect(), keys);
+        form.info = info.into_iter().map(Into::into).collect();
         Self {
             question,
             form,

@@ -112,10 +112,12 @@ impl Lab {
         let Some(scenario) = self.work.act(step, acts, is_again, steps)? else {
             return Ok(None);
         };
-        match is_described {
-            true => self.player.playback.describe_as(&scenario),
-            false if from_start => self.player.begin_with_act(&scenario, is_again),
-            false => self.player.go_on_in(&scenario),
+        if is_described {
+            self.player.playback.describe_as(&scenario);
+        } else if from_start {
+            self.player.begin_with_act(&scenario, is_again);
+        } else {
+            self.player.go_on_in(&scenario);
         }
         self.scenario_has_changed();
         if scenario.steps != steps {

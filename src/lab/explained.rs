@@ -1,13 +1,14 @@
 //! The time step that the step pane takes apart, and what its keys do.
 
-use super::Lab;
 use super::action::Direction;
 use super::command::{Command, Place};
 use super::player::Player;
+use super::steering::PAGE;
 use super::view::View;
 use super::view::step::Page;
+use super::{Lab, Pane};
 use crate::observe::dip::Dip;
-use crate::physics::workings::{Phase, Quantity, Sums, Table, Value};
+use crate::physics::workings::{Phase, Sums, Table, Value};
 use crate::physics::{State, Workings};
 use crate::scenario::Scenario;
 use crate::scenario::screen::ALL_ROWS;
@@ -16,7 +17,6 @@ use std::sync::Arc;
 /// The most points of a body whose steps are taken apart while the run goes on. The step of a larger body is taken
 /// apart once the run stands still.
 const MOST_POINTS_MOVING: usize = 1000;
-const PAGE_ROWS: i64 = 10;
 
 /// A time step with the intermediate results of its scheme.
 #[derive(Clone, Debug)]
@@ -56,27 +56,22 @@ impl Explained {
     fn add_up(&mut self, view: &View) {
         let index = view.page.index(&self.workings);
         let known = self.sums.as_ref().map(|(of, _)| *of);
-        if view.sum_to.is_none() || index.is_none() || known == index {
-            return;
+        if view.sum_to.is_some() && index.is_some() && known != index {
+            let phase = self.phase(view.page);
+            let table = phase.and_then(|(phase, ..)| table_of(phase));
+            self.sums = index.zip(table.map(Sums::of));
         }
-        let table = self
-            .phase(view.page)
-            .and_then(|(phase, ..)| table_of(phase));
-        self.sums = index.zip(table.map(Sums::of));
     }
 }
 
 /// The table of `phase` whose rows are added up: its first, if it has rows.
 pub fn table_of(phase: &Phase) -> Option<&Table> {
-    let table = |quantity| match quantity {
-        &Quantity {
-            value: Value::Table(ref table),
-            ..
-        } => Some(table),
+    let mut values = phase.quantities.iter().map(|quantity| &quantity.value);
+    let first = values.find_map(|value| match value {
+        Value::Table(table) => Some(table),
         _ => None,
-    };
-    let mut tables = phase.quantities.iter().filter_map(table);
-    tables.next().filter(|table| !table.points.is_empty())
+    });
+    first.filter(|table| !table.points.is_empty())
 }
 
 impl Player {
@@ -154,23 +149,18 @@ impl Player {
 impl Lab {
     /// Shows the step pane beside another one, or takes it away.
     pub(super) fn toggle_step(&mut self) {
-        let is_filled = self.view.filled;
-        if self.view.shows_step() {
-            if !is_filled || self.view.shown.contains(&super::Pane::STEP) {
-                self.carry_out_all(&[Command::look("show", self.view.with_step_toggled())]);
-            }
-            if is_filled {
-                self.carry_out_all(&[Command::Fill(None)]);
-            }
-            return;
+        let is_shown = self.view.shows_step();
+        let mut commands = Vec::new();
+        if self.view.filled {
+            commands.push(Command::Fill(None));
         }
-        if is_filled {
-            self.carry_out_all(&[Command::Fill(None)]);
+        if self.view.shown.contains(&Pane::STEP) == is_shown {
+            commands.push(Command::look("show", self.view.with_step_toggled()));
         }
-        if !self.view.shown.contains(&super::Pane::STEP) {
-            self.carry_out_all(&[Command::look("show", self.view.with_step_toggled())]);
+        self.carry_out_all(&commands);
+        if !is_shown {
+            self.view.turn_to(Pane::STEP);
         }
-        self.view.turn_to(super::Pane::STEP);
     }
 
     /// The commands that go `times` phases forward or back. The first phase of the next step follows the last phase of
@@ -228,28 +218,20 @@ impl Lab {
             return Err("no table here: . and , go through the phases".to_owned());
         };
         let all = table.points.len() as i64;
-        let times = i64::from(times);
-        let rows = match direction {
-            Direction::Up => -times,
-            Direction::Down => times,
-            Direction::PageUp => -PAGE_ROWS * times,
-            Direction::PageDown => PAGE_ROWS * times,
-            Direction::Left | Direction::Right => {
-                return Err("Up and Down add up the table; . and , go by phase".to_owned());
-            }
-        };
+        if matches!(direction, Direction::Left | Direction::Right) {
+            return Err("Up and Down add up the table; . and , go by phase".to_owned());
+        }
+        let rows = direction.rows(PAGE) as i64 * i64::from(times);
         let now = match self.view.sum_to {
             Some(now) => (now as i64).min(all),
             None if rows > 0 => 0,
             None => all,
         };
         let next = now + rows;
-        let next = usize::try_from(next)
-            .ok()
-            .filter(|next| (1..=all).contains(&(*next as i64)));
-        Ok(match next {
-            Some(rows) => Command::look("sum_to", rows),
-            None => Command::look("sum_to", ALL_ROWS),
+        Ok(if (1..=all).contains(&next) {
+            Command::look("sum_to", next)
+        } else {
+            Command::look("sum_to", ALL_ROWS)
         })
     }
 }

@@ -173,10 +173,10 @@ impl Files {
         let written = destination.write_all(content.as_bytes());
         written.map_err(|error| format!("cannot write {}: {error}", Shown(path)))?;
         destination.keep().map_err(refusal)?;
-        let name = full(path);
+        let whole = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         Ok(Done {
             stays: true,
-            ..Done::saying(format!("{what} is in {}", Shown(&name)))
+            ..Done::saying(format!("{what} is in {}", Shown(&whole)))
         })
     }
 
@@ -207,11 +207,8 @@ fn refusal(error: DestinationError) -> Refusal {
 }
 
 fn is_named(path: &Path) -> Result<(), Refusal> {
-    if path.as_os_str().is_empty() {
-        Err(Refusal::Because("the file needs a name".to_owned()))
-    } else {
-        Ok(())
-    }
+    let is_named = !path.as_os_str().is_empty();
+    is_named.then_some(()).ok_or("the file needs a name".into())
 }
 
 /// The message about a complete export, and how to copy the file.
@@ -236,10 +233,6 @@ fn told(written: &Written) -> String {
         Shown(&written.path),
         fetched.unwrap_or_default()
     )
-}
-
-fn full(path: &Path) -> PathBuf {
-    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
 }
 
 #[cfg(test)]

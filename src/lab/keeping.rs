@@ -35,21 +35,20 @@ struct KeptPinned {
 
 impl KeptPinned {
     fn of(reference: &Reference) -> Self {
-        match reference {
-            Reference::Present => Self { step: 0, run: None },
-            Reference::Run(scenario, step) => Self {
-                step: *step,
-                run: Some(scenario.file.clone()),
-            },
+        let run = reference.run.as_ref();
+        Self {
+            step: reference.step,
+            run: run.map(|scenario| scenario.file.clone()),
         }
     }
 
     /// What is to be pinned again.
     fn reference(self) -> Result<Reference, Problems> {
-        match self.run {
-            None => Ok(Reference::Present),
-            Some(file) => Ok(Reference::Run(Journal::of(file).scenario()?, self.step)),
-        }
+        let run = self.run.map(|file| Journal::of(file).scenario());
+        Ok(Reference {
+            step: self.step,
+            run: run.transpose()?,
+        })
     }
 }
 

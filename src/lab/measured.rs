@@ -95,14 +95,6 @@ impl Beside {
         })
     }
 
-    /// Begins again with the run of `scenario`. If `keeps`, the recording so far stays as that of the run before.
-    pub(super) fn begin_again(&mut self, scenario: &Arc<Scenario>, keeps: bool) {
-        if keeps {
-            self.before = std::mem::take(&mut self.recorded);
-        }
-        self.begin(scenario);
-    }
-
     fn begin(&mut self, scenario: &Arc<Scenario>) {
         self.simulation = Simulation::new(Arc::clone(scenario));
         self.reader = Reader::new(Arc::clone(&self.series));
@@ -179,19 +171,15 @@ impl Player {
         self.measured.as_ref()
     }
 
-    /// Puts `measured`, called `name`, beside the run.
-    pub(super) fn set_measured(&mut self, name: &str, measured: Measured) -> Result<(), Problems> {
-        self.measured = Some(Beside::new(name, measured, self.run().scenario())?);
-        Ok(())
-    }
-
     /// Begins to read the run of `scenario` from its start. To be called where it takes the place of the present one.
     pub(super) fn measure_again(&mut self, scenario: &Arc<Scenario>) {
         if let Some(beside) = &mut self.measured {
-            // What the ghost shows is kept beside it.
-            let is_ghost =
-                |ghost: &Ghost| Arc::ptr_eq(&ghost.scenario, self.playback.run().scenario());
-            beside.begin_again(scenario, self.ghost.as_ref().is_some_and(is_ghost));
+            let left = self.playback.run().scenario();
+            let is_left = |ghost: &Ghost| Arc::ptr_eq(&ghost.scenario, left);
+            if self.ghost.as_ref().is_some_and(is_left) {
+                beside.before = std::mem::take(&mut beside.recorded); // what the ghost shows
+            }
+            beside.begin(scenario);
         }
     }
 
@@ -211,18 +199,17 @@ impl Player {
         } else {
             CATCHING_UP
         };
-        match &mut self.measured {
-            Some(beside) if beside.is_behind(step) => {
-                let deadline = clock() + share;
-                beside.follow(step, || clock() >= deadline);
-                // While the run moves, numbers are read a few times a second.
-                if !self.is_moving() {
-                    self.compare();
-                }
-                true
-            }
-            _ => false,
+        let beside = self.measured.as_mut();
+        let Some(beside) = beside.filter(|beside| beside.is_behind(step)) else {
+            return false;
+        };
+        let deadline = clock() + share;
+        beside.follow(step, || clock() >= deadline);
+        // While the run moves, numbers are read a few times a second.
+        if !self.is_moving() {
+            self.compare();
         }
+        true
     }
 
     /// Reads the run on to the present step, however long that takes.

@@ -42,15 +42,15 @@ impl Lab {
             0 => "",
             _ => ", u takes the last edit back",
         };
-        let text = format!("{text}: ");
-        self.on_top.notice.keep_seeking([&text, IS_SOUGHT, undo]);
+        let text = format!("{text}: {IS_SOUGHT}{undo}");
+        self.on_top.notice.keep_seeking(text, IS_SOUGHT);
         self.changed = true;
         self.tell_what_was_found();
     }
 
     /// What mends the run, as far as that is known.
     fn what_mends(&self) -> String {
-        let offer = self.player.offer_in_short();
+        let offer = self.player.offer().map(|[_, short]| short);
         offer.unwrap_or_else(|| "a shorter time step or another scheme may mend it (e)".to_owned())
     }
 

@@ -1,6 +1,5 @@
 //! The message at the bottom of the screen. It goes away after a few seconds or at the next key.
 
-use std::ops::Range;
 use std::time::Duration;
 
 /// How long a message stays unless a key removes it earlier.
@@ -19,8 +18,8 @@ struct Said {
     text: String,
     /// The time at which it goes away; `None` where only a key removes it.
     until: Option<Duration>,
-    /// The bytes of the text that stand there until something has been found, and are then replaced by that.
-    unfound: Option<Range<usize>>,
+    /// The part of the text that stands there until something has been found, and is then replaced by that.
+    unfound: Option<&'static str>,
 }
 
 impl Notice {
@@ -34,13 +33,12 @@ impl Notice {
         self.show(text.into(), None, None);
     }
 
-    /// Shows three texts in a row until the next key; the middle one is replaced once [something is found](Self::find).
-    pub fn keep_seeking(&mut self, [before, unfound, after]: [&str; 3]) {
-        let range = before.len()..before.len() + unfound.len();
-        self.show([before, unfound, after].concat(), None, Some(range));
+    /// Shows `text` until the next key; its part `unfound` is replaced once [something is found](Self::find).
+    pub fn keep_seeking(&mut self, text: String, unfound: &'static str) {
+        self.show(text, None, Some(unfound));
     }
 
-    fn show(&mut self, text: String, until: Option<Duration>, unfound: Option<Range<usize>>) {
+    fn show(&mut self, text: String, until: Option<Duration>, unfound: Option<&'static str>) {
         self.said = Some(Said {
             text,
             until,
@@ -59,7 +57,7 @@ impl Notice {
         if let Some(said) = &mut self.said
             && let Some(unfound) = said.unfound.take()
         {
-            said.text.replace_range(unfound, found);
+            said.text = said.text.replacen(unfound, found, 1);
         }
     }
 
@@ -70,9 +68,6 @@ impl Notice {
         };
         said.text.insert_str(0, text);
         said.until = None;
-        if let Some(unfound) = &mut said.unfound {
-            *unfound = unfound.start + text.len()..unfound.end + text.len();
-        }
     }
 
     /// Removes the message; returns whether there was one.
@@ -130,7 +125,8 @@ mod tests {
     #[test]
     fn what_is_found_takes_the_place_of_what_stood_until_then() {
         let mut notice = Notice::default();
-        notice.keep_seeking(["the end: ", "a cure is looked for", ", u goes back"]);
+        let text = "the end: a cure is looked for, u goes back".to_owned();
+        notice.keep_seeking(text, "a cure is looked for");
         assert!(notice.is_seeking());
         notice.keep_saying_first("opened; ");
         assert_eq!(

@@ -7,7 +7,6 @@ use super::dialog::Dialog;
 use super::form::{MOST_IN_LINE, edit_line, type_into};
 use super::notice::Notice;
 use super::preview::Preview;
-use std::path::Path;
 use std::time::Duration;
 
 pub const MOST_COUNTED: u64 = 999_999_999;
@@ -114,24 +113,6 @@ impl OnTop {
         let dialog = self.dialog.take()?;
         self.mode = Mode::Lab;
         Some(dialog)
-    }
-
-    /// Opens the browser on `folder` with the entry `name` selected. It lists only the files for which `may_be_read` is
-    /// true.
-    pub(super) fn open_browser(
-        &mut self,
-        folder: &Path,
-        name: &str,
-        may_be_read: impl Fn(&Path) -> bool,
-    ) {
-        self.browser.begin(folder, name, may_be_read);
-        self.mode = Mode::Browser;
-    }
-
-    /// Lists what is in the selected folder, as [`open_browser`](Self::open_browser) does; returns whether it could.
-    pub(super) fn enter_folder(&mut self, may_be_read: impl Fn(&Path) -> bool) -> bool {
-        self.mode = Mode::Browser;
-        self.browser.enter(may_be_read)
     }
 
     /// The file that was chosen to be opened and what it holds, once it has been read. Where the browser no longer has
@@ -251,21 +232,16 @@ mod tests {
     fn what_was_opened_last_is_closed_first() {
         let mut on_top = OnTop::default();
         assert!(!on_top.close());
-        on_top.open_browser(Path::new("/nowhere"), "cusps", |_| true);
+        on_top.mode = Mode::Browser;
         on_top.toggle_help();
         assert_eq!(on_top.mode, Mode::Help);
         assert!(on_top.close());
         on_top.mode = Mode::Filter;
         on_top.edit_field(FieldEdit::Type('x'));
-        assert_eq!(
-            (on_top.mode, on_top.browser.filter.as_str()),
-            (Mode::Filter, "x")
-        );
+        let filter = |on_top: &OnTop| (on_top.mode, on_top.browser.filter.clone());
+        assert_eq!(filter(&on_top), (Mode::Filter, "x".to_owned()));
         assert!(on_top.close());
-        assert_eq!(
-            (on_top.mode, on_top.browser.filter.as_str()),
-            (Mode::Browser, "")
-        );
+        assert_eq!(filter(&on_top), (Mode::Browser, String::new()));
         assert!(on_top.close());
         on_top.open_dialog(Dialog::go_to());
         assert_eq!(on_top.mode, Mode::Dialog);

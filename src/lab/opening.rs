@@ -29,7 +29,8 @@ impl Lab {
         if entry.is_folder {
             let files = &self.files;
             let may_be_read = |path: &Path| files.admit(path).is_ok();
-            if !self.on_top.enter_folder(may_be_read) {
+            self.on_top.mode = Mode::Browser;
+            if !self.on_top.browser.enter(may_be_read) {
                 self.say(format!("{} cannot be opened any more", entry.name));
             }
             self.changed = true;

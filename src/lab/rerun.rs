@@ -43,20 +43,18 @@ pub(super) enum Pinned {
 }
 
 /// What a session keeps of a pinned run, to pin it again.
-#[derive(Clone)]
-pub(super) enum Reference {
-    Present,
-    /// The run of a scenario, up to a step.
-    Run(Arc<Scenario>, u64),
+#[derive(Clone, Default)]
+pub(super) struct Reference {
+    /// The step up to which it was played; of no meaning for the present run.
+    pub(super) step: u64,
+    /// Its scenario; `None` where the present run is pinned.
+    pub(super) run: Option<Arc<Scenario>>,
 }
 
 impl PartialEq for Reference {
     fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Present, Self::Present) => true,
-            (Self::Run(a, step_a), Self::Run(b, step_b)) => Arc::ptr_eq(a, b) && step_a == step_b,
-            _ => false,
-        }
+        let run = |of: &Self| of.run.as_ref().map(Arc::as_ptr);
+        (self.step, run(self)) == (other.step, run(other))
     }
 }
 
@@ -216,13 +214,9 @@ impl Player {
 
     /// Lets the run go on once its replay has arrived, if it went on before the edit.
     pub(super) fn has_halted(&mut self, halt: Halt) {
-        let heading = self.heading.take();
         let here = self.playback.step_number();
-        let has_arrived = |heading: &Heading| halt == Halt::StepsTaken && heading.step == here;
-        if heading
-            .filter(has_arrived)
-            .is_some_and(|heading| heading.goes_on)
-        {
+        let goes_on = |heading: Heading| heading.step == here && heading.goes_on;
+        if self.heading.take().is_some_and(goes_on) && halt == Halt::StepsTaken {
             self.playback.set_running(true);
         }
     }
@@ -290,31 +284,29 @@ impl Player {
 
     /// What a session keeps of the pinned run.
     pub(super) fn reference(&self) -> Option<Reference> {
-        self.pinned.as_ref().map(|pinned| match pinned {
-            Pinned::Present => Reference::Present,
-            Pinned::Before(run) => Reference::Run(Arc::clone(&run.scenario), run.furthest),
-            Pinned::Returning(run) => Reference::Run(Arc::clone(&run.scenario), run.furthest),
-        })
+        let (scenario, step) = match self.pinned.as_ref()? {
+            Pinned::Present => return Some(Reference::default()),
+            Pinned::Before(run) => (&run.scenario, run.furthest),
+            Pinned::Returning(run) => (&run.scenario, run.furthest),
+        };
+        let run = Some(Arc::clone(scenario));
+        Some(Reference { step, run })
     }
 
     /// Pins `reference` again: its pictures come a little later.
     pub(super) fn pin_again(&mut self, reference: Reference) {
-        self.pinned = Some(match reference {
-            Reference::Present => Pinned::Present,
-            Reference::Run(scenario, step) => Pinned::Returning(GhostToBe::begin(scenario, step)),
-        });
+        let begin = |scenario| Pinned::Returning(GhostToBe::begin(scenario, reference.step));
+        self.pinned = Some(reference.run.map_or(Pinned::Present, begin));
     }
 
     /// Takes the pictures of the pinned run once they are made again. Returns whether they have come just now.
     pub(super) fn take_pinned_news(&mut self) -> bool {
-        let made = match &self.pinned {
-            Some(Pinned::Returning(run)) => run.made(),
-            _ => None,
-        };
-        let has_come = made.is_some();
-        if let Some(ghost) = made {
+        if let Some(Pinned::Returning(run)) = &self.pinned
+            && let Some(ghost) = run.made()
+        {
             self.pinned = Some(Pinned::Before(Box::new(ghost)));
+            return true;
         }
-        has_come
+        false
     }
 }

@@ -169,8 +169,9 @@ impl Lab {
     fn browse(&mut self) {
         let files = &self.files;
         let may_be_read = |path: &Path| files.admit(path).is_ok();
-        let name = self.work.name();
-        self.on_top.open_browser(files.folder(), name, may_be_read);
+        let (folder, name) = (files.folder(), self.work.name());
+        self.on_top.browser.begin(folder, name, may_be_read);
+        self.on_top.mode = Mode::Browser;
     }
 
     fn edit_field(&mut self, edit: FieldEdit) {
@@ -389,7 +390,7 @@ impl Lab {
 }
 
 /// `times` to the right, or as many to the left.
-fn signed(direction: Direction, times: i32) -> i32 {
+pub(super) fn signed(direction: Direction, times: i32) -> i32 {
     match direction {
         Direction::Left => -times,
         _ => times,

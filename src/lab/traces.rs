@@ -4,6 +4,7 @@ use super::Lab;
 use super::action::Direction;
 use super::answer::{Answer, Done};
 use super::command::{Command, CursorTo, MOST_MAGNIFIED, Place};
+use super::steering::signed;
 use super::view::View;
 use crate::observe::live::LiveRun;
 use crate::observe::lookup;
@@ -67,10 +68,8 @@ impl Lab {
         let here = self.cursor_or_here();
         let step = match to {
             CursorTo::Nowhere => None,
-            CursorTo::Place(Place::Step(step)) => Some(step),
-            CursorTo::Place(Place::Time(time_s)) => Some(self.player.step_at(time_s)?),
-            CursorTo::Place(Place::Start) => Some(0),
             CursorTo::Place(Place::End) => Some(run.furthest()),
+            CursorTo::Place(place) => Some(self.player.step_of(place)?),
             CursorTo::NextTurn => Some(turn(run, here, true)?),
             CursorTo::TurnBefore => Some(turn(run, here, false)?),
         };
@@ -83,15 +82,16 @@ impl Lab {
         Ok(Done::SILENT)
     }
 
+    /// The time at the left edge of the traces, s.
+    fn begin_s(&self) -> f64 {
+        let (now_s, window_s) = (self.player.run().now().time_s, self.view.window_s);
+        let following = || Strip::following(now_s, window_s, 1).begin_s;
+        self.view.since_s.unwrap_or_else(following)
+    }
+
     fn show_time(&mut self, time_s: f64) {
-        let window_s = self.view.window_s;
-        let now_s = self.player.run().now().time_s;
-        let is_shown = |since_s: f64| (since_s..=since_s + window_s).contains(&time_s);
-        let begin_s = match self.view.since_s {
-            Some(since_s) => since_s,
-            None => Strip::following(now_s, window_s, 1).begin_s,
-        };
-        if !is_shown(begin_s) {
+        let (begin_s, window_s) = (self.begin_s(), self.view.window_s);
+        if !(begin_s..=begin_s + window_s).contains(&time_s) {
             self.view.since_s = Some((time_s - 0.5 * window_s).max(0.0));
         }
     }
@@ -116,18 +116,8 @@ impl Lab {
 
     /// The command that moves the window to earlier or later times, by half its length.
     pub(super) fn panned(&self, direction: Direction, times: i32) -> Command {
-        let window_s = self.view.window_s;
-        let now_s = self.player.run().now().time_s;
-        let begin_s = self
-            .view
-            .since_s
-            .unwrap_or_else(|| Strip::following(now_s, window_s, 1).begin_s);
-        let by_s = PAN_SHARE * window_s * f64::from(times);
-        let since_s = match direction {
-            Direction::Left => begin_s - by_s,
-            _ => begin_s + by_s,
-        };
-        Command::Since(Some(since_s.max(0.0)))
+        let by_s = PAN_SHARE * self.view.window_s * f64::from(signed(direction, times));
+        Command::Since(Some((self.begin_s() + by_s).max(0.0)))
     }
 
     /// The command that doubles the magnification `notches` times, or halves it.

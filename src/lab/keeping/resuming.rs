@@ -13,8 +13,7 @@ use toml::Value;
 
 impl Lab {
     /// The lab with `content`: on its way to the step where it stood, and paused there. `view` returns how its run is
-    /// shown on this screen.
-    /// It reads and writes in the folder `confined` only, if one is given.
+    /// shown on this screen. If `confined` is given, the lab reads and writes in that folder only.
     pub fn resumed(
         content: &Content,
         confined: Option<&Confined>,

@@ -4,6 +4,7 @@ use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::answer::{Answer, Done};
 use crate::lab::files::Files;
+use crate::lab::measured::Beside;
 use crate::lab::player::Player;
 use crate::measured::{self, Measured, shipped};
 use crate::scenario::{Problem, Problems, Scenario};
@@ -61,7 +62,7 @@ impl Lab {
     /// Reads the measured data `name` and puts them beside the run.
     fn put_beside(&mut self, name: &str, may_wait: bool) -> Result<(), Problems> {
         let measured = self.files.open_measured(name, may_wait)?;
-        self.player.set_measured(name, measured)?;
+        self.player.measured = Some(Beside::new(name, measured, self.player.run().scenario())?);
         self.view.measured = true;
         self.player.catch_up_measured();
         self.read_now();
@@ -93,20 +94,17 @@ impl Lab {
     pub(in crate::lab) fn measure_as_opened(&mut self, before: &Scenario) {
         let named = |scenario: &Scenario| scenario.file.view.as_ref()?.measured.clone();
         let scenario = self.player.run().scenario();
-        let shown = self.player.measured().map(|beside| beside.name.to_owned());
-        match named(scenario) {
-            Some(name) if Some(&name) == shown.as_ref() => {}
-            Some(name) => {
-                self.take_measured_away();
-                if let Err(problems) = self.put_beside(&name, false) {
-                    let why = format!("{}: {}", problems.origin, problems.in_one_line());
-                    self.tell(printable(&why));
-                }
-            }
-            None if shown.is_some() && shown == named(before) => {
-                self.take_measured_away();
-            }
-            None => {}
+        let shown = self.player.measured().map(|beside| beside.name.clone());
+        let wanted = named(scenario);
+        if wanted == shown || (wanted.is_none() && shown != named(before)) {
+            return;
+        }
+        self.take_measured_away();
+        if let Some(name) = wanted
+            && let Err(problems) = self.put_beside(&name, false)
+        {
+            let why = format!("{}: {}", problems.origin, problems.in_one_line());
+            self.tell(printable(&why));
         }
     }
 

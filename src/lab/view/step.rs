@@ -77,14 +77,14 @@ impl View {
     /// The panes that share the screen once the step pane is shown beside them, or is no longer.
     pub(in crate::lab) fn with_step_toggled(&self) -> Vec<Pane> {
         const BESIDE: [Pane; 2] = [Pane::THREE_D, Pane::STEP];
-        match self.shown.contains(&Pane::STEP) {
-            true if self.shown == BESIDE => Vec::new(),
-            true => {
-                let others = self.shown.iter().copied();
-                others.filter(|pane| *pane != Pane::STEP).collect()
-            }
-            false if self.shown.is_empty() => BESIDE.to_vec(),
-            false => self.shown.iter().copied().chain([Pane::STEP]).collect(),
+        if self.shown.is_empty() {
+            return BESIDE.to_vec();
         }
+        let mut panes = self.shown.clone();
+        panes.retain(|pane| *pane != Pane::STEP && self.shown != BESIDE);
+        if !self.shown.contains(&Pane::STEP) {
+            panes.push(Pane::STEP);
+        }
+        panes
     }
 }

@@ -90,7 +90,7 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let mut remarks = remarks(&lab.player().reading.readouts.health, None);
     let player = lab.player();
-    if let (Some(long), Some(short)) = (player.offer(), player.offer_in_short()) {
+    if let Some([long, short]) = player.offer() {
         let offer = Remark {
             long,
             short,
