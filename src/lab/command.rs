@@ -261,12 +261,8 @@ impl Command {
     /// The command that shows the run as the key `name` of `[view]` says with `value`.
     pub fn look(name: &str, value: impl Serialize) -> Self {
         let value = Value::try_from(value).ok();
-        Self::Look(
-            value
-                .map(|value| (name.to_owned(), value))
-                .into_iter()
-                .collect(),
-        )
+        let entry = value.map(|value| (name.to_owned(), value));
+        Self::Look(entry.into_iter().collect())
     }
 
     /// The value of the key `name` of `[view]`, where the command sets it.
@@ -431,10 +427,7 @@ impl Place {
 fn whole(text: &str) -> Option<u64> {
     /// Floats are exact whole numbers up to here.
     const EXACT: f64 = 9e15;
-    let float = || {
-        text.parse()
-            .ok()
-            .filter(|number: &f64| number.fract() == 0.0 && (0.0..=EXACT).contains(number))
-    };
+    let is_whole = |number: &f64| number.fract() == 0.0 && (0.0..=EXACT).contains(number);
+    let float = || text.parse().ok().filter(is_whole);
     text.parse().ok().or_else(|| Some(float()? as u64))
 }

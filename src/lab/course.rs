@@ -70,7 +70,7 @@ impl Player {
     pub(super) fn run_until(&mut self, condition: &Expression) -> Answer {
         let run = self.run();
         let sources = condition
-            .bind(|name| Ok(numbers::find(name)?.of(run)))
+            .bind(|name| numbers::find(name, Some(run)))
             .map_err(|fault| fault.to_string())?;
         let condition = condition.clone();
         self.heading = None;
@@ -159,14 +159,12 @@ impl Player {
 
     /// The message while steps are taken.
     pub(super) fn in_words(&self) -> Option<String> {
-        let left = self.playback.steps_to_go()?;
-        if self.is_replaying() {
-            return Some(format!(
-                "playing the new run to the same time: {} steps to go, Esc stops",
-                HumanCount(left)
-            ));
-        }
-        Some(format!("stepping: {} to go, Esc stops", HumanCount(left)))
+        let left = HumanCount(self.playback.steps_to_go()?);
+        Some(if self.is_replaying() {
+            format!("playing the new run to the same time: {left} steps to go, Esc stops")
+        } else {
+            format!("stepping: {left} to go, Esc stops")
+        })
     }
 }
 

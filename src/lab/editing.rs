@@ -8,6 +8,7 @@ use crate::run::Simulation;
 use crate::run::pushes::acts_s;
 use crate::scenario::Scenario;
 use crate::scenario::keys::Effect;
+use crate::work::history::Reversal;
 use crate::work::journal::{Act, number_of_push};
 use crate::work::next_push::NextPush;
 use crate::work::restart::in_force;
@@ -152,12 +153,9 @@ impl Lab {
             Way::Back => ("undone", "the run before", "U brings it again"),
             Way::On => ("done again", "the run after", "u takes it back"),
         };
-        Done::saying(match turned {
-            Turned::SameRun {
-                step,
-                act,
-                scenario,
-            } => {
+        let scenario = turned.scenario;
+        Done::saying(match turned.what {
+            Reversal::SameRun { step, act } => {
                 match act {
                     Act::Describe(_) => self.player.playback.describe_as(&scenario),
                     Act::Edit(_) | Act::Push(_) => self.player.continue_at(step, &scenario),
@@ -167,11 +165,8 @@ impl Lab {
                 let act = act.in_words();
                 format!("{done}: {act}, at step {step}; {other_way}")
             }
-            Turned::OtherRun {
-                is_of_same_name,
-                scenario,
-            } => {
-                self.return_to_run(scenario, is_of_same_name);
+            Reversal::OtherRun => {
+                self.return_to_run(scenario, turned.is_of_same_name);
                 format!("{done}: this is {run}; {other_way}")
             }
         })

@@ -155,10 +155,8 @@ impl Files {
 
     /// The path of the file that the user calls `name`.
     pub(super) fn path_of(&self, name: &str) -> PathBuf {
-        match &self.folder {
-            Some(folder) if !name.is_empty() => folder.join(name),
-            _ => PathBuf::from(name),
-        }
+        let folder = self.folder.as_deref().filter(|_| !name.is_empty());
+        folder.unwrap_or(Path::new("")).join(name)
     }
 
     /// Writes `content` to the file `path`; `what` names the content in the message.
@@ -213,14 +211,10 @@ fn is_named(path: &Path) -> Result<(), Refusal> {
 
 /// The message about a complete export, and how to copy the file.
 fn told(written: &Written) -> String {
-    let rows = written
-        .rows
-        .map(|rows| format!("{} rows, ", HumanCount(rows)));
-    let warnings: String = written
-        .warnings
-        .iter()
-        .map(|warning| format!(" · {warning}"))
-        .collect();
+    let rows = written.rows;
+    let rows = rows.map(|rows| format!("{} rows, ", HumanCount(rows)));
+    let warnings = written.warnings.iter();
+    let warnings: String = warnings.map(|warning| format!(" · {warning}")).collect();
     let end = match &written.not_finite {
         Some(end) => format!(", as far as the numbers are finite (step {})", end.step - 1),
         None => String::new(),

@@ -12,30 +12,23 @@ use crate::scenario::{dotted, float};
 use crate::work::parameters::table_at;
 
 #[derive(Clone, Copy, Debug)]
-pub enum Named<'a> {
-    Column(&'static Column),
-    /// A readout that is no column of the CSV.
-    Readout(&'static Readout),
-    Key(&'a str),
-}
-
-#[derive(Clone, Copy, Debug)]
 pub enum Source {
     /// The CSV row of the present step.
     Column(&'static Column),
+    /// A readout that is no column of the CSV.
     Readout(&'static Readout),
     /// Gravity in force, m/s².
     Gravity,
     /// The time step in force, s.
     TimeStep,
-    /// A value of the scenario, which does not change; `None` if the scenario has none.
+    /// A value of the scenario, which does not change; `None` if the scenario has none, or where there is no run.
     Fixed(Option<f64>),
 }
 
-/// The number called `name`.
-pub fn find(name: &str) -> Result<Named<'_>, String> {
+/// The number called `name`, of `run` where there is one yet.
+pub fn find(name: &str, run: Option<&LiveRun>) -> Result<Source, String> {
     if let Some(column) = Column::find(name) {
-        return Ok(Named::Column(column));
+        return Ok(Source::Column(column));
     }
     match (readouts::find(name), keys::find(name)) {
         (Some(readout), _) if readout.is_text => Err(format!(
@@ -45,8 +38,12 @@ pub fn find(name: &str) -> Result<Named<'_>, String> {
         (Some(readout), _) if readout.source == readouts::Source::Clock => {
             Err(format!("{name} is not counted in the lab"))
         }
-        (Some(readout), _) => Ok(Named::Readout(readout)),
-        (None, Ok((_, kind))) if holds_number(kind) => Ok(Named::Key(name)),
+        (Some(readout), _) => Ok(Source::Readout(readout)),
+        (None, Ok((_, kind))) if holds_number(kind) => Ok(match name {
+            "motion.gravity_m_per_s2" => Source::Gravity,
+            "motion.time_step_s" => Source::TimeStep,
+            _ => Source::Fixed(run.and_then(|run| number_in(run, name))),
+        }),
         (None, Ok((_, Kind::Vector))) => Err(format!(
             "{name} is a vector: its numbers are {name}.0, {name}.1 and {name}.2"
         )),
@@ -65,7 +62,7 @@ impl Lab {
     /// now.
     pub fn number(&self, name: &str) -> Option<f64> {
         let readouts = &self.player.reading.readouts;
-        match find(name).ok()?.of(self.player.run()) {
+        match find(name, Some(self.player.run())).ok()? {
             Source::Column(column) => {
                 Some(column.value(self.player.run().scenario(), &readouts.sample))
             }
@@ -99,19 +96,10 @@ fn nearest_to(wrong: &str) -> String {
     nearest(wrong, names.chain(keys.map(|key| key.path)))
 }
 
-impl Named<'_> {
-    pub fn of(self, run: &LiveRun) -> Source {
-        match self {
-            Self::Column(column) => Source::Column(column),
-            Self::Readout(readout) => Source::Readout(readout),
-            Self::Key("motion.gravity_m_per_s2") => Source::Gravity,
-            Self::Key("motion.time_step_s") => Source::TimeStep,
-            Self::Key(name) => {
-                let table = table_at(run.scenario(), run.simulation().step_number());
-                Source::Fixed(dotted::find(&table, name).and_then(float))
-            }
-        }
-    }
+/// The value of `key` in the scenario of `run`.
+fn number_in(run: &LiveRun, key: &str) -> Option<f64> {
+    let table = table_at(run.scenario(), run.simulation().step_number());
+    dotted::find(&table, key).and_then(float)
 }
 
 /// The numbers of a run at one step after the other. At each step only the numbers that are asked for are computed.

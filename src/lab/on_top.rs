@@ -11,9 +11,10 @@ use std::time::Duration;
 
 pub const MOST_COUNTED: u64 = 999_999_999;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
     /// The panes: nothing lies on top of them.
+    #[default]
     Lab,
     Browser,
     /// The line in which the user types the browser's filter.
@@ -37,6 +38,7 @@ impl Mode {
 }
 
 /// The browser, the help and the dialog, and which of them is open; the count; the message.
+#[derive(Default)]
 pub struct OnTop {
     pub mode: Mode,
     /// The mode to return to when the help is closed.
@@ -59,21 +61,6 @@ pub(super) struct Cleared {
     pub(super) anything: bool,
     /// Whether the user was warned that leaving stops the export.
     pub(super) was_warned: bool,
-}
-
-impl Default for OnTop {
-    fn default() -> Self {
-        Self {
-            mode: Mode::Lab,
-            under_help: Mode::Lab,
-            dialog: None,
-            browser: Browser::default(),
-            help: HelpSearch::default(),
-            count: None,
-            notice: Notice::default(),
-            was_warned: false,
-        }
-    }
 }
 
 impl OnTop {

@@ -74,47 +74,35 @@ pub fn read(name: &str) -> Result<Scenario, String> {
 mod tests {
     use super::*;
 
-    fn answer(loader: &mut Loader, preview: Preview) -> Arc<Result<Scenario, String>> {
-        let mut preview = preview;
+    fn read_by(loader: &mut Loader, name: &str) -> Arc<Result<Scenario, String>> {
+        let mut preview = loader.ask(name);
         loop {
-            match preview {
-                Preview::Known(known) => return known,
-                Preview::Loading => {
-                    thread::yield_now();
-                    preview = loader.take_answer().unwrap_or(Preview::Loading);
-                }
+            if let Preview::Known(known) = preview {
+                return known;
             }
+            thread::yield_now();
+            preview = loader.take_answer().unwrap_or(Preview::Loading);
         }
     }
 
     #[test]
     fn the_answer_is_to_what_was_asked_last() {
+        let title = read("method-2").unwrap().file.title;
         let mut loader = Loader::default();
         for _ in 0..20 {
             for name in ["cusps", "no-such.toml", "loops"] {
                 loader.ask(name);
             }
-            let preview = loader.ask("method-2");
-            let known = answer(&mut loader, preview);
-            assert_eq!(
-                known.as_ref().as_ref().unwrap().file.title,
-                read("method-2").unwrap().file.title
-            );
+            let known = read_by(&mut loader, "method-2");
+            assert_eq!(known.as_ref().as_ref().unwrap().file.title, title);
             assert!(loader.take_answer().is_none(), "it is told once");
         }
     }
 
     #[test]
     fn what_cannot_be_opened_says_why() {
-        let mut loader = Loader::default();
-        let preview = loader.ask("no-such.toml");
-        let known = answer(&mut loader, preview);
-        assert!(
-            known
-                .as_ref()
-                .as_ref()
-                .unwrap_err()
-                .contains("there is no such file")
-        );
+        let known = read_by(&mut Loader::default(), "no-such.toml");
+        let refused = known.as_ref().as_ref().unwrap_err();
+        assert!(refused.contains("there is no such file"));
     }
 }

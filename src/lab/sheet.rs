@@ -90,11 +90,10 @@ impl Lab {
             return;
         }
         let before = self.view.sheet.take();
-        let is_same = match (&before, &sheet) {
-            (Some(before), Some(sheet)) => before.title == sheet.title && before.seen == sheet.seen,
-            _ => false,
+        let is_same = |(before, sheet): (Arc<Sheet>, &Sheet)| {
+            before.title == sheet.title && before.seen == sheet.seen
         };
-        if !is_same {
+        if !before.zip(sheet.as_ref()).is_some_and(is_same) {
             self.view.sheet_scrolled = None;
         }
         self.view.sheet = sheet.map(Arc::new);

@@ -36,12 +36,15 @@ impl View {
 }
 
 impl Lab {
-    /// Shows the next longer or shorter time in the traces; at the end of the ladder says which it is.
+    /// Shows twice the time in the traces (`wider`), or half of it; where less than two time steps would remain, says
+    /// which time is shown.
     pub(super) fn change_window(&mut self, wider: bool) {
         let time_step_s = self.player.run().simulation().motion().time_step_s;
-        match self.view.zoomed(wider, time_step_s) {
-            Some(window_s) => self.carry_out_all(&[Command::look("window_s", window_s)]),
-            None => self.say(format!("the traces show {} s", self.view.window_s)),
+        let window_s = self.view.window_s * if wider { 2.0 } else { 0.5 };
+        if window_s >= 2.0 * time_step_s && window_s.is_finite() {
+            self.carry_out_all(&[Command::look("window_s", window_s)]);
+        } else {
+            self.say(format!("the traces show {} s", self.view.window_s));
         }
     }
 

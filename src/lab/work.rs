@@ -35,19 +35,11 @@ pub(super) enum Way {
 }
 
 /// What an undo or a redo has changed, and the scenario of the present run afterwards.
-pub(super) enum Turned {
-    /// The present run has changed after `step`.
-    SameRun {
-        step: u64,
-        act: Act,
-        scenario: Arc<Scenario>,
-    },
-    /// Another run is now the present one.
-    OtherRun {
-        /// Whether both runs were opened under the same name.
-        is_of_same_name: bool,
-        scenario: Arc<Scenario>,
-    },
+pub(super) struct Turned {
+    pub(super) what: Reversal,
+    pub(super) scenario: Arc<Scenario>,
+    /// Whether the run before was opened under the same name.
+    pub(super) is_of_same_name: bool,
 }
 
 impl Work {
@@ -213,36 +205,26 @@ impl Work {
             Way::Back => history.undo(),
             Way::On => history.redo(),
         };
-        let Some(turned) = turned else {
+        let Some(what) = turned else {
             return Ok(None);
         };
+        let is_of_same_name = self.name() == name;
         let scenario = self.history.scenario();
         let scenario = scenario.map_err(|problems| problems.in_one_line())?;
-        Ok(Some(match turned {
-            Reversal::SameRun { step, act } => {
-                if scenario.steps != steps {
-                    // Edits of the time step made after the number of steps was set have not moved the end: the end
-                    // follows from the scenario in which that number was set.
-                    let told = self.journal().when_steps_were_set();
-                    let end_s = Clock::end_s(told.as_ref().unwrap_or(&scenario));
-                    self.change().set_end(end_s);
-                }
-                Turned::SameRun {
-                    step,
-                    act,
-                    scenario,
-                }
-            }
-            Reversal::OtherRun => {
-                let is_of_same_name = self.name() == name;
-                if !is_of_same_name {
-                    self.original = Original::of(self.name(), &scenario);
-                }
-                Turned::OtherRun {
-                    is_of_same_name,
-                    scenario,
-                }
-            }
+        if what != Reversal::OtherRun && scenario.steps != steps {
+            // Edits of the time step made after the number of steps was set have not moved the end: the end follows
+            // from the scenario in which that number was set.
+            let told = self.journal().when_steps_were_set();
+            let end_s = Clock::end_s(told.as_ref().unwrap_or(&scenario));
+            self.change().set_end(end_s);
+        }
+        if !is_of_same_name {
+            self.original = Original::of(self.name(), &scenario);
+        }
+        Ok(Some(Turned {
+            what,
+            scenario,
+            is_of_same_name,
         }))
     }
 
@@ -296,15 +278,9 @@ mod tests {
         work.open("cusps", &preset("cusps"));
         work.compare_with_file(&preset("cusps"));
         assert_eq!((work.name(), work.changed_from_file()), ("cusps", None));
-        let Some(Turned::OtherRun {
-            is_of_same_name,
-            scenario,
-        }) = work.turn(Way::Back, 1).unwrap()
-        else {
-            panic!("another run was expected")
-        };
-        work.compare_with_file(&scenario);
-        assert!(!is_of_same_name);
+        let turned = work.turn(Way::Back, 1).unwrap().unwrap();
+        work.compare_with_file(&turned.scenario);
+        assert!(turned.what == Reversal::OtherRun && !turned.is_of_same_name);
         assert_eq!((work.name(), work.changed_from_file()), ("method-2", None));
         assert!(work.turn(Way::On, 1).unwrap().is_some());
         assert_eq!(work.name(), "cusps");

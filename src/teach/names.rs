@@ -42,7 +42,7 @@ impl Names {
             "must begin with a letter and go on with letters, digits and _, none of them accented"
         } else if RESERVED.contains(&name) {
             "means something else in a lesson: choose another name"
-        } else if readouts::find(name).is_some() || numbers::find(name).is_ok() {
+        } else if readouts::find(name).is_some() || numbers::find(name, None).is_ok() {
             "is a number of the run already: choose another name"
         } else if self.is_kept(name) {
             "is kept twice: choose another name"
@@ -80,7 +80,7 @@ impl Names {
         if self.are_lost {
             return Ok(());
         }
-        let found = numbers::find(name).map(|_| ());
+        let found = numbers::find(name, None).map(|_| ());
         if found.is_ok() && self.open_from.is_none_or(|from| page < from) {
             return Err(format!(
                 "{name} is a number of a run, and no lab block has opened one yet"

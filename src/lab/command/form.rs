@@ -77,8 +77,8 @@ pub(super) const CURSOR: Form = As(
 );
 pub(super) const CONDITION: Form = Text(|text| {
     let condition = Expression::condition(text);
-    let bound = condition.and_then(|condition| condition.bind(numbers::find).map(|_| ()));
-    bound.map_err(|fault| fault.to_string())
+    let bound = condition.and_then(|condition| condition.bind(|name| numbers::find(name, None)));
+    bound.map_or_else(|fault| Err(fault.to_string()), |_| Ok(()))
 });
 pub(super) const WAIT: Form = Is(Number(Range::Within((0.0, LONGEST_WAIT))));
 pub(super) const SPEED: Form = By(|value| match value.as_str() {
@@ -228,11 +228,7 @@ impl Fields {
             let value = table.get(&key).unwrap_or(value);
             problems.push(Problem::with_value(key, value, rule));
         }
-        if problems.is_empty() {
-            Ok(Value::Table(table))
-        } else {
-            Err(problems)
-        }
+        unless_any(problems, Value::Table(table))
     }
 
     fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
@@ -266,6 +262,11 @@ impl Fields {
 pub(super) fn below(name: &str, problem: Problem) -> Problem {
     let key = join(name, &problem.key).trim_end_matches('.').to_owned();
     Problem { key, ..problem }
+}
+
+/// `value`, unless there are `problems`.
+fn unless_any(problems: Vec<Problem>, value: Value) -> Result<Value, Vec<Problem>> {
+    problems.is_empty().then_some(value).ok_or(problems)
 }
 
 /// Whether serde reads a `T` from `value`.
@@ -352,11 +353,7 @@ fn are_keys(value: &Value) -> Result<Value, Vec<Problem>> {
             }
         }
     }
-    if problems.is_empty() {
-        Ok(value.clone())
-    } else {
-        Err(problems)
-    }
+    unless_any(problems, value.clone())
 }
 
 /// The dotted key of the first value in `value`, which stands at `key`.

@@ -43,10 +43,8 @@ impl View {
     /// Moves the focus to the next pane that can have it, or to the one before; after the last comes the first.
     pub fn shift_focus(&mut self, forward: bool) {
         let panes = self.focusable();
-        let (count, here) = (
-            panes.len(),
-            panes.iter().position(|&pane| pane == self.focus),
-        );
+        let count = panes.len();
+        let here = panes.iter().position(|&pane| pane == self.focus);
         let next = match (here, forward) {
             (Some(here), true) => (here + 1) % count,
             (Some(here), false) => (here + count - 1) % count,
@@ -91,17 +89,15 @@ impl View {
 
     /// Fills the screen with the 3-D view, or shows all panes again if it fills the screen already.
     pub fn toggle_three_d(&mut self) {
-        let first = if self.may_show(Pane::LESSON) {
+        self.filled = !self.is_filled_by(Pane::THREE_D);
+        self.is_touched = self.filled;
+        self.focus = if self.filled {
+            Pane::THREE_D
+        } else if self.may_show(Pane::LESSON) {
             Pane::LESSON
         } else {
             Pane::TRACES
         };
-        (self.focus, self.filled) = if self.is_filled_by(Pane::THREE_D) {
-            (first, false)
-        } else {
-            (Pane::THREE_D, true)
-        };
-        self.is_touched = self.filled;
     }
 }
 

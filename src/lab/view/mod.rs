@@ -225,8 +225,14 @@ impl View {
 
     /// The time that the traces show of the run of `scenario` while none is chosen by hand, s.
     pub fn usual_window_s(&self, scenario: &Scenario) -> f64 {
-        let chosen = scenario.file.view.as_ref().and_then(|view| view.window_s);
-        chosen.unwrap_or_else(|| first_window_s(scenario))
+        let view = scenario.file.view.as_ref();
+        // The whole run, or what of it is played in two minutes.
+        let first_s = || {
+            let speed = view.and_then(|view| view.speed).unwrap_or(keys::SPEED);
+            let window_s = Clock::end_s(scenario).min(LONGEST_SWEEP_S * speed);
+            window_s.max(2.0 * scenario.motion.time_step_s)
+        };
+        view.and_then(|view| view.window_s).unwrap_or_else(first_s)
     }
 
     pub fn hides(&self, part: Part) -> bool {
@@ -251,17 +257,6 @@ impl View {
         panes.filter(|pane| self.may_show(*pane)).collect()
     }
 
-    /// Twice the time that the traces show (`wider`), or half of it, s; `None` if less than two time steps of
-    /// `time_step_s` (s) would remain.
-    pub fn zoomed(&self, wider: bool, time_step_s: f64) -> Option<f64> {
-        let window_s = if wider {
-            self.window_s * 2.0
-        } else {
-            self.window_s / 2.0
-        };
-        (window_s >= 2.0 * time_step_s && window_s.is_finite()).then_some(window_s)
-    }
-
     /// The camera after an arrow key was pressed `times` times; each press turns it by 10 degrees.
     pub(super) fn turned(&self, direction: Direction, times: i32) -> Camera {
         let degrees = f64::from(times) * TURN_DEG;
@@ -275,18 +270,4 @@ impl View {
         camera.turn(yaw_deg, pitch_deg);
         camera
     }
-}
-
-/// The time that the traces show at first, s: the whole run, or what of it is played in two minutes.
-fn first_window_s(scenario: &Scenario) -> f64 {
-    let speed = scenario
-        .file
-        .view
-        .as_ref()
-        .and_then(|view| view.speed)
-        .unwrap_or(keys::SPEED);
-    let whole = Clock::end_s(scenario);
-    whole
-        .min(LONGEST_SWEEP_S * speed)
-        .max(2.0 * scenario.motion.time_step_s)
 }
