@@ -3,7 +3,6 @@
 use super::Lab;
 use super::answer::{Answer, Done, UnderWay};
 use super::command::{Command, Export, Figure, Force, PushChoice, Save};
-use super::values::listed::ListedValue;
 use super::work::Way;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Scenario, keys};
@@ -32,7 +31,7 @@ impl Lab {
     fn done(&mut self, command: &Command) -> Answer {
         match command {
             Command::Open(name) => self.open_named(name),
-            Command::Set(table) => self.set_all(table),
+            Command::Set(table) => self.set_all(table, false),
             Command::Nudge { key, times } => self.nudge(key, *times),
             Command::Push(choice) => self.push(choice),
             Command::NextPush(choice) => Ok(self.choose_next_push(self.chosen(choice)?)),
@@ -143,8 +142,9 @@ impl Lab {
         }
     }
 
-    /// Sets all keys of `table` as one act. Keys of body and start begin a new run; the others act from the next step on.
-    fn set_all(&mut self, table: &Table) -> Answer {
+    /// Sets all keys of `table` as one act, with `is_again` together with the act before. Keys of body and start begin a new
+    /// run; the others act from the next step on.
+    fn set_all(&mut self, table: &Table, is_again: bool) -> Answer {
         let is_of_a_new_run = |key: &str| keys::Effect::of(key) == keys::Effect::NewRun;
         let (new, rest): (Table, Table) = table
             .clone()
@@ -152,26 +152,22 @@ impl Lab {
             .partition(|(key, _)| is_of_a_new_run(key));
         let acts = acts(rest);
         if new.is_empty() {
-            let made_way = self.act_all(acts, false)?;
+            let made_way = self.act_all(acts, is_again)?;
             let done = Done::saying(made_way.unwrap_or_else(|| match table.len() {
                 1 => table.keys().map(|key| self.said_of(key)).collect(),
                 more => format!("{more} values; u takes them back"),
             }));
             Ok(self.on_its_way(done))
         } else {
-            self.begin_with(&new, acts, false)
+            self.begin_with(&new, acts, is_again)
         }
     }
 
     fn nudge(&mut self, key: &str, times: i32) -> Answer {
         let Some(parameter) = self.values.parameter(key).cloned() else {
             let listed = self.values.list.values.iter();
-            let known = listed.filter_map(ListedValue::key);
-            return Err(format!(
-                "{key} is no value of this scenario: {}",
-                nearest(key, known)
-            )
-            .into());
+            let near = nearest(key, listed.filter_map(|value| value.key.as_deref()));
+            return Err(format!("{key} is no value of this scenario: {near}").into());
         };
         let value = parameter
             .nudged(times)
@@ -179,14 +175,7 @@ impl Lab {
         let now = self.now;
         let is_again = self.values.is_nudged_again(key, now);
         let table = Table::from_iter([(key.to_owned(), value)]);
-        let done = match keys::Effect::of(key) {
-            keys::Effect::NewRun => self.begin_with(&table, Vec::new(), is_again)?,
-            keys::Effect::FromHere | keys::Effect::None => {
-                let made_way = self.act_all(acts(table), is_again)?;
-                let said = made_way.unwrap_or_else(|| self.said_of(key));
-                self.on_its_way(Done::saying(said))
-            }
-        };
+        let done = self.set_all(&table, is_again)?;
         self.values.note_nudge(key, now);
         Ok(done)
     }

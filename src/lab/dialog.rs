@@ -6,7 +6,7 @@ use super::course::WHERE;
 use super::form::{Field, Form};
 use super::settings::SETTINGS;
 use super::values::Values;
-use super::values::listed::ListedValue;
+use super::values::listed::Of;
 use super::view::View;
 use crate::scenario::Scenario;
 use crate::scenario::keys::Effect;
@@ -62,22 +62,22 @@ impl Dialog {
     /// Asks for the selected one of `values`; `None` if none is shown.
     pub(super) fn value(values: &Values) -> Option<Self> {
         let value = values.list.selected()?;
-        let title = match value.key() {
+        let title = match &value.key {
             Some(key) => key.to_owned(),
-            None => format!("{} {}", value.group(), value.label()),
+            None => format!("{} {}", value.group, value.label),
         };
-        let label = match value.unit() {
-            "" => value.label().into_owned(),
-            unit => format!("{}, {unit}", value.label()),
+        let label = match value.unit {
+            "" => value.label.clone(),
+            unit => format!("{}, {unit}", value.label),
         };
-        let about = match value {
-            ListedValue::OfScenario(parameter) => about(parameter),
-            ListedValue::OfNextPush { field, .. } => vec![
+        let about = match &value.of {
+            Of::Scenario(parameter) => about(parameter),
+            Of::NextPush(field) => vec![
                 field.about().to_owned(),
                 "it acts when p gives the push".to_owned(),
             ],
         };
-        let fields = [(label.as_str(), value.text())];
+        let fields = [(label.as_str(), value.text.clone())];
         Some(Self::new(Question::Value, &title, &fields, about))
     }
 

@@ -26,17 +26,6 @@ pub enum Mode {
     Dialog,
 }
 
-impl Mode {
-    pub const ALL: [Self; 6] = [
-        Self::Lab,
-        Self::Browser,
-        Self::Filter,
-        Self::Find,
-        Self::Help,
-        Self::Dialog,
-    ];
-}
-
 /// The browser, the help and the dialog, and which of them is open; the count; the message.
 #[derive(Default)]
 pub struct OnTop {

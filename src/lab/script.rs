@@ -86,21 +86,6 @@ impl Script {
         self.count() == 0
     }
 
-    /// Drops all commands because `placed` was refused for `reason`; returns the message.
-    fn fail(&mut self, placed: &Placed, reason: &str) -> String {
-        let rest = match self.left.len() {
-            0 => String::new(),
-            1 => "; the command after it is not carried out".to_owned(),
-            more => format!("; the {more} commands after it are not carried out"),
-        };
-        let line = placed.line.map_or(String::new(), |line| format!(":{line}"));
-        let name: String = placed.command.to_table().keys().cloned().collect();
-        let text = format!("{}{line}: {name}: {reason}{rest}", self.origin);
-        self.left.clear();
-        self.failed = Some(text.clone());
-        text
-    }
-
     /// Drops all commands; returns how many there were, with the one under way.
     pub(super) fn drop_all(&mut self) -> usize {
         let left = self.count();
@@ -308,8 +293,19 @@ impl Lab {
         }
     }
 
+    /// Drops all commands because `placed` was refused for `reason`.
     fn script_has_failed(&mut self, placed: &Placed, reason: &str) {
-        let text = self.script.fail(placed, reason);
+        let script = &mut self.script;
+        let rest = match script.left.len() {
+            0 => String::new(),
+            1 => "; the command after it is not carried out".to_owned(),
+            more => format!("; the {more} commands after it are not carried out"),
+        };
+        let line = placed.line.map_or(String::new(), |line| format!(":{line}"));
+        let name: String = placed.command.to_table().keys().cloned().collect();
+        let text = format!("{}{line}: {name}: {reason}{rest}", script.origin);
+        script.left.clear();
+        script.failed = Some(text.clone());
         self.tell(text);
     }
 }

@@ -7,7 +7,7 @@ use super::command::{Command, CursorTo, Place, PushChoice};
 use super::dialog::Dialog;
 use super::form::edit_line;
 use super::on_top::{Cleared, Mode};
-use super::values::listed::ListedValue;
+use super::values::listed::Of;
 use super::view::Pane;
 use super::{Lab, Request};
 use crate::observe::camera::Zoom;
@@ -239,12 +239,12 @@ impl Lab {
     }
 
     fn nudge_selected(&mut self, times: i32) -> Result<(), String> {
-        match self.values.list.selected() {
-            Some(ListedValue::OfScenario(parameter)) if times != 0 => {
+        match self.values.list.selected().map(|value| &value.of) {
+            Some(Of::Scenario(parameter)) if times != 0 => {
                 let key = parameter.key.clone();
                 self.one(Command::Nudge { key, times });
             }
-            Some(ListedValue::OfNextPush { field, .. }) if times != 0 => {
+            Some(Of::NextPush(field)) if times != 0 => {
                 let scenario = self.player.run().scenario();
                 let next = self.values.next_push.nudged(*field, times, scenario)?;
                 self.one(Command::NextPush(PushChoice::field(*field, &next)));

@@ -11,7 +11,7 @@ use crate::work::journal::{Journal, number_of_push};
 use crate::work::next_push::{Field, NextPush, Toward};
 use crate::work::parameters::{self, Parameter, parameters};
 use list::ValueList;
-use listed::ListedValue;
+use listed::{ListedValue, Of};
 use nalgebra::Vector3;
 use std::time::Duration;
 use toml::Table;
@@ -62,9 +62,9 @@ impl Values {
                 .is_none_or(|number| number < pushes || number >= first_added)
         };
         let parameters = parameters(&table, scenario).into_iter().filter(is_given);
-        let values = parameters.map(|parameter| ListedValue::OfScenario(Box::new(parameter)));
-        let mut values: Vec<_> = values.chain(ListedValue::of(&self.next_push)).collect();
-        values.sort_by_key(|value| rank(value.group())); // stable: within a group nothing moves
+        let values = parameters.map(ListedValue::from);
+        let mut values: Vec<_> = values.chain(ListedValue::all_of(&self.next_push)).collect();
+        values.sort_by_key(|value| rank(&value.group)); // stable: within a group nothing moves
         self.list.set(values);
     }
 
@@ -81,8 +81,8 @@ impl Values {
 
     /// The listed value of the scenario with the dotted `key`.
     pub(super) fn parameter(&self, key: &str) -> Option<&Parameter> {
-        self.list.values.iter().find_map(|value| match value {
-            ListedValue::OfScenario(parameter) if parameter.key == key => Some(&**parameter),
+        self.list.values.iter().find_map(|value| match &value.of {
+            Of::Scenario(parameter) if parameter.key == key => Some(&**parameter),
             _ => None,
         })
     }
@@ -90,8 +90,8 @@ impl Values {
     /// The value of `key` with its label and unit; the key alone where it is not listed.
     pub(super) fn in_words(&self, key: &str) -> String {
         let mut values = self.list.values.iter();
-        let words = match values.find(|value| value.key() == Some(key)) {
-            Some(value) => format!("{} {} {}", value.label(), value.text(), value.unit()),
+        let words = match values.find(|value| value.key.as_deref() == Some(key)) {
+            Some(value) => format!("{} {} {}", value.label, value.text, value.unit),
             None => key.to_owned(),
         };
         words.trim_end().to_owned()
@@ -149,9 +149,9 @@ impl Values {
         scenario: &Scenario,
         time_step_s: f64,
     ) -> Result<Option<Command>, String> {
-        match self.list.selected() {
+        match self.list.selected().map(|value| &value.of) {
             None => Ok(None),
-            Some(ListedValue::OfScenario(parameter)) => {
+            Some(Of::Scenario(parameter)) => {
                 let value = parameter
                     .typed(text)
                     .map_err(|reason| format!("{} {reason}", parameter.label))?;
@@ -159,7 +159,7 @@ impl Values {
                 let table = Table::from_iter([(parameter.key.clone(), value)]);
                 Ok(is_new.then_some(Command::Set(table)))
             }
-            Some(ListedValue::OfNextPush { field, .. }) => {
+            Some(Of::NextPush(field)) => {
                 let next = self.next_push.typed(*field, text, scenario, time_step_s)?;
                 let choice = PushChoice::field(*field, &next);
                 Ok(Some(Command::NextPush(choice)))
@@ -213,7 +213,7 @@ mod tests {
     fn groups_stand_in_their_order() {
         let (values, _) = listed();
         let listed = values.list.values.iter();
-        let ranks: Vec<_> = listed.map(|value| rank(value.group())).collect();
+        let ranks: Vec<_> = listed.map(|value| rank(&value.group)).collect();
         assert!(ranks.is_sorted() && !ranks.is_empty());
     }
 

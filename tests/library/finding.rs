@@ -130,7 +130,7 @@ fn values_are_found_by_their_names() {
     stage.shows("parameters ");
     assert_eq!(stage.focus(), "parameters");
     let selected = stage.lab.values().list.selected().unwrap();
-    assert_eq!(selected.label(), "gravity");
+    assert_eq!(selected.label, "gravity");
     stage.press(ESC);
     assert_eq!(stage.focus(), "traces");
 }
@@ -217,7 +217,7 @@ fn the_words_that_begin_with_what_is_searched_for_come_first() {
     let mut stage = open(SMALL);
     stage.press("/L");
     let selected = stage.lab.values().list.selected().unwrap();
-    assert_eq!(selected.label(), "Lx body");
+    assert_eq!(selected.label, "Lx body");
     let mut stage = open(SMALL);
     stage.press("/Lz").shows("read only:").shows("Lz body");
 }

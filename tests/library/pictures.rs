@@ -498,12 +498,12 @@ fn list(key: &str) -> ValueList {
         let mut parameter = own.find(|own| own.key == key).unwrap().clone();
         (parameter.value, parameter.is_default) = (text.into(), is_default);
         parameter.frame = None;
-        ListedValue::OfScenario(Box::new(parameter))
+        ListedValue::from(parameter)
     };
     let mut list = ValueList::default();
     list.set(VALUES.iter().map(listed).collect());
     list.shift(VALUES.iter().position(|value| value.0 == key).unwrap() as isize);
-    assert_eq!(list.selected().and_then(ListedValue::key), Some(key));
+    assert_eq!(list.selected().unwrap().key.as_deref(), Some(key));
     list
 }
 
@@ -553,7 +553,7 @@ fn the_selected_line_is_seen_at_every_place_and_size() {
         for (key, ..) in VALUES {
             for filled in [false, true] {
                 let list = list(key);
-                let label = list.selected().unwrap().label();
+                let label = &list.selected().unwrap().label;
                 let buf = drawn_parameters(&list, (true, filled), size);
                 let shown = text(&buf);
                 let marked: Vec<_> = shown.split('►').skip(1).collect();

@@ -52,7 +52,7 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
             .list
             .values
             .iter()
-            .any(|value| value.group() == "push 0")
+            .any(|value| value.group == "push 0")
     );
     desk.commands("go_to = 10");
     assert!(
@@ -61,7 +61,7 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
             .list
             .values
             .iter()
-            .any(|value| value.group() == "push 0")
+            .any(|value| value.group == "push 0")
     );
 }
 
@@ -74,7 +74,7 @@ fn steps_of_a_push_to_come_are_those_of_now() {
     desk.type_text("20 steps");
     desk.press(&[Key::Enter]);
     let value = desk.lab.values().list.selected().unwrap();
-    assert_eq!((&*value.label(), &*value.text()), ("for", "1"));
+    assert_eq!((value.label.as_str(), value.text.as_str()), ("for", "1"));
 }
 
 #[test]

@@ -19,7 +19,7 @@ impl ValueList {
     pub fn set(&mut self, values: Vec<ListedValue>) {
         let was = self
             .selected()
-            .map(|value| (value.group().to_owned(), value.label().into_owned()));
+            .map(|value| (value.group.clone(), value.label.clone()));
         self.values = values;
         self.search();
         let stays = was.is_some_and(|(group, label)| self.select(&group, &label));
@@ -49,7 +49,7 @@ impl ValueList {
 
     /// Selects the value `label` of `group`; returns whether there is one.
     pub fn select(&mut self, group: &str, label: &str) -> bool {
-        let is_it = |value: &ListedValue| value.group() == group && value.label() == label;
+        let is_it = |value: &ListedValue| value.group == group && value.label == label;
         let found = self.values.iter().position(is_it);
         self.selected = found.unwrap_or(self.selected);
         found.is_some()
@@ -108,7 +108,7 @@ mod tests {
         parameter.key.clear();
         parameter.group = group.to_owned();
         parameter.label = label.to_owned();
-        ListedValue::OfScenario(Box::new(parameter))
+        parameter.into()
     }
 
     fn list(values: &[(&str, &str)]) -> ValueList {
@@ -119,7 +119,7 @@ mod tests {
 
     fn selected(list: &ValueList) -> String {
         let value = list.selected().unwrap();
-        format!("{} {}", value.group(), value.label())
+        format!("{} {}", value.group, value.label)
     }
 
     #[test]
@@ -154,9 +154,7 @@ mod tests {
     #[test]
     fn only_values_with_the_name_are_shown_and_selected() {
         let mut list = list(&[("start", "tilt"), ("motion", "dt"), ("push 0", "steps")]);
-        if let ListedValue::OfScenario(step) = &mut list.values[1] {
-            step.key = "motion.time_step_s".to_owned();
-        }
+        list.values[1].key = Some("motion.time_step_s".to_owned());
         for (name, shown) in [
             ("", 3),
             ("ti", 2),

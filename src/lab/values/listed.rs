@@ -3,79 +3,62 @@
 use super::NEXT_PUSH;
 use crate::work::next_push::{Field, NextPush};
 use crate::work::parameters::Parameter;
-use std::borrow::Cow;
+
+/// A value, in words, and where it is set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ListedValue {
+    /// Dotted key, as `--set` takes it; `None` for the push to come.
+    pub key: Option<String>,
+    /// The heading under which it stands.
+    pub group: String,
+    pub label: String,
+    pub unit: &'static str,
+    /// The value with all its digits.
+    pub text: String,
+    /// Whether the scenario's file does not contain it: the value is the default.
+    pub is_default: bool,
+    pub(in crate::lab) of: Of,
+}
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum ListedValue {
-    OfScenario(Box<Parameter>),
-    OfNextPush {
-        field: Field,
-        /// The value as text.
-        text: String,
-    },
+pub(in crate::lab) enum Of {
+    Scenario(Box<Parameter>),
+    NextPush(Field),
+}
+
+impl From<Parameter> for ListedValue {
+    fn from(parameter: Parameter) -> Self {
+        let label = &parameter.label;
+        let with_frame = parameter.frame.map(|frame| format!("{label} {frame}"));
+        Self {
+            key: Some(parameter.key.clone()),
+            group: parameter.group.clone(),
+            label: with_frame.unwrap_or_else(|| label.clone()),
+            unit: parameter.unit(),
+            text: parameter.shown(),
+            is_default: parameter.is_default,
+            of: Of::Scenario(Box::new(parameter)),
+        }
+    }
 }
 
 impl ListedValue {
-    pub(super) fn of(push: &NextPush) -> [Self; 4] {
-        Field::ALL.map(|field| Self::OfNextPush {
-            field,
+    pub(super) fn all_of(push: &NextPush) -> [Self; 4] {
+        Field::ALL.map(|field| Self {
+            key: None,
+            group: NEXT_PUSH.to_owned(),
+            label: field.label().0.to_owned(),
+            unit: field.label().1,
             text: push.shown(field),
+            is_default: false,
+            of: Of::NextPush(field),
         })
-    }
-
-    /// Dotted key, as `--set` takes it; `None` for the push to come.
-    pub fn key(&self) -> Option<&str> {
-        match self {
-            Self::OfScenario(parameter) => Some(&parameter.key),
-            Self::OfNextPush { .. } => None,
-        }
-    }
-
-    /// The heading under which it stands.
-    pub fn group(&self) -> &str {
-        match self {
-            Self::OfScenario(parameter) => &parameter.group,
-            Self::OfNextPush { .. } => NEXT_PUSH,
-        }
-    }
-
-    pub fn label(&self) -> Cow<'_, str> {
-        match self {
-            Self::OfScenario(parameter) => match parameter.frame {
-                Some(frame) => format!("{} {frame}", parameter.label).into(),
-                None => parameter.label.as_str().into(),
-            },
-            Self::OfNextPush { field, .. } => field.label().0.into(),
-        }
-    }
-
-    /// The value with all its digits.
-    pub fn text(&self) -> String {
-        match self {
-            Self::OfScenario(parameter) => parameter.shown(),
-            Self::OfNextPush { text, .. } => text.clone(),
-        }
-    }
-
-    pub fn unit(&self) -> &'static str {
-        match self {
-            Self::OfScenario(parameter) => parameter.unit(),
-            Self::OfNextPush { field, .. } => field.label().1,
-        }
-    }
-
-    /// Whether the scenario's file does not contain it: the value is the default.
-    pub fn is_default(&self) -> bool {
-        match self {
-            Self::OfScenario(parameter) => parameter.is_default,
-            Self::OfNextPush { .. } => false,
-        }
     }
 
     /// How its group, label and key answer the search for `name`.
     pub(super) fn answers(&self, name: &str) -> Option<Match> {
-        let key = self.key().unwrap_or_default();
-        Match::of(&format!("{} {} {key}", self.group(), self.label()), name)
+        let key = self.key.as_deref().unwrap_or_default();
+        Match::of(&format!("{} {} {key}", self.group, self.label), name)
     }
 }
 

@@ -35,9 +35,9 @@ pub(super) fn title(list: Option<&ValueList>, is_searched: bool) -> String {
 pub(super) fn edited_lines(list: &ValueList) -> Vec<Line> {
     let shown = list.shown();
     let mut lines = Vec::with_capacity(2 * shown.len());
-    for group in shown.chunk_by(|(_, a), (_, b)| a.group() == b.group()) {
+    for group in shown.chunk_by(|(_, a), (_, b)| a.group == b.group) {
         let first = group.first();
-        lines.extend(first.map(|(_, value)| heading(on_one_line(value.group()))));
+        lines.extend(first.map(|(_, value)| heading(on_one_line(&value.group))));
         for (index, value) in group {
             lines.push(edited_line(value, *index == list.selected_index()));
         }
@@ -49,21 +49,21 @@ pub(super) fn edited_lines(list: &ValueList) -> Vec<Line> {
 }
 
 fn edited_line(value: &ListedValue, is_selected: bool) -> Line {
-    let value_role = if value.is_default() {
+    let value_role = if value.is_default {
         Role::Quiet
     } else {
         Role::Text
     };
-    let text = on_one_line(&value.text());
+    let text = on_one_line(&value.text);
     let number = text.parse().ok().filter(|_| text.contains(['.', 'e']));
     let text = number.map_or(text, in_pane);
     Line {
         rank: 0,
-        label: on_one_line(&value.label()).into(),
+        label: on_one_line(&value.label).into(),
         label_role: Role::Quiet,
         value: text,
         value_role,
-        unit: value.unit().into(),
+        unit: value.unit.into(),
         is_selected,
     }
 }
@@ -76,10 +76,10 @@ fn on_one_line(text: &str) -> String {
 /// What `--set` takes for `value`: on one line of `width` columns, or else the key on one and a number on the next; a text
 /// is shown whole by the dialog. Empty for the push to come.
 pub(super) fn key_lines(value: &ListedValue, width: usize) -> Vec<String> {
-    let Some(key) = value.key() else {
+    let Some(key) = &value.key else {
         return vec![String::new()];
     };
-    let text = on_one_line(&value.text());
+    let text = on_one_line(&value.text);
     let whole = format!("{key}={text}");
     let is_short = columns(&whole) <= width;
     let is_number = text.parse::<f64>().is_ok();
