@@ -56,8 +56,12 @@ impl Done {
 
     /// The command is complete; the message `text` stays for a few seconds.
     pub(super) fn saying(text: impl Into<String>) -> Self {
+        Self::saying_any(Some(text.into()))
+    }
+
+    pub(super) fn saying_any(said: Option<String>) -> Self {
         Self {
-            said: Some(text.into()),
+            said,
             ..Self::SILENT
         }
     }

@@ -98,7 +98,7 @@ impl Lab {
             };
         }
         self.view.take(look);
-        Ok(said.map_or(Done::SILENT, Done::saying))
+        Ok(Done::saying_any(said))
     }
 
     fn export(&mut self, export: &Export) -> Answer {

@@ -37,16 +37,13 @@ impl Player {
         let end = self.playback.end_step();
         let is_beyond = step > end && step > self.run().furthest();
         self.playback.go_to(step);
-        let done = if is_beyond {
-            Done::saying(format!(
-                "step {} is beyond the end of the run, step {}: it is played on to there",
-                HumanCount(step),
-                HumanCount(end)
-            ))
-        } else {
-            Done::SILENT
-        };
-        Ok(done.going_on(UnderWay::Going))
+        let (step, end) = (HumanCount(step), HumanCount(end));
+        let said = is_beyond.then(|| {
+            format!(
+                "step {step} is beyond the end of the run, step {end}: it is played on to there"
+            )
+        });
+        Ok(Done::saying_any(said).going_on(UnderWay::Going))
     }
 
     pub(super) fn step_of(&self, place: Place) -> Result<u64, String> {
@@ -122,9 +119,8 @@ impl Player {
         let to_go = self.playback.steps_to_go();
         self.heading = None;
         self.playback.set_running(false);
-        to_go.map_or(Done::SILENT, |left| {
-            Done::saying(format!("stopped with {} steps to go", HumanCount(left)))
-        })
+        let to_go = to_go.map(HumanCount);
+        Done::saying_any(to_go.map(|left| format!("stopped with {left} steps to go")))
     }
 
     pub(super) fn set_speed(&mut self, speed: Speed) -> Done {
@@ -133,13 +129,9 @@ impl Player {
             return Done::SILENT;
         };
         let wall_s = self.run().simulation().motion().time_step_s / speed;
-        if wall_s > LONG_STEP_S {
-            Done::saying(format!(
-                "a step takes {wall_s:.0} s at this speed; . takes one now"
-            ))
-        } else {
-            Done::SILENT
-        }
+        let is_long = wall_s > LONG_STEP_S;
+        let said = || format!("a step takes {wall_s:.0} s at this speed; . takes one now");
+        Done::saying_any(is_long.then(said))
     }
 
     pub(super) fn set_exact(&mut self, shown: bool) -> Done {

@@ -206,10 +206,8 @@ impl Dialog {
                 let name = self.form.text(0).trim();
                 let is_plain = !name.is_empty() && !name.contains('/') && !name.contains(".csv");
                 let lacks = "without .csv: gyrolab run takes it as ./NAME only".to_owned();
-                [rows, every]
-                    .into_iter()
-                    .chain(is_plain.then_some(lacks))
-                    .collect()
+                let lines = [rows, every].into_iter();
+                lines.chain(is_plain.then_some(lacks)).collect()
             }
             Err(reason) => vec![reason],
         };
@@ -217,22 +215,20 @@ impl Dialog {
 
     /// The same dialog with the reason why the answer was refused.
     pub(super) fn refused(mut self, refusal: Refusal) -> Self {
-        let (complaint, asked_to_replace) = match refusal {
+        self.asked_to_replace = None;
+        let complaint = match refusal {
             Refusal::Because(reason) => {
                 self.form.mark();
-                (reason, None)
+                reason
             }
-            Refusal::Exists(path) => (
-                format!("{} exists: Enter again replaces it", Shown(&path)),
-                Some(path),
-            ),
+            Refusal::Exists(path) => {
+                let path = self.asked_to_replace.insert(path);
+                format!("{} exists: Enter again replaces it", Shown(path))
+            }
         };
         self.form.info.retain(|line| *line != complaint); // it is said once
         self.form.complaint = Some(complaint);
-        Self {
-            asked_to_replace,
-            ..self
-        }
+        self
     }
 }
 

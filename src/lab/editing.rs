@@ -50,12 +50,8 @@ impl Lab {
         self.player.begin(scenario, is_again);
         self.player.playback.set_end(self.work.present().end_s);
         self.scenario_has_changed();
-        let done = if left_at > 0 {
-            Done::saying("a new run; the one before is dotted, and u goes back to it")
-        } else {
-            Done::SILENT
-        };
-        Ok(self.on_its_way(done))
+        let said = "a new run; the one before is dotted, and u goes back to it".to_owned();
+        Ok(self.on_its_way(Done::saying_any((left_at > 0).then_some(said))))
     }
 
     /// `done`; it says that the command is under way where the run is replayed to the time at which the lab stood.

@@ -136,10 +136,13 @@ impl Lab {
     }
 
     fn colour_choice(&self) -> &'static str {
-        if self.usual_colour == Some(self.view.theme.colour) {
+        let colour = self.view.theme.colour;
+        if self.usual_colour == Some(colour) {
             "auto"
+        } else if colour {
+            "always"
         } else {
-            self.view.theme.colour_choice()
+            "never"
         }
     }
 

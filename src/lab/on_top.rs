@@ -156,13 +156,14 @@ impl OnTop {
             (None, Mode::Help) => {
                 self.help.search(|line| type_into(line, text));
             }
-            (None, Mode::Filter) if self.browser.filter_by(|line| type_into(line, text)) => {}
-            (None, Mode::Filter) => self.notice.say(
-                format!(
-                    "the filter takes at most {MOST_IN_LINE} characters: what was pasted is cut"
-                ),
-                now,
-            ),
+            (None, Mode::Filter) => {
+                if !self.browser.filter_by(|line| type_into(line, text)) {
+                    let text = format!(
+                        "the filter takes at most {MOST_IN_LINE} characters: what was pasted is cut"
+                    );
+                    self.notice.say(text, now);
+                }
+            }
             _ => {
                 let text = "what is pasted goes into fields and filters; here it does nothing";
                 self.notice.say(text, now);

@@ -90,7 +90,7 @@ impl Lab {
             Action::WiderWindow => self.change_window(true),
             Action::NarrowerWindow => self.change_window(false),
             Action::StepCursor(direction) => {
-                self.one(self.stepped_cursor(signed(direction, times)));
+                self.one(self.stepped_cursor(signed(direction, times).into()));
             }
             Action::ToTurn(Direction::Left) => self.one(Command::Cursor(CursorTo::TurnBefore)),
             Action::ToTurn(_) => self.one(Command::Cursor(CursorTo::NextTurn)),
@@ -296,17 +296,11 @@ impl Lab {
 
     /// Shows the message of a command, or why it was refused.
     pub(super) fn tell_answer(&mut self, answer: Answer) {
-        match answer {
-            Ok(Done {
-                said: Some(text),
-                stays: true,
-                ..
-            }) => self.tell(text),
-            Ok(Done {
-                said: Some(text), ..
-            }) => self.say(text),
-            Ok(Done { said: None, .. }) => {}
-            Err(refusal) => self.say(refusal.to_string()),
+        let done = answer.unwrap_or_else(|refusal| Done::saying(refusal.to_string()));
+        match done.said {
+            Some(text) if done.stays => self.tell(text),
+            Some(text) => self.say(text),
+            None => {}
         }
     }
 

@@ -6,7 +6,6 @@ use super::answer::{Answer, Done};
 use super::command::{Command, CursorTo, MOST_MAGNIFIED, Place};
 use super::steering::signed;
 use super::view::View;
-use crate::observe::live::LiveRun;
 use crate::observe::lookup;
 use crate::observe::recording::Curve;
 use crate::observe::strip::Strip;
@@ -69,12 +68,16 @@ impl Lab {
     pub(super) fn set_cursor(&mut self, to: CursorTo) -> Answer {
         let run = self.player.run();
         let here = self.cursor_or_here();
+        let turn = |forward| {
+            let found = lookup::turn(run, here, forward);
+            found.map(Some).map_err(|missing| missing.to_string())
+        };
         let step = match to {
             CursorTo::Nowhere => None,
             CursorTo::Place(Place::End) => Some(run.furthest()),
             CursorTo::Place(place) => Some(self.player.step_of(place)?),
-            CursorTo::NextTurn => Some(turn(run, here, true)?),
-            CursorTo::TurnBefore => Some(turn(run, here, false)?),
+            CursorTo::NextTurn => turn(true)?,
+            CursorTo::TurnBefore => turn(false)?,
         };
         let step = step.map(|step| step.min(run.furthest()));
         if let Some(step) = step {
@@ -100,20 +103,13 @@ impl Lab {
     }
 
     pub(super) fn moved_cursor(&self, fiftieths: i32) -> Command {
-        let run = self.player.run();
-        let here = self.cursor_or_here();
         let time_step_s = self.player.motion().time_step_s;
-        let steps = (CURSOR_SHARE * self.view.window_s / time_step_s)
-            .round()
-            .max(1.0);
-        let steps = steps as i64 * i64::from(fiftieths);
-        let step = here.saturating_add_signed(steps).min(run.furthest());
-        Command::Cursor(CursorTo::Place(Place::Step(step)))
+        let steps = CURSOR_SHARE * self.view.window_s / time_step_s;
+        self.stepped_cursor(steps.round().max(1.0) as i64 * i64::from(fiftieths))
     }
 
-    pub(super) fn stepped_cursor(&self, steps: i32) -> Command {
-        let here = self.cursor_or_here();
-        let step = here.saturating_add_signed(i64::from(steps));
+    pub(super) fn stepped_cursor(&self, steps: i64) -> Command {
+        let step = self.cursor_or_here().saturating_add_signed(steps);
         Command::Cursor(CursorTo::Place(Place::Step(step)))
     }
 
@@ -140,9 +136,4 @@ impl Lab {
             Command::Since(None),
         ]
     }
-}
-
-/// The step of the next turn of the tilt of `run` after or before the step `from`.
-fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, String> {
-    lookup::turn(run, from, forward).map_err(|missing| missing.to_string())
 }

@@ -558,7 +558,7 @@ fn the_selected_line_is_seen_at_every_place_and_size() {
                 let shown = text(&buf);
                 let marked: Vec<_> = shown.split('►').skip(1).collect();
                 assert_eq!(marked.len(), 1, "{key} at {size:?}\n{shown}");
-                assert!(marked[0].starts_with(&*label), "{key}\n{shown}");
+                assert!(marked[0].starts_with(label), "{key}\n{shown}");
                 let reversed = COLOURS.style(Role::Selected).add_modifier;
                 let is_reversed = |cell: &&Cell| cell.modifier.contains(reversed);
                 let count = buf.content.iter().filter(is_reversed).count();

@@ -29,8 +29,4 @@ impl Theme {
         colour: false,
         background: Background::Dark,
     };
-
-    pub fn colour_choice(&self) -> &'static str {
-        if self.colour { "always" } else { "never" }
-    }
 }
