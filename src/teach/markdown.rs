@@ -144,7 +144,10 @@ mod tests {
         );
         let looks: Vec<_> = read[0].words.iter().map(|words| words.emphasis).collect();
         let plain = Emphasis::Plain;
-        assert_eq!(looks, [plain, Emphasis::Strong, plain, Emphasis::Code, plain]);
+        assert_eq!(
+            looks,
+            [plain, Emphasis::Strong, plain, Emphasis::Code, plain]
+        );
     }
 
     #[test]

@@ -392,7 +392,7 @@ fn not_good(from: &str, to: &str) -> String {
 #[test]
 fn a_lesson_is_played_to_its_end() {
     let played = checked(&read(WHOLE)).unwrap_or_else(|problems| panic!("{problems}"));
-    assert_eq!(played, play::Played::default());
+    assert_eq!(played, []);
     let told = [
         ("that = \"steps == 10\"", "that = \"steps == 11\""),
         ("that = \"steps == 10\"", "that = \"steps >= 10\""),
@@ -437,7 +437,7 @@ fn a_number_that_cannot_be_stated_is_told() {
     let text = WHOLE.replace("{z_m:.4}", "{sleeping_limit_Js / (t_s - t_s) :.4}");
     let lesson = read(&text);
     let played = checked(&lesson).unwrap();
-    let told = played.unstated[0].to_string();
+    let told = played[0].to_string();
     let begin = format!("line {}: ", line_of("```predict") - 2);
     assert!(told.starts_with(&begin), "{told}");
     has(&told, "is n/a on this page");

@@ -37,7 +37,10 @@ pub fn find_scheme(name: &str) -> &'static SchemeInfo {
 /// The lab of the session `content`.
 #[track_caller]
 pub fn resumed(content: &Content) -> Lab {
-    Lab::resumed(content, |scenario| view(scenario, Marker::Braille, false)).unwrap()
+    Lab::resumed(content, None, |scenario| {
+        view(scenario, Marker::Braille, false)
+    })
+    .unwrap()
 }
 
 /// A dark screen on which `scenario` is looked at, with colours or without.
