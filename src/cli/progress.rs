@@ -60,17 +60,7 @@ impl Interruption {
             self.go_on()
         }
     }
-}
 
-/// A signal has ended the command; what it was writing is gone with its temporary name.
-#[derive(Debug, thiserror::Error)]
-#[error("interrupted")]
-pub(super) struct Interrupted;
-
-/// The longest time from a signal to the end of the process: some computations do not look at the flag.
-const PATIENCE: Duration = Duration::from_millis(1500);
-
-impl Interruption {
     /// Waits for the first of `signals`, raises the flag, and ends the process where it has not ended after a while.
     fn listen(&self, signals: &mut Signals) {
         if signals.forever().next().is_none() {
@@ -84,6 +74,14 @@ impl Interruption {
         signal_hook::low_level::exit(INTERRUPTED.into());
     }
 }
+
+/// A signal has ended the command; what it was writing is gone with its temporary name.
+#[derive(Debug, thiserror::Error)]
+#[error("interrupted")]
+pub(super) struct Interrupted;
+
+/// The longest time from a signal to the end of the process: some computations do not look at the flag.
+const PATIENCE: Duration = Duration::from_millis(1500);
 
 /// Opens `path` for writing, if there is one to open, and has signals end what follows.
 pub(super) fn open(

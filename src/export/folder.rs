@@ -26,7 +26,7 @@ impl Folder {
     /// When something other than a folder is at `path`, when it holds files and `replace` is false, or when the system
     /// reports an error.
     pub fn begin(path: &Path, replace: bool) -> Result<Self, DestinationError> {
-        let path = without_slash(path);
+        let path: PathBuf = path.components().collect(); // without a slash at its end
         let refused = |error| DestinationError::refused(&path, error);
         let in_folder = folder_of(&path);
         if !in_folder.is_dir() {
@@ -97,9 +97,4 @@ fn may_be_written(path: &Path, replace: bool) -> Result<(), DestinationError> {
         Some(_) if !replace => Err(DestinationError::FolderInUse(path.to_owned())),
         _ => Ok(()),
     }
-}
-
-/// `path` without slashes at its end, so that its parent is the folder that it is in.
-fn without_slash(path: &Path) -> PathBuf {
-    path.components().collect()
 }

@@ -7,7 +7,7 @@ use crate::figure::Format;
 use crate::figure::kind::Kind;
 use crate::measured::Measured;
 use crate::scenario::Scenario;
-use crate::scenario::limits::{LONGEST, few_enough, too_long};
+use crate::scenario::limits::{LONGEST, TOO_LONG, few_enough};
 use crate::storage::confined::Confined;
 use crate::storage::exporting::{self, Drawn, Exporting, Written};
 use crate::text::printable::{Shown, is_steering};
@@ -163,7 +163,7 @@ impl Files {
     pub(super) fn save(&self, what: &str, content: &str, path: &Path, force: bool) -> Answer {
         is_named(path)?;
         if content.len() as u64 > LONGEST {
-            return Err(format!("{what} {}", too_long().rule).into());
+            return Err(format!("{what} {TOO_LONG}").into());
         }
         few_enough(content, 1).map_err(|problem| format!("{what} {}", problem.rule))?;
         self.admit(path)?;

@@ -10,6 +10,7 @@ use std::path::Path;
 
 /// The longest file that is read, bytes.
 const LONGEST: u64 = 32 << 20;
+const TOO_LONG: &str = "is longer than 32 MiB, the most that is read: leave rows out";
 
 /// Separators of cells. The last two are used where decimals have a comma.
 const SEPARATORS: [char; 3] = [',', ';', '\t'];
@@ -35,13 +36,7 @@ pub fn text(path: &Path) -> Result<String, Problem> {
         return Err(Problem::at("", "is a folder: name a CSV file in it"));
     }
     let file = File::open(path).map_err(|error| Problem::at("", unread(&error)))?;
-    text_of(file, LONGEST, too_long, " (\"CSV UTF-8\")")
-}
-
-fn too_long() -> Problem {
-    let most = LONGEST >> 20;
-    let rule = format!("is longer than {most} MiB, the most that is read: leave rows out");
-    Problem::at("", rule)
+    text_of(file, LONGEST, TOO_LONG, " (\"CSV UTF-8\")")
 }
 
 /// A problem of the whole file.

@@ -126,7 +126,7 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
 
 /// The text of a scenario or run file.
 pub(super) fn text_of_file(file: impl Read) -> Result<String, Problem> {
-    let text = text_of(file, LONGEST, limits::too_long, "")?;
+    let text = text_of(file, LONGEST, limits::TOO_LONG, "")?;
     limits::few_enough(&text, 1).map(|()| text)
 }
 
@@ -134,14 +134,14 @@ pub(super) fn text_of_file(file: impl Read) -> Result<String, Problem> {
 pub(super) fn text_of(
     file: impl Read,
     most: u64,
-    too_long: fn() -> Problem,
+    too_long: &str,
     words: &str,
 ) -> Result<String, Problem> {
     let mut bytes = Vec::new();
     let read = file.take(most + 1).read_to_end(&mut bytes);
     let length = read.map_err(|error| Problem::at("", unread(&error)))?;
     if length as u64 > most {
-        return Err(too_long());
+        return Err(Problem::at("", too_long));
     }
     utf8(bytes, words)
 }

@@ -7,6 +7,9 @@ use toml::{Table, Value};
 /// The longest scenario or run file, bytes.
 pub const LONGEST: u64 = 4_000_000;
 
+/// What is said of a longer one.
+pub const TOO_LONG: &str = "is longer than 4 MB (4000000 bytes), the most that a scenario or run file may have: leave some of it out";
+
 /// The longest header of a CSV, bytes. The run file in it is longer than the scenario was: it gives every number in full,
 /// and each line begins with "# ".
 pub(super) const LONGEST_HEADER: u64 = 4 * LONGEST;
@@ -90,12 +93,4 @@ pub(super) fn too_many(edits: usize, bodies: usize, pushes: usize) -> Option<Pro
             );
             (edits.saturating_mul(others) > MOST_PRODUCT).then(|| Problem::at("edit", rule))
         })
-}
-
-/// What there is against a file longer than [`LONGEST`].
-pub fn too_long() -> Problem {
-    let rule = format!(
-        "is longer than 4 MB ({LONGEST} bytes), the most that a scenario or run file may have: leave some of it out"
-    );
-    Problem::at("", rule)
 }

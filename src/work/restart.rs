@@ -124,8 +124,10 @@ impl Now<'_> {
             accumulates: push.accumulates.then_some(true),
             ..PushFile::default()
         };
+        // With the old start and time step, a step has the same number in both scenarios.
+        let keeps_numbers = self.step == 0 && self.counts_steps();
         match push.window {
-            Window::Steps { first, count } if push.accumulates || self.may_keep_step_numbers() => {
+            Window::Steps { first, count } if push.accumulates || keeps_numbers => {
                 let first = self.first_step(first, push.accumulates).map_err(|rule| {
                     let rule = format!("on \"{}\" {rule}", file.point);
                     Problem::at(format!("push.{index}"), rule)
@@ -142,11 +144,6 @@ impl Now<'_> {
                 ..file
             })),
         }
-    }
-
-    /// Whether the new scenario has the old one's start and time step, so that a step has the same number in both.
-    fn may_keep_step_numbers(&self) -> bool {
-        self.step == 0 && self.counts_steps()
     }
 
     /// Whether the time step is still the one for which the scenario's pushes give their step numbers.
