@@ -14,7 +14,7 @@ const SHARE_OF_CELL: f64 = 0.08;
 /// longer would look like a run that has stopped.
 const LONGEST: Duration = Duration::from_millis(750);
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Pacing {
     /// The least time between frames that no key asks for.
     frame: Duration,
@@ -24,10 +24,7 @@ pub struct Pacing {
 impl Pacing {
     /// Frames at `rate` a second at most.
     pub fn new(rate: u32) -> Self {
-        let mut pacing = Self {
-            frame: Duration::ZERO,
-            due: Duration::ZERO,
-        };
+        let mut pacing = Self::default();
         pacing.set_rate(rate);
         pacing
     }
