@@ -87,7 +87,7 @@ pub enum Command {
     Fill(Option<Pane>),
     #[serde(with = "or_none")]
     PointAt(Option<Pane>),
-    /// Shows the run as these keys of `[view]` say: those of [`Look`](crate::lab::view::Look).
+    /// Shows the run as these keys of `[view]` say: those of [`Look`].
     #[serde(skip)]
     Look(Table),
 }

@@ -46,7 +46,7 @@ impl Explained {
     }
 
     /// The sum of each column over the first `rows` rows of `table`, the one on `page`; `None` where nobody has
-    /// [asked](View::sum_to) for one.
+    /// asked for one.
     pub fn sums(&self, page: Page, table: &Table, rows: usize) -> Option<Vec<f64>> {
         let (of, sums) = self.sums.as_ref()?;
         (Some(*of) == page.index(&self.workings)).then(|| sums.first(table, rows))

@@ -29,7 +29,7 @@ const ORDER: [&str; 6] = ["motion", "start", NEXT_PUSH, "body", "view", "scenari
 #[derive(Clone)]
 pub struct Values {
     pub list: ValueList,
-    /// The push to come; the list shows another one after the next [`list_again`](Self::list_again).
+    /// The push to come; the list shows another one once it is listed again.
     pub next_push: NextPush,
     /// How many entries of the journal had acted when the list was made.
     entries_listed: usize,

@@ -2,6 +2,7 @@
 
 use gyrolab::measured::shipped::SHIPPED;
 use gyrolab::measured::{Data, Measured, Series, Table, open, read};
+use toml::Value;
 
 #[track_caller]
 fn measured(text: &str) -> Measured {
@@ -62,12 +63,8 @@ fn a_table_of_runs_has_settings_and_readouts() {
     };
     assert_eq!(scheme.values[0].as_ref().unwrap().as_str(), Some("rk4"));
     assert_eq!(scheme.values[1], None);
-    let spins = spin
-        .values
-        .iter()
-        .flatten()
-        .filter_map(|spin| spin.as_integer());
-    assert_eq!(spins.collect::<Vec<_>>(), [300, 400]);
+    let spins: Vec<_> = spin.values.iter().flatten().map(Value::as_float).collect();
+    assert_eq!(spins, [Some(300.0), Some(400.0)]);
     assert_eq!(spin.sigmas, [Some(5.0), None]);
     assert_eq!(table.readouts[0].readout.name, "tilt_deg");
     assert_eq!(table.readouts[0].points.len(), 1);
