@@ -34,6 +34,5 @@ pub use measure::{Instruments, Measured};
 pub use monitor::Monitor;
 pub use readouts::Readouts;
 pub use slowing::Slowing;
-pub use swings::Swing;
 pub use theory::Theory;
 pub use trial::Trial;

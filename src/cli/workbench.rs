@@ -94,10 +94,7 @@ fn open_at(
     let (mut lab, session) = match args.resume.as_deref() {
         Some("") => come_back(args, confined.as_ref(), folder.clone())?,
         Some(session) => come_back_to(session, args, confined.as_ref(), folder.clone())?,
-        None => (
-            new(args, name)?,
-            folder.clone().and_then(|folder| begun(&folder)),
-        ),
+        None => (new(args, name)?, begun(folder.clone())),
     };
     chosen.tell(&mut lab);
     if let Ok(folder) = folder {

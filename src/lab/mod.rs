@@ -47,7 +47,6 @@ pub mod view;
 mod work;
 
 pub use answer::{Answer, Done, Refusal, UnderWay};
-pub use dialog::Dialog;
 pub use files::Files;
 pub use keeping::{Summary, Unreadable};
 pub use on_top::{MOST_COUNTED, Mode, OnTop};

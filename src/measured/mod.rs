@@ -19,7 +19,6 @@ mod reading;
 pub mod residual;
 pub mod shipped;
 
-pub use compared::Compared;
 pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
@@ -27,7 +26,7 @@ pub use reading::{open, read, text};
 pub use residual::{Residual, is_counted, residuals};
 
 use crate::analysis::readouts::Readout;
-use crate::scenario::{Problem, Problems, float};
+use crate::scenario::{Problem, Problems};
 use toml::Value;
 
 #[derive(Clone, Debug)]
@@ -125,13 +124,5 @@ impl Measured {
                 (readouts.iter_mut().map(|it| keep(&mut it.points))).sum()
             }
         }
-    }
-}
-
-impl Setting {
-    /// The values as numbers; `None` where one of them is no number or not there.
-    pub fn numbers(&self) -> Option<Vec<f64>> {
-        let number = |value: &Option<Value>| float(value.as_ref()?);
-        self.values.iter().map(number).collect()
     }
 }

@@ -35,7 +35,3 @@ pub mod watch;
 pub use class::Class;
 pub use lesson::{Answer, Asked, Block, Check, Compare, Keep, Lesson, Page, Predict, Setup, Shown};
 pub use names::Kept;
-pub use play::Walk;
-pub use predictions::Predictions;
-pub use stage::Stage;
-pub use text::Text;

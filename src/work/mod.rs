@@ -15,5 +15,3 @@ pub mod mended;
 pub mod next_push;
 pub mod parameters;
 pub mod restart;
-
-pub use parameters::Parameter;

@@ -96,18 +96,13 @@ pub fn table_at(scenario: &Scenario, step: u64) -> Table {
     table
 }
 
-/// The checked scenario of `file` with `value` at `key`, as `--set key=value` gives it. Where the file gives a spin and
-/// `key` is a component of the momentum, the spin is first replaced by the momentum (world frame) that it amounts to;
-/// where it gives a momentum and `key` is `steady`, the momentum is replaced by its spin.
+/// The checked scenario of `file` with the values of `set`, as `--set key=value` gives them. Where the file gives a spin and
+/// a key is a component of the momentum, the spin is first replaced by the momentum (world frame) that it amounts to;
+/// where it gives a momentum and a key is `steady`, the momentum is replaced by its spin.
 ///
 /// # Errors
 /// What is wrong with the changed file; [`Problems::in_one_line`] shortens it.
-pub fn changed(file: &ScenarioFile, key: &str, value: Value) -> Result<Scenario, Problems> {
-    changed_all(file, &Table::from_iter([(key.to_owned(), value)]))
-}
-
-/// As [`changed`], with all values of `set`.
-pub fn changed_all(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
+pub fn changed(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
     let mut document = Document::from_file("scenario", file)?;
     for (key, value) in set {
         document.write(key, value.clone())?;

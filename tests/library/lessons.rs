@@ -8,9 +8,10 @@ use gyrolab::lab::view::Part;
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Problem, Problems};
-use gyrolab::teach::{
-    Answer, Block, Kept, Lesson, Predictions, Text, Walk, handout, names, play, reading, shipped,
-};
+use gyrolab::teach::play::{self, Walk};
+use gyrolab::teach::predictions::Predictions;
+use gyrolab::teach::text::Text;
+use gyrolab::teach::{Answer, Block, Kept, Lesson, handout, names, reading, shipped};
 use gyrolab::text::printable::is_steering;
 use gyrolab::tui::screen;
 use proptest::prelude::*;

@@ -1,12 +1,12 @@
 //! The values of a scenario one at a time: listed, nudged, typed, changed.
 
+use crate::support::scenarios::changed;
 use crate::support::scenarios::{parse, preset};
 use crate::support::words::{has, has_no};
 use gyrolab::scenario::Scenario;
 use gyrolab::scenario::file::ScenarioFile;
 use gyrolab::scenario::presets::PRESETS;
-use gyrolab::work::Parameter;
-use gyrolab::work::parameters::{changed, parameters, table_at, table_of};
+use gyrolab::work::parameters::{Parameter, parameters, table_at, table_of};
 use toml::Value;
 
 fn listed(scenario: &Scenario) -> Vec<Parameter> {

@@ -1,6 +1,7 @@
 //! Bodies of solid parts: their inertia against Steiner's theorem, what stays symmetric, what is refused and in which words,
 //! and how they are listed and changed.
 
+use crate::support::scenarios::changed;
 use crate::support::scenarios::{parse, read};
 use crate::support::stage::{SMALL, Stage};
 use crate::support::words::has;
@@ -9,8 +10,7 @@ use gyrolab::physics::exact::{ExactMotion, Kind};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::file::ScenarioFile;
 use gyrolab::scenario::{Document, Scenario};
-use gyrolab::work::Parameter;
-use gyrolab::work::parameters::{changed, parameters, table_of};
+use gyrolab::work::parameters::{Parameter, parameters, table_of};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 use std::sync::Arc;

@@ -1,13 +1,13 @@
 //! The ways to state the start: tilt, turn and roll, momentum or spin, a steady precession.
 
+use crate::support::scenarios::changed;
 use crate::support::scenarios::{parse, preset, read};
 use crate::support::words::has;
 use gyrolab::physics::observables::{angular_velocity, tilt_deg};
 use gyrolab::physics::rotation;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
-use gyrolab::work::Parameter;
-use gyrolab::work::parameters::{changed, parameters, table_of};
+use gyrolab::work::parameters::{Parameter, parameters, table_of};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;

@@ -5,8 +5,11 @@ use gyrolab::lab::view::View;
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::physics::SchemeInfo;
+use gyrolab::scenario::file::ScenarioFile;
 use gyrolab::scenario::{Document, Problems, Scenario};
 use gyrolab::storage::session::Content;
+use gyrolab::work::parameters;
+use toml::{Table, Value};
 
 /// The preset `name`, with each of `set` (`key=value`) set.
 #[track_caller]
@@ -50,4 +53,9 @@ pub fn view(scenario: &Scenario, marker: Marker, colour: bool) -> View {
         background: Background::Dark,
     };
     View::new(scenario, marker, theme, &gyrolab::tui::panes::IDS)
+}
+
+/// The scenario of `file` with `value` at `key`.
+pub fn changed(file: &ScenarioFile, key: &str, value: Value) -> Result<Scenario, Problems> {
+    parameters::changed(file, &Table::from_iter([(key.to_owned(), value)]))
 }

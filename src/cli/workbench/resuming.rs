@@ -59,7 +59,7 @@ fn resumed(
 ) -> Result<Lab, String> {
     let view =
         |scenario: &Scenario| View::new(scenario, marker(look.markers), theme(look), &panes::IDS);
-    Lab::resumed(content, confined, view).map_err(told)
+    Lab::resumed(content, confined, view).map_err(|error| error.to_string())
 }
 
 /// The session called `name`, or an error that says why it cannot be had.
@@ -94,7 +94,7 @@ pub(super) fn come_back(
     let read = |content: &session::Content| resumed(content, args.look, confined);
     let found = folder
         .clone()
-        .and_then(|folder| session::resume(&folder, None, read).map_err(told));
+        .and_then(|folder| session::resume(&folder, None, read).map_err(|error| error.to_string()));
     let why_none = match found {
         Ok(found) => {
             let passed_over = left_alone(&found.left_alone) + &in_use(&found.in_use_by);
@@ -115,7 +115,7 @@ pub(super) fn come_back(
     };
     let mut lab = new(args, DEFAULT)?;
     lab.tell(why_none);
-    Ok((lab, folder.and_then(|folder| begun(&folder))))
+    Ok((lab, begun(folder)))
 }
 
 /// Says that newer sessions are open in other labs, of the processes `owners`. A line that has died without a word keeps
@@ -131,12 +131,8 @@ fn in_use(owners: &[u32]) -> String {
     )
 }
 
-pub(super) fn begun(folder: &Path) -> Result<Session, String> {
-    Session::begin(folder).map_err(told)
-}
-
-fn told(error: impl std::fmt::Display) -> String {
-    error.to_string()
+pub(super) fn begun(folder: Result<PathBuf, String>) -> Result<Session, String> {
+    Session::begin(&folder?).map_err(|error| error.to_string())
 }
 
 fn left_alone(sessions: &[LeftAlone]) -> String {

@@ -23,10 +23,6 @@ impl Curve {
 
     pub const OF_POINT: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    pub fn of_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|curve| curve.name() == name)
-    }
-
     /// The name of its numbers in a CSV and among the readouts.
     pub fn column(self) -> &'static str {
         self.named().2

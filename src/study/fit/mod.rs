@@ -3,13 +3,13 @@
 //!
 //! [`free`] says which keys are free, from where to where. A [`Model`] computes the runs for given values and holds them
 //! against the data. [`levenberg`] looks for the values, [`weights`] says how much each datum counts, [`solution`] what the
-//! minimum says of the keys, [`Quality`] how well the model fits, [`verdict`] whether it fits, in a sentence. [`search`] brings these together to a
+//! minimum says of the keys, [`quality`] how well the model fits, [`verdict`] whether it fits, in a sentence. [`search`] brings these together to a
 //! [`Fit`], [`report`] writes it for people and programs, [`table`] as a CSV.
 
 pub mod free;
 pub mod levenberg;
 pub mod model;
-mod quality;
+pub mod quality;
 pub mod report;
 pub mod search;
 pub mod solution;
@@ -19,5 +19,4 @@ pub mod weights;
 
 pub use free::Free;
 pub use model::Model;
-pub use quality::Quality;
 pub use search::{Fit, NoFit, fit};

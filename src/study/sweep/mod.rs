@@ -16,7 +16,6 @@ pub mod part;
 pub mod shard;
 pub mod shipped;
 
-pub use axis::Axis;
 pub use empty_rows::EmptyRows;
 pub use file::SweepFile;
 pub use grid::{Sweep, SweepRow};

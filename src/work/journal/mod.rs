@@ -175,7 +175,7 @@ impl Journal {
     /// A new run with the values of `set`. From its start on it has the gravity, scheme, time step and pushes that this run
     /// has at `step`.
     pub fn begun_with(&self, step: u64, set: &Table) -> Result<Arc<Scenario>, Problems> {
-        parameters::changed_all(&self.settings_at(step)?, set).map(Arc::new)
+        parameters::changed(&self.settings_at(step)?, set).map(Arc::new)
     }
 
     /// The base with gravity, scheme, time step and its own pushes as they are at `step`, without added pushes. The base
