@@ -5,8 +5,8 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use gyrolab::analysis::Monitor;
-use gyrolab::observe::live::LiveRun;
 use gyrolab::physics::scheme::SCHEMES;
+use gyrolab::playback::live::LiveRun;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Document;
 use std::hint::black_box;

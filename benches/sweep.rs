@@ -7,9 +7,9 @@
 #![allow(clippy::unwrap_used)]
 
 use gyrolab::scenario::Document;
-use gyrolab::study::sweep::Sweep;
-use gyrolab::study::sweep::in_order::in_order;
-use gyrolab::study::sweep::part::{Opened, PartFile};
+use gyrolab::sweep::Sweep;
+use gyrolab::sweep::in_order::in_order;
+use gyrolab::sweep::part::{Opened, PartFile};
 use std::ops::ControlFlow;
 use std::time::Instant;
 

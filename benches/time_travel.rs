@@ -5,7 +5,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use gyrolab::observe::playback::Playback;
+use gyrolab::playback::Playback;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
 use std::hint::black_box;

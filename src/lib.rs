@@ -12,16 +12,19 @@
 //! - [`scenario`]: a TOML file becomes a checked [`Scenario`](scenario::Scenario); every refusal names file,
 //!   line, key, value and rule. The shipped presets live here too.
 //! - [`run`]: steps a scenario and its edits forward in time. No other module does.
-//! - [`work`]: what the user changes in a scenario: values, pushes, the journal of both, undo; conditions over a run.
+//! - [`journal`]: what the user does to a run, from which the run is computed again: values, pushes, undo; conditions.
 //! - [`analysis`]: how reliable a run's numbers are: theory, measurement, health, comparisons.
-//! - [`observe`]: a run that is being watched: its playback, its earlier steps, and the data of its pictures.
+//! - [`playback`]: a run that is being watched: it plays at a speed, returns to earlier steps, and records its pictures.
 //! - [`export`]: output of the program: columns, CSV, summaries, and the files they are written to.
-//! - [`measured`]: data that somebody has measured, read from a CSV, and what a run says of the same quantities.
+//! - [`data`]: what somebody has measured, read from a CSV, and what a run says of the same quantities.
 //! - [`figure`]: pictures of runs on paper: SVG, PDF and PNG.
-//! - [`study`]: what many runs say, and what a run that was exported is worth: sweeps, verification, write-ups.
+//! - [`fit`]: keys of a scenario so that its runs come nearest to measured data.
+//! - [`sweep`]: a grid of runs, a row each.
+//! - [`verify`]: a CSV, computed again and held against its rows.
+//! - [`writeup`]: a run as a folder of files for a write-up.
 //! - [`storage`]: what the lab keeps on the disk: sessions, exports in the background, the folder it is confined to.
 //! - [`lab`]: the lab without a terminal: its state, and the commands that change it.
-//! - [`teach`]: lessons: Markdown files that say what the lab does, read, checked and played without a terminal.
+//! - [`lessons`]: Markdown files that say what the lab does, read, checked and played without a terminal.
 //! - [`tui`]: the terminal: keys that lead to commands, the panes that draw the lab, and the loop.
 //! - [`cli`]: the commands of the command line.
 //!
@@ -34,18 +37,21 @@
 pub mod analysis;
 pub mod cli;
 pub mod cores;
+pub mod data;
 pub mod export;
 pub mod figure;
+pub mod fit;
+pub mod journal;
 pub mod lab;
-pub mod measured;
-pub mod observe;
+pub mod lessons;
+pub mod playback;
 pub mod run;
 pub mod scenario;
 pub mod storage;
-pub mod study;
-pub mod teach;
+pub mod sweep;
 pub mod text;
 pub mod tui;
-pub mod work;
+pub mod verify;
+pub mod writeup;
 
 pub use gyrolab_physics as physics;

@@ -4,13 +4,13 @@
 use super::manual::topics::names_and_commands;
 use super::{command, print};
 use crate::analysis::readouts::READOUTS;
+use crate::data::shipped::SHIPPED;
 use crate::export::columns::{COLUMNS, Column, OPTIONAL_COLUMNS, POINT_COLUMNS};
 use crate::figure::kind;
-use crate::measured::shipped::SHIPPED;
+use crate::lessons::shipped::LESSONS;
 use crate::scenario::keys::{Effect, KEYS, Key, Kind};
 use crate::scenario::presets::PRESETS;
-use crate::study::sweep::shipped::SWEEPS;
-use crate::teach::shipped::LESSONS;
+use crate::sweep::shipped::SWEEPS;
 use crate::text::shipped::Shipped;
 use anyhow::{Context, bail};
 use clap::{Arg, Command};

@@ -7,11 +7,11 @@ use super::scenario::scenario_of;
 use super::values::positive;
 use super::{ended_by, refuse, tell};
 use crate::analysis::cost;
+use crate::data;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Request, Run};
 use crate::figure::table::Table;
 use crate::figure::{self, Format, PT_PER_MM, of_table};
-use crate::measured;
 use crate::physics::scheme;
 use crate::text::printable::{Shown, printable};
 use anyhow::{bail, ensure};
@@ -128,7 +128,7 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
         (None, _) => {
             let kind = args.kind.as_deref().map(Kind::named).transpose();
             let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
-            let measured = args.measured.as_deref().map(measured::open).transpose()?;
+            let measured = args.measured.as_deref().map(data::open).transpose()?;
             let usual = match &measured {
                 Some(measured) => Kind::measured(measured.series()?),
                 None => Kind::traces(),

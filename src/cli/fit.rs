@@ -5,15 +5,15 @@ use super::commands::{Cli, Command};
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::scenario::change;
 use super::{one_on_stdout, print_result, tell_of_rows};
+use crate::data::{self, Measured};
 use crate::export::Destination;
-use crate::measured::{self, Measured};
+use crate::fit::report::Report;
+use crate::fit::table::{self, Asked};
+use crate::fit::{Fit, Free, Model, NoFit, fit as fitted};
 use crate::scenario::{Document, Problem, Problems};
-use crate::study::fit::report::Report;
-use crate::study::fit::table::{self, Asked};
-use crate::study::fit::{Fit, Free, Model, NoFit, fit as fitted};
-use crate::study::verify::Unverified;
 use crate::text::number::{shortest, significant};
 use crate::text::printable::{Shown, brief};
+use crate::verify::Unverified;
 use anyhow::{Context, anyhow, bail};
 use clap::{Args, Parser};
 use std::io::Write;
@@ -147,7 +147,7 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
 
 /// What is fitted, and the scenario's own scheme, where no other was asked for.
 fn model(args: &FitArgs) -> Result<(Model, Option<&'static str>), Problems> {
-    let measured = measured::open(&args.measured)?;
+    let measured = data::open(&args.measured)?;
     let measured = chosen(measured, args.rows.as_ref())?;
     let (document, own) = scenario(args)?;
     let keys = args.free.iter();

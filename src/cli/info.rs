@@ -2,20 +2,20 @@
 
 use super::{lesson, print, tell};
 use crate::analysis::readouts::READOUTS;
+use crate::data::shipped as measured;
 use crate::export::summary::steps_in_words;
+use crate::journal::changed::Original;
 use crate::lab::command;
-use crate::measured::shipped as measured;
+use crate::lessons::shipped;
 use crate::physics::scheme::SCHEMES;
 use crate::run::Clock;
 use crate::scenario::keys::{KEYS, Key};
 use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario, Window};
-use crate::study::sweep::{Sweep, shipped as sweeps};
-use crate::teach::shipped;
+use crate::sweep::{Sweep, shipped as sweeps};
 use crate::text::number::{counted, decimal, shortest};
 use crate::text::printable::{Shown, printable, printable_lines};
-use crate::work::changed::Original;
 use anyhow::bail;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

@@ -6,8 +6,8 @@ use super::print;
 use super::progress::{self, Interrupted};
 use crate::export::Destination;
 use crate::lab::Lab;
+use crate::lessons::{Lesson, play};
 use crate::scenario::{Problem, Problems};
-use crate::teach::{Lesson, play};
 use anyhow::bail;
 use std::process::ExitCode;
 

@@ -2,8 +2,8 @@
 
 use super::progress::{self, Interrupted};
 use super::{fit, print, tell};
-use crate::study::verify::{Unverified, Verified, verify as verified};
 use crate::text::printable::{Shown, printable_lines};
+use crate::verify::{Unverified, Verified, verify as verified};
 use anyhow::bail;
 use clap::Args;
 use std::path::{Path, PathBuf};

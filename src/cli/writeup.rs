@@ -5,17 +5,17 @@ use super::progress::{self, Interrupted, Interruption};
 use super::run::{Played, played};
 use super::scenario::scenario_of;
 use super::{ended_by, tell};
+use crate::data;
 use crate::export::stream::Ended;
 use crate::export::{CsvWriter, Folder};
 use crate::figure::course::Recorder;
-use crate::measured;
+use crate::journal::changed::Original;
 use crate::run::Step;
 use crate::scenario::{Document, Scenario};
-use crate::study::writeup::figures::{figures, recorder};
-use crate::study::writeup::{Beside, CSV, Writeup};
 use crate::text::advice::advised;
 use crate::text::printable::{Shown, printable};
-use crate::work::changed::Original;
+use crate::writeup::figures::{figures, recorder};
+use crate::writeup::{Beside, CSV, Writeup};
 use anyhow::{Context, anyhow, ensure};
 use clap::Args;
 use std::fs::{self, File};
@@ -119,8 +119,8 @@ fn marked(scenario: Scenario, name: &str) -> Arc<Scenario> {
 }
 
 fn beside(name: &str) -> anyhow::Result<Beside> {
-    let text = measured::text(name)?.into_owned();
-    let measured = measured::read(name, &text)?;
+    let text = data::text(name)?.into_owned();
+    let measured = data::read(name, &text)?;
     measured.series()?; // a table of runs is refused before anything is run
     Ok(Beside::new(measured, text))
 }

@@ -9,7 +9,7 @@ use super::page::scene::Point;
 use super::path::Path;
 use super::request::{Drawn, Request};
 use crate::export::Column;
-use crate::observe::recording::Extent;
+use crate::playback::recording::Extent;
 use crate::text::ladder;
 use crate::text::number::{shortest, significant};
 use std::fmt;

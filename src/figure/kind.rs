@@ -1,9 +1,9 @@
 //! The kinds of figures of a run, by the names of the lab's panes and of a CSV's columns.
 
 use crate::analysis::readouts;
+use crate::data::Series;
 use crate::export::Column;
-use crate::measured::Series;
-use crate::observe::recording::Curve;
+use crate::playback::recording::Curve;
 use crate::scenario::problem;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
 

@@ -7,10 +7,10 @@ use super::page::ink::LABEL_PT;
 use super::page::letters;
 use super::quantity;
 use super::request::{Figure, Job, Request, Run};
-use crate::export::Column;
-use crate::measured::{
+use crate::data::{
     self, Curve, Measured, Point, Residual, at_times, places, residuals as held_against,
 };
+use crate::export::Column;
 use crate::text::number::shortest;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -196,7 +196,7 @@ fn empty(curve: &Curve, range: (f64, f64)) -> Panel {
 /// What `run` says of each curve of `series`; `None` where `watch` stopped it.
 fn said(
     job: &Job<'_>,
-    series: &measured::Series,
+    series: &data::Series,
     run: &Run,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<Vec<f64>>>, String> {
@@ -219,7 +219,7 @@ fn beside(curve: &Curve, model: &[f64], value: impl Fn(&Residual) -> f64) -> Vec
     pairs.iter().map(point).collect()
 }
 
-fn series(measured: &Measured) -> Result<&measured::Series, String> {
+fn series(measured: &Measured) -> Result<&data::Series, String> {
     let series = measured.series();
     series.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))
 }
@@ -239,7 +239,7 @@ fn name(measured: &Measured, count: usize, request: &Request) -> String {
 }
 
 /// `points` in the stretch of time that is drawn, with their errors: NaN where none is stated.
-fn drawn(job: &Job<'_>, series: &measured::Series, points: &[Point]) -> Series {
+fn drawn(job: &Job<'_>, series: &data::Series, points: &[Point]) -> Series {
     let time_s = |point: &Point| series.times_s[point.row];
     let points = points.iter();
     let points = points.filter(|point| job.has(time_s(point)));
@@ -260,7 +260,7 @@ fn drawn(job: &Job<'_>, series: &measured::Series, points: &[Point]) -> Series {
 
 /// The points of the curve at `place`: of directions each with the number of full turns at which it is nearest to the first of
 /// the runs.
-fn turned(job: &Job<'_>, series: &measured::Series, place: usize) -> Result<Vec<Point>, String> {
+fn turned(job: &Job<'_>, series: &data::Series, place: usize) -> Result<Vec<Point>, String> {
     let curve = &series.curves[place];
     match job.runs.first() {
         Some(run) if curve.quantity.is_direction => {

@@ -5,7 +5,7 @@ use super::course::Course;
 use super::dense::Dense;
 use super::kind::Kind;
 use super::page::scene::Scene;
-use crate::measured::Measured;
+use crate::data::Measured;
 use crate::run::Clock;
 use crate::scenario::Scenario;
 use std::sync::Arc;

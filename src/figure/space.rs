@@ -16,7 +16,7 @@ use super::page::scene::{Color, Pen, Point, Scene};
 use super::quantity;
 use super::request::{Drawn, Job, Run};
 use super::size;
-use crate::observe::camera::{Camera, View};
+use crate::playback::camera::{Camera, View};
 use crate::text::number::significant;
 use nalgebra::Vector3;
 

@@ -4,11 +4,11 @@ use super::Lab;
 use super::answer::{Answer, Done};
 use super::player::Player;
 use crate::analysis::health::{Advice, advise};
-use crate::observe::background::Job;
+use crate::journal::mended::{mended, replaced};
+use crate::playback::background::Job;
 use crate::run::Simulation;
 use crate::scenario::Scenario;
 use crate::text::number::shortest;
-use crate::work::mended::{mended, replaced};
 use std::sync::Arc;
 
 /// What would mend the present run, and can be done to it.

@@ -11,14 +11,14 @@ pub use form::MOST_MAGNIFIED;
 pub use table::{COMMANDS, CommandRow};
 
 use crate::export::layout::LayoutFile;
+use crate::journal::expression::Expression;
+use crate::journal::next_push::Toward;
 use crate::lab::view::{Look, Pane};
-use crate::observe::pace::Speed;
+use crate::playback::pace::Speed;
 use crate::scenario::file::Choice;
 use crate::scenario::problem::nearest;
 use crate::scenario::screen::TRACES;
 use crate::scenario::{Document, Problem, Problems};
-use crate::work::expression::Expression;
-use crate::work::next_push::Toward;
 use form::{below, quoted};
 use serde::{Deserialize, Serialize};
 use std::path::Path;

@@ -5,12 +5,12 @@ use super::command::Place;
 use super::numbers::{self, Numbers};
 use super::player::Player;
 use crate::analysis::cost;
-use crate::observe::live::LiveRun;
-use crate::observe::pace::Speed;
-use crate::observe::playback::Halt;
+use crate::journal::expression::Expression;
+use crate::journal::restart::scenario_from;
+use crate::playback::Halt;
+use crate::playback::live::LiveRun;
+use crate::playback::pace::Speed;
 use crate::run::Simulation;
-use crate::work::expression::Expression;
-use crate::work::restart::scenario_from;
 use indicatif::HumanCount;
 
 /// If a step takes longer than this at the chosen speed, s, a message says so.

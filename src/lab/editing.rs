@@ -4,14 +4,14 @@ use super::Lab;
 use super::answer::{Answer, Done, UnderWay};
 use super::view::Pane;
 use super::work::{Turned, Way};
+use crate::journal::history::Reversal;
+use crate::journal::next_push::NextPush;
+use crate::journal::restart::in_force;
+use crate::journal::{Act, number_of_push};
 use crate::run::Simulation;
 use crate::run::pushes::acts_s;
 use crate::scenario::Scenario;
 use crate::scenario::keys::Effect;
-use crate::work::history::Reversal;
-use crate::work::journal::{Act, number_of_push};
-use crate::work::next_push::NextPush;
-use crate::work::restart::in_force;
 use std::sync::Arc;
 use toml::Table;
 

@@ -1,11 +1,11 @@
 //! The files of the lab: their folder, which of them may be read and written, and the export in progress.
 
 use super::answer::{Answer, Done, Refusal, UnderWay};
+use crate::data::Measured;
 use crate::export::destination::DestinationError;
 use crate::export::{Destination, Layout};
 use crate::figure::Format;
 use crate::figure::kind::Kind;
-use crate::measured::Measured;
 use crate::scenario::Scenario;
 use crate::scenario::limits::{LONGEST, TOO_LONG, few_enough};
 use crate::storage::confined::Confined;

@@ -6,14 +6,14 @@ use super::Lab;
 use super::command::{self, Command};
 use super::rerun::Reference;
 use super::view::Look;
-use crate::observe::pace::Speed;
+use crate::journal::Journal;
+use crate::journal::history::History;
+use crate::journal::next_push::NextPush;
+use crate::playback::pace::Speed;
 use crate::scenario::Problems;
 use crate::scenario::file::ScenarioFile;
 use crate::storage::session::{Content, Text, later};
 use crate::text::printable::Shown;
-use crate::work::history::History;
-use crate::work::journal::Journal;
-use crate::work::next_push::NextPush;
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]

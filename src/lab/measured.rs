@@ -6,12 +6,12 @@
 
 mod opening;
 
-pub use crate::measured::compared::{Compared, Largest, Shown, Sum};
+pub use crate::data::compared::{Compared, Largest, Shown, Sum};
 
 use super::player::Player;
-use crate::measured::{Measured, Quantity, Reader, Series};
-use crate::observe::ghost::Ghost;
-use crate::observe::recording::{Curve, Moment, Recording};
+use crate::data::{Measured, Quantity, Reader, Series};
+use crate::playback::ghost::Ghost;
+use crate::playback::recording::{Curve, Moment, Recording};
 use crate::run::Simulation;
 use crate::scenario::{Problems, Scenario};
 use nalgebra::Vector3;

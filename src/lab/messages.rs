@@ -3,9 +3,9 @@
 use super::Lab;
 use super::course::halt_in_words;
 use super::view::Part;
-use crate::observe::playback::Halt;
+use crate::journal::changed;
+use crate::playback::Halt;
 use crate::scenario::presets;
-use crate::work::changed;
 use std::borrow::Cow;
 use std::time::Duration;
 

@@ -4,12 +4,12 @@ use super::Lab;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{self, Readout};
 use crate::export::columns::{COLUMNS, Column};
-use crate::observe::live::LiveRun;
+use crate::journal::parameters::table_at;
+use crate::playback::live::LiveRun;
 use crate::run::Sample;
 use crate::scenario::keys::{self, KEYS, Kind};
 use crate::scenario::problem::nearest;
 use crate::scenario::{dotted, float};
-use crate::work::parameters::table_at;
 
 #[derive(Clone, Copy, Debug)]
 pub enum Source {

@@ -3,8 +3,8 @@
 
 use super::answer::Done;
 use super::player::Player;
-use crate::observe::ghost::{Ghost, GhostToBe};
-use crate::observe::playback::Halt;
+use crate::playback::Halt;
+use crate::playback::ghost::{Ghost, GhostToBe};
 use crate::run::{Clock, Simulation};
 use crate::scenario::Scenario;
 use std::sync::Arc;

@@ -4,7 +4,7 @@
 use super::Lab;
 use super::answer::{Done, UnderWay};
 use super::command::{Command, Commands, Place, Placed};
-use crate::observe::playback::{Halt, MOST_UNTIL};
+use crate::playback::{Halt, MOST_UNTIL};
 use indicatif::HumanCount;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;

@@ -10,7 +10,7 @@ use super::on_top::{Cleared, Mode};
 use super::values::listed::Of;
 use super::view::Pane;
 use super::{Lab, Request};
-use crate::observe::camera::Zoom;
+use crate::playback::camera::Zoom;
 use std::path::Path;
 
 pub(super) const PAGE: isize = 10;

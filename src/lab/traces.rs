@@ -6,9 +6,9 @@ use super::answer::{Answer, Done};
 use super::command::{Command, CursorTo, MOST_MAGNIFIED, Place};
 use super::steering::signed;
 use super::view::View;
-use crate::observe::lookup;
-use crate::observe::recording::Curve;
-use crate::observe::strip::Strip;
+use crate::playback::lookup;
+use crate::playback::recording::Curve;
+use crate::playback::strip::Strip;
 use crate::scenario::screen::AUTO;
 
 /// The share of the window by which a key moves the cursor, and by which it moves the window.

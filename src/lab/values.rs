@@ -5,11 +5,11 @@ pub mod list;
 pub mod listed;
 
 use super::command::{Command, Force, PushChoice};
-use crate::observe::live::LiveRun;
+use crate::journal::next_push::{Field, NextPush, Toward};
+use crate::journal::parameters::{self, Parameter, parameters};
+use crate::journal::{Journal, number_of_push};
+use crate::playback::live::LiveRun;
 use crate::scenario::Scenario;
-use crate::work::journal::{Journal, number_of_push};
-use crate::work::next_push::{Field, NextPush, Toward};
-use crate::work::parameters::{self, Parameter, parameters};
 use list::ValueList;
 use listed::{ListedValue, Of};
 use nalgebra::Vector3;
@@ -195,8 +195,8 @@ fn rank(group: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::journal::history::History;
     use crate::lab::for_tests::scenario;
-    use crate::work::history::History;
     use std::sync::Arc;
 
     fn listed() -> (Values, Arc<Scenario>) {

@@ -3,13 +3,13 @@
 
 use super::keeping;
 use super::rerun::Reference;
+use crate::journal::changed::Original;
+use crate::journal::history::{History, Reversal, RunRecord};
+use crate::journal::next_push::NextPush;
+use crate::journal::{Act, Journal};
 use crate::run::Clock;
 use crate::scenario::{Problems, Scenario};
 use crate::storage::session::Text;
-use crate::work::changed::Original;
-use crate::work::history::{History, Reversal, RunRecord};
-use crate::work::journal::{Act, Journal};
-use crate::work::next_push::NextPush;
 use std::sync::Arc;
 use toml::Table;
 

@@ -25,6 +25,18 @@ pub struct ScenarioFile {
     pub edit: Vec<EditFile>,
 }
 
+impl ScenarioFile {
+    /// Without its version, the outcome that it expects, and what is shown of it.
+    pub fn bare(self) -> Self {
+        Self {
+            gyrolab: None,
+            expected: Vec::new(),
+            view: None,
+            ..self
+        }
+    }
+}
+
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyFile {

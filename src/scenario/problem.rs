@@ -138,6 +138,18 @@ impl Problems {
     }
 }
 
+impl From<Problems> for String {
+    fn from(problems: Problems) -> Self {
+        problems.in_one_line()
+    }
+}
+
+impl From<Problem> for String {
+    fn from(problem: Problem) -> Self {
+        problem.to_string()
+    }
+}
+
 impl From<Vec<Problem>> for Problems {
     fn from(mut list: Vec<Problem>) -> Self {
         let more = list.len().saturating_sub(MOST_TOLD);

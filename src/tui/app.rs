@@ -1,8 +1,8 @@
 //! The main loop: it carries out what keys mean, advances the run with time, and draws a frame when something has changed.
 
 use crate::lab::{Lab, Request};
+use crate::lessons::Class;
 use crate::storage::session::Session;
-use crate::teach::Class;
 use crate::tui::decoder::Typed;
 use crate::tui::mouse::Pointer;
 use crate::tui::pacing::Pacing;

@@ -2,7 +2,7 @@
 //! which of two crossing lines passes in front of the other.
 
 use crate::lab::view::markers::Marker;
-use crate::observe::camera::{Camera, View};
+use crate::playback::camera::{Camera, View};
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::plane::Plane;
 use nalgebra::Vector3;

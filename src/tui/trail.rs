@@ -2,8 +2,8 @@
 //! point has dwelt its dots are denser. All of this is seen without colours too; with them, and by bold and dim type,
 //! the ages differ in shade as well.
 
-use crate::observe::ages::{Age, Ages};
-use crate::observe::recording::Recording;
+use crate::playback::ages::{Age, Ages};
+use crate::playback::recording::Recording;
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
@@ -215,7 +215,7 @@ mod tests {
     use super::*;
     use crate::lab::view::markers::Marker;
     use crate::lab::view::theme::Theme;
-    use crate::observe::recording::Moment;
+    use crate::playback::recording::Moment;
     use ratatui::buffer::Buffer;
     use ratatui::layout::Rect;
 

@@ -10,7 +10,7 @@ use gyrolab::export::{CsvWriter, Layout, stream};
 use gyrolab::physics::SchemeInfo;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
-use gyrolab::study::verify::{Unverified, Verified, verify};
+use gyrolab::verify::{Unverified, Verified, verify};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::ops::ControlFlow;
@@ -50,7 +50,7 @@ fn no_fit(_: &str) -> Result<Vec<u8>, Unverified> {
 }
 
 #[track_caller]
-fn difference(bytes: &[u8]) -> gyrolab::study::verify::Difference {
+fn difference(bytes: &[u8]) -> gyrolab::verify::Difference {
     verified(bytes).unwrap().difference.expect("it is the same")
 }
 

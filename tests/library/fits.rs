@@ -2,10 +2,10 @@
 
 use crate::support::dice::Dice;
 use crate::support::words::{has, has_all, has_no};
-use gyrolab::measured::{Data, Measured, at_times, open, read};
+use gyrolab::data::{Data, Measured, at_times, open, read};
+use gyrolab::fit::report::Report;
+use gyrolab::fit::{Fit, Free, Model, NoFit, fit};
 use gyrolab::scenario::{Document, Problems};
-use gyrolab::study::fit::report::Report;
-use gyrolab::study::fit::{Fit, Free, Model, NoFit, fit};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -250,7 +250,7 @@ fn torque(which: usize) -> impl Fn(usize) -> bool {
 #[test]
 fn heidelberg_one_weight_and_two_differ() {
     // The spins without their uncertainties: the published ones are those of the period alone.
-    let text = gyrolab::measured::shipped::find("heidelberg-precession")
+    let text = gyrolab::data::shipped::find("heidelberg-precession")
         .unwrap()
         .text;
     let without = text.lines().map(|line| {
@@ -469,7 +469,7 @@ fn a_key_that_moves_nothing_leads_nowhere() {
 
 #[test]
 fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
-    use gyrolab::study::fit::table::{self, Asked};
+    use gyrolab::fit::table::{self, Asked};
     let (model, fit) = heidelberg("heidelberg-precession", &[MOMENT], &|_| true);
     let report = Report {
         fit: &fit,

@@ -197,7 +197,7 @@ fn every_key_that_a_text_names_is_a_key() {
     };
     add("src/cli/topics", "txt");
     add("presets", "md");
-    for room in ["analysis", "lab", "scenario", "teach", "tui"] {
+    for room in ["analysis", "lab", "scenario", "lessons", "tui"] {
         add(&format!("src/{room}"), "rs");
     }
     let (keys, mut count) = (keys(), 0);

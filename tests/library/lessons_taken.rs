@@ -4,7 +4,7 @@ use crate::support::scenarios::resumed;
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::has;
 use gyrolab::lab::view::{Pane, Part};
-use gyrolab::teach::{Answer, Class, reading, shipped};
+use gyrolab::lessons::{Answer, Class, reading, shipped};
 use std::fs;
 
 /// A lesson with a question of each kind, a task with a check, and notes.

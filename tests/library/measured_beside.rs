@@ -5,12 +5,12 @@ use crate::support::desk::Desk;
 use crate::support::scenarios::{preset, resumed};
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::{has, has_all};
+use gyrolab::data::{self, Measured, Quantity};
 use gyrolab::figure::kind::Kind;
 use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
 use gyrolab::figure::{Item, Paint, Point};
 use gyrolab::lab::Lab;
 use gyrolab::lab::measured::Sum;
-use gyrolab::measured::{self, Measured, Quantity};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use gyrolab::storage::confined::Confined;
@@ -215,7 +215,7 @@ fn figure(kind: Option<&str>, text: &str) -> Figure {
 }
 
 fn figure_with(kind: Option<&str>, text: &str, known: &Known) -> Figure {
-    let measured: Measured = measured::read("bench.csv", text).unwrap();
+    let measured: Measured = data::read("bench.csv", text).unwrap();
     let kind = match kind {
         Some(kind) => Kind::named(kind).unwrap(),
         None => Kind::measured(measured.series().unwrap()),
@@ -240,9 +240,9 @@ fn figure_with(kind: Option<&str>, text: &str, known: &Known) -> Figure {
 #[test]
 fn what_the_run_is_known_to_say_is_not_computed_again() {
     let text = "t_s,x_m,azimuth_deg\n1,0.2,350\n2,0.3,20\n";
-    let measured = measured::read("bench.csv", text).unwrap();
+    let measured = data::read("bench.csv", text).unwrap();
     let run = Arc::new(preset("method-2", &["motion.steps=200"]));
-    let said = measured::at_times(measured.series().unwrap(), &run, &|| true);
+    let said = data::at_times(measured.series().unwrap(), &run, &|| true);
     let said = said.unwrap().unwrap();
     let knowing = |said: &[Vec<f64>]| Known {
         recorded: None,
@@ -284,7 +284,7 @@ fn points_are_drawn_at_their_places_on_paper() {
     let scenario = preset("method-2", &[]);
     let off = |number: usize| number as f64 % 4.0;
     let text = data(&scenario, &[("x_m", 0.05), ("y_m", 0.05)], off);
-    let read = measured::read("bench.csv", &text).unwrap();
+    let read = data::read("bench.csv", &text).unwrap();
     let series = read.series().unwrap().clone();
     // Of one panel after the other, each a line from values to the page.
     let all = rings(&figure(None, &text));

@@ -1,7 +1,7 @@
 //! The mouse on a screen without a terminal: what is done where it points.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
-use gyrolab::observe::camera::Camera;
+use gyrolab::playback::camera::Camera;
 use gyrolab::tui::layout::Layout;
 use gyrolab::tui::mouse::Pointer;
 use gyrolab::tui::mouse::{Did, Mouse};

@@ -2,11 +2,11 @@
 
 use crate::support::scenarios::{parse, preset};
 use crate::support::words::has;
+use gyrolab::journal::restart::{in_force, scenario_from};
 use gyrolab::physics::State;
 use gyrolab::physics::observables::position;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
-use gyrolab::work::restart::{in_force, scenario_from};
 use proptest::prelude::*;
 use std::sync::Arc;
 

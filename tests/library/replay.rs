@@ -3,8 +3,8 @@
 
 use crate::support::desk::{Desk, commands};
 use crate::support::scenarios::preset;
-use gyrolab::observe::playback::Playback;
-use gyrolab::observe::recording::Curve;
+use gyrolab::playback::Playback;
+use gyrolab::playback::recording::Curve;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use proptest::prelude::*;

@@ -5,7 +5,7 @@ use crate::support::scenarios::preset;
 use gyrolab::analysis::readouts::{READOUTS, Value};
 use gyrolab::export::columns::Column;
 use gyrolab::lab::command;
-use gyrolab::observe::live::LiveRun;
+use gyrolab::playback::live::LiveRun;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Document;
 use std::sync::Arc;
@@ -65,7 +65,7 @@ fn numbers_of_theory_of_the_exact_motion_and_of_measuring() {
         assert_eq!(end, Ok(()), "{condition}");
         let holds = |desk: &Desk| {
             let readouts = &desk.lab.player().reading.readouts;
-            let expression = gyrolab::work::expression::Expression::parse(condition).unwrap();
+            let expression = gyrolab::journal::expression::Expression::parse(condition).unwrap();
             let motion = desk.lab.player().motion();
             let value = |name: &str| match name {
                 "motion.time_step_s" => Some(motion.time_step_s),

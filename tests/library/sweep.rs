@@ -1,9 +1,9 @@
 //! Sweeps in the library: those that are shipped, and the rows computed again.
 
 use gyrolab::scenario::Document;
-use gyrolab::study::sweep::shipped::{self, SWEEPS};
-use gyrolab::study::sweep::{Shard, Sweep};
-use gyrolab::study::verify::{Unverified, verify};
+use gyrolab::sweep::shipped::{self, SWEEPS};
+use gyrolab::sweep::{Shard, Sweep};
+use gyrolab::verify::{Unverified, verify};
 use std::collections::BTreeSet;
 use std::fs;
 use std::ops::ControlFlow;

@@ -1,11 +1,11 @@
 //! Undo and redo, where several edits interact.
 
 use crate::support::desk::Desk;
+use gyrolab::journal::{Act, Journal};
 use gyrolab::lab::command::Command;
 use gyrolab::scenario::Document;
 use gyrolab::scenario::file::PushFile;
 use gyrolab::tui::keymap::{Key, Mode};
-use gyrolab::work::journal::{Act, Journal};
 use proptest::prelude::*;
 use std::time::Duration;
 

@@ -1,10 +1,10 @@
 //! What a step publishes: its two ends, what is read off it, and the workings, which are the numbers that made it.
 
 use crate::support::scenarios::parse;
-use gyrolab::observe::live::LiveRun;
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::physics::workings::{Changes, Phase, Table, Value};
 use gyrolab::physics::{observables, rotation};
+use gyrolab::playback::live::LiveRun;
 use gyrolab::run::{Simulation, Step};
 use gyrolab::scenario::{Document, Scenario};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};

@@ -2,7 +2,7 @@
 
 use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
 use crate::support::words::{has, has_all, has_no};
-use gyrolab::teach::shipped::{LESSONS, TEMPLATE};
+use gyrolab::lessons::shipped::{LESSONS, TEMPLATE};
 use gyrolab::text::shipped::Shipped;
 use std::fs;
 

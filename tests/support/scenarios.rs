@@ -1,5 +1,6 @@
 //! Opens scenarios, and makes views of them.
 
+use gyrolab::journal::parameters;
 use gyrolab::lab::Lab;
 use gyrolab::lab::view::View;
 use gyrolab::lab::view::markers::Marker;
@@ -8,7 +9,6 @@ use gyrolab::physics::SchemeInfo;
 use gyrolab::scenario::file::ScenarioFile;
 use gyrolab::scenario::{Document, Problems, Scenario};
 use gyrolab::storage::session::Content;
-use gyrolab::work::parameters;
 use toml::{Table, Value};
 
 /// The preset `name`, with each of `set` (`key=value`) set.

@@ -4,7 +4,7 @@ use super::desk::commands;
 use super::scenarios::{preset, view};
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::lab::{Lab, Request};
-use gyrolab::teach::Class;
+use gyrolab::lessons::Class;
 use gyrolab::tui::app;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::press::press;

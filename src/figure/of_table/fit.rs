@@ -1,6 +1,8 @@
 //! What was measured, on the model that was fitted to it; below, what is left of it.
 
 use super::{Rows, grouped, numbers, points, within_room};
+use crate::data::quantity::TIME;
+use crate::data::{self, Curve, Point, Quantity};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::ticks::{power_of_ten, with_minus};
 use crate::figure::chart::{Axis, Panel, Series, Style};
@@ -8,8 +10,6 @@ use crate::figure::extent;
 use crate::figure::page::letters;
 use crate::figure::quantity;
 use crate::figure::table::{Fit, Found, Table};
-use crate::measured::quantity::TIME;
-use crate::measured::{self, Curve, Point, Quantity};
 use crate::scenario::Document;
 use crate::text::number::{significant, uncertain};
 use std::sync::Arc;
@@ -145,14 +145,14 @@ fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
         value: 0.0,
         sigma: None,
     };
-    let series = measured::Series {
+    let series = data::Series {
         curves: vec![Curve {
             quantity,
             points: (0..times_s.len()).map(point).collect(),
         }],
         times_s,
     };
-    let values = measured::at_times(&series, &Arc::new(scenario), &|| true);
+    let values = data::at_times(&series, &Arc::new(scenario), &|| true);
     let values = values.ok()??.pop()?;
     let pairs = series.times_s.iter().zip(values);
     Some(pairs.map(|(&time_s, value)| [time_s, value]).collect())

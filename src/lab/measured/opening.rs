@@ -1,12 +1,12 @@
 //! Putting measured data beside the run, and taking them away.
 
+use crate::data::{self, Measured, shipped};
 use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::answer::{Answer, Done};
 use crate::lab::files::Files;
 use crate::lab::measured::Beside;
 use crate::lab::player::Player;
-use crate::measured::{self, Measured, shipped};
 use crate::scenario::{Problem, Problems, Scenario};
 use crate::text::printable::printable;
 use std::path::Path;
@@ -24,7 +24,7 @@ impl Files {
                 return Err(refused(rule.to_owned()));
             }
         }
-        measured::open(name)
+        data::open(name)
     }
 }
 

@@ -98,8 +98,8 @@ impl ValueList {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::journal::parameters::{parameters, table_of};
     use crate::lab::for_tests::scenario;
-    use crate::work::parameters::{parameters, table_of};
 
     /// A value of a scenario that is listed under this group and label.
     fn of((group, label): (&str, &str)) -> ListedValue {

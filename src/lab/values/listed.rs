@@ -1,8 +1,8 @@
 //! One value of the list.
 
 use super::NEXT_PUSH;
-use crate::work::next_push::{Field, NextPush};
-use crate::work::parameters::Parameter;
+use crate::journal::next_push::{Field, NextPush};
+use crate::journal::parameters::Parameter;
 
 /// A value, in words, and where it is set.
 #[derive(Clone, Debug, PartialEq)]

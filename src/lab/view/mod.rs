@@ -12,8 +12,8 @@ pub mod theme;
 
 use super::action::Direction;
 use super::sheet::Sheet;
-use crate::observe::camera::{Camera, Zoom};
-use crate::observe::recording::Curve;
+use crate::playback::camera::{Camera, Zoom};
+use crate::playback::recording::Curve;
 use crate::run::Clock;
 use crate::scenario::{Scenario, keys};
 use markers::Marker;

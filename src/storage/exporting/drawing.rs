@@ -1,11 +1,11 @@
 //! Draws a figure of a run in the background.
 
 use super::{Exporting, Shared, Written};
+use crate::data::Measured;
 use crate::export::destination::{Destination, DestinationError};
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, EXACT_BESIDE, Request, Run};
 use crate::figure::{self, Format};
-use crate::measured::Measured;
 use crate::scenario::Scenario;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -6,7 +6,7 @@ use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
 use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, Part};
-use crate::observe::reading::Reading;
+use crate::playback::reading::Reading;
 use crate::text::number::{fixed, significant};
 use crate::tui::keymap::{BINDINGS, Binding, Key, Mode};
 use crate::tui::layout::split_columns;

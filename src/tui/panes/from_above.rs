@@ -4,13 +4,13 @@
 //! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
 
 use super::{MOST_PUSHES, PaneRow, ROWS_A_LINE, Seen, Width, frame, round_title, write};
+use crate::data::Place;
 use crate::lab::view::Pane;
 use crate::lab::view::markers::Marker;
-use crate::measured::Place;
-use crate::observe::ages::{Age, Ages};
-use crate::observe::camera::Zoom;
-use crate::observe::path::Path;
-use crate::observe::recording::Moment;
+use crate::playback::ages::{Age, Ages};
+use crate::playback::camera::Zoom;
+use crate::playback::path::Path;
+use crate::playback::recording::Moment;
 use crate::run::Clock;
 use crate::text::wrap::columns;
 use crate::tui::dots::{self, Dots, Ink};

@@ -2,9 +2,9 @@
 
 use super::chrome::SEPARATOR;
 use super::{shortened, write};
+use crate::data::Quantity;
 use crate::lab::Lab;
 use crate::lab::measured::{Beside, Sum};
-use crate::measured::Quantity;
 use crate::text::number::{short, shortest};
 use crate::text::printable::printable;
 use crate::text::wrap::columns;

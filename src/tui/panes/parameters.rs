@@ -11,7 +11,7 @@ use crate::lab::action::Action;
 use crate::lab::values::list::ValueList;
 use crate::lab::values::listed::Match;
 use crate::lab::view::{Pane, View};
-use crate::observe::reading::Reading;
+use crate::playback::reading::Reading;
 use crate::scenario::{Motion, Scenario};
 use crate::text::wrap::columns;
 use crate::tui::keymap::{Binding, Key, Mode, row};

@@ -9,12 +9,12 @@ mod way;
 
 use super::{PaneRow, ROWS_A_LINE, Seen, Width, frame, round_title, write};
 use crate::lab::view::Pane;
-use crate::observe::ages::Ages;
-use crate::observe::camera::Zoom;
-use crate::observe::live::LiveRun;
-use crate::observe::recording::Curve;
 use crate::physics::friction::Damping;
 use crate::physics::{State, loads, observables};
+use crate::playback::ages::Ages;
+use crate::playback::camera::Zoom;
+use crate::playback::live::LiveRun;
+use crate::playback::recording::Curve;
 use crate::text::wrap::columns;
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;

@@ -5,7 +5,7 @@
 
 use super::write;
 use crate::lab::Lab;
-use crate::observe::marks::Marks;
+use crate::playback::marks::Marks;
 use crate::run::Clock;
 use crate::text::number::decimal;
 use crate::tui::theme::Role;

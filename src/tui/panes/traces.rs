@@ -10,7 +10,7 @@ mod plot;
 use super::{PaneRow, Seen, Width, frame, longest, write};
 use crate::lab::action::{Action, Direction};
 use crate::lab::view::Pane;
-use crate::observe::marks::Marks;
+use crate::playback::marks::Marks;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::points::{Ends, Points};

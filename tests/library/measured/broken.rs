@@ -1,6 +1,6 @@
 //! Files of measured data that are refused, and in which words: file, line, column, value, rule and remedy.
 
-use gyrolab::measured::{open, read};
+use gyrolab::data::{open, read};
 use gyrolab::text::printable::is_steering;
 use std::fs;
 

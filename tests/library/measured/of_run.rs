@@ -1,7 +1,7 @@
 //! What a run says at the measured times.
 
 use crate::support::scenarios::preset;
-use gyrolab::measured::{Data, Series, at_times, read};
+use gyrolab::data::{Data, Series, at_times, read};
 use gyrolab::run::{Simulation, Truth};
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Files of measured data as they are read.
 
-use gyrolab::measured::shipped::SHIPPED;
-use gyrolab::measured::{Data, Measured, Series, Table, open, read};
+use gyrolab::data::shipped::SHIPPED;
+use gyrolab::data::{Data, Measured, Series, Table, open, read};
 use toml::Value;
 
 #[track_caller]
@@ -38,7 +38,7 @@ fn a_time_series_has_curves_with_gaps_and_uncertainties() {
     let [tilt, spin] = &series.curves[..] else {
         panic!("{series:?}")
     };
-    let points = |curve: &gyrolab::measured::Curve| -> Vec<(usize, f64, Option<f64>)> {
+    let points = |curve: &gyrolab::data::Curve| -> Vec<(usize, f64, Option<f64>)> {
         let points = curve.points.iter();
         points
             .map(|point| (point.row, point.value, point.sigma))

@@ -2,8 +2,8 @@
 
 use crate::analysis::remarks::{short_no_drift, short_unit};
 use crate::analysis::theory::{Axis, Path};
-use crate::observe::reading::Reading;
 use crate::physics::{Body, Friction};
+use crate::playback::reading::Reading;
 use crate::scenario::{Motion, Scenario, Window};
 use crate::text::number::{
     NONE, exponent, fixed as decimals_of, shortest, significant, without_minus_zero,

@@ -9,7 +9,7 @@ use super::lines::{
 use crate::lab::values::list::ValueList;
 use crate::lab::values::listed::ListedValue;
 use crate::lab::view::{Part, View};
-use crate::observe::reading::Reading;
+use crate::playback::reading::Reading;
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;

@@ -1,9 +1,9 @@
 //! The body in the scene: axle, hub, spokes, rim, masses and solid parts. Near parts look heavier than far ones.
 
 use super::{PARTS, Subject};
-use crate::observe::live::LiveRun;
-use crate::observe::outline::{self, Polyline};
 use crate::physics::{Part, State};
+use crate::playback::live::LiveRun;
+use crate::playback::outline::{self, Polyline};
 use crate::tui::dots::Ink;
 use crate::tui::scene::{Scene, Stroke};
 use crate::tui::theme::Role;

@@ -2,7 +2,7 @@
 //! way the point goes.
 
 use super::Subject;
-use crate::observe::ages::Age;
+use crate::playback::ages::Age;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::scene::Scene;
 use crate::tui::theme::Role;

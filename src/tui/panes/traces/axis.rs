@@ -1,7 +1,7 @@
 //! The axis of time under the strips, and the axis of values beside them.
 
-use crate::observe::scale::{self, Scale};
-use crate::observe::strip::Strip;
+use crate::playback::scale::{self, Scale};
+use crate::playback::strip::Strip;
 use crate::text::number::{decimal, exponent, fixed};
 
 /// Times from this on, s, have more digits than a tick has room for.

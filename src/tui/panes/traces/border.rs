@@ -4,9 +4,9 @@
 use super::super::longest;
 use super::plot::Content;
 use super::{ROW, Traces, ZOOM, write};
-use crate::observe::ghost::Ghost;
-use crate::observe::marks::Marks;
-use crate::observe::strip::Strip;
+use crate::playback::ghost::Ghost;
+use crate::playback::marks::Marks;
+use crate::playback::strip::Strip;
 use crate::text::number::decimal;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;

@@ -1,8 +1,8 @@
 //! A curve of a strip as dots: a line, or a band where its swings are too fast to be drawn one by one.
 
 use super::plot::THINNEST_BAND;
-use crate::observe::scale::Scale;
-use crate::observe::strip::Column;
+use crate::playback::scale::Scale;
+use crate::playback::strip::Column;
 use crate::tui::dots::{Dots, Ink};
 use std::ops::RangeInclusive;
 
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
     use crate::lab::view::markers::Marker;
     use crate::lab::view::theme::Theme;
-    use crate::observe::recording::Extent;
+    use crate::playback::recording::Extent;
     use crate::tui::theme::Role;
     use ratatui::buffer::Buffer;
     use ratatui::layout::Rect;

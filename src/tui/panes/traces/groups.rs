@@ -2,8 +2,8 @@
 
 use super::plot::Content;
 use super::{ALL, NAME, STRIP, Traces, axis};
-use crate::observe::recording::Curve;
-use crate::observe::strip::Strip;
+use crate::playback::recording::Curve;
+use crate::playback::strip::Strip;
 use crate::tui::layout::split_rows;
 use ratatui::layout::{Margin, Position, Rect};
 

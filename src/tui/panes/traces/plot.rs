@@ -3,11 +3,11 @@
 use super::groups::Group;
 use super::{Traces, curve::Stroke};
 use crate::lab::measured::{Beside, Shown};
-use crate::observe::ghost::Ghost;
-use crate::observe::marks::Marks;
-use crate::observe::recording::{Curve, Extent, Recording};
-use crate::observe::scale::Scale;
-use crate::observe::strip::{Blocks, Column, Strip};
+use crate::playback::ghost::Ghost;
+use crate::playback::marks::Marks;
+use crate::playback::recording::{Curve, Extent, Recording};
+use crate::playback::scale::Scale;
+use crate::playback::strip::{Blocks, Column, Strip};
 use crate::text::number::fixed;
 use crate::tui::dots::Ink;
 use crate::tui::theme::Role;

@@ -1,0 +1,274 @@
+//! The TOML in the blocks of a lesson.
+
+mod content;
+
+use super::lesson::{Asked, Check, Compare, Keep, Predict, Setup};
+use super::names::Names;
+use crate::journal::expression::Expression;
+use crate::lab::command::{Command, Placed};
+use crate::scenario::Problem;
+use crate::scenario::dotted::join;
+use crate::text::printable::is_steering;
+use content::Content;
+use toml::{Table, Value};
+
+/// The keys of `lab` and `task`, in the order in which they are carried out. Between `push` and `go_to` stands how the run
+/// is shown.
+const ORDER: [&str; 23] = [
+    "open",
+    "set",
+    "push",
+    "speed",
+    "look_at",
+    "next",
+    "window_s",
+    "detail_s",
+    "detail_of",
+    "since_s",
+    "magnify",
+    "exact",
+    "show",
+    "hide",
+    "bare",
+    "camera",
+    "zoom",
+    "fill",
+    "phase",
+    "sum_to",
+    "point_at",
+    "wait_s",
+    "go_to",
+];
+const RUN_UNTIL: &str = "run_until";
+const KEEP: &str = "keep";
+/// The most choices of a prediction.
+const MOST_CHOICES: usize = 9;
+const LONGEST_LESSON: u32 = 600;
+
+type Found<T> = Result<T, Vec<Problem>>;
+
+/// A block of the file `origin`.
+pub(super) struct Reader<'a> {
+    pub origin: String,
+    /// The word behind its fence.
+    pub word: &'a str,
+    /// What stands between its fences.
+    pub inside: &'a str,
+    /// The line of its fence.
+    pub line: usize,
+}
+
+fn expression(
+    text: &str,
+    is_condition: bool,
+    find: impl Fn(&str) -> Result<(), String>,
+) -> Result<Expression, String> {
+    let read = if is_condition {
+        Expression::condition(text)
+    } else {
+        Expression::parse(text)
+    };
+    let read = read.map_err(|fault| fault.to_string())?;
+    read.bind(find).map_err(|fault| fault.to_string())?;
+    if read.is_condition() && !is_condition {
+        Err("compares: a number must stand here".to_owned())
+    } else {
+        Ok(read)
+    }
+}
+
+/// What the lesson is about, and how many minutes it takes.
+pub(super) fn head(reader: &Reader<'_>) -> Found<(String, Option<u32>)> {
+    let mut content = reader.content(&["about", "minutes"])?;
+    let about = content.line("about", false);
+    let stated = content.get("minutes");
+    let minutes = stated.as_ref().and_then(|value| {
+        let whole = u32::try_from(value.as_integer()?).ok()?;
+        Some(whole).filter(|minutes| (1..=LONGEST_LESSON).contains(minutes))
+    });
+    if let (Some(value), None) = (stated, minutes) {
+        let rule = format!("must be a whole number from 1 to {LONGEST_LESSON}");
+        content.refuse(Problem::with_value("minutes", &value, rule));
+    }
+    content.finish((about, minutes))
+}
+
+/// What the lab does: a `lab` or `task` block of page `page`, whose kept numbers are known from the page `known_from` on.
+pub(super) fn setup(
+    reader: &Reader<'_>,
+    names: &mut Names,
+    page: usize,
+    known_from: usize,
+) -> Found<Setup> {
+    let known: Vec<&str> = ORDER.into_iter().chain([RUN_UNTIL, KEEP]).collect();
+    let mut content = reader.content(&known).inspect_err(|_| names.lose())?;
+    let mut commands = Vec::new();
+    for name in ORDER.into_iter().chain([RUN_UNTIL]) {
+        let Some(value) = content.get(name) else {
+            continue;
+        };
+        match Command::new(name, &value) {
+            Err(_) if name == RUN_UNTIL && names_kept(&value, names) => {
+                let rule =
+                    "names a number that the lesson has kept: here stand numbers of the run alone";
+                content.refuse(Problem::with_value(name, &value, rule));
+            }
+            Ok(command) => commands.push(Placed {
+                command,
+                line: Some(content.line_of(name)),
+            }),
+            Err(problems) => problems
+                .into_iter()
+                .for_each(|problem| content.refuse_in(name, problem)),
+        }
+    }
+    if content.get("go_to").is_some() && content.get(RUN_UNTIL).is_some() {
+        let rule = "has no place beside go_to: one of the two ends a block";
+        content.refuse(Problem::at(RUN_UNTIL, rule));
+    }
+    let keep = keep(&mut content, names, page, known_from);
+    content.finish(Setup {
+        line: reader.line,
+        commands,
+        keep,
+    })
+}
+
+fn names_kept(value: &Value, names: &Names) -> bool {
+    let read = value.as_str().and_then(|text| Expression::parse(text).ok());
+    read.is_some_and(|expression| expression.names().any(|name| names.is_kept(name)))
+}
+
+fn keep(content: &mut Content, names: &mut Names, page: usize, known_from: usize) -> Vec<Keep> {
+    let table = match content.get(KEEP) {
+        None => return Vec::new(),
+        Some(Value::Table(table)) => table,
+        Some(other) => {
+            let rule = "must be a table of names and expressions, { coarse = \"most_distance_m\" }";
+            content.refuse(Problem::with_value(KEEP, &other, rule));
+            Table::new()
+        }
+    };
+    // What is kept at the same time is not known yet to each other.
+    let earlier = names.clone();
+    let mut kept = Vec::new();
+    for (name, value) in table {
+        let key = join(KEEP, &name);
+        if let Err(rule) = names.keep(&name, known_from) {
+            content.refuse(Problem::at(key, rule));
+            continue;
+        }
+        let read = match value.as_str() {
+            None => Err("must be an expression in quotes".to_owned()),
+            Some(text) => expression(text, false, |name| earlier.find(name, page)),
+        };
+        match read {
+            Ok(expression) => kept.push(Keep { name, expression }),
+            Err(rule) => content.refuse(Problem::with_value(key, &value, rule)),
+        }
+    }
+    kept
+}
+
+pub(super) fn predict(
+    reader: &Reader<'_>,
+    find: impl Fn(&str) -> Result<(), String>,
+) -> Found<Predict> {
+    let mut content = reader.content(&["name", "ask", "choices", "unit"])?;
+    let name = content.needed("name", false, "compare calls the prediction by it");
+    let ask = content.text("ask", "the question", find);
+    let asked = match (content.get("choices"), content.get("unit")) {
+        (Some(_), Some(_)) => {
+            let rule = "has no place beside choices: a choice has no unit";
+            content.refuse(Problem::at("unit", rule));
+            Asked::Choice(Vec::new())
+        }
+        (Some(value), None) => Asked::Choice(choices(&mut content, &value)),
+        (None, Some(Value::String(unit))) if unit.is_empty() => Asked::Number { unit },
+        (None, Some(_)) => Asked::Number {
+            unit: content.line("unit", false),
+        },
+        (None, None) => {
+            content.refuse_whole(
+                "lacks choices = [\"...\", \"...\"], or unit = \"deg\" where a number is asked for",
+            );
+            Asked::Choice(Vec::new())
+        }
+    };
+    content.finish(Predict {
+        line: reader.line,
+        name,
+        ask,
+        asked,
+    })
+}
+
+fn choices(content: &mut Content, value: &Value) -> Vec<String> {
+    let items = value.as_array().cloned().unwrap_or_default();
+    let words: Vec<String> = items
+        .iter()
+        .filter_map(|item| Some(item.as_str()?.trim().to_owned()))
+        .filter(|text| !text.is_empty() && !text.chars().any(is_steering))
+        .collect();
+    let mut different = words.clone();
+    different.sort();
+    different.dedup();
+    let rule = match words.len() {
+        count if count != items.len() => "must be lines of text, none of them empty",
+        0 | 1 => "must be a list of at least two answers in quotes",
+        count if count > MOST_CHOICES => "are too many: at most 9",
+        count if count != different.len() => "must differ from each other",
+        _ => return words,
+    };
+    content.refuse(Problem::with_value("choices", value, rule));
+    Vec::new()
+}
+
+/// A prediction beside what happened.
+pub(super) fn compare(
+    reader: &Reader<'_>,
+    find: impl Fn(&str) -> Result<(), String>,
+) -> Found<Compare> {
+    let mut content = reader.content(&["prediction", "with", "text"])?;
+    let prediction = content.needed("prediction", false, "the name of a predict block");
+    let has_with = content.get("with").is_some();
+    let with = content.expression("with", false, &find);
+    let text = content.text(
+        "text",
+        "what is said, with {with:.2} and {prediction}",
+        |name| match name {
+            "with" if has_with => Ok(()),
+            "with" => Err("there is no with in this block".to_owned()),
+            "prediction" => Ok(()),
+            name => find(name),
+        },
+    );
+    content.finish(Compare {
+        line: reader.line,
+        prediction,
+        with,
+        text,
+    })
+}
+
+/// What holds once the student has done the task.
+pub(super) fn check(
+    reader: &Reader<'_>,
+    find: impl Fn(&str) -> Result<(), String>,
+) -> Found<Check> {
+    let mut content = reader.content(&["that", "goal", "hint"])?;
+    let hint = content.line("hint", true);
+    let goal = content.line("goal", false);
+    if content.get("that").is_none() {
+        content.refuse_whole("lacks that: the condition, such as \"t_s >= 60\"");
+    }
+    let Some(that) = content.expression("that", true, find) else {
+        return Err(content.problems);
+    };
+    content.finish(Check {
+        line: reader.line,
+        that,
+        goal,
+        hint,
+    })
+}

@@ -1,0 +1,201 @@
+//! A lesson as it was read: its pages, and the blocks of each in the order of the file.
+
+use super::text::Text;
+use crate::journal::expression::Expression;
+use crate::lab::command::{Command, Placed};
+use crate::lab::view::Part;
+use serde::{Deserialize, Serialize};
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Lesson {
+    /// The name of a shipped lesson, or the file as the user named it.
+    pub name: String,
+    /// The file that messages name.
+    pub origin: String,
+    /// Its level-1 heading.
+    pub title: String,
+    /// What it is about, one line; empty where the file does not say it.
+    pub about: String,
+    pub minutes: Option<u32>,
+    /// The blocks before the first page: text, code that is shown as it is, and notes.
+    pub introduction: Vec<Block>,
+    /// The pages; never empty. The page with the number N (from 1) is `pages[N - 1]`.
+    pub pages: Vec<Page>,
+}
+
+/// A page: a level-2 heading and all that stands below it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Page {
+    /// Its number, from 1.
+    pub number: usize,
+    pub heading: String,
+    /// The heading's line in the file, from 1.
+    pub line: usize,
+    pub blocks: Vec<Block>,
+}
+
+/// A part of a page.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Block {
+    Text(Text),
+    /// What the lab does when the page is opened; at most one on a page.
+    Lab(Setup),
+    /// What the student is to do; the lab does it only when it is asked to show it. At most one on a page.
+    Task(Setup),
+    Predict(Predict),
+    /// A prediction beside what happened.
+    Compare(Compare),
+    /// What holds once the student has done the task.
+    Check(Check),
+    Notes(Text),
+    Shown(Shown),
+}
+
+/// What a `lab` or `task` block makes the lab do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    pub line: usize,
+    /// The commands in the order in which they are carried out, with their lines in the file: `open`, `set`, `push`, how
+    /// the run is shown, then `go_to` or `run_until`.
+    pub commands: Vec<Placed>,
+    /// The numbers that are remembered once all of this is done.
+    pub keep: Vec<Keep>,
+}
+
+/// A number that is remembered for later pages.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keep {
+    pub name: String,
+    pub expression: Expression,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Predict {
+    pub line: usize,
+    /// Its name; no other prediction of the lesson has it.
+    pub name: String,
+    pub ask: Text,
+    pub asked: Asked,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Asked {
+    /// One of these; at least two.
+    Choice(Vec<String>),
+    /// A number in this unit, which is empty for a pure number.
+    Number { unit: String },
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Answer {
+    Number(f64),
+    Choice(String),
+}
+
+/// A prediction beside what happened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compare {
+    pub line: usize,
+    pub prediction: String,
+    pub with: Option<Expression>,
+    /// What is said, in Markdown; `{with}` stands for that number and `{prediction}` for the prediction.
+    pub text: Text,
+}
+
+/// What holds once the student has done the task; where the page has no task, once its `lab` block is carried out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    pub line: usize,
+    pub that: Expression,
+    /// What is to be reached, in words; empty where the file does not say it.
+    pub goal: String,
+    /// Help for one who has not got there; empty where the file has none.
+    pub hint: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// The word behind its fence (`text`, `sh`, `toml`, `csv`, `python`, `matlab`), or none.
+    pub language: String,
+    /// Its lines, with a line end after each.
+    pub text: String,
+}
+
+impl Lesson {
+    /// The page with this number, from 1.
+    pub fn page(&self, number: usize) -> Option<&Page> {
+        self.pages.get(number.checked_sub(1)?)
+    }
+
+    pub fn predict(&self, name: &str) -> Option<&Predict> {
+        let mut all = self.pages.iter().flat_map(Page::predicts);
+        all.find(|predict| predict.name == name)
+    }
+}
+
+impl Page {
+    /// What the lab does when the page is opened.
+    pub fn lab(&self) -> Option<&Setup> {
+        self.blocks.iter().find_map(|block| match block {
+            Block::Lab(setup) => Some(setup),
+            _ => None,
+        })
+    }
+
+    /// What the student is to do.
+    pub fn task(&self) -> Option<&Setup> {
+        self.blocks.iter().find_map(|block| match block {
+            Block::Task(setup) => Some(setup),
+            _ => None,
+        })
+    }
+
+    pub fn predicts(&self) -> impl Iterator<Item = &Predict> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Predict(predict) => Some(predict),
+            _ => None,
+        })
+    }
+
+    /// What must hold once the student has done the task.
+    pub fn checks(&self) -> impl Iterator<Item = &Check> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Check(check) => Some(check),
+            _ => None,
+        })
+    }
+
+    pub fn notes(&self) -> impl Iterator<Item = &Text> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Notes(text) => Some(text),
+            _ => None,
+        })
+    }
+}
+
+impl Setup {
+    /// Whether it opens a run: it then depends on nothing before it but kept numbers.
+    pub fn opens(&self) -> bool {
+        let mut commands = self.commands.iter();
+        commands.any(|placed| matches!(placed.command, Command::Open(_)))
+    }
+
+    /// The parts of the screen that its `hide` names.
+    pub fn hides(&self) -> Vec<Part> {
+        let mut commands = self.commands.iter();
+        let hidden = commands.find_map(|placed| placed.command.looked("hide"));
+        let hidden = hidden.and_then(|hidden| hidden.clone().try_into().ok());
+        hidden.unwrap_or_default()
+    }
+}
+
+impl Asked {
+    pub fn takes(&self, answer: &Answer) -> bool {
+        match (self, answer) {
+            (Self::Choice(choices), Answer::Choice(choice)) => choices.contains(choice),
+            (Self::Number { .. }, Answer::Number(number)) => number.is_finite(),
+            _ => false,
+        }
+    }
+}

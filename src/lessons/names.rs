@@ -1,0 +1,113 @@
+//! The numbers that an expression of a lesson can name: those of a run, and those that earlier pages have kept.
+
+use crate::analysis::readouts;
+use crate::journal::expression::Expression;
+use crate::lab::{Lab, numbers};
+use crate::scenario::problem::nearest;
+use std::collections::BTreeMap;
+
+/// The numbers that were kept, by their names. One that could not be stated is NaN.
+pub type Kept = BTreeMap<String, f64>;
+
+/// Names that mean something else in a lesson.
+const RESERVED: [&str; 5] = ["with", "prediction", "and", "or", "abs"];
+
+/// The most numbers that a lesson keeps.
+const MOST_KEPT: usize = 100;
+
+/// The names under which a lesson keeps numbers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Names {
+    /// Each with the first page on which it is known.
+    kept: Vec<(String, usize)>,
+    /// The first page on which a run is open, once a block that opens one was read.
+    open_from: Option<usize>,
+    /// Whether a block could not be read that may have kept more numbers.
+    are_lost: bool,
+}
+
+impl Names {
+    /// Adds `name`, which is known from the page `from` on.
+    ///
+    /// # Errors
+    /// Why no number can be kept under that name.
+    pub(super) fn keep(&mut self, name: &str, from: usize) -> Result<(), String> {
+        let mut characters = name.chars();
+        let begins = characters.next().is_some_and(|c| c.is_ascii_alphabetic());
+        let rule = if self.kept.len() == MOST_KEPT {
+            return Err(format!(
+                "is one too many: a lesson keeps at most {MOST_KEPT} numbers"
+            ));
+        } else if !begins || !characters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
+            "must begin with a letter and go on with letters, digits and _, none of them accented"
+        } else if RESERVED.contains(&name) {
+            "means something else in a lesson: choose another name"
+        } else if readouts::find(name).is_some() || numbers::find(name, None).is_ok() {
+            "is a number of the run already: choose another name"
+        } else if self.is_kept(name) {
+            "is kept twice: choose another name"
+        } else {
+            self.kept.push((name.to_owned(), from));
+            return Ok(());
+        };
+        Err(rule.to_owned())
+    }
+
+    /// Notes that from the page `page` on a run is open, if none was before.
+    pub(super) fn open_from(&mut self, page: usize) {
+        self.open_from.get_or_insert(page);
+    }
+
+    pub(super) fn is_kept(&self, name: &str) -> bool {
+        self.kept.iter().any(|(known, _)| known == name)
+    }
+
+    /// Notes that a block could not be read: from now on a name that is not known may be one of its own, and is taken.
+    pub(super) fn lose(&mut self) {
+        self.are_lost = true;
+    }
+
+    /// Whether `name` stands for a number on the page `page`.
+    ///
+    /// # Errors
+    /// Why it does not, with the nearest name that does.
+    pub(super) fn find(&self, name: &str, page: usize) -> Result<(), String> {
+        match self.kept.iter().find(|(known, _)| known == name) {
+            Some((_, from)) if *from <= page => return Ok(()),
+            Some((_, from)) => return Err(format!("{name} is known from page {from} on")),
+            None => {}
+        }
+        if self.are_lost {
+            return Ok(());
+        }
+        let found = numbers::find(name, None).map(|_| ());
+        if found.is_ok() && self.open_from.is_none_or(|from| page < from) {
+            return Err(format!(
+                "{name} is a number of a run, and no lab block has opened one yet"
+            ));
+        }
+        found.map_err(|reason| {
+            let kept = self.kept.iter().map(|(known, _)| known.as_str());
+            match nearest(name, kept) {
+                near if near.starts_with("did you mean") => {
+                    format!("there is no number named {name}: {near}")
+                }
+                _ => reason,
+            }
+        })
+    }
+}
+
+/// The kept number called `name`, or else the run's number in `lab`; `None` if there is none now.
+pub fn number(name: &str, lab: &Lab, kept: &Kept) -> Option<f64> {
+    match kept.get(name) {
+        Some(number) => Some(*number).filter(|number| number.is_finite()),
+        None => lab.number(name),
+    }
+}
+
+/// The value of `expression` in `lab`; `None` where a number that it needs is not there.
+pub fn value(expression: &Expression, lab: &Lab, kept: &Kept) -> Option<f64> {
+    let value = expression.value(|name| number(name, lab, kept));
+    value.filter(|value| value.is_finite())
+}

@@ -1,0 +1,199 @@
+//! A lesson played to its end without a screen: page after page, with every task done as the lesson shows it.
+
+use super::lesson::{Block, Check, Lesson, Page};
+use super::names::{self, Kept};
+use super::predictions::Predictions;
+use super::stage::Stage;
+use super::structure::on_line;
+use super::text::Text;
+use crate::journal::expression::Expression;
+use crate::lab::Lab;
+use crate::lab::command::Command;
+use crate::scenario::{Problem, Problems};
+use crate::text::number::{NONE, significant};
+use std::ops::ControlFlow;
+
+/// Asked several times a second, with the step that the run is at and the one at which it stops, whether to go on.
+pub type GoOn<'a> = &'a mut dyn FnMut(u64, u64) -> ControlFlow<()>;
+
+/// A lab that goes through a lesson.
+pub struct Walk<'a> {
+    lesson: &'a Lesson,
+    pub lab: Lab,
+    pub kept: Kept,
+    /// Nothing is predicted: what a page hides until then is hidden as long as the page is open.
+    predictions: Predictions,
+    /// Whether a run of the lesson is open.
+    is_open: bool,
+}
+
+impl<'a> Walk<'a> {
+    /// Before the first page of `lesson`, in a new `lab`.
+    pub fn new(lesson: &'a Lesson, lab: Lab) -> Self {
+        Self {
+            lesson,
+            lab,
+            kept: Kept::new(),
+            predictions: Predictions::default(),
+            is_open: false,
+        }
+    }
+
+    /// Stands on `page` from nothing, without the pages before it that make no difference to it.
+    pub fn jump(&mut self, page: &'a Page, go_on: GoOn<'_>) -> Result<(), Problem> {
+        let stages = self
+            .lesson
+            .stages_to(page.number, &self.kept, &self.predictions);
+        for stage in &stages {
+            self.carry_out(stage, go_on)?;
+        }
+        Ok(())
+    }
+
+    /// Turns to `page` from the page before: carries out its `lab` block.
+    pub fn enter(&mut self, page: &'a Page, go_on: GoOn<'_>) -> Result<(), Problem> {
+        match self.lesson.stage_of(page.number, &self.predictions) {
+            Some(stage) => self.carry_out(&stage, go_on),
+            None => Ok(()),
+        }
+    }
+
+    /// Leaves `page`: does its task, and shows again what it hides until its prediction.
+    pub fn leave(&mut self, page: &'a Page, go_on: GoOn<'_>) -> Result<(), Problem> {
+        if let Some(stage) = self.lesson.task_of(page.number, &self.predictions) {
+            self.carry_out(&stage, go_on)?;
+        }
+        if page.predicts().next().is_some() {
+            let hidden = Predictions::hidden_after_lock(page, &self.lab.view().hidden);
+            // Hiding is never refused.
+            let _ = self.lab.carry_out(&Command::look("hide", hidden));
+        }
+        Ok(())
+    }
+
+    fn carry_out(&mut self, stage: &Stage<'_>, go_on: GoOn<'_>) -> Result<(), Problem> {
+        self.is_open = true;
+        let done = stage.carry_out(&mut self.lab, &mut self.kept, go_on);
+        done.map_err(|text| as_problem(&self.lesson.origin, stage.setup.line, &text))
+    }
+
+    /// Whether `check` holds now. Before a run is open nothing does.
+    fn holds(&self, check: &Check) -> bool {
+        let value = names::value(&check.that, &self.lab, &self.kept);
+        self.is_open && value.is_some_and(|value| value != 0.0)
+    }
+
+    /// The numbers in `expression` as they are now: `steps is 10, z_m is 0.8`.
+    fn numbers_of(&self, expression: &Expression) -> String {
+        let number = |name: &str| {
+            let number = names::number(name, &self.lab, &self.kept);
+            let number = number.map_or(NONE.to_owned(), |number| significant(number, 6));
+            format!("{name} is {number}")
+        };
+        let all: Vec<_> = expression.names().map(number).collect();
+        all.join(", ")
+    }
+
+    /// The places of `text` for numbers that there are not now.
+    fn unstated_in(&self, text: &Text, found: &mut Problems) {
+        for (line, expression) in text.numbers() {
+            let names: Vec<_> = expression.names().collect();
+            let is_of_compare = names.contains(&"with") || names.contains(&"prediction");
+            if !is_of_compare && names::value(expression, &self.lab, &self.kept).is_none() {
+                let rule = format!("is {NONE} on this page: {}", self.numbers_of(expression));
+                let key = format!("{{{}}}", expression.text());
+                found.add(|| on_line(line, Problem::at(key, rule)));
+            }
+        }
+    }
+
+    fn unstated_on(&self, page: &Page, found: &mut Problems) {
+        for block in &page.blocks {
+            match block {
+                Block::Text(text) | Block::Notes(text) => self.unstated_in(text, found),
+                Block::Predict(predict) => self.unstated_in(&predict.ask, found),
+                Block::Compare(compare) => {
+                    self.unstated_in(&compare.text, found);
+                    let with = compare.with.as_ref();
+                    if let Some(with) =
+                        with.filter(|_| compare.came_out(&self.lab, &self.kept).is_none())
+                    {
+                        let rule = format!("is {NONE} on this page: {}", self.numbers_of(with));
+                        found.add(|| on_line(compare.line, Problem::at("compare.with", rule)));
+                    }
+                }
+                Block::Lab(_) | Block::Task(_) | Block::Check(_) | Block::Shown(_) => {}
+            }
+        }
+    }
+}
+
+/// Plays `lesson` in a new `lab` to its end. Returns the numbers of its text that cannot be stated where they stand, and are
+/// shown as "n/a". Each check must hold once the task of its page is done, or where it has none
+/// once its `lab` block is carried out, and must not hold without that block.
+///
+/// # Errors
+/// What cannot be carried out, and every check that does not do what it should, with file and line. Where `go_on` broke
+/// off, the result means nothing.
+pub fn check(lesson: &Lesson, lab: Lab, go_on: GoOn<'_>) -> Result<Vec<Problem>, Problems> {
+    let mut walk = Walk::new(lesson, lab);
+    let (mut found, mut unstated) = (Problems::default(), Problems::default());
+    for page in &lesson.pages {
+        if let Err(problem) = walk.check_page(page, &mut found, &mut unstated, go_on) {
+            found.add(|| problem);
+            break; // the pages to come stand on it
+        }
+    }
+    found.of(&lesson.origin).or(unstated.list)
+}
+
+impl<'a> Walk<'a> {
+    fn check_page(
+        &mut self,
+        page: &'a Page,
+        found: &mut Problems,
+        unstated: &mut Problems,
+        go_on: GoOn<'_>,
+    ) -> Result<(), Problem> {
+        let has_task = page.task().is_some();
+        let block = if has_task { "task" } else { "lab block" };
+        let states = |walk: &Self| -> Vec<(bool, String)> {
+            let state = |check: &Check| (walk.holds(check), walk.numbers_of(&check.that));
+            page.checks().map(state).collect()
+        };
+        let mut before = states(self);
+        self.enter(page, go_on)?;
+        self.unstated_on(page, unstated);
+        if has_task {
+            before = states(self);
+        }
+        self.leave(page, go_on)?;
+        for ((check, before), after) in page.checks().zip(before).zip(states(self)) {
+            let rule = match (before, after) {
+                ((false, _), (true, _)) => continue,
+                (_, (false, numbers)) => {
+                    format!("does not hold after the {block} of its page: {numbers}")
+                }
+                ((true, numbers), (true, after)) => format!(
+                    "holds without the {block} of its page too, so it tells nothing: {}",
+                    if has_task { numbers } else { after }
+                ),
+            };
+            let that = toml::Value::from(check.that.text());
+            found.add(|| on_line(check.line, Problem::with_value("check.that", &that, rule)));
+        }
+        Ok(())
+    }
+}
+
+/// The message `text` of a command that was refused in the file `origin`, `origin:line: ...`, as a problem; it stands on
+/// `line` where it does not say.
+fn as_problem(origin: &str, line: usize, text: &str) -> Problem {
+    let told = text
+        .strip_prefix(origin)
+        .and_then(|rest| rest.strip_prefix(':'))
+        .and_then(|rest| rest.split_once(": "))
+        .and_then(|(line, rest)| Some((line.parse().ok()?, rest)));
+    let (line, rule) = told.unwrap_or((line, text));
+    on_line(line, Problem::at("", rule))
+}

@@ -1,0 +1,164 @@
+//! What to carry out to stand on a page of a lesson.
+//!
+//! A page stands on the `lab` and `task` blocks of the pages before it, then on its own `lab`. As a block that opens a run
+//! leaves nothing of the runs before it, what stands before the last such block is carried out only where it keeps numbers
+//! that are not known yet.
+
+use super::lesson::{Lesson, Page, Setup};
+use super::names::{Kept, value};
+use super::predictions::Predictions;
+use crate::lab::Lab;
+use crate::lab::command::{Command, Commands, Placed};
+use crate::playback::camera::{Camera, Zoom};
+use std::ops::ControlFlow;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage<'a> {
+    pub lesson: &'a Lesson,
+    pub page: &'a Page,
+    pub setup: &'a Setup,
+    /// Whether what its `hide` names is hidden.
+    pub is_hiding: bool,
+}
+
+impl Lesson {
+    /// What to carry out to stand on the page `number` (from 1), from nothing: a jump. `kept` has the numbers that are known
+    /// already. What the page hides is shown where its predictions are locked; earlier pages hide nothing that they hide
+    /// until their prediction.
+    pub fn stages_to<'a>(
+        &'a self,
+        number: usize,
+        kept: &Kept,
+        predictions: &Predictions,
+    ) -> Vec<Stage<'a>> {
+        let before = self.pages.iter().take(number.saturating_sub(1));
+        let earlier = before.flat_map(|page| {
+            let setups = page.lab().into_iter().chain(page.task());
+            setups.map(move |setup| Stage {
+                lesson: self,
+                page,
+                setup,
+                is_hiding: page.predicts().next().is_none(),
+            })
+        });
+        let stages = earlier.chain(self.stage_of(number, predictions));
+        needed(stages.collect(), kept)
+    }
+
+    /// What to carry out on turning to the page `number` from the page before: its own `lab` block, where it has one.
+    pub fn stage_of<'a>(&'a self, number: usize, predictions: &Predictions) -> Option<Stage<'a>> {
+        self.stage(number, Page::lab, predictions)
+    }
+
+    /// What to carry out on the page `number` to show how its task is done.
+    pub fn task_of<'a>(&'a self, number: usize, predictions: &Predictions) -> Option<Stage<'a>> {
+        self.stage(number, Page::task, predictions)
+    }
+
+    fn stage(
+        &self,
+        number: usize,
+        setup: impl Fn(&Page) -> Option<&Setup>,
+        predictions: &Predictions,
+    ) -> Option<Stage<'_>> {
+        let page = self.page(number)?;
+        Some(Stage {
+            lesson: self,
+            page,
+            setup: setup(page)?,
+            is_hiding: !predictions.are_locked_on(page),
+        })
+    }
+}
+
+/// Those of `stages` that are needed: the last run, and the runs that keep numbers which `kept` lacks.
+fn needed<'a>(stages: Vec<Stage<'a>>, kept: &Kept) -> Vec<Stage<'a>> {
+    let mut runs: Vec<Vec<Stage<'a>>> = Vec::new();
+    for stage in stages {
+        match runs.last_mut() {
+            Some(run) if !stage.setup.opens() => run.push(stage),
+            _ => runs.push(vec![stage]),
+        }
+    }
+    let last = runs.len().saturating_sub(1);
+    let lacks = |stage: &Stage<'_>| {
+        let mut names = stage.setup.keep.iter();
+        names.any(|keep| !kept.contains_key(&keep.name))
+    };
+    let mut needed = Vec::new();
+    for (index, mut run) in runs.into_iter().enumerate() {
+        if index < last {
+            let end = run.iter().rposition(lacks).map_or(0, |at| at + 1);
+            run.truncate(end);
+        }
+        needed.extend(run);
+    }
+    needed
+}
+
+impl Stage<'_> {
+    /// The commands, for the lab as it stands. Where a run is opened, what the lab shows otherwise than at first is put
+    /// back before, so that the page looks the same whatever was done before.
+    pub fn commands(&self, lab: &Lab) -> Commands {
+        let put_back = if self.setup.opens() {
+            put_back(lab)
+        } else {
+            Vec::new()
+        };
+        let line = Some(self.setup.line);
+        let put_back = put_back.into_iter().map(|command| Placed { command, line });
+        let own = self.setup.commands.iter();
+        let own = own.filter(|placed| self.is_hiding || placed.command.looked("hide").is_none());
+        Commands {
+            origin: self.lesson.origin.clone(),
+            list: put_back.chain(own.cloned()).collect(),
+        }
+    }
+
+    /// Remembers in `kept` the numbers that the block keeps, once it is carried out.
+    pub fn keep(&self, lab: &Lab, kept: &mut Kept) {
+        for keep in &self.setup.keep {
+            let number = value(&keep.expression, lab, kept);
+            kept.insert(keep.name.clone(), number.unwrap_or(f64::NAN));
+        }
+    }
+
+    /// Carries the block out to its end at once, without a clock, and keeps its numbers. `go_on` is called several times a
+    /// second with the step that the run is at and the one at which it stops; the rest is dropped when that breaks.
+    pub fn carry_out(
+        &self,
+        lab: &mut Lab,
+        kept: &mut Kept,
+        go_on: impl FnMut(u64, u64) -> ControlFlow<()>,
+    ) -> Result<(), String> {
+        let commands = self.commands(lab);
+        lab.take_commands(commands);
+        lab.finish_script_while(go_on)?;
+        lab.take_back_message(); // nobody has asked for what the block has done
+        self.keep(lab, kept);
+        Ok(())
+    }
+}
+
+/// The commands that put back how the lab shows runs, where it is otherwise than at first.
+fn put_back(lab: &Lab) -> Vec<Command> {
+    let view = lab.view();
+    let shows_exact = lab.player().run().shows_exact();
+    let all = [
+        (view.filled, Command::Fill(None)),
+        (view.bare, Command::look("bare", false)),
+        (view.pointed_at.is_some(), Command::PointAt(None)),
+        (
+            view.camera != Camera::default(),
+            Command::look("camera", Camera::default()),
+        ),
+        (
+            view.zoom != Zoom::default(),
+            Command::look("zoom", Zoom::default()),
+        ),
+        (shows_exact, Command::Exact(false)),
+        (lab.player().is_pinned(), Command::Pin(false)),
+    ];
+    let other = all.into_iter().filter(|(is_other, _)| *is_other);
+    other.map(|(_, command)| command).collect()
+}

@@ -1,0 +1,185 @@
+//! Text in Markdown with places for numbers: `{z_m:.3}`.
+//!
+//! A place holds an expression and, after a colon, how its value is written: `.3` with three decimals, `.2e` with an
+//! exponent. Without that it has four significant digits. A brace that is meant as one is written `\{`, as Markdown has it;
+//! in code, braces are braces.
+
+use super::names::{Kept, value};
+use super::structure::on_line;
+use crate::journal::expression::Expression;
+use crate::lab::Lab;
+use crate::scenario::Problem;
+use crate::text::number;
+use crate::text::printable::brief;
+use pulldown_cmark::{Event, Parser, Tag};
+use std::ops::Range;
+
+/// Significant digits of a number without a format.
+const DIGITS: usize = 4;
+/// The most digits after the point.
+const MOST_DIGITS: usize = 12;
+const MOST_TOLD: usize = 100;
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Text {
+    /// The line at which it begins in the file, from 1.
+    pub line: usize,
+    parts: Vec<Piece>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Piece {
+    Plain(String),
+    Number(Expression, Format),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// With four significant digits.
+    Short,
+    /// Digits after the point.
+    Fixed(usize),
+    /// With an exponent; digits after the point.
+    Exponent(usize),
+}
+
+impl Format {
+    /// `number` as it is written; "n/a" where there is none.
+    pub fn written(self, number: Option<f64>) -> String {
+        let Some(number) = number.filter(|number| number.is_finite()) else {
+            return number::NONE.to_owned();
+        };
+        match self {
+            Self::Short => number::significant(number, DIGITS),
+            Self::Fixed(digits) => number::fixed(number, digits),
+            Self::Exponent(digits) => number::exponent(number, digits),
+        }
+    }
+
+    fn read(text: &str) -> Result<Self, String> {
+        let wrong = || {
+            format!(
+                "{text} is no way to write a number: there is .3 for three decimals, and .2e with an exponent"
+            )
+        };
+        let digits = text.strip_prefix('.').ok_or_else(wrong)?;
+        let (digits, format): (_, fn(usize) -> Self) = match digits.strip_suffix('e') {
+            Some(digits) => (digits, Self::Exponent),
+            None => (digits, Self::Fixed),
+        };
+        let digits = digits.parse().ok().filter(|digits| *digits <= MOST_DIGITS);
+        digits.map(format).ok_or_else(wrong)
+    }
+}
+
+impl Text {
+    /// Reads `source`, which begins at `line`. `find` says why a name in it stands for no number.
+    pub(super) fn read(
+        source: &str,
+        line: usize,
+        find: impl Fn(&str) -> Result<(), String>,
+    ) -> Result<Self, Vec<Problem>> {
+        let code = code_in(source);
+        let is_code = |at: usize| {
+            let begun = code.partition_point(|range| range.start <= at);
+            code[..begun]
+                .last()
+                .is_some_and(|range| range.contains(&at))
+        };
+        let (mut parts, mut problems) = (Vec::new(), Vec::new());
+        let (mut plain, mut at) = (0, 0);
+        while let Some(found) = source[at..].find('{') {
+            let open = at + found;
+            at = open + 1;
+            if is_code(open) || source[..open].ends_with('\\') {
+                continue;
+            }
+            match place(&source[at..], &find) {
+                Ok((expression, format, length)) => {
+                    parts.push(Piece::Plain(source[plain..open].to_owned()));
+                    parts.push(Piece::Number(expression, format));
+                    at += length;
+                    plain = at;
+                }
+                Err((key, rule)) => {
+                    let lines = source[..open].matches('\n').count();
+                    problems.push(on_line(line + lines, Problem::at(key, rule)));
+                    if problems.len() == MOST_TOLD {
+                        break;
+                    }
+                }
+            }
+        }
+        parts.push(Piece::Plain(source[plain..].to_owned()));
+        parts.retain(|part| !matches!(part, Piece::Plain(text) if text.is_empty()));
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        Ok(Self { line, parts })
+    }
+
+    /// The text in Markdown, with the numbers of `lab` and those that were `kept`; "n/a" stands for a number that there is
+    /// not.
+    pub fn with_numbers(&self, lab: &Lab, kept: &Kept) -> String {
+        self.filled(|expression, format| format.written(value(expression, lab, kept)))
+    }
+
+    /// The places for numbers, each with its line in the file.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = (usize, &Expression)> {
+        let mut line = self.line;
+        self.parts.iter().filter_map(move |part| match part {
+            Piece::Plain(text) => {
+                line += text.matches('\n').count();
+                None
+            }
+            Piece::Number(expression, _) => Some((line, expression)),
+        })
+    }
+
+    /// The text in Markdown, with what `written` makes of each place for a number.
+    pub fn filled(&self, mut written: impl FnMut(&Expression, Format) -> String) -> String {
+        let parts = self.parts.iter().map(|part| match part {
+            Piece::Plain(text) => text.clone(),
+            Piece::Number(expression, format) => written(expression, *format),
+        });
+        parts.collect()
+    }
+}
+
+/// What stands in a place for a number, of which `text` is what follows the brace; and how long it is, with the brace that
+/// ends it. An error is the place as it is written, and what is wrong with it.
+fn place(
+    text: &str,
+    find: &impl Fn(&str) -> Result<(), String>,
+) -> Result<(Expression, Format, usize), (String, String)> {
+    // Where the line ends or another place begins first, this one has lost its end.
+    let first = text.find(['\n', '{', '}']);
+    let Some(end) = first.filter(|&end| text[end..].starts_with('}')) else {
+        let rule = "is not closed in its line by }: a brace that is meant as one is written \\{";
+        let begin = brief(&text[..first.unwrap_or(text.len())], 40);
+        return Err((format!("{{{}", begin.trim_end()), rule.to_owned()));
+    };
+    let inside = &text[..end];
+    let told = |rule: String| (format!("{{{inside}}}"), rule);
+    let (written, format) = match inside.split_once(':') {
+        Some((written, format)) => (written, Format::read(format.trim()).map_err(told)?),
+        None => (inside, Format::Short),
+    };
+    let expression = Expression::parse(written.trim()).map_err(|fault| told(fault.to_string()))?;
+    expression
+        .bind(find)
+        .map_err(|fault| told(fault.to_string()))?;
+    if expression.is_condition() {
+        return Err(told("compares: a number must stand here".to_owned()));
+    }
+    Ok((expression, format, end + 1))
+}
+
+fn code_in(source: &str) -> Vec<Range<usize>> {
+    let events = Parser::new(source).into_offset_iter();
+    let code = events.filter_map(|(event, range)| match event {
+        Event::Code(_) | Event::Start(Tag::CodeBlock(_)) => Some(range),
+        _ => None,
+    });
+    code.collect()
+}

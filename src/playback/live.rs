@@ -1,0 +1,375 @@
+//! A run that is being watched: the simulation, and the data of its pictures.
+//!
+//! It can return to any step that it has reached before: it loads the last [checkpoint](Checkpoints) before that step and
+//! steps on from there, with the same bits as the first time. The pictures of the steps that then lie ahead are stored
+//! separately.
+
+mod pictures;
+
+use super::checkpoints::{Checkpoint, Checkpoints};
+use super::overlay::Overlay;
+use super::path::Path;
+use super::recording::{Moment, Recording};
+use crate::analysis::cost::{integration_rad_per_s, is_affordable};
+use crate::analysis::readouts::Source;
+use crate::analysis::{Health, Monitor, Readouts};
+use crate::journal::restart::in_force;
+use crate::physics::{State, Workings};
+use crate::run::{NotFinite, Simulation};
+use crate::scenario::Scenario;
+use pictures::Pictures;
+use std::sync::Arc;
+
+/// Steps between two readings of the clock for a body of one point; a body of n points takes 1/n of that.
+const STEPS_PER_LOOK: usize = 4096;
+
+/// Cost of a step besides its points, in points.
+const COST_OF_A_STEP: u64 = 60;
+/// Cost of an integration of the exact motion, in points per radian.
+const COST_OF_A_RADIAN: f64 = 1000.0;
+
+/// The greatest cost of integrations for the workings of a step: about half a second.
+const MOST_INTEGRATION: u64 = 250_000_000;
+
+/// A remaining time below this share of a time step is rounding.
+const ROUNDING: f64 = 1e-6;
+
+pub struct LiveRun {
+    simulation: Simulation,
+    monitor: Monitor,
+    checkpoints: Checkpoints,
+    pictures: Pictures,
+    shows_exact: bool,
+    overlay: Option<Overlay>,
+    keeps_workings: bool,
+    /// The workings that were asked for last without having been kept, and of which step they are.
+    explained: Option<(u64, Arc<Workings>)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlayEnd {
+    /// The run has stepped all the simulated time that it was given.
+    InTime,
+    CutShort,
+    AtStop,
+    Fulfilled,
+    NotFinite(NotFinite),
+}
+
+impl LiveRun {
+    pub fn new(scenario: Arc<Scenario>) -> Self {
+        let reach = scenario.arm_m();
+        let simulation = Simulation::new(scenario);
+        let monitor = Monitor::new(simulation.now());
+        Self {
+            checkpoints: Checkpoints::new(&simulation, &monitor),
+            pictures: Pictures::new(simulation.now(), reach),
+            monitor,
+            simulation,
+            shows_exact: false,
+            overlay: None,
+            keeps_workings: false,
+            explained: None,
+        }
+    }
+
+    /// Takes one time step.
+    ///
+    /// # Errors
+    /// When the numbers stop being finite; the run then stays at the step before.
+    pub fn step(&mut self) -> Result<(), NotFinite> {
+        let step = self.simulation.step()?;
+        self.monitor.follow(step);
+        self.pictures.follow(step);
+        self.checkpoints.offer(&self.simulation, &self.monitor);
+        Ok(())
+    }
+
+    /// Steps until the run stands at `step`.
+    ///
+    /// # Errors
+    /// When the numbers stop being finite; the run then stays at the step before.
+    pub fn step_to(&mut self, step: u64) -> Result<(), NotFinite> {
+        while self.simulation.step_number() < step {
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    pub fn furthest(&self) -> u64 {
+        self.pictures.furthest()
+    }
+
+    /// The step for which it has set out, if it has not arrived. Calling [`step`](Self::step) repeatedly leads there.
+    pub fn destination(&self) -> Option<u64> {
+        let (step, to) = (self.simulation.step_number(), self.pictures.followed_to);
+        (step < to).then_some(to)
+    }
+
+    /// Sets out for `step`, or for the furthest step that it has reached if that is earlier. It then stands at that step, or
+    /// at an earlier one with the step as its [`destination`](Self::destination).
+    pub fn set_out_for(&mut self, step: u64) {
+        self.stay();
+        let here = self.simulation.step_number();
+        let step = step.min(self.furthest());
+        if step == here {
+            return;
+        }
+        if step < here {
+            self.set_overlay(self.shows_exact);
+        }
+        let latest = self.pictures.go_to(step, here);
+        self.stand_before(latest);
+        self.pictures.keep(self.simulation.step_number());
+    }
+
+    /// A copy of the run at the last stored state that is at `step` or before, to step through what it has been through.
+    pub(super) fn again_before(&self, step: u64) -> Simulation {
+        let Some(stored) = self.stored_before(step) else {
+            return self.simulation.clone();
+        };
+        let mut again = stored.simulation.clone();
+        if !Arc::ptr_eq(again.scenario(), self.scenario()) {
+            again.go_on_in(Arc::clone(self.scenario()));
+        }
+        again
+    }
+
+    /// The last checkpoint that is at `step` or before; `None` where the present state is the later one.
+    fn stored_before(&self, step: u64) -> Option<&Checkpoint> {
+        let stored = self.checkpoints.before(step);
+        let here = self.simulation.step_number();
+        let is_nearer = (stored.simulation.step_number()..=step).contains(&here);
+        (!is_nearer || self.simulation.has_ended()).then_some(stored)
+    }
+
+    /// Puts the run at the latest stored state that is not later than `latest`: a checkpoint, or the present one.
+    fn stand_before(&mut self, latest: u64) {
+        let Some(stored) = self.stored_before(latest) else {
+            return;
+        };
+        let scenario = Arc::clone(self.simulation.scenario());
+        (self.simulation, self.monitor) = (stored.simulation.clone(), stored.monitor.clone());
+        self.simulation.keep_workings(self.keeps_workings);
+        self.pictures.stand_at(self.simulation.now());
+        self.adopt(&scenario);
+    }
+
+    /// Makes `scenario`, which has the same past, the one that the simulation and its measurements follow from the present
+    /// step on. The pictures stay: where it leads to other numbers, [`go_on_in`](Self::go_on_in) is to be called.
+    pub fn adopt(&mut self, scenario: &Arc<Scenario>) {
+        if !Arc::ptr_eq(self.simulation.scenario(), scenario) {
+            self.simulation.go_on_in(Arc::clone(scenario));
+            self.monitor.beside.go_on_in(scenario);
+        }
+    }
+
+    /// Cancels its way to the destination and stays at the present step. Where the recording lacks steps, it is filled with
+    /// the present moment.
+    pub fn stay(&mut self) {
+        if self.destination().is_some() {
+            self.pictures.stay(self.simulation.step_number());
+        }
+    }
+
+    /// Continues with `scenario`, which has the same motion up to the present step and up to the destination. The pictures
+    /// of later steps are dropped.
+    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+        self.pictures.ahead = None;
+        self.explained = None;
+        self.checkpoints.cut_back(self.pictures.followed_to);
+        if self.simulation.has_ended() {
+            self.stand_before(self.simulation.step_number());
+        }
+        self.adopt(scenario);
+        let now_s = self.now().time_s;
+        let can_be_had = is_affordable(scenario);
+        match &mut self.overlay {
+            Some(overlay) if can_be_had && overlay.goes_on_at(now_s) => overlay.go_on_in(scenario),
+            _ => self.set_overlay(self.shows_exact),
+        }
+    }
+
+    /// Plays for `time_s` simulated seconds, in whole steps. It ends earlier at the step `stop`, at a step where
+    /// `is_fulfilled` returns true, or when `enough` returns true because the time for computing is used up.
+    pub fn play(
+        &mut self,
+        time_s: f64,
+        stop: u64,
+        mut enough: impl FnMut() -> bool,
+        mut is_fulfilled: impl FnMut(&mut Self) -> bool,
+    ) -> PlayEnd {
+        let begin_s = self.now().time_s;
+        let look_every = self.steps_per_look();
+        let mut until_look = look_every;
+        loop {
+            let time_step_s = self.simulation.motion().time_step_s;
+            if self.now().time_s + time_step_s - begin_s > time_s + ROUNDING * time_step_s {
+                break PlayEnd::InTime;
+            }
+            if self.simulation.step_number() >= stop {
+                break PlayEnd::AtStop;
+            }
+            if let Err(error) = self.step() {
+                break PlayEnd::NotFinite(error);
+            }
+            if is_fulfilled(self) {
+                break PlayEnd::Fulfilled;
+            }
+            until_look -= 1;
+            if until_look == 0 {
+                if enough() {
+                    break PlayEnd::CutShort;
+                }
+                until_look = look_every;
+            }
+        }
+    }
+
+    fn steps_per_look(&self) -> usize {
+        if self.integration_cost() > 0 {
+            return 1;
+        }
+        (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1)
+    }
+
+    /// What a step costs, in points of a body: its points, a constant share, and the integration of the exact motion.
+    pub fn cost_of_a_step(&self) -> u64 {
+        let points = self.scenario().body.mechanics.points().len() as u64;
+        (points + COST_OF_A_STEP).saturating_add(self.integration_cost())
+    }
+
+    /// What of that goes to integrations of the exact motion: by the scheme, and beside the run.
+    pub(super) fn integration_cost(&self) -> u64 {
+        let (motion, _) = in_force(self.scenario(), self.simulation.step_number());
+        let state = self.simulation.state();
+        let is_exact = motion.scheme.order.is_none();
+        let integrations = f64::from(is_exact) + f64::from(self.monitor.beside.is_known());
+        if integrations == 0.0 {
+            return 0;
+        }
+        let rad = integration_rad_per_s(self.scenario(), state) * motion.time_step_s;
+        (integrations * rad * COST_OF_A_RADIAN).ceil() as u64
+    }
+
+    /// Shows the exact motion beside the run where that can be had, or does not.
+    pub fn set_overlay(&mut self, shown: bool) {
+        let scenario = self.simulation.scenario();
+        self.overlay = (shown && is_affordable(scenario)).then(|| Overlay::new(scenario));
+        self.shows_exact = shown;
+    }
+
+    pub fn shows_exact(&self) -> bool {
+        self.shows_exact
+    }
+
+    pub fn follow_exact(&mut self, enough: impl FnMut() -> bool) {
+        let now_s = self.now().time_s;
+        if let Some(overlay) = &mut self.overlay {
+            overlay.follow(now_s, enough);
+        }
+    }
+
+    pub fn overlay(&self) -> Option<&Overlay> {
+        self.overlay.as_ref()
+    }
+
+    /// Where the exact motion stands, where it is shown and has come as far as the run.
+    pub fn exact_now(&self) -> Option<&Moment> {
+        let now = &self.overlay.as_ref()?.now;
+        (now.time_s >= self.now().time_s).then_some(now)
+    }
+
+    /// Whether the exact motion is shown and its time is earlier than the run's.
+    pub fn overlay_is_behind(&self) -> bool {
+        let now_s = self.now().time_s;
+        let overlay = self.overlay.as_ref();
+        overlay.is_some_and(|overlay| overlay.is_before(now_s))
+    }
+
+    pub fn health(&mut self) -> Health {
+        self.monitor.health(self.simulation.now())
+    }
+
+    pub fn readouts(&mut self) -> Readouts {
+        let health = self.health();
+        Readouts::new(&self.simulation, &mut self.monitor, &health, None)
+    }
+
+    /// Reads those of `source` off it again, of `readouts` that were read at an earlier step.
+    pub fn read_again(&mut self, readouts: &mut Readouts, source: Source) {
+        readouts.read_again(source, &self.simulation, &mut self.monitor);
+    }
+
+    /// Whether the workings of every step to come are kept, as whoever shows them wants it while the run goes on.
+    pub fn keep_workings(&mut self, kept: bool) {
+        self.keeps_workings = kept;
+        self.simulation.keep_workings(kept);
+    }
+
+    /// What the scheme computed in the step taken last; `None` at step 0. Where the workings were not kept, that step is
+    /// taken a second time, on a copy of the run that comes from the last checkpoint before it; `None` where that takes long.
+    pub fn workings(&mut self) -> Option<Arc<Workings>> {
+        let now = self.simulation.now();
+        let before = now.number().checked_sub(1)?;
+        if let Some(workings) = now.workings() {
+            return Some(Arc::clone(workings));
+        }
+        let known = self.explained.as_ref();
+        if let Some((_, workings)) = known.filter(|(step, _)| *step == before + 1) {
+            return Some(Arc::clone(workings));
+        }
+        let mut again = self.again_before(before);
+        let steps = before - again.step_number() + 1;
+        if steps.saturating_mul(self.integration_cost()) > MOST_INTEGRATION {
+            return None;
+        }
+        again.step_to(before).ok()?;
+        again.keep_workings(true);
+        let workings = again.step().ok()?.workings()?;
+        self.explained = Some((before + 1, Arc::clone(workings)));
+        Some(Arc::clone(workings))
+    }
+
+    /// The last state in which the body was a rigid one, and its step, where the scheme has broken down since.
+    pub fn last_whole(&self) -> Option<&(u64, State)> {
+        self.pictures.last_whole.as_ref()
+    }
+
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    pub fn scenario(&self) -> &Arc<Scenario> {
+        self.simulation.scenario()
+    }
+
+    pub fn now(&self) -> &Moment {
+        &self.pictures.now
+    }
+
+    pub fn pictures(&self) -> (&Recording, &Path) {
+        match &self.pictures.ahead {
+            Some(ahead) => (&ahead.recording, &ahead.path),
+            None => (&self.pictures.recording, &self.pictures.path),
+        }
+    }
+
+    pub fn recording(&self) -> &Recording {
+        &self.pictures.recording
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.pictures.path
+    }
+}
+
+#[cfg(test)]
+impl LiveRun {
+    /// The run of a preset at the step `steps`.
+    pub fn played(preset: &str, steps: u64) -> Self {
+        let mut run = Self::new(crate::scenario::presets::scenario(preset, &[]));
+        run.step_to(steps).unwrap();
+        run
+    }
+}

@@ -1,0 +1,312 @@
+//! A run that is being watched: its playback, its earlier steps, its numbers, and the data of its pictures.
+//!
+//! - [`live`] plays a run, and returns to earlier steps by [`checkpoints`]; [`recording`] and [`path`] store the data of
+//!   its pictures, [`overlay`] the exact motion beside it.
+//! - [`outline`] gives the lines by which a solid part is drawn. [`strip`], [`scale`] and [`camera`] are the geometry of the pictures,
+//!   for a screen and for a figure alike: a curve in each column of a window of time, the values at an axis, and the
+//!   position of a point in space in a plane picture. [`detail`] is the window of time in which fast motion is seen;
+//!   [`ages`] says which parts of a path are old.
+//! - [`lookup`] gives the numbers of any earlier step.
+//! - [`Playback`] plays the run at its [`pace`] until the next stop.
+//! - [`reading`] holds the numbers on the screen; [`background`] searches for a setting that makes them reliable.
+//! - [`marks`] are the times of pushes and edits; [`ghost`] is the picture of the previous run.
+
+pub mod ages;
+pub mod background;
+pub mod camera;
+pub mod checkpoints;
+pub mod detail;
+pub mod dip;
+pub mod ghost;
+pub mod live;
+pub mod lookup;
+pub mod marks;
+pub mod outline;
+pub mod overlay;
+pub mod pace;
+pub mod path;
+pub mod reading;
+pub mod recording;
+pub mod scale;
+pub mod strip;
+mod to_step;
+
+use crate::physics::Workings;
+use crate::run::{Clock, NotFinite, Simulation};
+use crate::scenario::{Scenario, keys};
+use live::{LiveRun, PlayEnd};
+use pace::{Pace, Speed};
+use reading::Reading;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The longest time of stepping between two readings of the keyboard.
+const STEPPING: Duration = Duration::from_millis(12);
+/// The same of a run on its way to a step that was asked for.
+const HURRYING: Duration = Duration::from_millis(40);
+/// Computing time for the exact motion in each round of the loop while the run steps flat out: a tenth of that time.
+const FOLLOWING_FLAT_OUT: Duration = Duration::from_micros(1200);
+/// The same otherwise: a tenth of a frame at 15 frames a second.
+const FOLLOWING: Duration = Duration::from_millis(6);
+/// The number of steps after which playing until a condition holds is given up; commands of a file go no further at once.
+pub const MOST_UNTIL: u64 = 10_000_000;
+
+pub type Condition = Box<dyn FnMut(&mut LiveRun) -> bool>;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Halt {
+    Fulfilled,
+    NotFulfilled(u64),
+    /// The run stands at the scenario's last step; it can be played further.
+    EndOfRun,
+    StepsTaken,
+    NotFinite(NotFinite),
+}
+
+pub struct Playback {
+    run: LiveRun,
+    pace: Pace,
+    /// The step at which it stops by itself: the scenario's last step, or the last of the requested steps.
+    stop: u64,
+    /// Whether it steps towards `stop` as fast as it can, whatever its pace.
+    hurries: bool,
+    end_s: f64,
+    is_endless: bool,
+    until: Option<Condition>,
+}
+
+impl Playback {
+    pub fn new(scenario: Arc<Scenario>, running: bool) -> Self {
+        let speed = scenario.file.view.as_ref().and_then(|view| view.speed);
+        let (stop, end_s) = (scenario.steps, Clock::end_s(&scenario));
+        let run = LiveRun::new(scenario);
+        Self {
+            run,
+            pace: Pace::new(speed.unwrap_or(keys::SPEED), running),
+            stop,
+            hurries: false,
+            end_s,
+            is_endless: false,
+            until: None,
+        }
+    }
+
+    pub fn set_end(&mut self, end_s: f64) {
+        self.end_s = end_s;
+        self.renew_stop();
+    }
+
+    /// Takes the next stop from the run, unless one was requested.
+    fn renew_stop(&mut self) {
+        if !self.hurries && self.until.is_none() {
+            self.stop = self.next_stop();
+        }
+    }
+
+    pub fn end_s(&self) -> f64 {
+        self.end_s
+    }
+
+    pub fn end_step(&self) -> u64 {
+        Simulation::step_at(self.run.scenario(), self.end_s)
+    }
+
+    /// Begins the run of another `scenario`. The speed, whether the run goes on, and whether the exact motion is shown stay
+    /// as they are.
+    pub fn begin(&mut self, scenario: Arc<Scenario>) {
+        let shows_exact = self.run.shows_exact();
+        self.end_s = Clock::end_s(&scenario);
+        self.run = LiveRun::new(scenario);
+        self.run.set_overlay(shows_exact);
+        self.hurries = false;
+        self.until = None;
+        self.stop = self.next_stop();
+    }
+
+    /// Replaces the scenario by one that leads to the same numbers at every step: another title, length or `[view]`.
+    pub fn describe_as(&mut self, scenario: &Arc<Scenario>) {
+        self.run.adopt(scenario);
+        self.renew_stop();
+    }
+
+    /// Plays the simulated time that is due after `wall` of wall time, but steps no longer than 12 ms after `now`, as `clock`
+    /// tells it; on its way to a step, 40 ms. Returns why the playback stopped, if it did.
+    pub fn advance(
+        &mut self,
+        now: Duration,
+        wall: Duration,
+        clock: &mut dyn FnMut() -> Duration,
+    ) -> Option<Halt> {
+        let owed_s = if self.hurries {
+            f64::INFINITY
+        } else {
+            self.pace.earn(wall)
+        };
+        if owed_s <= 0.0 {
+            return None;
+        }
+        let longest = if self.hurries { HURRYING } else { STEPPING };
+        self.play(owed_s, wall, || clock() >= now + longest)
+    }
+
+    /// Plays to the requested step, or until the condition holds, however long that takes, or until `enough` returns true.
+    /// Returns why the playback stopped; `None` if nothing was requested, or there is more to play.
+    pub fn finish_part(&mut self, enough: impl FnMut() -> bool) -> Option<Halt> {
+        if self.hurries || self.until.is_some() {
+            self.play(f64::INFINITY, Duration::ZERO, enough)
+        } else {
+            None
+        }
+    }
+
+    /// Plays `owed_s` of simulated time, or until `enough` returns true. Returns why the playback stopped, if it did.
+    fn play(&mut self, owed_s: f64, wall: Duration, enough: impl FnMut() -> bool) -> Option<Halt> {
+        let end = if self.hurries {
+            self.run.play(f64::INFINITY, self.stop, enough, |_| false)
+        } else {
+            let begin_s = self.run.now().time_s;
+            let mut until = self.until.as_mut();
+            let is_fulfilled = |run: &mut LiveRun| until.as_mut().is_some_and(|until| until(run));
+            let end = self.run.play(owed_s, self.stop, enough, is_fulfilled);
+            let stepped_s = self.run.now().time_s - begin_s;
+            self.pace.spend(stepped_s, wall, end == PlayEnd::CutShort);
+            end
+        };
+        let halt = match end {
+            PlayEnd::InTime | PlayEnd::CutShort => return None,
+            PlayEnd::Fulfilled => Halt::Fulfilled,
+            PlayEnd::AtStop if self.until.is_some() => Halt::NotFulfilled(MOST_UNTIL),
+            PlayEnd::AtStop if self.hurries => Halt::StepsTaken,
+            PlayEnd::AtStop => Halt::EndOfRun,
+            PlayEnd::NotFinite(error) => Halt::NotFinite(error),
+        };
+        self.set_running(false);
+        self.stop = self.next_stop();
+        Some(halt)
+    }
+
+    /// Starts playing at its pace until `condition` holds; then it stops. It does not stop at the end of the scenario's
+    /// run, and gives up after ten million steps. Returns false, and does not start, if the condition holds already.
+    pub fn run_until(&mut self, mut condition: Condition) -> bool {
+        self.set_running(false);
+        if condition(&mut self.run) {
+            return false;
+        }
+        self.set_running(true);
+        self.stop = self.step_number().saturating_add(MOST_UNTIL);
+        self.until = Some(condition);
+        true
+    }
+
+    pub fn stops_at(&self) -> u64 {
+        self.stop
+    }
+
+    /// Whether it stands still at the last step of the scenario's run, or later.
+    pub fn is_at_end(&self) -> bool {
+        !self.is_running() && self.step_number() >= self.end_step()
+    }
+
+    pub fn is_running_until(&self) -> bool {
+        self.until.is_some()
+    }
+
+    /// Advances the exact motion towards the run's time, if it is shown, for at most its share of the computing time.
+    pub fn follow_exact(&mut self, clock: &mut dyn FnMut() -> Duration) {
+        let share = if self.is_flat_out() {
+            FOLLOWING_FLAT_OUT
+        } else {
+            FOLLOWING
+        };
+        let deadline = clock() + share;
+        self.run.follow_exact(|| clock() >= deadline);
+    }
+
+    /// Advances the exact motion to the run's time, if it is shown, however long that takes.
+    pub fn catch_up_exact(&mut self) {
+        self.run.follow_exact(|| false);
+    }
+
+    /// From now on it goes on at the end of the scenario's run.
+    pub fn play_on(&mut self) {
+        self.is_endless = true;
+        self.renew_stop();
+    }
+
+    pub fn is_endless(&self) -> bool {
+        self.is_endless
+    }
+
+    /// The last step of the scenario's run; once the run has reached it, there is no further stop.
+    fn next_stop(&self) -> u64 {
+        let end = self.end_step();
+        if self.step_number() < end && !self.is_endless {
+            end
+        } else {
+            u64::MAX
+        }
+    }
+
+    /// Lets the run go on or stops it, and cancels any requested steps or condition.
+    pub fn set_running(&mut self, running: bool) {
+        if self.hurries || self.until.is_some() {
+            self.run.stay();
+            self.hurries = false;
+            self.until = None;
+            self.stop = self.next_stop();
+        }
+        self.pace.set_running(running);
+    }
+
+    pub fn steps_to_go(&self) -> Option<u64> {
+        self.hurries
+            .then(|| self.stop.saturating_sub(self.step_number()))
+    }
+
+    pub fn set_speed(&mut self, speed: Speed) {
+        self.pace.set_speed(speed);
+    }
+
+    pub fn speed(&self) -> Speed {
+        self.pace.speed()
+    }
+
+    pub fn set_exact(&mut self, shown: bool) {
+        self.run.set_overlay(shown);
+    }
+
+    pub fn read(&mut self) -> Reading {
+        Reading::new(&mut self.run, &self.pace)
+    }
+
+    pub fn step_number(&self) -> u64 {
+        self.run.simulation().step_number()
+    }
+
+    pub fn workings(&mut self) -> Option<Arc<Workings>> {
+        self.run.workings()
+    }
+
+    pub fn keep_workings(&mut self, kept: bool) {
+        self.run.keep_workings(kept);
+    }
+
+    pub fn run(&self) -> &LiveRun {
+        &self.run
+    }
+
+    pub fn is_running(&self) -> bool {
+        self.pace.is_running()
+    }
+
+    /// Whether the picture changes with time: the run goes on, or something is being computed.
+    pub fn is_busy(&self) -> bool {
+        self.pace.is_running() || self.hurries || self.run.overlay_is_behind()
+    }
+
+    /// Whether it computes without pause, so that the loop should not wait for the next frame.
+    pub fn is_flat_out(&self) -> bool {
+        let catches_up = !self.pace.is_running() && self.run.overlay_is_behind();
+        self.hurries || catches_up || (self.pace.is_running() && self.pace.speed() == Speed::Top)
+    }
+}

@@ -1,0 +1,238 @@
+//! The first page of a write-up, `README.md`: what was run, what came out, whether to believe it, how to make it again.
+
+use super::exact_range::ExactRange;
+use super::quantities::{Row, rows};
+use super::{AGAIN, Beside, CSV, Drawing, READOUTS_FILE, RUN_FILE, Writeup};
+use crate::export::summary::steps_in_words;
+use crate::physics::{SchemeInfo, SymmetricTop};
+use crate::scenario::Scenario;
+use crate::text::number::{NONE, fixed, shortest, significant};
+use std::fmt::{self, Write};
+
+const HOW_TO_READ_QUANTITIES: &str = "Measured means read off the steps of this run; theory is that of the exact motion \
+    under the forces at the end of the run. Digits in parentheses are one standard error of reading the number off the \
+    steps, in units of the last digits: 0.886033(24) is 0.886033 ± 0.000024. \"In errors\" is the difference in standard \
+    errors. Up to about 3 of them, reading alone explains it (exactly ±1.00: the reading's own known error, stated and not \
+    taken away). What is more is the doing of the scheme and its time step, which the standard error does not hold: where \
+    the numbers hold, it may be many errors and still be tiny. The least and the greatest values are those of the whole \
+    run, in theory too.";
+/// A longer run file is not printed on the page.
+const MOST_LINES: usize = 120;
+/// A part of L that is smaller than this part of |L| is zero.
+const ROUNDING: f64 = 1e-14;
+
+pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
+    let mut page = String::new();
+    let readouts = &writeup.readouts;
+    writeln!(page, "# {}\n", escaped(&readouts.title))?;
+    let file = &writeup.scenario.file;
+    let look_at = file.view.as_ref().and_then(|view| view.look_at.as_ref());
+    let look_at = look_at.map(|line| sentence(line));
+    for text in file.about.iter().chain(&look_at) {
+        writeln!(page, "{}\n", escaped(text))?;
+    }
+    if let Some(source) = &file.source {
+        writeln!(page, "Source: {}\n", escaped(source))?;
+    }
+    writeln!(page, "## What was run\n")?;
+    write_setup(&mut page, writeup)?;
+    writeln!(page, "\n## Are the numbers to be believed?\n")?;
+    if let Some(broken) = &writeup.broken {
+        writeln!(page, "{}.\n", escaped(&sentence(&broken.to_string())))?;
+    }
+    let believed = readouts.health.sentence(readouts.advice.as_ref());
+    writeln!(page, "{}\n", escaped(&believed))?;
+    writeln!(page, "## Measured beside theory\n")?;
+    let range = ExactRange::new(&writeup.scenario, readouts.sample.time_s);
+    write_quantities(&mut page, &rows(&writeup.scenario, readouts, range))?;
+    if let Some(beside) = &writeup.beside {
+        writeln!(page, "\n## Measured data beside the run\n")?;
+        beside.write(&mut page)?;
+    }
+    writeln!(page, "\n## Figures\n")?;
+    write_drawings(&mut page, &writeup.drawings)?;
+    writeln!(page, "## How to make it again\n")?;
+    write_again(&mut page, writeup.beside.as_ref())?;
+    write_run_file(&mut page, &writeup.scenario.to_toml())?;
+    Ok(page)
+}
+
+/// The table of what was run: body, start, scheme and length. Forces and edits stand in the run file.
+fn write_setup(page: &mut String, writeup: &Writeup) -> fmt::Result {
+    let scenario = &writeup.scenario;
+    let mut row = |name: &str, text: &str| writeln!(page, "| {name} | {} |", escaped(text));
+    row("", "")?;
+    row("---", "---")?;
+    let body = &scenario.body.mechanics;
+    let mass = significant(body.mass(), 6);
+    let centre = significant(body.first_moment().norm() / body.mass(), 6);
+    let whole = format!("{mass} kg; centre of mass {centre} m from the pivot");
+    row("body", &whole)?;
+    row("moments of inertia about the pivot", &moments(scenario))?;
+    let name = scenario.file.trace.as_deref().unwrap_or("top");
+    let from_pivot = significant(body.points()[scenario.trace].at.norm(), 6);
+    let traced = format!("{name}, {from_pivot} m from the pivot");
+    row("traced point", &traced)?;
+    row("start", &start(scenario))?;
+    let gravity = shortest(scenario.motion.gravity);
+    row("gravity", &format!("{gravity} m/s^2"))?;
+    let SchemeInfo { name, about, .. } = scenario.motion.scheme;
+    row("scheme", &format!("{name}: {about}"))?;
+    let steps = steps_in_words(scenario, writeup.readouts.sample.step);
+    row("time steps", &steps)?;
+    writeln!(
+        page,
+        "\nIts parts, pushes, friction and edits stand in the run file, `{RUN_FILE}`."
+    )
+}
+
+fn moments(scenario: &Scenario) -> String {
+    let Some(top) = SymmetricTop::of(&scenario.body.mechanics) else {
+        return "lopsided: not symmetric about the axle".to_owned();
+    };
+    let of = if scenario.rotor().is_some() {
+        "of the rotor"
+    } else {
+        "about it"
+    };
+    format!(
+        "I1 = {} kg m^2 across the axle, I3 = {} kg m^2 {of}, kappa = I3/I1 = {}",
+        significant(top.across, 6),
+        significant(top.along, 6),
+        significant(top.kappa(), 6)
+    )
+}
+
+fn start(scenario: &Scenario) -> String {
+    let tilt_deg = libm::acos(scenario.start.axle().z.clamp(-1.0, 1.0)).to_degrees();
+    let momentum = &scenario.start.momentum;
+    // What is left of a zero by the turn from the body frame is rounding.
+    let rounding = ROUNDING * momentum.norm();
+    let part = |axis: usize| match momentum[axis] {
+        part if part.abs() < rounding => 0.0,
+        part => part,
+    };
+    let [x, y, z] = [0, 1, 2].map(|axis| significant(part(axis), 9));
+    format!(
+        "axle tilted by {} degrees, L = ({x}, {y}, {z}) J s in the world frame",
+        fixed(tilt_deg, 4)
+    )
+}
+
+fn write_quantities(page: &mut String, rows: &[Row]) -> fmt::Result {
+    if rows.is_empty() {
+        return writeln!(
+            page,
+            "The run is too short for that: nothing could be measured on it."
+        );
+    }
+    writeln!(
+        page,
+        "| what | measured | theory | difference | in errors | unit |"
+    )?;
+    writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
+    for row in rows {
+        writeln!(page, "| {} |", row.cells.join(" | "))?;
+    }
+    writeln!(page)?;
+    for row in rows {
+        writeln!(page, "- {}", escaped(&row.meaning))?;
+    }
+    writeln!(
+        page,
+        "\n{HOW_TO_READ_QUANTITIES} {NONE}: there is no such number, or none that can be stated. Every readout is in \
+         `{READOUTS_FILE}`."
+    )
+}
+
+fn write_drawings(page: &mut String, drawings: &[Drawing]) -> fmt::Result {
+    if drawings.is_empty() {
+        return writeln!(page, "None.\n");
+    }
+    for drawing in drawings {
+        writeln!(
+            page,
+            "![{0}]({1}.svg)\n\n{0}: `{1}.pdf` and `{1}.svg`.\n",
+            drawing.caption, drawing.name
+        )?;
+        if let Some(remark) = &drawing.remark {
+            writeln!(page, "{remark}\n")?;
+        }
+    }
+    Ok(())
+}
+
+fn write_again(page: &mut String, beside: Option<&Beside>) -> fmt::Result {
+    let measured = beside.map(|beside| format!(" --measured {}", beside.name()));
+    let measured = measured.unwrap_or_default();
+    let same = format!("the same bytes as {CSV}");
+    let commands = [
+        (
+            format!("verify {CSV}"),
+            "computes the rows anew and says whether they are the same",
+        ),
+        (format!("run {RUN_FILE} -o {AGAIN}"), same.as_str()),
+        (
+            format!("writeup {RUN_FILE}{measured} -o again"),
+            "this folder",
+        ),
+        (
+            format!("{RUN_FILE}{measured}"),
+            "the run, live in the terminal",
+        ),
+    ];
+    let width = commands.iter().map(|(command, _)| command.len()).max();
+    let width = width.unwrap_or_default();
+    let version = env!("CARGO_PKG_VERSION");
+    writeln!(page, "In this folder, with gyrolab {version}:\n\n```sh")?;
+    for (command, what) in commands {
+        writeln!(page, "gyrolab {command:width$}   # {what}")?;
+    }
+    let (year, authors) = copyright();
+    writeln!(
+        page,
+        "```\n\nTo cite it: {authors}, *gyrolab*, version {version} ({year}): {}. \
+         `gyrolab man csv` has lines that read the CSV in Python, R, MATLAB and Octave.\n",
+        env!("CARGO_PKG_DESCRIPTION")
+    )
+}
+
+/// The year and the authors, from the licence.
+fn copyright() -> (&'static str, &'static str) {
+    const MARK: &str = "Copyright (c) ";
+    let licence = include_str!("../../LICENSE");
+    let line = licence.lines().find_map(|line| line.strip_prefix(MARK));
+    line.and_then(|line| line.split_once(' '))
+        .unwrap_or_default()
+}
+
+fn write_run_file(page: &mut String, run_file: &str) -> fmt::Result {
+    writeln!(page, "## The run file\n")?;
+    let (lines, run_file) = (run_file.lines().count(), run_file.trim_end());
+    if lines > MOST_LINES {
+        return writeln!(page, "`{RUN_FILE}`, {lines} lines.");
+    }
+    writeln!(page, "`{RUN_FILE}`:\n\n```toml\n{run_file}\n```")
+}
+
+/// `text` with a capital letter at its beginning.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
+}
+
+/// `text` so that Markdown shows it as it stands, in a table too.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' => out.push(' '),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '#' | '|' | '~' | '&' | '$' => {
+                out.extend(['\\', c]);
+            }
+            c => out.push(c),
+        }
+    }
+    out
+}
