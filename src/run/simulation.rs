@@ -25,7 +25,7 @@ pub struct Simulation {
     /// The step of the next edit; [`u64::MAX`] if there is none.
     next_edit: u64,
     ended: Option<NotFinite>,
-    /// The run before its loads were last changed: a step that fails is put back to it.
+    /// The run before the loads of the coming step were changed: if the step fails, the run is put back to it.
     unchanged: Option<Box<Step>>,
     /// While |L|² is below this, every number read off a finite state is finite too.
     safe_below: f64,
@@ -138,6 +138,7 @@ impl Simulation {
         now.workings = workings.map(Arc::new);
         now.azimuth.follow(&now.after.axle());
         now.turn_rotor();
+        self.unchanged = None; // it may hold workings, which take much memory
         Ok(())
     }
 
@@ -145,8 +146,7 @@ impl Simulation {
     /// that the run is read as it stood before. `before` was the state then, `friction` the work of friction up to it, J.
     #[cold]
     fn fail(&mut self, before: State, friction: f64) -> NotFinite {
-        let here = self.now.number;
-        if let Some(unchanged) = self.unchanged.take_if(|unchanged| unchanged.number == here) {
+        if let Some(unchanged) = self.unchanged.take() {
             self.now = *unchanged;
         }
         let now = &mut self.now;
@@ -274,8 +274,7 @@ impl Simulation {
 
     /// Counts a change of the loads. The first one at a step keeps the run as it stood, in case the coming step fails.
     fn change_loads(&mut self) {
-        let kept = self.unchanged.as_ref().map(|unchanged| unchanged.number);
-        if kept != Some(self.now.number) {
+        if self.unchanged.is_none() {
             self.unchanged = Some(Box::new(self.now.clone()));
         }
         self.now.changes += 1;
