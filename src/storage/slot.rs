@@ -8,7 +8,7 @@
 //! A session begins with three lines, and the two texts follow:
 //!
 //! ```text
-//! gyrolab session 3
+//! gyrolab session 4
 //! sum 8d4f1d92          CRC-32 of all that follows this line
 //! place 204             bytes of the place
 //! ```
@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-const FORMAT: &str = "gyrolab session 3";
+const FORMAT: &str = "gyrolab session 4";
 /// The most unused sessions that are kept.
 const MOST_KEPT: usize = 20;
 /// A lock that is held for a shorter time belongs to a process that only looks at the session.
