@@ -14,6 +14,7 @@ use crate::text::printable::{Shown, brief};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -190,15 +191,21 @@ pub(super) fn whole(
 
 /// Opens the part file, which nobody else may be writing.
 fn locked(part: &Path) -> Result<File, SweepFileError> {
-    let mut options = OpenOptions::new();
-    options.read(true).write(true).create(true).truncate(false);
-    let file = options.open(part);
-    let file = file.map_err(|error| cannot_write(part, &error))?;
-    // Some file systems have no locks.
-    if let Err(TryLockError::WouldBlock) = file.try_lock() {
-        return Err(refused(part, "is being written by another gyrolab now"));
+    let cannot = |error| cannot_write(part, &error);
+    loop {
+        let mut options = OpenOptions::new();
+        options.read(true).write(true).create(true).truncate(false);
+        let file = options.open(part).map_err(cannot)?;
+        // Some file systems have no locks.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return Err(refused(part, "is being written by another gyrolab now"));
+        }
+        // Another process may have renamed or removed its file between the opening and the lock.
+        let opened = file.metadata().map_err(cannot)?.ino();
+        if fs::metadata(part).is_ok_and(|named| named.ino() == opened) {
+            return Ok(file);
+        }
     }
-    Ok(file)
 }
 
 /// The content of a file, compared with a sweep.
