@@ -11,7 +11,7 @@ use toml::Table;
 
 /// The most earlier runs that are kept.
 const MOST_RUNS: usize = 200;
-/// The most points that the kept runs have together where each has those of the present one; it limits the memory.
+/// The most points and parts that the bodies of the earlier runs have together; it limits the memory.
 const MOST_POINTS: usize = 200_000;
 
 /// One run of the history: its name, its journal, and the step at which the user left it.
@@ -106,11 +106,15 @@ impl History {
         self.drop_oldest();
     }
 
-    /// Drops the oldest runs beyond [`MOST_RUNS`], or beyond fewer where the body has many points.
+    /// Drops the oldest runs beyond [`MOST_RUNS`] and [`MOST_POINTS`]; the newest earlier run always stays.
     fn drop_oldest(&mut self) {
-        let body = &self.present.journal.base().body;
-        let points = (body.point.len() + body.part.len()).max(1);
-        let kept = (MOST_POINTS / points).clamp(1, MOST_RUNS);
+        let mut points = 0;
+        let newest = self.past.iter().rev().take_while(|run| {
+            let body = &run.journal.base().body;
+            points += body.point.len() + body.part.len();
+            points <= MOST_POINTS
+        });
+        let kept = newest.count().clamp(1, MOST_RUNS);
         self.past.drain(..self.past.len().saturating_sub(kept));
     }
 
@@ -327,5 +331,26 @@ mod tests {
         let set = Table::from_iter([("body.rim.radius_m".to_owned(), Value::Float(-1.0))]);
         history.begin_with(&set, false).unwrap_err();
         assert_eq!(history, before);
+    }
+
+    #[test]
+    fn few_runs_with_large_bodies_are_kept_and_small_ones_stay_behind_a_large_one() {
+        let points = |count: usize| {
+            let scenario = opened("method-2");
+            let mut file = scenario.file.clone();
+            let top = file.body.point[0].clone();
+            file.body.point = vec![top; count];
+            Arc::new(Scenario {
+                file,
+                ..(*scenario).clone()
+            })
+        };
+        let mut history = method_2();
+        for count in [10, 10, MOST_POINTS - 20, 1] {
+            history.begin("x", &points(count));
+        }
+        assert_eq!(history.past.len(), 3, "method-2 went");
+        history.begin("x", &points(1));
+        assert_eq!(history.past.len(), 3, "the first with ten points went");
     }
 }

@@ -74,8 +74,10 @@ fn the_run_up_to_a_step_ends_there_and_has_its_description() {
         (0, 0, 0),
         (4, 0, 0),
         (5, 1, 0),
+        (10, 2, 0),
         (15, 2, 0),
         (20, 3, 0),
+        (30, 3, 1),
         (50, 3, 1),
     ] {
         let run = journal.scenario_until(step).unwrap();
