@@ -103,7 +103,7 @@ fn verified(
 ) -> Result<Verified, Unverified> {
     let (head, file) = opened(path)?;
     let text = run_file(&head)?;
-    let document = Document::parse(&path.display().to_string(), &text)?;
+    let document = Document::parse_header(&path.display().to_string(), &text)?;
     let (mut against, mut notes) = (Against::new(&head, file), Vec::new());
     let mut verdict = None;
     if head.names().starts_with(OF_COMPARISON) {

@@ -40,7 +40,7 @@ pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
 /// What is said where `text`, which is refused as measured data, is a scenario.
 fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
     const OF_SCENARIOS: [&str; 3] = ["body", "start", "motion"];
-    let document = Document::parse(origin, text).ok()?;
+    let document = Document::parse_header(origin, text).ok()?;
     let is_table = |name: &str| document.table().get(name).is_some_and(Value::is_table);
     let rule = "is a scenario, and no measured data: it stands where SCENARIO does (gyrolab SCENARIO --measured FILE.csv, gyrolab fit FILE.csv --in SCENARIO); measured data are a CSV, which gyrolab man fit describes";
     let is_scenario = OF_SCENARIOS.into_iter().any(is_table);

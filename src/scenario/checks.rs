@@ -98,10 +98,12 @@ fn is_readable(body: &Body, trace: usize, start: &State, gravity: f64) -> bool {
 }
 
 fn no_top(body: &Body) -> Vec<Problem> {
-    let names = listed(body.names().into_iter());
-    let known = match names.as_str() {
-        "none" => "it has no named point: add a [[body.point]]".to_owned(),
-        names => format!("name one of its points with trace = \"...\": {names}"),
+    let names = body.names();
+    let known = if names.is_empty() {
+        "it has no named point: add a [[body.point]]".to_owned()
+    } else {
+        let names = listed(names.into_iter());
+        format!("name one of its points with trace = \"...\": {names}")
     };
     let rule = format!("the body has no point \"{TOP}\" whose path could be shown; {known}");
     vec![Problem::at("trace", rule)]

@@ -48,13 +48,13 @@ impl Document {
     pub fn read(path: &Path) -> Result<Self, Problems> {
         let origin = path.display().to_string();
         let text = read_text(path).map_err(|problem| Problems::one(&*origin, problem))?;
-        Self::parse(&origin, &text)
+        Self::parse_header(&origin, &text)
     }
 
     /// Reads what `reader` gives to its end.
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
         let text = text_of_file(reader).map_err(|problem| Problems::one(origin, problem))?;
-        Self::parse(origin, &text)
+        Self::parse_header(origin, &text)
     }
 
     pub fn origin(&self) -> &str {
@@ -82,6 +82,12 @@ impl Document {
 
     /// Takes `text` as the scenario that `origin` holds.
     pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
+        limits::few_enough(text, 1).map_err(|problem| Problems::one(origin, problem))?;
+        Self::parse_header(origin, text)
+    }
+
+    /// The same for the header of a CSV, which may be twice as long.
+    pub fn parse_header(origin: &str, text: &str) -> Result<Self, Problems> {
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
         limits::few_enough(&text, 2).map_err(|problem| Problems::one(origin, problem))?;
         let table = text.parse();

@@ -21,7 +21,7 @@ pub(super) fn edits(
     body: &Body,
     pushes: &Pushes,
     friction: &Friction,
-) -> Result<Vec<Edit>, Vec<Problem>> {
+) -> Result<Vec<Edit>, Problems> {
     if file.edit.is_empty() {
         return Ok(Vec::new());
     }
@@ -41,11 +41,11 @@ pub(super) fn edits(
             );
             let step = Value::Integer(i64::try_from(entry.step).unwrap_or(i64::MAX));
             let key = format!("edit.{index}.step");
-            return Err(vec![Problem::with_value(key, &step, rule)]);
+            return Err(vec![Problem::with_value(key, &step, rule)].into());
         }
         last = entry.step;
         let edit = progress.edit(entry).map_err(|mut problems| {
-            for problem in &mut problems {
+            for problem in &mut problems.list {
                 problem.key.insert_str(0, &format!("edit.{index}.set."));
             }
             problems
@@ -76,14 +76,14 @@ struct Progress<'a> {
 
 impl Progress<'_> {
     /// Makes the edit `entry`. In a refusal the keys are those that it sets.
-    fn edit(&mut self, entry: &EditFile) -> Result<Edit, Vec<Problem>> {
+    fn edit(&mut self, entry: &EditFile) -> Result<Edit, Problems> {
         let mut set_pushes = BTreeSet::new();
         for (key, value) in &entry.set {
             let written =
                 may_edit(key, value).and_then(|()| set_key(&mut self.written, key, value.clone()));
             let key = key.clone();
             set_pushes.extend(number_of_push(&key));
-            written.map_err(|problem| vec![Problem { key, ..problem }])?;
+            written.map_err(|problem| Problems::from(vec![Problem { key, ..problem }]))?;
         }
         let touches = Touches {
             time_step: entry.set.contains_key("motion.time_step_s"),
@@ -98,7 +98,7 @@ impl Progress<'_> {
         for &place in &set_pushes {
             problems.kept(self.set_push(place));
         }
-        problems.or(()).map_err(|problems| problems.list)?;
+        problems.or(())?;
         Ok(Edit {
             step: entry.step,
             motion: self.motion,
@@ -108,12 +108,12 @@ impl Progress<'_> {
         })
     }
 
-    fn set_motion(&mut self) -> Result<(), Vec<Problem>> {
+    fn set_motion(&mut self) -> Result<(), Problems> {
         self.motion = motion(&self.read::<MotionFile>("motion")?);
-        objects(self.motion.scheme, self.friction)
+        Ok(objects(self.motion.scheme, self.friction)?)
     }
 
-    fn set_push(&mut self, place: usize) -> Result<(), Vec<Problem>> {
+    fn set_push(&mut self, place: usize) -> Result<(), Problems> {
         let key = format!("push.{place}");
         let push = push(&self.read::<PushFile>(&key)?, self.body, &key)?;
         let pushes = Arc::make_mut(&mut self.pushes);
@@ -123,18 +123,18 @@ impl Progress<'_> {
         }
         let (edits, body) = (self.file.edit.len(), &self.file.body);
         let bodies = body.rim_points() + body.point.len() + body.part.len();
-        too_many(edits, bodies, pushes.len()).map_or(Ok(()), |problem| Err(vec![problem]))
+        too_many(edits, bodies, pushes.len()).map_or(Ok(()), |problem| Err(vec![problem].into()))
     }
 
     /// The table at `key`, held against the keys.
-    fn read<T: DeserializeOwned>(&self, key: &str) -> Result<T, Vec<Problem>> {
+    fn read<T: DeserializeOwned>(&self, key: &str) -> Result<T, Problems> {
         let table = find(&self.written, key).cloned();
         let table = table.unwrap_or(Value::Boolean(false));
-        keys::check_part(&table, key)
-            .or(())
-            .map_err(|problems| problems.list)?;
+        keys::check_part(&table, key).or(())?;
         let read = table.try_into();
-        read.map_err(|error: toml::de::Error| vec![Problem::at(key, error.message().to_owned())])
+        read.map_err(|error: toml::de::Error| {
+            vec![Problem::at(key, error.message().to_owned())].into()
+        })
     }
 }
 

@@ -28,8 +28,8 @@ const MOST_TABLES: usize = 120_000;
 /// The most lines and elements of arrays that a file may have.
 const MOST_VALUES: usize = 800_000;
 
-/// Refuses a `text` with more tables or values than a file may have, which would take far more memory than a scenario of its
-/// length, or than `times` as many: the header of a CSV writes as several lines what may stand on one in its scenario.
+/// Refuses a `text` that has more than `times` the tables or values of a file: they would take far more memory than a usual
+/// scenario of its length. The header of a CSV may have twice as many: it writes on several lines what its scenario may have on one.
 pub fn few_enough(text: &str, times: usize) -> Result<(), Problem> {
     let (most_tables, most_values) = (times * MOST_TABLES, times * MOST_VALUES);
     let (mut tables, mut values, mut heading) = (0, 0, "");

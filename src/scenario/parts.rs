@@ -137,12 +137,12 @@ pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Problems
     found.or(pushes)
 }
 
-pub(super) fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<Problem>> {
+pub(super) fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Problems> {
     let mut problems = Problems::default();
     let point = problems.kept(body.find(&format!("{key}.point"), &file.point));
     let window = problems.kept(window(file, key));
     let (Some(point), Some(window)) = (point, window) else {
-        return Err(problems.list);
+        return Err(problems);
     };
     Ok(Push {
         point,

@@ -135,7 +135,7 @@ fn along<'a>(table: &Table, settings: &'a [String]) -> Result<(&'a str, Vec<f64>
 
 /// The fitted run's own curve of the quantity `name` over the times that `x` spans.
 fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
-    let scenario = Document::parse("", run_file).ok()?.scenario().ok()?;
+    let scenario = Document::parse_header("", run_file).ok()?.scenario().ok()?;
     let quantity = Quantity::find(name)?;
     let (begin, end) = extent(x.iter().copied())?;
     let time = |index: u32| begin + (end - begin) * (f64::from(index) / f64::from(POINTS));
