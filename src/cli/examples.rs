@@ -7,7 +7,8 @@ const EXAMPLES: &str = include_str!("examples.txt");
 
 /// The part of `text` below the line `== name`.
 pub(super) fn part(text: &'static str, name: &str) -> Option<&'static str> {
-    let mut parts = text.split("== ").filter_map(|part| part.split_once('\n'));
+    let text = text.strip_prefix("== ")?;
+    let mut parts = text.split("\n== ").filter_map(|part| part.split_once('\n'));
     parts.find_map(|(of, part)| (of == name).then(|| part.trim_end()))
 }
 

@@ -265,9 +265,9 @@ fn tell_of_rows(rows: u64, path: &Path) {
     tell(format_args!("gyrolab: {rows} in {}", Shown(path)));
 }
 
-/// How a command ends whose run `broke` off: it has written what there is before that.
-fn ended_by(broke: Option<anyhow::Error>) -> ExitCode {
-    broke.map_or(ExitCode::SUCCESS, |error| {
+/// The exit code of a command that ends with `error`, which is told, or without one.
+fn ended_by(error: Option<anyhow::Error>) -> ExitCode {
+    error.map_or(ExitCode::SUCCESS, |error| {
         complain(&error);
         ExitCode::FAILURE
     })
