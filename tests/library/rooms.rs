@@ -4,9 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms from the lowest to the highest: each may import those before it.
-const ORDER: [&str; 17] = [
-    "text", "cores", "physics", "scenario", "run", "work", "analysis", "observe", "export",
-    "measured", "figure", "study", "storage", "lab", "teach", "tui", "cli",
+const ORDER: [&str; 20] = [
+    "text", "cores", "physics", "scenario", "run", "journal", "analysis", "playback", "export",
+    "data", "figure", "fit", "sweep", "verify", "writeup", "storage", "lab", "lessons", "tui",
+    "cli",
 ];
 /// The room of the terminal, and the libraries that only it may use.
 const TERMINAL: &str = "tui";
