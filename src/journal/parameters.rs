@@ -99,9 +99,6 @@ pub fn table_at(scenario: &Scenario, step: u64) -> Table {
 /// The checked scenario of `file` with the values of `set`, as `--set key=value` gives them. Where the file gives a spin and
 /// a key is a component of the momentum, the spin is first replaced by the momentum (world frame) that it amounts to;
 /// where it gives a momentum and a key is `steady`, the momentum is replaced by its spin.
-///
-/// # Errors
-/// What is wrong with the changed file; [`Problems::in_one_line`] shortens it.
 pub fn changed(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
     let mut document = Document::from_file("scenario", file)?;
     for (key, value) in set {

@@ -4,7 +4,7 @@ use super::Lab;
 use super::answer::{Answer, Done};
 use super::player::Player;
 use crate::analysis::health::{Advice, advise};
-use crate::journal::mended::{mended, replaced};
+use crate::journal::restart::{as_advised, replaced};
 use crate::playback::background::Job;
 use crate::run::Simulation;
 use crate::scenario::Scenario;
@@ -47,7 +47,7 @@ impl Player {
             Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
         };
         let end_s = self.playback.end_s();
-        let scenario = mended(self.run().scenario(), time_step_s, scheme, end_s).ok()?;
+        let scenario = as_advised(self.run().scenario(), time_step_s, scheme, end_s).ok()?;
         let motion = self.motion();
         let is_in_force = motion.time_step_s == time_step_s
             && scheme.is_none_or(|name| motion.scheme.name == name);
