@@ -4,7 +4,7 @@
 use super::manual::topics::names_and_commands;
 use super::{command, print};
 use crate::analysis::readouts::READOUTS;
-use crate::data::shipped::SHIPPED;
+use crate::data::SHIPPED;
 use crate::export::columns::{COLUMNS, Column, OPTIONAL_COLUMNS, POINT_COLUMNS};
 use crate::figure::kind;
 use crate::lessons::shipped::LESSONS;

@@ -2,7 +2,7 @@
 
 use super::{lesson, print, tell};
 use crate::analysis::readouts::READOUTS;
-use crate::data::shipped as measured;
+use crate::data;
 use crate::export::summary::steps_in_words;
 use crate::journal::changed::Original;
 use crate::lab::command;
@@ -28,11 +28,11 @@ pub(super) fn presets(name: Option<&str>) -> anyhow::Result<ExitCode> {
     };
     let preset = presets::find(name).map(|preset| preset.text);
     let preset = preset.or_else(|| sweeps::find(name).map(|sweep| sweep.text));
-    match preset.or_else(|| measured::find(name).map(|data| data.text)) {
+    match preset.or_else(|| data::find_shipped(name).map(|data| data.text)) {
         Some(text) => print(text),
         None => {
             let sweeps = sweeps::SWEEPS.iter().map(|sweep| sweep.name);
-            let data = measured::SHIPPED.iter().map(|data| data.name);
+            let data = data::SHIPPED.iter().map(|data| data.name);
             let names = PRESETS.iter().map(|preset| preset.name);
             let near = nearest(name, names.chain(sweeps).chain(data));
             bail!("no preset named {}: {near}", printable(name))

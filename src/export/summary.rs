@@ -258,7 +258,6 @@ pub fn steps_in_words(scenario: &Scenario, steps: u64) -> String {
     }
 }
 
-/// The steady precessions at the present tilt.
 fn steady(theory: &Theory) -> String {
     let about = on(" about", &theory.axis);
     let (slow, fast) = (theory.slow_precession, theory.fast_precession);

@@ -17,7 +17,6 @@ const AS_IT_WAS: &str = " as it was: ";
 /// Ends its `source` there.
 const CHANGED: &str = "; changed since";
 
-/// The most changed values of one table that are listed.
 const MOST_VALUES: usize = 2;
 
 /// The longest name of a file, in characters; a file of a longer name is called "what was opened".

@@ -7,7 +7,6 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The longest expression, bytes.
 const LONGEST: usize = 1000;
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -19,20 +18,17 @@ pub struct Expression {
     names: Vec<(String, usize)>,
 }
 
-/// What is wrong with an expression, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("column {column}: {rule}")]
 pub struct Fault {
     /// The character at which the error shows, counted from 1.
     pub column: usize,
-    /// What is wrong there, and the remedy.
     pub rule: String,
 }
 
 #[derive(Clone, Debug)]
 enum Node {
     Number(f64),
-    /// The number of the name.
     Name(usize),
     Negated(Box<Node>),
     Absolute(Box<Node>),
@@ -122,7 +118,6 @@ impl Expression {
         &self.text
     }
 
-    /// Whether it is a condition, not a number.
     pub fn is_condition(&self) -> bool {
         self.root.is_condition()
     }
@@ -132,9 +127,6 @@ impl Expression {
     }
 
     /// Looks each name up once, with `find`, which returns in words why a name stands for no number.
-    ///
-    /// # Errors
-    /// The first name that is not found, where it stands, and why.
     pub fn bind<'a, T>(
         &'a self,
         find: impl Fn(&'a str) -> Result<T, String>,
@@ -287,7 +279,6 @@ fn number(text: &[char]) -> Result<(Token, usize), String> {
     }
 }
 
-/// The name at the beginning of `text`, or the operator that is a word.
 fn word(text: &[char]) -> (Token, usize) {
     let is_part = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.');
     let name: String = text.iter().take_while(|c| is_part(c)).collect();

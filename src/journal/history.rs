@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toml::Table;
 
-/// The most earlier runs that are kept.
 const MOST_RUNS: usize = 200;
 /// The most points and parts that the bodies of the earlier runs have together; it limits the memory.
 const MOST_POINTS: usize = 200_000;
@@ -28,7 +27,6 @@ pub struct RunRecord {
     /// one by one in it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_advised: bool,
-    /// The scenario, and what the user did to it.
     pub journal: Journal,
 }
 
@@ -43,12 +41,13 @@ pub struct History {
     undone: Vec<RunRecord>,
 }
 
-/// What an undo or a redo has changed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reversal {
     /// The present run has changed after `step`; up to there it is the same.
-    SameRun { step: u64, act: Act },
-    /// Another run is now the present one.
+    SameRun {
+        step: u64,
+        act: Act,
+    },
     OtherRun,
 }
 

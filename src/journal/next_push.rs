@@ -18,7 +18,6 @@ const WEIGHTS: f64 = 2.0;
 /// distance from the pivot.
 const UPRIGHT: f64 = 1e-9;
 
-/// A push that has not been given yet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct NextPush {
@@ -186,9 +185,6 @@ impl NextPush {
 
     /// The push as a table of a run file, beginning at the time of `state`. Its times are in seconds, so that an edit of
     /// the time step does not change its duration.
-    ///
-    /// # Errors
-    /// Where the body has no point of that name, or the direction does not exist at its position.
     pub fn given(&self, scenario: &Scenario, state: &State) -> Result<PushFile, String> {
         let body = &scenario.body;
         let point = body
@@ -220,7 +216,6 @@ pub enum Toward {
     Up,
     /// Horizontally away from the vertical through the pivot.
     Out,
-    /// Horizontally towards that vertical.
     In,
     /// Horizontally around that vertical, counterclockwise seen from above.
     Around,
@@ -288,9 +283,6 @@ impl Toward {
     }
 
     /// The unit vector of the direction, world frame, for a point that stands at `at` (world frame, m).
-    ///
-    /// # Errors
-    /// Where the point stands on the vertical and the direction is relative to it, or where the vector is zero.
     fn direction(self, at: &Vector3<f64>) -> Result<Vector3<f64>, String> {
         let out = Vector3::new(at.x, at.y, 0.0);
         let around = Vector3::new(-at.y, at.x, 0.0);

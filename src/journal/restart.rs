@@ -24,9 +24,6 @@ const ROUNDING: f64 = 1e-9;
 /// force there; edits made at `step` itself are included, later ones are not. Times are counted from the new start: a push
 /// that is over is left out, one in progress is shortened, and a later one is moved. Moved pushes have their times in
 /// seconds.
-///
-/// # Errors
-/// Where an accumulating push has already begun, or counts steps of another length than the present time step.
 pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Scenario, Problems> {
     let origin = "the scenario from here";
     let (motion, pushes) = in_force(scenario, step);
@@ -87,7 +84,6 @@ pub fn in_force(scenario: &Scenario, step: u64) -> (Motion, &Pushes) {
     })
 }
 
-/// The start table with the orientation and the momentum of `state`.
 fn start(state: &State) -> StartFile {
     let [tilt, turn, roll] = angles_deg(&state.orientation);
     StartFile {
@@ -201,9 +197,6 @@ impl Now<'_> {
 /// The run of `scenario` with the time step `time_step_s` (s) and, where one is named, `scheme` throughout. It has the
 /// pushes and the edits of gravity and pushes at the same times, and no edits of time step and scheme. It ends at
 /// `end_s` (s).
-///
-/// # Errors
-/// Where steps have a meaning that seconds cannot hold: a push that accumulates, or an edit that counts in steps.
 pub fn as_advised(
     scenario: &Scenario,
     time_step_s: f64,
@@ -261,25 +254,6 @@ fn counts(key: &str, value: &Value) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
-
-    fn from_angles([tilt, turn, roll]: [f64; 3]) -> Matrix3<f64> {
-        let about = |axis: Vector3<f64>, deg: f64| rotation::about(&axis, deg.to_radians());
-        about(Vector3::z(), turn) * about(Vector3::x(), tilt) * about(Vector3::z(), roll)
-    }
-
-    proptest! {
-        #[test]
-        fn the_angles_give_the_orientation_back(
-            tilt in prop_oneof![Just(0.0), Just(180.0), Just(1e-7), Just(1e-14), Just(179.9999999), 0.0..180.0f64],
-            turn in -180.0..180.0f64,
-            roll in -180.0..180.0f64,
-        ) {
-            let orientation = from_angles([tilt, turn, roll]);
-            let back = from_angles(angles_deg(&orientation));
-            prop_assert!((back - orientation).amax() < 4e-15, "{}", (back - orientation).amax());
-        }
-    }
 
     fn run(edits: &str) -> Scenario {
         let text = crate::scenario::presets::find("wobble-push").map(|preset| preset.text);

@@ -32,7 +32,6 @@ impl Clock {
         clock
     }
 
-    /// The edits of `scenario`, each with the time at which it is made, s.
     pub fn edits(scenario: &Scenario) -> impl Iterator<Item = (f64, &Edit)> {
         let mut clock = Self::new(scenario.motion.time_step_s);
         scenario.edits.iter().map(move |edit| {
@@ -55,7 +54,6 @@ impl Clock {
         self.anchor_s + (step - self.anchor_step) as i64 as f64 * self.time_step_s
     }
 
-    /// From `step` on, the time step is `time_step_s`.
     pub fn change(&mut self, step: u64, time_step_s: f64) {
         *self = Self {
             anchor_step: step,
@@ -83,20 +81,4 @@ pub fn resampled(scenario: &Scenario, time_step_s: f64, scheme: &'static SchemeI
     other.steps = ((Clock::end_s(scenario) / time_step_s).round() as u64).max(1);
     (other.motion.time_step_s, other.motion.scheme) = (time_step_s, scheme);
     other
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn time_is_counted_from_the_last_edit_of_the_time_step() {
-        let mut clock = Clock::new(0.1);
-        assert_eq!(clock.time_s(3), 3.0 * 0.1);
-        clock.change(40, 0.05);
-        assert_eq!(clock.time_s(40), 4.0);
-        assert_eq!(clock.time_s(42), 4.1);
-        assert_eq!(clock.step_at(4.1), 42);
-        assert_eq!(clock.step_at(4.11), 43);
-    }
 }

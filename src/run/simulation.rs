@@ -13,7 +13,6 @@ use std::sync::Arc;
 /// computes the same bits.
 #[derive(Clone)]
 pub struct Simulation {
-    /// The step it stands at, as it is published.
     now: Step,
     scheme: Box<dyn Scheme>,
     pushes: Arc<[Push]>,
@@ -31,7 +30,6 @@ pub struct Simulation {
     safe_below: f64,
     /// Whether the workings of every step are kept.
     keeps_workings: bool,
-    /// Whether there is friction.
     rubs: bool,
 }
 
@@ -61,7 +59,6 @@ impl NotFinite {
 }
 
 impl Simulation {
-    /// The run of `scenario`, at step 0.
     pub fn new(scenario: Arc<Scenario>) -> Self {
         let (motion, state) = (scenario.motion, scenario.start);
         let loads = Loads {
@@ -161,7 +158,6 @@ impl Simulation {
         end
     }
 
-    /// The step it stands at.
     #[inline]
     pub fn now(&self) -> &Step {
         &self.now

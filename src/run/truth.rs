@@ -111,7 +111,6 @@ impl Truth {
         }
     }
 
-    /// The scenario whose exact motion it is.
     pub fn scenario(&self) -> &Arc<Scenario> {
         &self.scenario
     }
@@ -137,7 +136,6 @@ impl Truth {
         self.pieces
     }
 
-    /// The index of the era that `time_s` (s) lies in.
     fn era_at(&self, time_s: f64) -> usize {
         let begun = self.eras.partition_point(|era| era.begin_s <= time_s);
         begun.saturating_sub(1)

@@ -28,7 +28,6 @@ pub fn later(write: impl FnOnce() -> String + Send + 'static) -> Text {
     Arc::new(LazyLock::new(Box::new(write)))
 }
 
-/// The content of a session.
 #[derive(Clone, Debug)]
 pub struct Content {
     /// What changes seldom, such as the runs and their journals.
@@ -94,7 +93,6 @@ pub struct LeftAlone {
     pub reason: String,
 }
 
-/// A session in a listing.
 #[derive(Debug)]
 pub struct Listed {
     pub name: String,
@@ -120,10 +118,6 @@ pub fn folder() -> Result<PathBuf, String> {
 
 /// Resumes the newest session in `folder` that no running process holds and that `read` accepts; with a `name` only that
 /// one.
-///
-/// # Errors
-/// When `folder` cannot be listed, there is no session of that name, or the system gives no thread. A `folder` that does
-/// not exist yet is no error.
 pub fn resume<T>(
     folder: &Path,
     name: Option<&str>,
@@ -326,7 +320,6 @@ fn keep_writing(slot: Slot, state: &Mutex<State>, flushes: &Receiver<(Sender<()>
     }
 }
 
-/// Saves what was noted last.
 fn save(slot: &Slot, state: &Mutex<State>) {
     let noted = {
         let mut state = locked(state);

@@ -26,7 +26,6 @@ use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 const FORMAT: &str = "gyrolab session 4";
-/// The most unused sessions that are kept.
 const MOST_KEPT: usize = 20;
 /// A lock that is held for a shorter time belongs to a process that only looks at the session.
 const GLANCE: Duration = Duration::from_millis(10);
@@ -203,38 +202,5 @@ impl Drop for Slot {
     /// file open.
     fn drop(&mut self) {
         let _ = self.lock.unlock();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_changed_byte_is_detected() {
-        let folder = tempfile::tempdir().unwrap();
-        let slot = Slot::new(folder.path()).unwrap();
-        let wanted = ("title = \"Größe\"\nform = 2\n", "step = 12\n");
-        slot.save(&Content {
-            work: later(|| wanted.0.to_owned()),
-            place: wanted.1.to_owned(),
-        })
-        .unwrap();
-        let path = file(folder.path(), "1", "session");
-        let bytes = fs::read(&path).unwrap();
-        let read = |bytes: &[u8]| {
-            fs::write(&path, bytes).unwrap();
-            stored(folder.path(), "1").ok()
-        };
-        let content = read(&bytes).unwrap();
-        assert_eq!((content.work.as_str(), &*content.place), wanted);
-        for bit in 0..8 * bytes.len() {
-            let mut changed = bytes.clone();
-            changed[bit / 8] ^= 1 << (bit % 8);
-            assert!(read(&changed).is_none(), "bit {bit}");
-        }
-        for end in 0..bytes.len() {
-            assert!(read(&bytes[..end]).is_none(), "cut at {end}");
-        }
     }
 }

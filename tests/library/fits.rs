@@ -250,7 +250,7 @@ fn torque(which: usize) -> impl Fn(usize) -> bool {
 #[test]
 fn heidelberg_one_weight_and_two_differ() {
     // The spins without their uncertainties: the published ones are those of the period alone.
-    let text = gyrolab::data::shipped::find("heidelberg-precession")
+    let text = gyrolab::data::find_shipped("heidelberg-precession")
         .unwrap()
         .text;
     let without = text.lines().map(|line| {

@@ -1,6 +1,6 @@
 //! Putting measured data beside the run, and taking them away.
 
-use crate::data::{self, Measured, shipped};
+use crate::data::{self, Measured};
 use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::answer::{Answer, Done};
@@ -15,7 +15,7 @@ impl Files {
     /// Reads the measured data `name`: those that come with the program, or a file. `may_wait` says whether it may be a
     /// FIFO or a device, which is read for any length of time.
     fn open_measured(&self, name: &str, may_wait: bool) -> Result<Measured, Problems> {
-        if shipped::find(name).is_none() {
+        if data::find_shipped(name).is_none() {
             let refused = |rule: String| Problems::one(name, Problem::at("", rule));
             let path = Path::new(name);
             self.admit(path).map_err(refused)?;
@@ -112,7 +112,7 @@ impl Lab {
     /// confined to a folder.
     pub(in crate::lab) fn measured_to_keep(&self) -> Option<String> {
         let name = &self.player.measured()?.name;
-        let is_whole = shipped::find(name).is_some() || self.files.confined().is_some();
+        let is_whole = data::find_shipped(name).is_some() || self.files.confined().is_some();
         let whole = std::path::absolute(name).ok().filter(|_| !is_whole);
         let whole = whole.and_then(|path| path.to_str().map(str::to_owned));
         Some(whole.unwrap_or_else(|| name.clone()))
