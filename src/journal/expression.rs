@@ -5,7 +5,6 @@
 //! is computed from it has none either, and a comparison with it neither holds nor fails.
 
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 const LONGEST: usize = 1000;
 
@@ -99,9 +98,21 @@ impl Expression {
             let rule = format!("an expression has at most {LONGEST} characters");
             return Err(Fault { column: 1, rule });
         }
-        let (root, names) = tree(text)?;
-        let text = text.to_owned();
-        Ok(Self { text, root, names })
+        let mut parser = Parser {
+            text,
+            at: 0,
+            names: Vec::new(),
+            depth: 0,
+        };
+        let root = parser.expression(0)?;
+        if !parser.rest().is_empty() {
+            return parser.misplaced("cannot follow here: an operator must come first");
+        }
+        Ok(Self {
+            text: text.to_owned(),
+            root,
+            names: parser.names,
+        })
     }
 
     /// Reads `text`, which must say whether something holds.
@@ -195,133 +206,63 @@ impl Node {
 /// How deep parentheses and signs may be nested.
 const DEEPEST: usize = 64;
 
-/// The expression in `text`, and each name in it once with its column.
-fn tree(text: &str) -> Result<(Node, Vec<(String, usize)>), Fault> {
-    let mut parser = Parser {
-        tokens: tokens(text)?,
-        at: 0,
-        end: text.chars().count() + 1,
-        names: Vec::new(),
-        depth: 0,
-    };
-    let root = parser.expression(0)?;
-    match parser.tokens.get(parser.at) {
-        None => Ok((root, parser.names)),
-        Some((column, token)) => Parser::fault(
-            *column,
-            format!("{token} cannot follow here: an operator must come first"),
-        ),
-    }
-}
-
-#[derive(Clone)]
-enum Token {
-    Number(f64),
-    Name(String),
-    Operator(&'static Operator),
-    Open,
-    Close,
-}
-
-impl fmt::Display for Token {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Number(number) => write!(f, "{number}"),
-            Self::Name(name) => f.write_str(name),
-            Self::Operator(operator) => f.write_str(operator.name),
-            Self::Open => f.write_str("("),
-            Self::Close => f.write_str(")"),
-        }
-    }
-}
-
-fn tokens(text: &str) -> Result<Vec<(usize, Token)>, Fault> {
-    let characters: Vec<char> = text.chars().collect();
-    let mut tokens = Vec::new();
-    let mut at = 0;
-    while let Some(&c) = characters.get(at) {
-        if c.is_whitespace() {
-            at += 1;
-            continue;
-        }
-        let rest = &characters[at..];
-        let column = at + 1;
-        let read = if c.is_ascii_digit() || c == '.' {
-            number(rest)
-        } else if c.is_ascii_alphabetic() || c == '_' {
-            Ok(word(rest))
-        } else {
-            sign(rest)
-        };
-        let (token, length) = read.map_err(|rule| Fault { column, rule })?;
-        tokens.push((column, token));
-        at += length;
-    }
-    Ok(tokens)
-}
-
-/// The number at the beginning of `text`: digits, a point, an exponent.
-fn number(text: &[char]) -> Result<(Token, usize), String> {
-    let is_part = |index: usize| {
-        let c = text[index];
-        let before = index.checked_sub(1).map(|before| text[before]);
-        c.is_ascii_alphanumeric()
-            || c == '.'
-            || (matches!(c, '+' | '-') && matches!(before, Some('e' | 'E')))
-    };
-    let length = (0..text.len())
-        .find(|&index| !is_part(index))
-        .unwrap_or(text.len());
-    let written: String = text[..length].iter().collect();
-    match written.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok((Token::Number(number), length)),
-        _ => Err(format!("{written} is no number")),
-    }
-}
-
-fn word(text: &[char]) -> (Token, usize) {
-    let is_part = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.');
-    let name: String = text.iter().take_while(|c| is_part(c)).collect();
-    let length = name.len();
-    let operator = OPERATORS.iter().find(|operator| operator.name == name);
-    let token = operator.map_or(Token::Name(name), Token::Operator);
-    (token, length)
-}
-
-fn sign(text: &[char]) -> Result<(Token, usize), String> {
-    match text[0] {
-        '(' => return Ok((Token::Open, 1)),
-        ')' => return Ok((Token::Close, 1)),
-        _ => {}
-    }
-    let begins =
-        |name: &str| name.chars().zip(text).all(|(a, b)| a == *b) && name.len() <= text.len();
-    let operator = OPERATORS.iter().find(|operator| begins(operator.name));
-    match (operator, text[0]) {
-        (Some(operator), _) => Ok((Token::Operator(operator), operator.name.len())),
-        (None, '=') if text.get(1) == Some(&'>') => Err("write >= for =>".to_owned()),
-        (None, '=') if text.get(1) == Some(&'<') => Err("write <= for =<".to_owned()),
-        (None, '=') => Err("a comparison is written ==".to_owned()),
-        (None, '&') => Err("write and".to_owned()),
-        (None, '|') => Err("write or, or abs(...)".to_owned()),
-        (None, c) => Err(format!("{} has no meaning here", c.escape_debug())),
-    }
-}
-
-struct Parser {
-    tokens: Vec<(usize, Token)>,
+/// Reads `text` from its beginning to its end.
+struct Parser<'a> {
+    text: &'a str,
+    /// Where the next character stands, in bytes.
     at: usize,
-    /// The column after the last character.
-    end: usize,
+    /// Each name once, with its column.
     names: Vec<(String, usize)>,
     depth: usize,
 }
 
-impl Parser {
-    fn column(&self) -> usize {
-        self.tokens
-            .get(self.at)
-            .map_or(self.end, |(column, _)| *column)
+/// The number, name or operator in letters at the beginning of `rest`; empty where it begins with a sign.
+fn word(rest: &str) -> &str {
+    let is_number = rest.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    let mut before = ' ';
+    let end = rest.find(|c: char| {
+        let is_of_exponent = matches!((before, c), ('e' | 'E', '+' | '-'));
+        before = c;
+        let is_of_both = c.is_ascii_alphanumeric() || c == '.';
+        !(is_of_both || if is_number { is_of_exponent } else { c == '_' })
+    });
+    &rest[..end.unwrap_or(rest.len())]
+}
+
+/// What is wrong with the sign `c`, which `next` follows.
+fn no_meaning(c: char, next: Option<char>) -> String {
+    match (c, next) {
+        ('=', Some('>')) => "write >= for =>".to_owned(),
+        ('=', Some('<')) => "write <= for =<".to_owned(),
+        ('=', _) => "a comparison is written ==".to_owned(),
+        ('&', _) => "write and".to_owned(),
+        ('|', _) => "write or, or abs(...)".to_owned(),
+        _ => format!("{} has no meaning here", c.escape_debug()),
+    }
+}
+
+impl<'a> Parser<'a> {
+    /// What has not been read; it begins with no space.
+    fn rest(&mut self) -> &'a str {
+        let rest = self.text[self.at..].trim_start();
+        self.at = self.text.len() - rest.len();
+        rest
+    }
+
+    /// The column of the next character that is no space.
+    fn column(&mut self) -> usize {
+        self.rest();
+        self.text[..self.at].chars().count() + 1
+    }
+
+    fn operator(&mut self) -> Option<&'static Operator> {
+        let rest = self.rest();
+        let word = word(rest);
+        let is_here = |operator: &&Operator| match word {
+            "" => rest.starts_with(operator.name),
+            word => operator.name == word,
+        };
+        OPERATORS.iter().find(is_here)
     }
 
     fn fault<T>(column: usize, rule: impl Into<String>) -> Result<T, Fault> {
@@ -329,20 +270,30 @@ impl Parser {
         Err(Fault { column, rule })
     }
 
+    /// Refuses what stands here, of which `rule` is true where it has a meaning elsewhere.
+    fn misplaced<T>(&mut self, rule: &str) -> Result<T, Fault> {
+        let column = self.column();
+        let rest = self.rest();
+        let mut signs = rest.chars();
+        let known = self.operator().map_or(word(rest), |operator| operator.name);
+        match (known, signs.next()) {
+            ("", Some(c @ ('(' | ')'))) => Self::fault(column, format!("{c} {rule}")),
+            ("", Some(c)) => Self::fault(column, no_meaning(c, signs.next())),
+            _ => Self::fault(column, format!("{known} {rule}")),
+        }
+    }
+
     /// The operands joined by operators that bind at least as tightly as `least`.
     fn expression(&mut self, least: u8) -> Result<Node, Fault> {
+        let begin = self.column();
         self.depth += 1;
         if self.depth > DEEPEST {
-            return Self::fault(self.column(), "it is nested too deep");
+            return Self::fault(begin, "it is nested too deep");
         }
-        let begin = self.column();
         let mut left = self.operand()?;
-        while let Some((column, Token::Operator(operator))) = self.tokens.get(self.at) {
-            let (column, operator) = (*column, *operator);
-            if operator.power < least {
-                break;
-            }
-            self.at += 1;
+        while let Some(operator) = self.operator().filter(|it| it.power >= least) {
+            let column = self.column();
+            self.at += operator.name.len();
             let right_begins = self.column();
             let right = self.expression(operator.power + 1)?;
             for (side, at) in [(&left, begin), (&right, right_begins)] {
@@ -367,33 +318,46 @@ impl Parser {
     }
 
     fn operand(&mut self) -> Result<Node, Fault> {
-        let Some((column, token)) = self.tokens.get(self.at).cloned() else {
-            return Self::fault(self.end, "a number or a name is missing at the end");
-        };
-        self.at += 1;
-        match token {
-            Token::Number(number) => Ok(Node::Number(number)),
-            Token::Operator(operator) if operator.name == "-" => {
+        let (column, rest, operator) = (self.column(), self.rest(), self.operator());
+        let word = word(rest);
+        match (operator, rest.chars().next()) {
+            (_, None) => Self::fault(column, "a number or a name is missing at the end"),
+            (Some(operator), Some('-')) => {
+                self.at += 1;
                 let inner = self.expression(MULTIPLIES + 1)?;
                 Self::check_side(operator, &inner, column, column)?;
                 Ok(Node::Negated(Box::new(inner)))
             }
-            Token::Open => {
+            (None, Some('(')) => {
+                self.at += 1;
                 let inner = self.expression(0)?;
-                self.close(column)?;
+                if !self.rest().starts_with(')') {
+                    let rule = format!("the parenthesis of column {column} is not closed");
+                    return Self::fault(self.column(), rule);
+                }
+                self.at += 1;
                 Ok(inner)
             }
-            Token::Name(name) if name == "abs" => self.absolute(column),
-            Token::Name(name) => Ok(Node::Name(self.number_of(name, column))),
-            other => Self::fault(
-                column,
-                format!("{other} needs a number or a name before it"),
-            ),
+            (None, Some(c)) if c.is_ascii_digit() || c == '.' => {
+                self.at += word.len();
+                match word.parse::<f64>() {
+                    Ok(number) if number.is_finite() => Ok(Node::Number(number)),
+                    _ => Self::fault(column, format!("{word} is no number")),
+                }
+            }
+            (None, Some(_)) if !word.is_empty() => {
+                self.at += word.len();
+                match word {
+                    "abs" => self.absolute(column),
+                    name => Ok(Node::Name(self.number_of(name, column))),
+                }
+            }
+            _ => self.misplaced("needs a number or a name before it"),
         }
     }
 
     fn absolute(&mut self, column: usize) -> Result<Node, Fault> {
-        if !matches!(self.tokens.get(self.at), Some((_, Token::Open))) {
+        if !self.rest().starts_with('(') {
             return Self::fault(self.column(), "abs needs parentheses: abs(...)");
         }
         let inner = self.operand()?;
@@ -403,19 +367,10 @@ impl Parser {
         Ok(Node::Absolute(Box::new(inner)))
     }
 
-    fn close(&mut self, opened: usize) -> Result<(), Fault> {
-        if !matches!(self.tokens.get(self.at), Some((_, Token::Close))) {
-            let rule = format!("the parenthesis of column {opened} is not closed");
-            return Self::fault(self.column(), rule);
-        }
-        self.at += 1;
-        Ok(())
-    }
-
-    fn number_of(&mut self, name: String, column: usize) -> usize {
-        let known = self.names.iter().position(|(known, _)| *known == name);
+    fn number_of(&mut self, name: &str, column: usize) -> usize {
+        let known = self.names.iter().position(|(known, _)| known == name);
         known.unwrap_or_else(|| {
-            self.names.push((name, column));
+            self.names.push((name.to_owned(), column));
             self.names.len() - 1
         })
     }
