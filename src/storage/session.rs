@@ -7,12 +7,13 @@
 use super::at_exit::{self, Registered};
 use super::own::make_folder;
 use super::slot::{self, Slot};
+pub use super::slot::{Content, Text, later};
 use crate::text::printable::Shown;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, SystemTime};
 
@@ -20,27 +21,6 @@ use std::time::{Duration, SystemTime};
 const PATIENCE: Duration = Duration::from_millis(400);
 /// How often what was noted is saved; a running run does not keep the disk busy.
 const PERIOD: Duration = Duration::from_millis(500);
-
-/// A text that is written once, when it is first read; a clone shares it.
-pub type Text = Arc<LazyLock<String, Box<dyn FnOnce() -> String + Send>>>;
-
-pub fn later(write: impl FnOnce() -> String + Send + 'static) -> Text {
-    Arc::new(LazyLock::new(Box::new(write)))
-}
-
-#[derive(Clone, Debug)]
-pub struct Content {
-    /// What changes seldom, such as the runs and their journals.
-    pub work: Text,
-    /// What changes all the time, such as the present step. It is short.
-    pub place: String,
-}
-
-impl Content {
-    fn is_same(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.work, &other.work) && self.place == other.place
-    }
-}
 
 /// What is left of a session that has ended.
 #[derive(Debug)]
@@ -184,10 +164,7 @@ fn listed(folder: &Path, name: String) -> Listed {
 
 /// The names of all sessions in `folder`, the one saved last first; none where there is no such folder.
 fn sessions(folder: &Path) -> io::Result<Vec<String>> {
-    let found = slot::sessions(folder).or_else(|error| match error.kind() {
-        io::ErrorKind::NotFound => Ok(Vec::new()),
-        _ => Err(error),
-    });
+    let found = slot::sessions(folder);
     found.map_err(|error| told(&error, "cannot look for sessions in", folder))
 }
 
