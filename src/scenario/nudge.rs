@@ -95,22 +95,4 @@ mod tests {
         assert!(added(-0.1, 0.1, 1).is_sign_positive());
         assert_eq!(added(0.565685424949238, 0.005, 1), 0.570685424949238);
     }
-
-    #[test]
-    fn a_typed_number_may_have_its_own_unit() {
-        for text in ["0.05", " 0.05 s ", "5e-2", "0.05s", "+.05 s"] {
-            assert_eq!(typed(text, "s"), Ok(0.05), "{text}");
-        }
-        assert_eq!(typed("3 m/s^2", "m/s2"), Ok(3.0));
-        assert_eq!(typed("3 °", "deg"), Ok(3.0));
-        assert_eq!(typed("3 Js", "J s"), Ok(3.0));
-        assert_eq!(typed("3 ms", "s").unwrap_err(), "is in s, not in \"ms\"");
-        let refusal = |text: &str, unit: &str| typed(text, unit).unwrap_err();
-        assert_eq!(refusal("ten", "s"), "must be a number, not \"ten\"");
-        assert_eq!(refusal("3 s", ""), "must be a number, not \"3 s\"");
-        assert!(refusal("0,5", "s").contains("with a point"));
-        for text in ["", "é", "\u{1b}[2J"] {
-            assert!(refusal(text, "s").starts_with("must be a number"), "{text}");
-        }
-    }
 }

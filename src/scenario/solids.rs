@@ -14,35 +14,43 @@ pub(super) struct Form {
     /// The dimensions without which there is no such solid.
     needs: &'static [&'static str],
     may_have: &'static [&'static str],
+    /// The shape of a part that has the dimensions.
+    make: fn(&PartFile) -> Shape,
 }
 
 const fn form(
     name: &'static str,
     needs: &'static [&'static str],
     may_have: &'static [&'static str],
+    make: fn(&PartFile) -> Shape,
 ) -> Form {
     Form {
         name,
         needs,
         may_have,
+        make,
     }
 }
 
+const TUBE: [&str; 3] = ["inner_radius_m", "outer_radius_m", "length_m"];
+
+#[rustfmt::skip]
 pub(super) static FORMS: [Form; 9] = [
-    form("ring", &["radius_m"], &[]),
-    form("cylinder", &["radius_m"], &["length_m"]),
-    form(
-        "tube",
-        &["inner_radius_m", "outer_radius_m", "length_m"],
-        &[],
-    ),
-    form("rod", &["length_m"], &[]),
-    form("ball", &["radius_m"], &[]),
-    form("shell", &["radius_m"], &[]),
-    form("cone", &["radius_m", "length_m"], &[]),
-    form("block", &["size_m"], &[]),
-    form("moments", &["moments_kg_m2"], &[]),
+    form("ring", &["radius_m"], &[], |file| Shape::Ring { radius: of(file.radius_m) }),
+    form("cylinder", &["radius_m"], &["length_m"], |file| Shape::Cylinder { radius: of(file.radius_m), length: of(file.length_m) }),
+    form("tube", &TUBE, &[], |file| Shape::Tube { inner: of(file.inner_radius_m), outer: of(file.outer_radius_m), length: of(file.length_m) }),
+    form("rod", &["length_m"], &[], |file| Shape::Rod { length: of(file.length_m) }),
+    form("ball", &["radius_m"], &[], |file| Shape::Ball { radius: of(file.radius_m) }),
+    form("shell", &["radius_m"], &[], |file| Shape::Shell { radius: of(file.radius_m) }),
+    form("cone", &["radius_m", "length_m"], &[], |file| Shape::Cone { radius: of(file.radius_m), length: of(file.length_m) }),
+    form("block", &["size_m"], &[], |file| Shape::Block { size: of(file.size_m).into() }),
+    form("moments", &["moments_kg_m2"], &[], |file| Shape::Moments(Vector3::from(of(file.moments_kg_m2)) / file.mass_kg)),
 ];
+
+/// The dimension that a form needs, or that is nothing where it may be left out.
+fn of<T: Default>(dimension: Option<T>) -> T {
+    dimension.unwrap_or_default()
+}
 
 /// The dimensions of any shape, in the order of the table of keys.
 pub(super) const DIMENSIONS: [&str; 6] = [
@@ -76,14 +84,14 @@ pub(super) fn part(file: &PartFile) -> Result<Part, Problems> {
     let form = FORMS.iter().find(|form| form.name == file.shape);
     let form = form.unwrap_or(&FORMS[0]);
     Problems::from(wrong_dimensions(form, file)).or(())?;
-    let shape = shape(file)?;
+    check_dimensions(form, file)?;
     let axis = Vector3::from(file.axis.unwrap_or([0.0, 0.0, 1.0]));
     if axis == Vector3::zeros() {
         let rule = "must not be of length 0: it is a direction";
         return Err(Problem::with_value("axis", &vector(&axis), rule).into());
     }
     let centre = Vector3::from(file.at_m);
-    let part = Part::new(shape, file.mass_kg, centre, &axis);
+    let part = Part::new((form.make)(file), file.mass_kg, centre, &axis);
     Ok(part.map_err(|error| match error {
         PartError::OutOfRange => Problem::at("", error.to_string()),
         PartError::Unreal(_) => {
@@ -112,54 +120,34 @@ fn wrong_dimensions(form: &Form, file: &PartFile) -> Vec<Problem> {
     DIMENSIONS.into_iter().filter_map(wrong).collect()
 }
 
-fn shape(file: &PartFile) -> Result<Shape, Problem> {
-    let given = Option::<f64>::unwrap_or_default;
-    let (radius, length) = (given(file.radius_m), given(file.length_m));
-    let long = || {
-        let rule = "must be greater than zero";
-        let refused = || Problem::with_value("length_m", &Value::Float(length), rule);
-        (length > 0.0).then_some(length).ok_or_else(refused)
-    };
-    Ok(match file.shape.as_str() {
-        "cylinder" => Shape::Cylinder { radius, length },
-        "tube" => {
-            let (inner, outer) = (given(file.inner_radius_m), given(file.outer_radius_m));
-            if inner > outer {
-                let outer = shortest(outer);
-                let rule = format!("must not be greater than outer_radius_m, {outer}");
-                let inner = Value::Float(inner);
-                return Err(Problem::with_value("inner_radius_m", &inner, rule));
-            }
-            Shape::Tube {
-                inner,
-                outer,
-                length,
-            }
-        }
-        "rod" => Shape::Rod { length: long()? },
-        "ball" => Shape::Ball { radius },
-        "shell" => Shape::Shell { radius },
-        "cone" => Shape::Cone {
-            radius,
-            length: long()?,
-        },
-        "block" => Shape::Block {
-            size: not_negative("size_m", file.size_m)?,
-        },
-        "moments" => {
-            Shape::Moments(not_negative("moments_kg_m2", file.moments_kg_m2)? / file.mass_kg)
-        }
-        _ => Shape::Ring { radius },
-    })
-}
-
-fn not_negative(name: &str, numbers: Option<[f64; 3]>) -> Result<Vector3<f64>, Problem> {
-    let numbers = Vector3::from(numbers.unwrap_or_default());
-    if numbers.min() >= 0.0 {
-        return Ok(numbers);
+/// Refuses dimensions that no solid of this form has.
+fn check_dimensions(form: &Form, file: &PartFile) -> Result<(), Problem> {
+    let refused =
+        |name: &str, value: Value, rule: &str| Err(Problem::with_value(name, &value, rule));
+    if let (Some(length), "rod" | "cone") = (file.length_m, form.name)
+        && length <= 0.0
+    {
+        return refused("length_m", length.into(), "must be greater than zero");
     }
-    let rule = "must hold no negative number";
-    Err(Problem::with_value(name, &vector(&numbers), rule))
+    if let (Some(inner), Some(outer)) = (file.inner_radius_m, file.outer_radius_m)
+        && inner > outer
+    {
+        let rule = format!(
+            "must not be greater than outer_radius_m, {}",
+            shortest(outer)
+        );
+        return refused("inner_radius_m", inner.into(), &rule);
+    }
+    for (name, numbers) in [
+        ("size_m", file.size_m),
+        ("moments_kg_m2", file.moments_kg_m2),
+    ] {
+        let numbers = Vector3::from(of(numbers));
+        if numbers.min() < 0.0 {
+            return refused(name, vector(&numbers), "must hold no negative number");
+        }
+    }
+    Ok(())
 }
 
 /// Prepares the file's `table` for a new `value` at `key`. Where a part is to have another shape, or a direction that its file
