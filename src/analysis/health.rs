@@ -282,7 +282,7 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
         return Advice::Nothing;
     }
     if trial(own, scheme).is_some() {
-        let is_edited = |edit: &Edit| edit.motion.scheme != scheme || edit.touches.time_step;
+        let is_edited = |edit: &Edit| edit.motion.scheme != scheme || edit.sets_time_step;
         return if scenario.edits.iter().any(is_edited) {
             Advice::TimeStep(own)
         } else {

@@ -226,7 +226,7 @@ impl Summary {
 pub fn steps_in_words(scenario: &Scenario, steps: u64) -> String {
     let mut parts: Vec<(u64, f64)> = Vec::new();
     let (mut begin, mut time_step_s) = (0, scenario.motion.time_step_s);
-    let edits = scenario.edits.iter().filter(|edit| edit.touches.time_step);
+    let edits = scenario.edits.iter().filter(|edit| edit.sets_time_step);
     for edit in edits.take_while(|edit| edit.step < steps) {
         parts.push((edit.step - begin, time_step_s));
         (begin, time_step_s) = (edit.step, edit.motion.time_step_s);

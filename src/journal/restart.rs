@@ -154,7 +154,7 @@ impl Now<'_> {
     /// Whether the time step is still the one for which the scenario's pushes give their step numbers.
     fn counts_steps(&self) -> bool {
         let mut edits = self.scenario.edits.iter();
-        let is_edited = edits.any(|edit| edit.step <= self.step && edit.touches.time_step);
+        let is_edited = edits.any(|edit| edit.step <= self.step && edit.sets_time_step);
         !is_edited && self.scenario.written_for_s == self.motion.time_step_s
     }
 

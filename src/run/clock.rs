@@ -27,7 +27,7 @@ impl Clock {
         let mut clock = Self::new(scenario.motion.time_step_s);
         let edits = scenario.edits.iter().take_while(|edit| edit.step < step);
         edits
-            .filter(|edit| edit.touches.time_step)
+            .filter(|edit| edit.sets_time_step)
             .for_each(|edit| clock.change(edit.step, edit.motion.time_step_s));
         clock
     }
@@ -36,7 +36,7 @@ impl Clock {
         let mut clock = Self::new(scenario.motion.time_step_s);
         scenario.edits.iter().map(move |edit| {
             let time_s = clock.time_s(edit.step);
-            if edit.touches.time_step {
+            if edit.sets_time_step {
                 clock.change(edit.step, edit.motion.time_step_s);
             }
             (time_s, edit)
@@ -76,7 +76,7 @@ pub fn resampled(scenario: &Scenario, time_step_s: f64, scheme: &'static SchemeI
     for (edit, (time_s, _)) in other.edits.iter_mut().zip(Clock::edits(scenario)) {
         edit.step = (time_s / time_step_s).round() as u64;
         (edit.motion.time_step_s, edit.motion.scheme) = (time_step_s, scheme);
-        edit.touches.time_step = false;
+        edit.sets_time_step = false;
     }
     other.steps = ((Clock::end_s(scenario) / time_step_s).round() as u64).max(1);
     (other.motion.time_step_s, other.motion.scheme) = (time_step_s, scheme);

@@ -45,8 +45,8 @@ impl Stretch {
 }
 
 /// Writes into `forces` what acts during `stretch`: each push's mean force over it.
-pub fn acting<'a>(
-    pushes: impl IntoIterator<Item = &'a Push>,
+pub fn acting(
+    pushes: &[Push],
     counting: Counting,
     stretch: &Stretch,
     forces: &mut Vec<PointForce>,
@@ -155,23 +155,15 @@ fn share(from: f64, to: f64, stretch: &Stretch) -> f64 {
 }
 
 /// The first moment strictly inside `stretch` at which a push counted in seconds begins, ends or (accumulating) grows.
-pub fn next_change<'a>(
-    pushes: impl IntoIterator<Item = &'a Push>,
-    counting: Counting,
-    stretch: &Stretch,
-) -> Option<f64> {
+pub fn next_change(pushes: &[Push], counting: Counting, stretch: &Stretch) -> Option<f64> {
     let margin = ROUNDING * (stretch.end - stretch.begin);
     let moment = next_after(pushes, counting, stretch.begin + margin);
     (moment < stretch.end - margin).then_some(moment)
 }
 
 /// The first moment after `time_s` (s) at which a push counted in seconds begins, ends or grows; infinite where none does.
-pub fn next_after<'a>(
-    pushes: impl IntoIterator<Item = &'a Push>,
-    counting: Counting,
-    time_s: f64,
-) -> f64 {
-    let changes = pushes.into_iter().flat_map(|push| {
+pub fn next_after(pushes: &[Push], counting: Counting, time_s: f64) -> f64 {
+    let changes = pushes.iter().flat_map(|push| {
         let (begin, end) = seconds(push.window, counting);
         let growth = next_growth(push, counting, time_s).unwrap_or(f64::INFINITY);
         [begin, end, growth]

@@ -5,7 +5,7 @@ use super::dotted::{find, is_in, number_of_push, set_key};
 use super::file::{BodyFile, EditFile, MotionFile, PushFile, ScenarioFile};
 use super::keys::{self, EDITABLE_MOTION, Effect, KEYS, TOP};
 use super::limits::too_many;
-use super::model::{Body, Edit, Motion, Pushes, Scenario, Touches};
+use super::model::{Body, Edit, Motion, Pushes, Scenario};
 use super::parts::{body, friction, motion, objects, push, pushes, spinning};
 use super::problem::{Problem, Problems, listed, nearest};
 use super::start::start;
@@ -179,14 +179,10 @@ impl Progress<'_> {
             set_pushes.extend(number_of_push(&key));
             written.map_err(|problem| Problem { key, ..problem })?;
         }
-        let touches = Touches {
-            time_step: entry.set.contains_key("motion.time_step_s"),
-            segment: EDITABLE_MOTION
-                .iter()
-                .any(|key| entry.set.contains_key(*key)),
-        };
+        let sets = |key: &str| entry.set.contains_key(key);
+        let begins_segment = EDITABLE_MOTION.into_iter().any(sets);
         let mut problems = Problems::default();
-        if touches.segment {
+        if begins_segment {
             problems.kept(self.set_motion());
         }
         for &place in &set_pushes {
@@ -198,7 +194,8 @@ impl Progress<'_> {
             motion: self.motion,
             pushes: Arc::clone(&self.pushes),
             set_pushes: set_pushes.into_iter().collect(),
-            touches,
+            sets_time_step: sets("motion.time_step_s"),
+            begins_segment,
         })
     }
 

@@ -27,5 +27,5 @@ pub mod start;
 pub use document::Document;
 pub use file::ScenarioFile;
 pub(crate) use kind::{float, vector};
-pub use model::{Body, Edit, Motion, Push, Pushes, Scenario, Touches, Window};
+pub use model::{Body, Edit, Motion, Push, Pushes, Scenario, Window};
 pub use problem::{Problem, Problems};

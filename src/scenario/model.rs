@@ -79,16 +79,10 @@ pub struct Edit {
     pub pushes: Pushes,
     /// The numbers of the pushes that it set, each once, in order.
     pub set_pushes: Vec<usize>,
-    pub touches: Touches,
-}
-
-/// Which parts of the motion an edit set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Touches {
-    /// The time step: t is counted anew from here, and pushes keep their seconds.
-    pub time_step: bool,
-    /// The time step, the scheme or gravity: a new segment begins.
-    pub segment: bool,
+    /// Whether it set the time step: t is counted anew from here, and pushes keep their seconds.
+    pub sets_time_step: bool,
+    /// Whether it set the time step, the scheme or gravity.
+    pub begins_segment: bool,
 }
 
 impl Edit {
