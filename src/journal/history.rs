@@ -61,13 +61,6 @@ impl History {
         }
     }
 
-    /// Checks the journals of all past and undone runs. They are valid unless somebody has edited a session file by hand.
-    pub fn check(&self) -> Result<(), Problems> {
-        let runs = self.past.iter().chain(&self.undone);
-        runs.map(|run| &run.journal)
-            .try_for_each(|journal| journal.scenario().map(drop))
-    }
-
     pub fn scenario(&self) -> Result<Arc<Scenario>, Problems> {
         self.present.journal.scenario()
     }

@@ -22,7 +22,6 @@ impl Lab {
         let work: KeptWork = read("the run", &content.work)?;
         let place: KeptPlace = read("the place in it", &content.place)?;
         let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
-        work.history.check().map_err(unreadable)?;
         let scenario = work.history.scenario().map_err(unreadable)?;
         let present = work.history.present();
         let mut view = view(&scenario);
