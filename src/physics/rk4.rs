@@ -5,7 +5,7 @@
 //! equation is smooth off the rotations too, and pulls it back to a rotation once, at the end of the step: that
 //! changes the result by no more than the step's own error.
 
-use super::workings::{Changes, Listener, Nobody, Phase, Quantity};
+use super::workings::{Changes, Listener, Nobody, Phase};
 use super::{Body, Damping, Loads, Scheme, State, loads::torque, rotation};
 use nalgebra::{Matrix3, Vector3};
 
@@ -116,15 +116,10 @@ impl Rk4 {
 
 impl Slope {
     fn phase(&self, name: &'static str, formula: &'static str) -> Phase {
-        Phase::of(
-            name,
-            formula,
-            vec![
-                Quantity::new("Ω", "rad/s", self.angular_velocity),
-                Quantity::new("Q′", "1/s", self.orientation),
-                Quantity::new("L′", "N m", self.momentum),
-            ],
-        )
+        Phase::of(name, formula)
+            .with("Ω", "rad/s", self.angular_velocity)
+            .with("Q′", "1/s", self.orientation)
+            .with("L′", "N m", self.momentum)
     }
 }
 
@@ -137,27 +132,20 @@ fn orientation_phase(
     Phase::of(
         "new orientation",
         "Q ← Q + dt/6 (Q₁′ + 2 Q₂′ + 2 Q₃′ + Q₄′), then made a rotation again",
-        vec![
-            Quantity::new("Q", "", *from),
-            Quantity::new("dt", "s", dt),
-            Quantity::new("Q + dt/6 (...)", "", *bent),
-            Quantity::new("new Q", "", *to),
-        ],
     )
+    .with("Q", "", *from)
+    .with("dt", "s", dt)
+    .with("Q + dt/6 (...)", "", *bent)
+    .with("new Q", "", *to)
     .changing(Changes::Orientation)
 }
 
 fn momentum_phase(dt: f64, from: &Vector3<f64>, to: &Vector3<f64>) -> Phase {
-    Phase::of(
-        "new momentum",
-        "L ← L + dt/6 (L₁′ + 2 L₂′ + 2 L₃′ + L₄′)",
-        vec![
-            Quantity::new("L", "J s", *from),
-            Quantity::new("dt", "s", dt),
-            Quantity::new("new L", "J s", *to),
-        ],
-    )
-    .changing(Changes::Momentum)
+    Phase::of("new momentum", "L ← L + dt/6 (L₁′ + 2 L₂′ + 2 L₃′ + L₄′)")
+        .with("L", "J s", *from)
+        .with("dt", "s", dt)
+        .with("new L", "J s", *to)
+        .changing(Changes::Momentum)
 }
 
 impl Scheme for Rk4 {
