@@ -3,7 +3,6 @@
 use super::axis::{Axis, axes};
 use super::file::{Base, SweepFile};
 use super::shard::Shard;
-use crate::analysis::at_end;
 use crate::analysis::readouts::{self, READOUTS, Readout, Source, Value as Readable};
 use crate::export::layout::commented;
 use crate::run::Clock;
@@ -243,7 +242,7 @@ impl Sweep {
     pub fn row(&self, row: u64, go_on: &dyn Fn() -> bool) -> Option<SweepRow> {
         let found = self
             .scenario(row)
-            .and_then(|scenario| at_end::readouts(scenario, &self.measure, go_on));
+            .and_then(|scenario| readouts::at_end(scenario, &self.measure, go_on));
         let (cells, failure) = match found {
             Ok(cells) => (cells?, None),
             Err(why) => (vec![Readable::Nothing; self.measure.len()], Some(why)),
