@@ -219,3 +219,22 @@ fn left_alone(sessions: &[LeftAlone]) -> String {
         .map(|one| format!("{} is left alone ({}); ", Shown(&one.path), one.reason));
     names.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_in_the_largest_unit_that_fits_twice() {
+        for (seconds, words) in [
+            (0, "just now"),
+            (119, "119 seconds ago"),
+            (120, "2 minutes ago"),
+            (7199, "119 minutes ago"),
+            (7200, "2 hours ago"),
+            (259_200, "3 days ago"),
+        ] {
+            assert_eq!(ago(Duration::from_secs(seconds)), words);
+        }
+    }
+}
