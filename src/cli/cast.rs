@@ -3,11 +3,10 @@
 //! The lab's own clock tells the time: it goes on by the same step from picture to picture, however long the computer needs
 //! for one. Neither settings nor the environment are read, so that a file of commands has one recording.
 
-use super::args::Changes;
+use super::args::{Changes, size};
 use super::new_lab::{DEFAULT, lab};
 use super::progress::{self, Interrupted, Interruption};
 use super::tell;
-use super::values::size;
 use crate::lab::Lab;
 use crate::lab::command;
 use crate::lab::view::markers::Marker;

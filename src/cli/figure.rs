@@ -1,10 +1,7 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{Changes, LengthArgs, ScenarioArgs};
-use super::layout::time;
+use super::args::{Changes, LengthArgs, ScenarioArgs, positive, scenario_of, time};
 use super::progress::{self, Interrupted, Interruption};
-use super::scenario::scenario_of;
-use super::values::positive;
 use super::{ended_by, refuse, tell};
 use crate::analysis::cost;
 use crate::data;

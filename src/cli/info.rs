@@ -13,7 +13,7 @@ use crate::scenario::keys::{KEYS, Key};
 use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario, Window};
-use crate::sweep::{Sweep, shipped as sweeps};
+use crate::sweep::{self, SWEEPS, Sweep};
 use crate::text::number::{counted, decimal, shortest};
 use crate::text::printable::{Shown, printable, printable_lines};
 use anyhow::bail;
@@ -27,11 +27,11 @@ pub(super) fn presets(name: Option<&str>) -> anyhow::Result<ExitCode> {
         return print(&preset_list()?);
     };
     let preset = presets::find(name).map(|preset| preset.text);
-    let preset = preset.or_else(|| sweeps::find(name).map(|sweep| sweep.text));
+    let preset = preset.or_else(|| sweep::find(name).map(|sweep| sweep.text));
     match preset.or_else(|| data::find_shipped(name).map(|data| data.text)) {
         Some(text) => print(text),
         None => {
-            let sweeps = sweeps::SWEEPS.iter().map(|sweep| sweep.name);
+            let sweeps = SWEEPS.iter().map(|sweep| sweep.name);
             let data = data::SHIPPED.iter().map(|data| data.name);
             let names = PRESETS.iter().map(|preset| preset.name);
             let near = nearest(name, names.chain(sweeps).chain(data));

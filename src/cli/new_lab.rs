@@ -1,15 +1,22 @@
-//! A new lab, with the scenario, the colours and the dots that the command line asks for.
+//! A new lab, with the scenario, the colours and the dots that the command line asks for; one in which a lesson is played
+//! without a terminal, and where what comes of it is written.
 
-use super::args::{Changes, Look};
-use super::scenario::change;
+use super::args::{Changes, LessonArgs, Look, WorkbenchArgs, change};
+use super::print;
+use super::progress::{self, Interrupted, Interruption};
+use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::view::View;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
-use crate::scenario::Document;
-use crate::tui::panes;
-use crate::tui::surroundings;
+use crate::lessons::{Lesson, play};
+use crate::run::NotFinite;
+use crate::scenario::{Document, Problem, Problems};
+use crate::tui::{panes, surroundings};
+use anyhow::{Context, bail};
+use std::process::ExitCode;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// What is opened where nothing is named.
 pub(super) const DEFAULT: &str = "method-2";
@@ -66,4 +73,70 @@ pub(super) fn plain_lab(
         background: Background::Dark,
     };
     lab(name, changes, markers, plain, false)
+}
+
+/// A lab with what `name` names, as the command line wants it.
+pub(super) fn of_workbench(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
+    let theme = theme(args.look);
+    let mut lab = lab(name, &args.changes, args.look.markers, theme, !args.paused)?;
+    if let Some(step) = args.at {
+        // No signal is caught yet: one that ends the process here has nothing to put right.
+        let arrived = go_to(&mut lab, step, &Interruption::default());
+        arrived.with_context(|| name.to_owned())?;
+    }
+    Ok(lab)
+}
+
+/// Plays from the start to `step`, a part at a time, until a signal comes.
+///
+/// # Errors
+/// Where the numbers stop being finite on the way.
+pub(super) fn go_to(
+    lab: &mut Lab,
+    step: u64,
+    interruption: &Interruption,
+) -> Result<(), NotFinite> {
+    const LOOK: Duration = Duration::from_millis(100);
+    let watch = interruption.meter();
+    let mut part = 1_u64;
+    loop {
+        let (here, begin) = (lab.player().playback.step_number(), Instant::now());
+        let arrived = lab.begin_at(here.saturating_add(part).min(step));
+        let here = lab.player().playback.step_number();
+        if arrived.is_err() || here >= step || watch(here, step).is_break() {
+            return arrived;
+        }
+        part = if begin.elapsed() < LOOK {
+            part.saturating_mul(2)
+        } else {
+            (part / 2).max(1)
+        };
+    }
+}
+
+pub(super) fn new_lab(look: Look) -> anyhow::Result<Lab> {
+    plain_lab(DEFAULT, &Changes::default(), look.markers)
+}
+
+pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
+    Problems::one(lesson.origin.clone(), problem).into()
+}
+
+/// Writes what `make` makes to the file that is asked for, or prints it. `make` asks now and then whether to go on.
+pub(super) fn write(
+    args: &LessonArgs,
+    make: impl FnOnce(play::GoOn<'_>) -> anyhow::Result<String>,
+) -> anyhow::Result<ExitCode> {
+    let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
+    let text = make(&mut interruption.meter());
+    if interruption.has_come() {
+        bail!(Interrupted);
+    }
+    match output {
+        None | Some(Destination::Stdout(_)) => print(&text?),
+        Some(output) => {
+            output.write_and_keep(text?.as_bytes())?;
+            Ok(ExitCode::SUCCESS)
+        }
+    }
 }

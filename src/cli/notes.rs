@@ -2,7 +2,7 @@
 //! student who hands it in.
 
 use super::args::LessonArgs;
-use super::played::{new_lab, refused, write};
+use super::new_lab::{new_lab, refused, write};
 use super::progress::{self, Interrupted, Interruption};
 use super::sessions;
 use crate::lab::Lab;

@@ -24,7 +24,7 @@ const ROWS_OF_CHANCE: f64 = 1.5;
 const AT_RANDOM: f64 = 1.75;
 
 #[derive(Clone, Debug)]
-pub struct Rows {
+pub struct Parabolas {
     /// The last three steps, the newest last.
     looks: [Look; 3],
     seen: u64,
@@ -68,7 +68,7 @@ impl Look {
     }
 }
 
-impl Rows {
+impl Parabolas {
     /// Instruments for the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
         let look = Look::at(step);

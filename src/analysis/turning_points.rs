@@ -1,12 +1,9 @@
 //! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
 
-mod equations;
-
-use super::swing::Swing;
+use super::equations::{AT_TURN, Crossing, Equations, Motion, Row};
 use super::turns::{Measured, ROUNDING, StraightLine, Turns};
 use crate::physics::{LagrangeTop, SchemeInfo, SymmetricTop};
 use crate::run::Step;
-use equations::{Crossing, Equations, Row};
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
@@ -18,8 +15,6 @@ const LEAST_SWING: f64 = 1e-14;
 const PASSES_RAD: f64 = 1e-7;
 /// Schemes of a finite order are followed between their rows while the body or its axle turns by less than this (rad).
 const FOLLOWED_RAD: f64 = 1.0;
-/// A run that starts within this part of a time step of a turning point starts at it.
-const AT_TURN: f64 = 1e-6;
 /// A time step in which the axle may turn by more than this (rad), and by half a turn as it passes the vertical, may hide
 /// a whole turn of the azimuth though its rows are near to one another.
 const HIDES_RAD: f64 = 1.5;
@@ -31,7 +26,7 @@ const TOO_FAR_RAD: f64 = 60.0;
 const BEYOND_ERROR: f64 = 2.0;
 
 #[derive(Clone, Debug)]
-pub struct Between {
+pub struct TurningPoints {
     /// One over the moment across the axle, 1/(kg m²).
     per_across: f64,
     equations: Equations,
@@ -56,7 +51,7 @@ pub struct Between {
     least_level: f64,
 }
 
-impl Between {
+impl TurningPoints {
     /// Instruments for the run that begins at `step`; `None` where its rows do not show the motion between them.
     pub fn new(step: &Step) -> Option<Self> {
         let body = &step.scenario().body.mechanics;
@@ -225,7 +220,7 @@ impl Between {
         if swing > ROUNDING || !value.is_finite() {
             return None;
         }
-        let Swing { axle, momentum } = self.start.swing;
+        let Motion { axle, momentum } = self.start.swing;
         let (level, along) = (self.start.swing.level().powi(2), momentum.dot(&axle));
         // The azimuth's rate is (l_z - l3 u)/(1 - u²) at the height u.
         let by_height = (2.0 * axle.z * (momentum.z - along * axle.z) / level - along) / level;
@@ -245,7 +240,7 @@ fn swing_of_height(
     step: &Step,
     top: &SymmetricTop,
     load: Vector3<f64>,
-    swing: &Swing,
+    swing: &Motion,
 ) -> (f64, f64) {
     let length = swing.momentum.norm();
     let (period_s, range) = if (load * (1.0 / top.across)).norm() == 0.0 {
@@ -268,7 +263,7 @@ fn swing_of_height(
 fn is_followed(
     scheme: &SchemeInfo,
     equations: &Equations,
-    swing: &Swing,
+    swing: &Motion,
     period_s: f64,
     range: f64,
 ) -> bool {

@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 
 /// What the scheme makes of the run since the forces last changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frozen {
+pub struct ReportTheory {
     /// |w*|, rad; `None` where it is too large for the linear theory.
     lag: Option<f64>,
     /// ln |A|.
@@ -53,7 +53,7 @@ const IN_A_TURN: f64 = 256.0;
 /// Parts of the slip that are tried.
 const SLIPS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 
-impl Frozen {
+impl ReportTheory {
     /// Of the run whose forces have just changed, or that begins, at `step`; `None` where it is not the report's scheme, the
     /// body is not symmetric, or the forces do not pull along z on the axle.
     pub fn new(step: &Step) -> Option<Self> {

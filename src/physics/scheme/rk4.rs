@@ -5,9 +5,27 @@
 //! equation is smooth off the rotations too, and pulls it back to a rotation once, at the end of the step: that
 //! changes the result by no more than the step's own error.
 
-use super::workings::{Changes, Listener, Nobody, Phase, Quantity};
-use super::{Body, Damping, Loads, Scheme, State, loads::torque, rotation};
+use crate::workings::{Changes, Listener, Nobody, Phase};
+use crate::{Body, Damping, Loads, Scheme, State, loads::torque, rotation};
 use nalgebra::{Matrix3, Vector3};
+
+// Names and formulas of the phases in which the slopes are found.
+const FIRST: &str = "slope 1: at the beginning";
+const SMOOTH: &str = "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q)";
+const RUBBED: &str = "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q) + friction's torque at Ω₁";
+type Named = (&'static str, &'static str);
+const SECOND: Named = (
+    "slope 2: half way by slope 1",
+    "the same at Q + ½ dt Q₁′, L + ½ dt L₁′",
+);
+const THIRD: Named = (
+    "slope 3: half way by slope 2",
+    "the same at Q + ½ dt Q₂′, L + ½ dt L₂′",
+);
+const FOURTH: Named = (
+    "slope 4: at the end by slope 3",
+    "the same at Q + dt Q₃′, L + dt L₃′",
+);
 
 #[derive(Clone, Debug)]
 pub struct Rk4 {
@@ -68,37 +86,14 @@ impl Rk4 {
     #[inline]
     fn advance<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
         let k1 = self.slope(&state.orientation, &state.momentum);
-        listener.hear(|| {
-            k1.phase(
-                "slope 1: at the beginning",
-                if self.damping.is_some() {
-                    "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q) + friction's torque at Ω₁"
-                } else {
-                    "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q)"
-                },
-            )
-        });
+        let is_rubbed = self.damping.is_some();
+        listener.hear(|| k1.phase(FIRST, if is_rubbed { RUBBED } else { SMOOTH }));
         let k2 = self.slope_after(state, &k1, 0.5 * dt);
-        listener.hear(|| {
-            k2.phase(
-                "slope 2: half way by slope 1",
-                "the same at Q + ½ dt Q₁′, L + ½ dt L₁′",
-            )
-        });
+        listener.hear(|| k2.phase(SECOND.0, SECOND.1));
         let k3 = self.slope_after(state, &k2, 0.5 * dt);
-        listener.hear(|| {
-            k3.phase(
-                "slope 3: half way by slope 2",
-                "the same at Q + ½ dt Q₂′, L + ½ dt L₂′",
-            )
-        });
+        listener.hear(|| k3.phase(THIRD.0, THIRD.1));
         let k4 = self.slope_after(state, &k3, dt);
-        listener.hear(|| {
-            k4.phase(
-                "slope 4: at the end by slope 3",
-                "the same at Q + dt Q₃′, L + dt L₃′",
-            )
-        });
+        listener.hear(|| k4.phase(FOURTH.0, FOURTH.1));
         let turned = k1.orientation + (k2.orientation + k3.orientation) * 2.0 + k4.orientation;
         let torque = k1.momentum + (k2.momentum + k3.momentum) * 2.0 + k4.momentum;
         let before = *state;
@@ -116,15 +111,10 @@ impl Rk4 {
 
 impl Slope {
     fn phase(&self, name: &'static str, formula: &'static str) -> Phase {
-        Phase::of(
-            name,
-            formula,
-            vec![
-                Quantity::new("Ω", "rad/s", self.angular_velocity),
-                Quantity::new("Q′", "1/s", self.orientation),
-                Quantity::new("L′", "N m", self.momentum),
-            ],
-        )
+        Phase::of(name, formula)
+            .with("Ω", "rad/s", self.angular_velocity)
+            .with("Q′", "1/s", self.orientation)
+            .with("L′", "N m", self.momentum)
     }
 }
 
@@ -137,27 +127,20 @@ fn orientation_phase(
     Phase::of(
         "new orientation",
         "Q ← Q + dt/6 (Q₁′ + 2 Q₂′ + 2 Q₃′ + Q₄′), then made a rotation again",
-        vec![
-            Quantity::new("Q", "", *from),
-            Quantity::new("dt", "s", dt),
-            Quantity::new("Q + dt/6 (...)", "", *bent),
-            Quantity::new("new Q", "", *to),
-        ],
     )
+    .with("Q", "", *from)
+    .with("dt", "s", dt)
+    .with("Q + dt/6 (...)", "", *bent)
+    .with("new Q", "", *to)
     .changing(Changes::Orientation)
 }
 
 fn momentum_phase(dt: f64, from: &Vector3<f64>, to: &Vector3<f64>) -> Phase {
-    Phase::of(
-        "new momentum",
-        "L ← L + dt/6 (L₁′ + 2 L₂′ + 2 L₃′ + L₄′)",
-        vec![
-            Quantity::new("L", "J s", *from),
-            Quantity::new("dt", "s", dt),
-            Quantity::new("new L", "J s", *to),
-        ],
-    )
-    .changing(Changes::Momentum)
+    Phase::of("new momentum", "L ← L + dt/6 (L₁′ + 2 L₂′ + 2 L₃′ + L₄′)")
+        .with("L", "J s", *from)
+        .with("dt", "s", dt)
+        .with("new L", "J s", *to)
+        .changing(Changes::Momentum)
 }
 
 impl Scheme for Rk4 {

@@ -4,8 +4,7 @@
 //! Here every time goes through the same operations, without a choice: angles are reduced to one turn, their fourth part
 //! lies where the polynomials hold, and two doublings lead back. So the processor takes several times together.
 
-use super::lagrange::LagrangeTop;
-use super::part::Part;
+use super::lagrange::{LagrangeTop, Part};
 use crate::trig::kernels;
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::{Complex, Matrix3, Vector3};

@@ -5,12 +5,11 @@
 
 use super::cost::is_affordable;
 use super::swings::{Swing, Swings, height};
-use super::trial::{Deviation, distance_m};
 use crate::physics::State;
 use crate::physics::exact::AT_ONCE;
 use crate::run::Truth;
 use crate::scenario::Scenario;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
 /// The exact motion beside one run, and how far the run has been off it.
@@ -182,36 +181,39 @@ fn near_exact(
     are_numbers.then(|| (distances_m, cosines.map(height)))
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::run::Simulation;
-    use crate::scenario::presets;
+/// How far a run is off at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Distance of the traced point from where it should be, m.
+    pub distance_m: f64,
+    /// L·axle less the exact motion's, J s.
+    pub spin: f64,
+    /// L_z less the exact motion's, J s.
+    pub lz: f64,
+}
 
-    #[test]
-    fn the_largest_distance_is_that_of_all_steps_within_rounding() {
-        for (preset, sets) in [
-            ("wobble-push", &["motion.steps=600"][..]),
-            ("method-2-slow", &["motion.steps=1500"]),
-            ("cusps", &["motion.steps=1500", "motion.time_step_s=0.02"]),
-            ("cusps", &["motion.steps=600", "motion.scheme=exact"]),
-            ("sleeping", &["motion.steps=600", "motion.scheme=report"]),
-            ("wing-nut", &["motion.steps=300", "motion.scheme=report"]),
-        ] {
-            let scenario = presets::scenario(preset, sets);
-            let mut simulation = Simulation::new(Arc::clone(&scenario));
-            let mut truth = Truth::new(Arc::clone(&scenario));
-            let (mut most_m, mut beside) = (0.0_f64, Beside::new(&scenario));
-            for number in 1..=scenario.steps {
-                let state = simulation.step().unwrap().after();
-                most_m = most_m.max(Deviation::distance_of(state, &mut truth));
-                beside.hold(state);
-                if number % 97 == 0 || number == scenario.steps {
-                    beside.settle();
-                    let off_m = (beside.most_distance_m() - most_m).abs();
-                    assert!(off_m <= 3e-15 * scenario.arm_m(), "{preset}: {off_m:e}");
-                }
-            }
+impl Deviation {
+    /// Of a run that is `seen` so, from its `truth`.
+    pub fn of(seen: &State, truth: &mut Truth) -> Self {
+        let exact = truth.state_at(seen.time_s);
+        Self {
+            distance_m: distance_m(seen, &exact.orientation, truth.scenario()),
+            spin: seen.momentum.dot(&seen.axle()) - exact.momentum.dot(&exact.axle()),
+            lz: seen.momentum.z - exact.momentum.z,
         }
     }
+
+    /// Its distance alone, m.
+    #[inline]
+    pub fn distance_of(seen: &State, truth: &mut Truth) -> f64 {
+        let exact = truth.orientation_at(seen.time_s);
+        distance_m(seen, &exact, truth.scenario())
+    }
+}
+
+/// Distance of the traced point from where it is if the body stands as `exact`, m.
+#[inline]
+fn distance_m(seen: &State, exact: &Matrix3<f64>, scenario: &Scenario) -> f64 {
+    let at = &scenario.body.mechanics.points()[scenario.trace].at;
+    ((seen.orientation - exact) * at).norm()
 }
