@@ -1,8 +1,8 @@
 //! Arguments that several commands have, and those that several files read.
 
 use super::values::{frames, length, one_or_more, positive, setting, steps};
-use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::Background;
+use crate::lab::view::theme::Marker;
 use crate::physics::scheme;
 use crate::tui::surroundings::ColourChoice;
 use clap::builder::{PossibleValue, PossibleValuesParser};

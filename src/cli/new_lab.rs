@@ -4,7 +4,7 @@ use super::args::{Changes, Look};
 use super::scenario::change;
 use crate::lab::Lab;
 use crate::lab::view::View;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::scenario::Document;
 use crate::tui::panes;

@@ -1,7 +1,7 @@
 //! `gyrolab sessions`: what `--resume NAME` can come back to.
 
 use super::{print, tell};
-use crate::lab::Lab;
+use crate::lab::Summary;
 use crate::storage::confined::Confined;
 use crate::storage::session::{self, Listed};
 use crate::text::printable::{Shown, printable};
@@ -54,7 +54,7 @@ pub(super) fn named(folder: &Path) -> String {
 fn row(session: &Listed, now: SystemTime) -> [String; 5] {
     let content = session.content.as_ref().map_err(Clone::clone);
     let summary =
-        content.and_then(|content| Lab::summary(content).map_err(|error| error.to_string()));
+        content.and_then(|content| Summary::of(content).map_err(|error| error.to_string()));
     let (step, run) = match summary {
         Ok(summary) => (
             summary.step.to_string(),

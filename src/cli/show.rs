@@ -7,7 +7,7 @@ use super::values::{size, steps};
 use super::{print, tell};
 use crate::lab::Lab;
 use crate::lab::command;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::run::NotFinite;
 use crate::storage::confined::Confined;
 use crate::tui::screen;
