@@ -3,8 +3,8 @@
 use super::refuse;
 use crate::export::Layout;
 use crate::export::layout::LayoutFile;
-use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::Background;
+use crate::lab::view::theme::Marker;
 use crate::physics::scheme;
 use crate::run::Simulation;
 use crate::scenario::rescale::MOST_STEPS;

@@ -9,7 +9,7 @@ use super::progress::{self, Interrupted, Interruption};
 use super::tell;
 use crate::lab::Lab;
 use crate::lab::command;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::text::number::counted;
 use crate::text::printable::{Shown, printable};
@@ -149,7 +149,7 @@ impl Cast {
 
     /// Records what there is to see now, and the chapters that begin with it.
     fn look(&mut self, lab: &mut Lab) -> anyhow::Result<()> {
-        for title in lab.take_chapters() {
+        for title in lab.script_mut().take_chapters() {
             self.markers += 1;
             self.event("m", &title);
         }

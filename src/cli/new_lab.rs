@@ -7,7 +7,7 @@ use super::progress::{self, Interrupted, Interruption};
 use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::view::View;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::lessons::{Lesson, play};
 use crate::run::NotFinite;

@@ -64,7 +64,7 @@ pub(super) fn named(folder: &Path) -> String {
 fn row(session: &Listed, now: SystemTime) -> [String; 5] {
     let content = session.content.as_ref().map_err(Clone::clone);
     let summary =
-        content.and_then(|content| Lab::summary(content).map_err(|error| error.to_string()));
+        content.and_then(|content| Summary::of(content).map_err(|error| error.to_string()));
     let (step, run) = match summary {
         Ok(summary) => (
             summary.step.to_string(),
@@ -105,7 +105,7 @@ pub(super) fn tell_of_session(
         Err(trouble) => (None, Some(trouble)),
     };
     let trouble = trouble.as_deref().map(printable);
-    let Some(summary) = kept.and_then(|content| Lab::summary(&content).ok()) else {
+    let Some(summary) = kept.and_then(|content| Summary::of(&content).ok()) else {
         tell(format_args!(
             "gyrolab: there is no session to come back to: {}",
             trouble.unwrap_or_else(|| "nothing was kept".into())
@@ -178,7 +178,8 @@ pub(super) fn come_back(
             let passed_over = left_alone(&found.left_alone) + &in_use(&found.in_use_by);
             if let Some((session, mut lab)) = found.resumed {
                 if !passed_over.is_empty() {
-                    lab.tell_first(&(passed_over + "this is an older one, "));
+                    lab.messages_mut()
+                        .keep_saying_first(&(passed_over + "this is an older one, "));
                 }
                 return Ok((lab, Ok(session)));
             }

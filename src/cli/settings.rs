@@ -5,7 +5,7 @@ use super::args::{Look, WorkbenchArgs};
 use super::new_lab::variable;
 use super::tell;
 use crate::lab::Lab;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::scenario::Problems;
 use crate::storage::settings::{self, Read};
 use crate::text::printable::printable_lines;
@@ -51,7 +51,8 @@ impl Chosen {
     pub(super) fn tell(&self, lab: &mut Lab) {
         if let Some(problems) = &self.remembered.problems {
             let all = in_one_line(problems);
-            lab.tell_first(&format!("{all}: not used; a choice mends it; "));
+            lab.messages_mut()
+                .keep_saying_first(&format!("{all}: not used; a choice mends it; "));
         }
         if let Some(problems) = &self.config.problems {
             tell(format_args!(
@@ -59,7 +60,8 @@ impl Chosen {
                 printable_lines(&problems.to_string())
             ));
             let all = in_one_line(problems);
-            lab.tell_first(&format!("{all}: not used; mend it; "));
+            lab.messages_mut()
+                .keep_saying_first(&format!("{all}: not used; mend it; "));
         }
     }
 }

@@ -4,7 +4,7 @@ use super::args::{Changes, size, steps};
 use super::new_lab::{DEFAULT, go_to, plain_lab};
 use super::{print, progress, tell};
 use crate::lab::command;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::storage::confined::Confined;
 use crate::tui::screen;
 use anyhow::Context;

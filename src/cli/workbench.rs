@@ -91,7 +91,7 @@ fn open_at(
     };
     chosen.tell(&mut lab);
     if let Ok(folder) = folder {
-        lab.settings = Some(folder);
+        lab.settings.folder = Some(folder);
     }
     furnish(&mut lab, args, confined)?;
     if lesson.is_none() && commands.is_none() && args.scenario.is_none() && args.resume.is_none() {
@@ -117,9 +117,9 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
     if args.resume.is_none() || args.measured.is_some() {
         lab.begin_with_measured(args.measured.as_deref())?;
     }
-    lab.set_mouse(!args.look.no_mouse);
-    lab.set_fps(args.fps.unwrap_or(FPS));
-    lab.usual_colour = Some(surroundings::theme(ColourChoice::Auto, variable).colour);
+    lab.view_mut().mouse = !args.look.no_mouse;
+    lab.view_mut().fps = args.fps.unwrap_or(FPS);
+    lab.settings.usual_colour = Some(surroundings::theme(ColourChoice::Auto, variable).colour);
     Ok(())
 }
 

@@ -1,7 +1,7 @@
 //! A canvas of dots on which panes draw curves, whichever characters show the dots: how many of these fit in a cell of the
 //! screen, and which characters show them.
 
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::Theme;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;

@@ -1,6 +1,6 @@
 //! A plane, m to the right and up, on an area of cells: circles are round at every size.
 
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::text::ladder::at_or_below;
 use crate::text::number::shortest;
 use crate::tui::dots::on_sheet;

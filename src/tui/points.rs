@@ -3,7 +3,7 @@
 //! Nothing else on a picture has the shape of the mark. Bars do not cover the curve. After a mark that covers the curve, the
 //! next few cells show the curve: marks close together would hide it.
 
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::Theme;
 use crate::tui::dots::on_sheet;
 use crate::tui::theme::Role;

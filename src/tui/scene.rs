@@ -1,7 +1,7 @@
 //! Lines in space on a sheet of dots. What is nearer hides what is farther and leaves a gap beside it, so that one sees
 //! which of two crossing lines passes in front of the other.
 
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::playback::camera::{Camera, View};
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::plane::Plane;

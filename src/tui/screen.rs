@@ -3,7 +3,7 @@
 use super::panes::{self, browser, chrome, form::FormPane, help, hint, lesson, measured, timeline};
 use crate::lab::Lab;
 use crate::lab::action::Direction;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::{Pane, Part};
 use crate::tui::dots;
 use crate::tui::keymap::Mode;
@@ -16,7 +16,7 @@ use ratatui::widgets::Widget;
 /// Fits `lab` to a screen of this size; all of it is to be drawn again.
 pub fn fit(lab: &mut Lab, size: Rect) {
     let panes = Layout::side_by_side(size, lab.view());
-    lab.set_side_by_side(panes);
+    lab.view_mut().set_side_by_side(panes);
 }
 
 /// Fits `lab` to a screen of this size again where other panes are shown than before.
@@ -63,7 +63,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
         hint::draw(lab, keys && layout.is_cramped, place, buf);
     }
     chrome::keys(lab, layout.keys, buf);
-    draw_on_top(lab, place_on_top(lab, &layout), buf);
+    draw_popup(lab, popup_place(lab, &layout), buf);
     if lab.view().marker == Marker::Ascii {
         to_ascii(area, buf);
     }
@@ -96,12 +96,12 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
     }
 }
 
-fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
+fn draw_popup(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    match lab.on_top().mode {
+    match lab.popups().mode {
         Mode::Lab | Mode::Find => {}
         Mode::Dialog => {
-            if let Some(dialog) = lab.on_top().dialog() {
+            if let Some(dialog) = lab.popups().dialog() {
                 let form = &dialog.form;
                 FormPane { form, theme }.render(area, buf);
             }
@@ -112,7 +112,7 @@ fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 /// The area of what lies on top of the panes: all of theirs, without the lines that a message takes of it.
-pub(super) fn place_on_top(lab: &Lab, layout: &Layout) -> Rect {
+pub(super) fn popup_place(lab: &Lab, layout: &Layout) -> Rect {
     let panes = layout.panes.iter().map(|(_, area)| *area);
     let body = panes.reduce(Rect::union).unwrap_or_default();
     let message = hint::place(lab, layout);

@@ -1,6 +1,6 @@
 //! What the environment variables say about the terminal: whether it shows colours, and more than ASCII.
 
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 
 /// When the lab uses colours.

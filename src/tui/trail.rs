@@ -213,7 +213,7 @@ fn is_in_area(x: usize, y: usize, age: Age) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::view::markers::Marker;
+    use crate::lab::view::theme::Marker;
     use crate::lab::view::theme::Theme;
     use crate::playback::recording::Moment;
     use ratatui::buffer::Buffer;

@@ -27,7 +27,7 @@ fn health(scenario: &str, set: &[&str]) -> Health {
 
 /// Waits until the search for advice is over.
 fn await_advice(stage: &Stage) {
-    while stage.lab.player().is_seeking_advice() {
+    while stage.lab.adviser().is_seeking() {
         std::thread::sleep(Duration::from_millis(5));
     }
 }
@@ -108,7 +108,7 @@ fn numbers_that_are_no_longer_finite_are_told_with_what_helps() {
             stage.commands(edit);
         }
         stage.commands("go_to = 1").wait(0.1);
-        while is_advised && stage.lab.player().advice().is_none() {
+        while is_advised && stage.lab.adviser().advice().is_none() {
             std::thread::sleep(Duration::from_millis(5));
             stage.wait(0.0);
         }
@@ -145,7 +145,7 @@ fn advice_is_looked_for_where_the_lab_opens_paused() {
     stage.commands("pause = true");
     stage.lab.begin_at(300).unwrap();
     stage.lab.take_advice();
-    assert!(stage.lab.player().is_seeking_advice());
+    assert!(stage.lab.adviser().is_seeking());
     await_advice(&stage);
     stage.wait(0.1).shows("a: dt 0.002 s mends it");
 }

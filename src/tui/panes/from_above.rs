@@ -6,7 +6,7 @@
 use super::{MOST_PUSHES, PaneRow, ROWS_A_LINE, Seen, Width, frame, round_title, write};
 use crate::data::Place;
 use crate::lab::view::Pane;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::playback::ages::{Age, Ages};
 use crate::playback::camera::Zoom;
 use crate::playback::path::Path;

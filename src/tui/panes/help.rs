@@ -2,10 +2,11 @@
 
 mod entries;
 
-use super::{frame_on_top, write};
+use super::{popup_frame, write};
 use crate::lab::view::Pane;
 use crate::lab::{Lab, Mode, Request};
 use crate::text::wrap::{columns, wrapped};
+use crate::tui::keymap::Does;
 use crate::tui::theme::Role;
 pub use entries::{Entry, entries, found};
 use ratatui::buffer::Buffer;
@@ -20,14 +21,15 @@ const LEAST_TEXT: usize = 40;
 const SELECTED: &str = "►";
 
 fn selected(lab: &Lab) -> Option<Entry> {
-    let found = found(&lab.on_top().help.text);
-    found.get(lab.on_top().help.selected).copied()
+    let found = found(&lab.popups().help.text);
+    found.get(lab.popups().help.selected).copied()
 }
 
 /// Keeps the selection of the help among the entries that are found.
 pub fn limit(lab: &mut Lab) {
-    if lab.on_top().mode == Mode::Help {
-        lab.limit_help(found(&lab.on_top().help.text).len());
+    if lab.popups().mode == Mode::Help {
+        let entries = found(&lab.popups().help.text).len();
+        lab.popups_mut().help.limit(entries);
     }
 }
 
@@ -43,11 +45,11 @@ pub fn do_entry(lab: &mut Lab) -> Option<Request> {
         lab.refuse("a word to read: Enter does nothing with it, Esc closes");
         return None;
     };
-    if !binding.modes.contains(&lab.on_top().under_help) {
+    if !binding.modes.contains(&lab.popups().under_help) {
         lab.refuse(format!("{}: this key works there", entry.group));
         return None;
     }
-    while lab.on_top().mode == Mode::Help {
+    while lab.popups().mode == Mode::Help {
         lab.update(Action::Help);
     }
     if let Some(pane) = entry.pane
@@ -55,26 +57,26 @@ pub fn do_entry(lab: &mut Lab) -> Option<Request> {
     {
         lab.turn_to(pane);
     }
-    match binding.action {
-        Action::Help => None,
-        action => lab.update(action),
+    match binding.does {
+        Does::Action(Action::Help) => None,
+        does => does.carry_out(lab),
     }
 }
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let search = lab.on_top().help.text.as_str();
+    let search = lab.popups().help.text.as_str();
     let found = found(search);
     let title = match search {
         "" => "help: type to search, Enter does it".to_owned(),
         search => format!("help: {search}_ ({})", found.len()),
     };
-    let inside = frame_on_top(&title, area, theme, buf);
+    let inside = popup_frame(&title, area, theme, buf);
     if found.is_empty() {
         let text = "nothing has that in it: Esc clears the search";
         write(inside, (1, 0), text, theme.style(Role::Text), buf);
     }
-    let selected = lab.on_top().help.selected;
+    let selected = lab.popups().help.selected;
     let selected = selected.min(found.len().saturating_sub(1));
     let lines = lines(&found, search.is_empty(), inside.width as usize);
     let first = first_shown(&lines, selected, inside.height as usize);

@@ -3,8 +3,9 @@
 use super::chrome::SEPARATOR;
 use super::{shortened, write};
 use crate::data::Quantity;
+use crate::data::compared::Sum;
 use crate::lab::Lab;
-use crate::lab::measured::{Beside, Sum};
+use crate::lab::comparison::DataComparison;
 use crate::text::number::{short, shortest};
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
@@ -17,7 +18,7 @@ use std::path::Path;
 const LEAST_NAME: usize = 12;
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
-    let Some(beside) = lab.player().measured() else {
+    let Some(beside) = lab.comparison().data() else {
         return;
     };
     let theme = &lab.view().theme;
@@ -44,7 +45,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
 
 /// The name of the data, their counts and the parts of the line that fit in `room` columns: short forms make room for the
 /// rest, then a shorter name, then the last parts give way.
-fn fitting(beside: &Beside, end_s: f64, room: usize) -> (String, String, Vec<String>) {
+fn fitting(beside: &DataComparison, end_s: f64, room: usize) -> (String, String, Vec<String>) {
     let sum = &beside.compared.sum;
     let name = file_name(&beside.name);
     let [long, short] = counted(beside, sum, end_s);
@@ -85,7 +86,7 @@ fn points(count: usize) -> String {
 
 /// What was measured, how many values there are, and how many of them the run has reached: at length and in short.
 /// Where data go on after `end_s`, the end of the run, it says so, and the key that plays the run up to there.
-fn counted(beside: &Beside, sum: &Sum, end_s: f64) -> [String; 2] {
+fn counted(beside: &DataComparison, sum: &Sum, end_s: f64) -> [String; 2] {
     let names: Vec<_> = beside.quantities().map(Quantity::words).collect();
     let (names, all, reached) = (names.join(", "), points(sum.points), sum.compared);
     let last_s = beside.last_s().filter(|&last_s| last_s > end_s);

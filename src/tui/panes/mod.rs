@@ -18,8 +18,8 @@ pub mod timeline;
 pub mod traces;
 
 use crate::lab::Lab;
-use crate::lab::explained::Explained;
-use crate::lab::measured::Beside;
+use crate::lab::comparison::DataComparison;
+use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
 use crate::playback::detail::Detail;
@@ -123,28 +123,28 @@ pub struct Seen<'a> {
     pub ghost: Option<&'a Ghost>,
     /// The run that was pinned as the reference, unless it is the present one.
     pub pinned: Option<&'a Ghost>,
-    pub measured: Option<&'a Beside>,
+    pub measured: Option<&'a DataComparison>,
     /// The latest reading of the run, if it is read at all: by it a path is recent or old. The scene in space is that of
     /// its time: a turning wheel changes most of the picture, which would load a slow line in every frame.
     pub reading: Option<&'a Reading>,
     /// The time step that the step pane takes apart: the scene in space shows what its page is about.
-    pub explained: Option<&'a Explained>,
+    pub explained: Option<&'a StepWorkings>,
     pub detail: Detail,
     pub cursor: Option<&'a Sample>,
 }
 
 impl<'a> Seen<'a> {
     pub fn of(lab: &'a Lab) -> Self {
-        let player = lab.player();
+        let (player, comparison) = (lab.player(), lab.comparison());
         Self {
             view: lab.view(),
             run: player.run(),
-            ghost: player.ghost(),
-            pinned: player.pinned(),
-            measured: player.measured(),
+            ghost: comparison.ghost(),
+            pinned: comparison.pinned(),
+            measured: comparison.data(),
             reading: Some(&player.reading),
-            explained: player.explained(),
-            detail: player.detail,
+            explained: lab.step_pane().shown(),
+            detail: *player.detail(),
             cursor: player.cursor(),
         }
     }
@@ -200,7 +200,7 @@ pub(super) fn longest(forms: impl IntoIterator<Item = String>, width: usize) -> 
 }
 
 /// As [`frame`], on top of whatever is there.
-pub(super) fn frame_on_top(title: &str, area: Rect, theme: &Theme, buf: &mut Buffer) -> Rect {
+pub(super) fn popup_frame(title: &str, area: Rect, theme: &Theme, buf: &mut Buffer) -> Rect {
     Clear.render(area, buf);
     frame(title, area, true, theme, buf)
 }

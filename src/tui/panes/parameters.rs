@@ -8,8 +8,8 @@ mod listed;
 
 use super::{PaneRow, Width, frame, shortened, write};
 use crate::lab::action::Action;
+use crate::lab::values::list::Match;
 use crate::lab::values::list::ValueList;
-use crate::lab::values::listed::Match;
 use crate::lab::view::{Pane, View};
 use crate::playback::reading::Reading;
 use crate::scenario::{Motion, Scenario};
@@ -52,7 +52,7 @@ pub const ROW: PaneRow = PaneRow {
             motion: &lab.player().motion(),
             reading: &lab.player().reading,
             list: &lab.values().list,
-            is_searched: lab.on_top().mode == Mode::Find,
+            is_searched: lab.popups().mode == Mode::Find,
             view: lab.view(),
         }
         .render(area, buf);

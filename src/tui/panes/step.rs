@@ -9,15 +9,15 @@ mod words;
 
 use super::{PaneRow, Width, frame};
 use crate::lab::Lab;
-use crate::lab::action::{Action, Direction};
-use crate::lab::explained::{Explained, table_of};
+use crate::lab::action::{Action, Direction, repeated};
+use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, View};
 use crate::physics::workings::{Phase, Quantity, Value};
 use crate::scenario::Scenario;
 use crate::text::number::{rounded, shortest, significant};
 use crate::text::wrap::columns;
-use crate::tui::keymap::{Binding, Key, Mode, row};
+use crate::tui::keymap::{Binding, Key, Mode, does, one, row};
 use crate::tui::theme::Role;
 use numbers::Format;
 use page::{Line, Section};
@@ -47,10 +47,10 @@ pub const ROW: PaneRow = PaneRow {
 /// The keys that go through the step.
 #[rustfmt::skip]
 const KEYS: &[Binding] = &[
-    row(&[Mode::Lab], &[Key::Char('.')], Action::NextPhase, "next phase", "the next phase of the time step; after the last, the next time step"),
-    row(&[Mode::Lab], &[Key::Char(',')], Action::PhaseBack, "back", "the phase before; before the first, the time step before"),
+    does(&[Mode::Lab], &[Key::Char('.')], |lab, count| lab.step_pane().other_phase(repeated(count), lab.view(), lab.player()), "next phase", "the next phase of the time step; after the last, the next time step"),
+    does(&[Mode::Lab], &[Key::Char(',')], |lab, count| lab.step_pane().other_phase(-repeated(count), lab.view(), lab.player()), "back", "the phase before; before the first, the time step before"),
     row(&[Mode::Lab], &[Key::Char('v')], Action::ToggleStep, "close", "the panes without the time step again"),
-    row(&[Mode::Lab], &[Key::Char('y')], Action::Why, "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
+    does(&[Mode::Lab], &[Key::Char('y')], |lab, _| one(lab.view().why_toggled()), "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
     row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down), "add up", "add up the table point by point: one more"),
     row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up), "", "one point fewer"),
     row(&[Mode::Lab], &[Key::PageDown], Action::Move(Direction::PageDown), "", "ten points more"),
@@ -64,7 +64,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     if inside.is_empty() {
         return;
     }
-    match lab.player().explained() {
+    match lab.step_pane().shown() {
         None => nothing_yet(lab, inside, buf),
         Some(_) if view.page == Page::Why => why::draw(lab, inside, buf),
         Some(explained) => {
@@ -84,7 +84,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 fn title(lab: &Lab) -> String {
-    let Some(explained) = lab.player().explained() else {
+    let Some(explained) = lab.step_pane().shown() else {
         return ROW.title.to_owned();
     };
     let step = explained.step;
@@ -120,7 +120,7 @@ fn nothing_yet(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 struct PhasePage<'a> {
-    explained: &'a Explained,
+    explained: &'a StepWorkings,
     phase: &'a Phase,
     /// Its number, from 1.
     number: usize,

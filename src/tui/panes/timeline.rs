@@ -49,7 +49,7 @@ impl Timeline {
             end_s: lab.player().playback.end_s(),
             now_s,
             furthest_s: Clock::at(scenario, furthest).time_s(furthest).max(now_s),
-            pinned_s: lab.player().pinned_end_s(),
+            pinned_s: lab.comparison().pinned_end_s(run),
             marks: Marks::of(scenario),
         }
     }

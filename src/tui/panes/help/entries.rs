@@ -2,9 +2,8 @@
 //! them.
 
 use crate::lab::Mode;
-use crate::lab::action::Action;
 use crate::lab::view::Pane;
-use crate::tui::keymap::{BINDINGS, Binding};
+use crate::tui::keymap::{BINDINGS, Binding, PURPOSES};
 use crate::tui::panes::PANES;
 
 /// The words that the lab uses, each in one sentence: those of the motion first, then those of the numbers and of the screen.
@@ -25,15 +24,6 @@ pub struct Entry {
     pub text: &'static str,
 }
 
-const PLAY: &str = "play";
-const LOOK: &str = "look";
-const CHANGE: &str = "change the values";
-const PUSH: &str = "push";
-const KEEP: &str = "keep and export";
-const OPEN: &str = "open another run";
-const LEAVE: &str = "help, close, leave";
-/// The groups of the keys of the lab, in order.
-const PURPOSES: [&str; 7] = [PLAY, LOOK, CHANGE, PUSH, KEEP, OPEN, LEAVE];
 /// The groups of the keys of other modes, in order.
 const PLACES: [(Mode, &str); 5] = [
     (Mode::Browser, "in the list of presets and files"),
@@ -97,7 +87,7 @@ fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
 pub fn entries() -> Vec<Entry> {
     let of_mode = |(mode, group)| {
         let rows = BINDINGS.iter().filter(move |row| row.modes[0] == mode);
-        let rows = rows.filter(move |row| mode != Mode::Lab || purpose(row.action) == group);
+        let rows = rows.filter(move |row| mode != Mode::Lab || row.purpose == group);
         rows.map(move |row| key(group, None, row))
     };
     let of_lab = PURPOSES.map(|group| (Mode::Lab, group)).into_iter();
@@ -141,23 +131,6 @@ fn key(group: &'static str, pane: Option<Pane>, binding: &'static Binding) -> En
     }
 }
 
-/// The group of the key of `action` in the lab: its purpose.
-fn purpose(action: Action) -> &'static str {
-    use Action as A;
-    match action {
-        A::TogglePause | A::Step | A::StepBack | A::Faster | A::Slower | A::GoTo | A::Restart => {
-            PLAY
-        }
-        A::Parameters | A::Edit | A::FindValue | A::Undo | A::Redo => CHANGE,
-        A::Move(_) | A::MoveFar(_) => CHANGE,
-        A::Push | A::ChoosePush => PUSH,
-        A::Export | A::Figure | A::SaveRun | A::SavePresent => KEEP,
-        A::Browse => OPEN,
-        A::Help | A::Close | A::Redraw | A::Suspend | A::Quit => LEAVE,
-        _ => LOOK,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -178,7 +151,7 @@ mod tests {
         for (index, group) in groups.iter().enumerate() {
             assert!(!groups[..index].contains(group), "{group}");
         }
-        assert_eq!(groups[0], PLAY);
+        assert_eq!(groups[0], PURPOSES[0]);
     }
 
     #[test]

@@ -6,8 +6,8 @@ use super::ROW;
 use super::lines::{
     COLUMN, Line, PREDICTED, VALUE_END, heading, in_pane, now_lines, watched_lines,
 };
+use crate::lab::values::list::ListedValue;
 use crate::lab::values::list::ValueList;
-use crate::lab::values::listed::ListedValue;
 use crate::lab::view::{Part, View};
 use crate::playback::reading::Reading;
 use crate::text::printable::printable;

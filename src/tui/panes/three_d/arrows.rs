@@ -4,7 +4,7 @@
 use super::super::MOST_PUSHES;
 use super::body::Sign;
 use super::{CHANGE, Label, MOMENTUM, Subject, write};
-use crate::lab::explained::{Explained, table_of};
+use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::View;
 use crate::physics::workings::{Phase, Value};
 use crate::physics::{State, observables};
@@ -219,7 +219,7 @@ fn in_lines(words: impl Iterator<Item = (&'static str, Role)>, width: usize) -> 
 
 #[derive(Clone, Copy)]
 pub struct Shown<'a> {
-    explained: &'a Explained,
+    explained: &'a StepWorkings,
     phase: &'a Phase,
     /// The point that was added last to the sum of the table, or chosen in it.
     point: Option<usize>,
@@ -227,7 +227,7 @@ pub struct Shown<'a> {
 
 impl<'a> Shown<'a> {
     /// The phase on the page of the step pane of `view`, if that is on the screen.
-    pub fn of(explained: Option<&'a Explained>, view: &View) -> Option<Self> {
+    pub fn of(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
         let explained = explained.filter(|_| view.shows_step())?;
         let (phase, ..) = explained.phase(view.page)?;
         let row = view.sum_to.and_then(|rows| rows.checked_sub(1));

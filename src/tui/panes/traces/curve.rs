@@ -115,7 +115,7 @@ fn toward(row: usize, before: usize) -> (usize, usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::view::markers::Marker;
+    use crate::lab::view::theme::Marker;
     use crate::lab::view::theme::Theme;
     use crate::playback::recording::Extent;
     use crate::tui::theme::Role;

@@ -2,7 +2,8 @@
 
 use super::groups::Group;
 use super::{Traces, curve::Stroke};
-use crate::lab::measured::{Beside, Shown};
+use crate::data::compared::Shown;
+use crate::lab::comparison::DataComparison;
 use crate::playback::ghost::Ghost;
 use crate::playback::marks::Marks;
 use crate::playback::recording::{Curve, Extent, Recording};
@@ -243,7 +244,7 @@ impl Traces<'_> {
         match content {
             Content::Curve(curve) => (curve.name().to_owned(), curve.unit()),
             Content::Measured(index) => {
-                let quantities = self.0.measured.map(Beside::quantities);
+                let quantities = self.0.measured.map(DataComparison::quantities);
                 let quantity = quantities.and_then(|mut quantities| quantities.nth(index));
                 quantity.map_or_else(Default::default, |quantity| {
                     (quantity.words(), quantity.unit())

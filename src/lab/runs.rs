@@ -1,8 +1,6 @@
-//! What was done to the run: the history of runs with their journals, the scenario as the user opened it, and the
-//! difference between the two.
+//! The runs of a session with their journals, for undo and redo; the scenario as the user opened it, and how the present
+//! run differs from it.
 
-use super::keeping;
-use super::rerun::Reference;
 use crate::journal::changed::Original;
 use crate::journal::history::{History, Reversal, RunRecord};
 use crate::journal::next_push::NextPush;
@@ -15,7 +13,7 @@ use toml::Table;
 
 /// The history of the lab and the scenario as it was opened. It shows nothing and plays nothing: its methods return the
 /// scenario that the run has afterwards.
-pub struct Work {
+pub struct Runs {
     history: History,
     /// The scenario that the words of the opened file were written for.
     original: Original,
@@ -27,11 +25,27 @@ pub struct Work {
     kept_reference: Option<Reference>,
 }
 
-/// The direction in the history: back with undo, on with redo.
+/// What a session keeps of a pinned run, to pin it again.
+#[derive(Clone, Default)]
+pub(super) struct Reference {
+    /// The step up to which it was played; of no meaning for the present run.
+    pub(super) step: u64,
+    /// Its scenario; `None` where the present run is pinned.
+    pub(super) run: Option<Arc<Scenario>>,
+}
+
+impl PartialEq for Reference {
+    fn eq(&self, other: &Self) -> bool {
+        let run = |of: &Self| of.run.as_ref().map(Arc::as_ptr);
+        (self.step, run(self)) == (other.step, run(other))
+    }
+}
+
+/// The direction in the history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
-    Back,
-    On,
+    Undo,
+    Redo,
 }
 
 /// What an undo or a redo has changed, and the scenario of the present run afterwards.
@@ -42,7 +56,7 @@ pub(super) struct Turned {
     pub(super) is_of_same_name: bool,
 }
 
-impl Work {
+impl Runs {
     /// The history of a run of `scenario`, opened as `name`, to which nothing was done yet.
     pub(super) fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
         Self::resumed(History::new(name, scenario), scenario)
@@ -93,14 +107,18 @@ impl Work {
         self.changed_from_file = self.original.difference(scenario);
     }
 
-    /// The history as the session keeps it, with the pinned run.
-    pub(super) fn kept(&mut self, reference: Option<Reference>) -> Text {
+    /// The history as the session keeps it, with the pinned run; `written` writes them.
+    pub(super) fn kept(
+        &mut self,
+        reference: Option<Reference>,
+        written: fn(&History, Option<&Reference>) -> Text,
+    ) -> Text {
         if self.kept_reference != reference {
             self.kept = None;
             self.kept_reference = reference;
         }
         let (history, reference) = (&self.history, self.kept_reference.as_ref());
-        let written = || keeping::written(history, reference);
+        let written = || written(history, reference);
         self.kept.get_or_insert_with(written).clone()
     }
 
@@ -148,8 +166,8 @@ impl Work {
         });
         let scenario = self.or_back_to(before, begun)?;
         // An edit of the time step holds the seconds of the run, unless the number of steps was set with it.
-        let told = begun_with.filter(|begun| begun.steps == scenario.steps);
-        let end_s = Clock::end_s(told.as_ref().unwrap_or(&scenario));
+        let ends = begun_with.filter(|begun| begun.steps == scenario.steps);
+        let end_s = Clock::end_s(ends.as_ref().unwrap_or(&scenario));
         self.change().set_end(end_s);
         Ok(scenario)
     }
@@ -202,8 +220,8 @@ impl Work {
         let name = self.name().to_owned();
         let history = self.change();
         let turned = match way {
-            Way::Back => history.undo(),
-            Way::On => history.redo(),
+            Way::Undo => history.undo(),
+            Way::Redo => history.redo(),
         };
         let Some(what) = turned else {
             return Ok(None);
@@ -214,8 +232,8 @@ impl Work {
         if what != Reversal::OtherRun && scenario.steps != steps {
             // Edits of the time step made after the number of steps was set have not moved the end: the end follows
             // from the scenario in which that number was set.
-            let told = self.journal().when_steps_were_set();
-            let end_s = Clock::end_s(told.as_ref().unwrap_or(&scenario));
+            let ends = self.journal().when_steps_were_set();
+            let end_s = Clock::end_s(ends.as_ref().unwrap_or(&scenario));
             self.change().set_end(end_s);
         }
         if !is_of_same_name {
@@ -243,11 +261,11 @@ impl Work {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::for_tests::{preset, scenario};
+    use crate::lab::for_tests::scenario;
     use toml::Value;
 
-    fn work() -> Work {
-        Work::new("method-2", &scenario())
+    fn runs() -> Runs {
+        Runs::new("method-2", &scenario())
     }
 
     fn time_step(value: f64) -> Act {
@@ -256,53 +274,43 @@ mod tests {
 
     #[test]
     fn acts_are_done_all_or_none() {
-        let mut work = work();
-        let before = work.journal().clone();
+        let mut runs = runs();
+        let before = runs.journal().clone();
         let acts = vec![time_step(0.05), time_step(-1.0)];
-        assert!(work.act(40, acts, false, 2300).is_err());
-        assert_eq!(work.journal(), &before);
+        assert!(runs.act(40, acts, false, 2300).is_err());
+        assert_eq!(runs.journal(), &before);
         let acts = vec![
             time_step(0.05),
             Act::set("motion.gravity_m_per_s2", Value::Float(5.0)),
         ];
-        assert!(work.act(40, acts, false, 2300).unwrap().is_some());
-        assert!(work.turn(Way::Back, 2300).unwrap().is_some());
-        assert_eq!(work.journal().file(), before.file());
-        assert!(work.turn(Way::Back, 2300).unwrap().is_none());
-        assert!(work.act(40, Vec::new(), false, 2300).unwrap().is_none());
+        assert!(runs.act(40, acts, false, 2300).unwrap().is_some());
+        assert!(runs.turn(Way::Undo, 2300).unwrap().is_some());
+        assert_eq!(runs.journal().file(), before.file());
+        assert!(runs.turn(Way::Undo, 2300).unwrap().is_none());
+        assert!(runs.act(40, Vec::new(), false, 2300).unwrap().is_none());
     }
 
-    #[test]
-    fn undo_returns_to_the_file_that_was_opened_before() {
-        let mut work = work();
-        work.open("cusps", &preset("cusps"));
-        work.compare_with_file(&preset("cusps"));
-        assert_eq!((work.name(), work.changed_from_file()), ("cusps", None));
-        let turned = work.turn(Way::Back, 1).unwrap().unwrap();
-        work.compare_with_file(&turned.scenario);
-        assert!(turned.what == Reversal::OtherRun && !turned.is_of_same_name);
-        assert_eq!((work.name(), work.changed_from_file()), ("method-2", None));
-        assert!(work.turn(Way::On, 1).unwrap().is_some());
-        assert_eq!(work.name(), "cusps");
+    fn kept(runs: &mut Runs) -> Text {
+        runs.kept(None, crate::lab::session::written)
     }
 
     #[test]
     fn the_kept_text_follows_every_change() {
-        let mut work = work();
-        let first = work.kept(None);
-        assert_eq!(**first, **work.kept(None));
-        work.act(40, vec![time_step(0.05)], false, 2300).unwrap();
-        let second = work.kept(None);
+        let mut runs = runs();
+        let first = kept(&mut runs);
+        assert_eq!(**first, **kept(&mut runs));
+        runs.act(40, vec![time_step(0.05)], false, 2300).unwrap();
+        let second = kept(&mut runs);
         assert_ne!(**first, **second);
-        work.turn(Way::Back, 2300).unwrap();
-        assert_ne!(**second, **work.kept(None));
+        runs.turn(Way::Undo, 2300).unwrap();
+        assert_ne!(**second, **kept(&mut runs));
     }
 
     #[test]
     fn step_0_is_no_run_to_write() {
-        let work = work();
-        let refused = work.run_up_to(0, "export").unwrap_err();
+        let runs = runs();
+        let refused = runs.run_up_to(0, "export").unwrap_err();
         assert!(refused.starts_with("there is nothing to export yet"));
-        assert_eq!(work.run_up_to(7, "export").unwrap().steps, 7);
+        assert_eq!(runs.run_up_to(7, "export").unwrap().steps, 7);
     }
 }

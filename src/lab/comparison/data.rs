@@ -2,27 +2,21 @@
 //!
 //! A second simulation of the run's scenario follows the run, like the exact motion does, and reads it at the measured
 //! times. It also records the quantities that were measured and that the run's own recording does not have, so that their
-//! curves can be drawn. [`Compared`] holds the two against each other.
+//! curves can be drawn. [`Compared`] has the two side by side.
 
-mod opening;
-
-pub use crate::data::compared::{Compared, Largest, Shown, Sum};
-
-use super::player::Player;
+use crate::data::compared::Compared;
 use crate::data::{Measured, Quantity, Reader, Series};
-use crate::playback::ghost::Ghost;
 use crate::playback::recording::{Curve, Moment, Recording};
 use crate::run::Simulation;
 use crate::scenario::{Problems, Scenario};
 use nalgebra::Vector3;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// Quantities that a recording holds beside the tilt: in the places of x, y and z.
 const IN_A_RECORDING: usize = Curve::OF_POINT.len();
 
 /// Measured data, and the run's values for them so far.
-pub struct Beside {
+pub struct DataComparison {
     pub name: String,
     pub measured: Arc<Measured>,
     series: Arc<Series>,
@@ -35,7 +29,7 @@ pub struct Beside {
     pub compared: Compared,
 }
 
-impl Beside {
+impl DataComparison {
     /// `measured` beside the run of `scenario`, of which nothing has been read yet.
     pub(super) fn new(
         name: &str,
@@ -43,7 +37,7 @@ impl Beside {
         scenario: &Arc<Scenario>,
     ) -> Result<Self, Problems> {
         let series = Arc::new(measured.series()?.clone());
-        let mut beside = Self {
+        let mut comparison = Self {
             name: name.to_owned(),
             simulation: Simulation::new(Arc::clone(scenario)),
             reader: Reader::new(Arc::clone(&series)),
@@ -54,8 +48,8 @@ impl Beside {
             series,
             measured: Arc::new(measured),
         };
-        beside.begin(scenario);
-        Ok(beside)
+        comparison.begin(scenario);
+        Ok(comparison)
     }
 
     pub fn quantities(&self) -> impl Iterator<Item = &'static Quantity> + Clone + '_ {
@@ -95,13 +89,19 @@ impl Beside {
         })
     }
 
-    fn begin(&mut self, scenario: &Arc<Scenario>) {
+    pub(super) fn begin(&mut self, scenario: &Arc<Scenario>) {
         self.simulation = Simulation::new(Arc::clone(scenario));
         self.reader = Reader::new(Arc::clone(&self.series));
         let recordings = self.recorded_here().count().div_ceil(IN_A_RECORDING);
         self.recorded = vec![Recording::default(); recordings];
         self.has_broken = false;
         self.record();
+    }
+
+    /// Begins with `scenario`, and keeps what was recorded as that of the ghost.
+    pub(super) fn begin_after_ghost(&mut self, scenario: &Arc<Scenario>) {
+        self.before = std::mem::take(&mut self.recorded);
+        self.begin(scenario);
     }
 
     /// Goes on with `scenario`, which has the same motion up to `step`.
@@ -159,76 +159,5 @@ impl Beside {
         let scenario = self.simulation.scenario();
         let traced = &scenario.body.mechanics.points()[scenario.trace].at;
         self.compared = Compared::new(&self.series, self.reader.values(), now_s, traced);
-    }
-}
-
-/// Computing time for following the run in each round of the loop, while the run moves and while it stands still.
-const FOLLOWING: Duration = Duration::from_millis(6);
-const CATCHING_UP: Duration = Duration::from_millis(40);
-
-impl Player {
-    pub fn measured(&self) -> Option<&Beside> {
-        self.measured.as_ref()
-    }
-
-    /// Begins to read the run of `scenario` from its start. To be called where it takes the place of the present one.
-    pub(super) fn measure_again(&mut self, scenario: &Arc<Scenario>) {
-        if let Some(beside) = &mut self.measured {
-            let left = self.playback.run().scenario();
-            let is_left = |ghost: &Ghost| Arc::ptr_eq(&ghost.scenario, left);
-            if self.ghost.as_ref().is_some_and(is_left) {
-                beside.before = std::mem::take(&mut beside.recorded); // what the ghost shows
-            }
-            beside.begin(scenario);
-        }
-    }
-
-    /// Goes on reading in the run of `scenario`, which has the same motion as the present one up to `step`.
-    pub(super) fn measure_on(&mut self, step: u64, scenario: &Arc<Scenario>) {
-        if let Some(beside) = &mut self.measured {
-            beside.go_on_in(scenario, step);
-        }
-    }
-
-    /// Reads the run on to the present step, for at most its share of the computing time. Returns whether there was
-    /// something to do.
-    pub(super) fn follow_measured(&mut self, clock: &mut dyn FnMut() -> Duration) -> bool {
-        let step = self.playback.step_number();
-        let share = if self.is_moving() {
-            FOLLOWING
-        } else {
-            CATCHING_UP
-        };
-        let beside = self.measured.as_mut();
-        let Some(beside) = beside.filter(|beside| beside.is_behind(step)) else {
-            return false;
-        };
-        let deadline = clock() + share;
-        beside.follow(step, || clock() >= deadline);
-        // While the run moves, numbers are read a few times a second.
-        if !self.is_moving() {
-            self.compare();
-        }
-        true
-    }
-
-    /// Reads the run on to the present step, however long that takes.
-    pub(super) fn catch_up_measured(&mut self) {
-        let step = self.playback.step_number();
-        if let Some(beside) = &mut self.measured {
-            beside.follow(step, || false);
-        }
-    }
-
-    /// Compares the data with the run as far as it has come.
-    pub(super) fn compare(&mut self) {
-        let step = self.playback.step_number();
-        let now_s = self.playback.run().now().time_s;
-        if let Some(beside) = &mut self.measured {
-            if !beside.is_behind(step) {
-                beside.follow(step, || true);
-            }
-            beside.compare(now_s);
-        }
     }
 }

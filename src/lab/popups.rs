@@ -1,13 +1,13 @@
-//! What lies on top of the panes and gets the keys: the browser, the help, a dialog; the count typed before a key; and
-//! the message at the bottom of the screen.
+//! The popups, which lie over the panes and get the keys: the browser, the help, a dialog; and the count typed before a
+//! key.
 
 use super::action::FieldEdit;
 use super::browser::Browser;
 use super::dialog::Dialog;
+use super::files::Files;
 use super::form::{MOST_IN_LINE, edit_line, type_into};
-use super::notice::Notice;
 use super::preview::Preview;
-use std::time::Duration;
+use std::path::Path;
 
 pub const MOST_COUNTED: u64 = 999_999_999;
 
@@ -26,9 +26,9 @@ pub enum Mode {
     Dialog,
 }
 
-/// The browser, the help and the dialog, and which of them is open; the count; the message.
+/// The browser, the help and the dialog, and which of them is open; the count.
 #[derive(Default)]
-pub struct OnTop {
+pub struct Popups {
     pub mode: Mode,
     /// The mode to return to when the help is closed.
     pub under_help: Mode,
@@ -37,34 +37,11 @@ pub struct OnTop {
     pub browser: Browser,
     pub help: HelpSearch,
     pub count: Option<u64>,
-    pub notice: Notice,
-    /// Whether the last key asked to leave while an export was in progress, and the user was warned.
-    was_warned: bool,
 }
 
-/// What was on the screen when a key was pressed; the key has removed it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cleared {
-    pub(super) count: Option<u64>,
-    /// Whether a message or a count was removed.
-    pub(super) anything: bool,
-    /// Whether the user was warned that leaving stops the export.
-    pub(super) was_warned: bool,
-}
-
-impl OnTop {
+impl Popups {
     pub fn dialog(&self) -> Option<&Dialog> {
         self.dialog.as_ref()
-    }
-
-    /// Removes the message and the count, as every key does.
-    pub(super) fn clear(&mut self) -> Cleared {
-        let count = self.count.take();
-        Cleared {
-            count,
-            anything: self.notice.take_back() || count.is_some(),
-            was_warned: std::mem::take(&mut self.was_warned),
-        }
     }
 
     /// Adds `digit` to `count`, the count that the key has removed.
@@ -73,16 +50,14 @@ impl OnTop {
         self.count = Some(count.min(MOST_COUNTED));
     }
 
-    /// Warns at `now` that leaving stops the export; asked again right after it, the lab ends.
-    pub(super) fn warn_of_export(&mut self, now: Duration) {
-        self.was_warned = true;
-        let text = "an export is under way: q again leaves it unfinished, and writes nothing";
-        self.notice.say(text, now);
-    }
-
     pub(super) fn open_dialog(&mut self, dialog: Dialog) {
         self.dialog = Some(dialog);
         self.mode = Mode::Dialog;
+    }
+
+    /// Asks for a number: `title` says for what, `label` what it is and in which unit, `about` how to answer.
+    pub fn ask_number(&mut self, title: &str, label: &str, about: &str) {
+        self.open_dialog(Dialog::number(title, label, about));
     }
 
     pub(super) fn take_dialog(&mut self) -> Option<Dialog> {
@@ -98,6 +73,40 @@ impl OnTop {
             self.browser.forget_chosen();
         }
         self.browser.take_chosen()
+    }
+
+    /// Opens the browser in the folder of `files`, with `name` selected.
+    pub(super) fn browse(&mut self, name: &str, files: &Files) {
+        let may_be_read = |path: &Path| files.admit(path).is_ok();
+        self.browser.begin(files.folder(), name, may_be_read);
+        self.mode = Mode::Browser;
+    }
+
+    /// Lists the folder that is selected in the browser, or begins to read the file; returns the name of an entry that can
+    /// be opened at once.
+    ///
+    /// # Errors
+    /// Why there is nothing to open.
+    pub(super) fn choose(&mut self, files: &Files) -> Result<Option<String>, String> {
+        let Some(entry) = self.browser.choice().cloned() else {
+            return Err("nothing is selected: Esc clears the filter".to_owned());
+        };
+        if entry.is_folder {
+            self.mode = Mode::Browser;
+            let is_listed = self.browser.enter(|path| files.admit(path).is_ok());
+            return is_listed
+                .then_some(None)
+                .ok_or_else(|| format!("{} cannot be opened any more", entry.name));
+        }
+        if !entry.is_file || !files.may_be_read_aside(Path::new(&entry.name)) {
+            return Ok(Some(entry.name));
+        }
+        self.browser.choose();
+        Ok(None)
+    }
+
+    pub fn shows_settings(&self) -> bool {
+        self.dialog.as_ref().is_some_and(Dialog::is_of_settings)
     }
 
     /// Opens the help on top of the present mode, or closes it.
@@ -147,28 +156,29 @@ impl OnTop {
         }
     }
 
-    /// Puts the pasted `text` into the dialog or the filter, and says at `now` if it does not fit. In other modes it says
-    /// that pasting does nothing: the letters of a pasted text are not meant as keys.
-    pub(super) fn paste(&mut self, text: &str, now: Duration) {
-        self.clear();
+    /// Puts the pasted `text` into the dialog or the filter. Returns a message if it does not fit. In other modes pasting
+    /// does nothing: the letters of a pasted text are not meant as keys.
+    pub(super) fn paste(&mut self, text: &str) -> Option<String> {
         match (&mut self.dialog, self.mode) {
             (Some(dialog), _) => dialog.paste(text),
             (None, Mode::Help) => {
                 self.help.search(|line| type_into(line, text));
             }
             (None, Mode::Filter) => {
-                if !self.browser.filter_by(|line| type_into(line, text)) {
-                    let text = format!(
+                let fits = self.browser.filter_by(|line| type_into(line, text));
+                let cut = || {
+                    format!(
                         "the filter takes at most {MOST_IN_LINE} characters: what was pasted is cut"
-                    );
-                    self.notice.say(text, now);
-                }
+                    )
+                };
+                return (!fits).then(cut);
             }
             _ => {
                 let text = "what is pasted goes into fields and filters; here it does nothing";
-                self.notice.say(text, now);
+                return Some(text.to_owned());
             }
         }
+        None
     }
 }
 
@@ -194,7 +204,7 @@ impl HelpSearch {
     }
 
     /// Moves the selection to the last of `entries` entries, if it is beyond it.
-    pub(super) fn limit(&mut self, entries: usize) {
+    pub fn limit(&mut self, entries: usize) {
         self.selected = self.selected.min(entries.saturating_sub(1));
     }
 }
@@ -203,88 +213,46 @@ impl HelpSearch {
 mod tests {
     use super::*;
 
-    const NOW: Duration = Duration::ZERO;
-
     #[test]
     fn what_was_opened_last_is_closed_first() {
-        let mut on_top = OnTop::default();
-        assert!(!on_top.close());
-        on_top.mode = Mode::Browser;
-        on_top.toggle_help();
-        assert_eq!(on_top.mode, Mode::Help);
-        assert!(on_top.close());
-        on_top.mode = Mode::Filter;
-        on_top.edit_field(FieldEdit::Type('x'));
-        let filter = |on_top: &OnTop| (on_top.mode, on_top.browser.filter.clone());
-        assert_eq!(filter(&on_top), (Mode::Filter, "x".to_owned()));
-        assert!(on_top.close());
-        assert_eq!(filter(&on_top), (Mode::Browser, String::new()));
-        assert!(on_top.close());
-        on_top.open_dialog(Dialog::go_to());
-        assert_eq!(on_top.mode, Mode::Dialog);
-        assert!(on_top.close() && on_top.dialog().is_none());
-        assert_eq!(on_top.mode, Mode::Lab);
+        let mut popups = Popups::default();
+        assert!(!popups.close());
+        popups.mode = Mode::Browser;
+        popups.toggle_help();
+        assert_eq!(popups.mode, Mode::Help);
+        assert!(popups.close());
+        popups.mode = Mode::Filter;
+        popups.edit_field(FieldEdit::Type('x'));
+        let filter = |popups: &Popups| (popups.mode, popups.browser.filter.clone());
+        assert_eq!(filter(&popups), (Mode::Filter, "x".to_owned()));
+        assert!(popups.close());
+        assert_eq!(filter(&popups), (Mode::Browser, String::new()));
+        assert!(popups.close());
+        popups.open_dialog(Dialog::go_to());
+        assert_eq!(popups.mode, Mode::Dialog);
+        assert!(popups.close() && popups.dialog().is_none());
+        assert_eq!(popups.mode, Mode::Lab);
     }
 
     #[test]
-    fn a_key_removes_count_message_and_warning() {
-        let mut on_top = OnTop::default();
-        on_top.add_digit(None, 4);
-        on_top.add_digit(Some(4), 2);
-        assert_eq!(on_top.count, Some(42));
-        on_top.add_digit(Some(MOST_COUNTED), 9);
-        assert_eq!(on_top.count, Some(MOST_COUNTED));
-        on_top.warn_of_export(NOW);
-        let cleared = on_top.clear();
-        assert_eq!(cleared.count, Some(MOST_COUNTED));
-        assert!(cleared.anything && cleared.was_warned);
-        let cleared = on_top.clear();
-        assert_eq!((cleared.count, cleared.anything), (None, false));
-        assert!(!cleared.was_warned && on_top.notice.text().is_none());
+    fn digits_make_a_count() {
+        let mut popups = Popups::default();
+        popups.add_digit(None, 4);
+        popups.add_digit(Some(4), 2);
+        assert_eq!(popups.count, Some(42));
+        popups.add_digit(Some(MOST_COUNTED), 9);
+        assert_eq!(popups.count, Some(MOST_COUNTED));
     }
 
     #[test]
     fn pasted_text_goes_where_text_is_typed() {
-        let mut on_top = OnTop::default();
-        on_top.paste("q", NOW);
-        assert!(on_top.notice.text().unwrap().contains("does nothing"));
-        on_top.open_dialog(Dialog::go_to());
-        on_top.paste("400", NOW);
-        assert_eq!(on_top.take_dialog().unwrap().form.text(0), "400");
-        on_top.mode = Mode::Filter;
-        on_top.paste(&"x".repeat(MOST_IN_LINE + 1), NOW);
-        assert!(on_top.notice.text().unwrap().contains("is cut"));
-    }
-
-    #[test]
-    fn the_help_begins_at_its_first_entry_each_time() {
-        let mut on_top = OnTop::default();
-        on_top.toggle_help();
-        on_top.shift(10);
-        on_top.shift(-3);
-        assert_eq!(on_top.help.selected, 7);
-        on_top.help.limit(5);
-        assert_eq!(on_top.help.selected, 4);
-        on_top.shift(-30);
-        assert_eq!(on_top.help.selected, 0);
-        on_top.shift(1);
-        on_top.toggle_help();
-        on_top.toggle_help();
-        assert_eq!(on_top.help.selected, 0);
-    }
-
-    #[test]
-    fn the_help_is_searched_and_esc_clears_the_search_first() {
-        let mut on_top = OnTop::default();
-        on_top.toggle_help();
-        on_top.shift(3);
-        on_top.edit_field(FieldEdit::Type('d'));
-        on_top.paste("t\n", NOW);
-        assert_eq!((on_top.help.text.as_str(), on_top.help.selected), ("dt", 0));
-        on_top.edit_field(FieldEdit::Erase);
-        assert_eq!(on_top.help.text, "d");
-        assert!(on_top.close() && on_top.mode == Mode::Help);
-        assert_eq!(on_top.help.text, "");
-        assert!(on_top.close() && on_top.mode == Mode::Lab);
+        let mut popups = Popups::default();
+        assert!(popups.paste("q").unwrap().contains("does nothing"));
+        popups.open_dialog(Dialog::go_to());
+        assert_eq!(popups.paste("400"), None);
+        assert_eq!(popups.take_dialog().unwrap().form.text(0), "400");
+        popups.mode = Mode::Filter;
+        let cut = popups.paste(&"x".repeat(MOST_IN_LINE + 1)).unwrap();
+        assert!(cut.contains("is cut"));
     }
 }
