@@ -156,7 +156,6 @@ impl Lab {
         Ok(())
     }
 
-    /// Moves the focus to the values, and says which keys change them.
     fn turn_to_parameters(&mut self) {
         self.view.turn_to(Pane::PARAMETERS);
         self.say("Up, Down choose a value; Left, Right nudge it; Enter types it; u undoes");
@@ -181,7 +180,6 @@ impl Lab {
         }
     }
 
-    /// Takes a pasted text, where text is typed.
     pub fn paste(&mut self, text: &str) {
         if self.popups.mode == Mode::Find {
             let list = &mut self.edits.values.list;
@@ -361,7 +359,6 @@ impl Lab {
         self.read_now();
     }
 
-    /// Says why the run has stopped by itself.
     fn halted(&mut self, halt: Halt) {
         let Self { player, .. } = self;
         player.destination.has_halted(halt, &mut player.playback);
@@ -386,7 +383,6 @@ impl Lab {
         self.changed |= self.messages.tell_what_was_found(adviser, player);
     }
 
-    /// Takes note of the progress of the export, and says when it has ended.
     fn follow_export(&mut self) {
         self.changed |= self.files.is_exporting();
         if let Some(text) = self.files.follow_export() {
@@ -407,7 +403,6 @@ impl Lab {
         }
     }
 
-    /// Stops the run and drops the commands that are not carried out yet.
     fn stop_script(&mut self) {
         let left_out = self.script.drop_all();
         self.one(Command::Pause);
