@@ -198,20 +198,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn moments_of_a_disk_are_seen_as_one() {
-        // A + B = C.
-        let flat = extents(Shape::Moments(Vector3::new(1.0, 2.0, 3.0)));
-        assert!(flat[2].0.abs() < 1e-15 && flat[2].1.abs() < 1e-15);
-        assert!(flat[0].1 > 1.0 && flat[1].1 > 1.0);
-    }
-
-    #[test]
-    fn a_disk_is_one_circle_and_its_mark() {
-        let (radius, length) = (1.0, 0.0);
-        let disk = lines(&part(Shape::Cylinder { radius, length }));
-        assert_eq!(disk.len(), 2);
-        assert!(disk[1].is_mark);
-    }
 }

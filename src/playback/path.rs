@@ -179,18 +179,4 @@ mod tests {
             prop_assert_eq!(short.visits, long.visits);
         }
     }
-
-    #[test]
-    fn a_small_circle_is_as_fine_as_a_large_one() {
-        let dots = |radius: f64| {
-            let mut path = Path::new(1.0);
-            for step in 0..5000u32 {
-                let (y, x) = (f64::from(step) / 500.0).sin_cos();
-                path.follow(step.into(), &Vector3::new(radius * x, radius * y, 0.0));
-            }
-            path.dots().count()
-        };
-        assert!(dots(0.02) > 400, "{}", dots(0.02));
-        assert!(dots(1.0) > 400, "{}", dots(1.0));
-    }
 }

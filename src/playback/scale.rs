@@ -193,13 +193,4 @@ mod tests {
             assert_eq!(ticks(low, high, most), expected, "{low} to {high}");
         }
     }
-
-    #[test]
-    fn a_zoomed_scale_keeps_its_value_in_place() {
-        let (low, high) = (0.0, 8.0);
-        let scale = Scale { low, high };
-        let zoomed = scale.zoomed(4.0, 2.0);
-        assert_eq!((zoomed.low, zoomed.high), (1.5, 3.5));
-        assert_eq!(scale.from_top(2.0), zoomed.from_top(2.0));
-    }
 }

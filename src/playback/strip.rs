@@ -173,15 +173,6 @@ mod tests {
     }
 
     #[test]
-    fn the_window_moves_on_by_half_its_length() {
-        let begin = |now_s| Strip::following(now_s, 100.0, 50).begin_s;
-        assert_eq!(
-            [0.0, 99.0, 100.0, 101.0, 150.0, 151.0].map(begin),
-            [0.0, 0.0, 0.0, 50.0, 50.0, 100.0]
-        );
-    }
-
-    #[test]
     fn swings_are_a_band_where_five_columns_hold_a_whole_one() {
         for (period, count) in [
             (25.0, 100),
@@ -210,20 +201,5 @@ mod tests {
             let changes = changes.count();
             assert!(changes <= 2, "{period}: {changes}");
         }
-    }
-
-    #[test]
-    fn stretches_are_shown_where_the_curves_are() {
-        let strip = Strip::new(100.0, 100.0, 50);
-        assert_eq!(strip.shown(100.0, 104.0), 0..2);
-        assert_eq!(strip.shown(180.0, 500.0), 40..50);
-        assert!(strip.shown(200.0, 500.0).is_empty() && strip.shown(40.0, 60.0).is_empty());
-        assert_eq!(strip.shown(98.0, 102.0), 0..1);
-        assert_eq!(strip.shown(120.0, 120.0 + 1e-9), 10..11);
-        assert_eq!(
-            [99.0, 100.0, 120.0, 200.0, 200.1].map(|time_s| strip.column(time_s)),
-            [None, Some(0), Some(10), Some(49), None]
-        );
-        assert_eq!(strip.time_s(10), 121.0);
     }
 }

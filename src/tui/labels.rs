@@ -51,39 +51,3 @@ impl Labels {
         on_row.all(|&((other, _), columns)| x > other + columns || x + width < other)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn labels(taken: &[(u16, u16)]) -> Labels {
-        let mut labels = Labels::new(Rect::new(0, 0, 10, 3));
-        taken.iter().for_each(|cell| labels.take(*cell));
-        labels
-    }
-
-    #[test]
-    fn a_label_stands_at_its_cell_or_off_marks_beside_it() {
-        for (taken, cell, width, place) in [
-            (&[][..], (4, 1), 1, (4, 1)),
-            (&[(4, 2)], (4, 1), 1, (4, 1)),
-            (&[], (9, 1), 2, (8, 1)), // whole in the picture
-            (&[(4, 1)], (4, 1), 1, (6, 1)),
-            (&[(9, 1)], (9, 1), 1, (7, 1)),
-        ] {
-            let placed = labels(taken).place(cell, width);
-            assert_eq!(placed, place, "{width} at {cell:?} beside {taken:?}");
-        }
-    }
-
-    #[test]
-    fn it_keeps_off_other_labels_and_stays_where_nothing_is_free() {
-        let mut crowded = labels(&[(4, 1)]);
-        assert_eq!(crowded.place((6, 1), 6), (4, 0), "to another row");
-        assert_eq!(crowded.place((6, 1), 6), (4, 2));
-        assert_eq!(crowded.place((4, 0), 2), (1, 0), "a free column beside it");
-        let mut full = Labels::new(Rect::new(0, 0, 4, 1));
-        full.place((0, 0), 4);
-        assert_eq!(full.place((1, 0), 3), (1, 0));
-    }
-}

@@ -96,19 +96,6 @@ mod tests {
     use Role::*;
 
     #[test]
-    fn nothing_else_on_the_traces_has_the_colour_of_the_exact_motion() {
-        for background in [Background::Dark, Background::Light] {
-            for role in [
-                X, Y, Z, Path, Recent, Old, Track, OldTrack, Push, Warning, Ghost, Pinned, Quiet,
-                Measured,
-            ] {
-                let both = [role, Exact].map(|role| colour(role, background));
-                assert_ne!(both[0], both[1], "{role:?} on {background:?}");
-            }
-        }
-    }
-
-    #[test]
     fn every_colour_is_seen_on_white() {
         /// What xterm has for the colours that are used, and the two that every terminal has.
         fn rgb(colour: Color) -> Option<[u8; 3]> {

@@ -221,25 +221,3 @@ fn nearest(from: Extent, to: Extent) -> (f64, f64) {
         (shared, shared)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_no_number_is_joined_to_nothing() {
-        let mut columns = vec![Drawn::default(); 8];
-        let none = Extent::of(f64::NAN);
-        let endless = Extent::of(f64::INFINITY);
-        for (from, to) in [
-            (none, none),
-            (none, Extent::of(1.0)),
-            (endless, none),
-            (endless, Extent::of(0.0)),
-        ] {
-            join(&mut columns, (1, from), (5, to));
-        }
-        let mut extents = columns.iter().filter_map(|drawn| drawn.extent);
-        assert!(extents.all(|extent| extent.min.is_finite()), "{columns:?}");
-    }
-}

@@ -340,21 +340,3 @@ pub(super) fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {
 fn near(told: f64, number: f64) -> bool {
     (told - number).abs() <= 1e-3 * number.abs()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_keep_off_their_labels() {
-        assert_eq!(fixed("precession", Some(1.5881), 3), "1.588");
-        assert_eq!(fixed("precession", Some(171.185), 3), "171.19");
-        assert_eq!(fixed("precession", Some(-171.185), 3), "-171.2");
-        assert_eq!(fixed("nutation", Some(0.80972), 5), "0.80972");
-        assert_eq!(fixed("nutation", None, 5), "-");
-        assert_eq!(fixed("z from", Some(-1e-9), 4), "0.0000");
-        assert_eq!(signed("E drift", 9493.8434, 4), "+9493.843");
-        assert_eq!(fixed("precession", Some(-1.2345e12), 3), "-1e12");
-        assert_eq!(fixed("precession", Some(1.2345e12), 3), "1.2e12");
-    }
-}

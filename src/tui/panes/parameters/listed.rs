@@ -176,19 +176,3 @@ fn without_empty_groups(lines: Vec<Line>) -> Vec<Line> {
     let kept = lines.into_iter().zip(keep).filter(|&(_, keep)| keep);
     kept.map(|(line, _)| line).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::lines::value;
-    use super::*;
-
-    #[test]
-    fn groups_stay_together_where_they_fit() {
-        let line = |label| value(0, label, String::new(), "");
-        let lines = [heading("a"), line("1"), heading("b"), line("2"), line("3")];
-        let columns = |height| by_group(&lines, height).map(|columns| columns.len());
-        assert_eq!(columns(5), Some(1));
-        assert_eq!(columns(3), Some(2));
-        assert_eq!(columns(2), None);
-    }
-}

@@ -138,26 +138,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_vector_has_its_points_in_one_column() {
-        let format = Format::of_vectors(42);
-        assert_eq!((format.cell, format.digits), (10, 6));
-        for (numbers, shown) in [
-            (
-                &[0.0, -707.106781, 3.5][..],
-                "         0  -707.107     3.500",
-            ),
-            (&[1e-14, 0.5, -0.25], " 1.000e-14  0.500000 -0.250000"),
-            (&[1.5e9, -2e9, 0.001], " 1.50000e9 -2.0000e9 1.0000e-3"),
-            (&[8e-16, 220.9, -3e-12], "        ~0   220.900 -3.00e-12"),
-            (&[8e-16, 0.0, 8e-16], " 8.000e-16         0 8.000e-16"),
-            (&[f64::NAN], "       n/a"),
-            (&[-0.0], "         0"),
-        ] {
-            assert_eq!(format.aligned(numbers).concat(), shown, "{numbers:?}");
-        }
-    }
-
-    #[test]
     fn no_number_is_wider_than_its_cell() {
         for width in [12, 30, 42, 60, 100] {
             let format = Format::of_vectors(width);

@@ -53,17 +53,3 @@ pub fn of(name: &str) -> Words {
     let found = TABLE.iter().find(|row| row.name == name);
     found.copied().unwrap_or_default()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::physics::workings::NAMES;
-
-    #[test]
-    fn every_phase_has_words() {
-        for name in NAMES {
-            assert_ne!(of(name), Words::default(), "{name}");
-        }
-        assert_eq!(TABLE.len(), NAMES.len());
-    }
-}
