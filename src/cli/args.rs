@@ -4,7 +4,7 @@ use super::values::{frames, length, one_or_more, positive, setting, steps};
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::Background;
 use crate::physics::scheme;
-use crate::tui::surroundings::ColourChoice;
+use crate::tui::theme::ColourChoice;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
 use std::num::NonZeroU64;

@@ -8,7 +8,7 @@ use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::scenario::Document;
 use crate::tui::panes;
-use crate::tui::surroundings;
+use crate::tui::theme;
 use std::sync::Arc;
 
 /// What is opened where nothing is named.
@@ -43,7 +43,7 @@ pub(super) fn variable(name: &str) -> Option<String> {
 
 /// The colours that `look` asks for, or that suit the terminal.
 pub(super) fn theme(look: Look) -> Theme {
-    let theme = surroundings::theme(look.color.unwrap_or_default(), variable);
+    let theme = theme::theme(look.color.unwrap_or_default(), variable);
     Theme {
         background: look.background.unwrap_or(theme.background),
         ..theme
@@ -52,7 +52,7 @@ pub(super) fn theme(look: Look) -> Theme {
 
 /// The dots that are asked for, or that suit locale and terminal.
 pub(super) fn marker(markers: Option<Marker>) -> Marker {
-    markers.unwrap_or_else(|| surroundings::marker(variable))
+    markers.unwrap_or_else(|| theme::marker(variable))
 }
 
 /// A lab without colours, for pictures as plain text.

@@ -15,7 +15,7 @@ use crate::storage::confined::Confined;
 use crate::storage::exporting;
 use crate::text::printable::{Shown, printable};
 use crate::tui::app;
-use crate::tui::surroundings::{self, ColourChoice};
+use crate::tui::theme::{self, ColourChoice};
 use anyhow::Context;
 use resuming::{begun, come_back, come_back_to, tell_of_session};
 use std::fs;
@@ -126,7 +126,7 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
     }
     lab.set_mouse(!args.look.no_mouse);
     lab.set_fps(args.fps.unwrap_or(FPS));
-    lab.usual_colour = Some(surroundings::theme(ColourChoice::Auto, variable).colour);
+    lab.usual_colour = Some(theme::theme(ColourChoice::Auto, variable).colour);
     Ok(())
 }
 

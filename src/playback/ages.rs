@@ -27,7 +27,6 @@ pub struct Ages {
     /// The time of the last turn, s, what is recent included.
     pub turn_s: f64,
     pub swing_s: Option<f64>,
-    /// Whether the swings cover each other on the picture.
     pub are_crowded: bool,
 }
 
@@ -57,7 +56,6 @@ impl Ages {
         Self::new(readouts.swing_s(), turn_s)
     }
 
-    /// The ages for a swing and a turn of these times, s.
     pub fn new(swing_s: Option<f64>, turn_s: Option<f64>) -> Self {
         let is_time = |time_s: &f64| time_s.is_finite() && *time_s > 0.0;
         let (swing_s, turn_s) = (swing_s.filter(is_time), turn_s.filter(is_time));

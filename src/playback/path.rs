@@ -18,7 +18,7 @@ pub struct Path {
     is_visited: Vec<bool>,
     visits: Vec<Visit>,
     last: Option<(f64, f64)>,
-    radius: f64,
+    pub radius: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,10 +108,6 @@ impl Path {
             let halved = |place: usize| SIDE / 4 + place / 2;
             self.visit_cell(step, halved(cell / SIDE) * SIDE + halved(cell % SIDE));
         }
-    }
-
-    pub fn radius(&self) -> f64 {
-        self.radius
     }
 
     /// The largest distance of the path from the place (`x`, `y`), m, to a cell.

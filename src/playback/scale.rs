@@ -57,10 +57,6 @@ impl Scale {
         extent.max >= self.low && extent.min <= self.high
     }
 
-    pub fn ticks(&self, most: usize) -> Vec<f64> {
-        ticks(self.low, self.high, most)
-    }
-
     /// Digits after the point with which its ends are written: as they are, or to a hundredth of the range.
     pub fn decimals(&self) -> usize {
         let range = self.high - self.low;

@@ -40,17 +40,10 @@ enum Sign {
     Mark,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Cell {
-    sign: Sign,
-    role: Role,
-}
-
-/// Points on an area of cells.
 pub struct Points {
     area: Rect,
     marker: Marker,
-    cells: Vec<Cell>,
+    cells: Vec<(Sign, Role)>,
 }
 
 /// The ends of a bar, in cells from the upper left, which may lie outside of the picture.
@@ -58,10 +51,7 @@ pub type Ends = (f64, f64);
 
 impl Points {
     pub fn new(area: Rect, marker: Marker) -> Self {
-        let nothing = Cell {
-            sign: Sign::Nothing,
-            role: Role::Measured,
-        };
+        let nothing = (Sign::Nothing, Role::Measured);
         Self {
             area,
             marker,
@@ -125,28 +115,27 @@ impl Points {
             return;
         };
         let cell = &mut self.cells[y * size.0 + x];
-        if sign >= cell.sign {
-            *cell = Cell { sign, role };
+        if sign >= cell.0 {
+            *cell = (sign, role);
         }
     }
 
-    /// Draws the points over what is there.
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
         let width = usize::from(self.area.width.max(1));
         for (cells, y) in self.cells.chunks(width).zip(self.area.y..) {
             let mut to_be_seen = 0u8;
-            for (cell, x) in cells.iter().zip(self.area.x..) {
+            for (&(sign, role), x) in cells.iter().zip(self.area.x..) {
                 let Some(target) = buf.cell_mut((x, y)) else {
                     continue;
                 };
                 let is_free = target.symbol() == " ";
-                let (symbol, is_shown) = match cell.sign {
+                let (symbol, is_shown) = match sign {
                     Sign::Nothing => (' ', false),
                     Sign::Bar(symbol) | Sign::End(symbol) => (symbol, is_free),
                     Sign::Mark => (self.marker.point(), is_free || to_be_seen == 0),
                 };
                 if is_shown {
-                    target.set_char(symbol).set_style(theme.style(cell.role));
+                    target.set_char(symbol).set_style(theme.style(role));
                 }
                 to_be_seen = if is_shown && !is_free {
                     SEEN

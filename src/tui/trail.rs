@@ -35,10 +35,8 @@ pub struct Trail {
     around: Around,
 }
 
-/// What the path is drawn around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Around {
-    /// Nothing: the picture is of the path.
     Nothing,
     /// The body: areas are as sparse as can be, because it is drawn over them, and the path has a colour of its own.
     Body,
@@ -148,7 +146,6 @@ impl Trail {
         around.any(|(x, y)| self.age(x, y) == Some(Age::Recent))
     }
 
-    /// Sets the dots that are drawn of the path.
     pub fn draw(&self, dots: &mut Dots) {
         let dwelt = self.dwelt();
         // The strongest last: it decides how a cell looks in which there are dots of more than one age.

@@ -31,7 +31,6 @@ const LEAST: u16 = 16;
 pub struct Timeline {
     /// Where the scenario's run ends, s.
     pub end_s: f64,
-    /// Where the run stands, s.
     pub now_s: f64,
     /// How far it has been, s.
     pub furthest_s: f64,

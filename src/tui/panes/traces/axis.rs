@@ -101,7 +101,7 @@ pub fn values(scale: &Scale, rows: usize) -> Vec<Placed> {
     const ROWS: usize = 3;
     let last = rows.saturating_sub(1);
     let ticks = if rows > 2 * ROWS {
-        scale.ticks(rows / ROWS)
+        scale::ticks(scale.low, scale.high, rows / ROWS)
     } else {
         Vec::new()
     };
