@@ -13,7 +13,7 @@ use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::text::number::counted;
 use crate::text::printable::{Shown, printable};
-use crate::tui::recorder::Recorder;
+use crate::tui::screen::Recorder;
 use anyhow::{bail, ensure};
 use clap::Args;
 use serde_json::{Value, json};

@@ -12,7 +12,7 @@ use crate::lab::view::theme::{Background, Theme};
 use crate::lessons::{Lesson, play};
 use crate::run::NotFinite;
 use crate::scenario::{Document, Problem, Problems};
-use crate::tui::{panes, surroundings};
+use crate::tui::{panes, theme};
 use anyhow::{Context, bail};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -50,7 +50,7 @@ pub(super) fn variable(name: &str) -> Option<String> {
 
 /// The colours that `look` asks for, or that suit the terminal.
 pub(super) fn theme(look: Look) -> Theme {
-    let theme = surroundings::theme(look.color.unwrap_or_default(), variable);
+    let theme = theme::theme(look.color.unwrap_or_default(), variable);
     Theme {
         background: look.background.unwrap_or(theme.background),
         ..theme
@@ -59,7 +59,7 @@ pub(super) fn theme(look: Look) -> Theme {
 
 /// The dots that are asked for, or that suit locale and terminal.
 pub(super) fn marker(markers: Option<Marker>) -> Marker {
-    markers.unwrap_or_else(|| surroundings::marker(variable))
+    markers.unwrap_or_else(|| theme::marker(variable))
 }
 
 /// A lab without colours, for pictures as plain text.

@@ -13,7 +13,7 @@ use crate::storage::confined::Confined;
 use crate::storage::exporting;
 use crate::text::printable::{Shown, printable};
 use crate::tui::app;
-use crate::tui::surroundings::{self, ColourChoice};
+use crate::tui::theme::{self, ColourChoice};
 use anyhow::Context;
 use std::fs;
 use std::io::{self, IsTerminal, Write};
@@ -119,7 +119,7 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
     }
     lab.view_mut().mouse = !args.look.no_mouse;
     lab.view_mut().fps = args.fps.unwrap_or(FPS);
-    lab.settings.usual_colour = Some(surroundings::theme(ColourChoice::Auto, variable).colour);
+    lab.settings.usual_colour = Some(theme::theme(ColourChoice::Auto, variable).colour);
     Ok(())
 }
 

@@ -5,7 +5,6 @@ use super::panes::{self, help};
 use crate::lab::action::Action;
 use crate::lab::{Lab, Request};
 
-/// Does what `key` means, or shows a message that it has none.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     let mode = lab.popups().mode;
     let mut own = panes::keys(lab.view().focus).iter();

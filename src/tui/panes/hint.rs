@@ -81,7 +81,6 @@ pub fn has_message(lab: &Lab) -> bool {
     popups.count.is_some() || lab.notice().is_some() || messages.trouble().is_some()
 }
 
-/// Before whatever is said while the session is not kept.
 const NOT_KEPT: &str = "session not kept";
 
 /// What stands in the line of hints. That the session is not kept stands there as long as it is so.

@@ -6,7 +6,7 @@ use crate::data::Quantity;
 use crate::data::compared::Sum;
 use crate::lab::Lab;
 use crate::lab::comparison::DataComparison;
-use crate::text::number::{short, shortest};
+use crate::text::number::{counted, short, shortest};
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
@@ -48,7 +48,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
 fn fitting(beside: &DataComparison, end_s: f64, room: usize) -> (String, String, Vec<String>) {
     let sum = &beside.compared.sum;
     let name = file_name(&beside.name);
-    let [long, short] = counted(beside, sum, end_s);
+    let [long, short] = reached(beside, sum, end_s);
     let (all, mut in_short): (Vec<_>, Vec<_>) = parts(sum).into_iter().map(<_>::from).unzip();
     let mut forms = vec![(long.clone(), all), (long, in_short.clone())];
     forms.push((short.clone(), in_short.clone()));
@@ -77,18 +77,15 @@ fn file_name(name: &str) -> String {
     printable(&last).into_owned()
 }
 
-fn points(count: usize) -> String {
-    match count {
-        1 => "1 point".to_owned(),
-        _ => format!("{count} points"),
-    }
-}
-
 /// What was measured, how many values there are, and how many of them the run has reached: at length and in short.
 /// Where data go on after `end_s`, the end of the run, it says so, and the key that plays the run up to there.
-fn counted(beside: &DataComparison, sum: &Sum, end_s: f64) -> [String; 2] {
+fn reached(beside: &DataComparison, sum: &Sum, end_s: f64) -> [String; 2] {
     let names: Vec<_> = beside.quantities().map(Quantity::words).collect();
-    let (names, all, reached) = (names.join(", "), points(sum.points), sum.compared);
+    let (names, all, reached) = (
+        names.join(", "),
+        counted(sum.points as u64, "point"),
+        sum.compared,
+    );
     let last_s = beside.last_s().filter(|&last_s| last_s > end_s);
     let [long, short] = match last_s.map(shortest) {
         Some(last_s) if reached < sum.points => [

@@ -168,9 +168,23 @@ pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &m
     inside
 }
 
+/// Draws the frame of the round pane `row`, magnified by `zoom`; returns the area inside, where it has room for a picture.
+fn round_frame(
+    row: &PaneRow,
+    zoom: f64,
+    seen: &Seen<'_>,
+    area: Rect,
+    buf: &mut Buffer,
+) -> Option<Rect> {
+    let title = round_title(row.title, zoom, seen.reading, area.width);
+    let has_focus = seen.view.focus == row.id;
+    let inside = frame(&title, area, has_focus, &seen.view.theme, buf);
+    (inside.height >= 2 && inside.width > 0).then_some(inside)
+}
+
 /// The title of a round pane: `name`, its magnification, and the step that it shows if the scheme has broken down
 /// since. The longest form that fits in `width` columns.
-pub(super) fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> String {
+fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> String {
     let title = if zoom == 1.0 {
         name.to_owned()
     } else {
@@ -189,14 +203,34 @@ pub(super) fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, widt
 
 /// The first of `forms`, the longest first, that fits in `width` columns; else the last.
 pub(super) fn longest(forms: impl IntoIterator<Item = String>, width: usize) -> String {
-    let mut last = String::new();
-    for form in forms {
-        last = form;
-        if columns(&last) <= width {
-            break;
+    let fitting = |kept: String, next| if columns(&kept) <= width { kept } else { next };
+    forms.into_iter().reduce(fitting).unwrap_or_default()
+}
+
+/// The words of a legend in lines of at most `width` columns, with `apart` columns between two words; a word that is wider
+/// has a line of its own.
+fn in_lines<T>(
+    words: impl Iterator<Item = T>,
+    text: impl Fn(&T) -> &str,
+    apart: usize,
+    width: usize,
+) -> Vec<Vec<T>> {
+    let mut lines: Vec<Vec<T>> = Vec::new();
+    let mut taken = 0;
+    for word in words {
+        let length = columns(text(&word));
+        match lines.last_mut() {
+            Some(line) if taken + apart + length <= width => {
+                taken += apart + length;
+                line.push(word);
+            }
+            _ => {
+                taken = length;
+                lines.push(vec![word]);
+            }
         }
     }
-    last
+    lines
 }
 
 /// As [`frame`], on top of whatever is there.

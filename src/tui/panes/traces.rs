@@ -3,7 +3,6 @@
 
 mod axis;
 mod border;
-mod curve;
 mod groups;
 mod plot;
 
@@ -75,7 +74,6 @@ const KEYS: &[Binding] = &[
     does(&[Mode::Lab], &[Key::Home], |lab, _| Ok(lab.view().whole(lab.player())), "whole", "show the run again as at first: no cursor, no zoom"),
 ];
 
-/// The strips of a run.
 pub struct Traces<'a>(pub Seen<'a>);
 
 impl Widget for Traces<'_> {
@@ -137,7 +135,7 @@ impl Traces<'_> {
             self.draw_zero(plot, &mut dots);
         }
         for (columns, stroke, ink) in &plot.curves {
-            curve::draw(&mut dots, columns, &plot.scale, *stroke, *ink);
+            plot::draw_curve(&mut dots, columns, &plot.scale, *stroke, *ink);
         }
         dots.render(&self.0.view.theme, buf);
         self.draw_points(plot, buf);
@@ -228,7 +226,6 @@ impl Traces<'_> {
         longest(words.map(|word| format!("{range} {word}")), room)
     }
 
-    /// The line of the residual 0.
     fn draw_zero(&self, plot: &Plot, dots: &mut Dots) {
         let row = plot.scale.from_top(0.0) * dots.height() as f64;
         for x in (0..dots.width()).step_by(dots.in_a_cell().0) {

@@ -111,8 +111,7 @@ fn vectors(explained: &StepWorkings, width: usize) -> Vec<Section> {
 struct Picture {
     plane: Plane,
     dots: Dots,
-    /// Signs with the dots at which they stand.
-    signs: Vec<((f64, f64), &'static str, Role)>,
+    signs: Vec<((u16, u16), &'static str, Role)>,
 }
 
 impl Picture {
@@ -141,7 +140,7 @@ impl Picture {
     }
 
     fn sign(&mut self, at: Vector2<f64>, sign: &'static str, role: Role) {
-        self.signs.push((self.dot(at), sign, role));
+        self.signs.push((self.plane.cell((at.x, at.y)), sign, role));
     }
 
     /// A line from one place along another, with its name at its tip.
@@ -162,22 +161,13 @@ impl Picture {
 
     fn draw(&self, area: Rect, view: &View, buf: &mut Buffer) {
         self.dots.render(&view.theme, buf);
-        let (across, down) = self.plane.in_cell;
-        let cell = |dot: f64, dots: usize, last: u16| {
-            ((dot / dots as f64).floor().max(0.0) as u16).min(last)
-        };
-        for ((x, y), sign, role) in &self.signs {
+        for &((x, y), sign, role) in &self.signs {
             let last = area.width.saturating_sub(sign.chars().count() as u16);
-            let place = (
-                cell(*x, across, last),
-                cell(*y, down, area.height.saturating_sub(1)),
-            );
-            write(area, place, sign, view.theme.style(*role), buf);
+            write(area, (x.min(last), y), sign, view.theme.style(role), buf);
         }
     }
 }
 
-/// The heading of a picture on `area`, and the area below it.
 fn headed(heading: &str, view: &View, area: Rect, buf: &mut Buffer) -> Rect {
     let [heading_line, below] = split_rows(area, 1);
     let style = view.theme.style(Role::Quiet);
@@ -185,7 +175,6 @@ fn headed(heading: &str, view: &View, area: Rect, buf: &mut Buffer) -> Rect {
     below
 }
 
-/// `text` in lines on `area`.
 fn text(text: &str, role: Role, view: &View, area: Rect, buf: &mut Buffer) {
     let lines = wrapped(text, area.width.into());
     for (line, y) in lines.iter().zip(0..area.height) {
