@@ -5,7 +5,7 @@
 //! letter, and without colours the roles differ by bold, dim and reversed. What the environment variables say of colours
 //! and dots is read here.
 
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use ratatui::style::{Color, Modifier, Style};
 

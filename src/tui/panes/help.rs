@@ -2,6 +2,7 @@
 //! purpose, and the words are those of the glossary.
 
 use super::{PANES, popup_frame, write};
+use crate::lab::action::Action;
 use crate::lab::view::Pane;
 use crate::lab::{Lab, Mode, Request};
 use crate::text::wrap::{columns, wrapped};
