@@ -3,20 +3,19 @@
 
 use super::args::{Changes, LessonArgs, Look, WorkbenchArgs, change};
 use super::print;
-use super::progress::{self, Interrupted, Interruption};
+use super::progress::{self, Interrupted};
 use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::view::View;
 use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::lessons::{Lesson, play};
-use crate::run::NotFinite;
 use crate::scenario::{Document, Problem, Problems};
 use crate::tui::{panes, theme};
 use anyhow::{Context, bail};
+use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 /// What is opened where nothing is named.
 pub(super) const DEFAULT: &str = "method-2";
@@ -81,37 +80,10 @@ pub(super) fn of_workbench(args: &WorkbenchArgs, name: &str) -> anyhow::Result<L
     let mut lab = lab(name, &args.changes, args.look.markers, theme, !args.paused)?;
     if let Some(step) = args.at {
         // No signal is caught yet: one that ends the process here has nothing to put right.
-        let arrived = go_to(&mut lab, step, &Interruption::default());
-        arrived.with_context(|| name.to_owned())?;
+        lab.begin_at(step, |_, _| ControlFlow::Continue(()))
+            .with_context(|| name.to_owned())?;
     }
     Ok(lab)
-}
-
-/// Plays from the start to `step`, a part at a time, until a signal comes.
-///
-/// # Errors
-/// Where the numbers stop being finite on the way.
-pub(super) fn go_to(
-    lab: &mut Lab,
-    step: u64,
-    interruption: &Interruption,
-) -> Result<(), NotFinite> {
-    const LOOK: Duration = Duration::from_millis(100);
-    let watch = interruption.meter();
-    let mut part = 1_u64;
-    loop {
-        let (here, begin) = (lab.player().playback.step_number(), Instant::now());
-        let arrived = lab.begin_at(here.saturating_add(part).min(step));
-        let here = lab.player().playback.step_number();
-        if arrived.is_err() || here >= step || watch(here, step).is_break() {
-            return arrived;
-        }
-        part = if begin.elapsed() < LOOK {
-            part.saturating_mul(2)
-        } else {
-            (part / 2).max(1)
-        };
-    }
 }
 
 pub(super) fn new_lab(look: Look) -> anyhow::Result<Lab> {

@@ -1,7 +1,7 @@
 //! `gyrolab show`: the lab's picture as plain text, at one step or after commands.
 
 use super::args::{Changes, size, steps};
-use super::new_lab::{DEFAULT, go_to, plain_lab};
+use super::new_lab::{DEFAULT, plain_lab};
 use super::{print, progress, tell};
 use crate::lab::command;
 use crate::lab::view::theme::Marker;
@@ -68,7 +68,7 @@ pub(super) fn print_picture(
         None => lab.player().run().scenario().steps,
     };
     let interruption = progress::interruption()?;
-    let ended = go_to(&mut lab, args.at.unwrap_or(end), &interruption);
+    let ended = lab.begin_at(args.at.unwrap_or(end), interruption.meter());
     let mut done = Ok(());
     if let (Ok(()), Some(commands)) = (&ended, commands) {
         lab.take_commands(commands);

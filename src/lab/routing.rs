@@ -345,9 +345,13 @@ impl Lab {
         }
     }
 
-    /// Takes the run to `step` at once.
-    pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
-        let arrived = self.player.playback.begin_at(step);
+    /// Takes the run to `step` before returning, as long as `go_on` says so.
+    pub fn begin_at(
+        &mut self,
+        step: u64,
+        go_on: impl Fn(u64, u64) -> ControlFlow<()>,
+    ) -> Result<(), NotFinite> {
+        let arrived = self.player.playback.begin_at_while(step, go_on);
         self.arrive();
         arrived
     }

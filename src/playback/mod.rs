@@ -34,8 +34,9 @@ use crate::scenario::{Scenario, keys};
 use live::{LiveRun, PlayEnd};
 use pace::{Pace, Speed};
 use reading::Reading;
+use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// The longest time of stepping between two readings of the keyboard.
 const STEPPING: Duration = Duration::from_millis(12);
@@ -324,7 +325,31 @@ impl Playback {
     /// # Errors
     /// When the numbers stop being finite on the way.
     pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
-        self.run.step_to(step)?;
+        self.begin_at_while(step, |_, _| ControlFlow::Continue(()))
+    }
+
+    /// As [`begin_at`](Self::begin_at), as long as `go_on` says so: it gets the step reached and `step`, about ten times a
+    /// second.
+    ///
+    /// # Errors
+    /// When the numbers stop being finite on the way.
+    pub fn begin_at_while(
+        &mut self,
+        step: u64,
+        go_on: impl Fn(u64, u64) -> ControlFlow<()>,
+    ) -> Result<(), NotFinite> {
+        const PART: Duration = Duration::from_millis(100);
+        let mut part = 1_u64;
+        while self.step_number() < step && go_on(self.step_number(), step).is_continue() {
+            let begin = Instant::now();
+            self.run
+                .step_to(self.step_number().saturating_add(part).min(step))?;
+            part = if begin.elapsed() < PART {
+                part.saturating_mul(2)
+            } else {
+                (part / 2).max(1)
+            };
+        }
         self.stop = self.next_stop();
         Ok(())
     }

@@ -11,6 +11,7 @@ use gyrolab::lab::command;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Document;
 use gyrolab::tui::keymap::Key;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -143,7 +144,10 @@ fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
 fn advice_is_looked_for_where_the_lab_opens_paused() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
     stage.commands("pause = true");
-    stage.lab.begin_at(300).unwrap();
+    stage
+        .lab
+        .begin_at(300, |_, _| ControlFlow::Continue(()))
+        .unwrap();
     stage.lab.take_advice();
     assert!(stage.lab.adviser().is_seeking());
     await_advice(&stage);

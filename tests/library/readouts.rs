@@ -408,7 +408,9 @@ fn no_text_shows_what_is_no_number() {
 /// The lab on a large screen, at the end of the run.
 fn picture(scenario: &Scenario) -> String {
     let mut desk = Desk::with("x.toml", scenario.clone());
-    let _ = desk.lab.begin_at(scenario.steps); // where its numbers end it stays there
+    let _ = desk
+        .lab
+        .begin_at(scenario.steps, |_, _| ControlFlow::Continue(())); // where its numbers end it stays there
     screen::text(&desk.lab, true, (200, 50))
 }
 
