@@ -46,7 +46,7 @@ pub(super) struct FigureArgs {
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
     to: Option<f64>,
 
-    /// Draw the exact motion beside it, dashed
+    /// Draw the exact motion beneath it, as a wide pale line
     #[arg(long)]
     exact: bool,
 

@@ -117,6 +117,7 @@ pub(super) fn above(job: &Job<'_>) -> Result<(Option<Series>, Option<String>), S
         points: shown.iter().map(|place| [place.at.x, place.at.y]).collect(),
         errors: [errors(0), errors(1)],
         style: Style::measured(shown.len()),
+        ..Series::default()
     };
     Ok((Some(places), None))
 }

@@ -3,10 +3,10 @@
 pub(super) mod charts;
 
 use super::chart::legend::longest_name;
-use super::chart::{KINDS_OF_LINE, Style};
+use super::chart::{Chart, KINDS_OF_LINE, Style};
 use super::chords;
 use super::course::{self, Course, Wanted};
-use super::dense;
+use super::dense::{self, Dense};
 use super::kind::Kind;
 use super::measured;
 use super::names::names;
@@ -15,6 +15,7 @@ use super::request::{Drawn, Job};
 pub use super::request::{Figure, Known, Request, Run};
 use super::space;
 use crate::analysis::health::LEAST_SWING_DEG;
+use crate::export::Column;
 use crate::run::Truth;
 use crate::scenario::Scenario;
 use crate::text::ladder;
@@ -81,7 +82,10 @@ pub fn figures(
             all_played.push((request, played));
         }
         for (_, played) in all_played.iter().filter(|(it, _)| it.is_alike(request)) {
-            figures.push(draw(&job, played)?);
+            let Some(figure) = draw(&job, played, &mut watch)? else {
+                return Ok(None);
+            };
+            figures.push(figure);
         }
     }
     Ok(Some(figures))
@@ -156,10 +160,7 @@ fn play_truths(
     let drawn = truths.map(|(place, (run, name))| {
         Some(Drawn {
             name,
-            style: match place {
-                1 => Style::exact(),
-                place => Style::curve(place),
-            },
+            style: Style::exact(place),
             course: course::exact(&run.scenario, wanted, &mut watch)?,
             is_exact: true,
         })
@@ -167,11 +168,15 @@ fn play_truths(
     drawn.collect()
 }
 
-/// The figure that the request asks for.
+/// The figure that the request asks for; `None` where `watch` said no.
 ///
 /// # Errors
 /// When what was measured cannot be drawn so.
-fn draw(job: &Job<'_>, played: &Played) -> Result<Figure, String> {
+fn draw(
+    job: &Job<'_>,
+    played: &Played,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Figure>, String> {
     let drawn = &played.drawn;
     let mut warnings = played.warnings.clone();
     let dense;
@@ -180,7 +185,14 @@ fn draw(job: &Job<'_>, played: &Played) -> Result<Figure, String> {
             let mut chart = charts::over_time(job, columns, drawn);
             warnings.extend(measured::over_time(job, &mut chart, columns)?);
             warnings.extend(measured::beyond_runs(job));
-            dense = dense::warning(&chart, columns, drawn, job.request);
+            dense = dense::over_time(&chart, columns, drawn, job.request);
+            if let Some(dense) = &dense {
+                let Some(magnified) = magnified(job, columns, dense, watch)? else {
+                    return Ok(None);
+                };
+                chart.magnified = Some(Box::new(magnified));
+                dense::draw_bands(&mut chart, columns, drawn);
+            }
             chart.scene()
         }
         Kind::Above => {
@@ -199,12 +211,36 @@ fn draw(job: &Job<'_>, played: &Played) -> Result<Figure, String> {
             scene
         }
     };
-    Ok(Figure {
+    Ok(Some(Figure {
         scene,
         warnings,
         dense,
         broke: played.broke.clone(),
-    })
+    }))
+}
+
+/// The chart of the stretch in which what is `dense` is told apart; `None` where `watch` said no.
+fn magnified(
+    job: &Job<'_>,
+    columns: &[&'static Column],
+    dense: &Dense,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Chart>, String> {
+    let request = Request {
+        to_s: Some(dense.to_s),
+        ..job.request.clone()
+    };
+    let part = Job {
+        request: &request,
+        ..*job
+    };
+    let wanted = wanted(&request, [&request.kind].into_iter());
+    let Some(played) = play(&part, &wanted, watch)? else {
+        return Ok(None);
+    };
+    let mut chart = charts::over_time(&part, columns, &played.drawn);
+    measured::over_time(&part, &mut chart, columns)?;
+    Ok(Some(chart))
 }
 
 fn wanted<'a>(request: &Request, kinds: impl Iterator<Item = &'a Kind>) -> Wanted {

@@ -49,16 +49,15 @@ struct Space {
 pub(super) fn scene(job: &Job<'_>, drawn: &[Drawn]) -> (Scene, Option<Dense>) {
     let width_pt = job.request.width_pt;
     let space = Space::fitted(job.runs, drawn, width_pt);
-    let (names, mut styles): (Vec<_>, Vec<_>) = drawn
-        .iter()
-        .map(|drawn| chords::as_drawn(drawn, &drawn.course.path))
-        .unzip();
+    let looks = drawn.iter();
+    let looks = looks.map(|drawn| chords::as_drawn(drawn, &drawn.course.path));
+    let (names, mut styles): (Vec<_>, Vec<_>) = looks.unzip();
     for (drawn, style) in drawn.iter().zip(&mut styles) {
-        let lines = drawn.course.path.lines(|at| space.place(&space.boxed(at)));
-        *style = curve::told_apart(&lines, style.clone());
+        let lines = || drawn.course.path.lines(|at| space.place(&space.boxed(at)));
+        style.core = style.core.filter(|_| !curve::covers_itself(&lines()));
     }
     let series = names.iter().map(String::as_str).zip(&styles);
-    let legend = Legend::new(series, space.stretched().as_deref());
+    let legend = Legend::new(series, space.stretched());
     let mut items = space.draw(drawn, &styles);
     let (left, top, right, bottom) = extent(&items);
     let above = legend.height_above(width_pt) + EDGE;

@@ -115,8 +115,8 @@ pub fn figures(
 
 /// What captions say of the exact motion and of the lines that join the steps.
 fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -> String {
-    let dashed = match (exact, is_exact) {
-        (true, _) => ", the exact motion dashed",
+    let beneath = match (exact, is_exact) {
+        (true, _) => ", the exact motion as a wide pale line beneath",
         (_, true) => "; the run is the exact motion itself",
         _ => "",
     };
@@ -126,7 +126,7 @@ fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -
     let joined = steps
         .filter(|steps| *steps < SMOOTH)
         .map(|steps| format!("; straight lines join the run's steps, about {steps:.0} a swing"));
-    format!("{dashed}{}", joined.unwrap_or_default())
+    format!("{beneath}{}", joined.unwrap_or_default())
 }
 
 /// The figures of what was measured, and of measured less run.

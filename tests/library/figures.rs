@@ -172,12 +172,15 @@ fn lines(scene: &Scene, panel: [Point; 2]) -> Vec<&Item> {
     scene.items.iter().filter(is_line).collect()
 }
 
-fn dashed(scene: &Scene) -> usize {
-    let is_dashed = |item: &&Item| match &item.paint {
-        Paint::Stroke(pen) => item.clip.is_some() && !pen.dash_pt.is_empty(),
+/// The wide lines in panels beneath the first run.
+fn wide(scene: &Scene) -> Vec<usize> {
+    let is_wide = |item: &Item| match &item.paint {
+        Paint::Stroke(pen) => item.clip.is_some() && pen.width_pt > 1.0,
         Paint::Fill(_) => false,
     };
-    scene.items.iter().filter(is_dashed).count()
+    let items = scene.items.iter().enumerate();
+    let wide = items.filter(|(_, item)| is_wide(item));
+    wide.map(|(index, _)| index).collect()
 }
 
 #[test]
@@ -266,11 +269,16 @@ fn a_path_in_space_has_three_axes_and_a_shadow() {
 }
 
 #[test]
-fn the_exact_motion_is_dashed_and_named() {
+fn the_exact_motion_is_wide_beneath_the_run_and_named() {
     let runs = [run("method-2", &["motion.steps=400"])];
     let figure = drawn(&runs, &with_exact("traces"));
     says(&figure.scene, &["report", "exact"]);
-    assert_eq!(dashed(&figure.scene), 3);
+    let wide = wide(&figure.scene);
+    assert_eq!(wide.len(), 3);
+    for exact in wide {
+        let [exact, run] = [exact, exact + 1].map(|index| &figure.scene.items[index]);
+        assert_eq!(exact.clip, run.clip, "the run is on top of it");
+    }
 }
 
 #[test]
@@ -326,7 +334,7 @@ fn a_run_of_the_exact_motion_is_not_drawn_twice() {
     let exact = run("cusps", &["motion.scheme=\"exact\""]);
     let asked = with_exact("tilt_deg");
     let figure = drawn(std::slice::from_ref(&exact), &asked);
-    assert_eq!(dashed(&figure.scene), 0);
+    assert!(wide(&figure.scene).is_empty());
     says(&figure.scene, &["exact"]);
     let [only] = &told(&figure)[..] else {
         panic!("{:?}", told(&figure))
@@ -334,7 +342,7 @@ fn a_run_of_the_exact_motion_is_not_drawn_twice() {
     has(only, "exact motion itself");
     // Beside another scheme it is the exact motion of both, and has its own curve.
     let figure = drawn(&[run("cusps", &[]), exact], &asked);
-    assert_eq!(lines(&figure.scene, panels(&figure.scene)[0]).len(), 2);
+    assert_eq!(wide(&figure.scene).len(), 1);
 }
 
 #[test]
@@ -450,7 +458,7 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
         let [warning] = &told(&figure)[..] else {
             panic!("{name} {kind}: {:?}", figure.warnings)
         };
-        has(&warning, "nothing of them is told apart");
+        has(&warning, "told apart");
         let (_, proposed) = warning.split_once("--to ").unwrap();
         let to_s: f64 = proposed.split(' ').next().unwrap().parse().unwrap();
         let part = Request {
@@ -467,6 +475,34 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
     ] {
         let figure = drawn(&[run(name, &[])], &request(kind));
         assert_eq!(figure.dense, None, "{name} {kind}");
+    }
+}
+
+#[test]
+fn curves_that_are_not_told_apart_are_bands_beside_a_magnified_stretch() {
+    let runs = [run("method-1", &[])];
+    let scene = drawn(&runs, &with_exact("traces")).scene;
+    is_tidy(&scene).unwrap();
+    says(&scene, &["report", "exact", "right: 0 to 0.1 s, magnified"]);
+    let panels = panels(&scene);
+    assert_eq!(panels.len(), 6);
+    let seen = places(&runs[0]);
+    for (axis, panel) in panels[..3].iter().enumerate() {
+        // The edges of the band are the extremes, however long it is.
+        let band = |item: &&Item| item.clip == Some(*panel) && matches!(item.paint, Paint::Fill(_));
+        let bands: Vec<_> = scene.items.iter().filter(band).collect();
+        assert_eq!(bands.len(), 2);
+        let values = || seen.iter().map(|place| place[axis]);
+        let (low, high) = Axis::default().range_of(values());
+        let [_, top, _, bottom] = extent(bands[1]);
+        let is_whole = (bottom - top) / (panel[1].y - panel[0].y);
+        let share = (most(values()) - least(values())) / (high - low);
+        assert!((is_whole / share - 1.0).abs() < 0.01, "{is_whole} {share}");
+        // Those of the stretch have the same axis and more than a few points.
+        let beside = panels[axis + 3];
+        assert_eq!((beside[0].y, beside[1].y), (panel[0].y, panel[1].y));
+        let points = lines(&scene, beside);
+        assert!(points.iter().map(|line| line.path.0.len()).sum::<usize>() > 300);
     }
 }
 
@@ -533,12 +569,8 @@ fn the_exact_motion_is_a_smooth_curve_beside_few_steps() {
         ..with_exact("z_m")
     };
     let figure = drawn(&[run("method-1", &[])], &asked);
-    let panel = panels(&figure.scene)[0];
-    let lines = lines(&figure.scene, panel);
-    let exact = lines.iter().filter(|line| match &line.paint {
-        Paint::Stroke(pen) => !pen.dash_pt.is_empty(),
-        Paint::Fill(_) => false,
-    });
+    let exact = wide(&figure.scene).into_iter();
+    let exact = exact.map(|index| &figure.scene.items[index]);
     // 0.02 s are two nutations, of 20 steps.
     let points: usize = exact.map(|line| line.path.points().count()).sum();
     assert!(points > 200, "{points}");
@@ -766,6 +798,7 @@ proptest! {
             name: gyrolab::figure::page::letters::shortened(&names.1, 7.0, gyrolab::figure::chart::legend::longest_name(width_mm * 72.0 / 25.4) - 6.0) + &index.to_string(),
             points: points.clone(),
             errors: [Vec::new(), errors.iter().map(|error| error.abs()).collect()],
+            band: Vec::new(),
             style: if index % 2 == 0 { Style::curve(index) } else { Style::marked_line(index) },
         });
         let chart = Chart {
@@ -774,6 +807,7 @@ proptest! {
             x: Axis { is_log: logs.0, ..Axis::new("*t*", "s") },
             panels: vec![Panel { y: Axis { is_log: logs.1, ..Axis::new("*x*", "m") }, series: series.collect(), slope }],
             is_true_to_scale: false,
+            magnified: None,
             are_read_off: true,
         };
         let scene = chart.scene();

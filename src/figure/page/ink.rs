@@ -14,6 +14,12 @@ pub const fn grey(level: u8) -> Color {
     Color([level; 3])
 }
 
+/// `color` mixed with white; `white` is the part of that.
+pub fn paler(Color(parts): Color, white: f64) -> Color {
+    let mixed = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
+    Color(parts.map(mixed))
+}
+
 pub const fn at(x: f64, y: f64) -> Point {
     Point { x, y }
 }
