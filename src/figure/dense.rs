@@ -8,34 +8,10 @@ use super::course::{Course, Part};
 use super::page::cover::Grid;
 use super::page::scene::Point;
 use super::path::Path;
-use super::request::{Drawn, Request};
+use super::request::{Dense, Drawn, Request};
 use crate::export::Column;
 use crate::playback::recording::Extent;
 use crate::text::ladder;
-use crate::text::number::{shortest, significant};
-use std::fmt;
-
-/// What is too dense on paper to be told apart, and a shorter stretch of time in which it is not.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Dense {
-    /// What is, and how it is drawn, in words.
-    pub what: String,
-    pub from_s: f64,
-    pub to_s: f64,
-}
-
-impl Dense {
-    pub fn options(&self) -> String {
-        let (from_s, to_s) = (shortest(self.from_s), significant(self.to_s, 9));
-        format!("--from {from_s} --to {to_s}")
-    }
-}
-
-impl fmt::Display for Dense {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}; {} shows a part", self.what, self.options())
-    }
-}
 
 /// Parts of a panel's width that are looked at, pt.
 const PART_PT: f64 = 1.0;
@@ -112,6 +88,9 @@ pub(super) fn over_time(
     drawn: &[Drawn],
     request: &Request,
 ) -> Option<Dense> {
+    if chart.x.is_log {
+        return None; // swings are ever denser along it
+    }
     let layout = Layout::new(chart, 0.0);
     let panels = columns.iter().zip(chart.panels.iter().zip(&layout.panels));
     let all = panels.flat_map(|(column, (panel, placed))| {

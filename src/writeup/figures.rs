@@ -6,6 +6,7 @@ use crate::analysis::cost::is_affordable;
 use crate::data::Series;
 use crate::figure::course::{Course, Recorder, Wanted};
 use crate::figure::kind::Kind;
+use crate::figure::labels::Labels;
 use crate::figure::of_runs::{self, Figure, Known, Request, Run};
 use crate::figure::{COLUMN_PT, Scene};
 use crate::run::Clock;
@@ -86,6 +87,7 @@ pub fn figures(
         exact: exact || is_exact,
         measured: None,
         width_pt: COLUMN_PT,
+        labels: Labels::default(),
     };
     let mut planned = beside.map_or(Vec::new(), |beside| of_data(beside, &whole, &also));
     planned.extend(of_run(scenario, readouts, beside, &whole, &also)?);
@@ -124,7 +126,7 @@ fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -
         .swing_s()
         .map(|swing_s| swing_s / scenario.motion.time_step_s);
     let joined = steps
-        .filter(|steps| *steps < SMOOTH)
+        .filter(|steps| *steps < SMOOTH && !is_exact)
         .map(|steps| format!("; straight lines join the run's steps, about {steps:.0} a swing"));
     format!("{beneath}{}", joined.unwrap_or_default())
 }

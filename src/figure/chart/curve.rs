@@ -2,7 +2,7 @@
 
 use super::layout::Placed;
 use super::{Panel, Series};
-use crate::figure::page::cover::{self, Grid};
+use crate::figure::page::cover;
 use crate::figure::page::ink::{Frame, at, paler};
 use crate::figure::page::line::{clipped, simplified};
 use crate::figure::page::scene::{Path, Pen, Point, Scene};
@@ -117,20 +117,17 @@ pub fn draw_curve(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene:
     }
 }
 
-/// Whether a line that consists of `pieces` covers itself: its core would be as wide as the whole of it.
-pub fn covers_itself(pieces: &[Vec<Point>]) -> bool {
-    /// Lines that are nearer to each other than this cover each other, pt; lower swings are none.
-    const NEAR_PT: f64 = 1.5;
+/// The length of a line that consists of `pieces` without swings that are too low to be seen, pt.
+pub fn way_pt(pieces: &[Vec<Point>]) -> f64 {
     const FLAT_PT: f64 = 0.4;
-    /// The least area of the places that a line passes, as a share of a straight line's area.
-    const SHARE: f64 = 0.7;
-    let lines: Vec<_> = pieces
-        .iter()
-        .map(|piece| simplified(piece, FLAT_PT))
-        .collect();
-    let length_pt: f64 = lines.iter().map(|line| length(line)).sum();
-    let area_pt2 = Grid::inked(&lines, NEAR_PT, 0.0).map_or(0.0, |grid| grid.area_pt2());
-    area_pt2 < SHARE * NEAR_PT * length_pt
+    let lines = pieces.iter().map(|piece| simplified(piece, FLAT_PT));
+    lines.map(|line| length(&line)).sum()
+}
+
+/// Whether a line of that length hides a wide one beneath it: it swings where that does not.
+pub fn hides(way_pt: f64, beneath_pt: f64) -> bool {
+    const LONGER: f64 = 3.0;
+    way_pt > LONGER * beneath_pt
 }
 
 pub fn length(line: &[Point]) -> f64 {
@@ -142,28 +139,17 @@ pub fn length(line: &[Point]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::TAU;
 
     #[test]
-    fn a_line_covers_itself_where_it_comes_back_to_its_place() {
-        let zigzag = |apart: f64, high: f64| -> Vec<Point> {
+    fn a_line_hides_what_it_swings_about() {
+        let zigzag = |apart: f64, high: f64| {
             let place = |i: i32| at(f64::from(i) * apart, f64::from(i % 2) * high);
-            (0..400).map(place).collect()
+            way_pt(&[(0..400).map(place).collect()])
         };
-        let circle = |turns: f64| -> Vec<Point> {
-            let angles = (0..=1000).map(|i| 1e-3 * turns * TAU * f64::from(i));
-            let place = |angle: f64| at(40.0 * libm::cos(angle), 40.0 * libm::sin(angle));
-            angles.map(place).collect()
-        };
-        for (line, covers) in [
-            (zigzag(0.5, 40.0), true),
-            (circle(2.0), true),
-            (circle(1.2), false),
-            (zigzag(8.0, 40.0), false),
-            // Ripples that nobody sees are no swings.
-            (zigzag(0.1, 0.3), false),
-        ] {
-            assert_eq!(covers_itself(&[line]), covers);
-        }
+        let level = zigzag(0.5, 0.0);
+        assert!(hides(zigzag(0.5, 40.0), level));
+        assert!(!hides(level, level));
+        // Ripples that nobody sees are no swings.
+        assert!(!hides(zigzag(0.1, 0.3), zigzag(0.1, 0.0)));
     }
 }

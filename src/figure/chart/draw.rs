@@ -27,7 +27,7 @@ impl Chart {
         self.as_seen(&bare).placed(bare)
     }
 
-    /// The chart in the places of `layout`, without points that stand upon each other and cores of lines that do.
+    /// The chart in the places of `layout`, without points that stand upon each other and cores of lines that are seen.
     fn as_seen(&self, layout: &Layout) -> Self {
         let mut seen = self.clone();
         seen.x.range = layout.panels.first().map(|placed| placed.x.range);
@@ -36,10 +36,12 @@ impl Chart {
         let places = layout.panels.iter().chain(&layout.magnified);
         for (panel, placed) in seen.panels.iter_mut().chain(magnified).zip(places) {
             panel.y.range = Some(placed.y.range);
+            let way_pt = |series: &Series| curve::way_pt(&placed.pieces(series));
+            let first_pt = panel.series.first().map_or(0.0, way_pt);
             for series in &mut panel.series {
                 placed.thin_marks(series);
                 let core = series.style.core;
-                series.style.core = core.filter(|_| !curve::covers_itself(&placed.pieces(series)));
+                series.style.core = core.filter(|_| curve::hides(first_pt, way_pt(series)));
             }
         }
         seen
@@ -81,7 +83,9 @@ impl Chart {
     fn magnified(&self) -> Option<String> {
         let (from, to) = self.magnified.as_ref()?.x.range?;
         let [from, to] = [from, to].map(|end| with_minus(&significant(end, 9)));
-        let remark = format!("right: {from} to {to} {}, magnified", self.x.unit);
+        let unit = Some(&self.x.unit).filter(|unit| !unit.is_empty());
+        let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        let remark = format!("right: {from} to {to}{unit}, magnified");
         let room = self.width_pt - 2.0 * EDGE;
         Some(letters::shortened(&remark, LABEL_PT, room))
     }

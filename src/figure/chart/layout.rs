@@ -47,6 +47,24 @@ pub struct Layout {
     pub height_pt: f64,
 }
 
+impl Placed {
+    fn new(chart: &Chart, x: Scale, y: Scale, ticks: Ticks, title: (String, f64)) -> Self {
+        Self {
+            frame: Frame {
+                left: x.places.0,
+                top: y.places.1,
+                right: x.places.1,
+                bottom: y.places.0,
+            },
+            below: x.ticks_below(&chart.x),
+            x,
+            y,
+            ticks,
+            title,
+        }
+    }
+}
+
 impl Layout {
     /// The places of the parts of `chart`, `above` pt below the upper edge of the page.
     pub fn new(chart: &Chart, above: f64) -> Self {
@@ -54,33 +72,16 @@ impl Layout {
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
         let (left, right, height) = sides(chart, x_range(chart), &y_ranges);
         let top = above + EDGE + 0.5 * label;
-        let gap = label + PANEL_GAP;
-        let place = |chart: &Chart, x: Scale| -> Vec<Placed> {
-            let panel = |(index, (panel, ticks)): (usize, (&Panel, Ticks))| {
-                let top = top + index as f64 * (height + gap);
-                let frame = Frame {
-                    left: x.places.0,
-                    top,
-                    right: x.places.1,
-                    bottom: top + height,
-                };
-                Placed {
-                    y: Scale::of(&panel.y, y_ranges[index], (frame.bottom, frame.top)),
-                    x,
-                    below: x.ticks_below(&chart.x),
-                    title: fitted(panel.y.title(&ticks), height + 0.7 * gap),
-                    frame,
-                    ticks,
-                }
-            };
+        let place = |chart: &Chart, x: Scale| {
             let ticks = ticks_of(chart, &y_ranges, height);
-            chart
-                .panels
-                .iter()
-                .zip(ticks)
-                .enumerate()
-                .map(panel)
-                .collect()
+            let panels = chart.panels.iter().zip(&y_ranges).zip(ticks).enumerate();
+            let panels = panels.map(|(index, ((panel, range), ticks))| {
+                let top = top + index as f64 * (height + label + PANEL_GAP);
+                let y = Scale::of(&panel.y, *range, (top + height, top));
+                let title = fitted(panel.y.title(&ticks), height + 0.7 * (label + PANEL_GAP));
+                Placed::new(chart, x, y, ticks, title)
+            });
+            panels.collect::<Vec<_>>()
         };
         let [x, beside] = columns(chart, left, right);
         let panels = place(chart, x);

@@ -134,7 +134,7 @@ pub struct Style {
     pub is_dots: bool,
     /// Whether it is a band where its series has one.
     pub is_band: bool,
-    /// The colour of a thin line along its middle, on top of all others: it is seen where these are dense.
+    /// The colour of a thin line along its middle, on top of the first curve where that would hide it.
     pub core: Option<Color>,
 }
 

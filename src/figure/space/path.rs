@@ -45,25 +45,29 @@ impl Space {
         let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
         let by_degree: Vec<_> = paths.iter().map(|path| by_degree(path, degree)).collect();
         // The first run is on top of all others.
-        for (by_degree, style) in by_degree.iter().zip(styles).rev() {
-            let wider = style.width_pt / Style::default().width_pt;
-            for (nearness, pieces) in by_degree.iter().enumerate() {
-                let part = nearness as f64 / (DEPTHS - 1) as f64;
-                let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
-                let color = paler(style.color, FARTHEST_WHITE * (1.0 - part));
-                draw(pieces, &round_pen(wider * width, color), style, scene);
-            }
-        }
-        for (by_degree, style) in by_degree.iter().zip(styles).rev() {
-            for (nearness, pieces) in by_degree.iter().enumerate() {
-                let part = nearness as f64 / (DEPTHS - 1) as f64;
-                if let Some(pen) = style.core_pen() {
-                    let color = paler(pen.color, FARTHEST_WHITE * (1.0 - part));
-                    draw(pieces, &Pen { color, ..pen }, style, scene);
+        let pens: [fn(&Style) -> Option<Pen>; 2] = [|style| Some(style.pen()), Style::core_pen];
+        for pen in pens {
+            for (by_degree, style) in by_degree.iter().zip(styles).rev() {
+                for (nearness, pieces) in by_degree.iter().enumerate() {
+                    if let Some(pen) = pen(style) {
+                        draw_at(nearness, pieces, pen, style, scene);
+                    }
                 }
             }
         }
     }
+}
+
+/// Draws pieces of that nearness: what is near is wide and dark.
+fn draw_at(nearness: usize, pieces: &[Vec<Point>], pen: Pen, style: &Style, scene: &mut Scene) {
+    let part = nearness as f64 / (DEPTHS - 1) as f64;
+    let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
+    let pen = Pen {
+        width_pt: pen.width_pt * width / Style::default().width_pt,
+        color: paler(pen.color, FARTHEST_WHITE * (1.0 - part)),
+        ..pen
+    };
+    draw(pieces, &pen, style, scene);
 }
 
 fn draw(pieces: &[Vec<Point>], pen: &Pen, style: &Style, scene: &mut Scene) {

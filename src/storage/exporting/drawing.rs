@@ -4,6 +4,7 @@ use super::{Exporting, Shared, Written};
 use crate::data::Measured;
 use crate::export::destination::{Destination, DestinationError};
 use crate::figure::kind::Kind;
+use crate::figure::labels::Labels;
 use crate::figure::of_runs::{self, EXACT_BESIDE, Request, Run};
 use crate::figure::{self, Format};
 use crate::scenario::Scenario;
@@ -54,6 +55,7 @@ fn draw(
         exact: drawn.exact,
         measured: drawn.measured,
         width_pt: figure::COLUMN_PT,
+        labels: Labels::default(),
     };
     let run = Run {
         named: scenario.file.title.clone(),
