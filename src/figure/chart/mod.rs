@@ -296,7 +296,7 @@ impl Style {
 
     /// The pen of its core.
     pub fn core_pen(&self) -> Option<Pen> {
-        const CORE_PT: f64 = 0.35;
+        const CORE_PT: f64 = 0.7;
         Some(Pen {
             width_pt: CORE_PT,
             color: self.core?,
