@@ -7,6 +7,7 @@ use crate::export::destination::{Destination, DestinationError};
 use crate::export::stream::{self, Ended};
 use crate::export::{COLUMNS, CsvWriter, Layout};
 use crate::figure::kind::Kind;
+use crate::figure::labels::Labels;
 use crate::figure::of_runs::{self, EXACT_BESIDE, Request, Run};
 use crate::figure::{self, Format};
 use crate::run::{Clock, NotFinite, Sample, Simulation};
@@ -231,6 +232,7 @@ fn draw(
         exact: drawn.exact,
         measured: drawn.measured,
         width_pt: figure::COLUMN_PT,
+        labels: Labels::default(),
     };
     let run = Run {
         named: scenario.file.title.clone(),

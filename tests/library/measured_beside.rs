@@ -8,6 +8,7 @@ use crate::support::words::{has, has_all};
 use gyrolab::data::compared::Sum;
 use gyrolab::data::{self, Measured, Quantity};
 use gyrolab::figure::kind::Kind;
+use gyrolab::figure::labels::Labels;
 use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
 use gyrolab::figure::{Item, Paint, Point};
 use gyrolab::lab::Lab;
@@ -227,6 +228,7 @@ fn figure_with(kind: Option<&str>, text: &str, known: &Known) -> Figure {
         exact: false,
         measured: Some(Arc::new(measured)),
         width_pt: 250.0,
+        labels: Labels::default(),
     };
     let run = Run {
         scenario: Arc::new(preset("method-2", &["motion.steps=200"])),

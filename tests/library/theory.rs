@@ -307,7 +307,7 @@ fn where_the_theory_does_not_hold_it_says_nothing_or_lopsided() {
     has_no(&text, "lopsided");
 
     let text = summary(&preset("torque-free", &[])).to_string();
-    has(&text, "nutation      none by theory, none measured");
+    has(&text, "nutation      none by theory, none in this run");
     let text = summary(&preset("cusps", &[])).to_string();
     has(
         &text,

@@ -49,7 +49,7 @@ impl Source {
             Self::Scenario => "the scenario",
             Self::State => "the run's last step",
             Self::EveryStep => "every step of the run, its start included",
-            Self::Measured => "measured on the steps since the forces last changed",
+            Self::Measured => "read off the steps since the forces last changed",
             Self::Scheme => "a formula for the scheme at this time step",
             Self::Exact => "held against the exact motion",
             Self::Theory => {
@@ -237,7 +237,7 @@ readouts! {
     "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.lasting_theory().and_then(|theory| theory.nutation_period_s), "*T*_{n}";
     "measured_nutation_period_s", "s", Measured, "mean time from one greatest tilt to the next; none under friction", |r| value(r.nutation), "*T*_{n}";
     "measured_nutation_uncertainty_s", "s", Measured, "one standard error of reading it off the steps; the error that the scheme and its time step make is not in it", |r| uncertainty(r.nutation);
-    "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
+    "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what the steps show is strobed", |r| r.nutation_is_resolved();
     "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(Theory::precession_period_s), "*T*_{p}";
     "predicted_body_cone_period_s", "s", Theory, "free symmetric body: time in which the instantaneous axis goes once round the axle, seen from the body, (I1/|I3 - I1|) 2 pi/omega3; null under a load, without spin, for I3 = I1, and where only a rotor spins", |r| r.theory.filter(|theory| !r.has_rotor && !theory.is_of_a_moment).and_then(|theory| theory.body_cone_period_s), "*T*_{c}";
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
