@@ -166,7 +166,7 @@ impl Taken {
         lab.take_commands(commands);
         lab.forget_message_of_script();
         self.keep_if_done(lab);
-        lab.turn_to_sheet();
+        lab.view_mut().turn_to_sheet();
     }
 
     /// Remembers the numbers of the block that was under way, once the lab has carried it out.

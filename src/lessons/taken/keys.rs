@@ -49,7 +49,7 @@ impl Taken {
         self.keep_own_task(lab);
         let page = self.place.page + 1;
         self.turn_to(page);
-        lab.turn_to_sheet();
+        lab.view_mut().turn_to_sheet();
         let has_own = self.page().is_some_and(|page| page.lab().is_some());
         // A page without a block of its own leaves the lab as the student has it.
         if has_own {
@@ -80,7 +80,7 @@ impl Taken {
         let page = self.place.page - 1;
         let stood = self.go_to(Some(page), lab);
         told(stood, lab);
-        lab.turn_to_sheet();
+        lab.view_mut().turn_to_sheet();
     }
 
     /// Shows the hints of the page and scrolls down to them, or does its task where they are shown already or there are none.
@@ -130,7 +130,7 @@ impl Taken {
             Asked::Number { unit } => {
                 let label = if unit.is_empty() { "number" } else { unit };
                 let about = "Enter locks it: a prediction is not changed";
-                lab.ask_number("your prediction", label, about);
+                lab.popups_mut().ask_number("your prediction", label, about);
             }
         }
     }

@@ -94,7 +94,8 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
     let page = Page::new(&sheet, inside, lab.view().sheet_scrolled, &lab.view().theme);
     let (first, all) = (page.first, page.lines.len());
     let page = shown.saturating_sub(1).max(1) as isize;
-    lab.scroll_sheet(direction.rows(page), first, shown, all);
+    lab.view_mut()
+        .scroll_sheet(direction.rows(page), first, shown, all);
 }
 
 struct Page {
