@@ -237,7 +237,7 @@ fn with_orders(mut rows: Vec<ComparisonRow>, least_m: f64) -> Vec<ComparisonRow>
 
 fn order(coarse: &ComparisonRow, fine: &ComparisonRow, least_m: f64) -> Option<f64> {
     let (larger, smaller) = (coarse.error_m?, fine.error_m?);
-    let order = (larger / smaller).ln() / (coarse.time_step_s / fine.time_step_s).ln();
+    let order = libm::log(larger / smaller) / libm::log(coarse.time_step_s / fine.time_step_s);
     (smaller > least_m && order.is_finite()).then_some(order)
 }
 

@@ -48,7 +48,7 @@ impl Motion {
 
     /// Horizontal length of the axle's direction, the sine of the tilt.
     pub fn level(&self) -> f64 {
-        self.axle.x.hypot(self.axle.y)
+        libm::hypot(self.axle.x, self.axle.y)
     }
 
     /// Azimuth from here to `other`, rad, in (−π, π].
@@ -224,10 +224,10 @@ impl Equations {
         Turn {
             time_s,
             time_off_s: off_s,
-            time_error_s: rounding_s.hypot(0.5 * apart_s),
+            time_error_s: libm::hypot(rounding_s, 0.5 * apart_s),
             azimuth: before.azimuth_rad() + TAU * crossing.missed as f64 + way + off,
             azimuth_off: off,
-            azimuth_error: rounding.hypot(0.5 * apart),
+            azimuth_error: libm::hypot(rounding, 0.5 * apart),
             azimuth_rate: swing.azimuth_rate(),
             level,
         }

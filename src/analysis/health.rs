@@ -208,8 +208,8 @@ impl Nutation {
         let body = &scenario.body.mechanics;
         let top = SymmetricTop::of(body).filter(|_| motion.scheme.name == "report")?;
         let kappa = top.kappa();
-        let (sin, cos) = psi.sin_cos();
-        let ratio = psi / (1.0 - cos).hypot(sin);
+        let (sin, cos) = libm::sincos(psi);
+        let ratio = psi / libm::hypot(1.0 - cos, sin);
         let has_torque = torque(&state.orientation, &loads.moment(body)).norm() > 0.0;
         let load = loads.on_axle(body, &top);
         let true_lag = load.and_then(|load| top.steady_lag(state, &load));

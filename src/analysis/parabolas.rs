@@ -134,7 +134,7 @@ impl Parabolas {
             azimuth_off: 0.0,
             azimuth_error: 0.0,
             azimuth_rate: (way + shift * curve) / step,
-            level: b.axle[0].hypot(b.axle[1]),
+            level: libm::hypot(b.axle[0], b.axle[1]),
         }
     }
 

@@ -79,7 +79,10 @@ impl ReportTheory {
         let lag = [-kick * off_one[1] / size_2, -kick * off_one[0] / size_2];
         let offset = offset_from_momentum(state)?;
         let offset = [offset[0] - lag[0], offset[1] - lag[1]];
-        let (lag_size, swing_size) = (lag[0].hypot(lag[1]), offset[0].hypot(offset[1]));
+        let (lag_size, swing_size) = (
+            libm::hypot(lag[0], lag[1]),
+            libm::hypot(offset[0], offset[1]),
+        );
         let tilt = libm::acos(state.momentum.z / size);
         let off_by =
             |size: f64| 2.5 * psi * kick.abs() * size / size_2 + 1.5 * size / libm::tan(tilt).abs();
@@ -117,7 +120,7 @@ impl ReportTheory {
             (seen.min(least), seen.max(most))
         });
         let is_sure = least >= (1.0 - SURE) * most;
-        let radius = swing.offset[0].hypot(swing.offset[1]);
+        let radius = libm::hypot(swing.offset[0], swing.offset[1]);
         (is_sure && (seen >= radius || radius == 0.0)).then_some(seen.to_degrees())
     }
 }

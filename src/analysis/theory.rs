@@ -159,7 +159,7 @@ impl Theory {
         };
         let cusp_cosine = state.momentum.dot(&up) / spin;
         let cusp_tilt_deg = (size > 0.0 && spins && cusp_cosine.abs() <= 1.0)
-            .then(|| cusp_cosine.acos().to_degrees());
+            .then(|| libm::acos(cusp_cosine).to_degrees());
         Self {
             axis: Axis::new(up, size > 0.0),
             load,

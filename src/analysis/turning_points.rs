@@ -58,7 +58,7 @@ impl TurningPoints {
         let top = SymmetricTop::of(body)?;
         let load = step.loads().on_axle(body, &top)?;
         // The equations of motion that are used here are those of a body without friction.
-        if !step.loads().friction.is_none() || load.x.hypot(load.y) > 1e-12 * load.z.abs() {
+        if !step.loads().friction.is_none() || libm::hypot(load.x, load.y) > 1e-12 * load.z.abs() {
             return None;
         }
         let per_across = 1.0 / top.across;
@@ -177,7 +177,7 @@ impl TurningPoints {
             return 0.0;
         }
         // The error of a step is known for the rate of the height; the drift of the height is larger by this factor.
-        let of_ends = line.first.time_error_s.hypot(line.last.time_error_s);
+        let of_ends = libm::hypot(line.first.time_error_s, line.last.time_error_s);
         of_ends / (self.equations.rates[1] * self.equations.time_step_s)
     }
 
@@ -185,10 +185,10 @@ impl TurningPoints {
         let line = self.line()?;
         let of_one = 2.0 / line.intervals as f64;
         let value = line.time_s() * of_one;
-        let error = line.time_error_s(1.0).hypot(self.lag_s(&line)) * of_one;
+        let error = libm::hypot(line.time_error_s(1.0), self.lag_s(&line)) * of_one;
         Some(Measured {
             value,
-            uncertainty: error.hypot(f64::EPSILON * value),
+            uncertainty: libm::hypot(error, f64::EPSILON * value),
             nutations: line.intervals.div_ceil(2),
         })
     }
@@ -205,7 +205,7 @@ impl TurningPoints {
         let lag = (line.last.azimuth_rate - value) * self.lag_s(&line) / line.time_s();
         Some(Measured {
             value,
-            uncertainty: line.rate_error(1.0).hypot(lag).hypot(of_rates),
+            uncertainty: libm::hypot(libm::hypot(line.rate_error(1.0), lag), of_rates),
             nutations: line.intervals.div_ceil(2),
         })
     }
@@ -228,7 +228,7 @@ impl TurningPoints {
         let of_swing = 0.25 * by_height * swing;
         Some(Measured {
             value,
-            uncertainty: of_rates.hypot(of_ends).hypot(of_swing),
+            uncertainty: libm::hypot(libm::hypot(of_rates, of_ends), of_swing),
             nutations: 0,
         })
     }
@@ -245,14 +245,14 @@ fn swing_of_height(
     let length = swing.momentum.norm();
     let (period_s, range) = if (load * (1.0 / top.across)).norm() == 0.0 {
         let along = swing.momentum / length;
-        let range = 2.0 * along.cross(&swing.axle).norm() * along.x.hypot(along.y);
+        let range = 2.0 * along.cross(&swing.axle).norm() * libm::hypot(along.x, along.y);
         (TAU / length, range)
     } else {
         let state = step.after();
         let (across, along) = (top.across, top.along);
         let exact = LagrangeTop::new(across, along, load, state.orientation, state.momentum);
         let (low, high) = exact.tilt_range();
-        let range = 2.0 * (0.5 * (high + low)).sin() * (0.5 * (high - low)).sin();
+        let range = 2.0 * libm::sin(0.5 * (high + low)) * libm::sin(0.5 * (high - low));
         (exact.nutation_period().unwrap_or(f64::INFINITY), range)
     };
     (period_s, if range.is_finite() { range } else { 0.0 })

@@ -92,7 +92,7 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     let meter = Meter::counting("run");
     let told = |step: u64, sum: f64| {
         let (runs, sum) = (model.runs(), significant(sum, 4));
-        meter.say(format!("{runs} runs, step {step}, chi^2 {sum}"));
+        meter.say(&format!("{runs} runs, step {step}, chi^2 {sum}"));
     };
     let found = fitted(&model, &|| !interruption.has_come(), &told);
     drop(meter);

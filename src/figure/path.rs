@@ -210,10 +210,10 @@ mod tests {
     fn looping(number: usize) -> [f64; 3] {
         let (slow, fast) = (1e-5 * number as f64, 0.3 * number as f64);
         let (x, y) = (
-            slow.cos() + 2e-4 * fast.cos(),
-            slow.sin() + 2e-4 * fast.sin(),
+            libm::cos(slow) + 2e-4 * libm::cos(fast),
+            libm::sin(slow) + 2e-4 * libm::sin(fast),
         );
-        [x, y, 1e-6 * fast.cos()]
+        [x, y, 1e-6 * libm::cos(fast)]
     }
 
     #[test]
@@ -223,8 +223,11 @@ mod tests {
         let long = recorded(true, (0..3_000_000).map(looping));
         assert!(long.points.len() <= MOST && long.times > 2.0);
         let off = |angle: f64| {
-            let (x, y) = (angle.cos(), angle.sin());
-            let off = long.points.iter().map(|at| (at[0] - x).hypot(at[1] - y));
+            let (x, y) = (libm::cos(angle), libm::sin(angle));
+            let off = long
+                .points
+                .iter()
+                .map(|at| libm::hypot(at[0] - x, at[1] - y));
             off.fold(f64::INFINITY, f64::min)
         };
         // Nowhere on the way round is it farther off than a line is wide on paper, 1/300 of a page.
@@ -233,7 +236,7 @@ mod tests {
         assert!(most < 2.0 / 300.0, "{most}");
         let bounded = |step: f64| {
             let angle = |number: u32| step * f64::from(number);
-            let point = |angle: f64| [angle.cos(), angle.sin(), 0.0];
+            let point = |angle: f64| [libm::cos(angle), libm::sin(angle), 0.0];
             recorded(false, (0..600_000).map(|number| point(angle(number))))
         };
         // Chords that are never repeated become points; a path that stands still is one point.
@@ -248,7 +251,7 @@ mod tests {
         let circle = |a_turn: f64| -> Vec<[f64; 3]> {
             let angles = (0..100).map(|step| f64::from(step) * TAU / a_turn);
             angles
-                .map(|angle| [angle.cos(), angle.sin(), 1.0])
+                .map(|angle| [libm::cos(angle), libm::sin(angle), 1.0])
                 .collect()
         };
         assert!((points_a_turn(&circle(10.0)).unwrap() - 10.0).abs() < 1e-9);

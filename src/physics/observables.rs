@@ -105,7 +105,7 @@ mod tests {
 
     /// The contract's words, taken literally.
     fn by_arc_tangents(axles: &[Vector3<f64>]) -> f64 {
-        let azimuth = |axle: &Vector3<f64>| axle.y.atan2(axle.x).to_degrees();
+        let azimuth = |axle: &Vector3<f64>| libm::atan2(axle.y, axle.x).to_degrees();
         let changes = axles
             .windows(2)
             .map(|pair| azimuth(&pair[1]) - azimuth(&pair[0]));

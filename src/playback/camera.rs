@@ -87,8 +87,8 @@ impl Camera {
     /// read, and the wheel across it open. It stays as it is where that is so from here.
     pub fn aside_of(self, axle: &Vector3<f64>) -> Self {
         let (right, up) = self.project(axle);
-        let is_upright = axle.xy().norm() < UPRIGHT_DEG.to_radians().sin() * axle.norm();
-        let share = right.hypot(up) / axle.norm();
+        let is_upright = axle.xy().norm() < libm::sin(UPRIGHT_DEG.to_radians()) * axle.norm();
+        let share = libm::hypot(right, up) / axle.norm();
         if is_upright || share.is_nan() || READ.contains(&share) {
             return self;
         }

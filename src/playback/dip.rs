@@ -73,7 +73,7 @@ mod tests {
             way_m.len()
         );
         let deepest = way_m.iter().map(|(_, down)| *down).fold(0.0, f64::max);
-        let part = deepest / (cusps.arm_m() * 6.689_f64.to_radians().sin());
+        let part = deepest / (cusps.arm_m() * libm::sin(6.689_f64.to_radians()));
         assert!((part - 1.0).abs() < 0.15, "{part}");
         let (side, down) = way_m[way_m.len() - 1];
         assert!(

@@ -351,7 +351,7 @@ mod tests {
         fn columns_have_the_same_moments_in_fewer_blocks(
             length in 1usize..40_000, columns in 1usize..300, ends in (0.0..1.0f64, 0.0..1.2f64)
         ) {
-            let values: Vec<f64> = (0..length).map(|step| (step as f64 * 0.37).sin()).collect();
+            let values: Vec<f64> = (0..length).map(|step| libm::sin(step as f64 * 0.37)).collect();
             let recording = recorded(&values);
             let [since, until] = [ends.0, ends.1].map(|share| (share * length as f64).floor());
             let column = |time_s: f64| (time_s / length as f64 * columns as f64) as usize;
@@ -394,7 +394,7 @@ mod tests {
         fn cut_back_and_filled_it_is_as_fine_as_ever(
             length in 1u64..200_000, shares in prop::collection::vec(0.0..1.0f64, 1..4), at in 0.0..1.0f64
         ) {
-            let value = |step: u64| if step == (at * length as f64) as u64 { 7.0 } else { (step as f64 * 0.01).sin() };
+            let value = |step: u64| if step == (at * length as f64) as u64 { 7.0 } else { libm::sin(step as f64 * 0.01) };
             let mut recording = Recording::default();
             (0..length).for_each(|step| push(&mut recording, step, value(step)));
             prop_assert_eq!(recording.coarse_since(), None);

@@ -166,7 +166,7 @@ impl Scene {
         self.line_of_dots(ends, Stroke::Thin, ink);
         let [(begin, _), (end, depth)] = ends;
         let (x, y) = (begin.0 - end.0, begin.1 - end.1);
-        let length = x.hypot(y);
+        let length = libm::hypot(x, y);
         if length < SHORTEST {
             return; // seen along itself, it has no head
         }
@@ -174,7 +174,7 @@ impl Scene {
         let share = head.min(MOST_OF_ARROW * length) / length;
         for part in -HEAD_STROKES..=HEAD_STROKES {
             let angle = HEAD_ANGLE * f64::from(part) / f64::from(HEAD_STROKES);
-            let (sin, cos) = angle.sin_cos();
+            let (sin, cos) = libm::sincos(angle);
             let stroke = (x * cos - y * sin, x * sin + y * cos);
             let stroke_end = (end.0 + share * stroke.0, end.1 + share * stroke.1);
             self.line_of_dots([(end, depth), (stroke_end, depth)], Stroke::Thin, ink);
@@ -184,7 +184,7 @@ impl Scene {
     /// A place beyond the tip of an arrow, for its letter: far enough not to cover the head.
     pub fn beyond(&self, from: &Vector3<f64>, tip: &Vector3<f64>) -> Vector3<f64> {
         let (begin, end) = (self.dot(from), self.dot(tip));
-        let length = (end.0 - begin.0).hypot(end.1 - begin.1);
+        let length = libm::hypot(end.0 - begin.0, end.1 - begin.1);
         if length < SHORTEST {
             *tip
         } else {

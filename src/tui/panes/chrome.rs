@@ -68,7 +68,7 @@ fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
 
 /// Digits after the point of a time that tell every step from the next, of a run whose shortest step is `time_step_s`.
 fn digits(time_step_s: f64) -> usize {
-    (-time_step_s.log10()).ceil().clamp(0.0, 6.0) as usize
+    (-libm::log10(time_step_s)).ceil().clamp(0.0, 6.0) as usize
 }
 
 /// Time, step and pace in fixed columns, or closer together where `width` is short of them.

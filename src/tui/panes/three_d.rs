@@ -172,7 +172,7 @@ impl<'a> Subject<'a> {
     /// What the scene needs to show: the body as it precesses at the tilts that it has had, L, and the ground.
     fn shown(&self) -> scene::Shown {
         let circles = self.circles();
-        let (sin, cos) = self.seen.view.camera.pitch_deg.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(self.seen.view.camera.pitch_deg.to_radians());
         let end = |side: f64| move |&(radius, z): &(f64, f64)| z * cos + side * radius * sin.abs();
         let lowest = circles.iter().map(end(-1.0)).fold(0.0, f64::min);
         let highest = circles.iter().map(end(1.0)).fold(0.0, f64::max);
@@ -207,7 +207,7 @@ impl<'a> Subject<'a> {
             vec![(ground, 0.0), (0.0, ground)] // z too has a letter
         };
         for tilt in first as i32..=last as i32 {
-            let (sin, cos) = (f64::from(tilt) * TILT_DEG).to_radians().sin_cos();
+            let (sin, cos) = libm::sincos((f64::from(tilt) * TILT_DEG).to_radians());
             for &(across, height) in &self.shape.corners {
                 circles.extend([across, -across].map(|side| {
                     let radius = height * sin + side * cos;
@@ -224,9 +224,9 @@ impl<'a> Subject<'a> {
         if let Some(axis) = self.state.momentum.try_normalize(f64::MIN_POSITIVE) {
             let angle = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees() / (3.0 * TILT_DEG);
             for angle in [angle.floor(), angle.ceil()] {
-                let (sin, cos) = (angle * 3.0 * TILT_DEG).to_radians().sin_cos();
+                let (sin, cos) = libm::sincos((angle * 3.0 * TILT_DEG).to_radians());
                 let length = MOMENTUM * self.arm;
-                circles.push(((length * sin).hypot(CHANGE * self.reach), length * cos));
+                circles.push((libm::hypot(length * sin, CHANGE * self.reach), length * cos));
             }
         }
         circles
@@ -239,7 +239,7 @@ impl<'a> Subject<'a> {
         let floor = Vector3::z() * if stands { -STAND * self.reach } else { 0.0 };
         let radius = self.reach * if stands { FOOT } else { GROUND };
         let around = |part: usize| {
-            let (sin, cos) = (TAU * part as f64 / PARTS as f64).sin_cos();
+            let (sin, cos) = libm::sincos(TAU * part as f64 / PARTS as f64);
             floor + Vector3::new(radius * cos, radius * sin, 0.0)
         };
         let ink = Ink::Faint(Role::Quiet);
@@ -356,7 +356,7 @@ impl Subject<'_> {
             0.5 * scene.plane.in_cell.1 as f64,
         );
         let columns =
-            |from: Place, to: Place| ((to.0 - from.0) / across).hypot((to.1 - from.1) / down);
+            |from: Place, to: Place| libm::hypot((to.0 - from.0) / across, (to.1 - from.1) / down);
         let (mut way, mut joined) = (vec![now], 0);
         let mut head = None;
         for block in blocks.iter().rev() {

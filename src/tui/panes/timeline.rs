@@ -56,8 +56,8 @@ impl Timeline {
     /// Time at the right end, s: that of the scenario's run, doubled as often as the run has gone on beyond it.
     pub fn whole_s(&self) -> f64 {
         let end_s = self.end_s.max(f64::MIN_POSITIVE);
-        let doublings = (self.furthest_s / end_s * (1.0 - 1e-9)).log2().ceil();
-        end_s * doublings.max(0.0).exp2()
+        let doublings = libm::log2(self.furthest_s / end_s * (1.0 - 1e-9)).ceil();
+        end_s * libm::exp2(doublings.max(0.0))
     }
 
     /// The columns of the line on `area`, between its labels; `None` where there is no room.

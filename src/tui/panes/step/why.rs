@@ -151,7 +151,7 @@ impl Picture {
         let plane = self.plane;
         let head = (0.16 * along.norm()).min(0.12 * plane.size.1 as f64 / plane.scale.1);
         let back = -along.normalize() * head;
-        for (sin, cos) in [0.5_f64, -0.5].map(f64::sin_cos) {
+        for (sin, cos) in [0.5_f64, -0.5].map(libm::sincos) {
             let stroke = Vector2::new(back.x * cos - back.y * sin, back.x * sin + back.y * cos);
             self.line(tip, tip + stroke, Ink::Strong(role));
         }

@@ -80,7 +80,7 @@ impl Shape {
     /// The size of the body, m.
     pub fn reach(&self) -> f64 {
         let corners = self.corners.iter();
-        let reaches = corners.map(|(across, height)| across.hypot(*height));
+        let reaches = corners.map(|(across, height)| libm::hypot(across, *height));
         reaches.fold(f64::MIN_POSITIVE, f64::max)
     }
 }
@@ -88,7 +88,7 @@ impl Shape {
 impl RimFile {
     /// The point `index` of `points` on the rim, or on a circle that is `share` as large.
     fn at(&self, state: &State, index: usize, points: usize, share: f64) -> Vector3<f64> {
-        let (sin, cos) = (TAU * index as f64 / points as f64).sin_cos();
+        let (sin, cos) = libm::sincos(TAU * index as f64 / points as f64);
         let radius = share * self.radius_m;
         state.orientation * Vector3::new(radius * cos, radius * sin, self.height_m)
     }
