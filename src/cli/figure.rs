@@ -129,6 +129,12 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
             let kind = args.kind.as_deref().map(Kind::named).transpose();
             let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
             let measured = args.measured.as_deref().map(data::open).transpose()?;
+            let left_out = measured
+                .as_ref()
+                .and_then(data::Measured::left_out_in_words);
+            left_out
+                .into_iter()
+                .for_each(|text| tell(format_args!("gyrolab: {text}")));
             let usual = match &measured {
                 Some(measured) => Kind::measured(measured.series()?),
                 None => Kind::traces(),

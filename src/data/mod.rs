@@ -6,10 +6,11 @@
 //! theirs: `tilt_uncertainty_deg` of `tilt_deg`.
 //!
 //! [`open`] reads a file, or data that come with the program ([`shipped`]); `names` says what its columns are, `numbers` what
-//! stands in them. [`of_run`] reads a run at the times of a series, and [`residual`] holds what was
+//! stands in them, `instruments` what other programs call theirs. [`of_run`] reads a run at the times of a series, and [`residual`] holds what was
 //! measured against it: everything that shows or fits measured data takes its residuals from there. [`compared`] sums them up.
 
 pub mod compared;
+mod instruments;
 mod names;
 mod numbers;
 pub mod of_run;
@@ -22,11 +23,13 @@ pub mod shipped;
 pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
-pub use reading::{open, read, text};
+pub use reading::{open, open_with, read, text};
 pub use residual::{Residual, is_counted, residuals};
 
 use crate::analysis::readouts::Readout;
+use crate::scenario::problem::listed;
 use crate::scenario::{Problem, Problems};
+use crate::text::printable::printable;
 use toml::Value;
 
 #[derive(Clone, Debug)]
@@ -37,6 +40,8 @@ pub struct Measured {
     pub about: String,
     /// The line of each row.
     pub lines: Vec<u64>,
+    /// The columns that are not known, and not read.
+    pub left_out: Vec<String>,
     pub data: Data,
 }
 
@@ -108,6 +113,14 @@ impl Measured {
             Data::Series(series) => Ok(series),
             Data::Table(_) => Err(Problems::one(&self.origin, Problem::at("", TABLE))),
         }
+    }
+
+    /// Says which columns are not known, and not read; `None` where there are none.
+    pub fn left_out_in_words(&self) -> Option<String> {
+        let names = listed(self.left_out.iter().map(String::as_str));
+        let origin = printable(&self.origin);
+        let told = || format!("{origin}: columns left out, which gyrolab does not know: {names}");
+        (!self.left_out.is_empty()).then(told)
     }
 
     /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts, and returns how many values that are.

@@ -62,6 +62,9 @@ impl Lab {
     /// Reads the measured data `name` and puts them beside the run.
     fn put_beside(&mut self, name: &str, may_wait: bool) -> Result<(), Problems> {
         let measured = self.files.open_measured(name, may_wait)?;
+        if let Some(left_out) = measured.left_out_in_words() {
+            self.tell(left_out);
+        }
         self.player.measured = Some(Beside::new(name, measured, self.player.run().scenario())?);
         self.view.measured = true;
         self.player.catch_up_measured();
