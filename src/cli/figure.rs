@@ -227,6 +227,12 @@ fn request(args: &FigureArgs) -> anyhow::Result<Request> {
     let kind = args.kind.as_deref().map(Kind::named).transpose();
     let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
     let measured = args.measured.as_deref().map(data::open).transpose()?;
+    if let Some(left_out) = measured
+        .as_ref()
+        .and_then(data::Measured::left_out_in_words)
+    {
+        tell(format_args!("gyrolab: {left_out}"));
+    }
     let usual = match &measured {
         Some(measured) => Kind::measured(measured.series()?),
         None => Kind::traces(),

@@ -2,11 +2,12 @@
 
 use super::args::{Changes, change};
 use super::progress::{self, Interrupted, Interruption, Meter};
-use super::{one_on_stdout, print_result, tell_of_rows};
+use super::{one_on_stdout, print_result, tell, tell_of_rows};
 use crate::data::{self, Measured};
 use crate::export::Destination;
 use crate::fit::report::{self, Asked, Report};
 use crate::fit::{Fit, Free, Model, NoFit, fit as fitted};
+use crate::scenario::csv::{Renaming, renaming};
 use crate::scenario::{Document, Problem, Problems};
 use crate::text::number::{shortest, significant};
 use crate::text::printable::{Shown, brief};
@@ -38,6 +39,10 @@ pub(super) struct FitArgs {
 
     #[command(flatten)]
     pub(super) changes: Changes,
+
+    /// What the data's columns are: the file's name or number (from 1) of each, and gyrolab's
+    #[arg(long, value_name = "COLUMN=NAME,...", value_delimiter = ',', value_parser = renaming)]
+    pub(super) map: Vec<Renaming>,
 
     /// Fit these rows of the data alone, counted from 1, such as 1,3,5-8
     #[arg(long, value_name = "ROWS")]
@@ -88,6 +93,9 @@ const SCHEME: &str = "exact";
 pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     one_on_stdout("fit", args.output.as_deref(), args.json);
     let (model, own) = model(args)?;
+    if let Some(left_out) = model.measured.left_out_in_words() {
+        tell(format_args!("gyrolab: {left_out}"));
+    }
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let meter = Meter::counting("run");
     let told = |step: u64, sum: f64| {
@@ -150,7 +158,7 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
 
 /// What is fitted, and the scenario's own scheme, where no other was asked for.
 fn model(args: &FitArgs) -> Result<(Model, Option<&'static str>), Problems> {
-    let measured = data::open(&args.measured)?;
+    let measured = data::open_with(&args.measured, &args.map)?;
     let measured = chosen(measured, args.rows.as_ref())?;
     let (document, own) = scenario(args)?;
     let keys = args.free.iter();
@@ -205,6 +213,11 @@ fn command(args: &FitArgs) -> String {
     let mut words = vec!["gyrolab", "fit", &args.measured, "--in", &args.scenario];
     words.extend(["--free", &free]);
     words.extend(args.changes.set.iter().flat_map(|set| ["--set", set]));
+    let map = args
+        .map
+        .iter()
+        .map(|(column, name)| format!("{column}={name}"));
+    let map = map.collect::<Vec<_>>().join(",");
     let time_step = args.changes.time_step.map(shortest).unwrap_or_default();
     let rows = args.rows.as_ref().map_or("", |rows| &rows.text);
     let scheme = args.changes.scheme.as_deref().unwrap_or_default();
@@ -212,6 +225,7 @@ fn command(args: &FitArgs) -> String {
         ("--time-step", &*time_step),
         ("--scheme", scheme),
         ("--rows", rows),
+        ("--map", &map),
     ] {
         if !value.is_empty() {
             words.extend([option, value]);

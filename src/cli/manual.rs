@@ -143,6 +143,7 @@ const TOPICS: &[(&str, &str)] = &[
     ("friction", include_str!("topics/friction.txt")),
     ("lab", include_str!("topics/lab.txt")),
     ("numbers", include_str!("topics/numbers.txt")),
+    ("own-code", include_str!("topics/own-code.txt")),
     ("scenario", include_str!("topics/scenario.txt")),
     ("schemes", include_str!("topics/schemes.txt")),
     ("sweep", include_str!("topics/sweep.txt")),

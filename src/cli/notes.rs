@@ -63,7 +63,7 @@ pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
     };
     let line = live_line();
     let followed = follow(&folder, &found, line.as_ref(), &interruption);
-    line.finish_and_clear();
+    drop(line);
     followed?;
     bail!(Interrupted)
 }

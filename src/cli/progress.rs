@@ -144,7 +144,10 @@ const WIDTH: usize = 79;
 
 /// The last line of a terminal, which is written anew. indicatif's bar is not used: it computes its rate with the C
 /// library's `exp` and `pow`, and nothing in this program shall.
-pub(super) struct LiveLine<T> {
+pub(super) struct LiveLine<T>
+where
+    for<'a> &'a T: Write,
+{
     terminal: T,
     written: Mutex<Option<Instant>>,
 }

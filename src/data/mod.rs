@@ -6,9 +6,10 @@
 //! theirs: `tilt_uncertainty_deg` of `tilt_deg`.
 //!
 //! [`open`] reads a file, or data that come with the program; `names` says what its columns are, `numbers` what stands in
-//! them. [`of_run`] reads a run at the times of a series, and [`compared`] holds what was measured against it.
+//! them, `instruments` what other programs call theirs. [`of_run`] reads a run at the times of a series, and [`compared`] holds what was measured against it.
 
 pub mod compared;
+mod instruments;
 mod names;
 mod numbers;
 pub mod of_run;
@@ -20,10 +21,12 @@ pub use compared::{Residual, is_counted, residuals};
 pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
-pub use reading::{SHIPPED, find_shipped, open, read, text};
+pub use reading::{SHIPPED, find_shipped, open, open_with, read, text};
 
 use crate::analysis::readouts::Readout;
+use crate::scenario::problem::listed;
 use crate::scenario::{Problem, Problems};
+use crate::text::printable::printable;
 use toml::Value;
 
 #[derive(Clone, Debug)]
@@ -33,6 +36,8 @@ pub struct Measured {
     /// Its comments before the columns' names, without their marks: where the data come from.
     pub about: String,
     pub lines: Vec<u64>,
+    /// The columns that are not known, and not read.
+    pub left_out: Vec<String>,
     pub data: Data,
 }
 
@@ -103,6 +108,14 @@ impl Measured {
             Data::Series(series) => Ok(series),
             Data::Table(_) => Err(Problems::one(&self.origin, Problem::at("", TABLE))),
         }
+    }
+
+    /// Says which columns are not known, and not read; `None` where there are none.
+    pub fn left_out_in_words(&self) -> Option<String> {
+        let names = listed(self.left_out.iter().map(String::as_str));
+        let origin = printable(&self.origin);
+        let told = || format!("{origin}: columns left out, which gyrolab does not know: {names}");
+        (!self.left_out.is_empty()).then(told)
     }
 
     /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts, and returns how many values that are.

@@ -4,7 +4,7 @@ use super::quantity::{self, COUNTS, Quantity, TIME};
 use crate::analysis::readouts::{self, Readout, Source};
 use crate::scenario::csv::Csv;
 use crate::scenario::keys::{self, Kind};
-use crate::scenario::problem::{at_line, listed, nearest};
+use crate::scenario::problem::{at_line, is_near, listed, nearest};
 use crate::scenario::{Problem, Problems};
 use crate::text::number::significant;
 use crate::text::unit::{Unit, with_word};
@@ -18,6 +18,8 @@ pub(super) enum Is {
     Time,
     /// A number of the run's steps or edits, which says nothing of the motion.
     Count,
+    /// Nothing that is known, nor near to it: a column for another purpose.
+    Foreign,
     /// A quantity at the time of its row.
     Quantity(&'static Quantity),
     /// What the scenario has in the run of its row.
@@ -32,7 +34,7 @@ impl Is {
         match self {
             Self::Quantity(_) | Self::Readout(_) => true,
             Self::Key(kind) => matches!(kind, Kind::Number(_)),
-            Self::Time | Self::Count => false,
+            Self::Time | Self::Count | Self::Foreign => false,
         }
     }
 }
@@ -45,13 +47,13 @@ pub(super) struct Named {
     pub uncertainty: Option<usize>,
 }
 
-/// The columns of `cells`, without those that count.
-pub(super) fn named(cells: &Csv) -> Result<Vec<Named>, Problems> {
+/// The columns of `cells`, without those that count, and the names of those of a time series that are not known.
+pub(super) fn named(cells: &Csv) -> Result<(Vec<Named>, Vec<String>), Problems> {
     let mut problems = Vec::new();
     let names = &cells.names;
     let is_series = names.iter().any(|name| name == TIME);
     let of = if is_series { of_series } else { of_table };
-    let mut columns = Vec::new();
+    let (mut columns, mut left_out) = (Vec::new(), Vec::new());
     for (place, name) in names.iter().enumerate() {
         let mut refuse = |rule| problems.push(Problem::at(shown(name, place), rule));
         if names[..place].contains(name) {
@@ -61,6 +63,7 @@ pub(super) fn named(cells: &Csv) -> Result<Vec<Named>, Problems> {
             continue;
         }
         match of(name) {
+            Ok(Is::Foreign) => left_out.push(name.clone()),
             Ok(is) => {
                 let uncertainty = with_word(name, UNCERTAINTY);
                 let mut others = names.iter();
@@ -81,7 +84,7 @@ pub(super) fn named(cells: &Csv) -> Result<Vec<Named>, Problems> {
     }
     columns.retain(|column| !matches!(column.is, Is::Count));
     let place = |problem| at_line(cells.line_of_names, problem);
-    Problems::from(problems.into_iter().map(place).collect::<Vec<_>>()).or(columns)
+    Problems::from(problems.into_iter().map(place).collect::<Vec<_>>()).or((columns, left_out))
 }
 
 /// A column's name, or its number where it has none.
@@ -116,7 +119,16 @@ fn of_series(name: &str) -> Result<Is, String> {
             "is a number of a whole run, not of one time: a table of such has no column {TIME}, and a run in every row"
         ));
     }
-    Err(unknown(name, quantity::names()))
+    let known = quantity::names;
+    let is_meant = name.is_empty()
+        || is_time(name)
+        || wrong_unit(name, known()).is_some()
+        || is_near(name, known());
+    if is_meant {
+        Err(unknown(name, known()))
+    } else {
+        Ok(Is::Foreign)
+    }
 }
 
 fn of_table(name: &str) -> Result<Is, String> {
@@ -155,12 +167,15 @@ fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Stri
     if let Some(told) = wrong_unit(name, known.clone()) {
         return told;
     }
-    let is_time = ["t", "time", "zeit"].contains(&stem(name).to_lowercase().as_str());
-    let near = match is_time.then_some(TIME) {
+    let near = match is_time(name).then_some(TIME) {
         Some(time) => format!("did you mean {time}?"),
         None => nearest(name, known),
     };
     format!("is no column that gyrolab knows: {near}")
+}
+
+fn is_time(name: &str) -> bool {
+    ["t", "time", "zeit"].contains(&stem(name).to_lowercase().as_str())
 }
 
 fn stem(name: &str) -> &str {

@@ -35,6 +35,7 @@ use Cell::{Number, Text, Whole};
 const TRACED: &str = "traced point, world frame";
 const MOMENTUM: &str = "angular momentum about the pivot, world frame";
 const OMEGA: &str = "angular velocity I^-1 L at this step, world frame";
+const OMEGA_OF_BODY: &str = "angular velocity along the body's own x, y or axle";
 const TILT: &str = "angle of the axle from +z";
 const AZIMUTH: &str = "azimuth of the axle, counted on through full turns";
 const ENERGY: &str = "kinetic energy, and that of the weight from the pivot";
@@ -73,6 +74,15 @@ pub const OPTIONAL_COLUMNS: &[Column] = &[
     }),
     column("L_axle_Js", "angular momentum along the axle", |r| {
         Number(r.sample.momentum.dot(&r.state().axle()))
+    }),
+    column("w1_rad_per_s", OMEGA_OF_BODY, |r| {
+        Number(r.sample.omega().x)
+    }),
+    column("w2_rad_per_s", OMEGA_OF_BODY, |r| {
+        Number(r.sample.omega().y)
+    }),
+    column("w3_rad_per_s", OMEGA_OF_BODY, |r| {
+        Number(r.sample.omega().z)
     }),
 ];
 

@@ -138,27 +138,29 @@ impl Comparison {
             }));
         };
         let put = self.put_beside(name, player, files, false);
-        put.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))?;
-        Ok(Done::SILENT)
+        let left_out =
+            put.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))?;
+        Ok(left_out.map_or(Done::SILENT, Done::saying))
     }
 
     /// Reads the measured data `name` and puts them beside the run. `may_wait` says whether they may be a FIFO or a device,
-    /// which is read for any length of time.
+    /// which is read for any length of time. Returns which columns are left out, in words.
     pub(super) fn put_beside(
         &mut self,
         name: &str,
         player: &Player,
         files: &Files,
         may_wait: bool,
-    ) -> Result<(), Problems> {
+    ) -> Result<Option<String>, Problems> {
         let measured = files.open_measured(name, may_wait)?;
+        let left_out = measured.left_out_in_words();
         self.data = Some(DataComparison::new(
             name,
             measured,
             player.run().scenario(),
         )?);
         self.catch_up(player);
-        Ok(())
+        Ok(left_out)
     }
 
     /// To be called after another scenario was opened in place of `before`. Puts the data that its `[view]` names
@@ -176,7 +178,10 @@ impl Comparison {
             return Ok(());
         }
         self.data = None;
-        wanted.map_or(Ok(()), |name| self.put_beside(&name, player, files, false))
+        let Some(name) = wanted else {
+            return Ok(());
+        };
+        self.put_beside(&name, player, files, false).map(drop)
     }
 
     /// Compares the data with the run as it goes on, for at most its share of the computing time, and takes the pictures

@@ -487,8 +487,11 @@ impl Lab {
         let of_file = file.and_then(|view| view.measured.clone());
         if let Some(name) = name.map(str::to_owned).or(of_file) {
             let (player, files) = (&self.player, &self.files);
-            self.comparison.put_beside(&name, player, files, true)?;
+            let left_out = self.comparison.put_beside(&name, player, files, true)?;
             self.read_now();
+            if let Some(left_out) = left_out {
+                self.tell(left_out);
+            }
         }
         Ok(())
     }

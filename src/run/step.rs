@@ -224,6 +224,13 @@ pub struct Sample {
     pub segment: u64,
 }
 
+impl Sample {
+    /// ω along the body's own x, y and axle, rad/s: what an instrument on the body measures.
+    pub fn omega(&self) -> Vector3<f64> {
+        self.orientation.tr_mul(&self.angular_velocity)
+    }
+}
+
 /// M g |c| below this part of the kinetic energy at the start is no scale: the body is balanced, or nearly.
 const LEAST_PART: f64 = 1e-9;
 /// A centre of mass nearer to the pivot than this part of the body's size is at the pivot but for rounding.

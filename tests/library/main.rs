@@ -34,6 +34,7 @@ mod measured;
 mod measured_beside;
 mod messages;
 mod mouse;
+mod own_code;
 mod parameters;
 mod parts;
 mod pictures;

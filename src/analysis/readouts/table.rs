@@ -244,6 +244,9 @@ readouts! {
     "fast_top_nutation_rpm", "rpm", Theory, "the same in revolutions a minute", |r| r.theory.map(|theory| start::rpm(theory.fast_top_nutation)), "*ω*_{n}";
     "L_axle_Js", "J s", State, "L along the axle", |r| r.spin, "*L*_{3}";
     "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it", |r| start::rpm(r.spin_rad_per_s), "*ω*_{3}";
+    "w1_rad_per_s", "rad/s", State, "angular velocity along the body's own x", |r| r.sample.omega().x, "*ω*_{1}";
+    "w2_rad_per_s", "rad/s", State, "angular velocity along the body's own y", |r| r.sample.omega().y, "*ω*_{2}";
+    "w3_rad_per_s", "rad/s", State, "angular velocity along the axle", |r| r.sample.omega().z, "*ω*_{3}";
     "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps; null where it stands without spin, its centre of mass below the pivot", |r| r.theory_about_z().and_then(|theory| theory.sleeping_limit);
     "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
     "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());

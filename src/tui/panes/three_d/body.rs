@@ -79,8 +79,8 @@ impl Shape {
 
     /// The size of the body, m.
     pub fn reach(&self) -> f64 {
-        let corners = self.corners.iter();
-        let reaches = corners.map(|(across, height)| libm::hypot(across, *height));
+        let corners = self.corners.iter().copied();
+        let reaches = corners.map(|(across, height)| libm::hypot(across, height));
         reaches.fold(f64::MIN_POSITIVE, f64::max)
     }
 }
