@@ -120,18 +120,13 @@ impl Found<'_> {
     /// Looks for what makes the rows, where they differ from the scheme: a slip, single precision, two slips.
     fn explain(&mut self, plan: &Plan, go_on: &(dyn Fn() -> bool + Sync)) {
         let rows = self.rows;
-        let first = self
-            .beside
-            .differs
-            .map(|differs| (differs.row, differs.step));
-        let not_finite = rows.not_finite.as_ref().map(|_| (rows.values.len() - 1, 0));
-        let Some(first) = first.or(not_finite) else {
-            return;
+        let Some(differs) = self.beside.differs else {
+            return; // numbers that are not finite after rows of the scheme's own are no slip's
         };
         let search = Search {
             plan,
             rows,
-            first,
+            first: (differs.row, differs.step),
             go_on,
         };
         let (found, close) = search.alone();
