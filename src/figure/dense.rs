@@ -114,14 +114,24 @@ pub(super) fn over_time(
     Some(proposal(window_s, request, what))
 }
 
-/// Makes those curves of `chart` bands that are too dense in its places.
+/// Makes those curves of `chart` bands that are too dense in its places; in a panel with one of them the others too that
+/// would be in a line as wide.
 pub(super) fn draw_bands(chart: &mut Chart, columns: &[&'static Column], drawn: &[Drawn]) {
     let layout = Layout::new(chart, 0.0);
     let panels = chart.panels.iter_mut().zip(&layout.panels);
     for (column, (panel, placed)) in columns.iter().zip(panels) {
-        for (drawn, series) in drawn.iter().zip(&mut panel.series) {
-            let columns = Columns::new(&drawn.course.parts(column), placed);
-            if columns.are_dense(series.style.width_pt, placed) {
+        let all = drawn
+            .iter()
+            .map(|it| Columns::new(&it.course.parts(column), placed));
+        let all: Vec<Columns> = all.collect();
+        let widths = panel.series.iter().map(|series| series.style.width_pt);
+        let dense = all
+            .iter()
+            .zip(widths)
+            .filter(|(it, width_pt)| it.are_dense(*width_pt, placed));
+        let widest = dense.map(|(_, width_pt)| width_pt).fold(0.0, f64::max);
+        for (columns, series) in all.iter().zip(&mut panel.series) {
+            if columns.are_dense(series.style.width_pt.max(widest), placed) {
                 series.band = columns.band(placed);
                 (series.style.is_band, series.style.core) = (true, None);
             }

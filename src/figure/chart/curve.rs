@@ -9,6 +9,8 @@ use crate::figure::page::scene::{Path, Pen, Point, Scene};
 
 /// How far a line may leave its points, of its width: a tenth of a dot at 600 an inch for a line of 0.7 pt.
 const TOLERANCE: f64 = 0.02;
+/// And at most, of however wide a line, pt.
+const UNSEEN_PT: f64 = 0.014;
 /// A solid line of more points than this is drawn by the outline of its ink if that has fewer: a file of 40 kB.
 const MANY: usize = 5_000;
 /// The part of white in the colour of a band, which its line has pure.
@@ -102,7 +104,8 @@ pub fn dots(places: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
 /// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
 pub fn draw_curve(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
     let lines = pieces.iter();
-    let lines = lines.map(|piece| simplified(piece, TOLERANCE * pen.width_pt));
+    let within_pt = (TOLERANCE * pen.width_pt).min(UNSEEN_PT);
+    let lines = lines.map(|piece| simplified(piece, within_pt));
     let lines: Vec<Vec<Point>> = lines.collect();
     let count: usize = lines.iter().map(Vec::len).sum();
     if pen.dash_pt.is_empty() && count > MANY {
