@@ -79,6 +79,11 @@ impl History {
         &self.present
     }
 
+    /// How many earlier runs there are, and how many acts the present one has: undo lessens it.
+    pub fn depth(&self) -> (usize, usize) {
+        (self.past.len(), self.present.journal.acts())
+    }
+
     /// Records at which `step` the present run stands and which push the user has prepared. To be called before the
     /// present run is left.
     pub fn set_left_at(&mut self, step: u64, next_push: &NextPush) {

@@ -137,6 +137,8 @@ pub enum LessonKey {
     Move(Direction),
     /// Gives the selected answer, asks for a number, or opens the selected lesson.
     Take,
+    /// Asks for a number that begins with this digit.
+    Digit(u8),
 }
 
 /// A change in the field of a dialog, or in a line without a cursor: there something can be typed, erased and cleared.

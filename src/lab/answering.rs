@@ -1,6 +1,6 @@
 //! The dialogs: the text that a dialog for a file offers, and the command that an answered dialog stands for.
 
-use super::action::Action;
+use super::action::{Action, FieldEdit};
 use super::answer::{Answer, Done};
 use super::command::{Command, Export, Figure, Place, Save};
 use super::dialog::{Dialog, Question};
@@ -9,10 +9,14 @@ use super::{Lab, Request};
 use crate::export::Layout;
 
 impl Lab {
-    /// Asks for a number: `title` says for what, `label` what it is and in which unit, `about` how to answer. It comes back as
-    /// [`Request::Answer`].
-    pub fn ask_number(&mut self, title: &str, label: &str, about: &str) {
+    /// Asks for a number, of which `typed` is there already: `title` says for what, `label` what it is and in which unit,
+    /// `about` how to answer. It comes back as [`Request::Answer`].
+    pub fn ask_number(&mut self, title: &str, label: &str, about: &str, typed: Option<u8>) {
         self.on_top.open_dialog(Dialog::number(title, label, about));
+        if let Some(digit) = typed {
+            let digit = char::from(b'0' + digit % 10);
+            self.on_top.edit_field(FieldEdit::Type(digit));
+        }
         self.changed = true;
     }
 

@@ -189,6 +189,7 @@ impl Lab {
     /// Pushes from the next step on: with the push to come, but for the values that `choice` has.
     fn push(&mut self, choice: &PushChoice) -> Answer {
         let push = self.chosen(choice)?;
+        self.make_way_for_push()?;
         let run = self.player.run();
         let mut given = push.given(run.scenario(), run.simulation().state())?;
         if let Some(Force::Vector(vector)) = choice.force_N {
@@ -200,6 +201,18 @@ impl Lab {
         );
         let made_way = self.act_all(vec![Act::Push(given)], false)?;
         Ok(Done::saying(made_way.unwrap_or(said)))
+    }
+
+    /// In a lesson, a push that is tried again at the same step takes the place of the one that was tried there.
+    fn make_way_for_push(&mut self) -> Result<(), String> {
+        let here = self.player.playback.step_number();
+        let was_tried = self.player.run().furthest() > here
+            && self.work.journal().ends_with_push_at(here)
+            && !self.work.is_at_floor();
+        if was_tried && self.view.sheet.is_some() {
+            self.turn(Way::Back, 1).map_err(|refusal| refusal.to_string())?;
+        }
+        Ok(())
     }
 
     /// The scenario of the run from step 0 to `to_step`, or to the present step; `to` says what it is for.

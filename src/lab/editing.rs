@@ -131,6 +131,9 @@ impl Lab {
     pub(super) fn turn(&mut self, way: Way, times: u32) -> Answer {
         let mut answer = Done::SILENT;
         for _ in 0..times {
+            if way == Way::Back && self.work.is_at_floor() {
+                return Err("nothing to undo: the page began here; N turns back".into());
+            }
             self.leave();
             let steps = self.player.run().scenario().steps;
             let turned = self.work.turn(way, steps)?;

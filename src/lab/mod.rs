@@ -51,7 +51,7 @@ pub use files::Files;
 pub use keeping::{Summary, Unreadable};
 pub use on_top::{MOST_COUNTED, Mode, OnTop};
 pub use player::Player;
-pub use script::Script;
+pub use script::{STOPPED, Script};
 pub use values::Values;
 pub use work::Work;
 

@@ -14,6 +14,9 @@ use std::time::{Duration, Instant};
 /// How often to look whether an export is complete while there is nothing else to do.
 const LOOK: Duration = Duration::from_millis(2);
 
+/// Why a run that is played until something holds was refused, where a key has stopped it.
+pub const STOPPED: &str = "stopped before it held";
+
 /// How long steps are taken before the caller decides whether to go on.
 const PART: Duration = Duration::from_millis(100);
 
@@ -26,6 +29,8 @@ pub struct Script {
     under_way: Option<(Placed, UnderWay)>,
     /// The command that was refused, and why.
     failed: Option<String>,
+    /// Whether its commands were dropped before they were complete.
+    is_dropped: bool,
     /// Titles of the chapters that were begun and not taken yet.
     chapters: Vec<String>,
     /// Whether the script waits until the user lets it go on: it comes from a session, or was paused.
@@ -86,10 +91,18 @@ impl Script {
         self.count() == 0
     }
 
+    /// Whether it has ended before its end: it was dropped, or a command was refused.
+    pub fn has_broken_off(&self) -> bool {
+        self.is_dropped || self.failed.is_some()
+    }
+
     /// Drops all commands; returns how many there were, with the one under way.
     pub(super) fn drop_all(&mut self) -> usize {
         let left = self.count();
-        *self = Self::default();
+        *self = Self {
+            is_dropped: left > 0,
+            ..Self::default()
+        };
         left
     }
 }
@@ -288,7 +301,7 @@ impl Lab {
                 "did not hold on any of {} steps",
                 HumanCount(steps)
             )),
-            (false, None, UnderWay::Playing) => Err("stopped before it held".to_owned()),
+            (false, None, UnderWay::Playing) => Err(STOPPED.to_owned()),
             (false, ..) => Ok(true),
         }
     }

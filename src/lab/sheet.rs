@@ -2,6 +2,7 @@
 
 use super::Lab;
 use super::view::Pane;
+use crate::text::ascii::in_ascii;
 use std::sync::Arc;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -9,8 +10,12 @@ pub struct Sheet {
     /// What stands in its frame.
     pub title: String,
     pub paragraphs: Vec<Paragraph>,
-    /// The paragraph that is to be seen: the sheet is scrolled to it where it is longer than its place.
-    pub seen: Option<usize>,
+    /// The first and the last of the paragraphs that are to be seen whole: a longer sheet is scrolled to them.
+    pub seen: Option<(usize, usize)>,
+    /// Whether a run is played before the rest of the sheet comes: where there is room for one pane, both share it.
+    pub plays: bool,
+    /// Whether a number is asked for: a digit begins to type it.
+    pub asks_number: bool,
     /// What Enter does here, in one word; empty where it does nothing.
     pub enter: &'static str,
     pub has_next: bool,
@@ -78,6 +83,19 @@ impl Paragraph {
         Self { kind, words }
     }
 
+    /// The same for a terminal without UTF-8.
+    pub fn in_ascii(&self) -> Self {
+        let words = self.words.iter().map(|words| Words {
+            text: in_ascii(&words.text),
+            emphasis: words.emphasis,
+        });
+        let kind = self.kind.clone();
+        Self {
+            kind,
+            words: words.collect(),
+        }
+    }
+
     pub fn text(&self) -> String {
         self.words.iter().map(|words| words.text.as_str()).collect()
     }
@@ -107,6 +125,16 @@ impl Lab {
         let to = first.saturating_add_signed(rows).min(last);
         self.view.sheet_scrolled = Some(to);
         self.changed = true;
+    }
+
+    /// Keeps undo from going back beyond what was done up to now, or lets it again.
+    pub fn set_undo_floor(&mut self, is_here: bool) {
+        self.work.set_floor(is_here);
+    }
+
+    pub(super) fn asks_number(&self) -> bool {
+        let sheet = self.view.sheet.as_ref();
+        self.view.focus == Pane::LESSON && sheet.is_some_and(|sheet| sheet.asks_number)
     }
 
     pub fn turn_to_sheet(&mut self) {
