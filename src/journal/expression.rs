@@ -282,12 +282,17 @@ mod tests {
     #[test]
     fn a_condition_is_taken_apart() {
         let that = "t_s >= 5 and (tilt_deg < 0 and 1 < 2) and abs(tilt_deg) < 2";
-        let parts = Expression::parse(that).unwrap().conjuncts(|name| match name {
-            "t_s" => Some(4.0),
-            _ => Some(-3.0),
-        });
+        let parts = Expression::parse(that)
+            .unwrap()
+            .conjuncts(|name| match name {
+                "t_s" => Some(4.0),
+                _ => Some(-3.0),
+            });
         let parts: Vec<_> = parts.iter().map(|part| (part.holds, part.left)).collect();
-        assert_eq!(parts, [(false, Some(4.0)), (true, None), (false, Some(3.0))]);
+        assert_eq!(
+            parts,
+            [(false, Some(4.0)), (true, None), (false, Some(3.0))]
+        );
     }
 
     #[test]

@@ -210,7 +210,8 @@ impl Lab {
             && self.work.journal().ends_with_push_at(here)
             && !self.work.is_at_floor();
         if was_tried && self.view.sheet.is_some() {
-            self.turn(Way::Back, 1).map_err(|refusal| refusal.to_string())?;
+            self.turn(Way::Back, 1)
+                .map_err(|refusal| refusal.to_string())?;
         }
         Ok(())
     }

@@ -132,8 +132,13 @@ impl Lab {
         self.work.set_floor(is_here);
     }
 
-    pub(super) fn asks_number(&self) -> bool {
-        let sheet = self.view.sheet.as_ref();
+    /// Whether a digit begins to type the number that the sheet asks for.
+    pub fn asks_number(&self) -> bool {
+        let sheet = self
+            .view
+            .sheet
+            .as_ref()
+            .filter(|_| self.on_top.count.is_none());
         self.view.focus == Pane::LESSON && sheet.is_some_and(|sheet| sheet.asks_number)
     }
 

@@ -67,9 +67,6 @@ impl Lab {
                 let dialog = self.dialog_for_a_file(action)?;
                 self.on_top.open_dialog(dialog);
             }
-            Action::Digit(digit) if count.is_none() && self.asks_number() => {
-                return Ok(Some(Request::Lesson(LessonKey::Digit(digit))));
-            }
             Action::Digit(digit) => self.on_top.add_digit(count, digit),
             Action::Faster => self.one(Command::Speed(self.player.other_speed(times)?)),
             Action::Slower => self.one(Command::Speed(self.player.other_speed(-times)?)),

@@ -212,7 +212,9 @@ fn right(content: &mut Content, asked: &Asked) -> Option<usize> {
         Asked::Choice(choices) => choices.len(),
         Asked::Number { .. } => 0,
     };
-    let right = value.as_integer().and_then(|right| usize::try_from(right).ok());
+    let right = value
+        .as_integer()
+        .and_then(|right| usize::try_from(right).ok());
     let right = right.filter(|right| (1..=choices).contains(right));
     if right.is_none() {
         let rule = "must be the number of a choice, counted from 1";
@@ -289,7 +291,10 @@ pub(super) fn check(
     }
     let parts = that.conjuncts(|_| None).len();
     if goals.len() > 1 && goals.len() != parts {
-        let rule = format!("has {} lines, and that joins {parts} parts with and", goals.len());
+        let rule = format!(
+            "has {} lines, and that joins {parts} parts with and",
+            goals.len()
+        );
         content.refuse(Problem::at("goal", rule));
     }
     content.finish(Check {
@@ -310,7 +315,11 @@ fn goals(content: &mut Content) -> Vec<String> {
     };
     let line = |item: &Value| Some(item.as_str()?.trim().to_owned());
     let lines: Vec<String> = items.iter().filter_map(line).collect();
-    if lines.len() != items.len() || lines.iter().any(|line| line.is_empty() || line.chars().any(is_steering)) {
+    if lines.len() != items.len()
+        || lines
+            .iter()
+            .any(|line| line.is_empty() || line.chars().any(is_steering))
+    {
         let rule = "must be lines of text, one for each part of that";
         content.refuse(Problem::with_value("goal", &value, rule));
     }

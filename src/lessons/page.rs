@@ -44,8 +44,7 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
             };
             let about = Some(Paragraph::new(kind, about)).filter(|about| !about.text().is_empty());
             sheet.paragraphs.extend(about);
-            let last = sheet.paragraphs.len().saturating_sub(1);
-            sheet.seen = Some((last, last));
+            sheet.seen = Some((sheet.paragraphs.len() - 1, sheet.paragraphs.len() - 1));
         }
     }
     let keys = if shipped::LESSONS.is_empty() && names.is_empty() {
@@ -91,7 +90,11 @@ impl Writer<'_> {
         if page.number == 1 {
             self.blocks(&self.taken.lesson.introduction);
         }
-        let blocks = match page.blocks.iter().position(|block| matches!(block, Block::Lab(_))) {
+        let blocks = match page
+            .blocks
+            .iter()
+            .position(|block| matches!(block, Block::Lab(_)))
+        {
             Some(lab) if self.taken.plays() => &page.blocks[..lab],
             _ => &page.blocks,
         };
@@ -218,20 +221,25 @@ impl Writer<'_> {
             }
         }
         if is_open {
-            self.sheet.enter = "answer";
-            self.sheet.asks_number = matches!(predict.asked, Asked::Number { .. });
-            let keys = match &predict.asked {
-                Asked::Choice(_) if self.taken.is_marked => "Enter again locks it.",
-                Asked::Choice(_) => "Up, Down choose; Enter marks.",
-                Asked::Number { .. } => "Type your prediction.",
-            };
-            self.add(Paragraph::new(Kind::Hint, keys));
+            self.keys_of(predict);
         }
-        // The question that is open now, or all of the last one where none is.
+        // The question that is open now, or the last one where none is.
         if is_open || self.taken.has_answered {
             self.sheet.seen = None;
         }
         self.is_seen_from(first);
+    }
+
+    /// Says which keys answer `predict`.
+    fn keys_of(&mut self, predict: &Predict) {
+        self.sheet.enter = "answer";
+        self.sheet.asks_number = matches!(predict.asked, Asked::Number { .. });
+        let keys = match &predict.asked {
+            Asked::Choice(_) if self.taken.is_marked => "Enter again locks it.",
+            Asked::Choice(_) => "Up, Down choose; Enter marks.",
+            Asked::Number { .. } => "Type your prediction.",
+        };
+        self.add(Paragraph::new(Kind::Hint, keys));
     }
 
     fn next(&mut self, page: usize) {

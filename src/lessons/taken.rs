@@ -218,7 +218,12 @@ impl Taken {
         }
         if lab.script().has_broken_off() {
             self.under_way = Some(UnderWay::Left).filter(|_| self.is_under_way());
-            if self.plays() && lab.script().failure().is_none_or(|why| why.ends_with(STOPPED)) {
+            if self.plays()
+                && lab
+                    .script()
+                    .failure()
+                    .is_none_or(|why| why.ends_with(STOPPED))
+            {
                 lab.tell("you have left the page's run: b plays it again, n goes to its end");
             }
             return true;
@@ -280,7 +285,10 @@ impl Taken {
         }
         self.place.stated = Some(stated(&self.lesson, &self.place, lab));
         let lesson = Arc::clone(&self.lesson);
-        let compares = lesson.page(self.place.page).into_iter().flat_map(Page::compares);
+        let compares = lesson
+            .page(self.place.page)
+            .into_iter()
+            .flat_map(Page::compares);
         let names = compares.map(|compare| compare.prediction.clone());
         self.place.seen.extend(names);
         true
@@ -304,14 +312,24 @@ impl Taken {
             return false;
         };
         let before = self.reached.len();
-        let held = page.checks().filter(|check| holds(check, lab, &self.place.kept));
+        let held = page
+            .checks()
+            .filter(|check| holds(check, lab, &self.place.kept));
         self.reached.extend(held.map(|check| check.line));
         let is_new = self.reached.len() > before;
         if is_new && self.reached.len() == page.checks().count() {
-            let goals: Vec<&str> = page.checks().flat_map(|check| &check.goals).map(String::as_str).collect();
+            let goals: Vec<&str> = page
+                .checks()
+                .flat_map(|check| &check.goals)
+                .map(String::as_str)
+                .collect();
             lab.tell(format!("done: {}", goals.join(", ")));
             if page.task().is_some() {
-                self.note_tried(if self.shows_hints { Tried::DoneAfterHint } else { Tried::Done });
+                self.note_tried(if self.shows_hints {
+                    Tried::DoneAfterHint
+                } else {
+                    Tried::Done
+                });
             }
         }
         is_new
@@ -322,7 +340,11 @@ impl Taken {
         let Some(page) = self.lesson.page(self.place.page) else {
             return;
         };
-        let known = self.place.tasks.entry(page.heading.clone()).or_insert(tried);
+        let known = self
+            .place
+            .tasks
+            .entry(page.heading.clone())
+            .or_insert(tried);
         if *known == Tried::Hint {
             *known = tried;
         }

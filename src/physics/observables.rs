@@ -1,5 +1,6 @@
 //! What is read off a state: positions, angles, energy.
 
+use super::loads::{self, Loads};
 use super::{Body, State};
 use nalgebra::Vector3;
 
@@ -31,6 +32,24 @@ pub fn weight_height(body: &Body, state: &State) -> f64 {
         .row(2)
         .transpose()
         .dot(&body.first_moment())
+}
+
+/// Σ m dz/dt, kg m/s: what of the body's momentum is vertical.
+pub fn rise(body: &Body, state: &State) -> f64 {
+    let moment = state.orientation * body.first_moment();
+    angular_velocity(body, state).cross(&moment).z
+}
+
+/// Vertical force with which the pivot holds the body under `loads` without friction, world frame, N: what moves the
+/// centre of mass beside the weight and the pushes.
+pub fn pivot_force_z(body: &Body, state: &State, loads: &Loads) -> f64 {
+    let turn = state.orientation;
+    let (moment, omega) = (turn * body.first_moment(), angular_velocity(body, state));
+    let torque = loads::torque(&turn, &loads.moment(body)) - omega.cross(&state.momentum);
+    let alpha = turn * (body.inverse_inertia() * turn.tr_mul(&torque));
+    let inertial = alpha.cross(&moment) + omega.cross(&omega.cross(&moment));
+    let pushes: f64 = loads.pushes.iter().map(|push| push.force.z).sum();
+    inertial.z + body.mass() * loads.gravity - pushes
 }
 
 /// Angle of the axle from +z, degrees, 0 to 180.

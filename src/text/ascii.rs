@@ -70,7 +70,11 @@ pub fn in_ascii(text: &str) -> String {
         sign = ' ';
         match WORDS.iter().find(|(known, _)| *known == c) {
             // Two names of numbers in a row are a product.
-            Some((_, word)) if word.len() > 1 && ascii.ends_with(char::is_alphanumeric) && c.is_alphabetic() => {
+            Some((_, word))
+                if word.len() > 1
+                    && ascii.ends_with(char::is_alphanumeric)
+                    && c.is_alphabetic() =>
+            {
                 ascii.push(' ');
                 ascii.push_str(word);
             }

@@ -2,7 +2,7 @@
 
 use super::keymap::{self, Key};
 use super::panes::{self, help};
-use crate::lab::action::Action;
+use crate::lab::action::{Action, LessonKey};
 use crate::lab::{Lab, Request};
 
 /// Carries out the action of `key`, or shows a message that it has none.
@@ -14,6 +14,9 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     }
     match keymap::action(panes::keys_of(lab), mode, key) {
         Some(Action::DoEntry) => help::do_entry(lab),
+        Some(Action::Digit(digit)) if lab.asks_number() => {
+            lab.update(Action::Lesson(LessonKey::Digit(digit)))
+        }
         Some(action) => {
             let request = lab.update(action);
             help::limit(lab);

@@ -6,10 +6,11 @@ use crate::support::words::{has, has_all};
 use gyrolab::lab::Lab;
 use gyrolab::lab::view::Part;
 use gyrolab::lab::view::markers::Marker;
+use gyrolab::lessons::handout::{self, Paper};
 use gyrolab::lessons::play::{self, Walk};
 use gyrolab::lessons::predictions::Predictions;
 use gyrolab::lessons::text::Text;
-use gyrolab::lessons::{Answer, Block, Kept, Lesson, handout, names, reading, shipped};
+use gyrolab::lessons::{Answer, Block, Kept, Lesson, reading, shipped};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Problem, Problems};
 use gyrolab::text::printable::is_steering;
@@ -239,7 +240,13 @@ const MISTAKES: &[(&str, &[&str])] = &[
     ("{coarse:.2}", &["{coarze:.2}"]),
     (
         "that = \"steps == 10\"",
-        &["that = \"stepps == 10\"", "that = \"steps\"", ""],
+        &[
+            "that = \"stepps == 10\"",
+            "that = \"steps\"",
+            "that = \"1 < 2\"",
+            "goal = [\"a\", \"b\"]\nthat = \"steps == 10\"",
+            "",
+        ],
     ),
     (
         "keep = { coarse =",
@@ -537,63 +544,6 @@ fn every_lesson_plays_and_its_checks_fail_without_their_blocks() {
         );
         let played = checked(&lesson).unwrap_or_else(|problems| panic!("{problems}"));
         assert_eq!(played, [], "{}", lesson.name);
-        for page in 0..lesson.pages.len() {
-            if lesson.pages[page].checks().next().is_none() {
-                continue;
-            }
-            let mut without = lesson.clone();
-            let has_task = lesson.pages[page].task().is_some();
-            without.pages[page].blocks.retain(|block| match block {
-                Block::Task(_) => false,
-                Block::Lab(_) => has_task,
-                _ => true,
-            });
-            let told = checked(&without).unwrap_err().to_string();
-            for check in lesson.pages[page].checks() {
-                let place = format!("{}:{}: check.that", lesson.origin, check.line);
-                assert!(told.contains(&place), "{told}");
-            }
-        }
-    }
-}
-
-#[test]
-#[ignore = "plays each lesson once for each of its pages: ten seconds"]
-fn a_page_is_the_same_whether_turned_to_or_jumped_to() {
-    for lesson in lessons() {
-        let mut walk = Walk::new(&lesson, lab());
-        for page in &lesson.pages {
-            walk.enter(page, &mut on).unwrap();
-            // A lab in which somebody has played before is put back.
-            let mut used = lab();
-            for command in crate::support::desk::commands(
-                "open = 'cusps'\nfill = '3d'\nbare = true\ncamera = { yaw_deg = 70 }\nzoom = { above = 3 }\nexact = true\npin = true\ngo_to = 100",
-            ) {
-                used.carry_out(&command).unwrap();
-            }
-            let focus = |walk: &Walk<'_>| walk.lab.view().focus;
-            for lab in [lab(), used] {
-                let mut jumped = Walk::new(&lesson, lab);
-                jumped.jump(page, &mut on).unwrap();
-                let place = format!("{}, page {}", lesson.name, page.number);
-                if focus(&jumped) == focus(&walk) {
-                    assert_eq!(picture(&jumped.lab), picture(&walk.lab), "{place}");
-                }
-                let numbers = |walk: &Walk<'_>| {
-                    let names = [
-                        "steps",
-                        "t_s",
-                        "z_m",
-                        "measured_highest_tilt_deg",
-                        "motion.time_step_s",
-                    ];
-                    names.map(|name| names::number(name, &walk.lab, &walk.kept))
-                };
-                assert_eq!(numbers(&jumped), numbers(&walk), "{place}");
-                assert_eq!(jumped.lab.view().hidden, walk.lab.view().hidden, "{place}");
-            }
-            walk.leave(page, &mut on).unwrap();
-        }
     }
 }
 
@@ -660,32 +610,41 @@ fn what_a_page_hides_is_shown_once_its_predictions_are_locked() {
 }
 
 #[test]
-fn the_comparison_has_the_prediction_and_what_came_out() {
-    let lesson = read(WHOLE);
-    let mut walk = Walk::new(&lesson, lab());
-    walk.jump(&lesson.pages[1], &mut on).unwrap();
-    let Block::Compare(compare) = &lesson.pages[1].blocks[1] else {
-        panic!("no comparison")
-    };
-    let mut predictions = Predictions::default();
-    let said =
-        |predictions: &Predictions| compare.filled(&lesson, predictions, &walk.lab, &walk.kept);
-    let with = compare.came_out(&walk.lab, &walk.kept).unwrap();
-    let coarse = walk.kept["coarse"];
-    assert!(coarse > 10.0 * with && with > 0.0, "{coarse} {with}");
-    let words = format!("It was {coarse:.2} degrees and is {with:.2}.");
-    assert_eq!(said(&predictions), words, "nothing was said yet");
-    let finer = lesson.predict("finer").unwrap();
-    predictions
-        .lock(finer, Answer::Choice("is gone".to_owned()))
-        .unwrap();
-    assert_eq!(said(&predictions), format!("{words} You said: is gone."));
+fn a_worksheet_asks_everything_and_answers_nothing() {
+    for lesson in lessons() {
+        let of = |paper| handout::handout(&lesson, paper, lab(), &picture, &mut on).unwrap();
+        let (sheet, results) = (of(Paper::Worksheet), of(Paper::Results));
+        for page in &lesson.pages {
+            let at = sheet.find(&format!("## {}\n", page.heading)).unwrap();
+            let own = sheet[at + 3..].split("\n## ").next().unwrap();
+            for predict in page.predicts() {
+                let ask = predict.ask.filled(|_, _| "@".to_owned());
+                has(own, ask.split('@').next().unwrap());
+            }
+            assert!(
+                own.contains("Came out: __") || page.compares().next().is_none(),
+                "{own}"
+            );
+        }
+        for text in lesson.pages.iter().flat_map(|page| page.compares()) {
+            let words = text.text.filled(|_, _| "@".to_owned());
+            let first = words
+                .split('@')
+                .find(|words| words.len() > 12)
+                .unwrap_or("You said");
+            assert!(
+                results.contains(first) && !sheet.contains(first),
+                "{}: {first}",
+                lesson.name
+            );
+        }
+    }
 }
 
 #[test]
 fn the_handout_has_pictures_and_room_and_no_notes() {
     for lesson in lessons() {
-        let paper = handout::handout(&lesson, lab(), &picture, &mut on).unwrap();
+        let paper = handout::handout(&lesson, Paper::Results, lab(), &picture, &mut on).unwrap();
         let headings: Vec<_> = paper
             .lines()
             .filter(|line| line.starts_with("## "))
@@ -712,13 +671,13 @@ fn the_handout_has_pictures_and_room_and_no_notes() {
         }
         assert!(!paper.contains("```notes") && !paper.contains("```lab"));
     }
-    let paper = handout::handout(&read(WHOLE), lab(), &picture, &mut on).unwrap();
+    let paper = handout::handout(&read(WHOLE), Paper::Results, lab(), &picture, &mut on).unwrap();
     has_all(
         &paper,
         [
             "# The push\n\nA push, and what the time step has to do with it. About 10 minutes.\n\nBefore the first page.\n\n## Watch\n\n```text\n",
             "**Prediction.** With a time step ten times shorter, the wobble ...\n\n- [ ] stays as it is\n- [ ] is ten times smaller\n- [ ] is gone\n",
-            "degrees and is ____________. You said: ____________.\n\n```sh\ngyrolab run wobble-push\n```\n\n## Your turn\n",
+            ". You said: ____________.\n\n```sh\ngyrolab run wobble-push\n```\n\n## Your turn\n",
             "At 60 s the top is at z = **0.",
             "`{ code }` and \\{braces} stay.",
         ],

@@ -7,6 +7,7 @@ use crate::lab::command::Command;
 use crate::lessons::clock::Clock;
 use crate::lessons::lesson::{Answer, Asked, Block, Predict};
 use crate::lessons::predictions::{Predictions, Tried};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 impl Taken {
@@ -42,6 +43,10 @@ impl Taken {
         if self.plays() {
             // To the end of the page's run at once.
             let stood = self.stand(true, lab);
+            if stood.is_err() {
+                // The page is shown as far as it came; n turns it.
+                self.place.stated = Some(BTreeMap::new());
+            }
             return told(stood, lab);
         }
         if self.place.page >= self.lesson.pages.len() {
@@ -53,14 +58,17 @@ impl Taken {
             return;
         }
         self.keep_own_task(lab);
+        // The next page stands on the task of this one as the lesson does it.
+        let has_wandered =
+            self.has_wandered(lab) || self.page().is_some_and(|page| page.task().is_some());
         let page = self.place.page + 1;
         self.turn_to(page);
         lab.turn_to_sheet();
         let kept = &self.place.kept;
         // A page that neither does nor states anything leaves the lab as the student has it.
-        let needs_its_run = self.page().is_some_and(|page| {
-            page.lab().is_some() || self.has_wandered(lab) && page.states_numbers(kept)
-        });
+        let needs_its_run = self
+            .page()
+            .is_some_and(|page| page.lab().is_some() || has_wandered && page.states_numbers(kept));
         if needs_its_run {
             let stood = self.stand(false, lab);
             told(stood, lab);
@@ -140,7 +148,9 @@ impl Taken {
             return self.ask_number(None, lab);
         };
         match self.selected.and_then(|at| choices.get(at)) {
-            None => lab.refuse("Up and Down choose an answer, Enter marks it, Enter again locks it"),
+            None => {
+                lab.refuse("Up and Down choose an answer, Enter marks it, Enter again locks it")
+            }
             Some(_) if !std::mem::replace(&mut self.is_marked, true) => {
                 lab.refuse("Enter again locks it: a prediction is not changed");
             }
