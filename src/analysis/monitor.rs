@@ -58,10 +58,10 @@ impl Monitor {
     }
 
     /// The mean over the run of the vertical force of the foot, N: what of the momentum weight and pushes have not made.
-    /// `None` where the forces have changed on the way, and at the start.
+    /// `None` where the forces have changed after the first step, and at the start.
     pub fn mean_foot_force(&self, step: &Step) -> Option<f64> {
         let (body, time_s) = (&step.scenario().body.mechanics, step.time_s());
-        if self.since > 0 || time_s <= 0.0 {
+        if self.since > 1 || time_s <= 0.0 {
             return None;
         }
         let pushes: f64 = step.loads().pushes.iter().map(|push| push.force.z).sum();

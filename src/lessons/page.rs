@@ -254,7 +254,7 @@ impl Writer<'_> {
             }
             (false, true, false) => "h shows how it is done; b: the page again; n: next page.",
             (false, true, true) => "h shows how it is done; b: the page again; L: other lessons.",
-            (false, false, false) => "n: next page.",
+            (false, false, false) => return, // the line of keys names n
             (false, false, true) => "This is the end of the lesson. L: other lessons.",
         };
         self.add(Paragraph::new(Kind::Hint, text));

@@ -122,6 +122,43 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    #[test]
+    fn the_pivot_carries_what_weight_and_push_do_not_accelerate() {
+        let at = [[0.8, 0.1, 0.5], [-0.3, 0.7, 0.6], [0.1, 0.0, 1.1]];
+        let points = at.map(|at| crate::PointMass::new(Vector3::from(at), 0.5));
+        let body = Body::new(points.to_vec()).unwrap();
+        let push = crate::PointForce {
+            point: 2,
+            force: Vector3::new(3.0, -4.0, 5.0),
+        };
+        let loads = Loads {
+            gravity: 9.8,
+            pushes: vec![push],
+            ..Loads::default()
+        };
+        let turn = crate::rotation::about(&Vector3::new(0.3, -1.0, 0.4), 0.7);
+        let state = State {
+            time_s: 0.0,
+            orientation: turn,
+            momentum: Vector3::new(2.0, -1.0, 4.0),
+        };
+        let short_s = 1e-6;
+        let after = |time_s: f64| {
+            let omega = angular_velocity(&body, &state);
+            let torque = loads::torque(&turn, &loads.moment(&body));
+            let later = State {
+                time_s,
+                orientation: crate::rotation::about(&omega, time_s) * turn,
+                momentum: state.momentum + torque * time_s,
+            };
+            rise(&body, &later)
+        };
+        let gained = (after(short_s) - after(-short_s)) / (2.0 * short_s);
+        let carried = gained + body.mass() * loads.gravity - push.force.z;
+        let known = pivot_force_z(&body, &state, &loads);
+        assert!((known - carried).abs() < 1e-6, "{known} {carried}");
+    }
+
     /// The contract's words, taken literally.
     fn by_arc_tangents(axles: &[Vector3<f64>]) -> f64 {
         let azimuth = |axle: &Vector3<f64>| axle.y.atan2(axle.x).to_degrees();
