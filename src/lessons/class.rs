@@ -76,9 +76,6 @@ impl Class {
         class.left = kept.lessons;
         class.has_changed = true;
         let taken = kept.open.map_or(Ok(()), |name| class.take(&name, lab));
-        if let Shown::Lesson(taken) = &mut class.shown {
-            taken.go_on(lab);
-        }
         class.show(lab);
         (class, taken)
     }
@@ -115,7 +112,9 @@ impl Class {
         let lesson = lesson.map_err(|problems| problems.to_string())?;
         self.leave(lab);
         let place = self.left.remove(&lesson.name).unwrap_or_default();
-        self.shown = Shown::Lesson(Box::new(Taken::new(lesson, place, self.now)));
+        let mut taken = Taken::new(lesson, place, self.now);
+        taken.go_on(lab);
+        self.shown = Shown::Lesson(Box::new(taken));
         Ok(())
     }
 

@@ -121,7 +121,7 @@ impl Taken {
         self.under_way == Some(UnderWay::Left)
     }
 
-    /// Goes on with a page whose run was on its way when the session was left.
+    /// Goes on with a page whose run was on its way when the page was left.
     pub(super) fn go_on(&mut self, lab: &Lab) {
         if self.is_under_way() && !lab.script().is_done() {
             self.under_way = Some(UnderWay::Lab(self.place.page));
