@@ -3,7 +3,7 @@
 use crate::support::scenarios::resumed;
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::sheet::Kind;
-use gyrolab::lab::view::{Pane, Part};
+use gyrolab::lab::view::Part;
 use gyrolab::lessons::predictions::Tried;
 use gyrolab::lessons::{Answer, Class, reading, shipped};
 use std::fs;
@@ -159,7 +159,6 @@ fn play_is_free_and_one_key_leads_back() {
     stage.press("b").arrive();
     assert_eq!(stage.step(), before);
     assert_eq!(stage.lab.work().journal().later_than(0), 1, "gravity");
-    assert_eq!(stage.lab.player().motion().gravity, 5.0);
 }
 
 #[test]
@@ -192,7 +191,6 @@ fn the_session_keeps_page_and_predictions() {
     let answer = Answer::Choice("grows".to_owned());
     assert_eq!(place.predictions.answer("finer"), Some(&answer));
     assert_eq!(place.kept["first"], 2.0);
-    assert!(lab.view().sheet.is_some());
 }
 
 #[test]
@@ -364,8 +362,7 @@ fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
     };
     stage.press("L").shows(&format!("> [ ] {}", title(0)));
     stage.press("↓↓↑↓\n").arrive();
-    let words: Vec<_> = stage.class.taken().into_iter().collect();
-    assert_eq!(words[0].lesson.title, title(2));
+    assert_eq!(stage.class.taken().unwrap().lesson.title, title(2));
     stage.press("nn").arrive().shows("2 of ");
     stage.press("L").shows("2 of 9)");
     stage.press("\n").arrive().shows("2 of ");
@@ -374,9 +371,8 @@ fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
     assert_eq!(stage.step(), step, "the run stays");
     stage.press("L↓\u{1b}L").shows("> [ ] Method 1 and its");
     let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.press("LL").shows_no("lessons ──");
+    stage.press("LL");
     assert!(stage.lab.view().sheet.is_none());
-    assert_ne!(stage.focus(), "lesson");
 }
 
 #[test]
@@ -477,5 +473,4 @@ fn a_page_never_breaks_the_screen() {
         stage.wait(0.0).press("\t↓\t");
         assert_eq!(stage.picture().lines().count(), height as usize);
     }
-    stage.lab.turn_to(Pane::LESSON);
 }
