@@ -82,7 +82,7 @@ fn blank_page(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) ->
                 is_before = false;
             }
             Block::Compare(_) => {
-                parts.push(format!("Predicted: {BLANK}\n\nCame out: {BLANK}{BLANK}"))
+                parts.push(format!("Predicted: {BLANK}\n\nCame out: {BLANK}{BLANK}"));
             }
             Block::Check(check) => {
                 parts.extend(check.goals.iter().map(|goal| format!("- [ ] {goal}")));

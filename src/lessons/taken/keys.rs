@@ -149,7 +149,7 @@ impl Taken {
         };
         match self.selected.and_then(|at| choices.get(at)) {
             None => {
-                lab.refuse("Up and Down choose an answer, Enter marks it, Enter again locks it")
+                lab.refuse("Up and Down choose an answer, Enter marks it, Enter again locks it");
             }
             Some(_) if !std::mem::replace(&mut self.is_marked, true) => {
                 lab.refuse("Enter again locks it: a prediction is not changed");
