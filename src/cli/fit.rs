@@ -1,21 +1,18 @@
 //! `gyrolab fit`: keys of a scenario, so that its runs come nearest to measured data.
 
-use super::args::Changes;
-use super::commands::{Cli, Command};
+use super::args::{Changes, change};
 use super::progress::{self, Interrupted, Interruption, Meter};
-use super::scenario::change;
 use super::{one_on_stdout, print_result, tell_of_rows};
 use crate::data::{self, Measured};
 use crate::export::Destination;
-use crate::fit::report::Report;
-use crate::fit::table::{self, Asked};
+use crate::fit::report::{self, Asked, Report};
 use crate::fit::{Fit, Free, Model, NoFit, fit as fitted};
 use crate::scenario::{Document, Problem, Problems};
 use crate::text::number::{shortest, significant};
 use crate::text::printable::{Shown, brief};
 use crate::verify::Unverified;
 use anyhow::{Context, anyhow, bail};
-use clap::{Args, Parser};
+use clap::{Args, FromArgMatches};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -125,7 +122,13 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
 pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8>, Unverified> {
     let cannot = |why: String| Unverified::from(format!("cannot be recomputed: {why}"));
     let words = shlex::split(command).unwrap_or_default();
-    let Ok(Some(Command::Fit(args))) = Cli::try_parse_from(words).map(|cli| cli.command) else {
+    let words = words
+        .get(1..)
+        .filter(|words| words.first().is_some_and(|word| word == "fit"));
+    let line = FitArgs::augment_args(clap::Command::new("fit"));
+    let matches = line.try_get_matches_from(words.unwrap_or_default());
+    let args = matches.and_then(|matches| FitArgs::from_arg_matches(&matches));
+    let Ok(args) = args else {
         let why = "the line command at its top is no command line of a fit";
         return Err(cannot(why.to_owned()));
     };
@@ -172,7 +175,6 @@ fn scenario(args: &FitArgs) -> Result<(Document, Option<&'static str>), Problems
     Ok((document, own))
 }
 
-/// The rows of `measured` that are to be fitted.
 fn chosen(mut measured: Measured, rows: Option<&Rows>) -> Result<Measured, Problems> {
     let Some(rows) = rows else {
         return Ok(measured);
@@ -198,7 +200,6 @@ fn chosen(mut measured: Measured, rows: Option<&Rows>) -> Result<Measured, Probl
     Ok(measured)
 }
 
-/// The command line that makes the fit again.
 fn command(args: &FitArgs) -> String {
     let free = args.free.join(",");
     let mut words = vec!["gyrolab", "fit", &args.measured, "--in", &args.scenario];
@@ -237,7 +238,7 @@ fn write(output: impl Write, report: &Report<'_>, args: &FitArgs) -> anyhow::Res
         scatter: quality.scatter,
         verdict: report.fit.sentence(report.model),
     };
-    Ok(table::write(output, report, &scenario, asked)?)
+    Ok(report::write_csv(output, report, &scenario, asked)?)
 }
 
 /// The result, and where its rows are written.

@@ -1,7 +1,7 @@
 //! `gyrolab lesson`: the list of lessons, a lesson in the lab, on paper, or to begin from; and `check` of one.
 
 use super::args::{LessonArgs, Look};
-use super::played::{new_lab, refused, write};
+use super::new_lab::{new_lab, refused, write};
 use super::{notes, print, progress, tell, workbench};
 use crate::lab::Lab;
 use crate::lessons::handout::{self, Paper};

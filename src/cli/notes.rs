@@ -2,10 +2,10 @@
 //! student who hands it in.
 
 use super::args::LessonArgs;
-use super::played::{new_lab, refused, write};
+use super::new_lab::{new_lab, refused, write};
 use super::progress::{self, Interrupted, Interruption};
 use super::sessions;
-use crate::lab::Lab;
+use crate::lab::lessons_in;
 use crate::lessons::class::KeptLessons;
 use crate::lessons::clock::{self, Clock};
 use crate::lessons::predictions::Place;
@@ -85,7 +85,7 @@ fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
 
 fn lessons_of(session: &Listed) -> Option<KeptLessons> {
     let content = session.content.as_ref().ok()?;
-    KeptLessons::read(&Lab::lessons_in(content)?).ok()
+    KeptLessons::read(&lessons_in(content)?).ok()
 }
 
 /// The lesson that is open in `session`, and its page.

@@ -148,7 +148,6 @@ pub(super) struct Meter {
 }
 
 impl Meter {
-    /// A meter of steps, rows and the like.
     pub(super) fn counting(of: &'static str) -> Self {
         Self {
             of,

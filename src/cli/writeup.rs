@@ -1,9 +1,9 @@
 //! `gyrolab writeup`: a run as a folder of files for a write-up.
 
+use super::args::scenario_of;
 use super::args::{LengthArgs, ScenarioArgs};
 use super::progress::{self, Interrupted, Interruption};
 use super::run::{Played, played};
-use super::scenario::scenario_of;
 use super::{ended_by, tell};
 use crate::data;
 use crate::export::stream::Ended;

@@ -5,9 +5,8 @@
 //! readouts were measured on it. The uncertainty of a column stands in a column of its own, named as readouts name
 //! theirs: `tilt_uncertainty_deg` of `tilt_deg`.
 //!
-//! [`open`] reads a file, or data that come with the program ([`shipped`]); `names` says what its columns are, `numbers` what
-//! stands in them. [`of_run`] reads a run at the times of a series, and [`residual`] holds what was
-//! measured against it: everything that shows or fits measured data takes its residuals from there. [`compared`] sums them up.
+//! [`open`] reads a file, or data that come with the program; `names` says what its columns are, `numbers` what stands in
+//! them. [`of_run`] reads a run at the times of a series, and [`compared`] holds what was measured against it.
 
 pub mod compared;
 mod names;
@@ -16,14 +15,12 @@ pub mod of_run;
 pub mod places;
 pub mod quantity;
 mod reading;
-pub mod residual;
-pub mod shipped;
 
+pub use compared::{Residual, is_counted, residuals};
 pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
-pub use reading::{open, read, text};
-pub use residual::{Residual, is_counted, residuals};
+pub use reading::{SHIPPED, find_shipped, open, read, text};
 
 use crate::analysis::readouts::Readout;
 use crate::scenario::{Problem, Problems};
@@ -35,7 +32,6 @@ pub struct Measured {
     pub origin: String,
     /// Its comments before the columns' names, without their marks: where the data come from.
     pub about: String,
-    /// The line of each row.
     pub lines: Vec<u64>,
     pub data: Data,
 }
@@ -98,7 +94,6 @@ pub struct Point {
     pub sigma: Option<f64>,
 }
 
-/// What is said of a table of runs where one run is shown.
 const TABLE: &str = "is a table of runs: each of its rows is a run of its own, so it cannot stand beside a single one. gyrolab fit holds such a table against a scenario; what stands beside a run has a column t_s";
 
 impl Measured {

@@ -12,7 +12,6 @@ use crate::text::unit::{Unit, with_word};
 /// In the name of a column that is the uncertainty of another.
 const UNCERTAINTY: &str = "uncertainty";
 
-/// What a column holds.
 #[derive(Clone, Debug)]
 pub(super) enum Is {
     /// The time, s.
@@ -38,14 +37,11 @@ impl Is {
     }
 }
 
-/// A column and what it holds.
 #[derive(Clone, Debug)]
 pub(super) struct Named {
-    /// Its place among the columns.
     pub place: usize,
     pub name: String,
     pub is: Is,
-    /// The place of the column of its uncertainty.
     pub uncertainty: Option<usize>,
 }
 
@@ -100,7 +96,6 @@ fn is_uncertainty(name: &str) -> bool {
     name.split(['_', '.']).any(|word| word == UNCERTAINTY)
 }
 
-/// What the column `name` of a time series holds.
 fn of_series(name: &str) -> Result<Is, String> {
     if name == TIME {
         return Ok(Is::Time);
@@ -124,7 +119,6 @@ fn of_series(name: &str) -> Result<Is, String> {
     Err(unknown(name, quantity::names()))
 }
 
-/// What the column `name` of a table of runs holds.
 fn of_table(name: &str) -> Result<Is, String> {
     if let Some(readout) = readouts::find(name) {
         let rule = match readout.source {
@@ -169,7 +163,6 @@ fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Stri
     format!("is no column that gyrolab knows: {near}")
 }
 
-/// `name` without its unit.
 fn stem(name: &str) -> &str {
     let end = Unit::anybodys(name).map_or("", |unit| unit.end);
     &name[..name.len() - end.len()]
@@ -197,7 +190,6 @@ fn wrong_unit<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<St
     ))
 }
 
-/// The columns of uncertainties that belong to no column.
 fn uncertainties_alone(names: &[String], columns: &[Named]) -> Vec<Problem> {
     let owned = |place| {
         columns

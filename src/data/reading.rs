@@ -3,11 +3,11 @@
 use super::names::named;
 use super::numbers::Numbers;
 use super::quantity::TIME;
-use super::shipped;
 use super::{Data, Measured};
 use crate::scenario::csv::{self, Csv};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
+use crate::text::shipped::{Shipped, shipped};
 use std::borrow::Cow;
 use std::path::Path;
 use toml::Value;
@@ -15,19 +15,30 @@ use toml::Value;
 /// The most values of one file, rows times columns.
 const MOST_VALUES: usize = 1_000_000;
 
+/// The measured data that come with the program, compiled in.
+pub const SHIPPED: &[Shipped] = shipped!["measured", "csv":
+    "heidelberg-body-cone"
+    "heidelberg-nutation"
+    "heidelberg-precession"
+    "heidelberg-spin-decay"
+];
+
+pub fn find_shipped(name: &str) -> Option<&'static Shipped> {
+    Shipped::find(SHIPPED, name)
+}
+
 /// Opens what `name` names: data that come with the program, or else a file. A file's name holds a `/` or ends in `.csv`.
 pub fn open(name: &str) -> Result<Measured, Problems> {
     read(name, &text(name)?)
 }
 
-/// The text of the data that `name` names.
 pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
-    if let Some(shipped) = shipped::find(name) {
+    if let Some(shipped) = find_shipped(name) {
         return Ok(shipped.text.into());
     }
     let path = Path::new(name);
     if !name.contains('/') && !name.contains('.') && !path.exists() {
-        let near = nearest(name, shipped::SHIPPED.iter().map(|data| data.name));
+        let near = nearest(name, SHIPPED.iter().map(|data| data.name));
         let rule = format!(
             "no measured data of that name: {near} (a file's name holds a / or ends in .csv)"
         );
@@ -48,9 +59,6 @@ fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
 }
 
 /// Reads the measured data that `text` holds, which is the file `origin`.
-///
-/// # Errors
-/// Everything that is wrong with it: with the names of the columns first, and where these are right with the rows.
 pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
     let cells = Csv::of(text, MOST_VALUES);
     let named = cells.and_then(|cells| Ok((named(&cells)?, cells)));

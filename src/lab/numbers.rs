@@ -1,6 +1,5 @@
 //! The numbers of a run that a condition can name: the columns of the CSV, the readouts, and keys of the scenario.
 
-use super::Lab;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{self, Readout};
 use crate::export::columns::{COLUMNS, Column};
@@ -54,24 +53,6 @@ pub fn find(name: &str, run: Option<&LiveRun>) -> Result<Source, String> {
             "there is no number named {name}: {}",
             nearest_to(name)
         )),
-    }
-}
-
-impl Lab {
-    /// The number called `name`, as the lab has read it last; `None` if there is no such number, or if it has no value
-    /// now.
-    pub fn number(&self, name: &str) -> Option<f64> {
-        let readouts = &self.player.reading.readouts;
-        match find(name, Some(self.player.run())).ok()? {
-            Source::Column(column) => {
-                Some(column.value(self.player.run().scenario(), &readouts.sample))
-            }
-            Source::Readout(readout) => readout.of(readouts).number(),
-            Source::Gravity => Some(self.player.motion().gravity),
-            Source::TimeStep => Some(self.player.motion().time_step_s),
-            Source::Fixed(value) => value,
-        }
-        .filter(|number| number.is_finite())
     }
 }
 

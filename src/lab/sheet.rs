@@ -1,9 +1,6 @@
 //! A text that stands beside the panes, such as the page of a lesson. A room above the lab writes it.
 
-use super::Lab;
-use super::view::Pane;
 use crate::text::ascii::in_ascii;
-use std::sync::Arc;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheet {
@@ -98,55 +95,5 @@ impl Paragraph {
 
     pub fn text(&self) -> String {
         self.words.iter().map(|words| words.text.as_str()).collect()
-    }
-}
-
-impl Lab {
-    /// Shows `sheet` beside the panes, or none. It stays scrolled as it is where its title is the same.
-    pub fn set_sheet(&mut self, sheet: Option<Sheet>) {
-        if self.view.sheet.as_deref() == sheet.as_ref() {
-            return;
-        }
-        let before = self.view.sheet.take();
-        let is_same = |(before, sheet): (Arc<Sheet>, &Sheet)| {
-            before.title == sheet.title && before.seen == sheet.seen
-        };
-        if !before.zip(sheet.as_ref()).is_some_and(is_same) {
-            self.view.sheet_scrolled = None;
-        }
-        self.view.sheet = sheet.map(Arc::new);
-        self.view.keep_focus();
-        self.changed = true;
-    }
-
-    /// Scrolls the sheet by `rows`; it is `shown` rows high of `all`, and begins at the row `first` now.
-    pub fn scroll_sheet(&mut self, rows: isize, first: usize, shown: usize, all: usize) {
-        let last = all.saturating_sub(shown);
-        let to = first.saturating_add_signed(rows).min(last);
-        self.view.sheet_scrolled = Some(to);
-        self.changed = true;
-    }
-
-    /// Keeps undo from going back beyond what was done up to now, or lets it again.
-    pub fn set_undo_floor(&mut self, is_here: bool) {
-        self.work.set_floor(is_here);
-    }
-
-    /// Whether a digit begins to type the number that the sheet asks for.
-    pub fn asks_number(&self) -> bool {
-        let sheet = self
-            .view
-            .sheet
-            .as_ref()
-            .filter(|_| self.on_top.count.is_none());
-        self.view.focus == Pane::LESSON && sheet.is_some_and(|sheet| sheet.asks_number)
-    }
-
-    pub fn turn_to_sheet(&mut self) {
-        if self.view.sheet.is_some() {
-            self.view.filled &= self.view.focus == Pane::LESSON;
-            self.view.focus = Pane::LESSON;
-            self.changed = true;
-        }
     }
 }

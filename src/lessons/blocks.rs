@@ -5,40 +5,18 @@ mod content;
 use super::lesson::{Asked, Check, Compare, Keep, Predict, Setup};
 use super::names::Names;
 use crate::journal::expression::Expression;
-use crate::lab::command::{Command, Placed};
+use crate::lab::command::{COMMANDS, Command, Placed};
+use crate::lab::view;
 use crate::scenario::Problem;
 use crate::scenario::dotted::join;
 use crate::text::printable::is_steering;
 use content::Content;
 use toml::{Table, Value};
 
-/// The keys of `lab` and `task`, in the order in which they are carried out. Between `push` and `go_to` stands how the run
-/// is shown.
-const ORDER: [&str; 23] = [
-    "open",
-    "set",
-    "push",
-    "speed",
-    "look_at",
-    "next",
-    "window_s",
-    "detail_s",
-    "detail_of",
-    "since_s",
-    "magnify",
-    "exact",
-    "show",
-    "hide",
-    "bare",
-    "camera",
-    "zoom",
-    "fill",
-    "phase",
-    "sum_to",
-    "point_at",
-    "wait_s",
-    "go_to",
-];
+/// The keys of `lab` and `task` besides those of `[view]`. They are carried out in the order of the table of commands, the
+/// last at the end.
+const COMMON: [&str; 6] = ["open", "set", "push", "since_s", "magnify", "point_at"];
+const LAST: [&str; 2] = ["wait_s", "go_to"];
 const RUN_UNTIL: &str = "run_until";
 const KEEP: &str = "keep";
 /// The most choices of a prediction.
@@ -100,10 +78,13 @@ pub(super) fn setup(
     page: usize,
     known_from: usize,
 ) -> Found<Setup> {
-    let known: Vec<&str> = ORDER.into_iter().chain([RUN_UNTIL, KEEP]).collect();
+    let rows = COMMANDS.iter().map(|row| row.name);
+    let rows = rows.filter(|name| COMMON.contains(name) || view::is_key(name));
+    let order: Vec<_> = rows.chain(LAST).chain([RUN_UNTIL]).collect();
+    let known: Vec<_> = order.iter().copied().chain([KEEP]).collect();
     let mut content = reader.content(&known).inspect_err(|_| names.lose())?;
     let mut commands = Vec::new();
-    for name in ORDER.into_iter().chain([RUN_UNTIL]) {
+    for name in order {
         let Some(value) = content.get(name) else {
             continue;
         };

@@ -87,7 +87,7 @@ impl Class {
             taken.go_to(page, lab)?;
         }
         self.show(lab);
-        lab.turn_to_sheet();
+        lab.view_mut().turn_to_sheet();
         Ok(())
     }
 
@@ -167,7 +167,7 @@ impl Class {
         }
         self.show(lab);
         if key == LessonKey::List {
-            lab.turn_to_sheet();
+            lab.view_mut().turn_to_sheet();
         }
         scrolls
     }

@@ -9,7 +9,7 @@ use super::predictions::{Place, Tried};
 use super::stage::Stage;
 use super::watch::Watch;
 use super::{reading, shipped};
-use crate::lab::{Lab, STOPPED};
+use crate::lab::Lab;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -186,7 +186,7 @@ impl Taken {
             Some(stage) => self.begin(stage, UnderWay::Lab(page), lab),
             None => {
                 self.has_come(lab);
-                lab.turn_to_sheet();
+                lab.view_mut().turn_to_sheet();
             }
         }
         Ok(())
@@ -205,7 +205,7 @@ impl Taken {
         lab.take_commands(commands);
         lab.forget_message_of_script();
         self.keep_if_done(lab);
-        lab.turn_to_sheet();
+        lab.view_mut().turn_to_sheet();
     }
 
     /// Remembers the numbers of the block that was under way, once the lab has carried it out.
@@ -218,12 +218,7 @@ impl Taken {
         }
         if lab.script().has_broken_off() {
             self.under_way = Some(UnderWay::Left).filter(|_| self.is_under_way());
-            if self.plays()
-                && lab
-                    .script()
-                    .failure()
-                    .is_none_or(|why| why.ends_with(STOPPED))
-            {
+            if self.plays() && lab.script().was_stopped() {
                 lab.tell("you have left the page's run: b plays it again, n goes to its end");
             }
             return true;
@@ -353,7 +348,7 @@ impl Taken {
 
 /// Where the lab stands: the depth of its history, and the step.
 fn place_of(lab: &Lab) -> ((usize, usize), u64) {
-    (lab.work().depth(), lab.player().playback.step_number())
+    (lab.runs().depth(), lab.player().playback.step_number())
 }
 
 fn holds(check: &super::Check, lab: &Lab, kept: &super::Kept) -> bool {

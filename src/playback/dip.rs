@@ -81,10 +81,4 @@ mod tests {
             "{side} {down}"
         );
     }
-
-    #[test]
-    fn it_goes_no_further_than_the_run_and_an_upright_axle_has_none() {
-        assert_eq!(Dip::of(&scenario("cusps", &[]), 7).unwrap().way_m.len(), 8);
-        assert_eq!(Dip::of(&scenario("method-1", &[]), 100), None);
-    }
 }

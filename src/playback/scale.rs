@@ -57,10 +57,6 @@ impl Scale {
         extent.max >= self.low && extent.min <= self.high
     }
 
-    pub fn ticks(&self, most: usize) -> Vec<f64> {
-        ticks(self.low, self.high, most)
-    }
-
     /// Digits after the point with which its ends are written: as they are, or to a hundredth of the range.
     pub fn decimals(&self) -> usize {
         let range = self.high - self.low;
@@ -192,14 +188,5 @@ mod tests {
         ] {
             assert_eq!(ticks(low, high, most), expected, "{low} to {high}");
         }
-    }
-
-    #[test]
-    fn a_zoomed_scale_keeps_its_value_in_place() {
-        let (low, high) = (0.0, 8.0);
-        let scale = Scale { low, high };
-        let zoomed = scale.zoomed(4.0, 2.0);
-        assert_eq!((zoomed.low, zoomed.high), (1.5, 3.5));
-        assert_eq!(scale.from_top(2.0), zoomed.from_top(2.0));
     }
 }

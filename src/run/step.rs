@@ -40,7 +40,6 @@ pub(super) struct EnergyAccount {
     pub scale: Option<EnergyScale>,
 }
 
-/// What has been read off the state so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Derived {
     position: OnceCell<Vector3<f64>>,
@@ -97,7 +96,6 @@ impl Step {
         &self.after
     }
 
-    /// Time after it, s.
     pub fn time_s(&self) -> f64 {
         self.after.time_s
     }
@@ -235,7 +233,6 @@ const ROUNDING: f64 = 1e-12;
 pub enum EnergyUnit {
     /// M g |c|, c the centre of mass seen from the pivot.
     Weight,
-    /// The kinetic energy at the start.
     KineticAtStart,
 }
 

@@ -8,14 +8,12 @@ use std::fmt;
 use std::fs::File;
 use std::path::Path;
 
-/// The longest file that is read, bytes.
 const LONGEST: u64 = 32 << 20;
 const TOO_LONG: &str = "is longer than 32 MiB, the most that is read: leave rows out";
 
 /// Separators of cells. The last two are used where decimals have a comma.
 const SEPARATORS: [char; 3] = [',', ';', '\t'];
 
-/// The cells of a file.
 #[derive(Clone, Debug)]
 pub struct Csv {
     /// The lines that begin with `#` before the names, without that.
@@ -28,9 +26,6 @@ pub struct Csv {
 }
 
 /// The text of the file `path`.
-///
-/// # Errors
-/// When it is a folder, too long, no text in UTF-8, or the system reports an error.
 pub fn text(path: &Path) -> Result<String, Problem> {
     if path.is_dir() {
         return Err(Problem::at("", "is a folder: name a CSV file in it"));
@@ -39,9 +34,8 @@ pub fn text(path: &Path) -> Result<String, Problem> {
     text_of(file, LONGEST, TOO_LONG, " (\"CSV UTF-8\")")
 }
 
-/// A problem of the whole file.
 fn one(rule: String) -> Problems {
-    Problems::from(vec![Problem::at("", rule)])
+    Problem::at("", rule).into()
 }
 
 fn cannot(error: &dyn fmt::Display) -> Problems {
@@ -50,16 +44,13 @@ fn cannot(error: &dyn fmt::Display) -> Problems {
 
 impl Csv {
     /// Takes `text` apart, of at most `most` values (rows times columns).
-    ///
-    /// # Errors
-    /// When there are no names or no rows, too many values, or rows with more or fewer cells than there are names.
     pub fn of(text: &str, most: usize) -> Result<Self, Problems> {
         let head = Head::read(&mut text.as_bytes()).map_err(|error| cannot(&error))?;
         let names = str::from_utf8(head.names()).unwrap_or_default();
         let is_there = |separator: &&char| names.contains(**separator);
         let separator = *SEPARATORS.iter().find(is_there).unwrap_or(&SEPARATORS[0]);
         let mut csv = Self {
-            header: head.header().map_err(|problem| vec![problem])?,
+            header: head.header()?,
             line_of_names: head.line_of_names(),
             names: Vec::new(),
             separator,
@@ -78,7 +69,6 @@ impl Csv {
         Ok(csv)
     }
 
-    /// Reads the line of names and the rows, which are `text`.
     fn read_rows(&mut self, text: &str, most: usize) -> Result<(), Problems> {
         // With every line ended alike, the reader's own count of lines is right.
         let text = text.replace("\r\n", "\n") + "\n";
@@ -134,7 +124,6 @@ impl Csv {
         )
     }
 
-    /// The cells of the column `name`.
     pub fn column<'a>(&'a self, name: &str) -> Option<impl Iterator<Item = &'a str> + Clone> {
         let place = self.names.iter().position(|other| other == name)?;
         Some(self.rows.iter().map(move |(_, row)| row[place].as_str()))

@@ -94,8 +94,8 @@ fn wait(lab: &Lab, class: &Class, to_frame: Duration) -> Duration {
         to_frame.max(Duration::from_millis(1))
     } else {
         let is_attentive = lab.files().is_exporting()
-            || lab.on_top().browser.is_loading()
-            || lab.player().is_seeking_advice()
+            || lab.popups().browser.is_loading()
+            || lab.adviser().is_seeking()
             || !lab.script().is_done();
         let rest = if is_attentive { ATTENTIVE } else { IDLE };
         let rest = class.wait().unwrap_or(rest).min(rest);

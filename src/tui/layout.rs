@@ -36,7 +36,6 @@ const MOST_LINES: u16 = 3;
 pub struct Said {
     /// Lines of the hint on a screen of this width.
     pub lines: u16,
-    /// Whether the numbers' health warns of something.
     pub warns: bool,
 }
 
@@ -68,10 +67,8 @@ pub struct Layout {
     pub title: Rect,
     /// The panes that have a place, from left to right.
     pub panes: Vec<(Pane, Rect)>,
-    /// The line of the whole run.
     pub timeline: Rect,
     pub measured: Rect,
-    /// The line about the numbers' health.
     pub health: Rect,
     /// The lines that say what to look at: one, or two where the screen is narrow.
     pub hint: Rect,
@@ -133,12 +130,9 @@ impl Layout {
         }
     }
 
-    /// Where `pane` stands, if it has a place.
     pub fn place_of(&self, pane: Pane) -> Option<Rect> {
-        let mut panes = self.panes.iter();
-        panes
-            .find(|(other, _)| *other == pane)
-            .map(|(_, place)| *place)
+        let place = |&(other, place): &(Pane, Rect)| (other == pane).then_some(place);
+        self.panes.iter().find_map(place)
     }
 
     /// The panes that stand side by side on `area`, with the lines of the whole lab around them, while none fills it.

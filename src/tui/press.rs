@@ -1,24 +1,23 @@
 //! What a key that is pressed does in the lab.
 
-use super::keymap::{self, Key};
+use super::keymap::{self, Does, Key};
 use super::panes::{self, help};
 use crate::lab::action::{Action, LessonKey};
 use crate::lab::{Lab, Request};
 
-/// Carries out the action of `key`, or shows a message that it has none.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
-    let mode = lab.on_top().mode;
+    let mode = lab.popups().mode;
     let mut own = panes::keys(lab.view().focus).iter();
     if own.any(|row| row.modes.contains(&mode) && row.keys.contains(&key)) {
-        lab.touch_pane();
+        lab.view_mut().is_touched = true;
     }
-    match keymap::action(panes::keys_of(lab), mode, key) {
-        Some(Action::DoEntry) => help::do_entry(lab),
-        Some(Action::Digit(digit)) if lab.asks_number() => {
+    match keymap::meaning(panes::keys_of(lab), mode, key) {
+        Some(Does::Action(Action::DoEntry)) => help::do_entry(lab),
+        Some(Does::Action(Action::Digit(digit))) if begins_number(lab) => {
             lab.update(Action::Lesson(LessonKey::Digit(digit)))
         }
-        Some(action) => {
-            let request = lab.update(action);
+        Some(does) => {
+            let request = does.carry_out(lab);
             help::limit(lab);
             request
         }
@@ -27,4 +26,10 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
             None
         }
     }
+}
+
+/// Whether a digit begins to type the number that the sheet asks for; behind the first digit of a count it goes on with
+/// the count.
+fn begins_number(lab: &Lab) -> bool {
+    lab.view().asks_number() && lab.popups().count.is_none()
 }

@@ -1,7 +1,7 @@
 //! Lines in space on a sheet of dots. What is nearer hides what is farther and leaves a gap beside it, so that one sees
 //! which of two crossing lines passes in front of the other.
 
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::playback::camera::{Camera, View};
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::plane::Plane;
@@ -23,7 +23,6 @@ const SHORTEST: f64 = 4.0;
 /// A rod is nearer than what lies along it by this part of the scene's reach.
 const IN_FRONT: f64 = 0.15;
 
-/// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
     /// Every dot, and those on both of its sides. What passes in front leaves no gap beside itself.
@@ -47,9 +46,7 @@ struct Speck {
 /// What an arrow is drawn over, where it is not seen as near as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Over {
-    /// What is farther.
     Farther,
-    /// Another arrow that lies along it.
     Arrow,
     /// Everything but what is farther than a rod that is nearly as near.
     BehindRod,
@@ -77,7 +74,6 @@ pub struct Scene {
     specks: Vec<Speck>,
 }
 
-/// What a scene shows of the world.
 pub struct Shown {
     /// What stands in the middle of the sheet, m to the right and up.
     pub middle: (f64, f64),
@@ -122,7 +118,6 @@ impl Scene {
         [from, to].map(|end| (self.dot(end), depth(end)))
     }
 
-    /// A line between two dots with their depths.
     fn line_of_dots(&mut self, ends: [((f64, f64), f64); 2], stroke: Stroke, ink: Ink) {
         let [(from, near), (to, far)] = ends;
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
@@ -161,7 +156,6 @@ impl Scene {
         }
     }
 
-    /// How far from the eye `point` is, m.
     pub fn depth(&self, point: &Vector3<f64>) -> f64 {
         self.camera.depth(point)
     }

@@ -5,7 +5,7 @@ use crate::support::scenarios::{preset, view};
 use crate::support::words::{has, has_all};
 use gyrolab::lab::Lab;
 use gyrolab::lab::view::Part;
-use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::view::theme::Marker;
 use gyrolab::lessons::handout::{self, Paper};
 use gyrolab::lessons::play::{self, Walk};
 use gyrolab::lessons::predictions::Predictions;

@@ -105,7 +105,7 @@ fn a_page_opens_its_run_and_tells_its_numbers() {
     stage.shows("1 of 4 · Swing").shows("The time is 2.0 s");
     stage.shows("strong words").shows_no("**");
     assert_eq!(stage.focus(), "lesson");
-    assert_eq!(stage.lab.work().name(), "cusps");
+    assert_eq!(stage.lab.runs().name(), "cusps");
     assert!(stage.lab.view().hides(Part::Health));
 }
 
@@ -155,10 +155,11 @@ fn play_is_free_and_one_key_leads_back() {
     let before = stage.step();
     stage.press("p..,,.....").arrive();
     assert_ne!(stage.step(), before);
-    assert_eq!(stage.lab.work().journal().later_than(0), 2, "gravity, push");
+    assert_eq!(stage.lab.runs().journal().later_than(0), 2, "gravity, push");
     stage.press("b").arrive();
     assert_eq!(stage.step(), before);
-    assert_eq!(stage.lab.work().journal().later_than(0), 1, "gravity");
+    assert_eq!(stage.lab.runs().journal().later_than(0), 1, "gravity");
+    assert_eq!(stage.lab.player().motion().gravity, 5.0);
 }
 
 #[test]

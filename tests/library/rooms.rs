@@ -103,3 +103,18 @@ fn only_one_room_knows_the_terminals_libraries() {
         .collect();
     assert!(outside.is_empty(), "{outside:?}");
 }
+
+#[test]
+fn the_lab_itself_stands_in_two_files() {
+    let own = sources()
+        .into_iter()
+        .filter(|source| source.code.contains("impl Lab {"))
+        .map(|source| source.path);
+    let mut own: Vec<_> = own.collect();
+    own.sort_unstable();
+    assert_eq!(
+        own,
+        ["lab/mod.rs", "lab/routing.rs"],
+        "its parts do the rest"
+    );
+}

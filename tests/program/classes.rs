@@ -1,7 +1,7 @@
 //! Lessons in the program itself: what a session keeps of them, and what the teacher sees beside it.
 
 use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
-use crate::support::words::{has, has_all};
+use crate::support::words::has_all;
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 use std::sync::mpsc;

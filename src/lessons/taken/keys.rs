@@ -63,7 +63,7 @@ impl Taken {
             self.has_wandered(lab) || self.page().is_some_and(|page| page.task().is_some());
         let page = self.place.page + 1;
         self.turn_to(page);
-        lab.turn_to_sheet();
+        lab.view_mut().turn_to_sheet();
         let kept = &self.place.kept;
         // A page that neither does nor states anything leaves the lab as the student has it.
         let needs_its_run = self
@@ -97,7 +97,7 @@ impl Taken {
         let page = self.place.page - 1;
         let stood = self.go_to(Some(page), lab);
         told(stood, lab);
-        lab.turn_to_sheet();
+        lab.view_mut().turn_to_sheet();
     }
 
     /// Shows the hints of the page and scrolls down to them, or does its task where they are shown already or there are none.
@@ -162,7 +162,8 @@ impl Taken {
         if let Some(Asked::Number { unit }) = self.asked().map(|predict| &predict.asked) {
             let label = if unit.is_empty() { "number" } else { unit };
             let about = "Enter locks it: a prediction is not changed";
-            lab.ask_number("your prediction", label, about, typed);
+            lab.popups_mut()
+                .ask_number("your prediction", label, about, typed);
         }
     }
 

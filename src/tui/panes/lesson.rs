@@ -4,7 +4,7 @@ use super::{PaneRow, Width, frame, write};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::sheet::{Emphasis, Kind, Paragraph, Sheet};
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
 use crate::text::wrap::{columns, wrapped};
@@ -95,7 +95,8 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
     let page = Page::new(&sheet, inside, lab.view());
     let (first, all) = (page.first, page.lines.len());
     let page = shown.saturating_sub(1).max(1) as isize;
-    lab.scroll_sheet(direction.rows(page), first, shown, all);
+    lab.view_mut()
+        .scroll_sheet(direction.rows(page), first, shown, all);
 }
 
 /// Whether the page of `lab`, whose pane has the area `place`, goes on below what is shown.

@@ -1,6 +1,6 @@
 //! Files of measured data as they are read.
 
-use gyrolab::data::shipped::SHIPPED;
+use gyrolab::data::SHIPPED;
 use gyrolab::data::{Data, Measured, Series, Table, open, read};
 use toml::Value;
 
