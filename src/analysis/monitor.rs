@@ -31,6 +31,7 @@ use super::swings::height_in;
 use super::theory::Theory;
 use super::turning_points::TurningPoints;
 use super::turns::Measured;
+use crate::physics::observables::rise;
 use crate::physics::{LagrangeTop, SymmetricTop};
 use crate::run::Step;
 
@@ -87,6 +88,8 @@ pub struct Monitor {
     tilt_swing: TiltSwing,
     pub report_theory: Option<ReportTheory>,
     pub beside: Beside,
+    /// The body's vertical momentum at the start, kg m/s.
+    start_rise: f64,
 }
 
 impl Monitor {
@@ -99,6 +102,7 @@ impl Monitor {
             tilt_swing: TiltSwing::new(step),
             report_theory: ReportTheory::new(step),
             beside: Beside::new(step.scenario()),
+            start_rise: rise(&step.scenario().body.mechanics, step.after()),
         }
     }
 
@@ -116,6 +120,18 @@ impl Monitor {
     pub fn follow_ahead(&mut self, step: &Step) {
         self.measure(step);
         self.beside.wait(step.after());
+    }
+
+    /// The mean over the run of the vertical force of the foot, N: what of the momentum weight and pushes have not made.
+    /// `None` where the forces have changed after the first step, and at the start.
+    pub fn mean_foot_force(&self, step: &Step) -> Option<f64> {
+        let (body, time_s) = (&step.scenario().body.mechanics, step.time_s());
+        if self.since > 1 || time_s <= 0.0 {
+            return None;
+        }
+        let pushes: f64 = step.loads().pushes.iter().map(|push| push.force.z).sum();
+        let gained = rise(body, step.after()) - self.start_rise;
+        Some(gained / time_s + body.mass() * step.loads().gravity - pushes)
     }
 
     /// Compares the steps with the exact motion that have not been.

@@ -13,6 +13,7 @@ use super::report_theory::ReportTheory;
 use super::theory::Axis;
 use super::{Extremes, Health, Measured, Monitor, Theory};
 use crate::physics::SymmetricTop;
+use crate::physics::observables::pivot_force_z;
 use crate::run::{Clock, Sample, Simulation};
 use crate::scenario::{Scenario, Window};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -44,6 +45,9 @@ pub struct Readouts {
     /// What theory says of the exact motion now, about the axis that it names.
     pub theory: Option<Theory>,
     pub extremes: Extremes,
+    /// Vertical force of the foot on the body: now, and on average over the run, N.
+    pub foot_force: Option<f64>,
+    pub mean_foot_force: Option<f64>,
     /// Precession since the forces last changed, rad/s.
     pub precession: Option<Measured>,
     /// Nutation period since the forces last changed, s.
@@ -69,6 +73,7 @@ impl Readouts {
     ) -> Self {
         let step = simulation.now();
         let state = step.after();
+        let is_smooth = health.slowing.is_none();
         let mut readouts = Self {
             title: step.scenario().file.title.clone(),
             scheme: step.motion().scheme.name,
@@ -83,6 +88,9 @@ impl Readouts {
             advice: advice.copied(),
             theory: monitor.theory(state.time_s),
             extremes: monitor.extremes,
+            foot_force: is_smooth
+                .then(|| pivot_force_z(&step.scenario().body.mechanics, state, step.loads())),
+            mean_foot_force: monitor.mean_foot_force(step).filter(|_| is_smooth),
             precession: None,
             nutation: None,
             tilt_swing: None,

@@ -161,9 +161,13 @@ pub(super) struct LessonArgs {
     #[arg(long, value_name = "N", requires = "name", value_parser = one_or_more)]
     pub(super) page: Option<NonZeroU64>,
 
-    /// Print the lesson for paper, as Markdown: pictures as text, room for predictions, no notes
+    /// Print a worksheet, as Markdown: it asks, has room for predictions and outcomes, and answers nothing
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
     pub(super) handout: bool,
+
+    /// With --handout: the results for afterwards, with the words and numbers of every page
+    #[arg(long, requires = "handout")]
+    pub(super) results: bool,
 
     /// Print what was predicted, in the newest session that holds it, beside what came out: to hand in
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]

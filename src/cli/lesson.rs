@@ -4,8 +4,9 @@ use super::args::{LessonArgs, Look};
 use super::new_lab::{new_lab, refused, write};
 use super::{notes, print, progress, tell, workbench};
 use crate::lab::Lab;
+use crate::lessons::handout::{self, Paper};
 use crate::lessons::play::{self, Walk};
-use crate::lessons::{Lesson, Page, handout, reading, shipped};
+use crate::lessons::{Lesson, Page, reading, shipped};
 use crate::scenario::Problems;
 use crate::text::number::counted;
 use crate::text::printable::printable_lines;
@@ -33,7 +34,12 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     let lesson = reading::open(name)?;
     if args.handout {
         return write(args, |go_on| {
-            handout::handout(&lesson, new_lab(args.look)?, &picture, go_on)
+            let paper = if args.results {
+                Paper::Results
+            } else {
+                Paper::Worksheet
+            };
+            handout::handout(&lesson, paper, new_lab(args.look)?, &picture, go_on)
                 .map_err(|problem| refused(&lesson, problem))
         });
     }

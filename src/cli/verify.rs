@@ -1,7 +1,7 @@
 //! `gyrolab verify`: whether a CSV is what its header says, or whether somebody's own program agrees with the scheme.
 
-use super::progress::{self, Interrupted, Interruption};
 use super::args::{one_or_more, setting};
+use super::progress::{self, Interrupted, Interruption};
 use super::{fit, print, tell};
 use crate::own_code::{self, Uncompared, Verdict};
 use crate::scenario::csv::{self, Renaming, renaming};

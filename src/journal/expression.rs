@@ -164,6 +164,39 @@ impl Expression {
     }
 }
 
+/// A part of a condition that `and` joins to the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conjunct {
+    pub holds: bool,
+    /// The left side of the comparison, where it is one that has a value.
+    pub left: Option<f64>,
+}
+
+impl Expression {
+    /// The parts that `and` joins, in their order, with the values of the names from `value_of`. A part in parentheses
+    /// counts as one.
+    pub fn conjuncts(&self, mut value_of: impl FnMut(&str) -> Option<f64>) -> Vec<Conjunct> {
+        let mut name = |index: usize| value_of(&self.names[index].0);
+        let mut parts = Vec::new();
+        let mut rest = &self.root;
+        while let Node::Computed(Operator { power: AND, .. }, left, right) = rest {
+            parts.push(right.as_ref());
+            rest = left;
+        }
+        parts.push(rest);
+        let conjunct = |part: &Node| Conjunct {
+            holds: part.value(&mut name).is_some_and(|value| value != 0.0),
+            left: match part {
+                Node::Computed(operator, left, _) if operator.power == COMPARES => {
+                    left.value(&mut name)
+                }
+                _ => None,
+            },
+        };
+        parts.into_iter().rev().map(conjunct).collect()
+    }
+}
+
 impl TryFrom<String> for Expression {
     type Error = Fault;
 
@@ -415,6 +448,22 @@ mod tests {
         ] {
             assert_eq!(value(text), known, "{text}");
         }
+    }
+
+    #[test]
+    fn a_condition_is_taken_apart() {
+        let that = "t_s >= 5 and (tilt_deg < 0 and 1 < 2) and abs(tilt_deg) < 2";
+        let parts = Expression::parse(that)
+            .unwrap()
+            .conjuncts(|name| match name {
+                "t_s" => Some(4.0),
+                _ => Some(-3.0),
+            });
+        let parts: Vec<_> = parts.iter().map(|part| (part.holds, part.left)).collect();
+        assert_eq!(
+            parts,
+            [(false, Some(4.0)), (true, None), (false, Some(3.0))]
+        );
     }
 
     #[test]

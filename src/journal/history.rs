@@ -69,6 +69,11 @@ impl History {
         &self.present
     }
 
+    /// How many earlier runs there are, and how many acts the present one has: undo lessens it.
+    pub fn depth(&self) -> (usize, usize) {
+        (self.past.len(), self.present.journal.acts())
+    }
+
     /// Records where the present run stands and which push the user has prepared; to be called before it is left.
     pub fn set_left_at(&mut self, step: u64, next_push: &NextPush) {
         self.present.left_at = step;

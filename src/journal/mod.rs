@@ -229,6 +229,16 @@ impl Journal {
         Ok(document)
     }
 
+    pub fn acts(&self) -> usize {
+        self.log.len()
+    }
+
+    /// Whether the last act was a push at `step`.
+    pub fn ends_with_push_at(&self, step: u64) -> bool {
+        let last = self.log.last();
+        last.is_some_and(|entry| entry.step == step && matches!(entry.act, Act::Push(_)))
+    }
+
     /// How many entries in force stand at steps later than `step`.
     pub fn later_than(&self, step: u64) -> usize {
         self.in_force().len() - self.count_by(step)

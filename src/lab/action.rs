@@ -56,6 +56,13 @@ pub enum Action {
     Quit,
 }
 
+impl Action {
+    /// Whether the nudges of a value before and after it are one act: one undo takes back both.
+    pub(super) fn keeps_nudge(self) -> bool {
+        matches!(self, Self::Move(_) | Self::MoveFar(_) | Self::Digit(_))
+    }
+}
+
 /// What the lab leaves to the rooms above it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Request {
@@ -102,6 +109,8 @@ pub enum LessonKey {
     Move(Direction),
     /// Gives the selected answer, asks for a number, or opens the selected lesson.
     Take,
+    /// Asks for a number that begins with this digit.
+    Digit(u8),
 }
 
 /// A change in the field of a dialog, or in a line without a cursor: there something can be typed, erased and cleared.

@@ -14,6 +14,7 @@ use crate::journal::restart::replaced;
 use crate::journal::{Act, number_of_push};
 use crate::run::pushes::acts_s;
 use crate::scenario::Scenario;
+use crate::scenario::file::PushFile;
 use crate::scenario::keys::Effect;
 use crate::scenario::problem::nearest;
 use std::sync::Arc;
@@ -192,17 +193,34 @@ impl Edits {
 
     /// Pushes from the next step on: with the push to come, but for the values that `choice` has.
     fn push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
+        let (push, given) = self.given(choice, player)?;
+        let said = format!(
+            "pushed: {}; u takes it back, P chooses another",
+            push.in_words()
+        );
+        self.act(vec![Act::Push(given)], false, Said::Text(said), player)
+    }
+
+    /// The push that `choice` stands for, as the user chooses it and as it acts at the present step.
+    fn given(&self, choice: &PushChoice, player: &Player) -> Result<(NextPush, PushFile), String> {
         let push = self.chosen(choice, player)?;
         let run = player.run();
         let mut given = push.given(run.scenario(), run.simulation().state())?;
         if let Some(Force::Vector(vector)) = choice.force_N {
             given.force_N = vector; // exactly as it was written: norm and direction would round it
         }
-        let said = format!(
-            "pushed: {}; u takes it back, P chooses another",
-            push.in_words()
-        );
-        self.act(vec![Act::Push(given)], false, Said::Text(said), player)
+        Ok((push, given))
+    }
+
+    /// Whether `command` gives a push at the step at which the last one was given, and the run was played on since.
+    pub(super) fn is_push_tried_again(&self, command: &Command, player: &Player) -> bool {
+        let here = player.playback.step_number();
+        let is_push =
+            matches!(command, Command::Push(choice) if self.given(choice, player).is_ok());
+        is_push
+            && player.run().furthest() > here
+            && self.runs.journal().ends_with_push_at(here)
+            && !self.runs.is_at_floor()
     }
 
     fn choose_next_push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
@@ -313,6 +331,9 @@ impl Edits {
 
     /// Undoes the last act, or does the last undone one again.
     fn turn(&mut self, way: Way, player: &Player) -> Edited {
+        if way == Way::Undo && self.runs.is_at_floor() {
+            return Err("nothing to undo: the page began here; N turns back".into());
+        }
         self.leave(player);
         let [nothing, done, run, other_way] = match way {
             Way::Undo => UNDO,

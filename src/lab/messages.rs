@@ -2,6 +2,7 @@
 //! line about what there is to see; and what to try next.
 
 use super::advice::Adviser;
+use super::answer::{Answer, Done};
 use super::player::Player;
 use super::runs::Runs;
 use super::view::{Part, View};
@@ -63,6 +64,17 @@ impl Messages {
     /// Shows `text` until the next key: for messages that must not be missed.
     pub fn keep_saying(&mut self, text: impl Into<String>) {
         self.show(text.into(), None, None);
+    }
+
+    /// Shows what a command says that was carried out, or why it was refused. Returns whether there is something to show.
+    pub(super) fn answer(&mut self, answer: Answer, now: Duration) -> bool {
+        let done = answer.unwrap_or_else(|refusal| Done::saying(refusal.to_string()));
+        match done.said {
+            Some(text) if done.stays => self.keep_saying(text),
+            Some(text) => self.say(text, now),
+            None => return false,
+        }
+        true
     }
 
     /// Shows `text` until the next key; its part `unfound` is replaced once [something is found](Self::find).

@@ -232,6 +232,11 @@ impl Lab {
         &self.edits.runs
     }
 
+    /// Keeps undo from taking back what was done up to now, or lets it again.
+    pub fn set_undo_floor(&mut self, is_here: bool) {
+        self.edits.runs.set_floor(is_here);
+    }
+
     pub fn values(&self) -> &Values {
         &self.edits.values
     }
@@ -331,6 +336,10 @@ impl Lab {
     }
 
     fn edit(&mut self, command: &Command) -> Answer {
+        // In a lesson, a push that is tried again replaces the one that was tried before.
+        if self.view.sheet.is_some() && self.edits.is_push_tried_again(command, &self.player) {
+            self.edit(&Command::Undo(1))?;
+        }
         let times = match command {
             Command::Undo(times) | Command::Redo(times) => *times,
             _ => 1,
@@ -390,12 +399,7 @@ impl Lab {
 
     /// Shows the message of a command, or why it was refused.
     fn tell_answer(&mut self, answer: Answer) {
-        let done = answer.unwrap_or_else(|refusal| Done::saying(refusal.to_string()));
-        match done.said {
-            Some(text) if done.stays => self.tell(text),
-            Some(text) => self.say(text),
-            None => {}
-        }
+        self.changed |= self.messages.answer(answer, self.now);
     }
 
     /// Carries out `command` as a key does: it removes the present message and shows that of the command.

@@ -80,8 +80,12 @@ fn nearest_to(wrong: &str) -> String {
 /// The value of `key` in the scenario of `run`.
 fn number_in(run: &LiveRun, key: &str) -> Option<f64> {
     let table = table_at(run.scenario(), run.simulation().step_number());
-    dotted::find(&table, key).and_then(float)
+    let usual = || ZERO_BY_ITSELF.contains(&key).then_some(0.0);
+    dotted::find(&table, key).and_then(float).or_else(usual)
 }
+
+/// The keys that are 0 where a scenario does not have them.
+const ZERO_BY_ITSELF: [&str; 3] = ["start.tilt_deg", "start.turn_deg", "start.roll_deg"];
 
 /// The numbers of a run at one step after the other. At each step only the numbers that are asked for are computed.
 #[derive(Debug, Default)]

@@ -31,10 +31,7 @@ impl Lab {
     /// Carries out `action`. Returns what only the main loop can do.
     pub fn update(&mut self, action: Action) -> Option<Request> {
         let cleared = self.clear();
-        if !matches!(
-            action,
-            Action::Move(_) | Action::MoveFar(_) | Action::Digit(_)
-        ) {
+        if !action.keeps_nudge() {
             self.edits.values.forget_nudge();
         }
         match self.act(action, cleared) {

@@ -23,6 +23,8 @@ pub struct Runs {
     kept: Option<Text>,
     /// The pinned run that is kept with it.
     kept_reference: Option<Reference>,
+    /// The depth of the history that undo does not go below: where the page of a lesson began.
+    floor: Option<(usize, usize)>,
 }
 
 /// What a session keeps of a pinned run, to pin it again.
@@ -70,6 +72,7 @@ impl Runs {
             changed_from_file: None,
             kept: None,
             kept_reference: None,
+            floor: None,
         }
     }
 
@@ -85,6 +88,20 @@ impl Runs {
     /// What was done to the present run.
     pub fn journal(&self) -> &Journal {
         &self.present().journal
+    }
+
+    /// How many runs and acts undo could take back, see [`History::depth`].
+    pub fn depth(&self) -> (usize, usize) {
+        self.history.depth()
+    }
+
+    /// Keeps undo from taking back what was done up to now, or lets it again.
+    pub(super) fn set_floor(&mut self, is_here: bool) {
+        self.floor = is_here.then(|| self.depth());
+    }
+
+    pub(super) fn is_at_floor(&self) -> bool {
+        self.floor == Some(self.depth())
     }
 
     /// How the present run differs from the scenario as it was opened, in words; `None` where it does not.

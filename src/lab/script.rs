@@ -10,6 +10,9 @@ use indicatif::HumanCount;
 use std::collections::VecDeque;
 use std::time::Duration;
 
+/// Why a run that is played until something holds was refused, where a key has stopped it.
+const STOPPED: &str = "stopped before it held";
+
 #[derive(Clone, Debug, Default)]
 pub struct Script {
     /// The file of the commands, as the user named it.
@@ -19,6 +22,8 @@ pub struct Script {
     under_way: Option<(Placed, UnderWay)>,
     /// The command that was refused, and why.
     failed: Option<String>,
+    /// Whether its commands were dropped before they were complete.
+    is_dropped: bool,
     /// Titles of the chapters that were begun and not taken yet.
     chapters: Vec<String>,
     /// Whether the script waits until the user lets it go on: it comes from a session, or was paused.
@@ -94,9 +99,24 @@ impl Script {
         self.count() == 0
     }
 
+    /// Whether it has ended before its end: it was dropped, or a command was refused.
+    pub fn has_broken_off(&self) -> bool {
+        self.is_dropped || self.failed.is_some()
+    }
+
+    /// Whether a key has broken it off: the key has dropped its commands, or stopped the run that one of them played.
+    pub fn was_stopped(&self) -> bool {
+        self.has_broken_off() && self.failure().is_none_or(|why| why.ends_with(STOPPED))
+    }
+
     /// Drops all commands; returns how many there were, in words.
     pub(super) fn drop_all(&mut self) -> String {
-        match std::mem::take(self).count() {
+        let left = self.count();
+        *self = Self {
+            is_dropped: left > 0,
+            ..Self::default()
+        };
+        match left {
             1 => "stopped: 1 command is left out".to_owned(),
             left => format!("stopped: {left} commands are left out"),
         }
@@ -289,7 +309,7 @@ fn is_complete(
             "did not hold on any of {} steps",
             HumanCount(steps)
         )),
-        (false, None, UnderWay::Playing) => Err("stopped before it held".to_owned()),
+        (false, None, UnderWay::Playing) => Err(STOPPED.to_owned()),
         (false, ..) => Ok(true),
     }
 }

@@ -1,12 +1,18 @@
 //! A text that stands beside the panes, such as the page of a lesson. A room above the lab writes it.
 
+use crate::text::ascii::in_ascii;
+
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheet {
     /// What stands in its frame.
     pub title: String,
     pub paragraphs: Vec<Paragraph>,
-    /// The paragraph that is to be seen: the sheet is scrolled to it where it is longer than its place.
-    pub seen: Option<usize>,
+    /// The first and the last of the paragraphs that are to be seen whole: a longer sheet is scrolled to them.
+    pub seen: Option<(usize, usize)>,
+    /// Whether a run is played before the rest of the sheet comes: where there is room for one pane, both share it.
+    pub plays: bool,
+    /// Whether a number is asked for: a digit begins to type it.
+    pub asks_number: bool,
     /// What Enter does here, in one word; empty where it does nothing.
     pub enter: &'static str,
     pub has_next: bool,
@@ -72,6 +78,19 @@ impl Paragraph {
             emphasis: Emphasis::Plain,
         }];
         Self { kind, words }
+    }
+
+    /// The same for a terminal without UTF-8.
+    pub fn in_ascii(&self) -> Self {
+        let words = self.words.iter().map(|words| Words {
+            text: in_ascii(&words.text),
+            emphasis: words.emphasis,
+        });
+        let kind = self.kind.clone();
+        Self {
+            kind,
+            words: words.collect(),
+        }
     }
 
     pub fn text(&self) -> String {

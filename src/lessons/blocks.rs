@@ -155,7 +155,7 @@ pub(super) fn predict(
     reader: &Reader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> Found<Predict> {
-    let mut content = reader.content(&["name", "ask", "choices", "unit"])?;
+    let mut content = reader.content(&["name", "ask", "choices", "unit", "right"])?;
     let name = content.needed("name", false, "compare calls the prediction by it");
     let ask = content.text("ask", "the question", find);
     let asked = match (content.get("choices"), content.get("unit")) {
@@ -176,12 +176,32 @@ pub(super) fn predict(
             Asked::Choice(Vec::new())
         }
     };
+    let right = right(&mut content, &asked);
     content.finish(Predict {
         line: reader.line,
         name,
         ask,
         asked,
+        right,
     })
+}
+
+/// The number of the choice that comes out.
+fn right(content: &mut Content, asked: &Asked) -> Option<usize> {
+    let value = content.get("right")?;
+    let choices = match asked {
+        Asked::Choice(choices) => choices.len(),
+        Asked::Number { .. } => 0,
+    };
+    let right = value
+        .as_integer()
+        .and_then(|right| usize::try_from(right).ok());
+    let right = right.filter(|right| (1..=choices).contains(right));
+    if right.is_none() {
+        let rule = "must be the number of a choice, counted from 1";
+        content.refuse(Problem::with_value("right", &value, rule));
+    }
+    right
 }
 
 fn choices(content: &mut Content, value: &Value) -> Vec<String> {
@@ -239,17 +259,50 @@ pub(super) fn check(
 ) -> Found<Check> {
     let mut content = reader.content(&["that", "goal", "hint"])?;
     let hint = content.line("hint", true);
-    let goal = content.line("goal", false);
+    let goals = goals(&mut content);
     if content.get("that").is_none() {
         content.refuse_whole("lacks that: the condition, such as \"t_s >= 60\"");
     }
     let Some(that) = content.expression("that", true, find) else {
         return Err(content.problems);
     };
+    if that.names().next().is_none() {
+        let rule = "names no number of the run: it holds always or never";
+        content.refuse(Problem::with_value("that", &that.text().into(), rule));
+    }
+    let parts = that.conjuncts(|_| None).len();
+    if goals.len() > 1 && goals.len() != parts {
+        let rule = format!(
+            "has {} lines, and that joins {parts} parts with and",
+            goals.len()
+        );
+        content.refuse(Problem::at("goal", rule));
+    }
     content.finish(Check {
         line: reader.line,
         that,
-        goal,
+        goals,
         hint,
     })
+}
+
+/// What is to be reached: a line of text, or a list of them.
+fn goals(content: &mut Content) -> Vec<String> {
+    let Some(value) = content.get("goal") else {
+        return Vec::new();
+    };
+    let Some(items) = value.as_array() else {
+        return vec![content.line("goal", false)];
+    };
+    let line = |item: &Value| Some(item.as_str()?.trim().to_owned());
+    let lines: Vec<String> = items.iter().filter_map(line).collect();
+    if lines.len() != items.len()
+        || lines
+            .iter()
+            .any(|line| line.is_empty() || line.chars().any(is_steering))
+    {
+        let rule = "must be lines of text, one for each part of that";
+        content.refuse(Problem::with_value("goal", &value, rule));
+    }
+    lines
 }

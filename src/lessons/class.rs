@@ -99,7 +99,7 @@ impl Class {
     }
 
     /// Takes the lesson that NAME names, where it was left.
-    fn take(&mut self, name: &str, lab: &Lab) -> Result<(), String> {
+    fn take(&mut self, name: &str, lab: &mut Lab) -> Result<(), String> {
         let name = reading::full_name(name);
         let lesson = match shipped::find(&name) {
             Some(_) => reading::open(&name),
@@ -110,17 +110,20 @@ impl Class {
             }
         };
         let lesson = lesson.map_err(|problems| problems.to_string())?;
-        self.leave();
+        self.leave(lab);
         let place = self.left.remove(&lesson.name).unwrap_or_default();
-        self.shown = Shown::Lesson(Box::new(Taken::new(lesson, place, self.now)));
+        let mut taken = Taken::new(lesson, place, self.now);
+        taken.go_on(lab);
+        self.shown = Shown::Lesson(Box::new(taken));
         Ok(())
     }
 
     /// Keeps where the lesson stands, and takes it no longer.
-    fn leave(&mut self) {
+    fn leave(&mut self, lab: &mut Lab) {
         if let Shown::Lesson(taken) = std::mem::take(&mut self.shown) {
             let name = taken.lesson.name.clone();
             self.left.insert(name, taken.into_place());
+            lab.set_undo_floor(false);
         }
         self.has_changed = true;
     }
@@ -137,7 +140,7 @@ impl Class {
                 let taken = from.map_or(Ok(()), |name| self.take(&name, lab));
                 tell(taken, lab);
             }
-            (_, LessonKey::List) => self.open_list(),
+            (_, LessonKey::List) => self.open_list(lab),
             (Shown::List { selected, .. }, LessonKey::Leave) => {
                 self.selected = *selected;
                 self.shown = Shown::Nothing;
@@ -170,9 +173,9 @@ impl Class {
     }
 
     /// Leaves the lesson for the list; it is selected there.
-    fn open_list(&mut self) {
+    fn open_list(&mut self, lab: &mut Lab) {
         let here = self.taken().map(|taken| taken.lesson.name.clone());
-        self.leave();
+        self.leave(lab);
         let names = self.names();
         let selected = here
             .as_ref()

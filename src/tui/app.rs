@@ -1,5 +1,6 @@
 //! The main loop: it carries out what keys mean, advances the run with time, and draws a frame when something has changed.
 
+use crate::lab::action::{Direction, LessonKey};
 use crate::lab::{Lab, Request};
 use crate::lessons::Class;
 use crate::storage::session::Session;
@@ -149,6 +150,9 @@ pub fn do_in_class(
     size: Rect,
 ) -> Option<Request> {
     match request {
+        Request::Lesson(LessonKey::Next) if screen::page_goes_on(lab, size) => {
+            screen::scroll_page(lab, Direction::PageDown, size);
+        }
         Request::Lesson(key) => {
             if let Some(direction) = class.act(key, lab) {
                 screen::scroll_page(lab, direction, size);

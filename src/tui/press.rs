@@ -2,7 +2,7 @@
 
 use super::keymap::{self, Does, Key};
 use super::panes::{self, help};
-use crate::lab::action::Action;
+use crate::lab::action::{Action, LessonKey};
 use crate::lab::{Lab, Request};
 
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
@@ -13,6 +13,9 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     }
     match keymap::meaning(panes::keys_of(lab), mode, key) {
         Some(Does::Action(Action::DoEntry)) => help::do_entry(lab),
+        Some(Does::Action(Action::Digit(digit))) if begins_number(lab) => {
+            lab.update(Action::Lesson(LessonKey::Digit(digit)))
+        }
         Some(does) => {
             let request = does.carry_out(lab);
             help::limit(lab);
@@ -23,4 +26,10 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
             None
         }
     }
+}
+
+/// Whether a digit begins to type the number that the sheet asks for; behind the first digit of a count it goes on with
+/// the count.
+fn begins_number(lab: &Lab) -> bool {
+    lab.view().asks_number() && lab.popups().count.is_none()
 }

@@ -38,6 +38,12 @@ pub fn scroll_page(lab: &mut Lab, direction: Direction, size: Rect) {
     }
 }
 
+/// Whether the page of the lesson goes on below what a screen of this size shows of it.
+pub fn page_goes_on(lab: &Lab, size: Rect) -> bool {
+    let place = layout(lab, true, size).place_of(Pane::LESSON);
+    place.is_some_and(|place| lesson::has_more(lab, place))
+}
+
 /// Where everything of `lab` stands on `area`; `keys` says whether there is a line of keys.
 pub fn layout(lab: &Lab, keys: bool, area: Rect) -> Layout {
     let said = Said {

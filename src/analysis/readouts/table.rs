@@ -247,6 +247,8 @@ readouts! {
     "w1_rad_per_s", "rad/s", State, "angular velocity along the body's own x", |r| r.sample.omega().x, "*ω*_{1}";
     "w2_rad_per_s", "rad/s", State, "angular velocity along the body's own y", |r| r.sample.omega().y, "*ω*_{2}";
     "w3_rad_per_s", "rad/s", State, "angular velocity along the axle", |r| r.sample.omega().z, "*ω*_{3}";
+    "foot_force_N", "N", State, "vertical force of the floor on the foot; null under friction", |r| r.foot_force, "*N*";
+    "measured_mean_foot_force_N", "N", State, "its mean since the start; null once the forces have changed", |r| r.mean_foot_force, "*N*";
     "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps; null where it stands without spin, its centre of mass below the pivot", |r| r.theory_about_z().and_then(|theory| theory.sleeping_limit);
     "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
     "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());

@@ -203,6 +203,12 @@ impl View {
         self.sheet_scrolled = Some(to);
     }
 
+    /// Whether the sheet asks for a number, and has the focus.
+    pub fn asks_number(&self) -> bool {
+        let asks = self.sheet.as_ref().is_some_and(|sheet| sheet.asks_number);
+        asks && self.focus == Pane::LESSON
+    }
+
     pub fn turn_to_sheet(&mut self) {
         if self.sheet.is_some() {
             self.filled &= self.focus == Pane::LESSON;

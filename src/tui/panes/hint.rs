@@ -40,6 +40,7 @@ pub fn place(lab: &Lab, layout: &Layout) -> Rect {
     let own = place.union(layout.health).height;
     let most = match (lab.view().bare, layout.is_cramped) {
         (true, _) => place.height + 1,
+        (false, _) if lab.view().sheet.is_some() => own.max(MOST_LINES),
         (false, true) => own.max(MOST_LINES),
         (false, false) => own,
     };

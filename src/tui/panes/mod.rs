@@ -94,13 +94,17 @@ pub fn keys(pane: Pane) -> &'static [Binding] {
     row(pane).map_or(&[], |row| row.keys)
 }
 
-/// The keys of the pane in focus; beside a lesson's page in focus also the keys of the step pane; in a lesson also the keys
-/// that turn its pages.
+/// The keys of the pane in focus; in a lesson also the keys of the step pane where it is shown, and the keys that turn
+/// pages.
 pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
     let view = lab.view();
-    let is_beside = view.focus == Pane::LESSON && view.side_by_side.contains(&Pane::STEP);
+    let is_beside = view.sheet.is_some() && view.side_by_side.contains(&Pane::STEP);
     let own = keys(view.focus);
-    let beside = if is_beside { keys(Pane::STEP) } else { &[] };
+    let beside = match view.focus {
+        Pane::LESSON if is_beside => keys(Pane::STEP),
+        _ if is_beside => keys(Pane::STEP).split_at(step::PHASE_KEYS).0,
+        _ => &[],
+    };
     let is_free = |row: &&Binding| {
         let mut keys = own.iter().flat_map(|own| own.keys);
         keys.all(|key| !row.keys.contains(key))

@@ -40,6 +40,9 @@ pub const ROW: PaneRow = PaneRow {
     keys: KEYS,
 };
 
+/// The first of the keys go through the phases.
+pub const PHASE_KEYS: usize = 2;
+
 /// The keys that go through the step.
 #[rustfmt::skip]
 const KEYS: &[Binding] = &[
