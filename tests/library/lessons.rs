@@ -9,7 +9,7 @@ use gyrolab::lab::view::theme::Marker;
 use gyrolab::lessons::handout::{self, Paper};
 use gyrolab::lessons::play::{self, Walk};
 use gyrolab::lessons::predictions::Predictions;
-use gyrolab::lessons::{Answer, Block, Kept, Lesson, reading, shipped};
+use gyrolab::lessons::{Answer, Block, Kept, Lesson, Page, reading, shipped};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Problem, Problems};
 use gyrolab::text::printable::is_steering;
@@ -580,7 +580,7 @@ fn a_worksheet_asks_everything_and_answers_nothing() {
                 "{own}"
             );
         }
-        for text in lesson.pages.iter().flat_map(|page| page.compares()) {
+        for text in lesson.pages.iter().flat_map(Page::compares) {
             let words = text.text.filled(|_, _| "@".to_owned());
             let first = words.split('@').max_by_key(|words| words.len()).unwrap();
             assert!(
