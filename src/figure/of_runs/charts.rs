@@ -81,7 +81,11 @@ fn limits(run: &Run, pt_per_m: f64) -> Vec<Series> {
     } else {
         ("limits of exact motion", vec![inner, outer])
     };
-    let circle = |radius| Series::new(name, circle(radius, pt_per_m), Style::limit());
+    let style = Style {
+        is_behind: radii.len() > 1, // the one circle lies in the middle of the exact motion's wide line
+        ..Style::limit()
+    };
+    let circle = |radius| Series::new(name, circle(radius, pt_per_m), style.clone());
     radii.into_iter().map(circle).collect()
 }
 
