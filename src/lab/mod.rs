@@ -1,7 +1,7 @@
 //! The lab: a run, what the user does to it, and how it is shown. It draws nothing, and reads no clock: the time is
 //! passed to it.
 //!
-//! [`Lab`] consists of parts. Each owns its state and carries out its own [`Command`](command::Command)s:
+//! [`Lab`] consists of parts. Each owns its state and carries out its own [`Command`]s:
 //!
 //! | part | state | commands |
 //! |---|---|---|

@@ -1,9 +1,9 @@
 //! Rows that somebody's own program of the report's scheme has written, held against the scheme: do they agree, and if not,
 //! which slip has made them?
 //!
-//! [`rows`] reads the file, [`times`] finds the time step of each row, [`follow`] compares them with a run. [`step`] has the
-//! report's step in plain code and the table of slips, [`plan`] what it begins with, [`explain`] the search among them.
-//! [`words`] says what has come out.
+//! `rows` reads the file, `times` finds the time step of each row, `follow` compares them with a run. `step` has the
+//! report's step in plain code and the table of slips, `plan` what it begins with, `explain` the search among them.
+//! `words` says what has come out.
 
 mod arithmetic;
 mod explain;
