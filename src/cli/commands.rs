@@ -1,6 +1,6 @@
 //! The command line: its commands, and the lab that opens without one.
 
-use super::args::{LessonArgs, WorkbenchArgs};
+use super::args::{ClassArgs, LessonArgs, WorkbenchArgs};
 use super::cast::CastArgs;
 use super::compare::CompareArgs;
 use super::figure::FigureArgs;
@@ -66,6 +66,8 @@ pub(super) enum Command {
     Schemes,
     /// List the lessons, open the lab with one, or print it for paper
     Lesson(LessonArgs),
+    /// Teach a class: a lesson that the students' labs follow, with their votes
+    Class(ClassArgs),
     /// Validate scenario files, run files, sweep files, the headers of CSVs, files of commands, and lessons (.md), which are played
     Check {
         /// Files to look at; a preset is none

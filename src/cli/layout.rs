@@ -65,6 +65,7 @@ impl LayoutArgs {
             columns: (!self.columns.is_empty()).then(|| self.columns.clone()),
             points: self.points,
             excel: self.excel,
+            note: None,
         };
         file.check().unwrap_or_else(|error| {
             let option = error.key.trim_end_matches("_s");

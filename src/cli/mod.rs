@@ -4,6 +4,7 @@
 
 mod args;
 mod cast;
+mod class;
 mod commands;
 mod compare;
 mod complete;
@@ -102,6 +103,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Keys => print(&info::key_list()?),
         Command::Readouts => print(&info::readout_list()?),
         Command::Writeup(args) => writeup::writeup(&args),
+        Command::Class(args) => class::class(&args),
         Command::Lesson(args) => lesson::lesson(&args),
         Command::Check { files } => info::check(&files),
         Command::Completions { shell } => complete::completions(shell),

@@ -109,6 +109,8 @@ pub enum Action {
     /// Closes what lies on top, or stops what is in progress.
     Close,
     Lesson(LessonKey),
+    /// The class: the teacher's acts, or stepping aside and coming back. The room above the lab does it.
+    Class,
     /// Draws the whole screen again.
     Redraw,
     /// Suspends the program until the shell resumes it.

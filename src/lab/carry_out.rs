@@ -102,7 +102,9 @@ impl Lab {
     }
 
     fn export(&mut self, export: &Export) -> Answer {
-        let layout = export.layout.clone().check();
+        let mut layout = export.layout.clone();
+        layout.note.clone_from(&self.files.note);
+        let layout = layout.check();
         let layout = layout.map_err(|error| error.to_string())?;
         let scenario = self.run_up_to(export.to_step, "export")?;
         let scenario = self.work.marked(&scenario);
@@ -132,7 +134,7 @@ impl Lab {
     }
 
     fn open_named(&mut self, name: &str) -> Answer {
-        self.files.admit(std::path::Path::new(name))?;
+        self.files.admit_reading(std::path::Path::new(name))?;
         match super::opening::read(name).and_then(|document| document.scenario()) {
             Ok(scenario) => {
                 self.open(name, Arc::new(scenario));

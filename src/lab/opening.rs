@@ -2,11 +2,11 @@
 
 use super::Lab;
 use super::answer::{Answer, Done};
-use super::command::Command;
+use super::command::{Command, Commands};
 use super::on_top::Mode;
 use super::preview::Preview;
 use crate::export::Destination;
-use crate::scenario::{Document, Problem, Problems, presets};
+use crate::scenario::{Document, Problem, Problems, Scenario, presets};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -21,6 +21,14 @@ pub(super) fn read(name: &str) -> Result<Document, Problems> {
 }
 
 impl Lab {
+    /// Changes to the run of `scenario`, which another lab shows as `name`. It is paused at step 0.
+    pub fn show_run(&mut self, name: &str, scenario: Arc<Scenario>) {
+        self.take_commands(Commands::default());
+        self.open(name, scenario);
+        self.view.keep_focus();
+        self.read_now();
+    }
+
     /// Opens the entry that is selected in the browser: plays its run, or lists what is in the folder.
     pub(super) fn open_chosen(&mut self) {
         let Some(entry) = self.on_top.browser.choice().cloned() else {

@@ -2,7 +2,7 @@
 
 mod content;
 
-use super::lesson::{Asked, Check, Compare, Keep, Predict, Setup};
+use super::lesson::{Asked, Check, Compare, Keep, Predict, Right, Setup};
 use super::names::Names;
 use crate::journal::expression::Expression;
 use crate::lab::command::{Command, Placed};
@@ -174,7 +174,7 @@ pub(super) fn predict(
     reader: &Reader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> Found<Predict> {
-    let mut content = reader.content(&["name", "ask", "choices", "unit"])?;
+    let mut content = reader.content(&["name", "ask", "choices", "unit", "right", "within"])?;
     let name = content.needed("name", false, "compare calls the prediction by it");
     let ask = content.text("ask", "the question", find);
     let asked = match (content.get("choices"), content.get("unit")) {
@@ -195,12 +195,55 @@ pub(super) fn predict(
             Asked::Choice(Vec::new())
         }
     };
+    let right = right(&mut content, &asked);
     content.finish(Predict {
         line: reader.line,
         name,
         ask,
         asked,
+        right,
     })
+}
+
+/// The number of the right choice; or the right number, and how far off an answer may be.
+fn right(content: &mut Content, asked: &Asked) -> Option<Right> {
+    let number = |value: &Value| {
+        value
+            .as_float()
+            .or(value.as_integer().map(|whole| whole as f64))
+    };
+    let finite = |value: &Value| number(value).filter(|number| number.is_finite());
+    let (value, within) = (content.get("right"), content.get("within"));
+    let (key, wrong, rule) = match (asked, value, within) {
+        (_, None, None) => return None,
+        (Asked::Choice(choices), Some(value), None) => {
+            let whole = value
+                .as_integer()
+                .and_then(|whole| usize::try_from(whole).ok());
+            match whole.filter(|whole| (1..=choices.len()).contains(whole)) {
+                Some(whole) => return Some(Right::Choice(whole)),
+                None => ("right", value, "must be the number of a choice, from 1"),
+            }
+        }
+        (Asked::Choice(_), _, Some(within)) => {
+            let rule = "has no place beside choices: right = 2 names the second";
+            ("within", within, rule)
+        }
+        (_, None, Some(within)) => ("within", within, "needs right: the number that comes out"),
+        (_, Some(value), None) => {
+            let rule = "needs within: how far off a number may be, as within = 0.5";
+            ("right", value, rule)
+        }
+        (_, Some(value), Some(within)) => match (finite(&value), finite(&within)) {
+            (Some(value), Some(within)) if within > 0.0 => {
+                return Some(Right::Number { value, within });
+            }
+            (None, _) => ("right", value, "must be a number"),
+            _ => ("within", within, "must be a number above 0"),
+        },
+    };
+    content.refuse(Problem::with_value(key, &wrong, rule));
+    None
 }
 
 fn choices(content: &mut Content, value: &Value) -> Vec<String> {

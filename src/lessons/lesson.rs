@@ -76,6 +76,27 @@ pub struct Predict {
     pub name: String,
     pub ask: Text,
     pub asked: Asked,
+    /// What comes out, where the file says it: for the teacher alone.
+    pub right: Option<Right>,
+}
+
+/// The right answer to a question.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Right {
+    /// The number of the choice, from 1.
+    Choice(usize),
+    /// A number, and how far off an answer may be.
+    Number { value: f64, within: f64 },
+}
+
+impl Right {
+    /// Whether `answer` is right: a number, or the number of a choice.
+    pub fn takes(&self, answer: f64) -> bool {
+        match self {
+            Self::Choice(number) => answer == *number as f64,
+            Self::Number { value, within } => (answer - value).abs() <= *within,
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]

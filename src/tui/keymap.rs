@@ -108,6 +108,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('s')], Action::SaveRun, "", "save the run file: scenario and all that was done"),
     row(&[Lab], &[Char('S')], Action::SavePresent, "", "save the present state as a scenario"),
     row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the list of lessons; again: back to where one was"),
+    row(&[Lab], &[Char('C')], Action::Class, "", "in a class: the teacher's acts; for a student: step aside, and back"),
     row(&[Lab], &[Tab], Action::NextPane, "pane", "the next pane"),
     row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
     row(&[Lab], &[Char('d')], Action::ThreeD, "3-D", "fill the screen with the 3-D view, or show all panes again"),

@@ -5,6 +5,11 @@ use super::panes::{self, help};
 use crate::lab::action::Action;
 use crate::lab::{Lab, Request};
 
+/// The action of `key`, if it has one now.
+pub fn action_of(key: Key, lab: &Lab) -> Option<Action> {
+    keymap::action(panes::keys_of(lab), lab.on_top().mode, key)
+}
+
 /// Carries out the action of `key`, or shows a message that it has none.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     let mode = lab.on_top().mode;
@@ -12,7 +17,7 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     if own.any(|row| row.modes.contains(&mode) && row.keys.contains(&key)) {
         lab.touch_pane();
     }
-    match keymap::action(panes::keys_of(lab), mode, key) {
+    match action_of(key, lab) {
         Some(Action::DoEntry) => help::do_entry(lab),
         Some(action) => {
             let request = lab.update(action);

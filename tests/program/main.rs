@@ -9,6 +9,7 @@
 mod support;
 
 mod cast;
+mod class;
 mod classes;
 mod cli;
 mod commands;

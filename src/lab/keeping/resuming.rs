@@ -83,7 +83,7 @@ impl Lab {
     /// The scenario as the user opened it, if its file can still be read; otherwise the present one.
     fn file_as_opened(&self) -> Arc<Scenario> {
         let (name, run) = (self.work.name(), self.player.run());
-        if self.files.admit(Path::new(name)).is_err() {
+        if self.files.admit_reading(Path::new(name)).is_err() {
             return Arc::clone(run.scenario());
         }
         let file = opening::read(name).and_then(|document| document.scenario());

@@ -54,7 +54,12 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let Some(sheet) = &view.sheet else {
         return;
     };
-    let inside = frame(&sheet.title, area, view.focus == ROW.id, &view.theme, buf);
+    let title = if sheet.framed.is_empty() {
+        &sheet.title
+    } else {
+        &sheet.framed
+    };
+    let inside = frame(title, area, view.focus == ROW.id, &view.theme, buf);
     if inside.is_empty() {
         return;
     }
@@ -73,13 +78,19 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         (_, true, true) => " PgDn: more ",
         (true, false, true) => " PgUp: back ",
         (_, true, false) => " Tab, PgDn: more ",
-        (_, false, _) => return,
+        (_, false, _) => "",
     };
     let border = Rect {
         y: area.bottom() - 1,
         height: 1,
         ..inside
     };
+    if !sheet.border.is_empty() {
+        write(border, (0, 0), &format!(" {} ", sheet.border), quiet, buf);
+    }
+    if more.is_empty() {
+        return;
+    }
     let x = border.width.saturating_sub(columns(more) as u16 + 1);
     write(border, (x, 0), more, quiet, buf);
 }
