@@ -5,6 +5,7 @@ use super::seat::Presence;
 use super::votes::{self, Sitting, Tally, sittings};
 use super::{login, unix_ms};
 use crate::lessons::{Asked, Lesson, Page};
+use crate::text::number::counted;
 use crate::text::wrap::wrapped;
 use chrono::Local;
 
@@ -39,7 +40,14 @@ pub fn lines(folder: &Folder, width: usize) -> Vec<String> {
             board.extend(of_seats(folder, &state, &seats, width));
         }
     }
-    board.iter().flat_map(|line| wrapped(line, width)).collect()
+    let fitted = |line: &String| {
+        if line.chars().count() <= width {
+            vec![line.clone()] // with its blanks
+        } else {
+            wrapped(line, width)
+        }
+    };
+    board.iter().flat_map(fitted).collect()
 }
 
 fn head(seats: &[Sitting]) -> String {
@@ -118,7 +126,7 @@ fn of_seats(folder: &Folder, state: &State, seats: &[Sitting], width: usize) -> 
             .iter()
             .filter(|vote| vote.lesson == state.lesson)
             .count();
-        format!("{word} {presence}, {votes} votes")
+        format!("{word} {presence}, {}", counted(votes as u64, "vote"))
     };
     let cells: Vec<_> = seats.iter().map(cell).collect();
     let widest = cells

@@ -271,8 +271,11 @@ impl Student {
     /// Shows the run as the teacher does, where that has changed; what the page hides stays hidden until the prediction here
     /// is locked.
     fn show_as(&mut self, run: &Run, lab: &mut Lab, lessons: &Lessons) {
+        // What stands so already is left out: a key may be refused where it has no use.
+        let own = Table::try_from(&lab.view().look).unwrap_or_default();
         let is_new = |(key, value): &(&String, &Value)| {
-            *key != "hide" && self.shown.look.get(*key) != Some(value)
+            let is_known = |look: &Table| look.get(*key) == Some(value);
+            *key != "hide" && !is_known(&self.shown.look) && !is_known(&own)
         };
         let patch: Table = run
             .look
@@ -282,8 +285,8 @@ impl Student {
             .collect();
         if !patch.is_empty() {
             let _ = lab.carry_out(&Command::Look(patch)); // what suits another screen may not suit this one
-            self.shown.look.clone_from(&run.look);
         }
+        self.shown.look.clone_from(&run.look);
         if self.shown.exact != Some(run.exact) {
             self.shown.exact = Some(run.exact);
             let _ = lab.carry_out(&Command::Exact(run.exact));
@@ -294,10 +297,11 @@ impl Student {
             .unwrap_or_default();
         let page = lessons
             .taken()
-            .and_then(|taken| Some((taken.page()?, &taken.place.predictions)));
+            .and_then(|taken| Some((taken.page()?, &taken.place.predictions)))
+            .filter(|(page, _)| page.predicts().next().is_some());
         let hidden = page.map_or(hidden.clone(), |(page, predictions)| {
             let mut hidden = Predictions::hidden_after_lock(page, &hidden);
-            if !predictions.are_locked_on(page) && page.predicts().next().is_some() {
+            if !predictions.are_locked_on(page) {
                 hidden.extend(page.lab().map(Setup::hides).unwrap_or_default());
             }
             hidden
@@ -344,7 +348,8 @@ impl Student {
             format!("{page} of {pages} · the class is on {}", state.page)
         } else if asks {
             let (answered, here) = (state.answered, state.here);
-            format!("following · {page} of {pages} · {answered} of {here} answered")
+            let of_page = format!("following · {page} of {pages}");
+            format!("{of_page} · {answered} of {here} answered\n{of_page} · {answered} of {here}")
         } else {
             format!("following · {page} of {pages}")
         };

@@ -177,13 +177,14 @@ impl Teacher {
             let (page, pages) = (taken.place.page, taken.lesson.pages.len());
             let (here, lost) = (count(Presence::Here), count(Presence::Lost));
             let title = &taken.lesson.title;
-            format!("{page} of {pages} · {here} here, {lost} lost, {aside} aside · {title}")
+            let counts = format!("{page} of {pages} · {here} here, {lost} lost, {aside} aside");
+            format!("{counts} · {title}\n{counts}\n{page} of {pages} · {here}, {lost} lost, {aside} aside")
         });
         let page = taken.and_then(|taken| taken.page());
         Dress {
             framed: title,
             border: match (self.menu, self.is_followed) {
-                (Menu::Closed, _) => "C class: show, again, follow, seats",
+                (Menu::Closed, _) => "C: show, again, follow, seats\nC: class",
                 (Menu::Open, true) => "1 show 2 again 3 unfollow 4 seats",
                 (Menu::Open, false) => "1 show 2 again 3 follow 4 seats",
                 (Menu::Seats(_), _) => "Enter closes, opens; Esc: back",

@@ -34,9 +34,9 @@ pub struct Class {
 /// What the room of the class adds to the page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dress {
-    /// What stands in the frame instead of the title; empty: the title.
+    /// What stands in the frame instead of the title; empty: the title. It has a form a line, the longest first.
     pub framed: String,
-    /// What stands in the lower line of the frame.
+    /// What stands in the lower line of the frame, also a form a line.
     pub border: String,
     /// What stands below the question of this name.
     pub votes: Option<(String, Vec<Paragraph>)>,

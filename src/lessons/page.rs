@@ -128,6 +128,7 @@ impl Writer<'_> {
                         .filter(|(name, _)| *name == predict.name)
                     {
                         self.extend(votes.clone());
+                        self.sheet.seen = self.sheet.paragraphs.len().checked_sub(1);
                     }
                     if self.taken.is_open(predict) {
                         return true;

@@ -1,6 +1,6 @@
 //! The page of a lesson beside the run: its text, the question with its answers, what is to be reached, and the keys.
 
-use super::{PaneRow, Width, frame, write};
+use super::{PaneRow, Width, frame, longest, write};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::sheet::{Emphasis, Kind, Paragraph, Sheet};
@@ -54,10 +54,15 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let Some(sheet) = &view.sheet else {
         return;
     };
-    let title = if sheet.framed.is_empty() {
+    let forms = |forms: &str, width: u16| {
+        let forms = forms.lines().map(str::to_owned);
+        longest(forms, width.into())
+    };
+    let framed = forms(&sheet.framed, area.width.saturating_sub(4));
+    let title = if framed.is_empty() {
         &sheet.title
     } else {
-        &sheet.framed
+        &framed
     };
     let inside = frame(title, area, view.focus == ROW.id, &view.theme, buf);
     if inside.is_empty() {
@@ -86,7 +91,9 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         ..inside
     };
     if !sheet.border.is_empty() {
-        write(border, (0, 0), &format!(" {} ", sheet.border), quiet, buf);
+        let room = border.width.saturating_sub(columns(more) as u16 + 3);
+        let text = format!(" {} ", forms(&sheet.border, room));
+        write(border, (0, 0), &text, quiet, buf);
     }
     if more.is_empty() {
         return;
