@@ -91,6 +91,8 @@ pub struct Run {
     /// The name under which it was opened.
     pub name: String,
     pub step: u64,
+    /// When it ends, s of the run: an edit of the time step holds it, and the run file does not say it.
+    pub end_s: f64,
     /// When it stood there, ms since 1970.
     pub at_ms: u64,
     pub is_running: bool,

@@ -244,7 +244,7 @@ impl Student {
                 let Ok(scenario) = read else {
                     return lab.tell("the teacher's run cannot be read: n and N turn pages");
                 };
-                lab.show_run(&run.name, Arc::new(scenario));
+                lab.show_run(&run.name, Arc::new(scenario), run.end_s);
                 let shown = Arc::clone(lab.player().run().scenario());
                 self.shown = Shown {
                     run: Some((run.run.clone(), shown)),

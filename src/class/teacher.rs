@@ -154,6 +154,7 @@ impl Teacher {
         Some(Run {
             name: lab.work().name().to_owned(),
             step,
+            end_s: lab.work().present().end_s,
             at_ms: still.map_or_else(unix_ms, |before| before.at_ms),
             is_running,
             speed: playback.speed(),

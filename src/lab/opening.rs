@@ -21,10 +21,13 @@ pub(super) fn read(name: &str) -> Result<Document, Problems> {
 }
 
 impl Lab {
-    /// Changes to the run of `scenario`, which another lab shows as `name`. It is paused at step 0.
-    pub fn show_run(&mut self, name: &str, scenario: Arc<Scenario>) {
+    /// Changes to the run of `scenario`, which another lab shows as `name`, and which ends there at `end_s`. It is paused at
+    /// step 0.
+    pub fn show_run(&mut self, name: &str, scenario: Arc<Scenario>, end_s: f64) {
         self.take_commands(Commands::default());
         self.open(name, scenario);
+        self.work.set_end(end_s);
+        self.player.playback.set_end(end_s);
         self.view.keep_focus();
         self.read_now();
     }
