@@ -343,7 +343,8 @@ impl Student {
         let question = question.and_then(|page| votes::question(page, state));
         let asks = state.page == page && question.is_some();
         let framed = if self.record.is_aside {
-            format!("aside · {page} of {pages} · the class is on {}", state.page)
+            let on = format!("the class is on {}", state.page);
+            format!("aside · {page} of {pages} · {on}\naside on {page} · {on}")
         } else if !self.follows() {
             format!("{page} of {pages} · the class is on {}", state.page)
         } else if asks {

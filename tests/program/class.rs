@@ -54,8 +54,8 @@ fn a_class_follows_votes_and_loses_nothing() {
     let votes = ground.stdout("class --votes --folder .");
     has_all(&votes, &[&format!("{LESSON},finer,1,{word},2,false,2,")]);
     // Stepping aside, and the class goes on meanwhile.
-    ben.press("n");
-    ben.wait_for("aside · 3 of 10 · the class is on 2");
+    ben.ask("n", "aside on 2 · the class is on 2");
+    ben.ask("n", "aside on 3 · the class is on 2");
     teacher.press("n");
     ben.wait_for("the class is on 3");
     teacher.press("N");

@@ -90,12 +90,14 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         height: 1,
         ..inside
     };
-    if !sheet.border.is_empty() {
-        let room = border.width.saturating_sub(columns(more) as u16 + 3);
-        let text = format!(" {} ", forms(&sheet.border, room));
-        write(border, (0, 0), &text, quiet, buf);
+    // What the border says of the class comes before the hint that there is more.
+    let room = border.width.saturating_sub(columns(more) as u16 + 3);
+    let said = forms(&sheet.border, room);
+    let fits = columns(&said) <= room.into();
+    if !said.is_empty() {
+        write(border, (0, 0), &format!(" {said} "), quiet, buf);
     }
-    if more.is_empty() {
+    if more.is_empty() || !fits {
         return;
     }
     let x = border.width.saturating_sub(columns(more) as u16 + 1);
