@@ -92,8 +92,8 @@ fn of_page(lesson: &Lesson, page: &Page, state: &State, seats: &[Sitting]) -> Ve
             ));
             // While the round goes on nobody's choice is shown.
             if round < question.round() || question.stage != Stage::Counted {
-                let bars = votes::lines(&tally.bars);
-                lines.extend(bars.iter().map(|bar| format!("    {}", bar.text())));
+                let bars = votes::drawn(&tally.bars).text();
+                lines.extend(bars.lines().map(|bar| format!("    {bar}")));
                 lines.extend(tally.advice(predict).map(|advice| format!("    {advice}")));
             }
         }

@@ -363,8 +363,9 @@ impl Student {
         Dress {
             framed,
             border: border.to_owned(),
-            votes: votes
-                .map(|(predict, question)| (predict.name.clone(), votes::lines(&question.bars))),
+            votes: votes.map(|(predict, question)| {
+                (predict.name.clone(), vec![votes::drawn(&question.bars)])
+            }),
             instead: None,
         }
     }

@@ -19,8 +19,9 @@ const TOO_LONG: &str = "the run's file is above 64 kB: the class cannot follow i
 #[derive(Debug)]
 pub struct Teacher {
     folder: Folder,
-    /// What is published.
     state: State,
+    /// The state that the class knows.
+    published: Option<State>,
     is_followed: bool,
     menu: Menu,
     seats: Vec<Sitting>,
@@ -56,6 +57,7 @@ impl Teacher {
                 is_on: true,
                 ..before
             },
+            published: None,
             is_followed: true,
             menu: Menu::Closed,
             seats: Vec::new(),
@@ -85,13 +87,14 @@ impl Teacher {
         self.next_look = now + EVERY;
         self.seats = sittings(&self.folder);
         self.trouble = None;
-        let before = self.state.clone();
         self.look(lab, lessons);
-        if self.state == before {
+        if self.published.as_ref() == Some(&self.state) {
             self.folder.touch_state();
-        } else if let Err(trouble) = self.folder.publish(&self.state) {
-            self.trouble = Some(trouble);
-            self.state = before; // so that it is tried again
+        } else {
+            match self.folder.publish(&self.state) {
+                Ok(()) => self.published = Some(self.state.clone()),
+                Err(trouble) => self.trouble = Some(trouble),
+            }
         }
         if self.folder.is_full() {
             self.trouble = Some("the disk of the class is full: votes cannot be kept".to_owned());
@@ -214,7 +217,7 @@ impl Teacher {
         );
         let mut lines = vec![Paragraph::new(Kind::Note, line)];
         if question.stage != Stage::Counted {
-            lines.extend(votes::lines(&tally.bars));
+            lines.push(votes::drawn(&tally.bars));
             let late = (tally.late > 0).then(|| format!("late: {}", tally.late));
             let seen = match question.stage {
                 Stage::All if tally.votes < FEWEST => {

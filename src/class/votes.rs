@@ -126,15 +126,15 @@ fn of_numbers(mut numbers: Vec<f64>) -> Vec<(String, usize)> {
     bars
 }
 
-/// `bars` as lines of a page.
-pub fn lines(bars: &[(String, usize)]) -> Vec<Paragraph> {
+/// `bars` as a part of a page, a line each.
+pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
     let most = bars.iter().map(|bar| bar.1).max().unwrap_or(0).max(1);
     let width = bars.iter().map(|bar| bar.0.len()).max().unwrap_or(0);
     let line = |(name, count): &(String, usize)| {
         let bar = "█".repeat((count * BAR).div_ceil(most));
-        Paragraph::new(Kind::Code, format!("{name:<width$} {bar} {count}"))
+        format!("{name:<width$} {bar} {count}\n")
     };
-    bars.iter().map(line).collect()
+    Paragraph::new(Kind::Code, bars.iter().map(line).collect::<String>())
 }
 
 /// The question of `page` that the class is at: the first that is not closed, or else the last.
