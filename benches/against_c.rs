@@ -54,7 +54,7 @@ fn report_in_rust() -> f64 {
 fn wheel() -> Body {
     let rim = (0..10).map(|j| {
         let angle = TAU * f64::from(j) / 10.0;
-        Vector3::new(0.8 * angle.cos(), 0.8 * angle.sin(), 1.0)
+        Vector3::new(0.8 * libm::cos(angle), 0.8 * libm::sin(angle), 1.0)
     });
     let axle = [1.0, 1.5, 0.0, 0.5].map(|height| Vector3::new(0.0, 0.0, height));
     let points = rim.chain(axle).map(|at| PointMass { at, mass: 0.5 });

@@ -21,6 +21,7 @@
 //! - [`fit`]: keys of a scenario so that its runs come nearest to measured data.
 //! - [`sweep`]: a grid of runs, a row each.
 //! - [`verify`]: a CSV, computed again and held against its rows.
+//! - [`own_code`]: rows that somebody's own program of the report's scheme wrote, held against it: which slip made them?
 //! - [`writeup`]: a run as a folder of files for a write-up.
 //! - [`storage`]: what the lab keeps on the disk: sessions, exports in the background, the folder it is confined to.
 //! - [`lab`]: the lab without a terminal: its state, and the commands that change it.
@@ -46,6 +47,7 @@ pub mod fit;
 pub mod journal;
 pub mod lab;
 pub mod lessons;
+pub mod own_code;
 pub mod playback;
 pub mod run;
 pub mod scenario;

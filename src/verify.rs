@@ -8,7 +8,7 @@ use crate::analysis::{Monitor, cost};
 use crate::export::layout::{above_run_file, commented};
 use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Layout};
-use crate::fit::table::Header;
+use crate::fit::report::Header;
 use crate::physics::SchemeInfo;
 use crate::run::{Clock, Simulation, Step};
 use crate::scenario::csv::{self, Csv};
@@ -119,13 +119,8 @@ fn verified(
     } else {
         let layout = Layout::read(&text).map_err(|error| format!("{error} (in its header)"))?;
         let scenario = Arc::new(document.scenario()?);
-        verdict = Some(play_run(
-            &scenario,
-            layout,
-            &mut against,
-            watch,
-            &mut notes,
-        )?);
+        let played = play_run(&scenario, layout, &mut against, watch, &mut notes);
+        verdict = Some(played?);
     }
     let (rows, difference) = against.end()?;
     let of_header = difference.as_ref().map(|_| "of the run in its header: ");

@@ -1,10 +1,9 @@
 //! Schemes and time steps compared with the exact motion: a table of errors, drifts, cost and measured order.
 
-use super::Trial;
+use super::deviation::Deviation;
 use crate::cores;
-use crate::physics::SchemeInfo;
-use crate::run::EnergyUnit;
-use crate::run::resampled;
+use crate::physics::{SchemeInfo, State};
+use crate::run::{EnergyUnit, NotFinite, Simulation, Step, Truth, resampled};
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, exponent, fixed, shortest};
 use serde::{Serialize, Serializer};
@@ -13,6 +12,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 /// A scheme at one time step, over the whole scenario.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -84,33 +84,141 @@ pub fn compare(
             before = step;
             watch(now, total)
         });
-        trial.map(|trial| ComparisonRow::new(cell, &trial))
+        trial.map(|trial| trial.row(cell))
     };
     let rows: Option<Vec<ComparisonRow>> = cores::map(&cells, row);
     rows.map(|rows| with_orders(rows, ROUNDING * scenario.arm_m()))
 }
 
-impl ComparisonRow {
-    fn new(cell: &Scenario, trial: &Trial) -> Self {
-        let wall_s = trial.stepping.as_secs_f64();
-        let known = |error: f64| (trial.broke.is_none() && error.is_finite()).then_some(error);
-        Self {
-            scheme: cell.motion.scheme.name,
-            time_step_s: cell.motion.time_step_s,
-            steps: trial.steps,
-            error_m: known(trial.most_distance_m),
-            error_at_end_m: known(trial.end_distance_m),
-            order: None,
-            energy_drift: trial.energy_drift,
-            spin_drift: Some(trial.spin_drift).filter(|drift| drift.is_finite()),
-            lz_drift: Some(trial.lz_drift).filter(|drift| drift.is_finite()),
-            ns_per_step: if trial.fastest_s.is_finite() {
-                trial.fastest_s * 1e9
-            } else {
-                0.0
-            },
-            wall_s,
+/// Number of steps of a trial, evenly spread, at which the energy is read off. The distance is read at every step.
+const LOOKS: u64 = 1000;
+/// Steps that are taken at once, without a look at the clock, the exact motion or the watcher.
+const BLOCK: u64 = 4096;
+/// Fewer steps than these tell little of what a step costs.
+const TIMED: u64 = 1000;
+
+/// A run that is played through beside the exact motion, as a [`ComparisonRow`] has its numbers.
+#[derive(Default)]
+struct Trial {
+    steps: u64,
+    most_distance_m: f64,
+    end_distance_m: f64,
+    energy_drift: Option<f64>,
+    spin_drift: f64,
+    lz_drift: f64,
+    stepping: Duration,
+    /// Time of a step where stepping went fastest, s: what other work on the machine has cost is not in it.
+    fastest_s: f64,
+    has_broken: bool,
+}
+
+impl Trial {
+    /// Plays `scenario` to its end, unless `watch`, which is asked from time to time, says no.
+    fn run(
+        scenario: &Arc<Scenario>,
+        mut watch: impl FnMut(u64) -> ControlFlow<()>,
+    ) -> Option<Self> {
+        let mut simulation = Simulation::new(Arc::clone(scenario));
+        let mut truth = Truth::new(Arc::clone(scenario));
+        let mut trial = Self {
+            fastest_s: f64::INFINITY,
+            ..Self::default()
+        };
+        let stride = stride(scenario.steps);
+        let momentum = scenario.start.momentum.norm();
+        let scale = if momentum > 0.0 { momentum } else { 1.0 };
+        let mut states = Vec::new();
+        let mut timed = (0, Duration::ZERO);
+        while simulation.step_number() < scenario.steps && !trial.has_broken {
+            let looks = simulation.step_number() / stride + 1;
+            let next_look = scenario.steps.min(looks.saturating_mul(stride));
+            let next = next_look.min(simulation.step_number() + BLOCK);
+            states.clear();
+            let begin = Instant::now();
+            trial.has_broken = take_steps(&mut simulation, next, &mut states).is_err();
+            timed = (timed.0 + states.len() as u64, timed.1 + begin.elapsed());
+            if timed.0 >= TIMED {
+                trial.time(timed);
+                timed = (0, Duration::ZERO);
+            }
+            for state in &states {
+                trial.hold(state, &mut truth, scale);
+            }
+            if next == next_look || trial.has_broken {
+                trial.read_off(simulation.now());
+            }
+            watch(simulation.step_number()).continue_value()?;
         }
+        trial.steps = simulation.step_number();
+        trial.time(timed);
+        Some(trial)
+    }
+
+    fn row(&self, scenario: &Scenario) -> ComparisonRow {
+        let known = |error: f64| (!self.has_broken && error.is_finite()).then_some(error);
+        ComparisonRow {
+            scheme: scenario.motion.scheme.name,
+            time_step_s: scenario.motion.time_step_s,
+            steps: self.steps,
+            error_m: known(self.most_distance_m),
+            error_at_end_m: known(self.end_distance_m),
+            order: None,
+            energy_drift: self.energy_drift,
+            spin_drift: Some(self.spin_drift).filter(|drift| drift.is_finite()),
+            lz_drift: Some(self.lz_drift).filter(|drift| drift.is_finite()),
+            ns_per_step: Some(self.fastest_s * 1e9)
+                .filter(|ns| ns.is_finite())
+                .unwrap_or(0.0),
+            wall_s: self.stepping.as_secs_f64(),
+        }
+    }
+
+    /// Takes in the time of `steps` steps.
+    fn time(&mut self, (steps, duration): (u64, Duration)) {
+        self.stepping += duration;
+        // What is left at the end may be too few.
+        if steps >= TIMED || (steps > 0 && self.fastest_s.is_infinite()) {
+            self.fastest_s = self.fastest_s.min(duration.as_secs_f64() / steps as f64);
+        }
+    }
+
+    /// Holds one step of the run against the exact motion.
+    fn hold(&mut self, state: &State, truth: &mut Truth, scale: f64) {
+        let off = Deviation::of(state, truth);
+        self.end_distance_m = off.distance_m;
+        self.most_distance_m = greater(self.most_distance_m, off.distance_m);
+        self.spin_drift = greater(self.spin_drift, (off.spin / scale).abs());
+        self.lz_drift = greater(self.lz_drift, (off.lz / scale).abs());
+    }
+
+    fn read_off(&mut self, step: &Step) {
+        let drift = step.energy_drift().map(f64::abs);
+        self.energy_drift = drift.map(|drift| drift.max(self.energy_drift.unwrap_or(0.0)));
+    }
+}
+
+/// Steps up to the step `end`, and keeps the states on the way.
+fn take_steps(run: &mut Simulation, end: u64, states: &mut Vec<State>) -> Result<(), NotFinite> {
+    while run.step_number() < end {
+        states.push(*run.step()?.after());
+    }
+    Ok(())
+}
+
+/// The greater of two numbers; NaN, of a run that could not be followed, is kept.
+fn greater(most: f64, now: f64) -> f64 {
+    if most.is_nan() || now <= most {
+        most
+    } else {
+        now
+    }
+}
+
+/// Every how many steps to look; odd, so that an even rhythm of the run is not met always at the same beat.
+fn stride(steps: u64) -> u64 {
+    match steps / LOOKS {
+        0 => 1,
+        stride => stride | 1,
     }
 }
 
@@ -129,7 +237,7 @@ fn with_orders(mut rows: Vec<ComparisonRow>, least_m: f64) -> Vec<ComparisonRow>
 
 fn order(coarse: &ComparisonRow, fine: &ComparisonRow, least_m: f64) -> Option<f64> {
     let (larger, smaller) = (coarse.error_m?, fine.error_m?);
-    let order = (larger / smaller).ln() / (coarse.time_step_s / fine.time_step_s).ln();
+    let order = libm::log(larger / smaller) / libm::log(coarse.time_step_s / fine.time_step_s);
     (smaller > least_m && order.is_finite()).then_some(order)
 }
 

@@ -4,25 +4,21 @@
 //! A = 1 − κ + κ e^{iψ} each step, where the truth is e^{iκψ}; a torque that turns L by δ = |τ|dt/|L| a step makes the
 //! axle lag by δ/|1 − A|, where the truth is δ/(κψ).
 
-use super::Beside;
 use super::cost::{AFFORDABLE_RAD, integration_rad, is_affordable};
+use super::deviation::{Beside, Deviation};
 use super::slowing::Slowing;
+pub use super::swings::BELIEVED_WITHIN;
 use super::swings::Swing;
-use super::trial::Deviation;
 use crate::journal::restart::in_force;
 use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
-use crate::run::resampled;
-use crate::run::{Clock, EnergyUnit, Simulation, Step};
+use crate::run::{Clock, EnergyUnit, Simulation, Step, resampled};
 use crate::scenario::{Edit, Motion, Scenario, rescale};
 use crate::text::ladder::rung;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A run is believed while its traced point keeps within this part of its arm (its distance from the pivot) of the
-/// exact motion: what an eye sees on a plot.
-pub const BELIEVED_WITHIN: f64 = 0.01;
 /// Steps that a search for a better time step may take, of the report's 14 points; of more points as many fewer.
 const SEARCH_STEPS: u64 = 2_000_000;
 /// Where a time step is not to be mended, the first of these is tried that can be true to the scenario's friction.
@@ -212,8 +208,8 @@ impl Nutation {
         let body = &scenario.body.mechanics;
         let top = SymmetricTop::of(body).filter(|_| motion.scheme.name == "report")?;
         let kappa = top.kappa();
-        let (sin, cos) = psi.sin_cos();
-        let ratio = psi / (1.0 - cos).hypot(sin);
+        let (sin, cos) = libm::sincos(psi);
+        let ratio = psi / libm::hypot(1.0 - cos, sin);
         let has_torque = torque(&state.orientation, &loads.moment(body)).norm() > 0.0;
         let load = loads.on_axle(body, &top);
         let true_lag = load.and_then(|load| top.steady_lag(state, &load));
@@ -282,7 +278,7 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
         return Advice::Nothing;
     }
     if trial(own, scheme).is_some() {
-        let is_edited = |edit: &Edit| edit.motion.scheme != scheme || edit.touches.time_step;
+        let is_edited = |edit: &Edit| edit.motion.scheme != scheme || edit.sets_time_step;
         return if scenario.edits.iter().any(is_edited) {
             Advice::TimeStep(own)
         } else {

@@ -8,14 +8,17 @@ mod table;
 
 pub use table::{READOUTS, Readout, Source, find, names, nearest};
 
-use super::frozen::Frozen;
-use super::health::Advice;
+use super::health::{Advice, advise};
+use super::report_theory::ReportTheory;
 use super::theory::Axis;
 use super::{Extremes, Health, Measured, Monitor, Theory};
 use crate::physics::SymmetricTop;
-use crate::run::{Sample, Simulation};
+use crate::physics::observables::pivot_force_z;
+use crate::run::{Clock, Sample, Simulation};
+use crate::scenario::{Scenario, Window};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::f64::consts::PI;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// A run at one step, with what has been measured on it and what theory says of it.
@@ -42,6 +45,9 @@ pub struct Readouts {
     /// What theory says of the exact motion now, about the axis that it names.
     pub theory: Option<Theory>,
     pub extremes: Extremes,
+    /// Vertical force of the foot on the body: now, and on average over the run, N.
+    pub foot_force: Option<f64>,
+    pub mean_foot_force: Option<f64>,
     /// Precession since the forces last changed, rad/s.
     pub precession: Option<Measured>,
     /// Nutation period since the forces last changed, s.
@@ -49,7 +55,7 @@ pub struct Readouts {
     /// Swing of the tilt since the forces last changed, degrees.
     pub tilt_swing: Option<Measured>,
     /// What the linear theory of the report's scheme says of the motion since the forces last changed.
-    pub frozen: Option<Frozen>,
+    pub report_theory: Option<ReportTheory>,
     /// The step at which they did.
     pub since: u64,
     /// Time spent on stepping alone, where it was measured.
@@ -67,6 +73,7 @@ impl Readouts {
     ) -> Self {
         let step = simulation.now();
         let state = step.after();
+        let is_smooth = health.slowing.is_none();
         let mut readouts = Self {
             title: step.scenario().file.title.clone(),
             scheme: step.motion().scheme.name,
@@ -81,10 +88,13 @@ impl Readouts {
             advice: advice.copied(),
             theory: monitor.theory(state.time_s),
             extremes: monitor.extremes,
+            foot_force: is_smooth
+                .then(|| pivot_force_z(&step.scenario().body.mechanics, state, step.loads())),
+            mean_foot_force: monitor.mean_foot_force(step).filter(|_| is_smooth),
             precession: None,
             nutation: None,
             tilt_swing: None,
-            frozen: monitor.frozen,
+            report_theory: monitor.report_theory,
             since: monitor.since,
             stepping: None,
         };
@@ -215,4 +225,61 @@ impl Value {
             Self::Text(_) | Self::Nothing => None,
         }
     }
+}
+
+/// Steps that are taken without asking whether to go on.
+const BLOCK: u64 = 4096;
+
+/// Plays the run of `scenario` to its end and reads `wanted` off it; `None` where `go_on` said no on the way.
+pub fn at_end(
+    scenario: Scenario,
+    wanted: &[&Readout],
+    go_on: &dyn Fn() -> bool,
+) -> Result<Option<Vec<Value>>, String> {
+    let scenario = Arc::new(scenario);
+    // Only these need every step compared with the exact motion, which may take longer than the run.
+    let is_held = wanted.iter().any(|readout| readout.source == Source::Exact);
+    let mut simulation = Simulation::new(Arc::clone(&scenario));
+    let mut monitor = Monitor::new(simulation.now());
+    let jumps = needs_no_steps(&scenario, wanted);
+    if jumps {
+        let end_s = Clock::end_s(&scenario);
+        let ended = simulation.step_to_time(end_s);
+        ended.map_err(|error| error.to_string())?;
+    }
+    while !jumps && simulation.step_number() < scenario.steps {
+        let end = scenario.steps.min(simulation.step_number() + BLOCK);
+        while simulation.step_number() < end {
+            let step = simulation.step().map_err(|error| error.to_string())?;
+            if is_held {
+                monitor.follow(step);
+            } else {
+                monitor.measure(step);
+            }
+        }
+        if !go_on() {
+            return Ok(None);
+        }
+    }
+    let health = monitor.health(simulation.now());
+    // What would mend a run is part of the one sentence about it, and takes a search.
+    let is_asked = wanted.iter().any(|readout| readout.name == "health");
+    let is_wrong = health.is_believed() == Some(false);
+    let advice = (is_asked && is_wrong).then(|| advise(&scenario));
+    let read = Readouts::new(&simulation, &mut monitor, &health, advice.as_ref());
+    Ok(Some(
+        wanted.iter().map(|readout| readout.of(&read)).collect(),
+    ))
+}
+
+/// Whether the `wanted` numbers are the same however the run gets to its end: those of theory, where nothing happens at
+/// certain steps on the way, and the scheme needs none.
+fn needs_no_steps(scenario: &Scenario, wanted: &[&Readout]) -> bool {
+    let counts_steps = |window: Window| matches!(window, Window::Steps { .. });
+    scenario.motion.scheme.order.is_none()
+        && wanted
+            .iter()
+            .all(|readout| readout.source == Source::Theory)
+        && scenario.edits.is_empty()
+        && !scenario.pushes.iter().any(|push| counts_steps(push.window))
 }

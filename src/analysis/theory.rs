@@ -15,8 +15,6 @@ use std::fmt;
 pub struct Theory {
     /// The axis about which precession, tilts and path are meant.
     pub axis: Axis,
-    /// κ = I3/I1.
-    pub kappa: f64,
     /// Moment of the load, N m: M g h for gravity alone, negative where it pulls the axle to +z.
     pub load: f64,
     /// L3 = L·axle, J s, a constant of the motion.
@@ -161,10 +159,9 @@ impl Theory {
         };
         let cusp_cosine = state.momentum.dot(&up) / spin;
         let cusp_tilt_deg = (size > 0.0 && spins && cusp_cosine.abs() <= 1.0)
-            .then(|| cusp_cosine.acos().to_degrees());
+            .then(|| libm::acos(cusp_cosine).to_degrees());
         Self {
             axis: Axis::new(up, size > 0.0),
-            kappa: top.kappa(),
             load,
             spin,
             fast_top_precession: spins.then(|| load / spin),

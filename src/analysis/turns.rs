@@ -135,9 +135,9 @@ impl StraightLine {
 
     /// Standard error of [`time_s`](Self::time_s), s, where the scatter counts `weight` times.
     pub fn time_error_s(&self, weight: f64) -> f64 {
-        let of_end = |turn: &Turn| turn.time_off_s.hypot(turn.time_error_s);
-        let ends = of_end(&self.first).hypot(of_end(&self.last));
-        ends.hypot(2_f64.sqrt() * weight * self.time_scatter_s)
+        let of_end = |turn: &Turn| libm::hypot(turn.time_off_s, turn.time_error_s);
+        let ends = libm::hypot(of_end(&self.first), of_end(&self.last));
+        libm::hypot(ends, 2_f64.sqrt() * weight * self.time_scatter_s)
     }
 
     /// Standard error of [`rate`](Self::rate), rad/s, likewise.
@@ -146,9 +146,9 @@ impl StraightLine {
         let of_end = |turn: &Turn| {
             let late = (turn.azimuth_rate - rate) * turn.time_error_s;
             let off = turn.azimuth_off - rate * turn.time_off_s;
-            turn.azimuth_error.hypot(late).hypot(off)
+            libm::hypot(libm::hypot(turn.azimuth_error, late), off)
         };
-        let ends = of_end(&self.first).hypot(of_end(&self.last));
-        ends.hypot(2_f64.sqrt() * weight * self.azimuth_scatter) / self.time_s()
+        let ends = libm::hypot(of_end(&self.first), of_end(&self.last));
+        libm::hypot(ends, 2_f64.sqrt() * weight * self.azimuth_scatter) / self.time_s()
     }
 }

@@ -12,8 +12,10 @@
 //!
 //! - [`folder`]: the folders, and the teacher's [`State`]; [`seat`]: the files of a seat; [`login`]: taking a seat.
 //! - [`votes`]: the votes of a question, counted; as CSV and as bars.
-//! - [`teacher`] and [`student`]: what a class adds to a lab; [`board`]: the class on a second terminal.
+//! - [`teacher`] and [`student`]: what a class adds to a lab; `aside`: what makes a student step aside;
+//!   [`board`]: the class on a second terminal.
 
+mod aside;
 pub mod board;
 pub mod folder;
 pub mod login;
@@ -29,6 +31,7 @@ use teacher::Teacher;
 
 use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
+use crate::lab::command::Command;
 use crate::lessons::Class as Lessons;
 use std::ops::ControlFlow;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -67,6 +70,15 @@ impl Class {
             Self::None => false,
             Self::Teacher(teacher) => teacher.takes(action, lab),
             Self::Student(student) => student.takes(action, lab, lessons),
+        }
+    }
+
+    /// Takes note that `commands`, which a key means, are about to be carried out.
+    pub fn expect(&mut self, commands: &[Command], lab: &mut Lab, lessons: &mut Lessons) {
+        match self {
+            Self::None => {}
+            Self::Teacher(teacher) => teacher.expect(),
+            Self::Student(student) => student.expect(commands, lab, lessons),
         }
     }
 

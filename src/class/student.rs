@@ -1,5 +1,6 @@
 //! A student's lab: it follows the teacher's, and keeps in the files of its seat where it stands and what was voted.
 
+use super::aside::{changes_the_run, commands_the_run};
 use super::folder::{Folder, Run, Stage, State};
 use super::seat::{Record, Seat, Vote};
 use super::{EVERY, unix_ms, votes};
@@ -388,6 +389,13 @@ impl Student {
         true
     }
 
+    /// Steps aside where `commands` change the run.
+    pub(super) fn expect(&mut self, commands: &[Command], lab: &mut Lab, lessons: &mut Lessons) {
+        if self.follows() && commands.iter().any(commands_the_run) {
+            self.step_aside(lab, lessons);
+        }
+    }
+
     fn step_aside(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
         (self.record.is_aside, self.is_new) = (true, true);
         self.shown = Shown::default();
@@ -408,41 +416,12 @@ impl Student {
     fn come_back(&mut self, lab: &mut Lab) {
         (self.record.is_aside, self.is_new) = (false, true);
         self.next_look = Duration::ZERO;
-        if lab.player().playback.step_number() > 0 && !lab.player().is_pinned() {
+        if lab.player().playback.step_number() > 0 && !lab.comparison().is_pinned() {
             let _ = lab.carry_out(&Command::Pin(true));
             self.has_pinned = true;
         }
         lab.refuse("back in the class");
     }
-}
-
-/// Whether `action` changes run or page, so that a lab which does it follows no more.
-fn changes_the_run(action: Action) -> bool {
-    use Action as A;
-    use LessonKey as Key;
-    matches!(
-        action,
-        A::TogglePause
-            | A::Step
-            | A::StepBack
-            | A::NextPhase
-            | A::PhaseBack
-            | A::GoTo
-            | A::GoToCursor
-            | A::Restart
-            | A::Faster
-            | A::Slower
-            | A::Undo
-            | A::Redo
-            | A::Push
-            | A::ChoosePush
-            | A::Parameters
-            | A::FindValue
-            | A::Edit
-            | A::TakeAdvice
-            | A::Browse
-            | A::Lesson(Key::Next | Key::Before | Key::Again | Key::ShowTask | Key::List)
-    )
 }
 
 /// Brings the run of `lab` to where `run` is by now. Returns whether it stands or plays there.

@@ -155,9 +155,9 @@ impl Teacher {
         let before = self.state.shown.as_ref();
         let still = before.filter(|before| !is_running && before.step == step);
         Some(Run {
-            name: lab.work().name().to_owned(),
+            name: lab.runs().name().to_owned(),
             step,
-            end_s: lab.work().present().end_s,
+            end_s: lab.runs().present().end_s,
             at_ms: still.map_or_else(unix_ms, |before| before.at_ms),
             is_running,
             speed: playback.speed(),
@@ -276,6 +276,14 @@ impl Teacher {
         lines
     }
 
+    /// Takes note that a key carries out commands: it closes the menu, and the class is to see what they do.
+    pub(super) fn expect(&mut self) {
+        self.next_look = Duration::ZERO;
+        if self.menu == Menu::Open {
+            self.menu = Menu::Closed;
+        }
+    }
+
     pub(super) fn takes(&mut self, action: Action, lab: &mut Lab) -> bool {
         self.next_look = Duration::ZERO;
         match (self.menu, action) {
@@ -291,7 +299,7 @@ impl Teacher {
                     3 => self.is_followed = !self.is_followed,
                     _ => {
                         self.menu = Menu::Seats(0);
-                        lab.turn_to_sheet();
+                        lab.view_mut().turn_to_sheet();
                     }
                 }
             }

@@ -4,7 +4,6 @@ use super::Folder;
 use super::folder::{Question, Stage, State};
 use super::seat::{Presence, Record, Seat, Vote};
 use crate::lab::sheet::{Kind, Paragraph};
-use crate::lessons::lesson::Right;
 use crate::lessons::{Asked, Page, Predict};
 use crate::text::number::{shortest, significant};
 
@@ -58,13 +57,10 @@ impl Tally {
             .filter_map(|sitting| sitting.record.votes.iter().find(is_of_it));
         let (late, in_time): (Vec<_>, Vec<_>) = votes.partition(|vote| vote.late);
         let choices: Vec<f64> = in_time.iter().map(|vote| vote.choice).collect();
-        let right = predict.right.as_ref().filter(|_| !choices.is_empty());
+        let right = predict.right.filter(|_| !choices.is_empty());
         let right = right.map(|right| {
-            let hits = choices
-                .iter()
-                .filter(|choice| right.takes(**choice))
-                .count();
-            hits as f64 / choices.len() as f64
+            let hits = choices.iter().filter(|choice| **choice == right as f64);
+            hits.count() as f64 / choices.len() as f64
         });
         Self {
             bars: match &predict.asked {
@@ -85,12 +81,7 @@ impl Tally {
             ..=70.0 => "let them talk, then again",
             _ => "go on",
         };
-        let right = match predict.right.as_ref()? {
-            Right::Choice(number) => number.to_string(),
-            Right::Number { value, within } => {
-                format!("{} ± {}", shortest(*value), shortest(*within))
-            }
-        };
+        let right = predict.right?;
         Some(format!("right: {right}, {percent:.0} %: {next}"))
     }
 }

@@ -1,14 +1,22 @@
-//! Arguments that several commands have, and those that several files read.
+//! Arguments that several commands have, how their values are read, and the scenario that they mean.
 
-use super::values::{frames, length, one_or_more, positive, setting, steps};
-use crate::lab::view::markers::Marker;
+use super::refuse;
+use crate::export::Layout;
+use crate::export::layout::LayoutFile;
 use crate::lab::view::theme::Background;
+use crate::lab::view::theme::Marker;
 use crate::physics::scheme;
-use crate::tui::surroundings::ColourChoice;
+use crate::run::Simulation;
+use crate::scenario::rescale::MOST_STEPS;
+use crate::scenario::{Document, Problem, Problems, Scenario};
+use crate::tui::terminal::MOST_CELLS;
+use crate::tui::theme::ColourChoice;
 use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
 use std::num::NonZeroU64;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 #[derive(Debug, Args)]
 pub(super) struct ScenarioArgs {
@@ -107,38 +115,29 @@ pub(super) struct Look {
     pub(super) no_mouse: bool,
 }
 
-impl ValueEnum for ColourChoice {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Auto, Self::Always, Self::Never]
-    }
+/// Makes each of these values an argument by its name.
+macro_rules! named_values {
+    ($($kind:ty, $all:expr, $name:expr;)*) => {
+        $(impl ValueEnum for $kind {
+            fn value_variants<'a>() -> &'a [Self] {
+                $all
+            }
 
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(match self {
-            Self::Auto => "auto",
-            Self::Always => "always",
-            Self::Never => "never",
-        }))
-    }
+            fn to_possible_value(&self) -> Option<PossibleValue> {
+                Some(PossibleValue::new($name(*self)))
+            }
+        })*
+    };
 }
 
-impl ValueEnum for Background {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Dark, Self::Light]
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.name()))
-    }
-}
-
-impl ValueEnum for Marker {
-    fn value_variants<'a>() -> &'a [Self] {
-        &Self::ALL
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.name()))
-    }
+named_values! {
+    ColourChoice, &[Self::Auto, Self::Always, Self::Never], |it| match it {
+        Self::Auto => "auto",
+        Self::Always => "always",
+        Self::Never => "never",
+    };
+    Background, &[Self::Dark, Self::Light], Self::name;
+    Marker, &Self::ALL, Self::name;
 }
 
 #[derive(Debug, Args)]
@@ -210,9 +209,13 @@ pub(super) struct LessonArgs {
     #[arg(long, value_name = "N", requires = "name", value_parser = one_or_more)]
     pub(super) page: Option<NonZeroU64>,
 
-    /// Print the lesson for paper, as Markdown: pictures as text, room for predictions, no notes
+    /// Print a worksheet, as Markdown: it asks, has room for predictions and outcomes, and answers nothing
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
     pub(super) handout: bool,
+
+    /// With --handout: the results for afterwards, with the words and numbers of every page
+    #[arg(long, requires = "handout")]
+    pub(super) results: bool,
 
     /// Print what was predicted, in the newest session that holds it, beside what came out: to hand in
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
@@ -240,4 +243,186 @@ pub(super) struct LessonArgs {
 
     #[command(flatten)]
     pub(super) look: Look,
+}
+
+/// Which rows and columns a CSV has, and how its numbers are written.
+#[derive(Debug, Args)]
+pub(super) struct LayoutArgs {
+    /// Write every N-th row only, and the last
+    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true, value_parser = one_or_more)]
+    every: NonZeroU64,
+
+    /// Write these columns only, in this order; gyrolab man csv lists them
+    #[arg(
+        long,
+        value_name = "A,B",
+        value_delimiter = ',',
+        requires = "output",
+        help_heading = ROWS
+    )]
+    columns: Vec<String>,
+
+    /// Leave out the rows before this time, s; the run begins at 0 all the same
+    #[arg(long, value_name = "SECONDS", requires = "output", allow_negative_numbers = true, value_parser = time, help_heading = ROWS)]
+    from: Option<f64>,
+
+    /// Leave out the rows after this time, s; the run goes on to its end all the same
+    #[arg(long, value_name = "SECONDS", requires = "output", allow_negative_numbers = true, value_parser = time, help_heading = ROWS)]
+    to: Option<f64>,
+
+    /// Write a row for each point of the body at each step: its name, mass, place and velocity
+    #[arg(long, requires = "output", help_heading = ROWS)]
+    points: bool,
+
+    /// Write decimal commas, with semicolons between the columns, for Excel in German and other such languages
+    #[arg(long, requires = "output", help_heading = ROWS)]
+    excel: bool,
+}
+
+const ROWS: &str = "Rows and columns of the CSV";
+
+/// A time from the beginning of the run on, s.
+pub(super) fn time(text: &str) -> Result<f64, String> {
+    let fits = |seconds: &f64| *seconds >= 0.0 && seconds.is_finite();
+    bare(
+        text,
+        fits,
+        IN_SECONDS,
+        "must be a time in seconds, 0 or more",
+    )
+}
+
+impl LayoutArgs {
+    /// The layout; the process ends where there is none such, as it does where clap refuses.
+    pub(super) fn layout(&self) -> Layout {
+        let file = LayoutFile {
+            every: Some(self.every),
+            from_s: self.from,
+            to_s: self.to,
+            columns: (!self.columns.is_empty()).then(|| self.columns.clone()),
+            points: self.points,
+            excel: self.excel,
+            note: None,
+        };
+        file.check().unwrap_or_else(|error| {
+            let option = error.key.trim_end_matches("_s");
+            let message = format!("--{option}: {}", error.rule);
+            refuse("run", ErrorKind::ValueValidation, &message)
+        })
+    }
+}
+
+pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
+    text.parse()
+        .map_err(|_| "must be a whole number, 1 or more".to_owned())
+}
+
+/// The number `text` that `fits`, which is to be given in the unit `meant`; or what it must be.
+pub(super) fn bare<T: FromStr>(
+    text: &str,
+    fits: fn(&T) -> bool,
+    meant: &str,
+    rule: &str,
+) -> Result<T, String> {
+    let number = text.parse().ok().filter(fits);
+    number.ok_or_else(|| without_unit(text, meant).unwrap_or_else(|| rule.to_owned()))
+}
+
+pub(super) fn steps(text: &str) -> Result<u64, String> {
+    let rule = "must be a whole number of steps, 0 or more, in digits";
+    bare(text, |_| true, IN_STEPS, rule)
+}
+
+pub(super) fn length(text: &str) -> Result<u64, String> {
+    let rule = "must be a whole number of steps, 1 or more, in digits";
+    let steps = bare(text, |steps| *steps > 0, IN_STEPS, rule)?;
+    if i64::try_from(steps).is_err() {
+        return Err("is more steps than can be counted".to_owned());
+    }
+    Ok(steps)
+}
+
+pub(super) fn frames(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(frames) if (1..=60).contains(&frames) => Ok(frames),
+        _ => Err("must be a whole number from 1 to 60".to_owned()),
+    }
+}
+
+pub(super) fn setting(text: &str) -> Result<String, String> {
+    if text.contains('=') {
+        Ok(text.to_owned())
+    } else {
+        Err("must be KEY=VALUE, such as motion.time_step_s=0.05".to_owned())
+    }
+}
+
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    let fits = |number: &f64| *number > 0.0 && number.is_finite();
+    bare(text, fits, IN_SECONDS, "must be a number greater than zero")
+}
+
+pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
+    let (columns, lines) = MOST_CELLS;
+    let number = |text: &str, most| {
+        let number = text.parse().ok();
+        number.filter(|number| (1..=most).contains(number))
+    };
+    text.split_once('x')
+        .and_then(|(width, height)| Some((number(width, columns)?, number(height, lines)?)))
+        .ok_or_else(|| {
+            format!("must be columns x lines, such as 80x24, from 1x1 to {columns}x{lines}")
+        })
+}
+
+/// How a time is given, and how a step, which is no time.
+pub(super) const IN_SECONDS: &str = "in seconds";
+const IN_STEPS: &str = "in time steps";
+
+/// What is said of a number with a unit behind it, as `20s`; the number is to be given `meant`.
+fn without_unit(text: &str, meant: &str) -> Option<String> {
+    let number = text.trim_end_matches(char::is_alphabetic).trim_end();
+    let unit = text.strip_prefix(number)?.trim_start();
+    let value: f64 = number.parse().ok()?;
+    let is_unit = !unit.is_empty() && value.is_finite() && value >= 0.0;
+    is_unit.then(|| match unit {
+        "s" | "sec" | "second" | "seconds" if meant == IN_SECONDS => {
+            format!("must be a number without a unit: write {number}, {meant}")
+        }
+        _ => format!("must be a number without a unit ({unit}), {meant}"),
+    })
+}
+
+/// The scenario with all that the command line changes in it, so that its run file tells the whole run.
+pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Scenario, Problems> {
+    let mut document = Document::open(&args.scenario)?;
+    change(&mut document, &args.changes)?;
+    if let Some(steps) = length.steps {
+        document.set(&format!("motion.steps={steps}"))?;
+    }
+    let scenario = document.scenario()?;
+    let Some(duration) = length.duration else {
+        return Ok(scenario);
+    };
+    if duration / scenario.motion.time_step_s > MOST_STEPS {
+        let rule = format!("{duration:e} s are more than {MOST_STEPS:e} time steps");
+        let problem = Problem::at("--duration", rule);
+        return Err(Problems::one(args.scenario.clone(), problem));
+    }
+    let steps = Simulation::step_at(&scenario, duration).max(1);
+    document.set(&format!("motion.steps={steps}"))?;
+    document.scenario()
+}
+
+pub(super) fn change(document: &mut Document, changes: &Changes) -> Result<(), Problems> {
+    for set in &changes.set {
+        document.set(set)?;
+    }
+    if let Some(scheme) = &changes.scheme {
+        document.set(&format!("motion.scheme={scheme}"))?;
+    }
+    if let Some(time_step_s) = changes.time_step {
+        document.set_time_step(time_step_s)?;
+    }
+    Ok(())
 }

@@ -3,18 +3,17 @@
 //! The lab's own clock tells the time: it goes on by the same step from picture to picture, however long the computer needs
 //! for one. Neither settings nor the environment are read, so that a file of commands has one recording.
 
-use super::args::Changes;
+use super::args::{Changes, size};
 use super::new_lab::{DEFAULT, lab};
 use super::progress::{self, Interrupted, Interruption};
 use super::tell;
-use super::values::size;
 use crate::lab::Lab;
 use crate::lab::command;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::text::number::counted;
 use crate::text::printable::{Shown, printable};
-use crate::tui::recorder::Recorder;
+use crate::tui::screen::Recorder;
 use anyhow::{bail, ensure};
 use clap::Args;
 use serde_json::{Value, json};
@@ -150,7 +149,7 @@ impl Cast {
 
     /// Records what there is to see now, and the chapters that begin with it.
     fn look(&mut self, lab: &mut Lab) -> anyhow::Result<()> {
-        for title in lab.take_chapters() {
+        for title in lab.script_mut().take_chapters() {
             self.markers += 1;
             self.event("m", &title);
         }

@@ -1,8 +1,7 @@
 //! `gyrolab class` and `gyrolab --seat`: a class in a folder.
 
 use super::args::{ClassArgs, Look, WorkbenchArgs};
-use super::new_lab::DEFAULT;
-use super::played::{new_lab, refused};
+use super::new_lab::{DEFAULT, new_lab, refused};
 use super::workbench::{Entrance, open_at};
 use super::{print, progress, sessions, tell};
 use crate::class::folder::Folder;

@@ -1,9 +1,7 @@
 //! `gyrolab compare`: schemes and time steps against the exact motion.
 
-use super::args::{LengthArgs, ScenarioArgs};
+use super::args::{LengthArgs, ScenarioArgs, positive, scenario_of};
 use super::progress::{self, Interrupted};
-use super::scenario::scenario_of;
-use super::values::positive;
 use super::{one_on_stdout, print};
 use crate::analysis::compare::{Table, compare as table_of};
 use crate::analysis::cost;

@@ -1,16 +1,16 @@
 //! Completion in the shell: what fits after the words that are typed. The script that `gyrolab completions` prints asks
 //! the program itself: presets, keys and names are always of this version.
 
-use super::manual::topics::names_and_commands;
+use super::manual::names_and_commands;
 use super::{command, print};
 use crate::analysis::readouts::READOUTS;
-use crate::data::shipped::SHIPPED;
+use crate::data::SHIPPED;
 use crate::export::columns::{COLUMNS, Column, OPTIONAL_COLUMNS, POINT_COLUMNS};
 use crate::figure::kind;
 use crate::lessons::shipped::LESSONS;
 use crate::scenario::keys::{Effect, KEYS, Key, Kind};
 use crate::scenario::presets::PRESETS;
-use crate::sweep::shipped::SWEEPS;
+use crate::sweep::SWEEPS;
 use crate::text::shipped::Shipped;
 use anyhow::{Context, bail};
 use clap::{Arg, Command};
@@ -196,7 +196,6 @@ fn keys(begin: &str, wanted: fn(&Key) -> bool, end: &str) -> Vec<(String, &'stat
     found
 }
 
-/// Whether a fit can look for the value of `key`.
 fn is_free(key: &Key) -> bool {
     Effect::of(key.path) != Effect::None && matches!(key.kind, Kind::Number(_) | Kind::Vector)
 }

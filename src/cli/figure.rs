@@ -1,14 +1,12 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{Changes, LengthArgs, ScenarioArgs};
-use super::layout::time;
+use super::args::{Changes, LengthArgs, ScenarioArgs, positive, scenario_of, time};
 use super::progress::{self, Interrupted, Interruption};
-use super::scenario::scenario_of;
-use super::values::positive;
 use super::{ended_by, refuse, tell};
 use crate::analysis::cost;
 use crate::data;
 use crate::figure::kind::Kind;
+use crate::figure::labels::Labels;
 use crate::figure::of_runs::{self, Figure, Request, Run};
 use crate::figure::table::Table;
 use crate::figure::{self, Format, PT_PER_MM, of_table};
@@ -46,7 +44,7 @@ pub(super) struct FigureArgs {
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
     to: Option<f64>,
 
-    /// Draw the exact motion beside it, dashed
+    /// Draw the exact motion beneath it, as a wide pale line
     #[arg(long)]
     exact: bool,
 
@@ -63,6 +61,9 @@ pub(super) struct FigureArgs {
     schemes: Vec<String>,
 
     #[command(flatten)]
+    labels: LabelArgs,
+
+    #[command(flatten)]
     changes: Changes,
 
     #[command(flatten)]
@@ -71,6 +72,72 @@ pub(super) struct FigureArgs {
     /// Replace an existing file
     #[arg(long)]
     force: bool,
+}
+
+#[derive(Debug, Args)]
+struct LabelArgs {
+    /// Write this above the figure
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+
+    /// Call a run this in the legend: once per run, in order
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
+    label: Vec<String>,
+
+    /// Write this along the axis below
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
+    x_label: Option<String>,
+
+    /// Write this along the axis at the left: once per panel, from the top
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
+    y_label: Vec<String>,
+
+    /// Make these axes logarithmic
+    #[arg(long, value_name = "AXES", value_parser = ["x", "y", "xy"])]
+    log: Option<String>,
+
+    /// Show this range of the axis at the left, such as 0..1
+    #[arg(long, value_name = "A..B", allow_hyphen_values = true, value_parser = range)]
+    y_range: Option<(f64, f64)>,
+
+    /// In SVG write text as text, in the reader's fonts: it can be selected [default: outlines]
+    #[arg(long)]
+    text: bool,
+}
+
+impl LabelArgs {
+    fn labels(&self) -> Labels {
+        let log = self.log.as_deref().unwrap_or_default();
+        Labels {
+            title: self.title.clone(),
+            names: self.label.clone(),
+            x: self.x_label.clone(),
+            y: self.y_label.clone(),
+            is_log: ["x", "y"].map(|axis| log.contains(axis)),
+            y_range: self.y_range,
+        }
+    }
+
+    /// The form in which `output` is written.
+    fn format(&self, output: &Path) -> anyhow::Result<Format> {
+        match (Format::of(output)?, self.text) {
+            (Format::Svg, true) => Ok(Format::SvgText),
+            (_, true) => {
+                bail!("--text is for .svg: the words of a .pdf can be selected as they are")
+            }
+            (format, false) => Ok(format),
+        }
+    }
+}
+
+/// Two numbers, the lower one first: 0..1.
+fn range(text: &str) -> Result<(f64, f64), String> {
+    let ends = text.split_once("..").and_then(|(low, high)| {
+        let end = |text: &str| text.trim().parse().ok().filter(|end: &f64| end.is_finite());
+        Some((end(low)?, end(high)?))
+    });
+    let ends = ends.filter(|(low, high)| low < high && (high - low).is_finite());
+    ends.ok_or_else(|| "must be two numbers, the lower one first, such as 0..1".to_owned())
 }
 
 /// The narrowest and the widest page, mm.
@@ -94,7 +161,7 @@ fn width(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
-    let format = Format::of(&args.output)?;
+    let format = args.labels.format(&args.output)?;
     let subject = subject(args)?;
     let (output, interruption) = progress::open_for(&args.output, args.force)?;
     let figure = drawn(&subject, args, &interruption)?;
@@ -126,22 +193,14 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
     }
     match (tables.pop(), args.runs.len()) {
         (None, _) => {
-            let kind = args.kind.as_deref().map(Kind::named).transpose();
-            let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
-            let measured = args.measured.as_deref().map(data::open).transpose()?;
-            let usual = match &measured {
-                Some(measured) => Kind::measured(measured.series()?),
-                None => Kind::traces(),
-            };
-            let request = Request {
-                kind: kind.unwrap_or(usual),
-                from_s: args.from.unwrap_or(0.0),
-                to_s: args.to,
-                exact: args.exact,
-                measured: measured.map(Arc::new),
-                width_pt: args.width * PT_PER_MM,
-            };
-            Ok(Subject::Runs(runs(args)?, request))
+            let request = request(args)?;
+            let (runs, named) = (runs(args)?, args.labels.label.len());
+            ensure!(
+                named == 0 || named == runs.len(),
+                "--label is given {named} times for {} runs: give it once per run, in order",
+                runs.len()
+            );
+            Ok(Subject::Runs(runs, request))
         }
         (Some(_), 2..) => {
             bail!("the table of a comparison, of a sweep or of a fit is drawn alone: give one file")
@@ -151,16 +210,42 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
                 || args.from.or(args.to).is_some()
                 || args.measured.is_some()
                 || !args.schemes.is_empty()
+                || !args.labels.label.is_empty()
                 || args.changes.is_some()
                 || args.length.is_some();
             ensure!(
                 !is_changed,
-                "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --width and --force are for it",
+                "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --width, --force, --title, --text and those of its axes are for it",
                 args.runs[0]
             );
             Ok(Subject::Table(table))
         }
     }
+}
+
+fn request(args: &FigureArgs) -> anyhow::Result<Request> {
+    let kind = args.kind.as_deref().map(Kind::named).transpose();
+    let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
+    let measured = args.measured.as_deref().map(data::open).transpose()?;
+    if let Some(left_out) = measured
+        .as_ref()
+        .and_then(data::Measured::left_out_in_words)
+    {
+        tell(format_args!("gyrolab: {left_out}"));
+    }
+    let usual = match &measured {
+        Some(measured) => Kind::measured(measured.series()?),
+        None => Kind::traces(),
+    };
+    Ok(Request {
+        kind: kind.unwrap_or(usual),
+        from_s: args.from.unwrap_or(0.0),
+        to_s: args.to,
+        exact: args.exact,
+        measured: measured.map(Arc::new),
+        width_pt: args.width * PT_PER_MM,
+        labels: args.labels.labels(),
+    })
 }
 
 /// Refuses `--kind` as clap refuses a value.
@@ -220,10 +305,17 @@ fn drawn_table(table: &Table, args: &FigureArgs) -> anyhow::Result<Figure> {
     let columns = args.kind.iter().flat_map(|kind| kind.split(','));
     let columns: Vec<_> = columns.map(str::trim).collect();
     let chart = of_table::chart(table, &columns, args.width * PT_PER_MM);
-    let chart = chart.map_err(|refusal| anyhow::anyhow!("{}: {refusal}", args.runs[0]))?;
+    let refused = |refusal| anyhow::anyhow!("{}: {refusal}", args.runs[0]);
+    let mut chart = chart.map_err(refused)?;
+    let labels = args.labels.labels();
+    let hidden = labels.apply(&mut chart).map_err(refused)?;
+    let mut scene = chart.scene();
+    labels.write_title(&mut scene);
+    let mut warnings = of_table::warnings(table, &columns);
+    warnings.extend(hidden);
     Ok(Figure {
-        scene: chart.scene(),
-        warnings: of_table::warnings(table, &columns),
+        scene,
+        warnings,
         dense: None,
         broke: None,
     })

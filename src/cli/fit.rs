@@ -1,21 +1,19 @@
 //! `gyrolab fit`: keys of a scenario, so that its runs come nearest to measured data.
 
-use super::args::Changes;
-use super::commands::{Cli, Command};
+use super::args::{Changes, change};
 use super::progress::{self, Interrupted, Interruption, Meter};
-use super::scenario::change;
-use super::{one_on_stdout, print_result, tell_of_rows};
+use super::{one_on_stdout, print_result, tell, tell_of_rows};
 use crate::data::{self, Measured};
 use crate::export::Destination;
-use crate::fit::report::Report;
-use crate::fit::table::{self, Asked};
+use crate::fit::report::{self, Asked, Report};
 use crate::fit::{Fit, Free, Model, NoFit, fit as fitted};
+use crate::scenario::csv::{Renaming, renaming};
 use crate::scenario::{Document, Problem, Problems};
 use crate::text::number::{shortest, significant};
 use crate::text::printable::{Shown, brief};
 use crate::verify::Unverified;
 use anyhow::{Context, anyhow, bail};
-use clap::{Args, Parser};
+use clap::{Args, FromArgMatches};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -41,6 +39,10 @@ pub(super) struct FitArgs {
 
     #[command(flatten)]
     pub(super) changes: Changes,
+
+    /// What the data's columns are: the file's name or number (from 1) of each, and gyrolab's
+    #[arg(long, value_name = "COLUMN=NAME,...", value_delimiter = ',', value_parser = renaming)]
+    pub(super) map: Vec<Renaming>,
 
     /// Fit these rows of the data alone, counted from 1, such as 1,3,5-8
     #[arg(long, value_name = "ROWS")]
@@ -91,11 +93,14 @@ const SCHEME: &str = "exact";
 pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     one_on_stdout("fit", args.output.as_deref(), args.json);
     let (model, own) = model(args)?;
+    if let Some(left_out) = model.measured.left_out_in_words() {
+        tell(format_args!("gyrolab: {left_out}"));
+    }
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let meter = Meter::counting("run");
     let told = |step: u64, sum: f64| {
         let (runs, sum) = (model.runs(), significant(sum, 4));
-        meter.say(format!("{runs} runs, step {step}, chi^2 {sum}"));
+        meter.say(&format!("{runs} runs, step {step}, chi^2 {sum}"));
     };
     let found = fitted(&model, &|| !interruption.has_come(), &told);
     drop(meter);
@@ -125,7 +130,13 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
 pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8>, Unverified> {
     let cannot = |why: String| Unverified::from(format!("cannot be recomputed: {why}"));
     let words = shlex::split(command).unwrap_or_default();
-    let Ok(Some(Command::Fit(args))) = Cli::try_parse_from(words).map(|cli| cli.command) else {
+    let words = words
+        .get(1..)
+        .filter(|words| words.first().is_some_and(|word| word == "fit"));
+    let line = FitArgs::augment_args(clap::Command::new("fit"));
+    let matches = line.try_get_matches_from(words.unwrap_or_default());
+    let args = matches.and_then(|matches| FitArgs::from_arg_matches(&matches));
+    let Ok(args) = args else {
         let why = "the line command at its top is no command line of a fit";
         return Err(cannot(why.to_owned()));
     };
@@ -147,7 +158,7 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
 
 /// What is fitted, and the scenario's own scheme, where no other was asked for.
 fn model(args: &FitArgs) -> Result<(Model, Option<&'static str>), Problems> {
-    let measured = data::open(&args.measured)?;
+    let measured = data::open_with(&args.measured, &args.map)?;
     let measured = chosen(measured, args.rows.as_ref())?;
     let (document, own) = scenario(args)?;
     let keys = args.free.iter();
@@ -172,7 +183,6 @@ fn scenario(args: &FitArgs) -> Result<(Document, Option<&'static str>), Problems
     Ok((document, own))
 }
 
-/// The rows of `measured` that are to be fitted.
 fn chosen(mut measured: Measured, rows: Option<&Rows>) -> Result<Measured, Problems> {
     let Some(rows) = rows else {
         return Ok(measured);
@@ -198,12 +208,16 @@ fn chosen(mut measured: Measured, rows: Option<&Rows>) -> Result<Measured, Probl
     Ok(measured)
 }
 
-/// The command line that makes the fit again.
 fn command(args: &FitArgs) -> String {
     let free = args.free.join(",");
     let mut words = vec!["gyrolab", "fit", &args.measured, "--in", &args.scenario];
     words.extend(["--free", &free]);
     words.extend(args.changes.set.iter().flat_map(|set| ["--set", set]));
+    let map = args
+        .map
+        .iter()
+        .map(|(column, name)| format!("{column}={name}"));
+    let map = map.collect::<Vec<_>>().join(",");
     let time_step = args.changes.time_step.map(shortest).unwrap_or_default();
     let rows = args.rows.as_ref().map_or("", |rows| &rows.text);
     let scheme = args.changes.scheme.as_deref().unwrap_or_default();
@@ -211,6 +225,7 @@ fn command(args: &FitArgs) -> String {
         ("--time-step", &*time_step),
         ("--scheme", scheme),
         ("--rows", rows),
+        ("--map", &map),
     ] {
         if !value.is_empty() {
             words.extend([option, value]);
@@ -237,7 +252,7 @@ fn write(output: impl Write, report: &Report<'_>, args: &FitArgs) -> anyhow::Res
         scatter: quality.scatter,
         verdict: report.fit.sentence(report.model),
     };
-    Ok(table::write(output, report, &scenario, asked)?)
+    Ok(report::write_csv(output, report, &scenario, asked)?)
 }
 
 /// The result, and where its rows are written.

@@ -2,7 +2,7 @@
 
 use super::{lesson, print, tell};
 use crate::analysis::readouts::READOUTS;
-use crate::data::shipped as measured;
+use crate::data;
 use crate::export::summary::steps_in_words;
 use crate::journal::changed::Original;
 use crate::lab::command;
@@ -13,7 +13,7 @@ use crate::scenario::keys::{KEYS, Key};
 use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario, Window};
-use crate::sweep::{Sweep, shipped as sweeps};
+use crate::sweep::{self, SWEEPS, Sweep};
 use crate::text::number::{counted, decimal, shortest};
 use crate::text::printable::{Shown, printable, printable_lines};
 use anyhow::bail;
@@ -27,12 +27,12 @@ pub(super) fn presets(name: Option<&str>) -> anyhow::Result<ExitCode> {
         return print(&preset_list()?);
     };
     let preset = presets::find(name).map(|preset| preset.text);
-    let preset = preset.or_else(|| sweeps::find(name).map(|sweep| sweep.text));
-    match preset.or_else(|| measured::find(name).map(|data| data.text)) {
+    let preset = preset.or_else(|| sweep::find(name).map(|sweep| sweep.text));
+    match preset.or_else(|| data::find_shipped(name).map(|data| data.text)) {
         Some(text) => print(text),
         None => {
-            let sweeps = sweeps::SWEEPS.iter().map(|sweep| sweep.name);
-            let data = measured::SHIPPED.iter().map(|data| data.name);
+            let sweeps = SWEEPS.iter().map(|sweep| sweep.name);
+            let data = data::SHIPPED.iter().map(|data| data.name);
             let names = PRESETS.iter().map(|preset| preset.name);
             let near = nearest(name, names.chain(sweeps).chain(data));
             bail!("no preset named {}: {near}", printable(name))

@@ -1,12 +1,13 @@
 //! `gyrolab lesson`: the list of lessons, a lesson in the lab, on paper, or to begin from; and `check` of one.
 
 use super::args::{LessonArgs, Look};
-use super::played::{new_lab, refused, write};
+use super::new_lab::{new_lab, refused, write};
 use super::{notes, print, progress, sessions, tell, workbench};
 use crate::lab::Lab;
-use crate::lessons::class::lessons_in;
+use crate::lessons::class::files_in;
+use crate::lessons::handout::{self, Paper};
 use crate::lessons::play::{self, Walk};
-use crate::lessons::{Lesson, Page, handout, reading, shipped};
+use crate::lessons::{Lesson, Page, reading, shipped};
 use crate::scenario::Problems;
 use crate::storage::confined::Confined;
 use crate::text::number::counted;
@@ -43,7 +44,12 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     let lesson = reading::open(name)?;
     if args.handout {
         return write(args, |go_on| {
-            handout::handout(&lesson, new_lab(args.look)?, &picture, go_on)
+            let paper = if args.results {
+                Paper::Results
+            } else {
+                Paper::Worksheet
+            };
+            handout::handout(&lesson, paper, new_lab(args.look)?, &picture, go_on)
                 .map_err(|problem| refused(&lesson, problem))
         });
     }
@@ -73,7 +79,7 @@ fn print_page(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCo
 fn list(folder: Option<&Confined>) -> anyhow::Result<String> {
     let mut text = String::new();
     for path in folder
-        .map(|folder| lessons_in(folder.lessons()))
+        .map(|folder| files_in(folder.lessons()))
         .unwrap_or_default()
     {
         let lesson = reading::open(&path)?;

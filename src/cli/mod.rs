@@ -5,49 +5,114 @@
 mod args;
 mod cast;
 mod class;
-mod commands;
 mod compare;
 mod complete;
-mod examples;
 mod figure;
 mod fit;
 mod info;
-mod layout;
 mod lesson;
 mod manual;
 mod new_lab;
 mod notes;
-mod played;
 mod progress;
 mod run;
-mod scenario;
 mod sessions;
 mod settings;
 mod show;
 mod sweep;
-mod values;
 mod verify;
 mod workbench;
 mod writeup;
 
-use crate::export::destination::Destination;
-use crate::export::destination::DestinationError;
+use crate::export::destination::{Destination, DestinationError};
 use crate::scenario::presets;
 use crate::text::number::counted;
 use crate::text::printable::{Shown, is_steering, printable, printable_lines};
 use anyhow::Context;
-use args::WorkbenchArgs;
+use args::{ClassArgs, LessonArgs, WorkbenchArgs};
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{CommandFactory, FromArgMatches};
-use commands::{Cli, Command};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use progress::Interrupted;
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// A terminal lab for the precession of a gyroscope: a report's stepper, better schemes, and any run as CSV.
+#[derive(Debug, Parser)]
+#[command(
+    name = "gyrolab",
+    bin_name = "gyrolab",
+    version,
+    about,
+    args_conflicts_with_subcommands = true
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+
+    #[command(flatten)]
+    workbench: WorkbenchArgs,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scenario without a terminal: a summary, or with -o its CSV
+    Run(run::RunArgs),
+    /// Print the lab's picture at the end of a run, as plain text
+    Show(show::ShowArgs),
+    /// Hold schemes and time steps against the exact motion: errors, drifts, cost, measured order
+    Compare(compare::CompareArgs),
+    /// Draw runs, or a table of compare, of a sweep or of a fit, on paper: SVG, PDF or PNG
+    Figure(figure::FigureArgs),
+    /// Make a folder for a write-up of a run: CSV, figures, measured numbers beside theory, and how to make it again
+    Writeup(writeup::WriteupArgs),
+    /// Compute a CSV again from its header: the same, or the first row that differs
+    Verify(verify::VerifyArgs),
+    /// Record the lab while it carries out a file of commands, as asciinema 3 plays it
+    Cast(cast::CastArgs),
+    /// Run a grid of runs on all cores and write a row for each, or list the shipped sweeps
+    Sweep(sweep::SweepArgs),
+    /// Fit keys of a scenario to measured data: values with uncertainties, and whether the model fits
+    Fit(fit::FitArgs),
+    /// List the shipped presets, or print one, or a shipped sweep, as TOML, or shipped measured data as CSV
+    Presets {
+        /// The preset, sweep or measured data to print
+        name: Option<String>,
+    },
+    /// List the sessions that --resume can come back to: name, time, step, whether it is in use, run
+    Sessions {
+        /// Those of gyrolab --folder DIR
+        #[arg(long, value_name = "DIR")]
+        folder: Option<PathBuf>,
+    },
+    /// List the numerical schemes
+    Schemes,
+    /// List the lessons, open the lab with one, or print it for paper
+    Lesson(LessonArgs),
+    /// Teach a class: a lesson that the students' labs follow, with their votes
+    Class(ClassArgs),
+    /// Validate scenario files, run files, sweep files, the headers of CSVs, files of commands, and lessons (.md), which are played
+    Check {
+        /// Files to look at; a preset is none
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+    },
+    /// List every key that a scenario or run file may hold; the keys to press are in gyrolab man, and ? in the lab
+    Keys,
+    /// List every number that is read off a run: name, unit, meaning, where it comes from
+    Readouts,
+    /// Print a completion script for a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual: all of it, the page of a command, or a topic
+    Man(manual::ManArgs),
+}
 
 /// Ended by the user's Ctrl-C, as shells count it.
 const INTERRUPTED: u8 = 130;
@@ -81,7 +146,7 @@ fn ended(result: anyhow::Result<ExitCode>) -> ExitCode {
 
 /// The command line with its examples, and with what completes its values.
 fn command() -> clap::Command {
-    complete::with_completers(examples::with_examples(Cli::command()))
+    complete::with_completers(manual::with_examples(Cli::command()))
 }
 
 fn execute(cli: Cli) -> anyhow::Result<ExitCode> {

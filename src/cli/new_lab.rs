@@ -1,14 +1,20 @@
-//! A new lab, with the scenario, the colours and the dots that the command line asks for.
+//! A new lab, with the scenario, the colours and the dots that the command line asks for; one in which a lesson is played
+//! without a terminal, and where what comes of it is written.
 
-use super::args::{Changes, Look};
-use super::scenario::change;
+use super::args::{Changes, LessonArgs, Look, WorkbenchArgs, change};
+use super::print;
+use super::progress::{self, Interrupted};
+use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::view::View;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
-use crate::scenario::Document;
-use crate::tui::panes;
-use crate::tui::surroundings;
+use crate::lessons::{Lesson, play};
+use crate::scenario::{Document, Problem, Problems};
+use crate::tui::{panes, theme};
+use anyhow::{Context, bail};
+use std::ops::ControlFlow;
+use std::process::ExitCode;
 use std::sync::Arc;
 
 /// What is opened where nothing is named.
@@ -43,7 +49,7 @@ pub(super) fn variable(name: &str) -> Option<String> {
 
 /// The colours that `look` asks for, or that suit the terminal.
 pub(super) fn theme(look: Look) -> Theme {
-    let theme = surroundings::theme(look.color.unwrap_or_default(), variable);
+    let theme = theme::theme(look.color.unwrap_or_default(), variable);
     Theme {
         background: look.background.unwrap_or(theme.background),
         ..theme
@@ -52,7 +58,7 @@ pub(super) fn theme(look: Look) -> Theme {
 
 /// The dots that are asked for, or that suit locale and terminal.
 pub(super) fn marker(markers: Option<Marker>) -> Marker {
-    markers.unwrap_or_else(|| surroundings::marker(variable))
+    markers.unwrap_or_else(|| theme::marker(variable))
 }
 
 /// A lab without colours, for pictures as plain text.
@@ -66,4 +72,43 @@ pub(super) fn plain_lab(
         background: Background::Dark,
     };
     lab(name, changes, markers, plain, false)
+}
+
+/// A lab with what `name` names, as the command line wants it.
+pub(super) fn of_workbench(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
+    let theme = theme(args.look);
+    let mut lab = lab(name, &args.changes, args.look.markers, theme, !args.paused)?;
+    if let Some(step) = args.at {
+        // No signal is caught yet: one that ends the process here has nothing to put right.
+        lab.begin_at(step, |_, _| ControlFlow::Continue(()))
+            .with_context(|| name.to_owned())?;
+    }
+    Ok(lab)
+}
+
+pub(super) fn new_lab(look: Look) -> anyhow::Result<Lab> {
+    plain_lab(DEFAULT, &Changes::default(), look.markers)
+}
+
+pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
+    Problems::one(lesson.origin.clone(), problem).into()
+}
+
+/// Writes what `make` makes to the file that is asked for, or prints it. `make` asks now and then whether to go on.
+pub(super) fn write(
+    args: &LessonArgs,
+    make: impl FnOnce(play::GoOn<'_>) -> anyhow::Result<String>,
+) -> anyhow::Result<ExitCode> {
+    let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
+    let text = make(&mut interruption.meter());
+    if interruption.has_come() {
+        bail!(Interrupted);
+    }
+    match output {
+        None | Some(Destination::Stdout(_)) => print(&text?),
+        Some(output) => {
+            output.write_and_keep(text?.as_bytes())?;
+            Ok(ExitCode::SUCCESS)
+        }
+    }
 }

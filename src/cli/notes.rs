@@ -2,10 +2,10 @@
 //! student who hands it in.
 
 use super::args::LessonArgs;
-use super::played::{new_lab, refused, write};
-use super::progress::{self, Interrupted, Interruption};
+use super::new_lab::{new_lab, refused, write};
+use super::progress::{self, Interrupted, Interruption, LiveLine};
 use super::sessions;
-use crate::lab::Lab;
+use crate::lab::lessons_in;
 use crate::lessons::class::KeptLessons;
 use crate::lessons::clock::{self, Clock};
 use crate::lessons::predictions::Place;
@@ -15,8 +15,7 @@ use crate::storage::session::{self, Listed};
 use crate::text::printable::{printable, printable_lines};
 use crate::text::wrap::wrapped;
 use anyhow::{bail, ensure};
-use indicatif::{ProgressBar, ProgressStyle};
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal, Stdout, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::thread;
@@ -39,7 +38,8 @@ pub(super) fn answers(
     let found = session::list(&folder)?.into_iter().filter_map(|session| {
         let mut lessons = lessons_of(&session)?.lessons;
         let place = lessons.remove(&full_name)?;
-        (!place.predictions.is_empty()).then_some((session.written, place))
+        (!place.predictions.is_empty() || !place.tasks.is_empty())
+            .then_some((session.written, place))
     });
     let newest: Option<(SystemTime, Place)> = found.max_by_key(|(written, _)| *written);
     let Some((_, place)) = newest else {
@@ -68,8 +68,8 @@ pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
         )
     };
     let line = live_line();
-    let followed = follow(&folder, &found, &line, &interruption);
-    line.finish_and_clear();
+    let followed = follow(&folder, &found, line.as_ref(), &interruption);
+    drop(line);
     followed?;
     bail!(Interrupted)
 }
@@ -89,7 +89,7 @@ fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
 
 fn lessons_of(session: &Listed) -> Option<KeptLessons> {
     let content = session.content.as_ref().ok()?;
-    KeptLessons::read(&Lab::lessons_in(content)?).ok()
+    KeptLessons::read(&lessons_in(content)?).ok()
 }
 
 /// The lesson that is open in `session`, and its page.
@@ -101,22 +101,16 @@ fn open_in(session: &Listed) -> Option<(String, Place)> {
 }
 
 /// A line at the bottom of the terminal that changes; without a terminal there is none.
-fn live_line() -> ProgressBar {
-    if !io::stdout().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let line = ProgressBar::with_draw_target(None, indicatif::ProgressDrawTarget::stdout());
-    match ProgressStyle::with_template("{msg}") {
-        Ok(style) => line.with_style(style),
-        Err(_) => line,
-    }
+fn live_line() -> Option<LiveLine<Stdout>> {
+    let stdout = io::stdout();
+    stdout.is_terminal().then(|| LiveLine::new(stdout))
 }
 
 /// Prints the notes of each page as it is opened, until a signal comes.
 fn follow(
     folder: &Path,
     name: &str,
-    line: &ProgressBar,
+    line: Option<&LiveLine<Stdout>>,
     interruption: &Interruption,
 ) -> io::Result<()> {
     let mut seen = None;
@@ -136,25 +130,28 @@ fn follow(
             }
             open = now;
         }
-        line.set_message(match &open {
+        let text = match &open {
             Some(_) if !session.is_some_and(|session| session.is_in_use) => {
                 "the lab was left; Ctrl-C ends this".to_owned()
             }
             Some((lesson, place)) => times(lesson, place),
             None => "no lesson is open there; Ctrl-C ends this".to_owned(),
-        });
+        };
+        if let Some(line) = line {
+            line.show(&text);
+        }
         thread::sleep(EVERY);
     }
     Ok(())
 }
 
 /// Prints `text` above the live line, in lines that end between words.
-fn tell(line: &ProgressBar, text: &str) -> io::Result<()> {
+fn tell(line: Option<&LiveLine<Stdout>>, text: &str) -> io::Result<()> {
     let lines = text.lines().flat_map(|line| wrapped(line, WIDTH));
     let text = lines.collect::<Vec<_>>().join("\n");
     let text = printable_lines(&text);
-    if !line.is_hidden() {
-        line.println(text);
+    if let Some(line) = line {
+        line.print_above(&text);
         return Ok(());
     }
     let mut stdout = io::stdout();

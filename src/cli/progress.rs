@@ -3,18 +3,15 @@
 use super::INTERRUPTED;
 use crate::export::Destination;
 use crate::export::temporary;
-use indicatif::{
-    HumanCount, HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle,
-};
+use indicatif::{HumanCount, HumanDuration};
 use signal_hook::consts::{SIGHUP, TERM_SIGNALS};
 use signal_hook::flag;
 use signal_hook::iterator::Signals;
-use std::fmt;
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Stderr, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -140,11 +137,75 @@ fn hangup_is_ignored() -> bool {
 /// After this time a command says how far it is.
 const QUIET: Duration = Duration::from_secs(1);
 
+/// The longest time for which a changed line is not written.
+const EVERY: Duration = Duration::from_millis(250);
+/// The columns of a line that changes: a longer one would be wrapped, and its first part would stay.
+const WIDTH: usize = 79;
+
+/// The last line of a terminal, which is written anew. indicatif's bar is not used: it computes its rate with the C
+/// library's `exp` and `pow`, and nothing in this program shall.
+pub(super) struct LiveLine<T>
+where
+    for<'a> &'a T: Write,
+{
+    terminal: T,
+    written: Mutex<Option<Instant>>,
+}
+
+impl<T> LiveLine<T>
+where
+    for<'a> &'a T: Write,
+{
+    pub(super) fn new(terminal: T) -> Self {
+        Self {
+            terminal,
+            written: Mutex::default(),
+        }
+    }
+
+    /// Shows `text`, unless another one was shown a moment ago.
+    pub(super) fn show(&self, text: &str) {
+        let mut written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
+        if written.is_none_or(|at| at.elapsed() >= EVERY) {
+            *written = Some(Instant::now());
+            let text: String = text.chars().take(WIDTH).collect();
+            self.write(&text);
+        }
+    }
+
+    /// Prints `text`, of whole lines, above the line.
+    pub(super) fn print_above(&self, text: &str) {
+        self.write(&(text.to_owned() + "\n"));
+    }
+
+    /// What cannot be shown is not worth an error.
+    fn write(&self, text: &str) {
+        let mut terminal = &self.terminal;
+        let _ = write!(terminal, "\r\x1b[K{text}").and_then(|()| terminal.flush());
+    }
+
+    fn is_shown(&self) -> bool {
+        let written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
+        written.is_some()
+    }
+}
+
+impl<T> Drop for LiveLine<T>
+where
+    for<'a> &'a T: Write,
+{
+    fn drop(&mut self) {
+        if self.is_shown() {
+            self.write("");
+        }
+    }
+}
+
 /// What is going on, on stderr: after a second, for somebody who watches.
 pub(super) struct Meter {
     of: &'static str,
     begin: Instant,
-    bar: OnceLock<ProgressBar>,
+    line: LiveLine<Stderr>,
 }
 
 impl Meter {
@@ -153,61 +214,45 @@ impl Meter {
         Self {
             of,
             begin: Instant::now(),
-            bar: OnceLock::new(),
+            line: LiveLine::new(io::stderr()),
         }
     }
 
     /// Shows at once that there are `steps` to come, and none done.
     pub(super) fn begin(&self, steps: u64) {
         if io::stderr().is_terminal() {
-            self.bar(steps).tick();
+            self.line.show(&self.count(0, steps));
         }
     }
 
     /// Shows how many there are, with rate and time left.
     pub(super) fn show(&self, step: u64, steps: u64) {
         if self.is_wanted() {
-            let bar = self.bar(steps);
-            bar.set_length(steps); // a file of commands goes to one step after the other
-            bar.set_position(step);
+            self.line.show(&self.count(step, steps));
         }
     }
 
     /// Shows `text`; for work of unknown length.
-    pub(super) fn say(&self, text: String) {
+    pub(super) fn say(&self, text: &str) {
         if self.is_wanted() {
-            let new = || ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(4));
-            self.bar.get_or_init(new).set_message(text);
+            self.line.show(text);
         }
     }
 
     fn is_wanted(&self) -> bool {
-        let is_late = self.bar.get().is_some() || self.begin.elapsed() >= QUIET;
+        let is_late = self.line.is_shown() || self.begin.elapsed() >= QUIET;
         is_late && io::stderr().is_terminal()
     }
 
-    fn bar(&self, steps: u64) -> &ProgressBar {
-        let (of, begin) = (self.of, self.begin);
-        self.bar.get_or_init(|| {
-            let bar =
-                ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr_with_hz(4));
-            let template = format!("{{wide_bar}} {of} {{human_pos}} of {{human_len}}{{pace}}");
-            let style = ProgressStyle::with_template(&template)
-                .unwrap_or_else(|_| ProgressStyle::default_bar());
-            let pace = move |state: &ProgressState, text: &mut dyn fmt::Write| {
-                let left = state.len().unwrap_or_default().saturating_sub(state.pos());
-                // What cannot be shown of it is not worth an error.
-                let _ = text.write_str(&pace(of, state.pos(), left, state.elapsed()));
-            };
-            let style = style.with_key("pace", pace).progress_chars("=> ");
-            bar.with_style(style).with_elapsed(begin.elapsed())
-        })
-    }
-}
-
-impl Drop for Meter {
-    fn drop(&mut self) {
-        self.bar.get().iter().for_each(|bar| bar.finish_and_clear());
+    fn count(&self, step: u64, steps: u64) -> String {
+        let pace = pace(
+            self.of,
+            step,
+            steps.saturating_sub(step),
+            self.begin.elapsed(),
+        );
+        let (of, step, steps) = (self.of, HumanCount(step), HumanCount(steps));
+        format!("{of} {step} of {steps}{pace}")
     }
 }
 

@@ -1,9 +1,7 @@
 //! `gyrolab run`: a run from its start to its end, without a terminal.
 
-use super::args::{LengthArgs, ScenarioArgs};
-use super::layout::LayoutArgs;
+use super::args::{LayoutArgs, LengthArgs, ScenarioArgs, scenario_of};
 use super::progress::{self, Interrupted, Interruption};
-use super::scenario::scenario_of;
 use super::{ended_by, one_on_stdout, print_result, tell_of_rows};
 use crate::analysis::health::advise;
 use crate::analysis::{Monitor, Readouts};

@@ -5,11 +5,11 @@ use super::args::{Look, WorkbenchArgs};
 use super::new_lab::variable;
 use super::tell;
 use crate::lab::Lab;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::scenario::Problems;
 use crate::storage::settings::{self, Read};
 use crate::text::printable::printable_lines;
-use crate::tui::surroundings;
+use crate::tui::theme;
 use clap::ValueEnum;
 use std::path::Path;
 use toml::{Table, Value};
@@ -51,7 +51,8 @@ impl Chosen {
     pub(super) fn tell(&self, lab: &mut Lab) {
         if let Some(problems) = &self.remembered.problems {
             let all = in_one_line(problems);
-            lab.tell_first(&format!("{all}: not used; a choice mends it; "));
+            lab.messages_mut()
+                .keep_saying_first(&format!("{all}: not used; a choice mends it; "));
         }
         if let Some(problems) = &self.config.problems {
             tell(format_args!(
@@ -59,7 +60,8 @@ impl Chosen {
                 printable_lines(&problems.to_string())
             ));
             let all = in_one_line(problems);
-            lab.tell_first(&format!("{all}: not used; mend it; "));
+            lab.messages_mut()
+                .keep_saying_first(&format!("{all}: not used; mend it; "));
         }
     }
 }
@@ -78,10 +80,10 @@ fn in_one_line(problems: &Problems) -> String {
 /// The remembered `settings` that this terminal can show: dots that were chosen on another terminal may need more, and
 /// NO_COLOR takes away colours that were chosen elsewhere.
 fn shown_here(mut settings: Table) -> Table {
-    let usual = surroundings::marker(variable);
+    let usual = theme::marker(variable);
     settings.retain(|key, value| match key {
         "marker" => option(Some(value)).is_some_and(|it: Marker| it.needs_no_more_than(usual)),
-        "colour" => value.as_str() != Some("always") || !surroundings::refuses_colour(variable),
+        "colour" => value.as_str() != Some("always") || !theme::refuses_colour(variable),
         _ => true,
     });
     settings
@@ -97,7 +99,7 @@ mod tests {
     use super::*;
     use crate::lab::view::theme::Background;
     use crate::scenario::keys::Kind;
-    use crate::tui::surroundings::ColourChoice;
+    use crate::tui::theme::ColourChoice;
 
     fn are_options<T: ValueEnum>(wanted: &str) -> bool {
         let row = settings::KEYS.iter().find(|(key, ..)| *key == wanted);

@@ -1,21 +1,16 @@
 //! `gyrolab show`: the lab's picture as plain text, at one step or after commands.
 
-use super::args::Changes;
+use super::args::{Changes, size, steps};
 use super::new_lab::{DEFAULT, plain_lab};
-use super::progress::{self, Interruption};
-use super::values::{size, steps};
-use super::{print, tell};
-use crate::lab::Lab;
+use super::{print, progress, tell};
 use crate::lab::command;
-use crate::lab::view::markers::Marker;
-use crate::run::NotFinite;
+use crate::lab::view::theme::Marker;
 use crate::storage::confined::Confined;
 use crate::tui::screen;
 use anyhow::Context;
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
 
 #[derive(Debug, Args)]
 pub(super) struct ShowArgs {
@@ -73,7 +68,7 @@ pub(super) fn print_picture(
         None => lab.player().run().scenario().steps,
     };
     let interruption = progress::interruption()?;
-    let ended = go_to(&mut lab, args.at.unwrap_or(end), &interruption);
+    let ended = lab.begin_at(args.at.unwrap_or(end), interruption.meter());
     let mut done = Ok(());
     if let (Ok(()), Some(commands)) = (&ended, commands) {
         lab.take_commands(commands);
@@ -85,31 +80,4 @@ pub(super) fn print_picture(
     ended.with_context(|| name.to_owned())?; // the picture up to there is shown all the same
     done.map_err(anyhow::Error::msg)?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// Plays from the start to `step`, a part at a time, until a signal comes.
-///
-/// # Errors
-/// Where the numbers stop being finite on the way.
-pub(super) fn go_to(
-    lab: &mut Lab,
-    step: u64,
-    interruption: &Interruption,
-) -> Result<(), NotFinite> {
-    const LOOK: Duration = Duration::from_millis(100);
-    let watch = interruption.meter();
-    let mut part = 1_u64;
-    loop {
-        let (here, begin) = (lab.player().playback.step_number(), Instant::now());
-        let arrived = lab.begin_at(here.saturating_add(part).min(step));
-        let here = lab.player().playback.step_number();
-        if arrived.is_err() || here >= step || watch(here, step).is_break() {
-            return arrived;
-        }
-        part = if begin.elapsed() < LOOK {
-            part.saturating_mul(2)
-        } else {
-            (part / 2).max(1)
-        };
-    }
 }

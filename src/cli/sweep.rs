@@ -1,9 +1,8 @@
 //! `gyrolab sweep`: a grid of runs, a row each.
 
-use super::args::Changes;
+use super::args::{Changes, change};
 use super::info::listed;
 use super::progress::{self, Interrupted, Interruption, Meter};
-use super::scenario::change;
 use super::{print, tell, tell_of_rows};
 use crate::scenario::presets::{self, PRESETS};
 use crate::scenario::problem::nearest;
@@ -11,8 +10,7 @@ use crate::scenario::{Document, Problem, Problems};
 use crate::sweep::in_order::in_order;
 use crate::sweep::join::join;
 use crate::sweep::part::{Opened, PartFile, SweepFileError};
-use crate::sweep::shipped::{self, SWEEPS};
-use crate::sweep::{EmptyRows, Shard, Sweep, SweepFile, axis};
+use crate::sweep::{self, EmptyRows, SWEEPS, Shard, Sweep, SweepFile, axis};
 use crate::text::number::counted;
 use crate::text::printable::{Shown, printable_lines};
 use anyhow::bail;
@@ -89,8 +87,8 @@ fn list() -> anyhow::Result<String> {
 
 /// What `name` names: a shipped sweep, or what a run may be made of.
 fn document(name: &str) -> Result<Document, Problems> {
-    match shipped::find(name) {
-        Some(sweep) => Document::parse(&format!("presets/sweeps/{name}.toml"), sweep.text),
+    match sweep::find(name) {
+        Some(found) => Document::parse(&format!("presets/sweeps/{name}.toml"), found.text),
         None if !name.contains(['/', '.']) && presets::find(name).is_none() => {
             let sweeps = SWEEPS.iter().map(|sweep| sweep.name);
             let near = nearest(name, sweeps.chain(PRESETS.iter().map(|preset| preset.name)));
@@ -103,7 +101,6 @@ fn document(name: &str) -> Result<Document, Problems> {
     }
 }
 
-/// The sweep that the command line means.
 fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
     let mut document = document(name)?;
     let (mut file, base) = if document.is_sweep() {

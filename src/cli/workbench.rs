@@ -1,12 +1,10 @@
 //! `gyrolab` and `gyrolab show`: the lab, live or as one picture.
 
-mod resuming;
-
 use super::args::{LessonArgs, WorkbenchArgs};
-use super::new_lab::{DEFAULT, lab, theme, variable};
-use super::progress::Interruption;
-use super::show::{ShowArgs, go_to, print_picture};
-use super::{sessions, settings, tell};
+use super::new_lab::{DEFAULT, of_workbench, variable};
+use super::sessions::{self, begun, come_back, come_back_to, tell_of_session};
+use super::show::{ShowArgs, print_picture};
+use super::{settings, tell};
 use crate::class::Class;
 use crate::lab::Lab;
 use crate::lab::command;
@@ -17,18 +15,13 @@ use crate::storage::confined::Confined;
 use crate::storage::exporting;
 use crate::text::printable::{Shown, printable};
 use crate::tui::app;
-use crate::tui::surroundings::{self, ColourChoice};
+use crate::tui::theme::{self, ColourChoice};
 use anyhow::Context;
-use resuming::{begun, come_back, come_back_to, tell_of_session};
 use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::Duration;
-
-/// How long the end waits for the disk before it says that the session is not kept.
-const PATIENCE: Duration = Duration::from_secs(3);
 
 /// Opens the lab on the terminal, at a page of a lesson.
 pub(super) fn open_lesson(
@@ -121,11 +114,11 @@ pub(super) fn open_at(
     let (mut lab, session) = match args.resume.as_deref() {
         Some("") => come_back(args, confined.as_ref(), folder.clone())?,
         Some(session) => come_back_to(session, args, confined.as_ref(), folder.clone())?,
-        None => (new(args, name)?, begun(folder.clone())),
+        None => (of_workbench(args, name)?, begun(folder.clone())),
     };
     chosen.tell(&mut lab);
     if let Ok(folder) = folder {
-        lab.settings = Some(folder);
+        lab.settings.folder = Some(folder);
     }
     furnish(&mut lab, args, confined)?;
     let is_alone = matches!(class, Class::None) && lesson.is_none();
@@ -168,9 +161,9 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
     if args.resume.is_none() || args.measured.is_some() {
         lab.begin_with_measured(args.measured.as_deref())?;
     }
-    lab.set_mouse(!args.look.no_mouse);
-    lab.set_fps(args.fps.unwrap_or(FPS));
-    lab.usual_colour = Some(surroundings::theme(ColourChoice::Auto, variable).colour);
+    lab.view_mut().mouse = !args.look.no_mouse;
+    lab.view_mut().fps = args.fps.unwrap_or(FPS);
+    lab.settings.usual_colour = Some(theme::theme(ColourChoice::Auto, variable).colour);
     Ok(())
 }
 
@@ -198,18 +191,6 @@ fn moment(args: &WorkbenchArgs) -> String {
         (None, Some(step)) => format!("at step {step}"),
         (None, None) => "at the end of the run".to_owned(),
     }
-}
-
-/// A lab with what `name` names, as the command line wants it.
-fn new(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
-    let theme = theme(args.look);
-    let mut lab = lab(name, &args.changes, args.look.markers, theme, !args.paused)?;
-    if let Some(step) = args.at {
-        // No signal is caught yet: one that ends the process here has nothing to put right.
-        let arrived = go_to(&mut lab, step, &Interruption::default());
-        arrived.with_context(|| name.to_owned())?;
-    }
-    Ok(lab)
 }
 
 /// Says on the shell's screen what was exported: the lab's is gone with its last notice.

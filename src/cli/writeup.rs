@@ -1,9 +1,9 @@
 //! `gyrolab writeup`: a run as a folder of files for a write-up.
 
+use super::args::scenario_of;
 use super::args::{LengthArgs, ScenarioArgs};
 use super::progress::{self, Interrupted, Interruption};
 use super::run::{Played, played};
-use super::scenario::scenario_of;
 use super::{ended_by, tell};
 use crate::data;
 use crate::export::stream::Ended;
@@ -121,6 +121,9 @@ fn marked(scenario: Scenario, name: &str) -> Arc<Scenario> {
 fn beside(name: &str) -> anyhow::Result<Beside> {
     let text = data::text(name)?.into_owned();
     let measured = data::read(name, &text)?;
+    if let Some(left_out) = measured.left_out_in_words() {
+        tell(format_args!("gyrolab: {left_out}"));
+    }
     measured.series()?; // a table of runs is refused before anything is run
     Ok(Beside::new(measured, text))
 }

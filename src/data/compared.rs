@@ -1,6 +1,7 @@
-//! Measured data compared with a run: each value beside the run's, and statistics of all.
+//! Measured data held against a model: the residuals, from which everything that shows or fits measured data takes them, and
+//! each value beside the run's with statistics of all.
 
-use super::{Curve, Place, Quantity, Series, places, residuals};
+use super::{Curve, Place, Point, Quantity, Series, places};
 use nalgebra::Vector3;
 
 /// Measured data, each value beside the run's.
@@ -38,7 +39,6 @@ pub struct Sum {
     pub scatter: Vec<(&'static Quantity, f64)>,
 }
 
-/// The largest residual in units of the uncertainty.
 #[derive(Clone, Copy, Debug)]
 pub struct Largest {
     pub sigmas: f64,
@@ -75,7 +75,7 @@ impl Compared {
 
 /// How many of the points of `curve` were measured at `now_s` or before.
 fn reached(series: &Series, curve: &Curve, now_s: f64) -> usize {
-    let is_reached = |point: &crate::data::Point| series.times_s[point.row] <= now_s;
+    let is_reached = |point: &Point| series.times_s[point.row] <= now_s;
     curve.points.partition_point(is_reached)
 }
 
@@ -104,7 +104,6 @@ fn shown(series: &Series, curve: &Curve, model: &[f64]) -> Vec<Shown> {
 }
 
 impl Sum {
-    /// Takes in the values of `quantity`.
     fn take(&mut self, quantity: &'static Quantity, shown: &[Shown]) {
         self.points += shown.len();
         let (mut squares, mut count) = (0.0, 0_u32);
@@ -140,6 +139,67 @@ impl Sum {
     }
 }
 
+/// What is left of a measured value when the model's is taken away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual {
+    pub row: usize,
+    /// The measured value; of a direction, with the number of full turns that [`residuals`] gives it.
+    pub measured: f64,
+    /// One standard uncertainty of it, where it is stated.
+    pub sigma: Option<f64>,
+    pub model: f64,
+}
+
+impl Residual {
+    /// Measured less model, in the unit of both.
+    pub fn value(&self) -> f64 {
+        self.measured - self.model
+    }
+
+    /// The same in units of the uncertainty.
+    pub fn in_sigmas(&self) -> Option<f64> {
+        self.sigma.map(|sigma| self.value() / sigma)
+    }
+}
+
+/// `points` against the values of `model`, one each.
+///
+/// Of a direction, such as the azimuth, the number of full turns is another for everybody who counts from another zero.
+/// Where the values do not leave one turn, they are read as directions, and each is taken at the turn at which it is nearest
+/// to the model. Where they were counted on through full turns, that count stays as it was measured, and all are shifted
+/// by the same number of turns, so that the first is nearest to the model.
+pub fn residuals(quantity: Option<&Quantity>, points: &[Point], model: &[f64]) -> Vec<Residual> {
+    let is_direction = quantity.is_some_and(|quantity| quantity.is_direction);
+    let shift = |index: usize| turns_deg(model[index] - points[index].value);
+    let common = (is_counted(points) && !points.is_empty() && !model.is_empty()).then(|| shift(0));
+    let pairs = points.iter().zip(model).enumerate();
+    let all = pairs.map(|(index, (point, &model))| Residual {
+        row: point.row,
+        measured: if is_direction {
+            point.value + common.unwrap_or_else(|| shift(index))
+        } else {
+            point.value
+        },
+        sigma: point.sigma,
+        model,
+    });
+    all.collect()
+}
+
+/// Whether the directions of `points`, degrees, were counted on through full turns.
+pub fn is_counted(points: &[Point]) -> bool {
+    let values = || points.iter().map(|point| point.value);
+    let (least, most) = (
+        values().fold(f64::INFINITY, f64::min),
+        values().fold(f64::NEG_INFINITY, f64::max),
+    );
+    most - least > 360.0
+}
+
+fn turns_deg(angle_deg: f64) -> f64 {
+    360.0 * (angle_deg / 360.0).round()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -154,33 +214,41 @@ mod tests {
     }
 
     #[test]
-    fn what_the_run_has_not_reached_is_not_compared() {
-        let series =
-            series("t_s,spin_rpm,spin_uncertainty_rpm,tilt_deg\n0,10,2,5\n1,20,4,7\n2,30,2,\n");
-        let model = [vec![11.0, 12.0, 30.0], vec![4.0, 10.0]];
-        let at = |now_s| Compared::new(&series, &model, now_s, &up());
-        let early = at(0.5);
-        assert_eq!((early.sum.points, early.sum.compared), (5, 2));
-        assert_eq!(early.sum.chi_squared, 0.25);
-        assert_eq!(early.curves[0][1].model, None);
-        let late = at(2.0).sum;
-        assert_eq!((late.compared, late.weighed), (5, 3));
-        assert_eq!(late.chi_squared, 0.25 + 4.0);
-        let largest = late.largest.unwrap();
-        assert_eq!((largest.sigmas, largest.time_s), (2.0, 1.0));
-        assert_eq!(largest.quantity.name, "spin_rpm");
-        // (5 - 4)^2 and (7 - 10)^2.
-        let [(quantity, scatter)] = late.scatter[..] else {
-            panic!("{:?}", late.scatter)
-        };
-        assert_eq!((quantity.name, scatter), ("tilt_deg", 5.0_f64.sqrt()));
-    }
-
-    #[test]
     fn directions_stay_on_the_turn_of_the_run() {
         let series = series("t_s,azimuth_deg\n0,350\n1,20\n2,40\n");
         let shown = Compared::new(&series, &[vec![-5.0, 375.0]], 1.0, &up()).curves;
         let values: Vec<f64> = shown[0].iter().map(|shown| shown.value).collect();
         assert_eq!(values, [-10.0, 380.0, 400.0]);
+    }
+
+    fn between(name: &str, values: &[f64], model: &[f64]) -> Vec<Residual> {
+        let point = |(row, &value)| Point {
+            row,
+            value,
+            sigma: Some(2.0),
+        };
+        let points: Vec<_> = values.iter().enumerate().map(point).collect();
+        residuals(Quantity::find(name), &points, model)
+    }
+
+    #[test]
+    fn directions_are_taken_at_the_nearest_turn_and_counted_turns_stay_counted() {
+        for (measured, model, expected) in [
+            (
+                [352.0, 171.0, 349.0, 172.0],
+                [-10.0, 170.0, 350.0, 530.0],
+                [2.0, 1.0, -1.0, 2.0],
+            ),
+            // The model turns twice as fast: read as directions, the values would fit it.
+            (
+                [360.0, 540.0, 720.0, 900.0],
+                [0.0, 540.0, 1080.0, 1620.0],
+                [0.0, -360.0, -720.0, -1080.0],
+            ),
+        ] {
+            let all = between("azimuth_deg", &measured, &model);
+            let values: Vec<_> = all.iter().map(Residual::value).collect();
+            assert_eq!(values, expected);
+        }
     }
 }

@@ -5,28 +5,28 @@
 //! readouts were measured on it. The uncertainty of a column stands in a column of its own, named as readouts name
 //! theirs: `tilt_uncertainty_deg` of `tilt_deg`.
 //!
-//! [`open`] reads a file, or data that come with the program ([`shipped`]); `names` says what its columns are, `numbers` what
-//! stands in them. [`of_run`] reads a run at the times of a series, and [`residual`] holds what was
-//! measured against it: everything that shows or fits measured data takes its residuals from there. [`compared`] sums them up.
+//! [`open`] reads a file, or data that come with the program; `names` says what its columns are, `numbers` what stands in
+//! them, `instruments` what other programs call theirs. [`of_run`] reads a run at the times of a series, and [`compared`] holds what was measured against it.
 
 pub mod compared;
+mod instruments;
 mod names;
 mod numbers;
 pub mod of_run;
 pub mod places;
 pub mod quantity;
 mod reading;
-pub mod residual;
-pub mod shipped;
 
+pub use compared::{Residual, is_counted, residuals};
 pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
-pub use reading::{open, read, text};
-pub use residual::{Residual, is_counted, residuals};
+pub use reading::{SHIPPED, find_shipped, open, open_with, read, text};
 
 use crate::analysis::readouts::Readout;
+use crate::scenario::problem::listed;
 use crate::scenario::{Problem, Problems};
+use crate::text::printable::printable;
 use toml::Value;
 
 #[derive(Clone, Debug)]
@@ -35,8 +35,9 @@ pub struct Measured {
     pub origin: String,
     /// Its comments before the columns' names, without their marks: where the data come from.
     pub about: String,
-    /// The line of each row.
     pub lines: Vec<u64>,
+    /// The columns that are not known, and not read.
+    pub left_out: Vec<String>,
     pub data: Data,
 }
 
@@ -98,7 +99,6 @@ pub struct Point {
     pub sigma: Option<f64>,
 }
 
-/// What is said of a table of runs where one run is shown.
 const TABLE: &str = "is a table of runs: each of its rows is a run of its own, so it cannot stand beside a single one. gyrolab fit holds such a table against a scenario; what stands beside a run has a column t_s";
 
 impl Measured {
@@ -108,6 +108,14 @@ impl Measured {
             Data::Series(series) => Ok(series),
             Data::Table(_) => Err(Problems::one(&self.origin, Problem::at("", TABLE))),
         }
+    }
+
+    /// Says which columns are not known, and not read; `None` where there are none.
+    pub fn left_out_in_words(&self) -> Option<String> {
+        let names = listed(self.left_out.iter().map(String::as_str));
+        let origin = printable(&self.origin);
+        let told = || format!("{origin}: columns left out, which gyrolab does not know: {names}");
+        (!self.left_out.is_empty()).then(told)
     }
 
     /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts, and returns how many values that are.

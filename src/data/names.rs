@@ -4,7 +4,7 @@ use super::quantity::{self, COUNTS, Quantity, TIME};
 use crate::analysis::readouts::{self, Readout, Source};
 use crate::scenario::csv::Csv;
 use crate::scenario::keys::{self, Kind};
-use crate::scenario::problem::{at_line, listed, nearest};
+use crate::scenario::problem::{at_line, is_near, listed, nearest};
 use crate::scenario::{Problem, Problems};
 use crate::text::number::significant;
 use crate::text::unit::{Unit, with_word};
@@ -12,13 +12,14 @@ use crate::text::unit::{Unit, with_word};
 /// In the name of a column that is the uncertainty of another.
 const UNCERTAINTY: &str = "uncertainty";
 
-/// What a column holds.
 #[derive(Clone, Debug)]
 pub(super) enum Is {
     /// The time, s.
     Time,
     /// A number of the run's steps or edits, which says nothing of the motion.
     Count,
+    /// Nothing that is known, nor near to it: a column for another purpose.
+    Foreign,
     /// A quantity at the time of its row.
     Quantity(&'static Quantity),
     /// What the scenario has in the run of its row.
@@ -33,29 +34,26 @@ impl Is {
         match self {
             Self::Quantity(_) | Self::Readout(_) => true,
             Self::Key(kind) => matches!(kind, Kind::Number(_)),
-            Self::Time | Self::Count => false,
+            Self::Time | Self::Count | Self::Foreign => false,
         }
     }
 }
 
-/// A column and what it holds.
 #[derive(Clone, Debug)]
 pub(super) struct Named {
-    /// Its place among the columns.
     pub place: usize,
     pub name: String,
     pub is: Is,
-    /// The place of the column of its uncertainty.
     pub uncertainty: Option<usize>,
 }
 
-/// The columns of `cells`, without those that count.
-pub(super) fn named(cells: &Csv) -> Result<Vec<Named>, Problems> {
+/// The columns of `cells`, without those that count, and the names of those of a time series that are not known.
+pub(super) fn named(cells: &Csv) -> Result<(Vec<Named>, Vec<String>), Problems> {
     let mut problems = Vec::new();
     let names = &cells.names;
     let is_series = names.iter().any(|name| name == TIME);
     let of = if is_series { of_series } else { of_table };
-    let mut columns = Vec::new();
+    let (mut columns, mut left_out) = (Vec::new(), Vec::new());
     for (place, name) in names.iter().enumerate() {
         let mut refuse = |rule| problems.push(Problem::at(shown(name, place), rule));
         if names[..place].contains(name) {
@@ -65,6 +63,7 @@ pub(super) fn named(cells: &Csv) -> Result<Vec<Named>, Problems> {
             continue;
         }
         match of(name) {
+            Ok(Is::Foreign) => left_out.push(name.clone()),
             Ok(is) => {
                 let uncertainty = with_word(name, UNCERTAINTY);
                 let mut others = names.iter();
@@ -85,7 +84,7 @@ pub(super) fn named(cells: &Csv) -> Result<Vec<Named>, Problems> {
     }
     columns.retain(|column| !matches!(column.is, Is::Count));
     let place = |problem| at_line(cells.line_of_names, problem);
-    Problems::from(problems.into_iter().map(place).collect::<Vec<_>>()).or(columns)
+    Problems::from(problems.into_iter().map(place).collect::<Vec<_>>()).or((columns, left_out))
 }
 
 /// A column's name, or its number where it has none.
@@ -100,7 +99,6 @@ fn is_uncertainty(name: &str) -> bool {
     name.split(['_', '.']).any(|word| word == UNCERTAINTY)
 }
 
-/// What the column `name` of a time series holds.
 fn of_series(name: &str) -> Result<Is, String> {
     if name == TIME {
         return Ok(Is::Time);
@@ -121,10 +119,18 @@ fn of_series(name: &str) -> Result<Is, String> {
             "is a number of a whole run, not of one time: a table of such has no column {TIME}, and a run in every row"
         ));
     }
-    Err(unknown(name, quantity::names()))
+    let known = quantity::names;
+    let is_meant = name.is_empty()
+        || is_time(name)
+        || wrong_unit(name, known()).is_some()
+        || is_near(name, known());
+    if is_meant {
+        Err(unknown(name, known()))
+    } else {
+        Ok(Is::Foreign)
+    }
 }
 
-/// What the column `name` of a table of runs holds.
 fn of_table(name: &str) -> Result<Is, String> {
     if let Some(readout) = readouts::find(name) {
         let rule = match readout.source {
@@ -161,15 +167,17 @@ fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Stri
     if let Some(told) = wrong_unit(name, known.clone()) {
         return told;
     }
-    let is_time = ["t", "time", "zeit"].contains(&stem(name).to_lowercase().as_str());
-    let near = match is_time.then_some(TIME) {
+    let near = match is_time(name).then_some(TIME) {
         Some(time) => format!("did you mean {time}?"),
         None => nearest(name, known),
     };
     format!("is no column that gyrolab knows: {near}")
 }
 
-/// `name` without its unit.
+fn is_time(name: &str) -> bool {
+    ["t", "time", "zeit"].contains(&stem(name).to_lowercase().as_str())
+}
+
 fn stem(name: &str) -> &str {
     let end = Unit::anybodys(name).map_or("", |unit| unit.end);
     &name[..name.len() - end.len()]
@@ -197,7 +205,6 @@ fn wrong_unit<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<St
     ))
 }
 
-/// The columns of uncertainties that belong to no column.
 fn uncertainties_alone(names: &[String], columns: &[Named]) -> Vec<Problem> {
     let owned = |place| {
         columns

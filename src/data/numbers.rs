@@ -55,7 +55,7 @@ impl<'a> Numbers<'a> {
                     readout,
                     points: self.points(column),
                 }),
-                Is::Time | Is::Count | Is::Quantity(_) => {}
+                Is::Time | Is::Count | Is::Foreign | Is::Quantity(_) => {}
             }
         }
         Table { settings, readouts }

@@ -23,7 +23,6 @@ pub struct Reader<S> {
 }
 
 impl<S: Borrow<Series>> Reader<S> {
-    /// A reader at the beginning of a run.
     pub fn new(series: S) -> Self {
         let curves = series.borrow().curves.len();
         Self {

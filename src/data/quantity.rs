@@ -42,7 +42,6 @@ impl Quantity {
         readouts::find(self.name)
     }
 
-    /// Its name without the unit, in words.
     pub fn words(&self) -> String {
         let end = Unit::of(self.name).map_or("", |unit| unit.end);
         self.name[..self.name.len() - end.len()].replace('_', " ")

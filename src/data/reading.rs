@@ -1,13 +1,14 @@
 //! A file of measured data, from its text to checked numbers.
 
+use super::instruments::name_columns;
 use super::names::named;
 use super::numbers::Numbers;
 use super::quantity::TIME;
-use super::shipped;
 use super::{Data, Measured};
-use crate::scenario::csv::{self, Csv};
+use crate::scenario::csv::{self, Csv, Renaming};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
+use crate::text::shipped::{Shipped, shipped};
 use std::borrow::Cow;
 use std::path::Path;
 use toml::Value;
@@ -15,19 +16,35 @@ use toml::Value;
 /// The most values of one file, rows times columns.
 const MOST_VALUES: usize = 1_000_000;
 
-/// Opens what `name` names: data that come with the program, or else a file. A file's name holds a `/` or ends in `.csv`.
-pub fn open(name: &str) -> Result<Measured, Problems> {
-    read(name, &text(name)?)
+/// The measured data that come with the program, compiled in.
+pub const SHIPPED: &[Shipped] = shipped!["measured", "csv":
+    "heidelberg-body-cone"
+    "heidelberg-nutation"
+    "heidelberg-precession"
+    "heidelberg-spin-decay"
+];
+
+pub fn find_shipped(name: &str) -> Option<&'static Shipped> {
+    Shipped::find(SHIPPED, name)
 }
 
-/// The text of the data that `name` names.
+/// Opens what `name` names: data that come with the program, or else a file. A file's name holds a `/` or ends in `.csv`.
+pub fn open(name: &str) -> Result<Measured, Problems> {
+    open_with(name, &[])
+}
+
+/// The same, with columns renamed first.
+pub fn open_with(name: &str, map: &[Renaming]) -> Result<Measured, Problems> {
+    read_with(name, &text(name)?, map)
+}
+
 pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
-    if let Some(shipped) = shipped::find(name) {
+    if let Some(shipped) = find_shipped(name) {
         return Ok(shipped.text.into());
     }
     let path = Path::new(name);
     if !name.contains('/') && !name.contains('.') && !path.exists() {
-        let near = nearest(name, shipped::SHIPPED.iter().map(|data| data.name));
+        let near = nearest(name, SHIPPED.iter().map(|data| data.name));
         let rule = format!(
             "no measured data of that name: {near} (a file's name holds a / or ends in .csv)"
         );
@@ -48,14 +65,20 @@ fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
 }
 
 /// Reads the measured data that `text` holds, which is the file `origin`.
-///
-/// # Errors
-/// Everything that is wrong with it: with the names of the columns first, and where these are right with the rows.
 pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
-    let cells = Csv::of(text, MOST_VALUES);
-    let named = cells.and_then(|cells| Ok((named(&cells)?, cells)));
-    let (columns, cells) = named
-        .map_err(|found| scenario_instead(origin, text).unwrap_or_else(|| found.of(origin)))?;
+    read_with(origin, text, &[])
+}
+
+fn read_with(origin: &str, text: &str, map: &[Renaming]) -> Result<Measured, Problems> {
+    let taken_apart = || {
+        let mut cells = Csv::of(text, MOST_VALUES)?;
+        cells.rename(map, |_| true)?;
+        name_columns(&mut cells);
+        Ok((named(&cells)?, cells))
+    };
+    let ((columns, left_out), cells) = taken_apart().map_err(|found: Problems| {
+        scenario_instead(origin, text).unwrap_or_else(|| found.of(origin))
+    })?;
     let mut numbers = Numbers::of(&cells);
     let data = if columns.iter().any(|column| column.name == TIME) {
         Data::Series(numbers.series(&columns))
@@ -65,6 +88,7 @@ pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
     let mut measured = Measured {
         origin: origin.to_owned(),
         about: cells.header.clone(),
+        left_out,
         lines: cells.rows.iter().map(|(line, _)| *line).collect(),
         data,
     };

@@ -1,10 +1,10 @@
 //! The tables of CSV columns: every number of a step with its column name, those that a CSV has on request, and those of a
 //! CSV with a row for each point of the body.
 
-use super::points::PlacedPoint;
-use crate::physics::State;
+use crate::physics::{PointMass, State, rotation};
 use crate::run::Sample;
 use crate::scenario::{Scenario, start};
+use nalgebra::Vector3;
 
 #[derive(Debug)]
 pub struct Column {
@@ -35,6 +35,7 @@ use Cell::{Number, Text, Whole};
 const TRACED: &str = "traced point, world frame";
 const MOMENTUM: &str = "angular momentum about the pivot, world frame";
 const OMEGA: &str = "angular velocity I^-1 L at this step, world frame";
+const OMEGA_OF_BODY: &str = "angular velocity along the body's own x, y or axle";
 const TILT: &str = "angle of the axle from +z";
 const AZIMUTH: &str = "azimuth of the axle, counted on through full turns";
 const ENERGY: &str = "kinetic energy, and that of the weight from the pivot";
@@ -73,6 +74,15 @@ pub const OPTIONAL_COLUMNS: &[Column] = &[
     }),
     column("L_axle_Js", "angular momentum along the axle", |r| {
         Number(r.sample.momentum.dot(&r.state().axle()))
+    }),
+    column("w1_rad_per_s", OMEGA_OF_BODY, |r| {
+        Number(r.sample.omega().x)
+    }),
+    column("w2_rad_per_s", OMEGA_OF_BODY, |r| {
+        Number(r.sample.omega().y)
+    }),
+    column("w3_rad_per_s", OMEGA_OF_BODY, |r| {
+        Number(r.sample.omega().z)
     }),
 ];
 
@@ -115,7 +125,6 @@ impl Column {
         COLUMNS.iter().chain(OPTIONAL_COLUMNS)
     }
 
-    /// The value of `sample`, which is of a run of `scenario`, in this column.
     pub fn value(&self, scenario: &Scenario, sample: &Sample) -> f64 {
         match (self.cell)(&Row::new(scenario, sample)) {
             Whole(count) => count as f64,
@@ -126,7 +135,6 @@ impl Column {
 }
 
 impl<'a> Row<'a> {
-    /// The row of a step.
     pub fn new(scenario: &'a Scenario, sample: &'a Sample) -> Self {
         let point = PlacedPoint::default();
         Self {
@@ -141,6 +149,60 @@ impl<'a> Row<'a> {
             time_s: self.sample.time_s,
             orientation: self.sample.orientation,
             momentum: self.sample.momentum,
+        }
+    }
+}
+
+/// A point of the body under the name that it has in the CSV.
+#[derive(Clone, Debug)]
+pub(super) struct NamedPoint {
+    /// Quoted where the CSV wants it.
+    name: String,
+    mass: PointMass,
+    /// Whether it belongs to what does not spin beside a rotor.
+    is_in_frame: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PlacedPoint<'a> {
+    pub name: &'a str,
+    pub mass: f64,
+    pub position: Vector3<f64>,
+    pub velocity: Vector3<f64>,
+}
+
+impl NamedPoint {
+    /// The points of `scenario`'s body in its order: the rim's as `rim.0`, `rim.1` and so on, every other by its
+    /// [name](Scenario::point_name), which `field` makes fit for the CSV.
+    pub(super) fn all_of(scenario: &Scenario, field: impl Fn(&str) -> String) -> Vec<Self> {
+        let body = &scenario.body;
+        let points = body.mechanics.points();
+        let rotor = scenario.rotor().map(|part| body.points_of_part(part));
+        let named = points.iter().enumerate().map(|(index, mass)| Self {
+            name: match scenario.point_name(index) {
+                Some(name) => field(&name),
+                None => format!("rim.{index}"),
+            },
+            mass: *mass,
+            is_in_frame: rotor.as_ref().is_some_and(|rotor| !rotor.contains(&index)),
+        });
+        named.collect()
+    }
+
+    /// The point where the body stands as `sample` says; its velocity is ω x r, ω without the spin for a point of the frame.
+    pub(super) fn placed(&self, sample: &Sample) -> PlacedPoint<'_> {
+        let (mut at, mut omega) = (self.mass.at, sample.angular_velocity);
+        if self.is_in_frame {
+            let axle = sample.orientation.column(2);
+            at = rotation::about(&Vector3::z(), -sample.rotor_turn) * at;
+            omega -= axle * axle.dot(&omega);
+        }
+        let position = sample.orientation * at;
+        PlacedPoint {
+            name: &self.name,
+            mass: self.mass.mass,
+            position,
+            velocity: omega.cross(&position),
         }
     }
 }

@@ -2,9 +2,8 @@
 //! memory does not grow with the run.
 
 use super::Layout;
-use super::columns::{Cell, Row};
+use super::columns::{Cell, NamedPoint, Row};
 use super::layout::commented;
-use super::points::NamedPoint;
 use crate::run::Sample;
 use crate::scenario::Scenario;
 use std::io::{self, BufWriter, Write};
@@ -12,7 +11,6 @@ use std::io::{self, BufWriter, Write};
 /// It makes spreadsheet programs read the file as UTF-8.
 const BYTE_ORDER_MARK: &str = "\u{feff}";
 
-/// Writes a run's CSV row by row.
 #[derive(Debug)]
 pub struct CsvWriter<W: Write> {
     out: BufWriter<W>,
@@ -20,7 +18,6 @@ pub struct CsvWriter<W: Write> {
     count: u64,
     layout: Layout,
     scenario: Scenario,
-    /// The points of the body, where each of them has a row.
     points: Vec<NamedPoint>,
 }
 

@@ -1,14 +1,14 @@
-//! The output of an export: a file that appears only once it is complete, or a stream.
+//! The output of an export: a file or a folder that appears only once it is complete, or a stream.
 
 use super::temporary;
 use crate::text::advice::unwritten;
 use crate::text::printable::Shown;
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempDir};
 
 #[derive(Debug)]
 pub enum Destination {
@@ -18,7 +18,6 @@ pub enum Destination {
     /// A regular file, which has a temporary name in the same folder until it is complete.
     File {
         temporary: NamedTempFile,
-        /// The path that the complete file will have.
         path: PathBuf,
         /// Whether an existing file of that name may be replaced.
         replace: bool,
@@ -73,9 +72,6 @@ impl Destination {
     /// Opens `path` for writing; `-` is standard output. Devices, FIFOs and open file descriptors such as `/dev/stdout` are
     /// written to directly. An existing regular file is replaced only if `replace` is true, and only by a complete file.
     /// Call it before a long run, so that errors are reported early.
-    ///
-    /// # Errors
-    /// When the file exists and `replace` is false, when `path` is a folder, or when the system reports an error.
     pub fn open(path: &Path, replace: bool) -> Result<Self, DestinationError> {
         if Self::is_for_stdout(path) {
             return Ok(Self::Stdout(io::stdout()));
@@ -93,10 +89,6 @@ impl Destination {
 
     /// As [`open`](Self::open), but for regular files only: for a caller that must neither wait for a reader nor write to
     /// standard output. `-` is an ordinary file name.
-    ///
-    /// # Errors
-    /// When the file exists and `replace` is false, when `path` is anything but a regular file, or when the system reports
-    /// an error.
     pub fn open_file(path: &Path, replace: bool) -> Result<Self, DestinationError> {
         let refused = |error| DestinationError::refused(path, error);
         match fs::metadata(path) {
@@ -226,7 +218,7 @@ fn names_a_file(path: &Path) -> bool {
         .is_some_and(|name| text.ends_with(name.as_encoded_bytes()))
 }
 
-pub(super) fn folder_of(path: &Path) -> &Path {
+fn folder_of(path: &Path) -> &Path {
     path.parent()
         .filter(|folder| !folder.as_os_str().is_empty())
         .unwrap_or(Path::new("."))
@@ -249,5 +241,88 @@ impl Write for Destination {
 
     fn flush(&mut self) -> io::Result<()> {
         self.out().flush()
+    }
+}
+
+/// A folder that is being written, under a temporary name beside the place that it will have.
+#[derive(Debug)]
+pub struct Folder {
+    temporary: TempDir,
+    path: PathBuf,
+    replace: bool,
+    _lock: File,
+}
+
+impl Folder {
+    /// Begins a folder that will be at `path`. One that is there already must be empty, unless `replace` is true: then its
+    /// files of the same names are replaced, and its others stay.
+    pub fn begin(path: &Path, replace: bool) -> Result<Self, DestinationError> {
+        let path: PathBuf = path.components().collect(); // without a slash at its end
+        let refused = |error| DestinationError::refused(&path, error);
+        let in_folder = folder_of(&path);
+        if !in_folder.is_dir() {
+            return Err(DestinationError::NoFolder {
+                path: path.clone(),
+                folder: in_folder.to_owned(),
+            });
+        }
+        may_be_written(&path, replace)?;
+        let permissions = fs::Permissions::from_mode(0o777); // before the umask
+        let (temporary, lock) = temporary::folder_in(in_folder, &permissions).map_err(refused)?;
+        Ok(Self {
+            temporary,
+            path,
+            replace,
+            _lock: lock,
+        })
+    }
+
+    pub fn path(&self) -> &Path {
+        self.temporary.path()
+    }
+
+    /// Gives it its final name: the files written to it are complete. Returns the names of the files that were there before
+    /// and are none of those, in their order.
+    pub fn keep(self) -> Result<Vec<String>, DestinationError> {
+        let refused = |error| DestinationError::refused(&self.path, error);
+        may_be_written(&self.path, self.replace)?;
+        if fs::rename(self.temporary.path(), &self.path).is_ok() {
+            let _ = self.temporary.keep(); // its old name is gone already
+            return Ok(Vec::new());
+        }
+        // There are files: each new one replaces the file of its name.
+        fs::create_dir_all(&self.path).map_err(refused)?;
+        let names = |folder: &Path| -> io::Result<Vec<OsString>> {
+            let files = fs::read_dir(folder)?;
+            files.map(|file| Ok(file?.file_name())).collect()
+        };
+        let new = names(self.temporary.path()).map_err(refused)?;
+        for name in &new {
+            let (from, to) = (self.temporary.path().join(name), self.path.join(name));
+            fs::rename(from, to).map_err(refused)?;
+        }
+        let mut others = names(&self.path).map_err(refused)?;
+        others.retain(|name| !new.contains(name));
+        others.sort();
+        let others = others
+            .iter()
+            .map(|name| name.to_string_lossy().into_owned());
+        Ok(others.collect())
+    }
+}
+
+fn may_be_written(path: &Path, replace: bool) -> Result<(), DestinationError> {
+    let there = match fs::metadata(path) {
+        Ok(there) => there,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(DestinationError::refused(path, error)),
+    };
+    if !there.is_dir() {
+        return Err(DestinationError::NotAFolder(path.to_owned()));
+    }
+    let mut files = fs::read_dir(path).map_err(|error| DestinationError::refused(path, error))?;
+    match files.next() {
+        Some(_) if !replace => Err(DestinationError::FolderInUse(path.to_owned())),
+        _ => Ok(()),
     }
 }

@@ -56,9 +56,6 @@ fn is_false(flag: &bool) -> bool {
 
 impl LayoutFile {
     /// The layout, checked.
-    ///
-    /// # Errors
-    /// When a column does not exist or is named twice, or when no time can lie between the two ends.
     pub fn check(mut self) -> Result<Layout, Problem> {
         // No run is longer, and TOML has no larger number.
         let most = NonZeroU64::new(i64::MAX as u64).unwrap_or(NonZeroU64::MAX);
@@ -90,7 +87,6 @@ impl LayoutFile {
     }
 }
 
-/// The columns of `all` that `names` name.
 fn chosen(
     names: &[String],
     all: &(impl Iterator<Item = &'static Column> + Clone),
@@ -181,9 +177,6 @@ impl Layout {
     }
 
     /// The layout that stands above the run file in the header of a CSV, whose lines have lost their `# `.
-    ///
-    /// # Errors
-    /// When a line above the run file is none of a layout, or asks for something that does not exist.
     pub fn read(header: &str) -> Result<Self, Problem> {
         let file: Result<LayoutFile, _> = toml::from_str(&above_run_file(header));
         let wrong =

@@ -1,21 +1,17 @@
-//! Output of the program: [`columns`] are the tables of CSV columns, `points` the rows of the body's points, [`layout`] says
-//! which rows and columns a CSV has and what stands above them, [`mod@csv`] writes rows, [`stream`] plays a run and writes its
-//! rows, [`summary`] describes how a run ended, [`destination`] is the file or stream that is written, [`folder`] a folder of
-//! files.
+//! Output of the program: [`columns`] are the tables of CSV columns and the rows of the body's points, [`layout`] says which
+//! rows and columns a CSV has and what stands above them, [`mod@csv`] writes rows, [`stream`] plays a run and writes its rows,
+//! [`summary`] describes how a run ended, [`destination`] is the file, folder or stream that is written.
 
 pub mod columns;
 pub mod csv;
 pub mod destination;
-pub mod folder;
 pub mod layout;
-mod points;
 pub mod stream;
 pub mod summary;
 pub mod temporary;
 
 pub use columns::{COLUMNS, Column};
 pub use csv::CsvWriter;
-pub use destination::Destination;
-pub use folder::Folder;
+pub use destination::{Destination, Folder};
 pub use layout::Layout;
 pub use summary::Summary;

@@ -41,18 +41,15 @@ pub fn play<W: Write>(
 ) -> io::Result<(Ended, Duration)> {
     let points = simulation.scenario().body.mechanics.points().len();
     let block = (BLOCK / points).clamp(16, 4096);
-    let mut rows = Vec::with_capacity(if csv.is_some() { block } else { 0 });
     let layout = csv.as_deref().map(|csv| csv.layout().clone());
-    let has_row = |step: &Step| {
-        let layout = layout.as_ref();
-        layout.is_some_and(|layout| layout.has_row(step, steps))
-    };
-    if let Some(csv) = csv.as_deref_mut().filter(|_| has_row(simulation.now())) {
-        csv.write(&simulation.sample())?;
+    let layout = layout.as_ref();
+    let has_row = |step: &Step| layout.is_some_and(|layout| layout.has_row(step, steps));
+    let mut rows = Vec::new();
+    if has_row(simulation.now()) {
+        rows.push(simulation.sample());
     }
     let mut stepping = Duration::ZERO;
-    let mut ended = None;
-    while ended.is_none() {
+    loop {
         let begin = Instant::now();
         let end = steps.min(simulation.step_number() + block as u64);
         let result = (simulation.step_number()..end).try_for_each(|_| {
@@ -67,24 +64,19 @@ pub fn play<W: Write>(
         let last = simulation.now();
         // The last finite step has a row whichever the layout leaves out between.
         let is_left_out = result.is_err() && !has_row(last);
-        if layout
-            .as_ref()
-            .is_some_and(|layout| is_left_out && layout.has_time(last))
-        {
+        if is_left_out && layout.is_some_and(|layout| layout.has_time(last)) {
             rows.push(last.sample());
         }
         if let Some(csv) = csv.as_deref_mut() {
             rows.iter().try_for_each(|row| csv.write(row))?;
         }
         rows.clear();
-        ended = match result {
-            Err(error) => Some(Ended::NotFinite(error)),
-            Ok(()) if simulation.step_number() >= steps => Some(Ended::Done),
-            Ok(()) => {
-                let step = simulation.step_number();
-                watch(step, steps).is_break().then_some(Ended::Stopped)
-            }
+        let ended = match result {
+            Err(error) => Ended::NotFinite(error),
+            Ok(()) if last.number() >= steps => Ended::Done,
+            Ok(()) if watch(last.number(), steps).is_break() => Ended::Stopped,
+            Ok(()) => continue,
         };
+        return Ok((ended, stepping));
     }
-    Ok((ended.unwrap_or(Ended::Done), stepping))
 }

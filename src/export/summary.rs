@@ -101,7 +101,7 @@ impl Summary {
         vec![("precession", precession), ("nutation", nutation)]
     }
 
-    /// A value by theory and as it was measured: "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s measured", with the axis
+    /// A value by theory and as it was measured: "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s in this run", with the axis
     /// where theory refers to another than +z. `is_strobed` says whether the steps are too far apart to see it.
     fn compared(
         &self,
@@ -135,10 +135,10 @@ impl Summary {
                 value, uncertainty, ..
             }) => {
                 let (value, uncertainty) = (fixed(value, 6), exponent(uncertainty, 1));
-                format!("{value} +- {uncertainty} {unit} measured{about_z}")
+                format!("{value} +- {uncertainty} {unit} in this run{about_z}")
             }
-            None if is_strobed => format!("none measured{about_z}: strobed, {FAR_APART}"),
-            None => format!("none measured{about_z}"),
+            None if is_strobed => format!("none in this run{about_z}: strobed, {FAR_APART}"),
+            None => format!("none in this run{about_z}"),
         };
         format!("{theory}, {measured}")
     }
@@ -226,7 +226,7 @@ impl Summary {
 pub fn steps_in_words(scenario: &Scenario, steps: u64) -> String {
     let mut parts: Vec<(u64, f64)> = Vec::new();
     let (mut begin, mut time_step_s) = (0, scenario.motion.time_step_s);
-    let edits = scenario.edits.iter().filter(|edit| edit.touches.time_step);
+    let edits = scenario.edits.iter().filter(|edit| edit.sets_time_step);
     for edit in edits.take_while(|edit| edit.step < steps) {
         parts.push((edit.step - begin, time_step_s));
         (begin, time_step_s) = (edit.step, edit.motion.time_step_s);
@@ -258,7 +258,6 @@ pub fn steps_in_words(scenario: &Scenario, steps: u64) -> String {
     }
 }
 
-/// The steady precessions at the present tilt.
 fn steady(theory: &Theory) -> String {
     let about = on(" about", &theory.axis);
     let (slow, fast) = (theory.slow_precession, theory.fast_precession);

@@ -25,7 +25,6 @@ pub fn remove_own() {
     }
 }
 
-/// A new file in `folder` under a temporary name.
 pub fn file_in(folder: &Path, permissions: &Permissions) -> io::Result<NamedTempFile> {
     remove_what_was_left(folder);
     loop {
@@ -105,14 +104,6 @@ fn is_temporary(name: &str) -> bool {
 mod tests {
     use super::*;
     use std::os::unix::fs::PermissionsExt;
-
-    #[test]
-    fn what_cannot_be_made_is_not_told_with_its_temporary_name() {
-        let permissions = Permissions::from_mode(0o700);
-        let error = file_in(Path::new("/nowhere"), &permissions).unwrap_err();
-        assert_eq!(error.kind(), io::ErrorKind::NotFound);
-        assert!(!error.to_string().contains(PREFIX), "{error}");
-    }
 
     #[test]
     fn what_nobody_writes_any_more_is_removed_and_nothing_else() {

@@ -55,6 +55,12 @@ pub(super) struct Part {
 }
 
 impl Wanted {
+    /// Whether something is wanted that the exact motion has not: the number of the step, or of the stretch between edits.
+    pub fn counts_steps(&self) -> bool {
+        let mut columns = self.columns.iter();
+        columns.any(|column| ["step", "segment"].contains(&column.name))
+    }
+
     pub fn end_s(&self, scenario: &Scenario) -> f64 {
         let end_s = Clock::end_s(scenario);
         self.to_s.map_or(end_s, |to_s| to_s.min(end_s))

@@ -117,6 +117,7 @@ pub(super) fn above(job: &Job<'_>) -> Result<(Option<Series>, Option<String>), S
         points: shown.iter().map(|place| [place.at.x, place.at.y]).collect(),
         errors: [errors(0), errors(1)],
         style: Style::measured(shown.len()),
+        ..Series::default()
     };
     Ok((Some(places), None))
 }
@@ -182,8 +183,11 @@ pub(super) fn residuals(
             });
         }
     }
-    let chart = job.chart(quantity::axis("t_s").within(range), panels);
-    Ok(Some(Figure::of(chart.scene())))
+    let mut chart = job.chart(quantity::axis("t_s").within(range), panels);
+    request.labels.apply(&mut chart)?;
+    let mut scene = chart.scene();
+    request.labels.write_title(&mut scene);
+    Ok(Some(Figure::of(scene)))
 }
 
 /// The panel of the residuals of `curve` with the line of zero alone.

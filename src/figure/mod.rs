@@ -4,8 +4,8 @@
 //! - [`chart`]: what a figure with axes shows, and its place on a page.
 //! - [`of_runs`]: figures of runs: their curves over time, from above and in space. [`kind`] has the names of these,
 //!   [`course`] takes the numbers from stepping through the runs, in bounded memory (`path` those of a path),
-//!   `measured` draws what was measured with them, [`dense`] finds the figures that would be solid ink, `chords` those
-//!   whose paths have too few points, `size` tells what of a curve is rounding.
+//!   `measured` draws what was measured with them, `dense` finds the curves and paths whose turns are not told apart,
+//!   `chords` those whose paths have too few points, [`labels`] gives words and axes that were asked for, `size` tells what of a curve is rounding.
 //!   `request` says what is asked for, and what a figure is once it is drawn.
 //! - [`of_table`]: figures of a comparison, of a sweep or of a fit, read by [`table`].
 //! - [`quantity`]: columns and readouts as they stand at an axis.
@@ -13,8 +13,9 @@
 pub mod chart;
 mod chords;
 pub mod course;
-pub mod dense;
+mod dense;
 pub mod kind;
+pub mod labels;
 mod measured;
 mod names;
 pub mod of_runs;

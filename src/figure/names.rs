@@ -1,7 +1,8 @@
 //! What runs are called beside each other: by what differs.
 
 use super::chart::legend::longest_name;
-use super::page::ink::LABEL_PT;
+use super::chords::EVERY_STEP;
+use super::page::ink::{self, LABEL_PT};
 use super::page::letters;
 use super::request::{Job, Run};
 use crate::text::number::significant;
@@ -9,17 +10,26 @@ use crate::text::number::significant;
 /// A name for each of the runs, as markup with room in the legend; empty where there is nothing to tell apart.
 pub(super) fn names(job: &Job<'_>) -> Vec<String> {
     let &Job { runs, request, .. } = job;
-    let room_pt = longest_name(request.width_pt);
+    let room_pt = longest_name(request.width_pt) - ink::width(EVERY_STEP, LABEL_PT);
+    let shortened = |text: &str| letters::shortened(text, LABEL_PT, room_pt);
+    let given = &request.labels.names;
+    if !given.is_empty() {
+        return given.iter().map(|name| shortened(name)).collect();
+    }
     let title = |run: &Run| run.scenario.file.title.clone();
-    let scheme = |run: &Run| run.scenario.motion.scheme.name.to_owned();
+    let scheme = |run: &Run| scheme_in_words(run.scenario.motion.scheme.name).to_owned();
     let parts: [&dyn Fn(&Run) -> String; 3] = [&title, &scheme, &step];
-    let differs = parts.map(|of| runs.iter().any(|run| of(run) != of(&runs[0])));
+    let mut differs = parts.map(|of| runs.iter().any(|run| of(run) != of(&runs[0])));
+    if let ([run], true) = (runs, request.is_beside()) {
+        differs = [false, true, run.scenario.motion.scheme.order.is_some()];
+    }
     let name = |run: &Run| -> String {
         if differs == [false; 3] {
-            return match (runs.len(), request.is_beside()) {
-                (1, false) => String::new(),
-                (1, true) => letters::escape(&scheme(run)),
-                _ => letters::shortened(&run.named, LABEL_PT, room_pt),
+            let is_alone = runs.len() == 1;
+            return if is_alone {
+                String::new()
+            } else {
+                shortened(&run.named)
             };
         }
         let words = (0..2).filter(|part| differs[*part]);
@@ -30,11 +40,22 @@ pub(super) fn names(job: &Job<'_>) -> Vec<String> {
             (true, true) => step(run),
             (true, false) => format!(", {}", step(run)),
         };
-        let rest = room_pt - super::page::ink::width(&step, LABEL_PT);
+        let rest = room_pt - ink::width(&step, LABEL_PT);
         letters::shortened(&words.join(", "), LABEL_PT, rest) + &step
     };
     runs.iter().map(name).collect()
 }
+
+/// What a reader who does not know the program calls the motion of a scheme.
+pub(super) fn scheme_in_words(name: &str) -> &str {
+    match name {
+        "report" => "the report's scheme",
+        "exact" => EXACT,
+        name => name,
+    }
+}
+
+pub(super) const EXACT: &str = "exact motion";
 
 /// "Δt = 10 ms" as markup.
 fn step(run: &Run) -> String {

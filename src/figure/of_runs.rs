@@ -3,18 +3,20 @@
 pub(super) mod charts;
 
 use super::chart::legend::longest_name;
-use super::chart::{KINDS_OF_LINE, Style};
+use super::chart::{Chart, KINDS_OF_LINE, Style};
 use super::chords;
 use super::course::{self, Course, Wanted};
 use super::dense;
 use super::kind::Kind;
 use super::measured;
-use super::names::names;
+use super::names::{EXACT, names};
 use super::page::letters;
-use super::request::{Drawn, Job};
+use super::request::{Dense, Drawn, Job};
 pub use super::request::{Figure, Known, Request, Run};
 use super::space;
 use crate::analysis::health::LEAST_SWING_DEG;
+use crate::export::Column;
+use crate::physics::exact::LagrangeTop;
 use crate::run::Truth;
 use crate::scenario::Scenario;
 use crate::text::ladder;
@@ -66,22 +68,25 @@ pub fn figures(
         };
         check_range(&job)?;
         if let Kind::Residuals = &request.kind {
-            let Some(figure) = measured::residuals(&job, &mut watch)? else {
-                return Ok(None);
-            };
-            figures.push(figure);
+            match measured::residuals(&job, &mut watch)? {
+                Some(figure) => figures.push(figure),
+                None => return Ok(None),
+            }
             continue;
         }
         if !all_played.iter().any(|(it, _)| it.is_alike(request)) {
             let alike = requests.iter().filter(|it| it.is_alike(request));
             let wanted = wanted(request, alike.map(|it| &it.kind));
-            let Some(played) = play(&job, &wanted, &mut watch)? else {
-                return Ok(None);
-            };
-            all_played.push((request, played));
+            match play(&job, &wanted, &mut watch)? {
+                Some(played) => all_played.push((request, played)),
+                None => return Ok(None),
+            }
         }
         for (_, played) in all_played.iter().filter(|(it, _)| it.is_alike(request)) {
-            figures.push(draw(&job, played)?);
+            let Some(figure) = draw(&job, played, &mut watch)? else {
+                return Ok(None);
+            };
+            figures.push(figure);
         }
     }
     Ok(Some(figures))
@@ -102,7 +107,9 @@ fn play(
         if let Some(error) = course.broke {
             broke.get_or_insert_with(|| format!("{}: {error}", run.named));
         }
-        let few = || few_a_swing(run).filter(|_| !wanted.columns.is_empty());
+        let is_shown =
+            !wanted.columns.is_empty() && (!is_exact(&run.scenario) || wanted.counts_steps());
+        let few = || few_a_swing(run).filter(|_| is_shown);
         warnings.extend(not_believed(run, course, request.exact).or_else(few));
     }
     if request.exact {
@@ -138,7 +145,12 @@ fn play_runs(
         Some(Drawn {
             name,
             style: Style::curve(index),
-            course: recorded.or_else(|| course::play(&run.scenario, wanted, &mut watch))?,
+            course: if is_exact(&run.scenario) && !wanted.counts_steps() && is_coarse(run) {
+                // The exact motion is known between its steps too.
+                course::exact(&run.scenario, wanted, &mut watch)?
+            } else {
+                recorded.or_else(|| course::play(&run.scenario, wanted, &mut watch))?
+            },
             is_exact: false,
         })
     });
@@ -156,10 +168,7 @@ fn play_truths(
     let drawn = truths.map(|(place, (run, name))| {
         Some(Drawn {
             name,
-            style: match place {
-                1 => Style::exact(),
-                place => Style::curve(place),
-            },
+            style: Style::exact(place),
             course: course::exact(&run.scenario, wanted, &mut watch)?,
             is_exact: true,
         })
@@ -167,31 +176,45 @@ fn play_truths(
     drawn.collect()
 }
 
-/// The figure that the request asks for.
+/// The figure that the request asks for; `None` where `watch` said no.
 ///
 /// # Errors
 /// When what was measured cannot be drawn so.
-fn draw(job: &Job<'_>, played: &Played) -> Result<Figure, String> {
+fn draw(
+    job: &Job<'_>,
+    played: &Played,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Figure>, String> {
     let drawn = &played.drawn;
     let mut warnings = played.warnings.clone();
+    let labels = &job.request.labels;
     let dense;
-    let scene = match &job.request.kind {
+    let mut scene = match &job.request.kind {
         Kind::OverTime(columns) => {
-            let mut chart = charts::over_time(job, columns, drawn);
-            warnings.extend(measured::over_time(job, &mut chart, columns)?);
+            let (mut chart, told) = over_time(job, columns, drawn)?;
+            warnings.extend(told);
             warnings.extend(measured::beyond_runs(job));
-            dense = dense::warning(&chart, columns, drawn, job.request);
+            dense = dense::over_time(&chart, columns, drawn, job.request);
+            if let Some(dense) = &dense {
+                let Some(magnified) = magnified(job, columns, dense, watch)? else {
+                    return Ok(None);
+                };
+                chart.magnified = Some(Box::new(magnified));
+                dense::draw_bands(&mut chart, columns, drawn);
+            }
             chart.scene()
         }
         Kind::Above => {
             let (measured, none) = measured::above(job)?;
             warnings.extend(none);
-            let chart = charts::above(job, drawn, measured);
+            let mut chart = charts::above(job, drawn, measured);
+            labels.apply(&mut chart)?;
             dense = charts::path_warning(&chart, drawn, job.request);
             warnings.extend(chords::warning(drawn, |course| &course.above));
             chart.scene()
         }
         Kind::ThreeD | Kind::Residuals => {
+            labels.check_in_space()?;
             let scene;
             (scene, dense) = space::scene(job, drawn);
             warnings.extend(chords::warning(drawn, |course| &course.path));
@@ -199,12 +222,48 @@ fn draw(job: &Job<'_>, played: &Played) -> Result<Figure, String> {
             scene
         }
     };
-    Ok(Figure {
+    labels.write_title(&mut scene);
+    Ok(Some(Figure {
         scene,
         warnings,
         dense,
         broke: played.broke.clone(),
-    })
+    }))
+}
+
+/// The chart of `columns` with what was measured of them and the axes that were asked for, and what is to be said of it.
+fn over_time(
+    job: &Job<'_>,
+    columns: &[&'static Column],
+    drawn: &[Drawn],
+) -> Result<(Chart, Vec<String>), String> {
+    let mut chart = charts::over_time(job, columns, drawn);
+    let none = measured::over_time(job, &mut chart, columns)?;
+    let hidden = job.request.labels.apply(&mut chart)?;
+    Ok((chart, none.into_iter().chain(hidden).collect()))
+}
+
+/// The chart of the stretch in which what is `dense` is told apart; `None` where `watch` said no.
+fn magnified(
+    job: &Job<'_>,
+    columns: &[&'static Column],
+    dense: &Dense,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Chart>, String> {
+    let request = Request {
+        to_s: Some(dense.to_s),
+        ..job.request.clone()
+    };
+    let part = Job {
+        request: &request,
+        ..*job
+    };
+    let wanted = wanted(&request, [&request.kind].into_iter());
+    let Some(played) = play(&part, &wanted, watch)? else {
+        return Ok(None);
+    };
+    let (chart, _) = over_time(&part, columns, &played.drawn)?;
+    Ok(Some(chart))
 }
 
 fn wanted<'a>(request: &Request, kinds: impl Iterator<Item = &'a Kind>) -> Wanted {
@@ -274,6 +333,16 @@ const LEAST_A_SWING: f64 = 6.0;
 /// Time steps in a nutation that show it as a smooth curve.
 const A_SMOOTH_SWING: f64 = 20.0;
 
+/// Whether the time steps of `run` do not show its nutation as a smooth curve.
+fn is_coarse(run: &Run) -> bool {
+    let truth = Truth::new(Arc::clone(&run.scenario));
+    let period_s = truth
+        .motion()
+        .closed_form()
+        .and_then(LagrangeTop::nutation_period);
+    period_s.is_some_and(|period_s| period_s < A_SMOOTH_SWING * run.scenario.motion.time_step_s)
+}
+
 /// What is said of `run` where it has too few time steps in a nutation for a curve over time.
 fn few_a_swing(run: &Run) -> Option<String> {
     let truth = Truth::new(Arc::clone(&run.scenario));
@@ -340,9 +409,9 @@ fn truths(runs: &[Run], room_pt: f64) -> Vec<(&Run, String)> {
     distinct.retain(|run| !is_drawn(run));
     let name = |run: &Run| {
         if count == 1 {
-            return "exact".to_owned();
+            return EXACT.to_owned();
         }
-        let title = format!("{}, exact", run.scenario.file.title);
+        let title = format!("{}, {EXACT}", run.scenario.file.title);
         letters::shortened(&title, super::page::ink::LABEL_PT, room_pt)
     };
     distinct.iter().map(|run| (*run, name(run))).collect()

@@ -35,6 +35,7 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
         panels,
         is_true_to_scale: false,
         are_read_off: matches!(table.subject, Subject::Sweep(_)),
+        ..Chart::default()
     })
 }
 

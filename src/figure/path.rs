@@ -1,8 +1,9 @@
 //! A path in bounded memory: where it has been already, it is not kept again.
 
-use super::chords;
 use foldhash::fast::FixedState;
+use nalgebra::Vector3;
 use std::collections::HashSet;
+use std::f64::consts::TAU;
 
 const MOST: usize = 1 << 19;
 /// The cells along each side of the path that it is first thinned by: finer than a page's dots at 600 an inch.
@@ -124,7 +125,7 @@ impl Recorder {
     /// Thins the path until half as many points are kept as there may be.
     fn coarsen(&mut self) {
         if self.cells.is_none() {
-            self.path.few_a_turn = chords::points_a_turn(&self.path.points);
+            self.path.few_a_turn = points_a_turn(&self.path.points);
         }
         while self.path.points.len() > MOST / 2 {
             let cells = self.cells.map_or(FINEST, |cells| 0.5 * cells);
@@ -146,7 +147,7 @@ impl Recorder {
 
     pub fn end(mut self) -> Path {
         if self.cells.is_none() {
-            self.path.few_a_turn = chords::points_a_turn(&self.path.points);
+            self.path.few_a_turn = points_a_turn(&self.path.points);
         } else if self.path.points.is_empty() {
             self.path.points.extend(self.last); // it stands still
         }
@@ -154,6 +155,45 @@ impl Recorder {
         self.path.times = 1.0 + self.left_out as f64 / kept;
         self.path
     }
+}
+
+/// A path with more points than this in a turn, on the average, looks round: the chords are off it by 1.5 % of its radius.
+const ROUND: f64 = 18.0;
+/// Chords that are off it by less than this part of the picture's width look round too: about 0.15 pt.
+const UNSEEN: f64 = 7e-4;
+/// Of fewer bends than these there is no average.
+const FEWEST: u32 = 3;
+/// About this many points of a path are examined.
+const LOOKED_AT: usize = 50_000;
+
+/// How many points there are to a turn of `path` (m), where they are too few to look round.
+fn points_a_turn(path: &[[f64; 3]]) -> Option<f64> {
+    let bends = path.windows(3).step_by(1 + path.len() / LOOKED_AT);
+    let bends = bends.filter_map(|three| {
+        let [a, b, c] = [0, 1, 2].map(|place| Vector3::from(three[place]));
+        let moves = a != b && b != c;
+        moves.then(|| {
+            let (angle, chord) = ((b - a).angle(&(c - b)), (b - a).norm());
+            (angle, 0.5 * chord * libm::tan(0.25 * angle))
+        })
+    });
+    let none = (0, 0.0, 0.0);
+    let (count, angles, heights) = bends.fold(none, |(count, angles, heights), (angle, height)| {
+        (count + 1, angles + angle, heights + height)
+    });
+    let a_turn = TAU * f64::from(count) / angles;
+    let is_seen = heights > UNSEEN * f64::from(count) * width(path);
+    (count >= FEWEST && a_turn < ROUND && is_seen).then_some(a_turn)
+}
+
+/// The longest way along one of the axes from one end of `path` to the other, m.
+fn width(path: &[[f64; 3]]) -> f64 {
+    let far = Vector3::repeat(f64::INFINITY);
+    let (low, high) = path.iter().fold((far, -far), |(low, high), at| {
+        let at = Vector3::from(*at);
+        (low.inf(&at), high.sup(&at))
+    });
+    (high - low).max()
 }
 
 #[cfg(test)]
@@ -170,10 +210,10 @@ mod tests {
     fn looping(number: usize) -> [f64; 3] {
         let (slow, fast) = (1e-5 * number as f64, 0.3 * number as f64);
         let (x, y) = (
-            slow.cos() + 2e-4 * fast.cos(),
-            slow.sin() + 2e-4 * fast.sin(),
+            libm::cos(slow) + 2e-4 * libm::cos(fast),
+            libm::sin(slow) + 2e-4 * libm::sin(fast),
         );
-        [x, y, 1e-6 * fast.cos()]
+        [x, y, 1e-6 * libm::cos(fast)]
     }
 
     #[test]
@@ -183,8 +223,11 @@ mod tests {
         let long = recorded(true, (0..3_000_000).map(looping));
         assert!(long.points.len() <= MOST && long.times > 2.0);
         let off = |angle: f64| {
-            let (x, y) = (angle.cos(), angle.sin());
-            let off = long.points.iter().map(|at| (at[0] - x).hypot(at[1] - y));
+            let (x, y) = (libm::cos(angle), libm::sin(angle));
+            let off = long
+                .points
+                .iter()
+                .map(|at| libm::hypot(at[0] - x, at[1] - y));
             off.fold(f64::INFINITY, f64::min)
         };
         // Nowhere on the way round is it farther off than a line is wide on paper, 1/300 of a page.
@@ -193,7 +236,7 @@ mod tests {
         assert!(most < 2.0 / 300.0, "{most}");
         let bounded = |step: f64| {
             let angle = |number: u32| step * f64::from(number);
-            let point = |angle: f64| [angle.cos(), angle.sin(), 0.0];
+            let point = |angle: f64| [libm::cos(angle), libm::sin(angle), 0.0];
             recorded(false, (0..600_000).map(|number| point(angle(number))))
         };
         // Chords that are never repeated become points; a path that stands still is one point.
@@ -201,5 +244,27 @@ mod tests {
         assert!(chords.points.len() <= MOST && chords.few_a_turn.is_some());
         assert!(chords.points.iter().all(|point| point[0].is_finite()));
         assert_eq!(bounded(0.0).points.len(), 1);
+    }
+
+    #[test]
+    fn a_circle_of_few_points_is_in_chords() {
+        let circle = |a_turn: f64| -> Vec<[f64; 3]> {
+            let angles = (0..100).map(|step| f64::from(step) * TAU / a_turn);
+            angles
+                .map(|angle| [libm::cos(angle), libm::sin(angle), 1.0])
+                .collect()
+        };
+        assert!((points_a_turn(&circle(10.0)).unwrap() - 10.0).abs() < 1e-9);
+        assert_eq!(points_a_turn(&circle(40.0)), None);
+        // Bends that are far smaller than the picture.
+        let wavy: Vec<_> = (0..4000)
+            .map(|step| [f64::from(step), 0.3 * f64::from(step % 2), 1.0])
+            .collect();
+        assert_eq!(points_a_turn(&wavy), None);
+        let standing = vec![[1.0, 0.0, 0.0]; 100];
+        let straight: Vec<_> = (0..100).map(|step| [f64::from(step), 0.0, 0.0]).collect();
+        assert_eq!(points_a_turn(&standing), None);
+        assert_eq!(points_a_turn(&straight), None);
+        assert_eq!(points_a_turn(&[]), None);
     }
 }

@@ -6,6 +6,10 @@ use super::page::letters;
 use crate::analysis::readouts;
 use crate::text::unit::Unit;
 
+/// How the names of a run's own numbers begin, and what they are called: what is measured is data.
+pub const MEASURED: &str = "measured_";
+pub const SIMULATED: &str = "simulated";
+
 /// The parts of a vector, by the numbers that keys give them.
 const PARTS: [(&str, &str); 3] = [("0", "*x*"), ("1", "*y*"), ("2", "*z*")];
 
@@ -83,6 +87,10 @@ pub fn words(name: &str) -> (String, &'static str) {
         if !of_part.is_empty() {
             unit = of_part;
         }
+        let bare = match bare.strip_prefix(MEASURED) {
+            Some(bare) => format!("{SIMULATED} {bare}"),
+            None => bare.to_owned(),
+        };
         letters::escape(&bare.replace('_', " "))
     };
     let mut parts: Vec<&str> = name.split('.').collect();

@@ -2,12 +2,14 @@
 
 use super::chart::{Axis, Chart, Panel, Style};
 use super::course::Course;
-use super::dense::Dense;
 use super::kind::Kind;
+use super::labels::Labels;
 use super::page::scene::Scene;
 use crate::data::Measured;
 use crate::run::Clock;
 use crate::scenario::Scenario;
+use crate::text::number::{shortest, significant};
+use std::fmt;
 use std::sync::Arc;
 
 #[derive(Clone, Debug)]
@@ -20,6 +22,7 @@ pub struct Request {
     /// What was measured on a run, to be drawn with them.
     pub measured: Option<Arc<Measured>>,
     pub width_pt: f64,
+    pub labels: Labels,
 }
 
 #[derive(Clone, Debug)]
@@ -94,7 +97,14 @@ impl Request {
         let of_runs = |it: &Self| {
             let is_of_data = matches!(it.kind, Kind::Residuals);
             let stretch = (it.from_s, it.to_s);
-            (stretch, it.width_pt, it.exact, it.is_beside(), is_of_data)
+            (
+                stretch,
+                it.width_pt,
+                it.exact,
+                it.is_beside(),
+                is_of_data,
+                it.labels.clone(),
+            )
         };
         of_runs(self) == of_runs(other)
     }
@@ -102,6 +112,28 @@ impl Request {
     /// Whether something is drawn beside the runs, so that a single run needs a name.
     pub(super) fn is_beside(&self) -> bool {
         self.exact || self.measured.is_some()
+    }
+}
+
+/// What is too dense on paper to be told apart, and a shorter stretch of time in which it is not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dense {
+    /// What is, and how it is drawn, in words.
+    pub what: String,
+    pub from_s: f64,
+    pub to_s: f64,
+}
+
+impl Dense {
+    pub fn options(&self) -> String {
+        let (from_s, to_s) = (shortest(self.from_s), significant(self.to_s, 9));
+        format!("--from {from_s} --to {to_s}")
+    }
+}
+
+impl fmt::Display for Dense {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}; {} shows a part", self.what, self.options())
     }
 }
 

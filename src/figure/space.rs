@@ -10,11 +10,11 @@ use super::chart::legend::Legend;
 use super::chart::ticks::{Tick, Ticks};
 use super::chart::{Axis, Style, curve};
 use super::chords;
-use super::dense::{self, Dense};
+use super::dense;
 use super::page::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
 use super::page::scene::{Color, Pen, Point, Scene};
 use super::quantity;
-use super::request::{Drawn, Job, Run};
+use super::request::{Dense, Drawn, Job, Run};
 use super::size;
 use crate::playback::camera::{Camera, View};
 use crate::text::number::significant;
@@ -49,16 +49,19 @@ struct Space {
 pub(super) fn scene(job: &Job<'_>, drawn: &[Drawn]) -> (Scene, Option<Dense>) {
     let width_pt = job.request.width_pt;
     let space = Space::fitted(job.runs, drawn, width_pt);
-    let (names, mut styles): (Vec<_>, Vec<_>) = drawn
-        .iter()
-        .map(|drawn| chords::as_drawn(drawn, &drawn.course.path))
-        .unzip();
-    for (drawn, style) in drawn.iter().zip(&mut styles) {
+    let looks = drawn.iter();
+    let looks = looks.map(|drawn| chords::as_drawn(drawn, &drawn.course.path));
+    let (names, mut styles): (Vec<_>, Vec<_>) = looks.unzip();
+    let way_pt = |drawn: &Drawn| {
         let lines = drawn.course.path.lines(|at| space.place(&space.boxed(at)));
-        *style = curve::told_apart(&lines, style.clone());
+        curve::way_pt(&lines)
+    };
+    let first_pt = drawn.first().map_or(0.0, way_pt);
+    for (drawn, style) in drawn.iter().zip(&mut styles) {
+        style.core = style.core.filter(|_| curve::hides(first_pt, way_pt(drawn)));
     }
     let series = names.iter().map(String::as_str).zip(&styles);
-    let legend = Legend::new(series, space.stretched().as_deref());
+    let legend = Legend::new(series, space.stretched());
     let mut items = space.draw(drawn, &styles);
     let (left, top, right, bottom) = extent(&items);
     let above = legend.height_above(width_pt) + EDGE;

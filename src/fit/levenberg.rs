@@ -33,7 +33,6 @@ pub type Bounds = (f64, f64);
 /// A place where the sum is less, and the residuals there.
 type Better = (Vec<f64>, DVector<f64>);
 
-/// Where a search has ended.
 #[derive(Clone, Debug)]
 pub struct Minimum {
     pub p: Vec<f64>,
@@ -127,7 +126,6 @@ fn projected(p: &[f64], step: &DVector<f64>, bounds: &[Bounds]) -> Vec<f64> {
 struct Linear<'a> {
     slopes: &'a DMatrix<f64>,
     scale: &'a DVector<f64>,
-    /// The parameters that are not held.
     moving: Vec<usize>,
     singular: DVector<f64>,
     /// Uᵀ r.
@@ -219,48 +217,5 @@ impl<'a> Linear<'a> {
             step[index] = moved / self.scale[index];
         }
         step
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Rosenbrock's valley: (1 - x, 10 (y - x²)).
-    struct Valley;
-
-    impl Problem for Valley {
-        fn residuals(&self, p: &[f64]) -> Result<DVector<f64>, Stop> {
-            let below = 10.0 * (p[1] - p[0] * p[0]);
-            Ok(DVector::from_vec(vec![1.0 - p[0], below]))
-        }
-
-        fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop> {
-            let slopes = [1.0, 0.0, 20.0 * p[0], -10.0];
-            Ok(DMatrix::from_row_slice(2, 2, &slopes))
-        }
-
-        fn tell(&self, _: u64, _: f64) {}
-    }
-
-    const NONE: Bounds = (f64::NEG_INFINITY, f64::INFINITY);
-
-    #[test]
-    fn a_bent_valley_is_followed_to_its_end() {
-        let minimum = search(&Valley, &[-1.2, 1.0], &[NONE, NONE]).unwrap();
-        assert_eq!(minimum.failure, None);
-        assert!((minimum.p[0] - 1.0).abs() < 1e-4 && (minimum.p[1] - 1.0).abs() < 1e-4);
-    }
-
-    #[test]
-    fn a_bound_is_held_and_the_rest_is_found_on_it() {
-        let bounds = [NONE, (-1.0, 0.5)];
-        let minimum = search(&Valley, &[-1.2, 0.0], &bounds).unwrap();
-        assert_eq!(minimum.failure, None);
-        assert_eq!(minimum.held, [false, true]);
-        // On y = 1/2 the sum (1 - x)² + 100 (1/2 - x²)² is least at the root of its slope.
-        let slope = |x: f64| -2.0 * (1.0 - x) - 400.0 * x * (0.5 - x * x);
-        assert_eq!(minimum.p[1], 0.5);
-        assert!(slope(minimum.p[0]).abs() < 1e-2, "{}", minimum.p[0]);
     }
 }

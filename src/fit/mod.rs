@@ -3,17 +3,15 @@
 //!
 //! [`free`] says which keys are free, from where to where. A [`Model`] computes the runs for given values and holds them
 //! against the data. [`levenberg`] looks for the values, [`weights`] says how much each datum counts, [`solution`] what the
-//! minimum says of the keys, [`quality`] how well the model fits, [`verdict`] whether it fits, in a sentence. [`search`] brings these together to a
-//! [`Fit`], [`report`] writes it for people and programs, [`table`] as a CSV.
+//! minimum says of the keys and of the model, [`verdict`] whether it fits, in a sentence. [`search`] brings these together
+//! to a [`Fit`], [`report`] writes it for people and programs, and as a CSV.
 
 pub mod free;
 pub mod levenberg;
 pub mod model;
-pub mod quality;
 pub mod report;
 pub mod search;
 pub mod solution;
-pub mod table;
 pub mod verdict;
 pub mod weights;
 

@@ -2,7 +2,6 @@
 
 use super::free::Free;
 use super::levenberg::Stop;
-use crate::analysis::at_end;
 use crate::analysis::readouts::{self, Readout};
 use crate::cores;
 use crate::data::{
@@ -156,7 +155,7 @@ impl Model {
             let scenario = document.and_then(|document| Ok(document.scenario()?));
             let scenario = scenario.map_err(impossible)?;
             self.runs.fetch_add(1, Ordering::Relaxed);
-            let read = at_end::readouts(scenario, &wanted, &|| go_on());
+            let read = readouts::at_end(scenario, &wanted, &|| go_on());
             let read = read.map_err(impossible)?.ok_or(Stop::Interrupted)?;
             let values = read.iter().map(readouts::Value::number);
             Ok((row, values.collect()))

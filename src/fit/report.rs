@@ -1,16 +1,21 @@
-//! A fit as people read it, and as programs do.
+//! A fit as people read it, as programs do, and as a CSV.
 
 use super::free::shown;
 use super::model::Model;
-use super::quality::student;
 use super::search::{Fit, Fitted};
-use super::table::Numbers;
-use crate::data::Residual;
+use super::solution::student;
+use crate::data::quantity::TIME;
+use crate::data::{Data, Residual};
+use crate::export::layout::commented;
+use crate::figure::table::{Found, OF_FIT};
+use crate::scenario::Scenario;
 use crate::text::number::{NONE, short, shortest, significant, uncertain};
 use crate::text::printable::{printable, printable_lines};
-use serde::ser::{Serialize, Serializer};
+use serde::ser::Serializer;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::fmt;
+use std::io::{self, Write};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Report<'a> {
@@ -31,6 +36,14 @@ impl Fitted {
             Some(stated) => stated.to_string(),
             None => significant(self.value, DIGITS),
         }
+    }
+
+    fn json(&self) -> Value {
+        let bound = |bound: f64| bound.is_finite().then_some(bound);
+        json!({
+            "key": self.free.key, "value": self.value, "uncertainty": self.sigma, "start": self.free.start,
+            "from": bound(self.free.from), "to": bound(self.free.to), "is_at_bound": self.is_held,
+        })
     }
 
     /// What is to be known of it beside its value; empty where there is nothing.
@@ -130,13 +143,7 @@ impl Report<'_> {
 
     fn json(&self) -> Value {
         let (fit, quality) = (self.fit, self.fit.quality);
-        let bound = |bound: f64| bound.is_finite().then_some(bound);
-        let keys = fit.keys.iter().map(|key| {
-            json!({
-                "key": key.free.key, "value": key.value, "uncertainty": key.sigma, "start": key.free.start,
-                "from": bound(key.free.from), "to": bound(key.free.to), "is_at_bound": key.is_held,
-            })
-        });
+        let keys = fit.keys.iter().map(Fitted::json);
         let each = 0..fit.keys.len();
         let matrix = |cell: &dyn Fn(usize, usize) -> Option<f64>| -> Vec<Vec<Option<f64>>> {
             let row = |i| each.clone().map(|j| cell(i, j)).collect();
@@ -234,4 +241,127 @@ fn write_table<const N: usize>(
         writeln!(f, "{}", cells.collect::<String>().trim_end())?;
     }
     Ok(())
+}
+
+/// The comments above the run file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Header {
+    pub fit: Asked,
+    pub key: Vec<Found>,
+}
+
+/// The command of a fit, and how well the model fits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Asked {
+    /// The whole command, without its output.
+    pub command: String,
+    pub measured: String,
+    #[serde(rename = "in")]
+    pub scenario: String,
+    pub scheme: String,
+    pub free: Vec<String>,
+    /// The rows that were fitted, where these are not all.
+    pub rows: Option<String>,
+    /// chi^2, of data with uncertainties.
+    pub chi_squared: Option<f64>,
+    pub degrees_of_freedom: u64,
+    /// The scatter of data without uncertainties, in their unit.
+    pub scatter: Option<f64>,
+    pub verdict: String,
+}
+
+/// Writes a row for each measured value, below the run file of the fitted scenario. What was fitted to what, and what was
+/// found, stands above the run file as TOML in TOML's comments: the CSV opens as the run that it fitted, `scenario`. `asked`
+/// has what was asked for.
+pub fn write_csv(
+    mut out: impl Write,
+    report: &Report<'_>,
+    scenario: &Scenario,
+    asked: Asked,
+) -> io::Result<()> {
+    let found = report.fit.keys.iter().map(|key| Found {
+        key: key.free.key.clone(),
+        value: key.value,
+        uncertainty: key.sigma,
+    });
+    let header = Header {
+        fit: asked,
+        key: found.collect(),
+    };
+    let text = toml::to_string(&header).map_err(io::Error::other)?;
+    out.write_all(commented(&commented(&text)).as_bytes())?;
+    out.write_all(commented(&scenario.to_toml()).as_bytes())?;
+    let mut rows = csv::WriterBuilder::new()
+        .has_headers(false)
+        .from_writer(out);
+    let data = &report.model.measured.data;
+    let mut names = vec!["row"];
+    names.extend(at_names(data));
+    names.extend(OF_FIT);
+    rows.write_record(&names).map_err(io::Error::other)?;
+    for (residual, datum) in report.fit.residuals.iter().zip(&report.model.data) {
+        let quantity = report.model.columns[datum.column].readout.name;
+        let row = (
+            residual.row + 1,
+            at_cells(data, residual.row),
+            quantity,
+            Numbers::of(residual),
+        );
+        rows.serialize(row).map_err(io::Error::other)?;
+    }
+    rows.flush()
+}
+
+/// The columns of a row behind its quantity.
+#[derive(Serialize)]
+struct Numbers {
+    measured: f64,
+    uncertainty: Option<f64>,
+    model: f64,
+    residual: f64,
+    residual_sigmas: Option<f64>,
+}
+
+impl Numbers {
+    fn of(residual: &Residual) -> Self {
+        Self {
+            measured: residual.measured,
+            uncertainty: residual.sigma,
+            model: residual.model,
+            residual: residual.value(),
+            residual_sigmas: residual.in_sigmas(),
+        }
+    }
+}
+
+/// The names of what says where a value was measured.
+fn at_names(data: &Data) -> Vec<&str> {
+    match data {
+        Data::Series(_) => vec![TIME],
+        Data::Table(table) => table.settings.iter().map(|it| it.key.as_str()).collect(),
+    }
+}
+
+/// The same of a row, from 0.
+fn at_cells(data: &Data, row: usize) -> Vec<String> {
+    match data {
+        Data::Series(series) => vec![number(series.times_s[row])],
+        Data::Table(table) => {
+            let values = table.settings.iter().map(|setting| &setting.values[row]);
+            let cell = |value: &Option<toml::Value>| match value {
+                None => String::new(),
+                Some(toml::Value::Float(value)) => number(*value),
+                Some(toml::Value::String(text)) => text.clone(),
+                Some(other) => other.to_string(),
+            };
+            values.map(cell).collect()
+        }
+    }
+}
+
+/// A number as CSVs of runs have it.
+fn number(number: f64) -> String {
+    ryu::Buffer::new().format(number).to_owned()
 }

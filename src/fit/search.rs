@@ -3,8 +3,7 @@
 use super::free::Free;
 use super::levenberg::{self, Bounds, Failure, Minimum, Problem, Stop};
 use super::model::{GoOn, Model};
-use super::quality::{self, Quality};
-use super::solution::{SILENT, Solution};
+use super::solution::{Quality, SILENT, Solution, variance};
 use super::weights::Weights;
 use crate::cores;
 use crate::data::Residual;
@@ -148,7 +147,7 @@ fn finished(
     let freedom = model.data.len().saturating_sub(solution.rank) as u64;
     let sum = minimum.residuals.norm_squared();
     let quality = Quality::of(sum, freedom, &weights);
-    let scattered = || quality::variance(sum, freedom);
+    let scattered = || variance(sum, freedom);
     let variance = weights.are_stated.then_some(1.0).or_else(scattered);
     let places = model.free.iter().enumerate();
     let keys = places.map(|(index, free)| Fitted {

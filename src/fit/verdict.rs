@@ -1,8 +1,8 @@
 //! Whether the model fits, in one sentence.
 
 use super::model::{Measurand, Model};
-use super::quality::{LEAST_FREEDOM, Quality, RARE, student};
 use super::search::Fit;
+use super::solution::{LEAST_FREEDOM, Quality, RARE, student};
 use crate::data::{Data, Point, Residual, is_counted};
 use crate::text::number::{short, significant};
 use std::collections::BTreeSet;

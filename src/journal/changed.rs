@@ -1,10 +1,11 @@
 //! How a run differs from the motion that the texts of its file (`about`, `source`, `look_at`, `next`, `[[expected]]`) were
 //! written for, and what is done with these texts then.
 
+use super::restart::in_force;
 use crate::scenario::file::ScenarioFile;
 use crate::scenario::presets::{PRESETS, Preset};
 use crate::scenario::rescale::at_time_step;
-use crate::scenario::{Document, Motion, Scenario};
+use crate::scenario::{Document, Scenario, float};
 use crate::text::number::shortest;
 use crate::text::printable::printable;
 use serde::Serialize;
@@ -17,7 +18,6 @@ const AS_IT_WAS: &str = " as it was: ";
 /// Ends its `source` there.
 const CHANGED: &str = "; changed since";
 
-/// The most changed values of one table that are listed.
 const MOST_VALUES: usize = 2;
 
 /// The longest name of a file, in characters; a file of a longer name is called "what was opened".
@@ -122,7 +122,7 @@ fn preset_with_words_of(scenario: &Scenario) -> Option<(&'static Preset, Scenari
 }
 
 fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
-    let [old, new] = [before, now].map(last_motion);
+    let [old, new] = [before, now].map(|run| in_force(run, u64::MAX).0);
     let (old_file, new_file) = (&before.file, &now.file);
     let motion = |name: &str, unit: &str, [new, old]: [f64; 2]| {
         let words = || format!("{name} {} {unit}, not {}", shortest(new), shortest(old));
@@ -154,7 +154,7 @@ fn values<T: Serialize + PartialEq>(name: &str, before: &T, now: &T) -> Option<S
     let [before, now] = [before, now].map(|table| Table::try_from(table).unwrap_or_default());
     let is_new = |(key, value): &(&String, &Value)| before.get(*key) != Some(*value);
     let new = now.iter().filter(is_new).map(|(key, value)| {
-        let is_plain = |value: &&Value| number(value).is_some() || value.is_array();
+        let is_plain = |value: &&Value| float(value).is_some() || value.is_array();
         let old = before.get(key).filter(is_plain);
         let old = old.filter(|_| is_plain(&value)).map(written);
         let old = old.map_or(String::new(), |old| format!(", not {old}"));
@@ -175,22 +175,9 @@ fn written(value: &Value) -> String {
             format!("[{}]", list.join(", "))
         }
         Value::String(word) => word.clone(),
-        value => number(value).unwrap_or_else(|| value.to_string()),
+        Value::Float(number) => shortest(*number),
+        value => value.to_string(),
     }
-}
-
-fn number(value: &Value) -> Option<String> {
-    match value {
-        Value::Integer(number) => Some(number.to_string()),
-        Value::Float(number) => Some(shortest(*number)),
-        _ => None,
-    }
-}
-
-/// Gravity, scheme and time step after the last edit.
-fn last_motion(scenario: &Scenario) -> &Motion {
-    let last = scenario.edits.last();
-    last.map_or(&scenario.motion, |edit| &edit.motion)
 }
 
 /// How the pushes have changed, in words, by more than the rescaling that a new time step causes.

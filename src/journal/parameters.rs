@@ -12,13 +12,10 @@ use crate::text::printable::brief;
 use nalgebra::Vector3;
 use toml::{Table, Value};
 
-/// The most points, and the most pushes, that are listed.
 const MOST_LISTED: usize = 50;
 
-/// The key of the start's momentum.
 const MOMENTUM: &str = "start.momentum_Js";
 
-/// One value of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
     /// Dotted key, as `--set` takes it: `start.momentum_Js.2`, `push.0.force_N.0`.
@@ -34,7 +31,6 @@ pub struct Parameter {
     pub frame: Option<&'static str>,
     /// The value in the file, or the default where the file has none. Numbers are floats, whole numbers integers.
     pub value: Value,
-    /// Whether the file has no value.
     pub is_default: bool,
     /// The words or point names to choose from; empty where the value is none of these.
     pub choices: Vec<String>,
@@ -99,9 +95,6 @@ pub fn table_at(scenario: &Scenario, step: u64) -> Table {
 /// The checked scenario of `file` with the values of `set`, as `--set key=value` gives them. Where the file gives a spin and
 /// a key is a component of the momentum, the spin is first replaced by the momentum (world frame) that it amounts to;
 /// where it gives a momentum and a key is `steady`, the momentum is replaced by its spin.
-///
-/// # Errors
-/// What is wrong with the changed file; [`Problems::in_one_line`] shortens it.
 pub fn changed(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
     let mut document = Document::from_file("scenario", file)?;
     for (key, value) in set {
@@ -110,18 +103,15 @@ pub fn changed(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
     document.scenario()
 }
 
-/// The array of tables to which `key` belongs.
 fn array_of(key: &Key) -> Option<&'static str> {
     key.path.split_once(".*.").map(|(array, _)| array)
 }
 
-/// How many elements of the array of tables are listed.
 fn length(table: &Table, array: &str) -> usize {
     let elements = find(table, array).and_then(Value::as_array);
     elements.map_or(0, |elements| elements.len().min(MOST_LISTED))
 }
 
-/// The names of the points or parts in `array` that are listed.
 fn names(table: &Table, array: &str) -> Vec<String> {
     let name = |index| find(table, &format!("{array}.{index}.name"))?.as_str();
     let names = (0..length(table, array)).filter_map(name);
@@ -228,7 +218,6 @@ fn choices(key: &Key, table: &Table, scenario: &Scenario) -> Vec<String> {
     }
 }
 
-/// The size of a number, the norm of a vector.
 fn size(value: &Value) -> f64 {
     match value {
         Value::Array(items) => items.iter().filter_map(float).fold(0.0, libm::hypot),
@@ -262,9 +251,6 @@ impl Parameter {
     }
 
     /// The value nudged up `times` times, or down where that is negative.
-    ///
-    /// # Errors
-    /// Why it cannot be nudged, as a message that continues the label.
     pub fn nudged(&self, times: i32) -> Result<Value, String> {
         let value = match (&self.value, self.lab.nudge) {
             (_, Nudge::Typed) => return Err("is text: type it".to_owned()),
@@ -291,9 +277,6 @@ impl Parameter {
     }
 
     /// The value that the user typed: a number with or without its unit, a word, true or false, or text.
-    ///
-    /// # Errors
-    /// Why the text is no value of this key, as a message that continues the label.
     pub fn typed(&self, text: &str) -> Result<Value, String> {
         let value = match self.kind {
             Kind::Number(_) => Value::Float(nudge::typed(text, self.unit())?),
@@ -316,7 +299,6 @@ impl Parameter {
         self.kind.check(&value).map(|()| value)
     }
 
-    /// The three components of a vector, each as a parameter.
     fn components(self) -> Vec<Parameter> {
         let numbers = self.value.as_array().into_iter().flatten();
         let numbers = numbers.filter_map(float);
@@ -355,16 +337,7 @@ fn typed_flag(text: &str) -> Result<bool, String> {
 
 /// `text` with each written `\n` replaced by a line end, and each `\\` by a backslash.
 fn unescaped(text: &str) -> String {
-    let mut plain = String::with_capacity(text.len());
-    let mut characters = text.chars();
-    while let Some(c) = characters.next() {
-        match (c, characters.as_str().chars().next()) {
-            ('\\', Some(next @ ('n' | '\\'))) => {
-                characters.next();
-                plain.push(if next == 'n' { '\n' } else { '\\' });
-            }
-            _ => plain.push(c),
-        }
-    }
-    plain
+    const BACKSLASH: &str = "\0"; // for a while: no text may hold it
+    let text = text.replace(r"\\", BACKSLASH).replace(r"\n", "\n");
+    text.replace(BACKSLASH, r"\")
 }

@@ -1,13 +1,22 @@
-//! Makes a scenario that starts from the present state of a run, with the settings and pushes in force there.
+//! New runs from a run: one that starts from its present state, with the settings and pushes in force there, and one that
+//! follows an advice, from its start with another time step or scheme throughout.
 
 use crate::physics::{State, rotation};
-use crate::scenario::file::{MotionFile, PushFile, ScenarioFile, StartFile, ViewFile};
+use crate::run::Clock;
+use crate::scenario::dotted::number_of_push;
+use crate::scenario::file::{EditFile, MotionFile, PushFile, ScenarioFile, StartFile, ViewFile};
 use crate::scenario::problem::{Problem, Problems};
-use crate::scenario::rescale::MOST_STEPS;
+use crate::scenario::rescale::{MOST_STEPS, at_time_step};
 use crate::scenario::{Document, Motion, Push, Pushes, Scenario, Window};
 use crate::text::number;
 use nalgebra::{Matrix3, Vector3};
+use toml::{Table, Value};
 
+const ADVISED: &str = "the run as advised";
+/// The keys of an edit that another time step or scheme throughout replaces.
+const REPLACED: [&str; 2] = ["motion.time_step_s", "motion.scheme"];
+/// The keys of a push that count in steps.
+const COUNTED: [&str; 3] = ["first_step", "steps", "accumulates"];
 /// A push is over if less than this share of a time step remains of it; the rest is rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -15,9 +24,6 @@ const ROUNDING: f64 = 1e-9;
 /// force there; edits made at `step` itself are included, later ones are not. Times are counted from the new start: a push
 /// that is over is left out, one in progress is shortened, and a later one is moved. Moved pushes have their times in
 /// seconds.
-///
-/// # Errors
-/// Where an accumulating push has already begun, or counts steps of another length than the present time step.
 pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Scenario, Problems> {
     let origin = "the scenario from here";
     let (motion, pushes) = in_force(scenario, step);
@@ -78,7 +84,6 @@ pub fn in_force(scenario: &Scenario, step: u64) -> (Motion, &Pushes) {
     })
 }
 
-/// The start table with the orientation and the momentum of `state`.
 fn start(state: &State) -> StartFile {
     let [tilt, turn, roll] = angles_deg(&state.orientation);
     StartFile {
@@ -149,7 +154,7 @@ impl Now<'_> {
     /// Whether the time step is still the one for which the scenario's pushes give their step numbers.
     fn counts_steps(&self) -> bool {
         let mut edits = self.scenario.edits.iter();
-        let is_edited = edits.any(|edit| edit.step <= self.step && edit.touches.time_step);
+        let is_edited = edits.any(|edit| edit.step <= self.step && edit.sets_time_step);
         !is_edited && self.scenario.written_for_s == self.motion.time_step_s
     }
 
@@ -189,26 +194,98 @@ impl Now<'_> {
     }
 }
 
+/// The run of `scenario` with the time step `time_step_s` (s) and, where one is named, `scheme` throughout. It has the
+/// pushes and the edits of gravity and pushes at the same times, and no edits of time step and scheme. It ends at
+/// `end_s` (s).
+pub fn as_advised(
+    scenario: &Scenario,
+    time_step_s: f64,
+    scheme: Option<&str>,
+    end_s: f64,
+) -> Result<Scenario, Problems> {
+    let refused = |problem| Problems::one(ADVISED, problem);
+    let mut file = scenario.file.clone();
+    let edits = std::mem::take(&mut file.edit);
+    let is_other = time_step_s != file.motion.time_step_s;
+    if is_other {
+        file = at_time_step(&file, time_step_s).map_err(refused)?;
+    }
+    if let Some(scheme) = scheme {
+        file.motion.scheme = Some(scheme.to_owned());
+    }
+    file.motion.steps = (end_s / time_step_s).round().clamp(1.0, MOST_STEPS) as u64;
+    for ((time_s, _), edit) in Clock::edits(scenario).zip(edits) {
+        let mut set = edit.set;
+        set.retain(|key, _| !REPLACED.contains(&key));
+        let counted = set.iter().find(|(key, value)| counts(key, value));
+        if let Some((key, _)) = counted.filter(|_| is_other) {
+            let rule = "is counted in steps, which are others at another time step";
+            return Err(refused(Problem::at(key.clone(), rule)));
+        }
+        if !set.is_empty() {
+            let step = (time_s / time_step_s).round() as u64;
+            file.edit.push(EditFile { step, set });
+        }
+    }
+    Document::from_file(ADVISED, &file)?.scenario()
+}
+
+/// The edits of `scenario` that a run as advised leaves out, in words: time step, scheme or both. `None` where it has
+/// none.
+pub fn replaced(scenario: &Scenario) -> Option<&'static str> {
+    let edits = |key: &str| (scenario.file.edit.iter()).any(|edit| edit.set.contains_key(key));
+    match REPLACED.map(edits) {
+        [true, true] => Some("the edits of dt and scheme"),
+        [true, false] => Some("the edits of dt"),
+        [false, true] => Some("the edits of the scheme"),
+        [false, false] => None,
+    }
+}
+
+/// Whether `value`, set at `key`, makes a push count in steps.
+fn counts(key: &str, value: &Value) -> bool {
+    let is_counted = |name: &str| COUNTED.contains(&name);
+    let last = key.rsplit('.').next().unwrap_or_default();
+    let inside = value.as_table().into_iter().flat_map(Table::keys);
+    number_of_push(key).is_some()
+        && (is_counted(last) || inside.into_iter().any(|name| is_counted(name)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
 
-    fn from_angles([tilt, turn, roll]: [f64; 3]) -> Matrix3<f64> {
-        let about = |axis: Vector3<f64>, deg: f64| rotation::about(&axis, deg.to_radians());
-        about(Vector3::z(), turn) * about(Vector3::x(), tilt) * about(Vector3::z(), roll)
+    fn run(edits: &str) -> Scenario {
+        let text = crate::scenario::presets::find("wobble-push").map(|preset| preset.text);
+        let text = format!("{}{edits}", text.unwrap());
+        let document = Document::parse("x.toml", &text).unwrap();
+        document.scenario().unwrap()
     }
 
-    proptest! {
-        #[test]
-        fn the_angles_give_the_orientation_back(
-            tilt in prop_oneof![Just(0.0), Just(180.0), Just(1e-7), Just(1e-14), Just(179.9999999), 0.0..180.0f64],
-            turn in -180.0..180.0f64,
-            roll in -180.0..180.0f64,
-        ) {
-            let orientation = from_angles([tilt, turn, roll]);
-            let back = from_angles(angles_deg(&orientation));
-            prop_assert!((back - orientation).amax() < 4e-15, "{}", (back - orientation).amax());
-        }
+    #[test]
+    fn edits_keep_their_seconds_and_those_of_the_time_step_go() {
+        let run = run(
+            "\n[[edit]]\nstep = 40\nset = { 'motion.time_step_s' = 0.05 }\n\
+             [[edit]]\nstep = 60\nset = { 'motion.scheme' = 'rk4', 'motion.gravity_m_per_s2' = 1 }\n",
+        );
+        let step_s = run.motion.time_step_s;
+        let other = as_advised(&run, 0.1 * step_s, None, 30.0).unwrap();
+        let edit = &other.file.edit[..];
+        assert_eq!(edit.len(), 1);
+        let time_s = 40.0 * step_s + 20.0 * 0.05;
+        assert_eq!(edit[0].step, (time_s / (0.1 * step_s)).round() as u64);
+        assert_eq!(other.motion.scheme.name, run.motion.scheme.name);
+        assert_eq!(other.edits[0].motion.gravity, 1.0);
+        assert!((Clock::end_s(&other) - 30.0).abs() < 1e-9);
+        assert_eq!(replaced(&run), Some("the edits of dt and scheme"));
+        assert_eq!(replaced(&other), None);
+    }
+
+    #[test]
+    fn what_is_counted_in_steps_is_refused() {
+        let run = run("\n[[edit]]\nstep = 40\nset = { 'push.0.steps' = 7 }\n");
+        let own = run.motion.time_step_s;
+        assert!(as_advised(&run, 0.5 * own, None, 30.0).is_err());
+        assert!(as_advised(&run, own, Some("strang"), 30.0).is_ok());
     }
 }

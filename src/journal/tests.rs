@@ -113,20 +113,6 @@ fn an_act_that_passes_a_limit_is_refused() {
 }
 
 #[test]
-fn the_act_is_written_last() {
-    let entry = Entry {
-        step: 3,
-        from_file: true,
-        is_chained: true,
-        act: gravity(1.0),
-    };
-    let text = serde_json::to_string(&entry).unwrap();
-    for earlier in ["\"is_chained\"", "\"from_file\""] {
-        assert!(text.find("\"act\"") > text.find(earlier), "{text}");
-    }
-}
-
-#[test]
 fn pushes_added_at_one_step_keep_their_order() {
     let own = "[[push]]\npoint = 'top'\nforce_N = [0, 0, -1]\nfor_s = 1\n".repeat(8);
     let added = "[[edit]]\nstep = 5\nset = { 'push.8' = \
@@ -138,27 +124,6 @@ fn pushes_added_at_one_step_keep_their_order() {
         let scenario = journal.act(20, push(2.0), false).unwrap();
         assert_eq!(scenario.edits.last().unwrap().pushes.len(), count);
     }
-}
-
-#[test]
-fn redo_does_not_panic_in_a_journal_edited_by_hand() {
-    let mut journal = after([(5, gravity(3.0)), (3, gravity(4.0))]);
-    journal.undo();
-    journal.log.clear();
-    assert!(journal.redo().is_some());
-}
-
-#[test]
-fn undo_takes_all_nudges_of_a_chain_back() {
-    let mut journal = after([(5, push(0.5)), (10, gravity(1.0))]);
-    journal.act(12, gravity(2.0), true).unwrap();
-    journal.act(14, gravity(3.0), true).unwrap();
-    let whole = journal.file();
-    assert_eq!(journal.undo(), Some((10, gravity(3.0))));
-    assert_eq!(counts(&journal), (0, 1));
-    assert_eq!(journal.redo(), Some((10, gravity(3.0))));
-    assert_eq!(journal.file(), whole);
-    assert_eq!(journal.redo(), None);
 }
 
 #[test]

@@ -1,102 +1,43 @@
-//! The actions of the user. The table of keys in `tui` says which key stands for which action.
+//! What a key does that stands for no command: it moves the focus or a selection, opens or closes, types, or leaves. The
+//! table of keys in `tui` says which key stands for which action, and which for commands.
+
+/// Rows that a page key moves by.
+pub(super) const PAGE: isize = 10;
+/// The most times that a key is repeated; more repetitions would make no difference on the screen.
+const MOST_REPEATED: u64 = 1000;
 
 /// An action of the user; [`Lab::update`](crate::lab::Lab::update) carries it out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Action {
-    /// Pauses the run, or lets it go on; stops a script.
+    /// Pauses the run, or lets it go on; pauses a script.
     TogglePause,
-    /// One time step forward, or as many as the count says.
-    Step,
-    /// One time step back, or as many as the count says.
-    StepBack,
-    /// Asks for a step or a time to go to; with a count, goes to the step of that number.
+    /// Goes to the step of the count; without one, asks for a step or a time to go to.
     GoTo,
-    Undo,
-    /// Does again what was undone last.
-    Redo,
-    /// Gives the push to come, now.
-    Push,
-    /// Begins the run anew as the advice about its numbers says.
-    TakeAdvice,
-    /// Pins the present run as the reference, or takes the pinned one away.
-    TogglePin,
     /// Moves the focus to the values of the push to come.
     ChoosePush,
     /// Moves the focus to the values of the scenario.
     Parameters,
     /// Asks for a new value of the selected line.
     Edit,
-    /// Asks where to export the run.
-    Export,
-    /// Asks where to draw a figure of the run.
-    Figure,
-    /// Asks where to save the run file.
-    SaveRun,
-    /// Asks where to save the present state as a scenario.
-    SavePresent,
-    /// Adds a digit to the count for the next action.
+    Ask(Ask),
     Digit(u8),
-    /// The next higher speed.
-    Faster,
-    /// The next lower speed.
-    Slower,
-    /// Goes back to step 0.
-    Restart,
-    /// Shows the exact motion beside the run, or hides it.
-    ToggleExact,
-    /// Shows measured data less what the run says, or both again.
-    ToggleResiduals,
-    /// Moves the focus to the next pane.
     NextPane,
-    /// Moves the focus to the pane before.
     PreviousPane,
-    /// Fills the screen with the pane in focus, or shows all panes again.
-    FillScreen,
     /// Fills the screen with the 3-D view, or shows all panes again.
     ThreeD,
-    /// Shows the step pane beside another one, or takes it away.
+    /// Shows the step pane beside another one and moves the focus there, or takes it away.
     ToggleStep,
-    /// Goes to the next phase of the time step; after the last takes the next step.
-    NextPhase,
-    /// Goes to the phase before; before the first goes one step back.
-    PhaseBack,
-    /// Shows in the step pane why the axle goes sideways, or the phases again.
-    Why,
     /// Moves a selection, nudges the selected value, or turns the camera.
     Move(Direction),
     /// As `Move`, ten times.
     MoveFar(Direction),
-    /// Doubles the time that the traces show.
-    WiderWindow,
-    /// Moves the cursor on the traces by one step to the left or right.
-    StepCursor(Direction),
-    /// Moves it to the next turn of the tilt on that side.
-    ToTurn(Direction),
-    /// Goes to the step at the cursor.
+    /// Goes to the step at the cursor; without one, moves the focus to the values.
     GoToCursor,
-    /// The traces show earlier or later times.
-    Pan(Direction),
-    /// The values of the traces are magnified twice as much, or half.
-    Magnify(bool),
-    /// The traces show the run as at first.
-    WholeView,
-    /// Halves the time that the traces show.
-    NarrowerWindow,
-    /// Shows the round picture in focus larger.
-    ZoomIn,
-    /// Shows the round picture in focus smaller.
-    ZoomOut,
-    /// Shows the whole of the round picture in focus.
-    ZoomToWhole,
-    /// Opens the dialog of the settings.
-    Settings,
-    /// Opens the browser of presets and files.
     Browse,
     /// Turns to the values and begins to type a part of a name: only values with it in their names are listed.
     FindValue,
     /// Does the entry that is selected in the help; `tui`, which has the entries, carries it out.
     DoEntry,
-    /// Opens the entry that is selected in the browser.
     Choose,
     /// Begins to type the filter of the browser.
     Filter,
@@ -106,17 +47,50 @@ pub enum Action {
     Accept,
     /// Opens or closes the help: the list of keys and words.
     Help,
-    /// Closes what lies on top, or stops what is in progress.
+    /// Closes a popup, or stops what is in progress.
     Close,
     Lesson(LessonKey),
     /// The class: the teacher's acts, or stepping aside and coming back. The room above the lab does it.
     Class,
-    /// Draws the whole screen again.
     Redraw,
     /// Suspends the program until the shell resumes it.
     Suspend,
-    /// Ends the program.
     Quit,
+}
+
+impl Action {
+    /// Whether the nudges of a value before and after it are one act: one undo takes back both.
+    pub(super) fn keeps_nudge(self) -> bool {
+        matches!(self, Self::Move(_) | Self::MoveFar(_) | Self::Digit(_))
+    }
+}
+
+/// What the lab leaves to the rooms above it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Request {
+    /// Do in the lesson what a key stands for.
+    Lesson(LessonKey),
+    /// Take this number as the answer to the question of the lesson that was asked last.
+    Answer(f64),
+    Redraw,
+    /// Suspend the program until the shell resumes it.
+    Suspend,
+    Quit,
+}
+
+/// What a dialog asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// A step or a time to go to.
+    Place,
+    /// A new value of the selected line.
+    Value,
+    Export,
+    Figure,
+    RunFile,
+    /// Where to save the present state as a scenario.
+    Present,
+    Settings,
 }
 
 /// What a key does in the lesson. The room above the lab does it.
@@ -126,9 +100,7 @@ pub enum LessonKey {
     List,
     /// Closes the list of lessons; on a page it says how to leave.
     Leave,
-    /// Turns to the next page.
     Next,
-    /// Turns to the page before.
     Before,
     /// Begins the page again: the run as the page wants it.
     Again,
@@ -139,13 +111,14 @@ pub enum LessonKey {
     Move(Direction),
     /// Gives the selected answer, asks for a number, or opens the selected lesson.
     Take,
+    /// Asks for a number that begins with this digit.
+    Digit(u8),
 }
 
 /// A change in the field of a dialog, or in a line without a cursor: there something can be typed, erased and cleared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldEdit {
     Type(char),
-    /// Removes the character before the cursor.
     Erase,
     Delete,
     Clear,
@@ -178,4 +151,17 @@ impl Direction {
             Self::PageDown => page,
         }
     }
+}
+
+/// `times` to the right, or as many to the left.
+pub fn signed(direction: Direction, times: i32) -> i32 {
+    match direction {
+        Direction::Left => -times,
+        _ => times,
+    }
+}
+
+/// How often a key acts that was pressed after this count.
+pub fn repeated(count: Option<u64>) -> i32 {
+    count.unwrap_or(1).min(MOST_REPEATED) as i32
 }

@@ -193,6 +193,11 @@ impl Browser {
         self.preview.as_ref().map(|(_, preview)| preview)
     }
 
+    /// Whether a file was chosen to be opened and is still being read.
+    pub(super) fn is_choice_loading(&self) -> bool {
+        self.is_chosen && self.is_loading()
+    }
+
     /// Whether the selected entry is still being read.
     pub fn is_loading(&self) -> bool {
         matches!(self.preview(), Some(Preview::Loading)) || self.sorting.is_some()
@@ -212,6 +217,11 @@ impl Browser {
             return true;
         }
         is_shorter
+    }
+
+    /// Selects the entry of this number among those that are shown.
+    pub fn select(&mut self, row: usize) {
+        self.shift(row as isize - self.selected as isize);
     }
 
     /// Moves the selection by `rows`; it stops at both ends.

@@ -1,13 +1,17 @@
 //! A dialog: the form that the user fills in, and what the answer is for.
 
-use super::action::FieldEdit;
+use super::action::{Ask, FieldEdit};
 use super::answer::Refusal;
-use super::course::WHERE;
+use super::command::{Command, Export, Figure, Place, Save};
+use super::edits::Edits;
+use super::files::{Files, run_up_to};
 use super::form::{Field, Form};
+use super::player::{Player, WHERE};
 use super::settings::SETTINGS;
 use super::values::Values;
-use super::values::listed::Of;
-use super::view::View;
+use super::values::list::Of;
+use super::view::{Pane, View};
+use crate::export::Layout;
 use crate::journal::parameters::Parameter;
 use crate::scenario::Scenario;
 use crate::scenario::keys::Effect;
@@ -81,8 +85,51 @@ impl Dialog {
         Some(Self::new(Question::Value, &title, &fields, about))
     }
 
+    /// The dialog that asks for what `ask` says.
+    ///
+    /// # Errors
+    /// Why there is nothing to ask for now.
+    pub(super) fn of(
+        ask: Ask,
+        files: &Files,
+        edits: &Edits,
+        player: &Player,
+        view: &View,
+    ) -> Result<Self, String> {
+        let runs = &edits.runs;
+        let free_name = |about, extension| files.free_name(runs.name(), about, extension);
+        match ask {
+            Ask::Value => {
+                let nothing = "no value to set has that in its name: Esc shows all of them";
+                Self::value(&edits.values).ok_or_else(|| nothing.to_owned())
+            }
+            Ask::Export | Ask::Figure if files.is_exporting() => {
+                Err("one export at a time: Esc stops the one under way".to_owned())
+            }
+            Ask::Export => {
+                let scenario = run_up_to(None, "export", runs, player)?;
+                Ok(Self::export(scenario, free_name("", "csv")))
+            }
+            Ask::Figure => {
+                let step = run_up_to(None, "draw", runs, player)?.steps;
+                Ok(Self::figure(step, free_name("", "pdf"), view.focus))
+            }
+            Ask::RunFile => {
+                let step = run_up_to(None, "save", runs, player)?.steps;
+                let later = runs.journal().later_than(step);
+                Ok(Self::save_run(step, later, free_name("-run", "toml")))
+            }
+            Ask::Present => {
+                let path = free_name("-from-here", "toml");
+                Ok(Self::save_present(player.present_as_text()?, path))
+            }
+            Ask::Settings => Ok(Self::settings(view, 0)),
+            Ask::Place => Ok(Self::go_to()),
+        }
+    }
+
     /// Asks for the CSV file of the run `scenario`; it offers `path`.
-    pub(super) fn export(scenario: Arc<Scenario>, path: String) -> Self {
+    fn export(scenario: Arc<Scenario>, path: String) -> Self {
         let fields = [("file", path), ("every", "1".to_owned())];
         let title = format!(
             "export steps 0 to {}, where x was pressed, as CSV",
@@ -93,8 +140,13 @@ impl Dialog {
         dialog
     }
 
-    /// Asks for the file of a figure of the run up to `step`; it offers `path` and `kind`.
-    pub(super) fn figure(step: u64, path: String, kind: &str) -> Self {
+    /// Asks for the file of a figure of the run up to `step`; it offers `path` and the picture of the
+    /// pane in `focus`.
+    fn figure(step: u64, path: String, focus: Pane) -> Self {
+        let kind = match focus {
+            Pane::FROM_ABOVE | Pane::THREE_D => focus.id(),
+            _ => Pane::TRACES.id(),
+        };
         let fields = [("file", path), ("kind", kind.to_owned())];
         let info = [
             "the file's end says in which form: .svg, .pdf or .png",
@@ -105,7 +157,7 @@ impl Dialog {
     }
 
     /// Asks for the run file of the run up to `step`, which leaves out `later` actions; it offers `path`.
-    pub(super) fn save_run(step: u64, later: usize, path: String) -> Self {
+    fn save_run(step: u64, later: usize, path: String) -> Self {
         let left_out =
             format!("without {later} later actions: go to the end of the run to have them in it");
         let up_to = format!("the run up to step {step}: gyrolab run FILE gives the same rows as x");
@@ -115,7 +167,7 @@ impl Dialog {
     }
 
     /// Asks for the file of the scenario `content`; it offers `path`.
-    pub(super) fn save_present(content: String, path: String) -> Self {
+    fn save_present(content: String, path: String) -> Self {
         let info = "a scenario that starts from the state on the screen";
         let question = Question::SavePresent(content);
         let title = "save the present state";
@@ -167,8 +219,57 @@ impl Dialog {
         self.asked_to_replace.as_deref() == Some(path)
     }
 
+    /// The command that the answer stands for; `None` where it changes nothing.
+    ///
+    /// # Errors
+    /// Why it is refused.
+    pub(super) fn command(
+        &self,
+        files: &Files,
+        values: &Values,
+        player: &Player,
+    ) -> Result<Option<Command>, String> {
+        let path = self.form.text(0).to_owned();
+        let force = self.may_replace(&files.path_of(&path));
+        Ok(Some(match &self.question {
+            Question::Value => {
+                let time_step_s = player.motion().time_step_s;
+                return values.value_typed(&path, player.run().scenario(), time_step_s);
+            }
+            Question::GoTo => Command::GoTo(Place::Step(player.step_meant(&path)?)),
+            Question::Export(scenario) => Command::Export(Export {
+                path,
+                layout: Layout::every(self.every()?).file().clone(),
+                to_step: Some(scenario.steps),
+                force,
+            }),
+            Question::Figure(to_step) => Command::Figure(Figure {
+                path,
+                kind: self.form.text(1).trim().to_owned(),
+                exact: player.run().overlay().is_some(),
+                to_step: Some(*to_step),
+                force,
+            }),
+            Question::SaveRun(to_step) => Command::Save(Save {
+                path,
+                from_here: false,
+                to_step: Some(*to_step),
+                force,
+            }),
+            Question::SavePresent(_) | Question::Number | Question::Settings => return Ok(None),
+        }))
+    }
+
+    /// The number that was typed; a comma may stand for the decimal point.
+    pub(super) fn number_typed(&self) -> Result<f64, String> {
+        let text = self.form.text(0).trim().replace(',', ".");
+        let number: Option<f64> = text.parse().ok();
+        let number = number.filter(|number| number.is_finite());
+        number.ok_or_else(|| "must be a number, such as 2.5 or 1e-3".to_owned())
+    }
+
     /// The interval of the rows to write, as typed in the second field: 10 stands for each tenth row.
-    pub(super) fn every(&self) -> Result<NonZeroU64, String> {
+    fn every(&self) -> Result<NonZeroU64, String> {
         let text = self.form.text(1).trim();
         text.parse()
             .map_err(|_| "every must be a whole number, 1 or more".to_owned())

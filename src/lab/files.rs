@@ -1,13 +1,16 @@
 //! The files of the lab: their folder, which of them may be read and written, and the export in progress.
 
 use super::answer::{Answer, Done, Refusal, UnderWay};
-use crate::data::Measured;
+use super::command::{Command, Export, Figure, Save};
+use super::player::Player;
+use super::runs::Runs;
+use crate::data::{self, Measured};
+use crate::export::Destination;
 use crate::export::destination::DestinationError;
-use crate::export::{Destination, Layout};
 use crate::figure::Format;
 use crate::figure::kind::Kind;
-use crate::scenario::Scenario;
 use crate::scenario::limits::{LONGEST, TOO_LONG, few_enough};
+use crate::scenario::{Document, Problem, Problems, Scenario, presets};
 use crate::storage::confined::Confined;
 use crate::storage::exporting::{self, Drawn, Exporting, Written};
 use crate::text::printable::{Shown, is_steering};
@@ -66,6 +69,36 @@ impl Files {
         self.confined().map_or(Ok(()), check)
     }
 
+    /// Whether the file may be read in the background.
+    pub(super) fn may_be_read_aside(&self, path: &Path) -> bool {
+        !Destination::may_wait(path) && self.admit(path).is_ok()
+    }
+
+    /// Reads the preset or the file called `name`.
+    pub(super) fn open_scenario(&self, name: &str) -> Result<Scenario, String> {
+        self.admit_reading(Path::new(name))?;
+        let opened = if presets::find(name).is_none() {
+            refuse_waiting(name, "it can be opened at the command line only")
+        } else {
+            Ok(())
+        };
+        let opened = opened.and_then(|()| Document::open(name)?.scenario());
+        opened.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))
+    }
+
+    /// Reads the measured data `name`: those that come with the program, or a file. `may_wait` says whether it may be a
+    /// FIFO or a device, which is read for any length of time.
+    pub(super) fn open_measured(&self, name: &str, may_wait: bool) -> Result<Measured, Problems> {
+        if data::find_shipped(name).is_none() {
+            let refused = |rule: String| Problems::one(name, Problem::at("", rule));
+            self.admit(Path::new(name)).map_err(refused)?;
+            if !may_wait {
+                refuse_waiting(name, "gyrolab --measured can read it")?;
+            }
+        }
+        data::open(name)
+    }
+
     pub fn is_exporting(&self) -> bool {
         self.exporting.is_some()
     }
@@ -75,16 +108,32 @@ impl Files {
         self.exporting.as_ref().map(Exporting::path)
     }
 
-    /// Begins to write the rows of `scenario`.
-    pub(super) fn export(
+    /// Carries out what writes a file of the run of `player`, with the data beside it; `None` for a command that does not.
+    pub(super) fn carry_out(
         &mut self,
-        scenario: &Arc<Scenario>,
-        path: &Path,
-        layout: Layout,
-        force: bool,
-    ) -> Answer {
-        self.may_export_to(path)?;
-        let begun = Exporting::begin(Arc::clone(scenario), path, layout, force);
+        command: &Command,
+        runs: &Runs,
+        player: &Player,
+        measured: Option<Arc<Measured>>,
+    ) -> Option<Answer> {
+        Some(match command {
+            Command::Export(export) => self.export(export, runs, player),
+            Command::Figure(figure) => self.draw(figure, runs, player, measured),
+            Command::Save(save) => self.save_run(save, runs, player),
+            _ => return None,
+        })
+    }
+
+    /// Begins to write the rows of the run.
+    fn export(&mut self, export: &Export, runs: &Runs, player: &Player) -> Answer {
+        let mut layout = export.layout.clone();
+        layout.note.clone_from(&self.note);
+        let layout = layout.check().map_err(|error| error.to_string())?;
+        let scenario = run_up_to(export.to_step, "export", runs, player)?;
+        let scenario = runs.marked(&scenario);
+        let path = self.path_of(&export.path);
+        self.may_export_to(&path)?;
+        let begun = Exporting::begin(scenario, &path, layout, export.force);
         self.begin(begun, "the export goes on in the background")
     }
 
@@ -94,29 +143,37 @@ impl Files {
         Ok(Done::saying(said).going_on(UnderWay::Exporting))
     }
 
-    /// Begins to draw a figure of `scenario`, with or without the exact motion and the measured data.
-    ///
-    /// # Errors
-    /// Where the kind is none, the file's name does not say in which form, or as for an export.
-    pub(super) fn draw(
+    /// Begins to draw a figure of the run.
+    fn draw(
         &mut self,
-        scenario: &Arc<Scenario>,
-        path: &Path,
-        (kind, exact): (&str, bool),
+        figure: &Figure,
+        runs: &Runs,
+        player: &Player,
         measured: Option<Arc<Measured>>,
-        force: bool,
     ) -> Answer {
-        self.may_export_to(path)?;
-        let kind = Kind::named(kind).map_err(|refusal| format!("kind {kind} {refusal}"))?;
-        let format = Format::of(path).map_err(|refusal| refusal.to_string())?;
+        let scenario = run_up_to(figure.to_step, "draw", runs, player)?;
+        let path = self.path_of(&figure.path);
+        self.may_export_to(&path)?;
+        let kind = &figure.kind;
         let drawn = Drawn {
-            kind,
-            exact,
+            kind: Kind::named(kind).map_err(|refusal| format!("kind {kind} {refusal}"))?,
+            exact: figure.exact,
             measured,
-            format,
+            format: Format::of(&path).map_err(|refusal| refusal.to_string())?,
         };
-        let begun = Exporting::begin_figure(Arc::clone(scenario), path, drawn, force);
+        let begun = Exporting::begin_figure(scenario, &path, drawn, figure.force);
         self.begin(begun, "the figure is drawn in the background")
+    }
+
+    fn save_run(&self, save: &Save, runs: &Runs, player: &Player) -> Answer {
+        let path = self.path_of(&save.path);
+        if save.from_here {
+            let content = player.present_as_text()?;
+            return self.save("the scenario", &content, &path, save.force);
+        }
+        let run = run_up_to(save.to_step, "save", runs, player)?;
+        let run = runs.marked(&run).to_toml();
+        self.save("the run", &run, &path, save.force)
     }
 
     fn may_export_to(&self, path: &Path) -> Result<(), Refusal> {
@@ -140,7 +197,7 @@ impl Files {
         Some(match outcome {
             Ok(written) => {
                 let is_seat = self.confined().is_some_and(Confined::is_seat);
-                let text = told(&written, is_seat);
+                let text = in_words(&written, is_seat);
                 self.written.push(written);
                 text
             }
@@ -216,11 +273,31 @@ impl Files {
     }
 }
 
+/// The scenario of the run from step 0 to `to_step`, or to the present step of `player`; `to` says what it is for.
+pub(super) fn run_up_to(
+    to_step: Option<u64>,
+    to: &str,
+    runs: &Runs,
+    player: &Player,
+) -> Result<Arc<Scenario>, String> {
+    let here = player.playback.step_number();
+    runs.run_up_to(to_step.unwrap_or(here), to)
+}
+
 fn refusal(error: DestinationError) -> Refusal {
     match error {
         DestinationError::Exists(path) => Refusal::Exists(path),
         other => Refusal::Because(other.fact()),
     }
+}
+
+/// Refuses a FIFO or a device: reading it may wait for any length of time, which only the command line can do.
+fn refuse_waiting(name: &str, instead: &str) -> Result<(), Problems> {
+    if !Destination::may_wait(Path::new(name)) {
+        return Ok(());
+    }
+    let rule = format!("is not a regular file: {instead}");
+    Err(Problems::one(name, Problem::at("", rule)))
 }
 
 fn is_named(path: &Path) -> Result<(), Refusal> {
@@ -229,7 +306,7 @@ fn is_named(path: &Path) -> Result<(), Refusal> {
 }
 
 /// The message about a complete export, and how to copy the file. From the login of a seat no file can be copied.
-fn told(written: &Written, is_seat: bool) -> String {
+fn in_words(written: &Written, is_seat: bool) -> String {
     let rows = written.rows;
     let rows = rows.map(|rows| format!("{} rows, ", HumanCount(rows)));
     let warnings = written.warnings.iter();

@@ -1,7 +1,6 @@
 //! What the tests of several files of the lab begin with.
 
-use super::view::markers::Marker;
-use super::view::theme::{Background, Theme};
+use super::view::theme::{Background, Marker, Theme};
 use super::view::{Pane, View};
 use crate::scenario::{Document, Scenario};
 use std::sync::Arc;

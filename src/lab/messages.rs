@@ -1,13 +1,20 @@
-//! What the lab says: the message at the bottom of the screen, the line about what there is to see, and what to try next.
+//! What the lab says: the message at the bottom of the screen, which goes away after a few seconds or at the next key; the
+//! line about what there is to see; and what to try next.
 
-use super::Lab;
-use super::course::halt_in_words;
-use super::view::Part;
+use super::advice::Adviser;
+use super::answer::{Answer, Done};
+use super::player::Player;
+use super::runs::Runs;
+use super::view::{Part, View};
 use crate::journal::changed;
 use crate::playback::Halt;
 use crate::scenario::presets;
+use indicatif::HumanCount;
 use std::borrow::Cow;
 use std::time::Duration;
+
+/// How long a message stays unless a key removes it earlier.
+const STANDS: Duration = Duration::from_secs(5);
 
 /// What is said at the end of the scenario's run, before what to try next.
 const END_OF_RUN: &str = "end of the run: space goes on, r begins again";
@@ -19,135 +26,279 @@ const IS_SOUGHT: &str = "a time step or scheme that mends it is looked for";
 const ASKS_FOR_EXACT: &str = "t draws the exact motion";
 const HAS_EXACT: &str = "the exact motion is drawn in dashes";
 
-impl Lab {
-    /// Says why the run has stopped by itself.
-    pub(super) fn halted(&mut self, halt: Halt) {
-        self.player.has_halted(halt);
-        self.read_now();
-        let next = self.next().filter(|_| halt == Halt::EndOfRun);
-        let said = next.map(|next| format!("{END_OF_RUN}. Next: {next}"));
-        let said = said.or_else(|| halt_in_words(halt));
-        match (said, halt) {
-            (Some(text), Halt::NotFinite(_)) => self.tell_of_break(&text),
-            (Some(text), _) => self.tell(text),
-            (None, _) => {}
+/// The present message, if there is one, and the lasting trouble with the session.
+#[derive(Clone, Debug, Default)]
+pub struct Messages {
+    said: Option<Said>,
+    /// Why the session cannot be saved, if it cannot.
+    trouble: Option<String>,
+    /// Whether the last key asked to leave while an export was in progress, and the user was warned.
+    was_warned: bool,
+}
+
+/// What was on the screen when a key was pressed; the key has removed it.
+#[derive(Clone, Copy, Debug)]
+pub struct Cleared {
+    pub(super) count: Option<u64>,
+    /// Whether a message or a count was removed.
+    pub(super) anything: bool,
+    /// Whether the user was warned that leaving stops the export.
+    pub(super) was_warned: bool,
+}
+
+#[derive(Clone, Debug)]
+struct Said {
+    text: String,
+    /// The time at which it goes away; `None` where only a key removes it.
+    until: Option<Duration>,
+    /// The part of the text that stands there until something has been found, and is then replaced by that.
+    unfound: Option<&'static str>,
+}
+
+impl Messages {
+    /// Shows `text` for five seconds from `now` on.
+    pub fn say(&mut self, text: impl Into<String>, now: Duration) {
+        self.show(text.into(), Some(now + STANDS), None);
+    }
+
+    /// Shows `text` until the next key: for messages that must not be missed.
+    pub fn keep_saying(&mut self, text: impl Into<String>) {
+        self.show(text.into(), None, None);
+    }
+
+    /// Shows what a command says that was carried out, or why it was refused. Returns whether there is something to show.
+    pub(super) fn answer(&mut self, answer: Answer, now: Duration) -> bool {
+        let done = answer.unwrap_or_else(|refusal| Done::saying(refusal.to_string()));
+        match done.said {
+            Some(text) if done.stays => self.keep_saying(text),
+            Some(text) => self.say(text, now),
+            None => return false,
         }
+        true
+    }
+
+    /// Shows `text` until the next key; its part `unfound` is replaced once [something is found](Self::find).
+    fn keep_seeking(&mut self, text: String, unfound: &'static str) {
+        self.show(text, None, Some(unfound));
+    }
+
+    fn show(&mut self, text: String, until: Option<Duration>, unfound: Option<&'static str>) {
+        self.said = Some(Said {
+            text,
+            until,
+            unfound,
+        });
+    }
+
+    /// Whether a part of the message stands until something is found.
+    fn is_seeking(&self) -> bool {
+        let said = self.said.as_ref();
+        said.is_some_and(|said| said.unfound.is_some())
+    }
+
+    /// Shows what has been `found` in the place of the part that stood until then.
+    fn find(&mut self, found: &str) {
+        if let Some(said) = &mut self.said
+            && let Some(unfound) = said.unfound.take()
+        {
+            said.text = said.text.replacen(unfound, found, 1);
+        }
+    }
+
+    /// Shows `text` before the message, until the next key; alone it does without the "; " at its end.
+    pub fn keep_saying_first(&mut self, text: &str) {
+        let Some(said) = &mut self.said else {
+            return self.keep_saying(text.trim_end_matches("; "));
+        };
+        said.text.insert_str(0, text);
+        said.until = None;
+    }
+
+    /// Removes the message; returns whether there was one.
+    pub fn take_back(&mut self) -> bool {
+        self.said.take().is_some()
+    }
+
+    /// Removes the message if its time is over at `now`; returns whether it did.
+    pub fn expire(&mut self, now: Duration) -> bool {
+        self.ends_in(now).is_some_and(|left| left.is_zero()) && self.take_back()
+    }
+
+    /// How long the message stays from `now` on; `None` where only a key removes it, or there is none.
+    pub fn ends_in(&self, now: Duration) -> Option<Duration> {
+        let until = self.said.as_ref()?.until;
+        until.map(|until| until.saturating_sub(now))
+    }
+
+    pub fn text(&self) -> Option<&str> {
+        self.said.as_ref().map(|said| said.text.as_str())
+    }
+
+    /// Records why the session cannot be saved, or that it can; returns whether that is new.
+    pub fn set_trouble(&mut self, trouble: Option<String>) -> bool {
+        let is_new = self.trouble != trouble;
+        self.trouble = trouble;
+        is_new
+    }
+
+    /// Why the session cannot be saved, if it cannot.
+    pub fn trouble(&self) -> Option<&str> {
+        self.trouble.as_deref()
+    }
+
+    /// Removes the message, as every key does; `count` is the count that the key has removed.
+    pub(super) fn clear(&mut self, count: Option<u64>) -> Cleared {
+        Cleared {
+            count,
+            anything: self.take_back() || count.is_some(),
+            was_warned: std::mem::take(&mut self.was_warned),
+        }
+    }
+
+    /// Warns at `now` that leaving stops the export; asked again right after it, the lab ends.
+    pub(super) fn warn_of_export(&mut self, now: Duration) {
+        self.was_warned = true;
+        let text = "an export is under way: q again leaves it unfinished, and writes nothing";
+        self.say(text, now);
     }
 
     /// Says `text`, that the numbers have stopped being finite, and what helps: a key that mends the run, which may still be
-    /// looked for, and what takes back an edit.
-    fn tell_of_break(&mut self, text: &str) {
-        let step = self.player.playback.step_number();
-        let undo = match self.work.journal().count_by(step) {
-            0 => "",
-            _ => ", u takes the last edit back",
+    /// looked for, and, of a run with edits, what takes back the last.
+    pub(super) fn tell_of_break(&mut self, text: &str, is_edited: bool) {
+        let undo = if is_edited {
+            ", u takes the last edit back"
+        } else {
+            ""
         };
         let text = format!("{text}: {IS_SOUGHT}{undo}");
-        self.on_top.notice.keep_seeking(text, IS_SOUGHT);
-        self.changed = true;
-        self.tell_what_was_found();
+        self.keep_seeking(text, IS_SOUGHT);
     }
 
-    /// What mends the run, as far as that is known.
-    fn what_mends(&self) -> String {
-        let offer = self.player.offer().map(|[_, short]| short);
-        offer.unwrap_or_else(|| "a shorter time step or another scheme may mend it (e)".to_owned())
-    }
-
-    /// Where the message says that advice is looked for, and the search has ended: says what was found instead.
-    pub(super) fn tell_what_was_found(&mut self) {
-        if self.on_top.notice.is_seeking() && !self.player.is_seeking_advice() {
-            let found = self.what_mends();
-            self.on_top.notice.find(&found);
-            self.changed = true;
+    /// Where the message says that advice is looked for, and the search has ended: says what was found instead. Returns
+    /// whether it does.
+    pub(super) fn tell_what_was_found(&mut self, adviser: &Adviser, player: &Player) -> bool {
+        let has_ended = self.is_seeking() && !adviser.is_seeking();
+        if has_ended {
+            let offer = adviser.offer(player).map(|[_, short]| short);
+            let unknown = "a shorter time step or another scheme may mend it (e)";
+            self.find(&offer.unwrap_or_else(|| unknown.to_owned()));
         }
+        has_ended
     }
+}
 
-    /// The line about what to try after the run: as a command or the scenario has it, or else the preset, as long as its
-    /// motion is as it was opened.
-    fn next(&self) -> Option<Cow<'_, str>> {
-        let file = self.player.run().scenario().file.view.as_ref();
-        let told = self.view.next.as_deref();
-        let told = told.or_else(|| file?.next.as_deref());
-        let preset = || match self.work.changed_from_file() {
-            None => presets::find(self.work.name()).map(|preset| preset.next),
-            Some(_) => None,
-        };
-        let next = told.or_else(preset).filter(|next| !next.is_empty())?;
-        // What is on the screen already is not to be asked for.
-        match self.player.run().overlay() {
-            Some(_) => Some(next.replace(ASKS_FOR_EXACT, HAS_EXACT).into()),
-            None => Some(next.into()),
+/// The message about a run that has stopped by itself, if it needs one. `next` is what to try next.
+pub(super) fn halt_in_words(halt: Halt, next: Option<&str>) -> Option<String> {
+    match (halt, next) {
+        (Halt::StepsTaken | Halt::Fulfilled, _) => None,
+        (Halt::NotFulfilled(steps), _) => Some(format!(
+            "what the run was played to did not come true in {} steps",
+            HumanCount(steps)
+        )),
+        (Halt::EndOfRun, Some(next)) => Some(format!("{END_OF_RUN}. Next: {next}")),
+        (Halt::EndOfRun, None) => {
+            Some("end of the scenario's run: space goes on, r begins again".to_owned())
         }
+        (Halt::NotFinite(error), _) => Some(format!("{} at step {}", error.fact(), error.step)),
+    }
+}
+
+/// The line about what to try after the run: as a command or the scenario has it, or else the preset, as long as its
+/// motion is as it was opened.
+pub(super) fn next<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Option<Cow<'a, str>> {
+    let file = player.run().scenario().file.view.as_ref();
+    let set = view.next.as_deref();
+    let set = set.or_else(|| file?.next.as_deref());
+    let preset = || match runs.changed_from_file() {
+        None => presets::find(runs.name()).map(|preset| preset.next),
+        Some(_) => None,
+    };
+    let next = set.or_else(preset).filter(|next| !next.is_empty())?;
+    // What is on the screen already is not to be asked for.
+    match player.run().overlay() {
+        Some(_) => Some(next.replace(ASKS_FOR_EXACT, HAS_EXACT).into()),
+        None => Some(next.into()),
+    }
+}
+
+/// The line about what there is to see in the run.
+pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Cow<'a, str> {
+    if view.hides(Part::LookAt) {
+        return "".into();
+    }
+    let file = || changed::look_at(player.run().scenario());
+    let set = view.look_at.as_deref();
+    let playback = &player.playback;
+    let is_over = playback.is_endless() && playback.step_number() >= playback.end_step();
+    if let Some(next) = next(view, runs, player).filter(|_| is_over) {
+        return next;
+    }
+    let changed = runs.changed_from_file();
+    if set.is_none() && changed.is_some() && view.sheet.is_some() {
+        // The page says what the run is. The file's line speaks of another one.
+        return "".into();
+    }
+    let note = set.or(changed).or_else(file);
+    let note =
+        note.unwrap_or("? lists the keys; the scenario's own line, view.look_at, would stand here");
+    note.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_goes_with_time_unless_it_is_to_stay() {
+        let at = Duration::from_secs;
+        let mut messages = Messages::default();
+        assert!(!messages.expire(at(0)) && !messages.take_back());
+        messages.say("pushed", at(10));
+        assert_eq!(messages.ends_in(at(12)), Some(at(3)));
+        assert!(!messages.expire(at(14)) && messages.expire(at(15)));
+        messages.keep_saying("the end");
+        assert_eq!(messages.ends_in(at(12)), None);
+        assert!(!messages.expire(at(1000)));
+        assert_eq!(messages.text(), Some("the end"));
+        assert!(messages.take_back() && messages.text().is_none());
+        messages.warn_of_export(at(0));
+        let cleared = messages.clear(None);
+        assert!(cleared.anything && cleared.was_warned);
+        let cleared = messages.clear(Some(4));
+        assert!(cleared.anything && !cleared.was_warned);
+        assert!(!messages.clear(None).anything);
     }
 
-    /// Shows why a key means nothing here, and forgets the count that was typed.
-    pub fn refuse(&mut self, text: impl Into<String>) {
-        self.on_top.count = None;
-        self.say(text);
-        self.changed = true;
+    #[test]
+    fn what_is_found_takes_the_place_of_what_stood_until_then() {
+        let mut messages = Messages::default();
+        let text = "the end: a cure is looked for, u goes back".to_owned();
+        messages.keep_seeking(text, "a cure is looked for");
+        assert!(messages.is_seeking());
+        messages.keep_saying_first("opened; ");
+        assert_eq!(
+            messages.text(),
+            Some("opened; the end: a cure is looked for, u goes back")
+        );
+        messages.find("a shorter step");
+        let found = "opened; the end: a shorter step, u goes back";
+        assert_eq!(messages.text(), Some(found));
+        assert!(!messages.is_seeking());
+        // Nothing is left to be replaced; and another message is not changed either.
+        messages.find("again");
+        assert_eq!(messages.text(), Some(found));
+        messages.keep_saying("a cure is looked for");
+        messages.find("again");
+        assert_eq!(messages.text(), Some("a cure is looked for"));
     }
 
-    /// Shows `text` for a few seconds.
-    pub(super) fn say(&mut self, text: impl Into<String>) {
-        self.on_top.notice.say(text, self.now);
-    }
-
-    /// Shows `text` until the next key.
-    pub fn tell(&mut self, text: impl Into<String>) {
-        self.on_top.notice.keep_saying(text);
-        self.changed = true;
-    }
-
-    pub fn take_back_message(&mut self) {
-        self.changed |= self.on_top.notice.take_back();
-    }
-
-    /// Shows `text` before the present message, until the next key.
-    pub fn tell_first(&mut self, text: &str) {
-        self.on_top.notice.keep_saying_first(text);
-        self.changed = true;
-    }
-
-    /// Shows why the session cannot be saved, until it can.
-    pub fn set_trouble(&mut self, trouble: Option<String>) {
-        self.changed |= self.on_top.notice.set_trouble(trouble);
-    }
-
-    /// How long the present message stays; `None` where only a key removes it, or there is none.
-    pub fn notice_ends_in(&self) -> Option<Duration> {
-        self.on_top.notice.ends_in(self.now)
-    }
-
-    /// The line about what there is to see in the run.
-    pub fn note(&self) -> Cow<'_, str> {
-        if self.view.hides(Part::LookAt) {
-            return "".into();
-        }
-        let file = || changed::look_at(self.player.run().scenario());
-        let told = self.view.look_at.as_deref();
-        let playback = &self.player.playback;
-        let is_over = playback.is_endless() && playback.step_number() >= playback.end_step();
-        if let Some(next) = self.next().filter(|_| is_over) {
-            return next;
-        }
-        let changed = self.work.changed_from_file();
-        if told.is_none() && changed.is_some() && self.view.sheet.is_some() {
-            // The page says what the run is. The file's line speaks of another one.
-            return "".into();
-        }
-        let note = told.or(changed).or_else(file);
-        let note = note
-            .unwrap_or("? lists the keys; the scenario's own line, view.look_at, would stand here");
-        note.into()
-    }
-
-    /// The message at the bottom of the screen: the steps that are being taken, the message, or the export's progress.
-    pub fn notice(&self) -> Option<String> {
-        let stepping = self.player.in_words();
-        let said = || self.on_top.notice.text().map(str::to_owned);
-        stepping
-            .or_else(said)
-            .or_else(|| self.files.export_in_words())
+    #[test]
+    fn trouble_stays_until_it_is_over() {
+        let mut messages = Messages::default();
+        let full = || Some("the disk is full".to_owned());
+        assert!(messages.set_trouble(full()) && !messages.set_trouble(full()));
+        messages.take_back();
+        assert_eq!(messages.trouble(), Some("the disk is full"));
+        assert!(messages.set_trouble(None));
     }
 }

@@ -1,98 +1,98 @@
 //! The lab: a run, what the user does to it, and how it is shown. It draws nothing, and reads no clock: the time is
 //! passed to it.
 //!
-//! [`Lab`] consists of parts, each of which owns its state: the [`Work`] that was done to the run, the [`Player`] of the
-//! run, the [`Values`] that can be edited, the [`Files`], the [`View`] of the run, what lies [`OnTop`] of the panes, and the
-//! [`Script`] of commands that are not carried out yet. `Lab` itself carries out what concerns several parts:
+//! [`Lab`] consists of parts. Each owns its state and carries out its own [`Command`](command::Command)s:
 //!
-//! - `carry_out`: each [`Command`](command::Command), and `editing` for those that change the run;
-//! - `steering`: each [`Action`](action::Action) of the user, which stands for commands or changes the interface;
-//! - [`explained`]: the time step that the step pane takes apart, and its keys;
-//! - `script`: the commands of a script, one after the other;
-//! - `messages`: what the lab says;
-//! - `keeping`: the content of a session.
+//! | part | state | commands |
+//! |---|---|---|
+//! | [`Player`] | step, speed, cursor's numbers, readouts | `step`, `go_to`, `run_until`, `run`, `pause`, `speed` |
+//! | [`Comparison`] | exact motion, ghost, pinned run, measured data | `exact`, `pin`, `measured` |
+//! | [`Edits`] | history of runs, values, push to come | `open`, `set`, `nudge`, `push`, `next_push`, `undo`, `redo`, `take_advice` |
+//! | [`Adviser`] | search for advice, offer | |
+//! | [`View`] | `[view]`, focus, window, cursor | every key of `[view]`, `since_s`, `magnify`, `cursor`, `fill`, `point_at` |
+//! | [`StepPane`] | workings of a time step | |
+//! | [`Files`] | folder, export under way | `export`, `figure`, `save` |
+//! | [`Script`] | commands to come | `wait_s`, `chapter` |
+//! | [`Popups`] | browser, help, dialog, count | |
+//! | [`Messages`] | message, trouble with the session | |
+//! | [`Settings`] | what is remembered | |
+//!
+//! A command that changes the run comes back from [`Edits`] as an `Edit`, which the other parts follow.
+//! Here commands are led to the parts, in `routing` [actions](action::Action) and time.
+//!
+//! A new command stands in two files: [`command`] with its row in the table, and the part that carries it out.
 
 pub mod action;
-mod advised;
+mod advice;
 mod answer;
-mod answering;
 pub mod browser;
-mod carry_out;
 pub mod command;
-mod course;
+pub mod comparison;
 mod dialog;
-mod editing;
-pub mod explained;
+mod edits;
 mod files;
 #[cfg(test)]
 mod for_tests;
 pub mod form;
-mod keeping;
-pub mod measured;
 mod messages;
-pub mod notice;
 pub mod numbers;
-mod on_top;
-mod opening;
 mod player;
+mod popups;
 pub mod preview;
-mod rerun;
+mod routing;
+mod runs;
 mod script;
+mod session;
 mod settings;
 pub mod sheet;
-mod steering;
-mod traces;
+pub mod step_pane;
 pub mod values;
 pub mod view;
-mod work;
 
+pub use action::Request;
+pub use advice::Adviser;
 pub use answer::{Answer, Done, Refusal, UnderWay};
+pub use comparison::Comparison;
+pub use edits::Edits;
 pub use files::Files;
-pub use keeping::{Summary, Unreadable};
-pub use on_top::{MOST_COUNTED, Mode, OnTop};
+pub use messages::{Cleared, Messages};
 pub use player::Player;
+pub use popups::{MOST_COUNTED, Mode, Popups};
+pub use runs::Runs;
 pub use script::Script;
+pub use session::{Summary, Unreadable, lessons_in};
+pub use settings::Settings;
+pub use step_pane::StepPane;
 pub use values::Values;
-pub use work::Work;
 
-use crate::run::NotFinite;
-use crate::scenario::Scenario;
-use crate::storage::settings::remember;
-use action::LessonKey;
-use form::type_into;
-use std::path::PathBuf;
+use crate::scenario::{Problems, Scenario};
+use crate::storage::confined::Confined;
+use crate::storage::session::Content;
+use crate::text::printable::printable;
+use command::Command;
+use edits::{Edit, Outcome};
+use player::Change;
+use session::{Kept, KeptPinned, KeptPlace};
+use sheet::Sheet;
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Duration;
-use view::{Pane, View};
-
-/// What the lab leaves to the rooms above it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Request {
-    /// Do in the lesson what a key stands for.
-    Lesson(LessonKey),
-    /// Take this number as the answer to the question of the lesson that was asked last.
-    Answer(f64),
-    /// Draw the whole screen again.
-    Redraw,
-    /// Suspend the program until the shell resumes it.
-    Suspend,
-    Quit,
-}
+use view::View;
 
 pub struct Lab {
-    work: Work,
+    edits: Edits,
     player: Player,
-    values: Values,
+    comparison: Comparison,
+    adviser: Adviser,
+    step_pane: StepPane,
     files: Files,
     view: View,
-    on_top: OnTop,
+    popups: Popups,
+    messages: Messages,
     script: Script,
-    /// The folder in which the settings that the user chooses are remembered; `None` where nothing is.
-    pub settings: Option<PathBuf>,
+    pub settings: Settings,
     /// What the session keeps of the lessons.
     pub lessons: Option<toml::Table>,
-    /// Whether there are colours where nobody chooses; `None` where that is not known.
-    pub usual_colour: Option<bool>,
     /// The time since the lab was opened.
     now: Duration,
     /// Whether the picture has changed since it was drawn.
@@ -103,84 +103,37 @@ impl Lab {
     /// A lab with the run of `scenario`, opened as `name`, at step 0. It plays if `running` is true.
     pub fn new(name: &str, scenario: Arc<Scenario>, view: View, running: bool) -> Self {
         let mut lab = Self {
-            work: Work::new(name, &scenario),
-            values: Values::new(&scenario),
+            edits: Edits::new(name, &scenario),
             player: Player::new(scenario, running),
+            comparison: Comparison::default(),
+            adviser: Adviser::default(),
+            step_pane: StepPane::default(),
             files: Files::default(),
             view,
-            on_top: OnTop::default(),
+            popups: Popups::default(),
+            messages: Messages::default(),
             script: Script::default(),
-            settings: None,
+            settings: Settings::default(),
             lessons: None,
-            usual_colour: None,
             now: Duration::ZERO,
             changed: true,
         };
-        lab.list_parameters();
-        lab.turn_camera();
+        lab.edits.list_values(&lab.player);
+        lab.view.turn_camera(&lab.player);
         lab
     }
 
     /// Makes `file` the scenario as the user opened it. Where the run differs from it, the lab says so instead of showing
     /// the file's line about what there is to see.
     pub fn set_file(&mut self, file: &Arc<Scenario>) {
-        self.work.set_file(file);
-        self.work.compare_with_file(self.player.run().scenario());
+        self.edits.runs.set_file(file);
+        self.edits.follow(&self.player);
     }
 
     /// From now on looks in the background for a scheme or time step that would make doubtful numbers right.
     pub fn take_advice(&mut self) {
-        self.player.is_advised = true;
+        self.adviser.is_on = true;
         self.read_now(); // a run that stands still is not read again by itself
-    }
-
-    fn colour_choice(&self) -> &'static str {
-        let colour = self.view.theme.colour;
-        if self.usual_colour == Some(colour) {
-            "auto"
-        } else if colour {
-            "always"
-        } else {
-            "never"
-        }
-    }
-
-    /// Remembers that the user has chosen `value` for the setting `key`.
-    fn remember(&mut self, key: &'static str, value: impl Into<toml::Value>) {
-        if let Some(folder) = &self.settings
-            && let Err(trouble) = remember(folder, key, value.into())
-        {
-            self.tell(trouble);
-        }
-    }
-
-    /// Takes the run to `step` at once.
-    pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
-        let arrived = self.player.playback.begin_at(step);
-        self.arrive();
-        arrived
-    }
-
-    /// Advances everything that changes with time up to now. `clock` returns the time since the lab was opened; it is read
-    /// several times, so that the steps of a fast run end in time for the next frame.
-    pub fn advance(&mut self, clock: &mut dyn FnMut() -> Duration) {
-        let now = clock();
-        let wall = now.saturating_sub(self.now);
-        self.now = now;
-        self.changed |= self.on_top.notice.expire(now);
-        let (halt, is_new) = self.player.advance(now, wall, clock);
-        self.changed |= is_new;
-        if let Some(halt) = halt {
-            self.halted(halt);
-        }
-        self.tell_what_was_found();
-        self.changed |= self.on_top.browser.take_what_was_read();
-        self.open_what_was_read();
-        self.follow_export();
-        self.go_on_with_script(halt);
-        if self.changed && self.player.is_due(now, self.view.window_s) {
-            self.read_now();
-        }
     }
 
     /// From now on the run goes on at the scenario's end, until another is opened.
@@ -188,64 +141,65 @@ impl Lab {
         self.player.playback.play_on();
     }
 
-    /// Draws at most `fps` frames a second.
-    pub fn set_fps(&mut self, fps: u32) {
-        self.view.fps = fps;
-    }
-
-    pub fn set_mouse(&mut self, listens: bool) {
-        self.view.mouse = listens;
-    }
-
-    /// Takes note of the progress of the export, and says when it has ended.
-    fn follow_export(&mut self) {
-        self.changed |= self.files.is_exporting();
-        if let Some(text) = self.files.follow_export() {
-            self.tell(text);
-        }
-    }
-
-    /// Takes a pasted text, where text is typed.
-    pub fn paste(&mut self, text: &str) {
-        match self.on_top.mode {
-            Mode::Find => {
-                self.values.list.filter_by(|line| type_into(line, text));
-            }
-            _ => self.on_top.paste(text, self.now),
-        }
-        self.changed = true;
-    }
-
-    /// Reads the numbers of the run, and lists its values again if others are in force.
+    /// Reads the numbers of the run, and whatever depends on them.
     fn read_now(&mut self) {
         if let Some(said) = self.player.read(self.now, &self.view) {
             self.say(said);
         }
-        self.turn_camera();
+        self.comparison.compare(&self.player);
+        self.view.measured = self.comparison.data().is_some();
+        self.step_pane.read(&mut self.player, &self.view);
+        self.adviser.look(&self.player);
+        self.view.turn_camera(&self.player);
+        self.edits.read(&self.player);
         self.changed = true;
-        let step = self.player.playback.step_number();
-        if self.values.is_outdated(step, self.work.journal()) {
-            self.list_parameters();
-        }
     }
 
-    /// Turns the camera so that the axle is seen aslant, unless its direction was chosen. A moving picture is left
-    /// as it is: the motion shows where the axle points.
-    fn turn_camera(&mut self) {
-        let playback = &self.player.playback;
-        let is_still = !playback.is_running() || playback.step_number() == 0;
-        if is_still && self.view.look.camera.is_none() {
-            let axle = self.player.reading.state.axle();
-            self.view.camera = self.view.camera.aside_of(&axle);
-        }
+    /// Shows why a key means nothing here, and forgets the count that was typed.
+    pub fn refuse(&mut self, text: impl Into<String>) {
+        self.popups.count = None;
+        self.say(text);
     }
 
-    /// Tells the lab which panes stand side by side on the screen while none fills it, from left to right. The whole
-    /// picture is then drawn again.
-    pub fn set_side_by_side(&mut self, panes: Vec<Pane>) {
-        self.view.side_by_side = panes;
-        self.view.keep_focus();
+    /// Shows `text` for a few seconds.
+    fn say(&mut self, text: impl Into<String>) {
+        self.messages.say(text, self.now);
         self.changed = true;
+    }
+
+    /// Shows `text` until the next key.
+    pub fn tell(&mut self, text: impl Into<String>) {
+        self.messages.keep_saying(text);
+        self.changed = true;
+    }
+
+    pub fn messages_mut(&mut self) -> &mut Messages {
+        self.changed = true;
+        &mut self.messages
+    }
+
+    /// Shows why the session cannot be saved, until it can.
+    pub fn set_trouble(&mut self, trouble: Option<String>) {
+        self.changed |= self.messages.set_trouble(trouble);
+    }
+
+    /// How long the present message stays; `None` where only a key removes it, or there is none.
+    pub fn notice_ends_in(&self) -> Option<Duration> {
+        self.messages.ends_in(self.now)
+    }
+
+    /// The line about what there is to see in the run.
+    pub fn note(&self) -> Cow<'_, str> {
+        messages::note(&self.view, &self.edits.runs, &self.player)
+    }
+
+    /// The message at the bottom of the screen: the steps that are being taken, the message, or the export's progress.
+    pub fn notice(&self) -> Option<String> {
+        let stepping = self.player.in_words();
+        let said = || self.messages.text().map(str::to_owned);
+        stepping
+            .or_else(said)
+            .or_else(|| self.files.export_in_words())
     }
 
     /// Whether the picture has changed since it was drawn.
@@ -258,16 +212,49 @@ impl Lab {
         std::mem::take(&mut self.changed)
     }
 
-    pub fn work(&self) -> &Work {
-        &self.work
+    /// What a session keeps.
+    pub fn content(&mut self) -> Content {
+        let (player, comparison, edits) = (&self.player, &self.comparison, &self.edits);
+        let (files, view, script) = (&self.files, &self.view, &self.script);
+        let place = KeptPlace {
+            lessons: self.lessons.clone(),
+            ..KeptPlace::of(player, comparison, edits, files, view, script)
+        };
+        let place = toml::to_string(&place).unwrap_or_default();
+        let reference = self.comparison.reference();
+        Content {
+            work: self.edits.runs.kept(reference, session::written),
+            place,
+        }
+    }
+
+    pub fn runs(&self) -> &Runs {
+        &self.edits.runs
+    }
+
+    /// Keeps undo from taking back what was done up to now, or lets it again.
+    pub fn set_undo_floor(&mut self, is_here: bool) {
+        self.edits.runs.set_floor(is_here);
+    }
+
+    pub fn values(&self) -> &Values {
+        &self.edits.values
     }
 
     pub fn player(&self) -> &Player {
         &self.player
     }
 
-    pub fn values(&self) -> &Values {
-        &self.values
+    pub fn comparison(&self) -> &Comparison {
+        &self.comparison
+    }
+
+    pub fn adviser(&self) -> &Adviser {
+        &self.adviser
+    }
+
+    pub fn step_pane(&self) -> &StepPane {
+        &self.step_pane
     }
 
     pub fn files(&self) -> &Files {
@@ -282,11 +269,234 @@ impl Lab {
         &self.view
     }
 
-    pub fn on_top(&self) -> &OnTop {
-        &self.on_top
+    /// The view, to be changed by hand; the picture then counts as changed.
+    pub fn view_mut(&mut self) -> &mut View {
+        self.changed = true;
+        &mut self.view
+    }
+
+    /// Shows `sheet` beside the panes, or none.
+    pub fn set_sheet(&mut self, sheet: Option<Sheet>) {
+        self.changed |= self.view.set_sheet(sheet);
+    }
+
+    pub fn popups_mut(&mut self) -> &mut Popups {
+        self.changed = true;
+        &mut self.popups
+    }
+
+    pub fn popups(&self) -> &Popups {
+        &self.popups
+    }
+
+    pub fn messages(&self) -> &Messages {
+        &self.messages
+    }
+
+    pub fn script_mut(&mut self) -> &mut Script {
+        &mut self.script
     }
 
     pub fn script(&self) -> &Script {
         &self.script
+    }
+}
+
+/// The commands that a key means now, or why it means none.
+pub type Meant = Result<Vec<Command>, String>;
+
+/// Commands.
+impl Lab {
+    /// Carries `command` out. An action that takes time is only started: [`advance`](Self::advance) continues it.
+    ///
+    /// # Errors
+    /// Why the command was refused. It has then changed nothing; but `undo` and `redo` of more acts than there are have
+    /// undone or redone all.
+    pub fn carry_out(&mut self, command: &Command) -> Answer {
+        if !matches!(command, Command::Nudge { .. }) {
+            self.edits.values.forget_nudge();
+        }
+        let answer = self.offer(command);
+        self.view.keep_focus();
+        self.read_now();
+        answer
+    }
+
+    /// Offers `command` to one part after the other.
+    fn offer(&mut self, command: &Command) -> Answer {
+        let (player, comparison) = (&mut self.player, &mut self.comparison);
+        let (runs, files, step_pane) = (&self.edits.runs, &mut self.files, &self.step_pane);
+        let answer = player
+            .carry_out(command)
+            .or_else(|| comparison.carry_out(command, player, files))
+            .or_else(|| files.carry_out(command, runs, player, comparison.measured()))
+            .or_else(|| self.script.carry_out(command, self.now))
+            .or_else(|| self.view.carry_out(command, player, step_pane));
+        answer.unwrap_or_else(|| self.edit(command))
+    }
+
+    fn edit(&mut self, command: &Command) -> Answer {
+        // In a lesson, a push that is tried again replaces the one that was tried before.
+        if self.view.sheet.is_some() && self.edits.is_push_tried_again(command, &self.player) {
+            self.edit(&Command::Undo(1))?;
+        }
+        let times = match command {
+            Command::Undo(times) | Command::Redo(times) => *times,
+            _ => 1,
+        };
+        let mut done = Done::SILENT.going_on(UnderWay::Going);
+        for _ in 0..times {
+            let (player, files) = (&self.player, &self.files);
+            let outcome = self
+                .edits
+                .carry_out(command, player, files, &mut self.adviser, self.now);
+            done = match outcome.unwrap_or(Err("no part of the lab carries it out".into()))? {
+                Outcome::Done(done) => done,
+                Outcome::Edit(edit) => self.follow(edit),
+            };
+        }
+        Ok(done)
+    }
+
+    /// Lets every part follow `edit`.
+    fn follow(&mut self, edit: Edit) -> Done {
+        let (change, scenario) = (edit.change, &edit.scenario);
+        let before = Arc::clone(self.player.run().scenario());
+        self.adviser.forget();
+        if change.is_of_other_name() {
+            self.view.fit(scenario);
+        }
+        self.comparison.leave(&self.player, change, scenario);
+        self.player.follow(change, scenario, edit.end_s);
+        self.view.keep_cursor(&self.player);
+        self.edits.follow(&self.player);
+        if change == Change::Opens {
+            let (player, files) = (&self.player, &self.files);
+            let measured = self.comparison.measure_as_opened(&before, player, files);
+            if let Err(problems) = measured {
+                let why = format!("{}: {}", problems.origin, problems.in_one_line());
+                self.tell(printable(&why));
+            }
+        }
+        self.edits.answer(edit, &self.player)
+    }
+
+    fn one(&mut self, command: Command) {
+        self.carry_out_all(&[command]);
+    }
+
+    /// Carries out `commands` up to the first that is refused, and shows their messages.
+    fn carry_out_all(&mut self, commands: &[Command]) {
+        for command in commands {
+            let answer = self.carry_out(command);
+            let is_refused = answer.is_err();
+            self.tell_answer(answer);
+            if is_refused {
+                return;
+            }
+        }
+    }
+
+    /// Shows the message of a command, or why it was refused.
+    fn tell_answer(&mut self, answer: Answer) {
+        self.changed |= self.messages.answer(answer, self.now);
+    }
+
+    /// Carries out `command` as a key does: it removes the present message and shows that of the command.
+    pub fn carry_out_now(&mut self, command: &Command) {
+        self.clear();
+        self.carry_out_all(std::slice::from_ref(command));
+    }
+
+    /// Removes the message and the count, as every key does.
+    pub fn clear(&mut self) -> Cleared {
+        self.messages.clear(self.popups.count.take())
+    }
+
+    /// Carries out the commands that a key means: `meant` returns them for the count that was typed before it, or why it
+    /// means none.
+    pub fn press(&mut self, meant: impl FnOnce(&Self, Option<u64>) -> Meant) {
+        let count = self.clear().count;
+        self.edits.values.forget_nudge();
+        match meant(self, count) {
+            Ok(commands) => self.carry_out_all(&commands),
+            Err(reason) => self.say(reason),
+        }
+        self.view.keep_focus();
+        self.read_now();
+    }
+}
+
+/// Sessions, and measured data.
+impl Lab {
+    /// The lab with `content`: on its way to the step where it stood, and paused there. `view` returns how its run is
+    /// shown on this screen. If `confined` is given, the lab reads and writes in that folder only.
+    pub fn resumed(
+        content: &Content,
+        confined: Option<&Confined>,
+        view: impl FnOnce(&Scenario) -> View,
+    ) -> Result<Self, Unreadable> {
+        let Kept {
+            history,
+            scenario,
+            pinned,
+            place,
+        } = Kept::read(content)?;
+        let mut view = view(&scenario);
+        place.restore(&mut view, scenario.motion.time_step_s)?;
+        let (name, end_s) = (history.present().name.clone(), history.present().end_s);
+        let mut lab = Self::new(&name, Arc::clone(&scenario), view, false);
+        if let Some(folder) = confined {
+            lab.files.confine(folder.clone());
+        }
+        let file = lab.files.open_scenario(&name).map_or(scenario, Arc::new);
+        let next_push = place.next_push.clone();
+        lab.edits.resume(history, &file, next_push, &lab.player);
+        lab.player
+            .resume(place.step, place.speed, place.shows_exact, end_s);
+        lab.edits.follow(&lab.player);
+        lab.take_up(place, pinned);
+        lab.read_now();
+        Ok(lab)
+    }
+
+    /// Takes up what may be lost without the run: the script, the pinned run, the measured data and the lesson. Says what
+    /// is there again, and what is lost.
+    fn take_up(&mut self, place: KeptPlace, pinned: Option<KeptPinned>) {
+        let (script, mut text) = place.script_in_words();
+        self.script = script.unwrap_or_default();
+        match pinned.map(KeptPinned::reference) {
+            None => {}
+            Some(Ok(reference)) => self.comparison.pin_again(reference),
+            Some(Err(problems)) => {
+                text += &format!("; the pinned run is lost: {}", problems.in_one_line());
+            }
+        }
+        if let Some(name) = &place.measured
+            && let Err(problems) =
+                self.comparison
+                    .put_beside(name, &self.player, &self.files, false)
+        {
+            let (name, why) = (printable(name), problems.in_one_line());
+            text += &format!("; the measured data {name} are not beside it: {why}");
+        }
+        self.lessons = place.lessons;
+        self.tell(text);
+    }
+
+    /// Puts the measured data `name` beside the run, as the command line wants it, or else those that the scenario's
+    /// `[view]` names.
+    pub fn begin_with_measured(&mut self, name: Option<&str>) -> Result<(), Problems> {
+        let file = self.player.run().scenario().file.view.as_ref();
+        let of_file = file.and_then(|view| view.measured.clone());
+        if let Some(name) = name.map(str::to_owned).or(of_file) {
+            let (player, files) = (&self.player, &self.files);
+            let left_out = self.comparison.put_beside(&name, player, files, true)?;
+            self.read_now();
+            if let Some(left_out) = left_out {
+                self.tell(left_out);
+            }
+        }
+        Ok(())
     }
 }

@@ -1,6 +1,5 @@
 //! The numbers of a run that a condition can name: the columns of the CSV, the readouts, and keys of the scenario.
 
-use super::Lab;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{self, Readout};
 use crate::export::columns::{COLUMNS, Column};
@@ -57,24 +56,6 @@ pub fn find(name: &str, run: Option<&LiveRun>) -> Result<Source, String> {
     }
 }
 
-impl Lab {
-    /// The number called `name`, as the lab has read it last; `None` if there is no such number, or if it has no value
-    /// now.
-    pub fn number(&self, name: &str) -> Option<f64> {
-        let readouts = &self.player.reading.readouts;
-        match find(name, Some(self.player.run())).ok()? {
-            Source::Column(column) => {
-                Some(column.value(self.player.run().scenario(), &readouts.sample))
-            }
-            Source::Readout(readout) => readout.of(readouts).number(),
-            Source::Gravity => Some(self.player.motion().gravity),
-            Source::TimeStep => Some(self.player.motion().time_step_s),
-            Source::Fixed(value) => value,
-        }
-        .filter(|number| number.is_finite())
-    }
-}
-
 fn holds_number(kind: Kind) -> bool {
     matches!(kind, Kind::Number(_) | Kind::Whole(..))
 }
@@ -99,8 +80,12 @@ fn nearest_to(wrong: &str) -> String {
 /// The value of `key` in the scenario of `run`.
 fn number_in(run: &LiveRun, key: &str) -> Option<f64> {
     let table = table_at(run.scenario(), run.simulation().step_number());
-    dotted::find(&table, key).and_then(float)
+    let usual = || ZERO_BY_ITSELF.contains(&key).then_some(0.0);
+    dotted::find(&table, key).and_then(float).or_else(usual)
 }
+
+/// The keys that are 0 where a scenario does not have them.
+const ZERO_BY_ITSELF: [&str; 3] = ["start.tilt_deg", "start.turn_deg", "start.roll_deg"];
 
 /// The numbers of a run at one step after the other. At each step only the numbers that are asked for are computed.
 #[derive(Debug, Default)]

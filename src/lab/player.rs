@@ -1,59 +1,77 @@
-//! The player: the run on the screen with its speed, the reading of its numbers, its ghost, and the advice about it.
+//! Playback of the run on the screen: its step, its speed, the cursor on its traces, and the numbers read from it.
 
-use super::advised::Offer;
-use super::explained::Explained;
-use super::measured::Beside;
-use super::rerun::{Heading, Pinned, Replay};
-use crate::analysis::health::Advice;
-use crate::journal::restart::in_force;
-use crate::lab::view::View;
-use crate::playback::background::{self, Job};
-use crate::playback::detail::{Detail, Placement, Wanted};
-use crate::playback::ghost::Ghost;
+mod destination;
+mod fast_strip;
+
+use super::answer::{Answer, Done, UnderWay};
+use super::command::{Command, Place};
+use super::numbers::{self, Numbers, Source};
+use super::view::View;
+use crate::journal::expression::Expression;
+use crate::journal::restart::{in_force, scenario_from};
+use crate::playback::detail::Detail;
 use crate::playback::live::LiveRun;
 use crate::playback::lookup;
 use crate::playback::pace::Speed;
 use crate::playback::reading::{self, Reading};
-use crate::playback::recording::Curve;
 use crate::playback::{Halt, Playback};
-use crate::run::{Clock, Sample};
+use crate::run::{Sample, Simulation};
 use crate::scenario::{Motion, Scenario};
+pub(super) use destination::{Destination, furthest_s};
+use fast_strip::FastStrip;
+use indicatif::HumanCount;
 use std::sync::Arc;
 use std::time::Duration;
 
 /// The share of the traces' window that may pass between two readings; a faster run is read for every frame.
 const FAST: f64 = 0.1;
-/// If the window of the fast motion passes in less wall time than this, s, the strip stands still for a while.
-const PASSES_S: f64 = 8.0;
-/// How long the strip then stands still.
-const HOLD: Duration = Duration::from_secs(1);
+/// If a step takes longer than this at the chosen speed, s, a message says so.
+const LONG_STEP_S: f64 = 3.0;
 
-/// The run, its ghost, its latest reading and the advice about it.
+/// How the run on the screen goes over to another scenario.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Change {
+    /// To one with the same numbers at every step: another title, length or `[view]`.
+    Described,
+    /// From the present step on.
+    GoesOn,
+    /// At this step, where an act was undone or done again.
+    ContinuesAt(u64),
+    /// From the start, played to the time at which it stands; by an act at step 0 of the same journal, or in a new run.
+    /// `is_again`: the edit is one more nudge of the same value.
+    BeginsAnew { is_act: bool, is_again: bool },
+    /// To the run before or after, which was left at this step.
+    Returns { left_at: u64, is_of_same_name: bool },
+    /// To a scenario that was opened, paused at step 0.
+    Opens,
+}
+
+impl Change {
+    /// Whether the run was opened under another name than the one before.
+    pub(super) fn is_of_other_name(self) -> bool {
+        use Change::{Opens, Returns};
+        matches!(
+            self,
+            Opens
+                | Returns {
+                    is_of_same_name: false,
+                    ..
+                }
+        )
+    }
+}
+
+/// The run, its latest reading, and the step that it is on its way to.
 pub struct Player {
     pub playback: Playback,
-    /// The run before, where an edit has begun this one anew.
-    pub(super) ghost: Option<Ghost>,
-    pub(super) pinned: Option<Pinned>,
-    pub(super) measured: Option<Beside>,
-    /// Whether to look for a scheme or time step that would make doubtful numbers right.
-    pub(super) is_advised: bool,
-    pub(super) advisor: Option<Job<Advice>>,
-    pub(super) offer: Option<Offer>,
-    /// Whether the step pane was shown when the run was last read, and the step that it takes apart.
-    pub(super) explains: bool,
-    pub(super) explained: Option<Explained>,
+    pub(super) destination: Destination,
     pub reading: Reading,
     read_at: Duration,
-    pub detail: Detail,
-    detail_at: Duration,
-    /// Whether `detail` is of the run that was opened last.
-    has_detail: bool,
+    strip: FastStrip,
     /// The numbers at the cursor, and the scenario of their run.
     at_cursor: Option<(Arc<Scenario>, Sample)>,
-    /// The step to which the run is on its way by itself; out of date where other steps were asked for since.
-    pub(super) heading: Option<Heading>,
-    /// The time to which the last edit that began the run anew had it played; `None` if another act came after it.
-    pub(super) replay: Option<Replay>,
+    /// Whether a single step keeps its intermediate results, until they are read.
+    pub(super) keeps_workings: bool,
 }
 
 impl Player {
@@ -63,43 +81,227 @@ impl Player {
         let mut playback = Playback::new(scenario, running);
         playback.set_exact(exact);
         let reading = playback.read();
-        let following = Wanted::following(Clock::end_s(playback.run().scenario()));
         Self {
-            detail: Detail::new(playback.run(), &reading.readouts, &following, None),
-            detail_at: Duration::ZERO,
-            has_detail: true,
+            strip: FastStrip::of(&playback, &reading),
+            destination: Destination::default(),
             at_cursor: None,
             reading,
-            playback,
-            ghost: None,
-            is_advised: false,
-            advisor: None,
-            offer: None,
-            explains: false,
-            explained: None,
             read_at: Duration::ZERO,
-            pinned: None,
-            measured: None,
-            heading: None,
-            replay: None,
+            playback,
+            keeps_workings: false,
         }
     }
 
-    /// Changes to the run of `scenario`, which was opened under another name. It is paused at step 0.
-    pub(super) fn open(&mut self, scenario: Arc<Scenario>) {
-        let shows_exact = self.run().shows_exact();
-        let exact = begins_with_exact(&scenario).unwrap_or(shows_exact);
-        self.keep_pinned();
-        (self.ghost, self.heading, self.replay) = (None, None, None);
-        self.has_detail = false;
-        self.measure_again(&scenario);
-        self.playback = Playback::new(scenario, false);
-        self.playback.set_exact(exact);
+    /// Goes over to the run of `scenario`, which ends at `end_s` where that is given.
+    pub(super) fn follow(&mut self, change: Change, scenario: &Arc<Scenario>, end_s: Option<f64>) {
+        let playback = &mut self.playback;
+        if !matches!(change, Change::Described | Change::BeginsAnew { .. }) {
+            self.destination = Destination::default();
+        }
+        match change {
+            Change::Described => playback.describe_as(scenario),
+            Change::GoesOn => playback.go_on_in(scenario),
+            Change::ContinuesAt(step) => playback.continue_at(step, scenario),
+            Change::BeginsAnew { is_act, is_again } => {
+                let to = self.destination.replay_of(playback, is_act, is_again);
+                if is_act {
+                    playback.continue_at(0, scenario);
+                } else {
+                    playback.begin(Arc::clone(scenario));
+                }
+                let time_step_s = self.motion().time_step_s;
+                self.destination
+                    .replay(to, is_again, time_step_s, &mut self.playback);
+            }
+            _ if change.is_of_other_name() => {
+                let shown = playback.run().shows_exact();
+                *playback = Playback::new(Arc::clone(scenario), false);
+                playback.set_exact(begins_with_exact(scenario).unwrap_or(shown));
+                self.strip.forget();
+            }
+            Change::Returns { .. } | Change::Opens => playback.begin(Arc::clone(scenario)),
+        }
+        if let Some(end_s) = end_s {
+            self.playback.set_end(end_s);
+        }
+        if let Change::Returns { left_at, .. } = change {
+            self.destination.return_to(left_at, &mut self.playback);
+        }
     }
 
-    /// Forgets the advice: the scenario has changed.
-    pub(super) fn forget_advice(&mut self) {
-        (self.advisor, self.offer) = (None, None);
+    /// Goes to `step`, at which a session has left the run, with its speed and its end, and with the exact motion or not.
+    pub(super) fn resume(&mut self, step: u64, speed: Speed, shows_exact: bool, end_s: f64) {
+        self.playback.set_end(end_s);
+        self.playback.set_speed(speed);
+        self.playback.set_exact(shows_exact);
+        self.destination.return_to(step, &mut self.playback);
+    }
+
+    /// Carries out what concerns the course of the run; `None` for a command that does not.
+    pub(super) fn carry_out(&mut self, command: &Command) -> Option<Answer> {
+        Some(match command {
+            Command::Step(steps) => self.step(*steps),
+            Command::GoTo(place) => self.go_to(*place),
+            Command::RunUntil(condition) => self.run_until(condition),
+            Command::Run => Ok(self.play()),
+            Command::Pause => Ok(self.pause()),
+            Command::Speed(speed) => Ok(self.set_speed(*speed)),
+            _ => return None,
+        })
+    }
+
+    fn step(&mut self, steps: i64) -> Answer {
+        let here = self.playback.step_number();
+        self.destination.heading = None;
+        match steps {
+            1 => {
+                // A step that is taken apart need not be taken a second time.
+                self.playback.keep_workings(self.keeps_workings);
+                self.playback.take_steps(1);
+            }
+            0.. => self.playback.take_steps(steps.unsigned_abs()),
+            _ if here == 0 => return Err("the run begins here".into()),
+            _ => self
+                .playback
+                .go_to(here.saturating_sub(steps.unsigned_abs())),
+        }
+        Ok(Done::SILENT.going_on(UnderWay::Going))
+    }
+
+    fn go_to(&mut self, place: Place) -> Answer {
+        let step = self.step_of(place)?;
+        self.destination.heading = None;
+        let end = self.playback.end_step();
+        let is_beyond = step > end && step > self.run().furthest();
+        self.playback.go_to(step);
+        let (step, end) = (HumanCount(step), HumanCount(end));
+        let said = is_beyond.then(|| {
+            format!(
+                "step {step} is beyond the end of the run, step {end}: it is played on to there"
+            )
+        });
+        Ok(Done::saying_any(said).going_on(UnderWay::Going))
+    }
+
+    pub(super) fn step_of(&self, place: Place) -> Result<u64, String> {
+        match place {
+            Place::Step(step) => Ok(step),
+            Place::Time(time_s) => self.step_at(time_s),
+            Place::Start => Ok(0),
+            Place::End => Ok(self.playback.end_step()),
+        }
+    }
+
+    fn step_at(&self, time_s: f64) -> Result<u64, String> {
+        if time_s >= 0.0 && time_s.is_finite() {
+            Ok(Simulation::step_at(self.run().scenario(), time_s))
+        } else {
+            Err("must be a time from 0 s on: the run begins there".to_owned())
+        }
+    }
+
+    /// The step that `text` means, seen from the present step.
+    pub(super) fn step_meant(&self, text: &str) -> Result<u64, String> {
+        let text = text.trim();
+        let (here, here_s) = (self.playback.step_number(), self.run().now().time_s);
+        let sign = text.chars().next().filter(|sign| "+-".contains(*sign));
+        let size = Place::parse(&text[sign.map_or(0, char::len_utf8)..]);
+        // With a sign it counts from here.
+        match (sign, size) {
+            (None, Some(place)) => self.step_of(place),
+            (Some('+'), Some(Place::Step(steps))) => Ok(here.saturating_add(steps)),
+            (_, Some(Place::Step(steps))) => Ok(here.saturating_sub(steps)),
+            (Some('+'), Some(Place::Time(time_s))) => self.step_at(here_s + time_s),
+            (_, Some(Place::Time(time_s))) => self.step_at(here_s - time_s),
+            (None, None) if text.contains('.') && !text.ends_with('s') => {
+                Err("must be a whole number of steps, or a time such as 12.5 s".to_owned())
+            }
+            _ => Err(format!("must be {WHERE}")),
+        }
+    }
+
+    fn run_until(&mut self, condition: &Expression) -> Answer {
+        let run = self.run();
+        let sources = condition
+            .bind(|name| numbers::find(name, Some(run)))
+            .map_err(|fault| fault.to_string())?;
+        let condition = condition.clone();
+        self.destination.heading = None;
+        let mut numbers = Numbers::default();
+        let holds = move |run: &mut LiveRun| {
+            let mut now = numbers.at(run);
+            let value = condition.value_at(|index| now.value(&sources[index]));
+            value.is_some_and(|value| value != 0.0)
+        };
+        Ok(if self.playback.run_until(Box::new(holds)) {
+            Done::SILENT.going_on(UnderWay::Playing)
+        } else {
+            Done::saying("it holds already, at this step")
+        })
+    }
+
+    pub(super) fn play(&mut self) -> Done {
+        self.destination.heading = None;
+        self.playback.set_running(true);
+        Done::SILENT
+    }
+
+    pub(super) fn pause(&mut self) -> Done {
+        let to_go = self.playback.steps_to_go();
+        self.destination.heading = None;
+        self.playback.set_running(false);
+        let to_go = to_go.map(HumanCount);
+        Done::saying_any(to_go.map(|left| format!("stopped with {left} steps to go")))
+    }
+
+    fn set_speed(&mut self, speed: Speed) -> Done {
+        self.playback.set_speed(speed);
+        let Speed::Times(speed) = speed else {
+            return Done::SILENT;
+        };
+        let wall_s = self.run().simulation().motion().time_step_s / speed;
+        let is_long = wall_s > LONG_STEP_S;
+        let said = || format!("a step takes {wall_s:.0} s at this speed; . takes one now");
+        Done::saying_any(is_long.then(said))
+    }
+
+    /// The speed `notches` places higher, or lower, in the list of speeds.
+    pub fn other_speed(&self, notches: i32) -> Result<Command, String> {
+        let now = self.playback.speed();
+        match now.shifted(notches) {
+            next if next != now => Ok(Command::Speed(next)),
+            Speed::Times(_) if notches <= 0 => {
+                Err("this is the lowest speed; . takes a single step".to_owned())
+            }
+            _ => Err("this is the top speed".to_owned()),
+        }
+    }
+
+    /// Whether it plays, or takes steps that were asked for.
+    pub fn is_moving(&self) -> bool {
+        self.playback.is_running() || self.playback.steps_to_go().is_some()
+    }
+
+    /// The step to which the run is on its way.
+    pub(super) fn bound_for(&self) -> Option<u64> {
+        let to_go = self.playback.steps_to_go()?;
+        Some(self.playback.step_number().saturating_add(to_go))
+    }
+
+    /// The present step, or the step to which the run is on its way by itself.
+    pub(super) fn step_to_keep(&self) -> u64 {
+        let heading = self.destination.heading(&self.playback);
+        let destination = self.run().destination();
+        let destination = destination.or(heading.map(|heading| heading.step));
+        destination.unwrap_or(self.playback.step_number())
+    }
+
+    /// The scenario that starts from the present state, as TOML.
+    pub(super) fn present_as_text(&self) -> Result<String, String> {
+        let run = self.run().simulation();
+        let scenario = scenario_from(run.scenario(), run.state(), run.step_number())
+            .map_err(|problems| problems.in_one_line())?;
+        toml::to_string(&scenario.file).map_err(|error| error.to_string())
     }
 
     /// Advances the run and the exact motion by `wall`, the time up to `now`; `clock` returns the present time. Returns why
@@ -117,47 +319,26 @@ impl Player {
             self.playback.follow_exact(clock);
             is_new = true;
         }
-        is_new |= self.follow_measured(clock);
-        is_new |= self.take_advice_news() | self.take_pinned_news();
         (halt, is_new)
     }
 
     /// Whether the numbers must be read again at `now`, if the traces show `window_s`.
     pub(super) fn is_due(&self, now: Duration, window_s: f64) -> bool {
-        self.is_fast(window_s) || now >= self.read_at + reading::EVERY
-    }
-
-    /// Whether the run is so fast that numbers read a few times a second would not belong to the picture of each frame.
-    fn is_fast(&self, window_s: f64) -> bool {
+        // Of so fast a run, numbers read a few times a second would not belong to the picture of each frame.
         let passes_s = reading::EVERY.as_secs_f64();
         self.playback.is_flat_out()
             || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
+            || now >= self.read_at + reading::EVERY
     }
 
-    /// Reads the numbers, and begins to look for advice if they are doubtful. Returns a message where the strip of the
-    /// fast motion now shows another curve of the same run.
+    /// Reads the numbers. Returns a message where the strip of the fast motion now shows another curve of the same run.
     pub(super) fn read(&mut self, now: Duration, view: &View) -> Option<&'static str> {
         self.reading = self.playback.read();
         self.read_at = now;
-        self.compare();
         self.read_off(view.cursor);
-        let of_this_run = self.has_detail.then_some(self.detail.curve);
-        self.choose_detail(now, view);
-        let is_other = view.detail_of.is_none()
-            && of_this_run.is_some_and(|before| before != self.detail.curve);
-        self.explain(view);
-        // Not while the user waits for a step to be reached: the search would take a processor from the stepping.
-        if self.is_advised
-            && self.advisor.is_none()
-            && self.playback.steps_to_go().is_none()
-            && self.reading.readouts.health.is_believed() == Some(false)
-        {
-            self.advisor = Some(background::advice(self.to_be_mended()));
-        }
-        is_other.then_some(match self.detail.curve {
-            Curve::Tilt => "the upper strip shows the tilt again: it swings",
-            _ => "the upper strip shows x now: it swings, and the tilt does not",
-        })
+        let cursor_s = self.cursor().map(|cursor| cursor.time_s);
+        let (playback, readouts) = (&self.playback, &self.reading.readouts);
+        self.strip.choose(now, view, playback, readouts, cursor_s)
     }
 
     /// Looks up the numbers at the cursor, unless they are known.
@@ -177,49 +358,13 @@ impl Player {
         self.at_cursor.as_ref().map(|(_, sample)| sample)
     }
 
-    /// Chooses the window of the strip of the fast motion. While the window passes too fast to be seen, it is chosen
-    /// only once in a while.
-    fn choose_detail(&mut self, now: Duration, view: &View) {
-        let is_fast = match self.playback.speed() {
-            _ if !self.playback.is_running() => false,
-            Speed::Top => true,
-            Speed::Times(speed) => speed * PASSES_S > self.detail.window_s,
-        };
-        let is_held = is_fast && self.cursor().is_none();
-        let is_of_this_run = self.detail.begin_s + self.detail.window_s <= self.run().now().time_s;
-        if is_held && self.has_detail && is_of_this_run && now < self.detail_at + HOLD {
-            return;
-        }
-        let wanted = Wanted {
-            window_s: view.detail_s,
-            curve: view.detail_of,
-            long_s: view.window_s,
-            place: match self.cursor() {
-                Some(cursor) => Placement::About(cursor.time_s),
-                None if is_held => Placement::Latest,
-                None if self.playback.is_at_end() => Placement::UpToNow,
-                None => Placement::Following,
-            },
-        };
-        let (run, readouts) = (self.playback.run(), &self.reading.readouts);
-        // The window of another run says nothing about this one.
-        let before = self.has_detail.then_some(&self.detail);
-        self.detail = Detail::new(run, readouts, &wanted, before);
-        (self.detail_at, self.has_detail) = (now, true);
+    /// The window of the strip of the fast motion.
+    pub fn detail(&self) -> &Detail {
+        &self.strip.detail
     }
 
     pub fn run(&self) -> &LiveRun {
         self.playback.run()
-    }
-
-    /// The run before, where an edit has begun this one anew.
-    pub fn ghost(&self) -> Option<&Ghost> {
-        self.ghost.as_ref()
-    }
-
-    /// The scheme or time step that would make doubtful numbers right, if one has been found.
-    pub fn advice(&self) -> Option<&Advice> {
-        self.advisor.as_ref()?.answer()
     }
 
     /// Gravity, scheme and time step of the step to come.
@@ -227,7 +372,34 @@ impl Player {
         let simulation = self.run().simulation();
         in_force(simulation.scenario(), simulation.step_number()).0
     }
+
+    /// The number called `name`, as it was read last; `None` if there is no such number, or if it has no value now.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        let readouts = &self.reading.readouts;
+        match numbers::find(name, Some(self.run())).ok()? {
+            Source::Column(column) => Some(column.value(self.run().scenario(), &readouts.sample)),
+            Source::Readout(readout) => readout.of(readouts).number(),
+            Source::Gravity => Some(self.motion().gravity),
+            Source::TimeStep => Some(self.motion().time_step_s),
+            Source::Fixed(value) => value,
+        }
+        .filter(|number| number.is_finite())
+    }
+
+    /// The message while steps are taken.
+    pub(super) fn in_words(&self) -> Option<String> {
+        let left = HumanCount(self.playback.steps_to_go()?);
+        Some(if self.destination.is_replaying(&self.playback) {
+            format!("playing the new run to the same time: {left} steps to go, Esc stops")
+        } else {
+            format!("stepping: {left} to go, Esc stops")
+        })
+    }
 }
+
+/// What the user may type to say where to go.
+pub(super) const WHERE: &str =
+    "a step (421), a time (12.5 s), so many on or back (+50, -2 s), start or end";
 
 fn begins_with_exact(scenario: &Scenario) -> Option<bool> {
     scenario.file.view.as_ref()?.exact
@@ -236,68 +408,28 @@ fn begins_with_exact(scenario: &Scenario) -> Option<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::for_tests::{scenario, view};
+    use crate::lab::for_tests::scenario;
 
     #[test]
-    fn a_run_that_was_played_stays_as_a_ghost() {
+    fn steps_and_times_count_from_the_start_or_from_here() {
         let mut player = Player::new(scenario(), false);
-        player.begin(scenario(), false);
-        assert!(player.ghost().is_none(), "it stood at its start");
         player.step(100).unwrap();
-        player.begin(scenario(), false);
-        let end_s = player.ghost().map(Ghost::end_s);
-        assert!(end_s.is_some_and(|end_s| (end_s - 10.0).abs() < 1e-9));
-        assert_eq!(player.playback.step_number(), 100, "to the same time");
-        player.playback.begin(scenario()); // a run that was stopped on its way there
-        player.step(1).unwrap();
-        player.begin(scenario(), false);
-        assert_eq!(
-            player.ghost().map(Ghost::end_s),
-            end_s,
-            "one step is no run"
-        );
-        player.open(scenario());
-        assert!(player.ghost().is_none());
-    }
-
-    #[test]
-    fn the_search_for_advice_about_a_run_ends_when_an_edit_begins_another() {
-        let edits: [fn(&mut Player); 2] = [
-            |player| player.begin(scenario(), false),
-            |player| player.begin_with_act(&scenario(), false),
-        ];
-        for edit in edits {
-            let mut player = Player::new(scenario(), false);
-            player.advisor = Some(background::advice(scenario()));
-            edit(&mut player);
-            assert!(player.advisor.is_none());
+        for (text, step) in [
+            ("421", 421),
+            (" 1e3 ", 1000),
+            ("12.5 s", 125),
+            ("+50", 150),
+            ("-30", 70),
+            ("-300", 0),
+            ("+2 s", 120),
+            ("-2s", 80),
+            ("start", 0),
+            ("end", 2300),
+        ] {
+            assert_eq!(player.step_meant(text), Ok(step), "{text}");
         }
-    }
-
-    #[test]
-    fn advice_is_sought_where_the_run_stands_and_not_on_its_way() {
-        let view = view(&[]);
-        let mut player = Player::new(scenario(), false);
-        player.is_advised = true;
-        player.return_to(100_000_000);
-        player.step(1000).unwrap();
-        player.return_to(100_000_000);
-        player.read(Duration::ZERO, &view);
-        assert!(player.advisor.is_none());
-        player.pause();
-        player.read(Duration::ZERO, &view);
-        assert!(player.advisor.is_some());
-    }
-
-    #[test]
-    fn what_is_kept_is_where_it_is_on_its_way_back_to() {
-        let mut player = Player::new(scenario(), false);
-        player.return_to(100_000_000);
-        assert!(player.playback.step_number() < 100_000_000);
-        assert_eq!(player.step_to_keep(), 100_000_000);
-        assert!(player.in_words().unwrap().ends_with("Esc stops"));
-        player.pause();
-        assert_eq!(player.step_to_keep(), player.playback.step_number());
-        assert_eq!(player.in_words(), None);
+        for text in ["", "soon", "12.5", "-11 s", "nan s", "+x"] {
+            assert!(player.step_meant(text).is_err(), "{text}");
+        }
     }
 }

@@ -1,26 +1,44 @@
-//! The settings: what is shown, and how. One dialog lists them with their present values.
+//! The settings: what is shown, and how. One dialog lists them with their present values. Choices of dots, colours, frames
+//! and the mouse are remembered for the next time.
 
-use super::Lab;
 use super::command::Command;
-use super::dialog::Dialog;
-use super::view::markers::Marker;
-use super::view::theme::Background;
+use super::view::theme::{Background, Marker};
 use super::view::{Part, View};
+use crate::storage::settings::remember;
+use std::path::PathBuf;
 
 /// Frames a second that the dialog offers.
 const FRAME_RATES: [u32; 5] = [2, 5, 10, 15, 30];
+
+/// What is remembered of the settings.
+#[derive(Default)]
+pub struct Settings {
+    /// The folder in which the settings that the user chooses are remembered; `None` where nothing is.
+    pub folder: Option<PathBuf>,
+    /// Whether there are colours where nobody chooses; `None` where that is not known.
+    pub usual_colour: Option<bool>,
+}
 
 /// A setting: its label, its present value, and the change to its next value (`true`) or the one before.
 pub(super) struct Setting {
     pub(super) label: &'static str,
     pub(super) value: fn(&View) -> String,
-    change: fn(&mut Lab, bool),
+    change: fn(&mut View, bool) -> Changed,
+}
+
+/// What a changed setting asks for.
+enum Changed {
+    /// The view changes by this command.
+    By(Command),
+    /// The view has changed: this value is remembered.
+    Remembered(&'static str, toml::Value),
+    Colour,
 }
 
 const fn row(
     label: &'static str,
     value: fn(&View) -> String,
-    change: fn(&mut Lab, bool),
+    change: fn(&mut View, bool) -> Changed,
 ) -> Setting {
     Setting {
         label,
@@ -32,64 +50,83 @@ const fn row(
 /// Every setting. The first three belong to the run and its lesson; the others are remembered for the next time.
 #[rustfmt::skip]
 pub(super) const SETTINGS: [Setting; 8] = [
-    row("line about the numbers", |view| shown(view, Part::Health), |lab, _| lab.hide_or_show(Part::Health)),
-    row("what theory predicts", |view| shown(view, Part::Predicted), |lab, _| lab.hide_or_show(Part::Predicted)),
-    row("screen", |view| if view.bare { "bare: two panes, title and time" } else { "everything" }.to_owned(), |lab, _| {
-        lab.carry_out_all(&[Command::look("bare", !lab.view.bare)]);
+    row("line about the numbers", |view| shown(view, Part::Health), |view, _| hide_or_show(view, Part::Health)),
+    row("what theory predicts", |view| shown(view, Part::Predicted), |view, _| hide_or_show(view, Part::Predicted)),
+    row("screen", |view| if view.bare { "bare: two panes, title and time" } else { "everything" }.to_owned(), |view, _| {
+        Changed::By(Command::look("bare", !view.bare))
     }),
-    row("dots", |view| view.marker.name().to_owned(), |lab, forward| {
-        lab.view.marker = beside(&Marker::ALL, lab.view.marker, forward);
-        lab.remember("marker", lab.view.marker.name());
+    row("dots", |view| view.marker.name().to_owned(), |view, forward| {
+        view.marker = next(&Marker::ALL, view.marker, forward);
+        Changed::Remembered("marker", view.marker.name().into())
     }),
-    row("colours", |view| if view.theme.colour { "on" } else { "off" }.to_owned(), |lab, _| {
-        lab.view.theme.colour = !lab.view.theme.colour;
-        lab.remember("colour", lab.colour_choice());
+    row("colours", |view| if view.theme.colour { "on" } else { "off" }.to_owned(), |view, _| {
+        view.theme.colour = !view.theme.colour;
+        Changed::Colour
     }),
-    row("colours for a screen", |view| view.theme.background.name().to_owned(), |lab, forward| {
+    row("colours for a screen", |view| view.theme.background.name().to_owned(), |view, forward| {
         let all = [Background::Dark, Background::Light];
-        lab.view.theme.background = beside(&all, lab.view.theme.background, forward);
-        lab.remember("background", lab.view.theme.background.name());
+        view.theme.background = next(&all, view.theme.background, forward);
+        Changed::Remembered("background", view.theme.background.name().into())
     }),
-    row("frames a second", |view| format!("{} at most", view.fps), |lab, forward| {
+    row("frames a second", |view| format!("{} at most", view.fps), |view, forward| {
         // Another number may stand in config.toml: the nearest offered one follows it.
-        let before = FRAME_RATES.partition_point(|rate| *rate < lab.view.fps);
-        let after = FRAME_RATES.partition_point(|rate| *rate <= lab.view.fps);
+        let before = FRAME_RATES.partition_point(|rate| *rate < view.fps);
+        let after = FRAME_RATES.partition_point(|rate| *rate <= view.fps);
         let count = FRAME_RATES.len();
         let index = if forward { after } else { before + count - 1 };
-        lab.view.fps = FRAME_RATES[index % count];
-        lab.remember("fps", i64::from(lab.view.fps));
+        view.fps = FRAME_RATES[index % count];
+        Changed::Remembered("fps", view.fps.into())
     }),
-    row("mouse", |view| if view.mouse { "acts on the lab" } else { "selects the terminal's text" }.to_owned(), |lab, _| {
-        lab.view.mouse = !lab.view.mouse;
-        lab.remember("mouse", lab.view.mouse);
+    row("mouse", |view| if view.mouse { "acts on the lab" } else { "selects the terminal's text" }.to_owned(), |view, _| {
+        view.mouse = !view.mouse;
+        Changed::Remembered("mouse", view.mouse.into())
     }),
 ];
 
-impl Lab {
-    /// Changes the setting that is selected in the dialog, which then shows its new value.
-    pub(super) fn change_setting(&mut self, forward: bool) {
-        let Some(selected) = self.on_top.dialog().map(|dialog| dialog.form.selected) else {
-            return;
+impl Settings {
+    /// Changes the setting of this number in `view`, and remembers the choice. Returns the command that changes the view,
+    /// where one does.
+    ///
+    /// # Errors
+    /// Why the choice cannot be remembered.
+    pub(super) fn change(
+        &self,
+        number: usize,
+        forward: bool,
+        view: &mut View,
+    ) -> Result<Option<Command>, String> {
+        let Some(setting) = SETTINGS.get(number) else {
+            return Ok(None);
         };
-        if let Some(setting) = SETTINGS.get(selected) {
-            (setting.change)(self, forward);
+        let (key, value) = match (setting.change)(view, forward) {
+            Changed::By(command) => return Ok(Some(command)),
+            Changed::Remembered(key, value) => (key, value),
+            Changed::Colour => ("colour", self.colour_choice(view.theme.colour).into()),
+        };
+        match &self.folder {
+            Some(folder) => remember(folder, key, value).map(|()| None),
+            None => Ok(None),
         }
-        self.on_top
-            .open_dialog(Dialog::settings(&self.view, selected));
     }
 
-    pub fn shows_settings(&self) -> bool {
-        self.on_top.dialog().is_some_and(Dialog::is_of_settings)
-    }
-
-    fn hide_or_show(&mut self, part: Part) {
-        let mut hidden = self.view.hidden.clone();
-        hidden.retain(|other| *other != part);
-        if hidden.len() == self.view.hidden.len() {
-            hidden.push(part);
+    fn colour_choice(&self, colour: bool) -> &'static str {
+        if self.usual_colour == Some(colour) {
+            "auto"
+        } else if colour {
+            "always"
+        } else {
+            "never"
         }
-        self.carry_out_all(&[Command::look("hide", hidden)]);
     }
+}
+
+fn hide_or_show(view: &View, part: Part) -> Changed {
+    let mut hidden = view.hidden.clone();
+    hidden.retain(|other| *other != part);
+    if hidden.len() == view.hidden.len() {
+        hidden.push(part);
+    }
+    Changed::By(Command::look("hide", hidden))
 }
 
 fn shown(view: &View, part: Part) -> String {
@@ -97,7 +134,7 @@ fn shown(view: &View, part: Part) -> String {
 }
 
 /// The value after `now` among `all`, or the one before; after the last comes the first.
-fn beside<T: Copy + PartialEq>(all: &[T], now: T, forward: bool) -> T {
+fn next<T: Copy + PartialEq>(all: &[T], now: T, forward: bool) -> T {
     let here = all.iter().position(|value| *value == now).unwrap_or(0);
     let step = if forward { 1 } else { all.len() - 1 };
     all[(here + step) % all.len()]

@@ -1,16 +1,18 @@
 //! A text that stands beside the panes, such as the page of a lesson. A room above the lab writes it.
 
-use super::Lab;
-use super::view::Pane;
-use std::sync::Arc;
+use crate::text::ascii::in_ascii;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheet {
     /// What stands in its frame.
     pub title: String,
     pub paragraphs: Vec<Paragraph>,
-    /// The paragraph that is to be seen: the sheet is scrolled to it where it is longer than its place.
-    pub seen: Option<usize>,
+    /// The first and the last of the paragraphs that are to be seen whole: a longer sheet is scrolled to them.
+    pub seen: Option<(usize, usize)>,
+    /// Whether a run is played before the rest of the sheet comes: where there is room for one pane, both share it.
+    pub plays: bool,
+    /// Whether a number is asked for: a digit begins to type it.
+    pub asks_number: bool,
     /// What Enter does here, in one word; empty where it does nothing.
     pub enter: &'static str,
     pub has_next: bool,
@@ -82,42 +84,20 @@ impl Paragraph {
         Self { kind, words }
     }
 
+    /// The same for a terminal without UTF-8.
+    pub fn in_ascii(&self) -> Self {
+        let words = self.words.iter().map(|words| Words {
+            text: in_ascii(&words.text),
+            emphasis: words.emphasis,
+        });
+        let kind = self.kind.clone();
+        Self {
+            kind,
+            words: words.collect(),
+        }
+    }
+
     pub fn text(&self) -> String {
         self.words.iter().map(|words| words.text.as_str()).collect()
-    }
-}
-
-impl Lab {
-    /// Shows `sheet` beside the panes, or none. It stays scrolled as it is where its title is the same.
-    pub fn set_sheet(&mut self, sheet: Option<Sheet>) {
-        if self.view.sheet.as_deref() == sheet.as_ref() {
-            return;
-        }
-        let before = self.view.sheet.take();
-        let is_same = |(before, sheet): (Arc<Sheet>, &Sheet)| {
-            before.title == sheet.title && before.seen == sheet.seen
-        };
-        if !before.zip(sheet.as_ref()).is_some_and(is_same) {
-            self.view.sheet_scrolled = None;
-        }
-        self.view.sheet = sheet.map(Arc::new);
-        self.view.keep_focus();
-        self.changed = true;
-    }
-
-    /// Scrolls the sheet by `rows`; it is `shown` rows high of `all`, and begins at the row `first` now.
-    pub fn scroll_sheet(&mut self, rows: isize, first: usize, shown: usize, all: usize) {
-        let last = all.saturating_sub(shown);
-        let to = first.saturating_add_signed(rows).min(last);
-        self.view.sheet_scrolled = Some(to);
-        self.changed = true;
-    }
-
-    pub fn turn_to_sheet(&mut self) {
-        if self.view.sheet.is_some() {
-            self.view.filled &= self.view.focus == Pane::LESSON;
-            self.view.focus = Pane::LESSON;
-            self.changed = true;
-        }
     }
 }

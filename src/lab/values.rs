@@ -2,7 +2,6 @@
 //! come. One of them is selected.
 
 pub mod list;
-pub mod listed;
 
 use super::command::{Command, Force, PushChoice};
 use crate::journal::next_push::{Field, NextPush, Toward};
@@ -10,17 +9,13 @@ use crate::journal::parameters::{self, Parameter, parameters};
 use crate::journal::{Journal, number_of_push};
 use crate::playback::live::LiveRun;
 use crate::scenario::Scenario;
-use list::ValueList;
-use listed::{ListedValue, Of};
+use list::{ListedValue, NEXT_PUSH, Of, ValueList};
 use nalgebra::Vector3;
 use std::time::Duration;
 use toml::Table;
 
 /// Nudges of the same value with shorter pauses than this between them are one act: one undo takes back all of them.
 const BELONGS: Duration = Duration::from_secs(3);
-
-/// The heading over the values of the push to come.
-const NEXT_PUSH: &str = "next push (p)";
 
 /// The order of the groups in the list. The scenario's pushes come after the start, its points after the body.
 const ORDER: [&str; 6] = ["motion", "start", NEXT_PUSH, "body", "view", "scenario"];
@@ -73,7 +68,6 @@ impl Values {
         journal.count_by(step) != self.entries_listed
     }
 
-    /// Selects the size of the push to come.
     pub(super) fn select_next_push(&mut self) {
         self.list.filter_by(String::clear);
         self.list.select(NEXT_PUSH, Field::Size.label().0);
@@ -142,6 +136,25 @@ impl Values {
         push.checked()
     }
 
+    /// The command that nudges the selected value; `None` where none is shown.
+    pub(super) fn selected_nudged(
+        &self,
+        times: i32,
+        scenario: &Scenario,
+    ) -> Result<Option<Command>, String> {
+        Ok(match self.list.selected().map(|value| &value.of) {
+            Some(Of::Scenario(parameter)) if times != 0 => {
+                let key = parameter.key.clone();
+                Some(Command::Nudge { key, times })
+            }
+            Some(Of::NextPush(field)) if times != 0 => {
+                let next = self.next_push.nudged(*field, times, scenario)?;
+                Some(Command::NextPush(PushChoice::field(*field, &next)))
+            }
+            _ => None,
+        })
+    }
+
     /// The command that gives the selected value what `text` says; `None` if it already has that value.
     pub(super) fn value_typed(
         &self,
@@ -169,7 +182,7 @@ impl Values {
 }
 
 impl PushChoice {
-    pub(super) fn field(field: Field, push: &NextPush) -> Self {
+    fn field(field: Field, push: &NextPush) -> Self {
         let mut choice = Self::default();
         match field {
             Field::Point => choice.point = Some(push.point.clone()),
@@ -225,18 +238,6 @@ mod tests {
         assert!(values.in_words("motion.time_step_s").contains("0.1 s"));
         assert!(values.parameter("motion.nothing").is_none());
         assert_eq!(values.in_words("motion.nothing"), "motion.nothing");
-    }
-
-    #[test]
-    fn nudges_of_one_key_belong_together_for_a_while() {
-        let (mut values, _) = listed();
-        let at = Duration::from_secs;
-        values.note_nudge("trace", at(10));
-        assert!(values.is_nudged_again("trace", at(12)));
-        assert!(!values.is_nudged_again("title", at(12)));
-        assert!(!values.is_nudged_again("trace", at(13)));
-        values.forget_nudge();
-        assert!(!values.is_nudged_again("trace", at(10)));
     }
 
     #[test]

@@ -2,43 +2,21 @@
 
 mod content;
 
-use super::lesson::{Asked, Check, Compare, Keep, Predict, Right, Setup};
+use super::lesson::{Asked, Check, Compare, Keep, Predict, Setup};
 use super::names::Names;
 use crate::journal::expression::Expression;
-use crate::lab::command::{Command, Placed};
+use crate::lab::command::{COMMANDS, Command, Placed};
+use crate::lab::view;
 use crate::scenario::Problem;
 use crate::scenario::dotted::join;
 use crate::text::printable::is_steering;
 use content::Content;
 use toml::{Table, Value};
 
-/// The keys of `lab` and `task`, in the order in which they are carried out. Between `push` and `go_to` stands how the run
-/// is shown.
-const ORDER: [&str; 23] = [
-    "open",
-    "set",
-    "push",
-    "speed",
-    "look_at",
-    "next",
-    "window_s",
-    "detail_s",
-    "detail_of",
-    "since_s",
-    "magnify",
-    "exact",
-    "show",
-    "hide",
-    "bare",
-    "camera",
-    "zoom",
-    "fill",
-    "phase",
-    "sum_to",
-    "point_at",
-    "wait_s",
-    "go_to",
-];
+/// The keys of `lab` and `task` besides those of `[view]`. They are carried out in the order of the table of commands, the
+/// last at the end.
+const COMMON: [&str; 6] = ["open", "set", "push", "since_s", "magnify", "point_at"];
+const LAST: [&str; 2] = ["wait_s", "go_to"];
 const RUN_UNTIL: &str = "run_until";
 const KEEP: &str = "keep";
 /// The most choices of a prediction.
@@ -100,10 +78,13 @@ pub(super) fn setup(
     page: usize,
     known_from: usize,
 ) -> Found<Setup> {
-    let known: Vec<&str> = ORDER.into_iter().chain([RUN_UNTIL, KEEP]).collect();
+    let rows = COMMANDS.iter().map(|row| row.name);
+    let rows = rows.filter(|name| COMMON.contains(name) || view::is_key(name));
+    let order: Vec<_> = rows.chain(LAST).chain([RUN_UNTIL]).collect();
+    let known: Vec<_> = order.iter().copied().chain([KEEP]).collect();
     let mut content = reader.content(&known).inspect_err(|_| names.lose())?;
     let mut commands = Vec::new();
-    for name in ORDER.into_iter().chain([RUN_UNTIL]) {
+    for name in order {
         let Some(value) = content.get(name) else {
             continue;
         };
@@ -174,7 +155,7 @@ pub(super) fn predict(
     reader: &Reader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> Found<Predict> {
-    let mut content = reader.content(&["name", "ask", "choices", "unit", "right", "within"])?;
+    let mut content = reader.content(&["name", "ask", "choices", "unit", "right"])?;
     let name = content.needed("name", false, "compare calls the prediction by it");
     let ask = content.text("ask", "the question", find);
     let asked = match (content.get("choices"), content.get("unit")) {
@@ -205,45 +186,22 @@ pub(super) fn predict(
     })
 }
 
-/// The number of the right choice; or the right number, and how far off an answer may be.
-fn right(content: &mut Content, asked: &Asked) -> Option<Right> {
-    let number = |value: &Value| {
-        value
-            .as_float()
-            .or(value.as_integer().map(|whole| whole as f64))
+/// The number of the choice that comes out.
+fn right(content: &mut Content, asked: &Asked) -> Option<usize> {
+    let value = content.get("right")?;
+    let choices = match asked {
+        Asked::Choice(choices) => choices.len(),
+        Asked::Number { .. } => 0,
     };
-    let finite = |value: &Value| number(value).filter(|number| number.is_finite());
-    let (value, within) = (content.get("right"), content.get("within"));
-    let (key, wrong, rule) = match (asked, value, within) {
-        (_, None, None) => return None,
-        (Asked::Choice(choices), Some(value), None) => {
-            let whole = value
-                .as_integer()
-                .and_then(|whole| usize::try_from(whole).ok());
-            match whole.filter(|whole| (1..=choices.len()).contains(whole)) {
-                Some(whole) => return Some(Right::Choice(whole)),
-                None => ("right", value, "must be the number of a choice, from 1"),
-            }
-        }
-        (Asked::Choice(_), _, Some(within)) => {
-            let rule = "has no place beside choices: right = 2 names the second";
-            ("within", within, rule)
-        }
-        (_, None, Some(within)) => ("within", within, "needs right: the number that comes out"),
-        (_, Some(value), None) => {
-            let rule = "needs within: how far off a number may be, as within = 0.5";
-            ("right", value, rule)
-        }
-        (_, Some(value), Some(within)) => match (finite(&value), finite(&within)) {
-            (Some(value), Some(within)) if within > 0.0 => {
-                return Some(Right::Number { value, within });
-            }
-            (None, _) => ("right", value, "must be a number"),
-            _ => ("within", within, "must be a number above 0"),
-        },
-    };
-    content.refuse(Problem::with_value(key, &wrong, rule));
-    None
+    let right = value
+        .as_integer()
+        .and_then(|right| usize::try_from(right).ok());
+    let right = right.filter(|right| (1..=choices).contains(right));
+    if right.is_none() {
+        let rule = "must be the number of a choice, counted from 1";
+        content.refuse(Problem::with_value("right", &value, rule));
+    }
+    right
 }
 
 fn choices(content: &mut Content, value: &Value) -> Vec<String> {
@@ -301,17 +259,50 @@ pub(super) fn check(
 ) -> Found<Check> {
     let mut content = reader.content(&["that", "goal", "hint"])?;
     let hint = content.line("hint", true);
-    let goal = content.line("goal", false);
+    let goals = goals(&mut content);
     if content.get("that").is_none() {
         content.refuse_whole("lacks that: the condition, such as \"t_s >= 60\"");
     }
     let Some(that) = content.expression("that", true, find) else {
         return Err(content.problems);
     };
+    if that.names().next().is_none() {
+        let rule = "names no number of the run: it holds always or never";
+        content.refuse(Problem::with_value("that", &that.text().into(), rule));
+    }
+    let parts = that.conjuncts(|_| None).len();
+    if goals.len() > 1 && goals.len() != parts {
+        let rule = format!(
+            "has {} lines, and that joins {parts} parts with and",
+            goals.len()
+        );
+        content.refuse(Problem::at("goal", rule));
+    }
     content.finish(Check {
         line: reader.line,
         that,
-        goal,
+        goals,
         hint,
     })
+}
+
+/// What is to be reached: a line of text, or a list of them.
+fn goals(content: &mut Content) -> Vec<String> {
+    let Some(value) = content.get("goal") else {
+        return Vec::new();
+    };
+    let Some(items) = value.as_array() else {
+        return vec![content.line("goal", false)];
+    };
+    let line = |item: &Value| Some(item.as_str()?.trim().to_owned());
+    let lines: Vec<String> = items.iter().filter_map(line).collect();
+    if lines.len() != items.len()
+        || lines
+            .iter()
+            .any(|line| line.is_empty() || line.chars().any(is_steering))
+    {
+        let rule = "must be lines of text, one for each part of that";
+        content.refuse(Problem::with_value("goal", &value, rule));
+    }
+    lines
 }

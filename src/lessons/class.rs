@@ -74,7 +74,7 @@ impl KeptLessons {
 }
 
 /// The full paths of the lessons in `folder`, sorted; hidden files and what cannot be read as a lesson are left out.
-pub fn lessons_in(folder: &Path) -> Vec<String> {
+pub fn files_in(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
     let is_meant = |name: &String| name.ends_with(".md") && !name.starts_with('.');
@@ -118,7 +118,7 @@ impl Class {
             taken.go_to(page, lab)?;
         }
         self.show(lab);
-        lab.turn_to_sheet();
+        lab.view_mut().turn_to_sheet();
         Ok(())
     }
 
@@ -130,7 +130,7 @@ impl Class {
     }
 
     /// Takes the lesson that NAME names, where it was left.
-    fn take(&mut self, name: &str, lab: &Lab) -> Result<(), String> {
+    fn take(&mut self, name: &str, lab: &mut Lab) -> Result<(), String> {
         let name = reading::full_name(name);
         let lesson = match shipped::find(&name) {
             Some(_) => reading::open(&name),
@@ -141,17 +141,20 @@ impl Class {
             }
         };
         let lesson = lesson.map_err(|problems| problems.to_string())?;
-        self.leave();
+        self.leave(lab);
         let place = self.left.remove(&lesson.name).unwrap_or_default();
-        self.shown = Shown::Lesson(Box::new(Taken::new(lesson, place, self.now)));
+        let mut taken = Taken::new(lesson, place, self.now);
+        taken.go_on(lab);
+        self.shown = Shown::Lesson(Box::new(taken));
         Ok(())
     }
 
     /// Keeps where the lesson stands, and takes it no longer.
-    fn leave(&mut self) {
+    fn leave(&mut self, lab: &mut Lab) {
         if let Shown::Lesson(taken) = std::mem::take(&mut self.shown) {
             let name = taken.lesson.name.clone();
             self.left.insert(name, taken.into_place());
+            lab.set_undo_floor(false);
         }
         self.has_changed = true;
     }
@@ -161,7 +164,7 @@ impl Class {
         let mut scrolls = None;
         if key == LessonKey::List {
             let folder = lab.files().confined().map(Confined::lessons);
-            self.own = folder.map(lessons_in).unwrap_or_default();
+            self.own = folder.map(files_in).unwrap_or_default();
         }
         let names = self.names();
         match (&mut self.shown, key) {
@@ -172,7 +175,7 @@ impl Class {
                 let taken = from.map_or(Ok(()), |name| self.take(&name, lab));
                 tell(taken, lab);
             }
-            (_, LessonKey::List) => self.open_list(),
+            (_, LessonKey::List) => self.open_list(lab),
             (Shown::List { selected, .. }, LessonKey::Leave) => {
                 self.selected = *selected;
                 self.shown = Shown::Nothing;
@@ -199,15 +202,15 @@ impl Class {
         }
         self.show(lab);
         if key == LessonKey::List {
-            lab.turn_to_sheet();
+            lab.view_mut().turn_to_sheet();
         }
         scrolls
     }
 
     /// Leaves the lesson for the list; it is selected there.
-    fn open_list(&mut self) {
+    fn open_list(&mut self, lab: &mut Lab) {
         let here = self.taken().map(|taken| taken.lesson.name.clone());
-        self.leave();
+        self.leave(lab);
         let names = self.names();
         let selected = here
             .as_ref()
@@ -250,7 +253,7 @@ impl Class {
             && taken.follow(page, kept, has_arrived)
         {
             self.show(lab);
-            lab.turn_to_sheet();
+            lab.view_mut().turn_to_sheet();
         }
         Ok(())
     }

@@ -1,31 +1,59 @@
-//! A lesson on paper: Markdown with the pictures as text and room for predictions; and what a student predicted beside
-//! what came out, to hand in.
+//! A lesson on paper, as Markdown with the pictures as text: a worksheet, which asks and has room for what is predicted and
+//! seen, or the results for afterwards; and what a student predicted beside what came out, to hand in.
 //!
-//! The numbers in the text are those of the run. What a prediction is compared with is left blank, as is the prediction:
-//! the student writes both down. Notes are left out, and so is how a task is done.
+//! A worksheet tells nothing that answers a prediction: from the first one on, numbers in text are blanks to be filled in
+//! from the screen, and the pages that show what came out have room in the place of their words. Notes are left out, and
+//! so is how a task is done.
 
 use super::lesson::{Asked, Block, Compare, Lesson, Page, Predict, Shown};
 use super::names::{self, Kept};
 use super::play::{GoOn, Walk};
-use super::predictions::{PREDICTION, Place, WITH};
+use super::predictions::{PREDICTION, Place, Tried, WITH};
 use crate::lab::Lab;
 use crate::scenario::Problem;
 
 /// Room for a number or some words.
 const BLANK: &str = "____________";
 
-/// The handout of `lesson`, played in a new `lab`; `picture` is the lab's picture as text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Paper {
+    Worksheet,
+    Results,
+}
+
+/// `paper` of `lesson`, played in a new `lab`; `picture` is the lab's picture as text.
 pub fn handout(
     lesson: &Lesson,
+    paper: Paper,
     lab: Lab,
     picture: &dyn Fn(&Lab) -> String,
     go_on: GoOn<'_>,
 ) -> Result<String, Problem> {
     let mut walk = Walk::new(lesson, lab);
     let mut parts = head(lesson, &walk);
+    let mut has_asked = false;
     for page in &lesson.pages {
         walk.enter(page, go_on)?;
-        parts.extend(paper(page, &walk, picture));
+        if paper == Paper::Worksheet && has_asked {
+            parts.extend(blank_page(page, &walk, picture));
+        } else {
+            let end = match page
+                .blocks
+                .iter()
+                .position(|block| matches!(block, Block::Predict(_)))
+            {
+                Some(asked) if paper == Paper::Worksheet => asked + 1,
+                _ => page.blocks.len(),
+            };
+            parts.extend(on_pages(page, end, &walk, picture));
+            has_asked |= page.predicts().next().is_some();
+            parts.extend(
+                page.predicts()
+                    .skip(1)
+                    .filter(|_| end < page.blocks.len())
+                    .map(room_for_blank),
+            );
+        }
         if page.number < lesson.pages.len() {
             walk.leave(page, go_on)?;
         }
@@ -33,10 +61,51 @@ pub fn handout(
     Ok(joined(&parts))
 }
 
+/// A page of a worksheet after the first prediction: what is asked and what is to be done, and room for the rest.
+fn blank_page(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) -> Vec<String> {
+    let mut parts = vec![format!("## {}", page.heading)];
+    let asks = page.predicts().next().is_some();
+    let tells = !asks && page.task().is_none() && page.checks().next().is_none();
+    let mut is_before = true;
+    for block in &page.blocks {
+        match block {
+            Block::Lab(_) if asks => parts.push(fenced("text", &picture(&walk.lab))),
+            Block::Lab(_) => is_before = false,
+            Block::Text(text) if is_before && (!tells || page.lab().is_some()) => {
+                parts.push(text.filled(|_, _| BLANK.to_owned()));
+            }
+            Block::Text(text) if page.task().is_some() => {
+                parts.push(text.filled(|_, _| BLANK.to_owned()));
+            }
+            Block::Predict(predict) => {
+                parts.push(room_for_blank(predict));
+                is_before = false;
+            }
+            Block::Compare(_) => {
+                parts.push(format!("Predicted: {BLANK}\n\nCame out: {BLANK}{BLANK}"));
+            }
+            Block::Check(check) => {
+                parts.extend(check.goals.iter().map(|goal| format!("- [ ] {goal}")));
+            }
+            Block::Shown(Shown { language, text }) if !tells => parts.push(fenced(language, text)),
+            _ => {}
+        }
+    }
+    if tells {
+        parts.push(format!("Why: {BLANK}{BLANK}{BLANK}"));
+    }
+    parts
+}
+
+/// A question of which no number is told.
+fn room_for_blank(predict: &Predict) -> String {
+    asked(predict, &predict.ask.filled(|_, _| BLANK.to_owned()))
+}
+
 /// One page, as in the handout, and with the picture even where the page itself makes the lab do nothing; `walk` stands on
 /// it.
 pub fn page(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) -> String {
-    let mut parts = paper(page, walk, picture);
+    let mut parts = on_pages(page, page.blocks.len(), walk, picture);
     if page.lab().is_none() {
         parts.insert(1, fenced("text", &picture(&walk.lab)));
     }
@@ -65,10 +134,15 @@ fn head(lesson: &Lesson, walk: &Walk<'_>) -> Vec<String> {
     parts
 }
 
-/// The parts of a page, with a blank line between each and the next.
-fn paper(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) -> Vec<String> {
+/// The parts of a page up to its block `end`, with a blank line between each and the next.
+fn on_pages(
+    page: &Page,
+    end: usize,
+    walk: &Walk<'_>,
+    picture: &dyn Fn(&Lab) -> String,
+) -> Vec<String> {
     let mut parts = vec![format!("## {}", page.heading)];
-    for block in &page.blocks {
+    for block in &page.blocks[..end] {
         match block {
             Block::Lab(_) => parts.push(fenced("text", &picture(&walk.lab))),
             other => parts.extend(on_paper(other, walk)),
@@ -90,7 +164,11 @@ fn on_paper(block: &Block, walk: &Walk<'_>) -> Option<String> {
 }
 
 fn room_for(predict: &Predict, lab: &Lab, kept: &Kept) -> String {
-    let ask = predict.ask.with_numbers(lab, kept);
+    asked(predict, &predict.ask.with_numbers(lab, kept))
+}
+
+/// The question `ask` with a box for each choice, or room for a number.
+fn asked(predict: &Predict, ask: &str) -> String {
     let room: Vec<_> = match &predict.asked {
         Asked::Choice(choices) => choices
             .iter()
@@ -101,15 +179,17 @@ fn room_for(predict: &Predict, lab: &Lab, kept: &Kept) -> String {
     format!("**Prediction.** {ask}\n\n{}", room.join("\n"))
 }
 
-/// The comparison with room for the number that came out and for the prediction.
+/// The comparison with room for the prediction.
 fn blanked(compare: &Compare, lab: &Lab, kept: &Kept) -> String {
+    let with = compare.came_out(lab, kept);
     compare.text.filled(|expression, format| {
-        let is_answer = |name| [WITH, PREDICTION].contains(&name);
-        if expression.names().any(is_answer) {
-            BLANK.to_owned()
-        } else {
-            format.written(names::value(expression, lab, kept))
+        if expression.names().any(|name| name == PREDICTION) {
+            return BLANK.to_owned();
         }
+        format.written(expression.value(|name| match name {
+            WITH => with,
+            name => names::number(name, lab, kept),
+        }))
     })
 }
 
@@ -147,7 +227,8 @@ pub fn answers(
     Ok(joined(&parts))
 }
 
-/// The heading of a page, with what was asked and what came out; nothing where the page has neither.
+/// The heading of a page, with what was asked, what came out and what became of its task; nothing where it has none of
+/// these.
 fn answers_of(lesson: &Lesson, page: &Page, place: &Place, walk: &Walk<'_>) -> Vec<String> {
     let told = page.blocks.iter().filter_map(|block| match block {
         Block::Predict(predict) => predicted(predict, place, walk),
@@ -155,6 +236,14 @@ fn answers_of(lesson: &Lesson, page: &Page, place: &Place, walk: &Walk<'_>) -> V
         _ => None,
     });
     let mut parts: Vec<_> = told.collect();
+    if page.task().is_some() {
+        let tried = Tried::words(place.tasks.get(&page.heading));
+        let goals = page
+            .checks()
+            .flat_map(|check| check.goals.iter().map(String::as_str));
+        let goals = goals.collect::<Vec<_>>().join(", ");
+        parts.push(format!("**Task.** {goals}: {tried}").replace("** :", "**"));
+    }
     if !parts.is_empty() {
         parts.insert(0, format!("## {}", page.heading));
     }
@@ -166,12 +255,25 @@ fn predicted(predict: &Predict, place: &Place, walk: &Walk<'_>) -> Option<String
     let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
     let answer = place.predictions.answer(&predict.name)?;
     let answer = answer.in_words(predict);
-    Some(format!("**Question.** {ask}\n\n**Predicted.** {answer}"))
+    let late = if place.late.contains(&predict.name) {
+        " (locked after its outcome was seen)"
+    } else {
+        ""
+    };
+    Some(format!(
+        "**Question.** {ask}\n\n**Predicted.** {answer}{late}"
+    ))
 }
 
 /// What came out; nothing where nothing was predicted: it would give the answer away.
 fn came_out(lesson: &Lesson, compare: &Compare, place: &Place, walk: &Walk<'_>) -> Option<String> {
     place.predictions.answer(&compare.prediction)?;
     let text = compare.filled(lesson, &place.predictions, &walk.lab, &walk.kept);
-    Some(format!("**Came out.** {text}"))
+    let predict = lesson.predict(&compare.prediction)?;
+    let choice = match (&predict.asked, predict.right) {
+        (Asked::Choice(choices), Some(right)) => choices.get(right - 1),
+        _ => None,
+    };
+    let choice = choice.map_or(String::new(), |choice| format!("{choice}. "));
+    Some(format!("**Came out.** {choice}{text}"))
 }

@@ -1,5 +1,7 @@
 //! A lesson as it was read: its pages, and the blocks of each in the order of the file.
 
+use super::names::Kept;
+use super::predictions::{PREDICTION, WITH};
 use super::text::Text;
 use crate::journal::expression::Expression;
 use crate::lab::command::{Command, Placed};
@@ -76,27 +78,8 @@ pub struct Predict {
     pub name: String,
     pub ask: Text,
     pub asked: Asked,
-    /// What comes out, where the file says it: for the teacher alone.
-    pub right: Option<Right>,
-}
-
-/// The right answer to a question.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Right {
-    /// The number of the choice, from 1.
-    Choice(usize),
-    /// A number, and how far off an answer may be.
-    Number { value: f64, within: f64 },
-}
-
-impl Right {
-    /// Whether `answer` is right: a number, or the number of a choice.
-    pub fn takes(&self, answer: f64) -> bool {
-        match self {
-            Self::Choice(number) => answer == *number as f64,
-            Self::Number { value, within } => (answer - value).abs() <= *within,
-        }
-    }
+    /// The number of the choice that comes out, from 1; where the file says it.
+    pub right: Option<usize>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -129,8 +112,9 @@ pub struct Compare {
 pub struct Check {
     pub line: usize,
     pub that: Expression,
-    /// What is to be reached, in words; empty where the file does not say it.
-    pub goal: String,
+    /// What is to be reached, in words: one text for all of it, or one for each part that `and` joins; empty where the
+    /// file does not say it.
+    pub goals: Vec<String>,
     /// Help for one who has not got there; empty where the file has none.
     pub hint: String,
 }
@@ -187,6 +171,39 @@ impl Page {
         })
     }
 
+    pub fn compares(&self) -> impl Iterator<Item = &Compare> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Compare(compare) => Some(compare),
+            _ => None,
+        })
+    }
+
+    /// Whether its run is played, and what stands behind its `lab` block comes once that has arrived.
+    pub fn plays(&self) -> bool {
+        self.lab().is_some_and(Setup::plays)
+    }
+
+    /// Whether it states numbers of the run that a student has in hand: what `kept` names is known whatever that is.
+    pub fn states_numbers(&self, kept: &Kept) -> bool {
+        let is_of_run = |expression: &Expression| {
+            let mut names = expression.names();
+            names.any(|name| !kept.contains_key(name) && ![PREDICTION, WITH].contains(&name))
+        };
+        let mut blocks = self.blocks.iter();
+        blocks.any(|block| match block {
+            Block::Text(text) => text.numbers().any(|(_, expression)| is_of_run(expression)),
+            Block::Predict(predict) => {
+                let mut numbers = predict.ask.numbers();
+                numbers.any(|(_, expression)| is_of_run(expression))
+            }
+            Block::Compare(compare) => {
+                let mut numbers = compare.text.numbers().map(|(_, expression)| expression);
+                numbers.any(is_of_run) || compare.with.as_ref().is_some_and(is_of_run)
+            }
+            _ => false,
+        })
+    }
+
     pub fn notes(&self) -> impl Iterator<Item = &Text> {
         self.blocks.iter().filter_map(|block| match block {
             Block::Notes(text) => Some(text),
@@ -200,6 +217,12 @@ impl Setup {
     pub fn opens(&self) -> bool {
         let mut commands = self.commands.iter();
         commands.any(|placed| matches!(placed.command, Command::Open(_)))
+    }
+
+    /// Whether it ends with a run that is played until a condition holds.
+    pub fn plays(&self) -> bool {
+        let mut commands = self.commands.iter();
+        commands.any(|placed| matches!(placed.command, Command::RunUntil(_)))
     }
 
     /// The parts of the screen that its `hide` names.

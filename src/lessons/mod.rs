@@ -33,7 +33,5 @@ pub mod text;
 pub mod watch;
 
 pub use class::Class;
-pub use lesson::{
-    Answer, Asked, Block, Check, Compare, Keep, Lesson, Page, Predict, Right, Setup, Shown,
-};
+pub use lesson::{Answer, Asked, Block, Check, Compare, Keep, Lesson, Page, Predict, Setup, Shown};
 pub use names::Kept;

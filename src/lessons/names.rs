@@ -102,7 +102,7 @@ impl Names {
 pub fn number(name: &str, lab: &Lab, kept: &Kept) -> Option<f64> {
     match kept.get(name) {
         Some(number) => Some(*number).filter(|number| number.is_finite()),
-        None => lab.number(name),
+        None => lab.player().number(name),
     }
 }
 

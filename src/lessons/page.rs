@@ -1,13 +1,14 @@
 //! The page of a lesson, and the list of lessons, as a sheet beside the panes.
 
 use super::class::Dress;
-use super::lesson::{Asked, Block, Compare, Page, Predict};
+use super::lesson::{Asked, Block, Check, Compare, Page, Predict};
 use super::markdown::paragraphs;
 use super::predictions::Place;
 use super::taken::Taken;
-use super::{reading, shipped};
+use super::{names, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::sheet::{Kind, Paragraph, Sheet};
+use crate::text::number;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -44,7 +45,7 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
             };
             let about = Some(Paragraph::new(kind, about)).filter(|about| !about.text().is_empty());
             sheet.paragraphs.extend(about);
-            sheet.seen = sheet.paragraphs.len().checked_sub(1);
+            sheet.seen = Some((sheet.paragraphs.len() - 1, sheet.paragraphs.len() - 1));
         }
     }
     let keys = if shipped::LESSONS.is_empty() && names.is_empty() {
@@ -69,6 +70,7 @@ pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> S
             border: dress.border.clone(),
             title: format!("{page} of {pages} · {}", lesson.title),
             has_next: page < pages,
+            plays: taken.plays(),
             ..Sheet::default()
         },
     };
@@ -78,10 +80,6 @@ pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> S
     }
     writer.notes(now);
     writer.page();
-    // The page begins at its top, until the student has come to the question at its end.
-    if taken.has_come_to_question {
-        writer.sheet.seen = writer.sheet.paragraphs.len().checked_sub(1);
-    }
     writer.sheet
 }
 
@@ -101,10 +99,25 @@ impl Writer<'_> {
         if page.number == 1 {
             self.blocks(&self.taken.lesson.introduction);
         }
-        let is_open = self.blocks(&page.blocks);
+        let blocks = match page
+            .blocks
+            .iter()
+            .position(|block| matches!(block, Block::Lab(_)))
+        {
+            Some(lab) if self.taken.plays() => &page.blocks[..lab],
+            _ => &page.blocks,
+        };
+        let is_open = self.blocks(blocks);
         if !is_open {
             self.next(page.number);
         }
+    }
+
+    /// Makes the paragraphs from the number `first` on such that they are to be seen, unless others are already; an
+    /// outcome is followed by its words, which come after it.
+    fn is_seen_from(&mut self, first: usize) {
+        let last = self.sheet.paragraphs.len().saturating_sub(1);
+        self.sheet.seen.get_or_insert((first, last));
     }
 
     /// Writes `blocks` up to the first question that is not answered; returns whether there is one.
@@ -120,6 +133,7 @@ impl Writer<'_> {
                     self.extend(paragraphs(&source, &Kind::Text));
                 }
                 Block::Predict(predict) => {
+                    let first = self.sheet.paragraphs.len();
                     self.question(predict);
                     if let Some((_, votes)) = self
                         .dress
@@ -128,26 +142,15 @@ impl Writer<'_> {
                         .filter(|(name, _)| *name == predict.name)
                     {
                         self.extend(votes.clone());
-                        self.sheet.seen = self.sheet.paragraphs.len().checked_sub(1);
+                        self.sheet.seen = None;
+                        self.is_seen_from(first);
                     }
                     if self.taken.is_open(predict) {
                         return true;
                     }
                 }
                 Block::Compare(compare) => self.comparison(compare),
-                Block::Check(check) => {
-                    let is_reached = self.taken.has_reached(check.line);
-                    let state = if is_reached { "done" } else { "not yet" };
-                    let text = if check.goal.is_empty() {
-                        state.to_owned()
-                    } else {
-                        format!("{state}: {}", check.goal)
-                    };
-                    self.add(Paragraph::new(Kind::Goal { is_reached }, text));
-                    if !is_reached && self.taken.shows_hints && !check.hint.is_empty() {
-                        self.add(Paragraph::new(Kind::Hint, format!("Hint: {}", check.hint)));
-                    }
-                }
+                Block::Check(check) => self.goals(check),
                 Block::Shown(shown) => {
                     self.add(Paragraph::new(Kind::Code, shown.text.clone()));
                 }
@@ -157,8 +160,36 @@ impl Writer<'_> {
         false
     }
 
+    /// What is to be reached, each part with whether it holds now and the number that decides it.
+    fn goals(&mut self, check: &Check) {
+        let first = self.sheet.paragraphs.len();
+        let is_reached = self.taken.has_reached(check.line);
+        if is_reached || check.goals.len() < 2 {
+            let state = if is_reached { "done" } else { "not yet" };
+            let all = [&[state.to_owned()][..], &[check.goals.join(", ")]];
+            let words = all.concat().into_iter().filter(|words| !words.is_empty());
+            let text = words.collect::<Vec<_>>().join(": ");
+            self.add(Paragraph::new(Kind::Goal { is_reached }, text));
+        } else {
+            let (lab, kept) = (self.lab, &self.taken.place.kept);
+            let parts = check.that.conjuncts(|name| names::number(name, lab, kept));
+            for (goal, part) in check.goals.iter().zip(parts) {
+                let now = part.left.filter(|_| !part.holds);
+                let now = now.map(|now| format!(" (now {})", number::significant(now, 2)));
+                let is_reached = part.holds;
+                let text = goal.clone() + &now.unwrap_or_default();
+                self.add(Paragraph::new(Kind::Goal { is_reached }, text));
+            }
+        }
+        if !is_reached && self.taken.shows_hints && !check.hint.is_empty() {
+            self.add(Paragraph::new(Kind::Hint, format!("Hint: {}", check.hint)));
+        }
+        self.is_seen_from(first);
+    }
+
     fn comparison(&mut self, compare: &Compare) {
         let (lesson, place) = (&self.taken.lesson, &self.taken.place);
+        let first = self.sheet.paragraphs.len();
         if self.taken.is_under_way() {
             self.add(Paragraph::new(Kind::Result, SOON));
             return;
@@ -179,11 +210,13 @@ impl Writer<'_> {
                 self.add(Paragraph::new(Kind::Hint, text));
             }
         }
+        self.is_seen_from(first);
     }
 
     fn question(&mut self, predict: &Predict) {
         let place = &self.taken.place;
         let kept = &place.kept;
+        let first = self.sheet.paragraphs.len();
         let ask = predict.ask.with_numbers(self.lab, kept);
         self.extend(paragraphs(&ask, &Kind::Question));
         let is_open = self.taken.is_open(predict);
@@ -192,9 +225,11 @@ impl Writer<'_> {
         match &predict.asked {
             Asked::Choice(choices) => {
                 for (index, choice) in choices.iter().enumerate() {
+                    let is_selected = is_open && self.taken.selected == Some(index);
                     let kind = Kind::Choice {
-                        is_selected: is_open && index == self.taken.selected,
-                        is_given: !is_open && given.as_deref() == Some(choice),
+                        is_selected,
+                        is_given: is_selected && self.taken.is_marked
+                            || !is_open && given.as_deref() == Some(choice),
                     };
                     self.add(Paragraph::new(kind, choice.clone()));
                 }
@@ -206,26 +241,40 @@ impl Writer<'_> {
             }
         }
         if is_open {
-            self.sheet.enter = "answer";
-            let keys = match &predict.asked {
-                Asked::Choice(_) => "Up, Down choose; Enter locks your prediction.",
-                Asked::Number { .. } => "Enter: type your prediction.",
-            };
-            self.add(Paragraph::new(Kind::Hint, keys));
+            self.keys_of(predict);
         }
+        // The question that is open now, or the last one where none is.
+        if is_open || self.taken.has_answered {
+            self.sheet.seen = None;
+        }
+        self.is_seen_from(first);
+    }
+
+    /// Says which keys answer `predict`.
+    fn keys_of(&mut self, predict: &Predict) {
+        self.sheet.enter = "answer";
+        self.sheet.asks_number = matches!(predict.asked, Asked::Number { .. });
+        let keys = match &predict.asked {
+            Asked::Choice(_) if self.taken.is_marked => "Enter again locks it.",
+            Asked::Choice(_) => "Up, Down choose; Enter marks.",
+            Asked::Number { .. } => "Type your prediction.",
+        };
+        self.add(Paragraph::new(Kind::Hint, keys));
     }
 
     fn next(&mut self, page: usize) {
         let has_task = self.taken.page().is_some_and(|page| page.task().is_some());
         let is_last = page == self.taken.lesson.pages.len();
         let text = match (self.taken.is_under_way(), has_task, is_last) {
+            _ if self.taken.has_left() => "b: the page again; n goes on.",
+            _ if self.taken.plays() => "The run plays: space stops it, n goes to its end.",
             (true, ..) => "The run is on its way; space pauses it.",
             (false, true, _) if !self.taken.shows_hints => {
                 "h: a hint; b: the page again; n: next page."
             }
             (false, true, false) => "h shows how it is done; b: the page again; n: next page.",
             (false, true, true) => "h shows how it is done; b: the page again; L: other lessons.",
-            (false, false, false) => "n: next page.",
+            (false, false, false) => return, // the line of keys names n
             (false, false, true) => "This is the end of the lesson. L: other lessons.",
         };
         self.add(Paragraph::new(Kind::Hint, text));

@@ -7,7 +7,7 @@ use crate::lab::Lab;
 use crate::lab::view::Part;
 use crate::text::number;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The locked predictions of one lesson, by their names. As TOML it is a table: `finer = "stays as it is"`, `lag = 3.5`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -156,6 +156,30 @@ pub(super) const PREDICTION: &str = "prediction";
 const NOTHING: &str = "…";
 pub(super) const WITH: &str = "with";
 
+/// How far a student got with a task.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Tried {
+    /// The hint was read, and the task is not done.
+    Hint,
+    Done,
+    DoneAfterHint,
+    /// The lab has done it.
+    Shown,
+}
+
+impl Tried {
+    pub fn words(tried: Option<&Self>) -> &'static str {
+        match tried {
+            None => "not done",
+            Some(Self::Hint) => "not done, with the hint",
+            Some(Self::Done) => "done",
+            Some(Self::DoneAfterHint) => "done after the hint",
+            Some(Self::Shown) => "shown by the lab",
+        }
+    }
+}
+
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Place {
@@ -165,6 +189,17 @@ pub struct Place {
     pub predictions: Predictions,
     #[serde(default)]
     pub kept: Kept,
+    /// What the page states of the run that its lesson stands on, by lines of the file: it stays while the student plays.
+    #[serde(default)]
+    pub stated: Option<BTreeMap<String, String>>,
+    /// The predictions whose outcome was seen, and those that were locked after that.
+    #[serde(default)]
+    pub seen: BTreeSet<String>,
+    #[serde(default)]
+    pub late: BTreeSet<String>,
+    /// How far the student got with the tasks, by the headings of their pages.
+    #[serde(default)]
+    pub tasks: BTreeMap<String, Tried>,
     /// Whether its last page was opened.
     #[serde(default)]
     pub has_ended: bool,

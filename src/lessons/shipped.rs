@@ -5,6 +5,7 @@ use crate::text::shipped::{Shipped, shipped};
 /// Every lesson, in the order in which they build on each other.
 pub const LESSONS: &[Shipped] = shipped!["lessons", "md":
     "why-it-does-not-fall"
+    "what-holds-the-weight-up"
     "one-step-by-hand"
     "method-1-and-its-z"
     "method-2-and-its-straight-line"
@@ -17,6 +18,7 @@ pub const LESSONS: &[Shipped] = shipped!["lessons", "md":
     "kappa-and-the-scheme"
     "what-is-conserved"
     "halve-the-step"
+    "the-wheel-one-carries"
     "a-real-gyroscope"
 ];
 

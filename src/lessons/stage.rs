@@ -134,7 +134,7 @@ impl Stage<'_> {
         let commands = self.commands(lab);
         lab.take_commands(commands);
         lab.finish_script_while(go_on)?;
-        lab.take_back_message(); // nobody has asked for what the block has done
+        lab.messages_mut().take_back(); // nobody has asked for what the block has done
         self.keep(lab, kept);
         Ok(())
     }
@@ -157,7 +157,7 @@ fn put_back(lab: &Lab) -> Vec<Command> {
             Command::look("zoom", Zoom::default()),
         ),
         (shows_exact, Command::Exact(false)),
-        (lab.player().is_pinned(), Command::Pin(false)),
+        (lab.comparison().is_pinned(), Command::Pin(false)),
     ];
     let other = all.into_iter().filter(|(is_other, _)| *is_other);
     other.map(|(_, command)| command).collect()

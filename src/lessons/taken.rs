@@ -6,7 +6,7 @@ use super::Kept;
 use super::clock::{self, Clock};
 use super::lesson::{Answer, Block, Compare, Lesson, Page, Predict};
 use super::names::value;
-use super::predictions::Place;
+use super::predictions::{Place, Tried};
 use super::stage::Stage;
 use super::watch::Watch;
 use super::{reading, shipped};
@@ -28,15 +28,16 @@ pub struct Taken {
     /// Its file, where it does not come with the program.
     watch: Option<Watch>,
     pub place: Place,
-    /// The selected answer of the open question, from 0.
-    pub selected: usize,
-    /// Whether an answer on this page was selected or given.
-    pub has_come_to_question: bool,
+    /// The answer of the open question that the keys point at, from 0; at first none.
+    pub selected: Option<usize>,
+    /// Whether Enter has marked it: another Enter locks it.
+    pub is_marked: bool,
+    /// Whether an answer on this page was given.
+    pub has_answered: bool,
     /// The lines of the checks of this page that have held.
     reached: BTreeSet<usize>,
-    /// The texts of this page that the student's own run does not change, with their numbers, by their lines in the file;
-    /// `None` until the run has arrived where the page wants it.
-    stated: Option<Stated>,
+    /// Where the lab stood when it had carried out the blocks that the page stands on: depth of its history, and step.
+    stands: Option<((usize, usize), u64)>,
     /// Whether the hints of the page's checks are shown.
     pub shows_hints: bool,
     under_way: Option<UnderWay>,
@@ -61,6 +62,8 @@ pub struct Taken {
 enum UnderWay {
     Lab(usize),
     Task(usize),
+    /// The student has left it before it was complete.
+    Left,
 }
 
 impl Taken {
@@ -78,10 +81,11 @@ impl Taken {
             lesson: Arc::new(lesson),
             watch,
             place,
-            selected: 0,
-            has_come_to_question: false,
+            selected: None,
+            is_marked: false,
+            has_answered: false,
             reached: BTreeSet::new(),
-            stated: None,
+            stands: None,
             shows_hints: false,
             under_way: None,
             follows: None,
@@ -133,12 +137,35 @@ impl Taken {
 
     /// Whether the lab is still on its way to where the page wants it.
     pub fn is_under_way(&self) -> bool {
-        self.stated.is_none()
+        self.place.stated.is_none()
+    }
+
+    /// Whether the page's run is played, and has not arrived yet.
+    pub fn plays(&self) -> bool {
+        self.is_under_way() && self.page().is_some_and(Page::plays)
+    }
+
+    /// Whether the student has left the page's run before it arrived.
+    pub fn has_left(&self) -> bool {
+        self.under_way == Some(UnderWay::Left)
+    }
+
+    /// Goes on with a page whose run was on its way when the page was left.
+    pub(super) fn go_on(&mut self, lab: &Lab) {
+        if self.is_under_way() && !lab.script().is_done() {
+            self.under_way = Some(UnderWay::Lab(self.place.page));
+        }
+    }
+
+    /// Whether the student has left the place where the page's numbers were stated.
+    fn has_wandered(&self, lab: &Lab) -> bool {
+        self.stands != Some(place_of(lab))
     }
 
     /// The text at this line of the file with its numbers, where it is one that the student's own run does not change.
     pub fn stated(&self, line: usize) -> Option<&str> {
-        self.stated.as_ref()?.text(line)
+        let texts = self.place.stated.as_ref()?;
+        texts.get(&line.to_string()).map(String::as_str)
     }
 
     pub fn time(&self, now: Duration) -> Option<String> {
@@ -158,20 +185,21 @@ impl Taken {
             return Err(format!("{name} has the pages 1 to {pages}, not {page}"));
         }
         self.turn_to(page);
-        self.stand(lab)
+        self.stand(false, lab)
     }
 
     /// Makes the lab stand on the page, whatever was done before: what the pages before it do is done at once, what the page
-    /// itself does as time passes.
-    fn stand(&mut self, lab: &mut Lab) -> Result<(), String> {
+    /// itself does as time passes; `at_once` the same way.
+    fn stand(&mut self, at_once: bool, lab: &mut Lab) -> Result<(), String> {
         let lesson = Arc::clone(&self.lesson);
         let page = self.place.page;
         let stages = lesson.stages_to(page, &self.place.kept, &self.place.predictions);
         let last = stages.last().filter(|last| last.page.number == page);
-        let before = stages.len() - usize::from(last.is_some());
+        let last = last.filter(|_| !at_once);
         let begin = Instant::now();
         let is_late = || begin.elapsed() > LONGEST;
-        for stage in &stages[..before] {
+        lab.set_undo_floor(false);
+        for stage in &stages[..stages.len() - usize::from(last.is_some())] {
             stage.carry_out(lab, &mut self.place.kept, |_, _| {
                 if is_late() {
                     ControlFlow::Break(())
@@ -183,10 +211,21 @@ impl Taken {
                 return Err(TOO_LONG.to_owned());
             }
         }
-        if let Some(stage) = last {
-            self.begin(stage, UnderWay::Lab(page), lab);
+        match last {
+            Some(stage) => self.begin(stage, UnderWay::Lab(page), lab),
+            None => {
+                self.has_come(lab);
+                lab.view_mut().turn_to_sheet();
+            }
         }
         Ok(())
+    }
+
+    /// Takes note that the lab stands where the page wants it.
+    fn has_come(&mut self, lab: &mut Lab) {
+        self.under_way = None;
+        self.stands = Some(place_of(lab));
+        lab.set_undo_floor(true);
     }
 
     fn begin(&mut self, stage: &Stage<'_>, block: UnderWay, lab: &mut Lab) {
@@ -195,7 +234,7 @@ impl Taken {
         lab.take_commands(commands);
         lab.forget_message_of_script();
         self.keep_if_done(lab);
-        lab.turn_to_sheet();
+        lab.view_mut().turn_to_sheet();
     }
 
     /// Remembers the numbers of the block that was under way, once the lab has carried it out.
@@ -203,15 +242,24 @@ impl Taken {
         let Some(block) = self.under_way else {
             return false;
         };
-        if !lab.script().is_done() {
+        if !lab.script().is_done() || block == UnderWay::Left {
             return false;
         }
-        self.under_way = None;
+        if lab.script().has_broken_off() {
+            self.under_way = Some(UnderWay::Left).filter(|_| self.is_under_way());
+            if self.plays() && lab.script().was_stopped() {
+                lab.tell("you have left the page's run: b plays it again, n goes to its end");
+            }
+            return true;
+        }
+        self.has_come(lab);
+        lab.set_undo_floor(matches!(block, UnderWay::Lab(_)));
         lab.forget_message_of_script();
         let lesson = Arc::clone(&self.lesson);
         let stage = match block {
             UnderWay::Lab(page) => lesson.stage_of(page, &self.place.predictions),
             UnderWay::Task(page) => lesson.task_of(page, &self.place.predictions),
+            UnderWay::Left => None,
         };
         if let Some(stage) = stage {
             stage.keep(lab, &mut self.place.kept);
@@ -221,9 +269,9 @@ impl Taken {
 
     fn turn_to(&mut self, page: usize) {
         self.place.page = page;
-        (self.selected, self.was_asked, self.under_way) = (0, false, None);
-        (self.has_come_to_question, self.shows_hints) = (false, false);
-        self.stated = None;
+        (self.selected, self.was_asked, self.under_way) = (None, false, None);
+        (self.is_marked, self.has_answered, self.shows_hints) = (false, false, false);
+        self.place.stated = None;
         self.place.has_ended |= page == self.lesson.pages.len();
         self.reached.clear();
     }
@@ -257,10 +305,17 @@ impl Taken {
             && self.under_way.is_none()
             && lab.script().is_done()
             && lab.player().playback.steps_to_go().is_none();
-        if self.stated.is_some() || !has_arrived {
+        if !self.is_under_way() || !has_arrived {
             return false;
         }
-        self.stated = Some(Stated::of(&self.lesson, &self.place, lab));
+        self.place.stated = Some(stated(&self.lesson, &self.place, lab));
+        let lesson = Arc::clone(&self.lesson);
+        let compares = lesson
+            .page(self.place.page)
+            .into_iter()
+            .flat_map(Page::compares);
+        let names = compares.map(|compare| compare.prediction.clone());
+        self.place.seen.extend(names);
         true
     }
 
@@ -270,63 +325,75 @@ impl Taken {
         self.place.page = self.place.page.min(lesson.pages.len().max(1));
         self.lesson = Arc::new(Lesson { name, ..lesson });
         self.reached.clear();
-        self.stated = None;
+        self.place.stated = None;
         lab.tell("the lesson was read again: b begins the page again");
     }
 
-    /// Takes note of the checks of the page that hold now; returns whether one is new.
-    fn note_reached(&mut self, lab: &Lab) -> bool {
-        let Some(page) = self.lesson.page(self.place.page) else {
+    /// Takes note of the checks of the page that hold now, and says that the task is done once all have held; returns
+    /// whether one is new.
+    fn note_reached(&mut self, lab: &mut Lab) -> bool {
+        let lesson = Arc::clone(&self.lesson);
+        let Some(page) = lesson.page(self.place.page) else {
             return false;
         };
         let before = self.reached.len();
         let held = page
             .checks()
             .filter(|check| holds(check, lab, &self.place.kept));
-        let held: Vec<_> = held.map(|check| check.line).collect();
-        self.reached.extend(held);
-        self.reached.len() > before
+        self.reached.extend(held.map(|check| check.line));
+        let is_new = self.reached.len() > before;
+        if is_new && self.reached.len() == page.checks().count() {
+            let goals: Vec<&str> = page
+                .checks()
+                .flat_map(|check| &check.goals)
+                .map(String::as_str)
+                .collect();
+            lab.tell(format!("done: {}", goals.join(", ")));
+            if page.task().is_some() {
+                self.note_tried(if self.shows_hints {
+                    Tried::DoneAfterHint
+                } else {
+                    Tried::Done
+                });
+            }
+        }
+        is_new
     }
+
+    /// Notes how far the student got with the page's task; what was done or shown stays so.
+    fn note_tried(&mut self, tried: Tried) {
+        let Some(page) = self.lesson.page(self.place.page) else {
+            return;
+        };
+        let known = self
+            .place
+            .tasks
+            .entry(page.heading.clone())
+            .or_insert(tried);
+        if *known == Tried::Hint {
+            *known = tried;
+        }
+    }
+}
+
+/// Where the lab stands: the depth of its history, and the step.
+fn place_of(lab: &Lab) -> ((usize, usize), u64) {
+    (lab.runs().depth(), lab.player().playback.step_number())
 }
 
 fn holds(check: &super::Check, lab: &Lab, kept: &super::Kept) -> bool {
     value(&check.that, lab, kept).is_some_and(|held| held != 0.0)
 }
 
-/// The texts of a page that the student's own run does not change, by their lines in the file.
-#[derive(Clone, Debug)]
-pub(super) struct Stated {
-    texts: BTreeMap<usize, String>,
-}
-
-impl Stated {
-    /// What the page at `place` states of the run in `lab`. What stands behind a task or a check is not among it.
-    pub(super) fn of(lesson: &Lesson, place: &Place, lab: &Lab) -> Self {
-        let texts = before_task(lesson, place).filter_map(|block| match block {
-            Block::Text(text) => Some((text.line, text.with_numbers(lab, &place.kept))),
-            Block::Compare(compare) => Some((compare.line, compared(compare, lesson, place, lab))),
-            _ => None,
-        });
-        Self {
-            texts: texts.collect(),
-        }
-    }
-
-    pub(super) fn text(&self, line: usize) -> Option<&str> {
-        self.texts.get(&line).map(String::as_str)
-    }
-
-    /// Puts the prediction called `name`, which has just been locked, into what is stated about it.
-    pub(super) fn take_in(&mut self, name: &str, lesson: &Lesson, place: &Place, lab: &Lab) {
-        for block in before_task(lesson, place) {
-            if let Block::Compare(compare) = block
-                && compare.prediction == name
-            {
-                let text = compared(compare, lesson, place, lab);
-                self.texts.insert(compare.line, text);
-            }
-        }
-    }
+/// The texts of the page at `place` that the student's own run does not change, by their lines in the file. What stands
+/// behind a task or a check is not among them.
+fn stated(lesson: &Lesson, place: &Place, lab: &Lab) -> BTreeMap<String, String> {
+    let texts = before_task(lesson, place).filter_map(|block| match block {
+        Block::Text(text) => Some((text.line, text.with_numbers(lab, &place.kept))),
+        Block::Compare(compare) => Some((compare.line, compared(compare, lesson, place, lab))),
+        _ => None,
+    });
+    texts.map(|(line, text)| (line.to_string(), text)).collect()
 }
 
 /// The introduction's blocks, and those of the page up to its task or its first check.

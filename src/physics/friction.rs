@@ -8,7 +8,7 @@
 //! known in closed form: about the axle it is a Riccati equation, across it decays exponentially. Schemes take that.
 
 use super::Body;
-use super::workings::{Changes, Phase, Quantity};
+use super::workings::{Changes, Phase};
 use nalgebra::{Matrix3, Vector3};
 
 /// The coefficients of friction. All are zero, or more.
@@ -170,16 +170,7 @@ pub(super) fn phase(
     impulse: &Vector3<f64>,
     momentum: &Vector3<f64>,
 ) -> Phase {
-    Phase::of(
-        "friction",
-        "L ← L + ΔL, ΔL of −(k₀ sgn ω₃ + k₁ ω₃ + k₂ |ω₃| ω₃) a − k₄ ω across a, in the time h at this orientation",
-        vec![
-            Quantity::new("h", "s", time_s),
-            Quantity::new("Ω seen from the body", "rad/s", *omega),
-            Quantity::new("ΔL", "J s", *impulse),
-            Quantity::new("new L", "J s", *momentum),
-        ],
-    )
+    Phase::of("friction", "L ← L + ΔL, ΔL of −(k₀ sgn ω₃ + k₁ ω₃ + k₂ |ω₃| ω₃) a − k₄ ω across a, in the time h at this orientation").with("h", "s", time_s).with("Ω seen from the body", "rad/s", *omega).with("ΔL", "J s", *impulse).with("new L", "J s", *momentum)
     .changing(Changes::Momentum)
 }
 

@@ -82,7 +82,6 @@ pub mod loads;
 pub mod observables;
 pub mod part;
 pub mod report;
-mod rk4;
 pub mod rotation;
 pub mod scheme;
 mod splitting;

@@ -55,34 +55,3 @@ pub(crate) fn axial(m: &Matrix3<f64>) -> Vector3<f64> {
         m[(0, 1)] - m[(1, 0)],
     )
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{PointMass, rotation};
-
-    #[test]
-    fn the_torque_is_the_sum_of_cross_products() {
-        let at = [[0.8, 0.1, 0.5], [-0.3, 0.7, 0.6], [0.0, 0.0, 1.1]];
-        let points = at.map(|at| PointMass::new(Vector3::from(at), 0.5));
-        let body = Body::new(points.to_vec()).unwrap();
-        let push = PointForce {
-            point: 2,
-            force: Vector3::new(3.0, -4.0, 5.0),
-        };
-        let loads = Loads {
-            gravity: 9.8,
-            pushes: vec![push],
-            ..Loads::default()
-        };
-        let turn = rotation::about(&Vector3::new(0.3, -1.0, 0.4), 0.7);
-        let weight = Vector3::new(0.0, 0.0, -0.5 * 9.8);
-        let direct = body
-            .points()
-            .iter()
-            .fold((turn * body.points()[2].at).cross(&push.force), |sum, p| {
-                sum + (turn * p.at).cross(&weight)
-            });
-        assert!((torque(&turn, &loads.moment(&body)) - direct).amax() < 1e-14);
-    }
-}

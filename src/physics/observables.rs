@@ -1,5 +1,6 @@
 //! What is read off a state: positions, angles, energy.
 
+use super::loads::{self, Loads};
 use super::{Body, State};
 use nalgebra::Vector3;
 
@@ -31,6 +32,24 @@ pub fn weight_height(body: &Body, state: &State) -> f64 {
         .row(2)
         .transpose()
         .dot(&body.first_moment())
+}
+
+/// Σ m dz/dt, kg m/s: what of the body's momentum is vertical.
+pub fn rise(body: &Body, state: &State) -> f64 {
+    let moment = state.orientation * body.first_moment();
+    angular_velocity(body, state).cross(&moment).z
+}
+
+/// Vertical force with which the pivot holds the body under `loads` without friction, world frame, N: what moves the
+/// centre of mass beside the weight and the pushes.
+pub fn pivot_force_z(body: &Body, state: &State, loads: &Loads) -> f64 {
+    let turn = state.orientation;
+    let (moment, omega) = (turn * body.first_moment(), angular_velocity(body, state));
+    let torque = loads::torque(&turn, &loads.moment(body)) - omega.cross(&state.momentum);
+    let alpha = turn * (body.inverse_inertia() * turn.tr_mul(&torque));
+    let inertial = alpha.cross(&moment) + omega.cross(&omega.cross(&moment));
+    let pushes: f64 = loads.pushes.iter().map(|push| push.force.z).sum();
+    inertial.z + body.mass() * loads.gravity - pushes
 }
 
 /// Angle of the axle from +z, degrees, 0 to 180.
@@ -103,9 +122,46 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    #[test]
+    fn the_pivot_carries_what_weight_and_push_do_not_accelerate() {
+        let at = [[0.8, 0.1, 0.5], [-0.3, 0.7, 0.6], [0.1, 0.0, 1.1]];
+        let points = at.map(|at| crate::PointMass::new(Vector3::from(at), 0.5));
+        let body = Body::new(points.to_vec()).unwrap();
+        let push = crate::PointForce {
+            point: 2,
+            force: Vector3::new(3.0, -4.0, 5.0),
+        };
+        let loads = Loads {
+            gravity: 9.8,
+            pushes: vec![push],
+            ..Loads::default()
+        };
+        let turn = crate::rotation::about(&Vector3::new(0.3, -1.0, 0.4), 0.7);
+        let state = State {
+            time_s: 0.0,
+            orientation: turn,
+            momentum: Vector3::new(2.0, -1.0, 4.0),
+        };
+        let short_s = 1e-6;
+        let after = |time_s: f64| {
+            let omega = angular_velocity(&body, &state);
+            let torque = loads::torque(&turn, &loads.moment(&body));
+            let later = State {
+                time_s,
+                orientation: crate::rotation::about(&omega, time_s) * turn,
+                momentum: state.momentum + torque * time_s,
+            };
+            rise(&body, &later)
+        };
+        let gained = (after(short_s) - after(-short_s)) / (2.0 * short_s);
+        let carried = gained + body.mass() * loads.gravity - push.force.z;
+        let known = pivot_force_z(&body, &state, &loads);
+        assert!((known - carried).abs() < 1e-6, "{known} {carried}");
+    }
+
     /// The contract's words, taken literally.
     fn by_arc_tangents(axles: &[Vector3<f64>]) -> f64 {
-        let azimuth = |axle: &Vector3<f64>| axle.y.atan2(axle.x).to_degrees();
+        let azimuth = |axle: &Vector3<f64>| libm::atan2(axle.y, axle.x).to_degrees();
         let changes = axles
             .windows(2)
             .map(|pair| azimuth(&pair[1]) - azimuth(&pair[0]));

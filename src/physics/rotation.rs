@@ -81,33 +81,3 @@ pub fn straightened(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let x = (x - axle * axle.dot(&x)).normalize();
     Matrix3::from_columns(&[x, axle.cross(&x), axle])
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_quarter_turn_about_z_takes_x_to_y() {
-        let turn = about(&Vector3::new(0.0, 0.0, 2.0), std::f64::consts::FRAC_PI_4);
-        assert!((turn * Vector3::x() - Vector3::y()).amax() < 1e-16);
-        assert!((turn * Vector3::z() - Vector3::z()).amax() == 0.0);
-    }
-
-    #[test]
-    fn no_rotation_without_a_vector() {
-        assert_eq!(about(&Vector3::zeros(), 1.0), Matrix3::identity());
-    }
-
-    #[test]
-    fn straightening_gives_a_rotation_and_leaves_one_alone() {
-        let turn = about(&Vector3::new(1.0, -2.0, 0.5), 0.9);
-        assert!((straightened(&turn) - turn).amax() < 1e-15);
-        let bend = Matrix3::new(1.0, -2.0, 3.0, 0.5, 1.0, -1.0, 2.0, 0.0, 1.0);
-        for size in [1e-6, 1.0, 1e60] {
-            let q = straightened(&(turn + bend * size));
-            assert!((q.transpose() * q - Matrix3::identity()).amax() < 1e-15);
-            assert!(q.determinant() > 0.0);
-        }
-        assert!((straightened(&(turn + bend * 1e-6)) - turn).amax() < 1e-5);
-    }
-}

@@ -1,9 +1,12 @@
-//! The table of the numerical schemes. What each must do is [`Scheme`]'s.
+//! The table of the numerical schemes. What each must do is [`Scheme`]'s. A new one is a row here and a file in `scheme`.
+
+mod rk4;
 
 use super::exact::Exact;
 use super::splitting::{Kind, SplittingScheme};
 use super::stepping::Scheme;
-use super::{Body, Friction, report::Report, rk4::Rk4};
+use super::{Body, Friction, report::Report};
+use rk4::Rk4;
 
 /// One row of the table of schemes.
 #[derive(Debug)]

@@ -4,11 +4,8 @@
 //! nobody listens to, and costs nothing more, the explained step is the one that fills a list of [phases](Phase). So the
 //! numbers shown are the very numbers that made the step.
 
-mod sums;
-
 use super::Loads;
 use nalgebra::{Matrix3, Vector3};
-pub use sums::Sums;
 
 /// Every name that a phase has, by which files and commands choose one: those of the report's scheme first, in its order.
 pub const NAMES: [&str; 19] = [
@@ -32,6 +29,12 @@ pub const NAMES: [&str; 19] = [
     "theta functions",
     "Taylor series",
 ];
+
+/// Rows between two sums that are stored.
+const EVERY: usize = 256;
+/// Rows are added up in turn to so many sums, which are added last, as the report's scheme does it with its points: the
+/// sum of all rows is then the scheme's to the last bit.
+const LANES: usize = 2;
 
 /// The workings of one time step.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -147,13 +150,24 @@ impl Workings {
 }
 
 impl Phase {
-    pub(crate) fn of(name: &'static str, formula: &'static str, quantities: Vec<Quantity>) -> Self {
+    pub(crate) fn of(name: &'static str, formula: &'static str) -> Self {
         Self {
             name,
             formula,
             changes: Changes::Nothing,
-            quantities,
+            quantities: Vec::new(),
         }
+    }
+
+    /// The same, with one more quantity behind the others.
+    pub(crate) fn with(
+        mut self,
+        symbol: &'static str,
+        unit: &'static str,
+        value: impl Into<Value>,
+    ) -> Self {
+        self.quantities.push(Quantity::new(symbol, unit, value));
+        self
     }
 
     pub(crate) fn changing(self, changes: Changes) -> Self {
@@ -230,5 +244,51 @@ impl From<Matrix3<f64>> for Value {
 impl From<Table> for Value {
     fn from(table: Table) -> Self {
         Self::Table(table)
+    }
+}
+
+/// Sums of the columns of a table, stored after every 256 rows: the sum of any number of rows is at most 255 rows away.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sums {
+    columns: usize,
+    /// After 0, 256, 512 ... rows: the sums of every second row from the first, column by column, and then those of every
+    /// second row from the second.
+    stored: Vec<f64>,
+}
+
+impl Sums {
+    /// The sums of `table`; its rows are visited once.
+    pub fn of(table: &Table) -> Self {
+        let columns = table.columns.len();
+        let mut lanes = vec![0.0; LANES * columns];
+        let mut stored = lanes.clone();
+        for (row, (_, cells)) in table.rows().enumerate() {
+            add(&mut lanes, row, cells);
+            if (row + 1) % EVERY == 0 {
+                stored.extend_from_slice(&lanes);
+            }
+        }
+        Self { columns, stored }
+    }
+
+    /// The sum of each column over the first `rows` rows of `table`, which is the one they were made of.
+    pub fn first(&self, table: &Table, rows: usize) -> Vec<f64> {
+        let rows = rows.min(table.points.len());
+        let from = rows / EVERY;
+        let width = LANES * self.columns;
+        let stored = self.stored.get(from * width..(from + 1) * width);
+        let mut lanes = stored.map_or_else(|| vec![0.0; width], <[f64]>::to_vec);
+        for row in from * EVERY..rows {
+            add(&mut lanes, row, table.row(row));
+        }
+        let (even, odd) = lanes.split_at(self.columns);
+        even.iter().zip(odd).map(|(even, odd)| even + odd).collect()
+    }
+}
+
+fn add(lanes: &mut [f64], row: usize, cells: &[f64]) {
+    let begin = row % LANES * cells.len();
+    for (sum, cell) in lanes[begin..].iter_mut().zip(cells) {
+        *sum += cell;
     }
 }

@@ -27,7 +27,6 @@ pub struct Ages {
     /// The time of the last turn, s, what is recent included.
     pub turn_s: f64,
     pub swing_s: Option<f64>,
-    /// Whether the swings cover each other on the picture.
     pub are_crowded: bool,
 }
 
@@ -57,7 +56,6 @@ impl Ages {
         Self::new(readouts.swing_s(), turn_s)
     }
 
-    /// The ages for a swing and a turn of these times, s.
     pub fn new(swing_s: Option<f64>, turn_s: Option<f64>) -> Self {
         let is_time = |time_s: &f64| time_s.is_finite() && *time_s > 0.0;
         let (swing_s, turn_s) = (swing_s.filter(is_time), turn_s.filter(is_time));
@@ -114,27 +112,6 @@ fn graded(length_s: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn recent_is_some_swings_but_never_a_whole_turn() {
-        let fast = Ages::new(Some(0.1), Some(100.0));
-        assert!((1.0..1.2).contains(&fast.recent_s), "{fast:?}");
-        let slow = Ages::new(Some(1.0), Some(8.0));
-        assert!((2.6..3.0).contains(&slow.recent_s), "{slow:?}");
-        assert!(slow.turn_s >= 8.0);
-        assert_eq!(Ages::new(None, None), Ages::UNKNOWN);
-        assert_eq!(Ages::new(Some(f64::NAN), Some(0.0)), Ages::UNKNOWN);
-        assert_eq!(Ages::UNKNOWN.since(Age::Recent, 7.0), f64::NEG_INFINITY);
-    }
-
-    #[test]
-    fn where_swings_cover_each_other_fewer_are_recent() {
-        let ages = Ages::new(Some(1.0), Some(100.0));
-        assert_eq!(ages.on_picture(1000.0), ages);
-        let close = ages.on_picture(100.0);
-        assert!((2.0..3.0).contains(&close.recent_s), "{close:?}");
-        assert_eq!(Ages::UNKNOWN.on_picture(10.0), Ages::UNKNOWN);
-    }
 
     #[test]
     fn recent_begins_at_notches_and_reaches_back_far_enough() {

@@ -243,34 +243,6 @@ mod tests {
     }
 
     #[test]
-    fn held_it_begins_at_the_top_of_a_swing_each_time() {
-        let mut run = LiveRun::played("cusps", 9000);
-        let held = Wanted {
-            place: Placement::Latest,
-            ..Wanted::following(230.0)
-        };
-        for _ in 0..5 {
-            run.step_to(run.simulation().step_number() + 237).unwrap();
-            let detail = detail(&mut run, &held, None);
-            assert!(detail.begin_s + detail.window_s <= run.now().time_s);
-            let mut blocks = run.recording().between(detail.begin_s, detail.begin_s);
-            let tilt = blocks.next().unwrap().extent(Curve::Tilt).max;
-            let highest = run.recording().whole().unwrap().extent(Curve::Tilt).max;
-            assert!((tilt - highest).abs() < 0.05, "{tilt}");
-        }
-    }
-
-    #[test]
-    fn where_only_x_swings_it_is_x_that_is_shown() {
-        let (run, detail) = at("torque-free", 20_000, 20.0);
-        assert_eq!(detail.curve, Curve::X);
-        let strip = Strip::new(detail.begin_s, detail.window_s, 100);
-        let columns = strip.blocks(run.recording()).columns(Curve::X, &[]);
-        assert!(columns.iter().flatten().all(|column| column.band.is_none()));
-        assert!(detail.window_s < 10.0, "{}", detail.window_s);
-    }
-
-    #[test]
     fn a_swing_is_at_least_five_small_dots_wide_or_eight_cells() {
         for (preset, steps) in [("method-1", 900), ("wobble-push", 900), ("poinsot", 5000)] {
             let (run, detail) = at(preset, steps, 15.0);
@@ -284,17 +256,5 @@ mod tests {
                 assert!(strip.column(now_s).is_some(), "{preset}: {strip:?}");
             }
         }
-    }
-
-    #[test]
-    fn a_motion_without_swings_is_shown_at_length() {
-        let mut run = LiveRun::played("steady-slow", 0);
-        let calm = Readouts {
-            nutation: None,
-            theory: None,
-            ..run.readouts()
-        };
-        let detail = Detail::new(&run, &calm, &Wanted::following(230.0), None);
-        assert_eq!(detail.window_s, 230.0);
     }
 }

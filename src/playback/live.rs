@@ -1,13 +1,10 @@
 //! A run that is being watched: the simulation, and the data of its pictures.
 //!
-//! It can return to any step that it has reached before: it loads the last [checkpoint](Checkpoints) before that step and
-//! steps on from there, with the same bits as the first time. The pictures of the steps that then lie ahead are stored
-//! separately.
+//! It can return to any step that it has reached before: it loads the last checkpoint before that step and steps on from
+//! there, with the same bits as the first time. The pictures of the steps that then lie ahead are stored separately.
 
 mod pictures;
 
-use super::checkpoints::{Checkpoint, Checkpoints};
-use super::overlay::Overlay;
 use super::path::Path;
 use super::recording::{Moment, Recording};
 use crate::analysis::cost::{integration_rad_per_s, is_affordable};
@@ -17,7 +14,7 @@ use crate::journal::restart::in_force;
 use crate::physics::{State, Workings};
 use crate::run::{NotFinite, Simulation};
 use crate::scenario::Scenario;
-use pictures::Pictures;
+use pictures::{Overlay, Pictures};
 use std::sync::Arc;
 
 /// Steps between two readings of the clock for a body of one point; a body of n points takes 1/n of that.
@@ -361,6 +358,85 @@ impl LiveRun {
 
     pub fn path(&self) -> &Path {
         &self.pictures.path
+    }
+}
+
+/// Steps between two checkpoints at first; a power of two.
+const SPACING: u64 = 256;
+const MEMORY: usize = 24 << 20;
+const PER_POINT: usize = 64;
+/// Memory of one checkpoint besides its points, bytes.
+const PER_CHECKPOINT: usize = 16 << 10;
+/// Least number of checkpoints, however large the body.
+const FEWEST: usize = 8;
+
+/// A run as it stood, and what was measured on its steps up to there.
+struct Checkpoint {
+    simulation: Simulation,
+    monitor: Monitor,
+}
+
+/// Stored states, equally spaced from the start. When there are too many, every second one is dropped and the spacing
+/// doubles, so that memory is bounded however long the run is.
+struct Checkpoints {
+    stored: Vec<Checkpoint>,
+    spacing: u64,
+    most: usize,
+}
+
+impl Checkpoint {
+    fn of(simulation: &Simulation, monitor: &Monitor) -> Self {
+        let mut simulation = simulation.clone();
+        simulation.keep_workings(false); // they may take much memory, and are found again by a step
+        Self {
+            simulation,
+            monitor: monitor.clone(),
+        }
+    }
+
+    fn step(&self) -> u64 {
+        self.simulation.step_number()
+    }
+}
+
+impl Checkpoints {
+    pub fn new(simulation: &Simulation, monitor: &Monitor) -> Self {
+        let points = simulation.scenario().body.mechanics.points().len();
+        Self {
+            stored: vec![Checkpoint::of(simulation, monitor)],
+            spacing: SPACING,
+            most: (MEMORY / (PER_CHECKPOINT + PER_POINT * points)).max(FEWEST),
+        }
+    }
+
+    /// Stores a run and the measurements on its steps if its step is a multiple of the spacing. To be called after every step.
+    #[inline]
+    pub fn offer(&mut self, simulation: &Simulation, monitor: &Monitor) {
+        if simulation.step_number() & (self.spacing - 1) == 0 {
+            self.keep(simulation, monitor);
+        }
+    }
+
+    fn keep(&mut self, simulation: &Simulation, monitor: &Monitor) {
+        if self.before(u64::MAX).step() >= simulation.step_number() {
+            return; // this step is stored already
+        }
+        self.stored.push(Checkpoint::of(simulation, monitor));
+        if self.stored.len() > self.most + 1 {
+            self.spacing *= 2;
+            let spacing = self.spacing;
+            let stays = |stored: &Checkpoint| stored.step().is_multiple_of(spacing);
+            self.stored.retain(stays);
+        }
+    }
+
+    pub fn before(&self, step: u64) -> &Checkpoint {
+        let begun = self.stored.partition_point(|stored| stored.step() <= step);
+        &self.stored[begun.saturating_sub(1)]
+    }
+
+    pub fn cut_back(&mut self, step: u64) {
+        self.stored.retain(|stored| stored.step() <= step);
     }
 }
 

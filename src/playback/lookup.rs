@@ -27,7 +27,7 @@ pub fn sample(run: &LiveRun, step: u64) -> Result<Sample, Missing> {
     if step > run.furthest() {
         return Err(Missing::NotReached);
     }
-    let mut steps = Steps::before(run, step)?;
+    let mut steps = Steps::before(run, step);
     while steps.step_number() < step {
         steps.step()?;
     }
@@ -40,7 +40,7 @@ pub fn sample(run: &LiveRun, step: u64) -> Result<Sample, Missing> {
 /// Where there is none, or computing it would take too long.
 pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
     if forward {
-        let mut steps = Steps::before(run, from.saturating_sub(1))?;
+        let mut steps = Steps::before(run, from.saturating_sub(1));
         while steps.step_number() < run.furthest() {
             if let Some(turn) = steps.step()?.filter(|turn| *turn > from) {
                 return Ok(turn);
@@ -51,7 +51,7 @@ pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
     // From stored states further and further back, until the tilt turns after one of them.
     let (mut begin, mut left) = (from, None);
     while begin > 0 {
-        let mut steps = Steps::before(run, begin - 1)?;
+        let mut steps = Steps::before(run, begin - 1);
         steps.left = left.unwrap_or(steps.left);
         let end = from.min(begin + 1); // a turn is seen one step after it
         begin = steps.step_number();
@@ -67,7 +67,6 @@ pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
     Err(Missing::NoTurn)
 }
 
-/// A copy of a run that steps through its past.
 struct Steps {
     simulation: Simulation,
     left: u64,
@@ -76,13 +75,13 @@ struct Steps {
 }
 
 impl Steps {
-    fn before(run: &LiveRun, step: u64) -> Result<Self, Missing> {
+    fn before(run: &LiveRun, step: u64) -> Self {
         let points = run.scenario().body.mechanics.points().len() as u64;
-        Ok(Self {
+        Self {
             simulation: run.again_before(step),
             left: MOST_STEPS / (points + run.integration_cost() / COST_OF_A_POINT),
             change: 0.0,
-        })
+        }
     }
 
     fn step_number(&self) -> u64 {

@@ -44,7 +44,7 @@ impl Reading {
 }
 
 fn pace_in_words(pace: &Pace) -> String {
-    match (pace.is_running(), pace.speed()) {
+    match (pace.is_running, pace.speed) {
         (false, Speed::Times(speed)) => format!("paused ×{}", short(speed)),
         (false, Speed::Top) => "paused, top".to_owned(),
         (true, Speed::Top) => format!("► top ×{}", achieved(pace)),
@@ -57,7 +57,7 @@ fn pace_in_words(pace: &Pace) -> String {
 
 /// The speed that is reached; further digits than two change all the time.
 fn achieved(pace: &Pace) -> String {
-    let speed = rounded(pace.achieved(), 2);
+    let speed = rounded(pace.achieved, 2);
     short(if speed.is_finite() { speed } else { 0.0 })
 }
 

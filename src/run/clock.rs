@@ -27,17 +27,16 @@ impl Clock {
         let mut clock = Self::new(scenario.motion.time_step_s);
         let edits = scenario.edits.iter().take_while(|edit| edit.step < step);
         edits
-            .filter(|edit| edit.touches.time_step)
+            .filter(|edit| edit.sets_time_step)
             .for_each(|edit| clock.change(edit.step, edit.motion.time_step_s));
         clock
     }
 
-    /// The edits of `scenario`, each with the time at which it is made, s.
     pub fn edits(scenario: &Scenario) -> impl Iterator<Item = (f64, &Edit)> {
         let mut clock = Self::new(scenario.motion.time_step_s);
         scenario.edits.iter().map(move |edit| {
             let time_s = clock.time_s(edit.step);
-            if edit.touches.time_step {
+            if edit.sets_time_step {
                 clock.change(edit.step, edit.motion.time_step_s);
             }
             (time_s, edit)
@@ -55,7 +54,6 @@ impl Clock {
         self.anchor_s + (step - self.anchor_step) as i64 as f64 * self.time_step_s
     }
 
-    /// From `step` on, the time step is `time_step_s`.
     pub fn change(&mut self, step: u64, time_step_s: f64) {
         *self = Self {
             anchor_step: step,
@@ -78,25 +76,9 @@ pub fn resampled(scenario: &Scenario, time_step_s: f64, scheme: &'static SchemeI
     for (edit, (time_s, _)) in other.edits.iter_mut().zip(Clock::edits(scenario)) {
         edit.step = (time_s / time_step_s).round() as u64;
         (edit.motion.time_step_s, edit.motion.scheme) = (time_step_s, scheme);
-        edit.touches.time_step = false;
+        edit.sets_time_step = false;
     }
     other.steps = ((Clock::end_s(scenario) / time_step_s).round() as u64).max(1);
     (other.motion.time_step_s, other.motion.scheme) = (time_step_s, scheme);
     other
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn time_is_counted_from_the_last_edit_of_the_time_step() {
-        let mut clock = Clock::new(0.1);
-        assert_eq!(clock.time_s(3), 3.0 * 0.1);
-        clock.change(40, 0.05);
-        assert_eq!(clock.time_s(40), 4.0);
-        assert_eq!(clock.time_s(42), 4.1);
-        assert_eq!(clock.step_at(4.1), 42);
-        assert_eq!(clock.step_at(4.11), 43);
-    }
 }

@@ -6,17 +6,16 @@ use super::{Clock, Sample, Step};
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::workings::Part;
 use crate::physics::{Loads, PointForce, Scheme, State, Workings};
-use crate::scenario::{Edit, Motion, Push, Scenario};
+use crate::scenario::{Edit, Motion, Pushes, Scenario};
 use std::sync::Arc;
 
 /// A run that stands at one of its steps; [`step`](Self::step) takes it to the next. A clone is independent of it and
 /// computes the same bits.
 #[derive(Clone)]
 pub struct Simulation {
-    /// The step it stands at, as it is published.
     now: Step,
     scheme: Box<dyn Scheme>,
-    pushes: Arc<[Push]>,
+    pushes: Pushes,
     /// The forces of the pushes on the step to come, until they are compared with those of the step before.
     acting: Vec<PointForce>,
     clock: Clock,
@@ -31,7 +30,6 @@ pub struct Simulation {
     safe_below: f64,
     /// Whether the workings of every step are kept.
     keeps_workings: bool,
-    /// Whether there is friction.
     rubs: bool,
 }
 
@@ -61,7 +59,6 @@ impl NotFinite {
 }
 
 impl Simulation {
-    /// The run of `scenario`, at step 0.
     pub fn new(scenario: Arc<Scenario>) -> Self {
         let (motion, state) = (scenario.motion, scenario.start);
         let loads = Loads {
@@ -74,7 +71,7 @@ impl Simulation {
         scheme.start(&state);
         Self {
             scheme,
-            pushes: scenario.pushes.iter().copied().collect(),
+            pushes: Arc::clone(&scenario.pushes),
             acting: Vec::with_capacity(scenario.pushes.len()),
             clock: Clock::new(motion.time_step_s),
             counting: counting(&scenario),
@@ -161,7 +158,6 @@ impl Simulation {
         end
     }
 
-    /// The step it stands at.
     #[inline]
     pub fn now(&self) -> &Step {
         &self.now
@@ -194,7 +190,7 @@ impl Simulation {
             .checked_sub(1)
             .map(|last| &scenario.edits[last]);
         let pushes = made.map_or(&scenario.pushes, |edit| &edit.pushes);
-        self.pushes = pushes.iter().copied().collect();
+        self.pushes = Arc::clone(pushes);
         self.now.scenario = scenario;
     }
 
@@ -214,7 +210,7 @@ impl Simulation {
         let mut work = 0.0;
         let end = stretch.end;
         if self.now.motion.scheme.continuous {
-            while let Some(change) = pushes::next_change(&*self.pushes, self.counting, &stretch) {
+            while let Some(change) = pushes::next_change(&self.pushes, self.counting, &stretch) {
                 stretch.end = change;
                 let length = change - stretch.begin;
                 work += self.advance_under_push(&stretch, length, workings.as_deref_mut());
@@ -236,7 +232,7 @@ impl Simulation {
         length: f64,
         workings: Option<&mut Workings>,
     ) -> f64 {
-        pushes::acting(&*self.pushes, self.counting, stretch, &mut self.acting);
+        pushes::acting(&self.pushes, self.counting, stretch, &mut self.acting);
         if self.acting != self.now.loads.pushes {
             self.change_loads();
             self.now.loads.pushes.clone_from(&self.acting);
@@ -290,14 +286,11 @@ impl Simulation {
             .filter(|edit| edit.step == self.now.number)
         {
             self.make_edit(edit);
-            self.now.segment += u64::from(edit.touches.segment);
+            self.now.segment += u64::from(edit.begins_segment);
             self.edits_made += 1;
         }
-        let made = &scenario.edits[first..self.edits_made];
-        if let Some(last) = made.last()
-            && made.iter().any(|edit| !edit.set_pushes.is_empty())
-        {
-            self.pushes = last.pushes.iter().copied().collect();
+        if let Some(last) = scenario.edits[first..self.edits_made].last() {
+            self.pushes = Arc::clone(&last.pushes);
         }
         self.next_edit = step_of_edit(&scenario, self.edits_made);
     }
@@ -306,7 +299,7 @@ impl Simulation {
         self.change_loads();
         let now = &mut self.now;
         let body = &now.scenario.body.mechanics;
-        if edit.touches.time_step {
+        if edit.sets_time_step {
             self.clock.change(now.number, edit.motion.time_step_s);
             self.counting = Counting::in_seconds(&now.scenario);
         }
@@ -358,7 +351,7 @@ impl Simulation {
     /// The first step at or after `time_s` (s), edits of the time step counted in.
     pub fn step_at(scenario: &Scenario, time_s: f64) -> u64 {
         let mut clock = Clock::new(scenario.motion.time_step_s);
-        for edit in scenario.edits.iter().filter(|edit| edit.touches.time_step) {
+        for edit in scenario.edits.iter().filter(|edit| edit.sets_time_step) {
             if clock.step_at(time_s) <= edit.step {
                 break;
             }
@@ -373,7 +366,7 @@ impl Simulation {
         let mut clock = self.clock;
         let due = self.now.scenario.edits[self.edits_made..].iter();
         for edit in due.take_while(|edit| edit.step == number) {
-            if edit.touches.time_step {
+            if edit.sets_time_step {
                 clock.change(number, edit.motion.time_step_s);
             }
         }

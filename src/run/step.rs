@@ -40,7 +40,6 @@ pub(super) struct EnergyAccount {
     pub scale: Option<EnergyScale>,
 }
 
-/// What has been read off the state so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Derived {
     position: OnceCell<Vector3<f64>>,
@@ -97,7 +96,6 @@ impl Step {
         &self.after
     }
 
-    /// Time after it, s.
     pub fn time_s(&self) -> f64 {
         self.after.time_s
     }
@@ -226,6 +224,13 @@ pub struct Sample {
     pub segment: u64,
 }
 
+impl Sample {
+    /// ω along the body's own x, y and axle, rad/s: what an instrument on the body measures.
+    pub fn omega(&self) -> Vector3<f64> {
+        self.orientation.tr_mul(&self.angular_velocity)
+    }
+}
+
 /// M g |c| below this part of the kinetic energy at the start is no scale: the body is balanced, or nearly.
 const LEAST_PART: f64 = 1e-9;
 /// A centre of mass nearer to the pivot than this part of the body's size is at the pivot but for rounding.
@@ -235,7 +240,6 @@ const ROUNDING: f64 = 1e-12;
 pub enum EnergyUnit {
     /// M g |c|, c the centre of mass seen from the pivot.
     Weight,
-    /// The kinetic energy at the start.
     KineticAtStart,
 }
 

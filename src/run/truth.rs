@@ -7,7 +7,7 @@ use super::Clock;
 use super::pushes::{self, Counting, Stretch};
 use crate::physics::exact::{AT_ONCE, Kind};
 use crate::physics::{ExactMotion, Loads, State};
-use crate::scenario::{Edit, Pushes, Scenario};
+use crate::scenario::{Pushes, Scenario};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -29,14 +29,6 @@ struct Era {
     begin_s: f64,
     gravity: f64,
     pushes: Pushes,
-}
-
-impl Era {
-    /// Whether gravity and pushes stay as they are in this era at `edit`, the first after it.
-    fn goes_on_after(&self, edit: &Edit) -> bool {
-        let is_same = |&place: &usize| self.pushes.get(place) == edit.pushes.get(place);
-        self.gravity == edit.motion.gravity && edit.set_pushes.iter().all(is_same)
-    }
 }
 
 impl Truth {
@@ -111,7 +103,6 @@ impl Truth {
         }
     }
 
-    /// The scenario whose exact motion it is.
     pub fn scenario(&self) -> &Arc<Scenario> {
         &self.scenario
     }
@@ -137,7 +128,6 @@ impl Truth {
         self.pieces
     }
 
-    /// The index of the era that `time_s` (s) lies in.
     fn era_at(&self, time_s: f64) -> usize {
         let begun = self.eras.partition_point(|era| era.begin_s <= time_s);
         begun.saturating_sub(1)
@@ -149,7 +139,7 @@ impl Truth {
         let next_era = self.eras.get(index + 1);
         let next_era = next_era.map_or(f64::INFINITY, |era| era.begin_s);
         pushes::next_after(
-            self.eras[index].pushes.iter(),
+            &self.eras[index].pushes,
             Counting::in_seconds(&self.scenario),
             begin,
         )
@@ -170,7 +160,7 @@ impl Truth {
             friction: self.scenario.friction,
         };
         pushes::acting(
-            era.pushes.iter(),
+            &era.pushes,
             Counting::in_seconds(&self.scenario),
             &stretch,
             &mut loads.pushes,
@@ -195,7 +185,9 @@ fn eras(scenario: &Scenario) -> Vec<Era> {
     }];
     for (begin_s, edit) in Clock::edits(scenario) {
         // An edit of the time step or the scheme touches no force, and so not a bit of the exact motion.
-        if !eras.last().is_some_and(|last| last.goes_on_after(edit)) {
+        let goes_on =
+            |last: &Era| last.gravity == edit.motion.gravity && last.pushes == edit.pushes;
+        if !eras.last().is_some_and(goes_on) {
             eras.push(Era {
                 begin_s,
                 gravity: edit.motion.gravity,

@@ -1,18 +1,19 @@
-//! From the file's shape to a [`Scenario`] whose numbers make sense together.
+//! From the file's shape to a [`Scenario`] whose numbers make sense together. Each `[[edit]]` in turn is written into the tables
+//! `motion` and `push`, and what it leaves there is held against the same rules as in a scenario.
 
-use super::dotted::is_in;
-use super::edits::edits;
-use super::file::{BodyFile, ScenarioFile};
-use super::keys::TOP;
-use super::model::{Body, Motion, Scenario};
-use super::parts::{body, motion, pushes};
-use super::problem::{Problem, Problems, listed};
-use super::rotor;
-use super::rubbing::{friction, objects};
+use super::dotted::{find, is_in, number_of_push, set_key};
+use super::file::{BodyFile, EditFile, MotionFile, PushFile, ScenarioFile};
+use super::keys::{self, EDITABLE_MOTION, Effect, KEYS, TOP};
+use super::limits::too_many;
+use super::model::{Body, Edit, Motion, Pushes, Scenario};
+use super::parts::{body, friction, motion, objects, push, pushes, spinning};
+use super::problem::{Problem, Problems, listed, nearest};
 use super::start::start;
 use crate::physics::{self, Friction, State, observables};
+use serde::de::DeserializeOwned;
+use std::collections::BTreeSet;
 use std::sync::Arc;
-use toml::Value;
+use toml::{Table, Value};
 
 pub fn scenario(file: ScenarioFile) -> Result<Scenario, Problems> {
     // Without a body nothing can be said of the rest; of that, each part is looked at by itself.
@@ -33,7 +34,7 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Problems> {
     let edits = edits(&file, &body, &pushes, &friction)?;
     if !is_readable(&body, trace, &start, motion.gravity) {
         let rule = "energy or traced point leave the range of floating-point numbers: use momentum, gravity and distances nearer to 1";
-        return Err(vec![Problem::at("start", rule)].into());
+        return Err(Problem::at("start", rule).into());
     }
     Ok(Scenario {
         body: Arc::new(body),
@@ -54,8 +55,8 @@ fn started(
     file: &ScenarioFile,
     body: &Body,
     motion: &Motion,
-) -> Result<(physics::Body, State, Friction), Vec<Problem>> {
-    let spinning = rotor::spinning(&file.start, body, &file.body.part)?;
+) -> Result<(physics::Body, State, Friction), Problem> {
+    let spinning = spinning(&file.start, body, &file.body.part)?;
     let start = start(&file.start, &spinning, motion.gravity)?;
     let friction = friction(file.friction.as_ref(), &spinning)?;
     objects(motion.scheme, &friction)?;
@@ -97,7 +98,7 @@ fn is_readable(body: &Body, trace: usize, start: &State, gravity: f64) -> bool {
     energy.is_finite() && traced.iter().all(|c| c.is_finite())
 }
 
-fn no_top(body: &Body) -> Vec<Problem> {
+fn no_top(body: &Body) -> Problem {
     let names = body.names();
     let known = if names.is_empty() {
         "it has no named point: add a [[body.point]]".to_owned()
@@ -106,5 +107,142 @@ fn no_top(body: &Body) -> Vec<Problem> {
         format!("name one of its points with trace = \"...\": {names}")
     };
     let rule = format!("the body has no point \"{TOP}\" whose path could be shown; {known}");
-    vec![Problem::at("trace", rule)]
+    Problem::at("trace", rule)
+}
+
+/// The edits of `file`, whose pushes are `pushes` and whose friction is `friction`.
+fn edits(
+    file: &ScenarioFile,
+    body: &Body,
+    pushes: &Pushes,
+    friction: &Friction,
+) -> Result<Vec<Edit>, Problems> {
+    if file.edit.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut progress = Progress {
+        file,
+        body,
+        friction,
+        written: tables(file),
+        motion: motion(&file.motion),
+        pushes: Arc::clone(pushes),
+    };
+    let (mut edits, mut last) = (Vec::with_capacity(file.edit.len()), 0);
+    for (index, entry) in file.edit.iter().enumerate() {
+        if entry.step < last {
+            let rule = format!(
+                "comes before the edit above it (step {last}): edits stand in the order of their steps"
+            );
+            let step = Value::Integer(i64::try_from(entry.step).unwrap_or(i64::MAX));
+            let key = format!("edit.{index}.step");
+            return Err(Problem::with_value(key, &step, rule).into());
+        }
+        last = entry.step;
+        let edit = progress.edit(entry).map_err(|mut problems| {
+            for problem in &mut problems.list {
+                problem.key.insert_str(0, &format!("edit.{index}.set."));
+            }
+            problems
+        });
+        edits.push(edit?);
+    }
+    Ok(edits)
+}
+
+fn tables(file: &ScenarioFile) -> Table {
+    let empty = || Value::Array(Vec::new());
+    let motion = Value::try_from(&file.motion).unwrap_or_else(|_| empty());
+    let push = Value::try_from(&file.push).unwrap_or_else(|_| empty());
+    Table::from_iter([("motion".to_owned(), motion), ("push".to_owned(), push)])
+}
+
+/// Motion and pushes as the edits so far have left them.
+struct Progress<'a> {
+    file: &'a ScenarioFile,
+    body: &'a Body,
+    friction: &'a Friction,
+    /// `motion` and `push`, as a file would give them.
+    written: Table,
+    motion: Motion,
+    pushes: Pushes,
+}
+
+impl Progress<'_> {
+    /// Makes the edit `entry`. In a refusal the keys are those that it sets.
+    fn edit(&mut self, entry: &EditFile) -> Result<Edit, Problems> {
+        let mut set_pushes = BTreeSet::new();
+        for (key, value) in &entry.set {
+            let written =
+                may_edit(key, value).and_then(|()| set_key(&mut self.written, key, value.clone()));
+            let key = key.clone();
+            set_pushes.extend(number_of_push(&key));
+            written.map_err(|problem| Problem { key, ..problem })?;
+        }
+        let sets = |key: &str| entry.set.contains_key(key);
+        let begins_segment = EDITABLE_MOTION.into_iter().any(sets);
+        let mut problems = Problems::default();
+        if begins_segment {
+            problems.kept(self.set_motion());
+        }
+        for &place in &set_pushes {
+            problems.kept(self.set_push(place));
+        }
+        problems.or(())?;
+        Ok(Edit {
+            step: entry.step,
+            motion: self.motion,
+            pushes: Arc::clone(&self.pushes),
+            set_pushes: set_pushes.into_iter().collect(),
+            sets_time_step: sets("motion.time_step_s"),
+            begins_segment,
+        })
+    }
+
+    fn set_motion(&mut self) -> Result<(), Problems> {
+        self.motion = motion(&self.read::<MotionFile>("motion")?);
+        Ok(objects(self.motion.scheme, self.friction)?)
+    }
+
+    fn set_push(&mut self, place: usize) -> Result<(), Problems> {
+        let key = format!("push.{place}");
+        let push = push(&self.read::<PushFile>(&key)?, self.body, &key)?;
+        let pushes = Arc::make_mut(&mut self.pushes);
+        match pushes.get_mut(place) {
+            Some(old) => *old = push,
+            None => pushes.push(push),
+        }
+        let (edits, body) = (self.file.edit.len(), &self.file.body);
+        let bodies = body.rim_points() + body.point.len() + body.part.len();
+        too_many(edits, bodies, pushes.len()).map_or(Ok(()), |problem| Err(problem.into()))
+    }
+
+    /// The table at `key`, held against the keys.
+    fn read<T: DeserializeOwned>(&self, key: &str) -> Result<T, Problems> {
+        let table = find(&self.written, key).cloned();
+        let table = table.unwrap_or(Value::Boolean(false));
+        keys::check_part(&table, key).or(())?;
+        let read = table.try_into();
+        read.map_err(|error: toml::de::Error| Problem::at(key, error.message()).into())
+    }
+}
+
+fn may_edit(key: &str, value: &Value) -> Result<(), Problem> {
+    if Effect::of(key) == Effect::FromHere {
+        return Ok(());
+    }
+    if value.is_table() {
+        let rule = "must be a dotted key in quotes, such as \"motion.time_step_s\" = 0.05";
+        return Err(Problem::at(key, rule));
+    }
+    let rule = match nearest(key, EDITABLE_MOTION.into_iter()) {
+        near if near.starts_with("did") && !KEYS.iter().any(|known| known.path == key) => {
+            format!("unknown key: {near}")
+        }
+        _ => format!(
+            "cannot be edited during a run (only {} and push.N can): set it in the scenario",
+            EDITABLE_MOTION.join(", ")
+        ),
+    };
+    Err(Problem::at(key, rule))
 }

@@ -4,15 +4,14 @@ use super::checks;
 use super::dotted::{find, is_in, overlap, set_key};
 use super::head::{read_text, text_of_file};
 use super::limits;
-use super::problem::{PRESETS, Problem, Problems, nearest};
-use super::syntax::{mistake, offset_of, syntax_problem};
-use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start};
+use super::problem::{PRESETS, Problem, Problems, at_line, nearest};
+use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, solids, start};
 use crate::text::number::shortest;
-use crate::text::printable::{brief, printable};
+use crate::text::printable::{brief, printable, printable_lines};
 use std::io::Read;
 use std::path::Path;
 use toml::Value;
-use toml::de::DeTable;
+use toml::de::{DeTable, DeValue};
 
 /// A scenario or run file on its way to a [`Scenario`].
 #[derive(Clone, Debug)]
@@ -51,7 +50,6 @@ impl Document {
         Self::parse_header(&origin, &text)
     }
 
-    /// Reads what `reader` gives to its end.
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
         let text = text_of_file(reader).map_err(|problem| Problems::one(origin, problem))?;
         Self::parse_header(origin, &text)
@@ -118,7 +116,7 @@ impl Document {
     /// Checks its size, and each key and value by itself.
     pub(crate) fn check(&self) -> Result<(), Problems> {
         if let Some(problem) = limits::exceeded(&self.table) {
-            return Err(self.placed(vec![problem]));
+            return Err(self.placed(problem));
         }
         let mut problems = keys::check(&self.table);
         if problems.list.is_empty() {
@@ -129,10 +127,6 @@ impl Document {
     }
 
     /// Carries out one `--set KEY=VALUE`: the value is TOML, or else text.
-    ///
-    /// # Errors
-    /// When there is no `=`, or the key leads nowhere. Whether key and value are allowed shows in
-    /// [`scenario`](Self::scenario).
     pub fn set(&mut self, argument: &str) -> Result<(), Problems> {
         let Some((key, value)) = argument.split_once('=') else {
             let rule = "must be KEY=VALUE, such as motion.time_step_s=0.05";
@@ -157,7 +151,7 @@ impl Document {
 
     pub fn set_value(&mut self, key: &str, value: Value) -> Result<(), Problem> {
         start::make_room(&mut self.table, key);
-        reshape::prepare(&mut self.table, key, &value);
+        solids::prepare(&mut self.table, key, &value);
         set_key(&mut self.table, key, value)
     }
 
@@ -165,19 +159,15 @@ impl Document {
     /// that it needs: a momentum where there is a spin, a spin where a momentum becomes steady, the dimensions of a part that
     /// gets another shape.
     pub(crate) fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
-        start::make_room(&mut self.table, key);
-        reshape::prepare(&mut self.table, key, &value);
         if start::is_other_way(&self.table, key, &value) {
             let now = self.scenario()?;
             start::tell_other_way(&mut self.table, key, &value, &now);
         }
-        set_key(&mut self.table, key, value).map_err(|problem| self.placed(vec![problem]))
+        let written = self.set_value(key, value);
+        written.map_err(|problem| self.placed(problem))
     }
 
     /// Takes the scenario to another time step (s), holding its seconds: see [`rescale`].
-    ///
-    /// # Errors
-    /// What is wrong with the scenario, or cannot be held.
     pub fn set_time_step(&mut self, time_step_s: f64) -> Result<(), Problems> {
         let file = rescale::at_time_step(&self.scenario()?.file, time_step_s);
         let file = file.map_err(|mut problem| {
@@ -185,7 +175,7 @@ impl Document {
                 problem.place = Some(format!("--time-step {}", shortest(time_step_s)));
                 Problems::one(self.origin.as_str(), problem)
             } else {
-                self.placed(vec![problem])
+                self.placed(problem)
             }
         })?;
         *self = Self::from_file(&self.origin, &file)?;
@@ -211,9 +201,7 @@ impl Document {
     /// The file's shape; its numbers are not checked.
     pub(crate) fn file(&self) -> Result<ScenarioFile, Problems> {
         let file = self.table.clone().try_into();
-        file.map_err(|error: toml::de::Error| {
-            self.placed(vec![Problem::at("", error.message().to_owned())])
-        })
+        file.map_err(|error: toml::de::Error| self.placed(Problem::at("", error.message())))
     }
 
     /// The last `--set` that wrote what a problem at `key` is about: the value, something in it or around it, or the
@@ -311,4 +299,87 @@ fn no_preset(name: &str) -> Problems {
     };
     let rule = format!("no preset of that name: {near} ({hint})");
     Problems::one(name, Problem::at("", rule))
+}
+
+fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
+    const WIDEST: usize = 160;
+    let picture = error.to_string();
+    let mut lines = picture.trim_end().lines();
+    let rule = if lines.clone().all(|line| line.len() <= WIDEST) {
+        printable_lines(picture.trim_end()).into_owned()
+    } else {
+        // A picture of a line that fills the screen shows nothing.
+        let place = brief(lines.next().unwrap_or_default(), WIDEST);
+        format!("{place}: {}", brief(error.message(), WIDEST))
+    };
+    let rule = match error.span() {
+        Some(span) => repeated_table(text, span.start).unwrap_or(rule),
+        None => format!("cannot be read as TOML: {rule}"),
+    };
+    let problem = Problem::at("", rule);
+    match error.span() {
+        Some(span) => at_line(line_at(text, span.start) as u64, problem),
+        None => problem,
+    }
+}
+
+/// The tables of which a file may have several.
+const REPEATED: [&str; 6] = ["do", "push", "edit", "expected", "body.point", "body.part"];
+
+/// What is wrong with the line at `offset`, where it begins one of these tables a second time as if it were the only one.
+fn repeated_table(text: &str, offset: usize) -> Option<String> {
+    let line = text.lines().nth(line_at(text, offset) - 1)?.trim();
+    let name = line.strip_prefix('[')?.strip_suffix(']')?.trim();
+    REPEATED.contains(&name).then(|| {
+        format!("[{name}] stands here again: write [[{name}]], in two brackets, for each of them")
+    })
+}
+
+fn line_at(text: &str, offset: usize) -> usize {
+    text.as_bytes()[..offset.min(text.len())]
+        .iter()
+        .filter(|&&byte| byte == b'\n')
+        .count()
+        + 1
+}
+
+/// Where the dotted `key`, or as much of it as there is, stands in the text: a value's key, a table's head.
+fn offset_of(table: &DeTable<'_>, key: &str) -> Option<usize> {
+    let entry = |name: &str| table.get_key_value(name);
+    let quoted = key.strip_prefix('"').and_then(|key| key.strip_suffix('"'));
+    let (name, rest) = match quoted {
+        Some(name) => (name, ""),
+        None => key.split_once('.').unwrap_or((key, "")),
+    };
+    // What an edit sets has the whole path for its name.
+    let (found, value) = entry(name).or_else(|| entry(key))?;
+    Some(offset_inside(value.get_ref(), rest).unwrap_or(found.span().start))
+}
+
+fn offset_inside(value: &DeValue<'_>, key: &str) -> Option<usize> {
+    match value {
+        DeValue::Table(table) => offset_of(table, key),
+        DeValue::Array(array) => {
+            let (place, rest) = key.split_once('.').unwrap_or((key, ""));
+            let item = array.get(place.parse::<usize>().ok()?)?;
+            Some(offset_inside(item.get_ref(), rest).unwrap_or(item.span().start))
+        }
+        _ => None,
+    }
+}
+
+/// What is wrong with `value`, which begins as an array or a table and is no TOML.
+fn mistake(value: &str, error: &toml::de::Error) -> Option<String> {
+    if !value.starts_with(['[', '{']) {
+        return None;
+    }
+    let from = error.span().map_or(0, |span| span.start);
+    let rest = value.get(from..).unwrap_or_default();
+    let rest = if rest.is_empty() {
+        "its end".to_owned()
+    } else {
+        format!("\"{}\"", brief(rest, 24))
+    };
+    let message = brief(error.message(), 120);
+    Some(format!("is no TOML: at {rest}: {message}"))
 }

@@ -16,9 +16,6 @@ pub fn join(under: &str, name: &str) -> String {
 }
 
 /// Writes `value` at the dotted `key`; numbers lead into arrays, and the one past the end adds an element.
-///
-/// # Errors
-/// When the key leads into something that is neither table nor array, or past an array's end.
 pub fn set_key(table: &mut Table, key: &str, value: Value) -> Result<(), Problem> {
     let names: Vec<&str> = key.split('.').collect();
     if names.len() > DEEPEST {
@@ -73,7 +70,6 @@ fn place<'a>(
     })
 }
 
-/// The value written at the dotted key.
 pub fn find<'a>(written: &'a Table, key: &str) -> Option<&'a Value> {
     let mut names = key.split('.');
     let first = names.next().and_then(|name| written.get(name));

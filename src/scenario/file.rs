@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 /// A scenario file; with `gyrolab` and any number of edits, a run file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
     pub gyrolab: Option<String>,
     pub title: String,
@@ -38,7 +37,6 @@ impl ScenarioFile {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct BodyFile {
     pub rim: Option<RimFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -54,7 +52,6 @@ impl BodyFile {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct RimFile {
     pub points: usize,
     pub radius_m: f64,
@@ -63,7 +60,6 @@ pub struct RimFile {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct PointFile {
     pub name: String,
     pub at_m: [f64; 3],
@@ -71,7 +67,6 @@ pub struct PointFile {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct PartFile {
     pub shape: String,
     pub name: String,
@@ -87,7 +82,6 @@ pub struct PartFile {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct StartFile {
     pub tilt_deg: Option<f64>,
@@ -124,7 +118,6 @@ impl Frame {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct MotionFile {
     pub gravity_m_per_s2: Option<f64>,
     pub scheme: Option<String>,
@@ -133,7 +126,6 @@ pub struct MotionFile {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct PushFile {
     pub point: String,
@@ -146,7 +138,6 @@ pub struct PushFile {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct FrictionFile {
     pub spin_dry_Nm: Option<f64>,
@@ -156,7 +147,6 @@ pub struct FrictionFile {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct ViewFile {
     pub speed: Option<f64>,
     pub look_at: Option<String>,
@@ -187,14 +177,12 @@ pub enum Choice {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct CameraFile {
     pub yaw_deg: Option<f64>,
     pub pitch_deg: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct ZoomFile {
     pub above: Option<f64>,
     #[serde(rename = "3d")]
@@ -202,7 +190,6 @@ pub struct ZoomFile {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct ExpectedFile {
     pub readout: String,
     pub at_step: u64,
@@ -211,7 +198,6 @@ pub struct ExpectedFile {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct EditFile {
     pub step: u64,
     pub set: toml::Table,

@@ -20,7 +20,6 @@ const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Head {
     bytes: Vec<u8>,
-    /// Where the line of names begins.
     names: usize,
 }
 
@@ -73,9 +72,6 @@ impl Head {
     }
 
     /// The lines above the line of names without their `# `: the run file of a CSV.
-    ///
-    /// # Errors
-    /// When there is none, or it is not text.
     pub fn run_file(&self) -> Result<String, Problem> {
         if self.comments().trim_ascii().is_empty() {
             let rule = "is a CSV with no run file in its header, the \"# \" lines that gyrolab writes, and other programs drop: name the file as gyrolab wrote it";
@@ -85,9 +81,6 @@ impl Head {
     }
 
     /// The lines above the line of names without their `# `; none where there are none.
-    ///
-    /// # Errors
-    /// When they are not text.
     pub fn header(&self) -> Result<String, Problem> {
         let lines = utf8(self.comments().to_vec(), "")?;
         let stripped = |line: &str| {
@@ -124,7 +117,6 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
     text_of_file(head.bytes.as_slice().chain(reader))
 }
 
-/// The text of a scenario or run file.
 pub(super) fn text_of_file(file: impl Read) -> Result<String, Problem> {
     let text = text_of(file, LONGEST, limits::TOO_LONG, "")?;
     limits::few_enough(&text, 1).map(|()| text)

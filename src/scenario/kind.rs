@@ -31,13 +31,11 @@ pub enum Kind {
     Settings,
 }
 
-/// The range of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
     Any,
     Positive,
     NotNegative,
-    /// From the first to the second.
     Within((f64, f64)),
 }
 
@@ -103,7 +101,6 @@ fn text(value: &Value) -> Result<&str, String> {
     value.as_str().ok_or_else(|| not("text", value))
 }
 
-/// The number that `value` is, whole or not.
 pub(crate) fn float(value: &Value) -> Option<f64> {
     let whole = || value.as_integer().map(|whole| whole as f64);
     value.as_float().or_else(whole)

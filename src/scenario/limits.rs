@@ -7,7 +7,6 @@ use toml::{Table, Value};
 /// The longest scenario or run file, bytes.
 pub const LONGEST: u64 = 4_000_000;
 
-/// What is said of a longer one.
 pub const TOO_LONG: &str = "is longer than 4 MB (4000000 bytes), the most that a scenario or run file may have: leave some of it out";
 
 /// The longest header of a CSV, bytes. The run file in it is longer than the scenario was: it gives every number in full,

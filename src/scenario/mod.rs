@@ -1,7 +1,7 @@
 //! Scenarios: from a TOML file, or a run's own CSV, to numbers that have been checked.
 //!
 //! A [`Document`] is the text with its `--set` overrides; [`keys`] is the one table of every key a file may hold;
-//! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts`, `solids`, `start`, `rubbing` and `edits` make
+//! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts`, `solids` and `start` make
 //! checked numbers of its tables, and `checks` a [`Scenario`] of those. What is refused comes back as [`Problems`], each
 //! with place, key, value and rule. [`csv`] reads the other CSVs: measured data and tables.
 
@@ -9,7 +9,6 @@ mod checks;
 pub mod csv;
 pub mod document;
 pub mod dotted;
-mod edits;
 pub mod file;
 pub mod head;
 pub mod keys;
@@ -21,16 +20,12 @@ mod parts;
 pub mod presets;
 pub mod problem;
 pub mod rescale;
-mod reshape;
-mod rotor;
-mod rubbing;
 pub mod screen;
 pub(crate) mod solids;
 pub mod start;
-mod syntax;
 
 pub use document::Document;
 pub use file::ScenarioFile;
 pub(crate) use kind::{float, vector};
-pub use model::{Body, Edit, Motion, Push, Pushes, Scenario, Touches, Window};
+pub use model::{Body, Edit, Motion, Push, Pushes, Scenario, Window};
 pub use problem::{Problem, Problems};

@@ -20,7 +20,6 @@ pub struct Scenario {
     /// Orientation and momentum at t = 0.
     pub start: State,
     pub friction: Friction,
-    /// How it moves at the start.
     pub motion: Motion,
     pub steps: u64,
     /// The time step for which its step counts were written, s.
@@ -51,7 +50,6 @@ pub struct Motion {
 /// A force on one point for a while.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
-    /// Index of the pushed point.
     pub point: usize,
     /// Force, world frame, N.
     pub force: Vector3<f64>,
@@ -78,21 +76,13 @@ pub struct Edit {
     pub step: u64,
     /// How the body moves from then on.
     pub motion: Motion,
-    /// The pushes from then on.
     pub pushes: Pushes,
     /// The numbers of the pushes that it set, each once, in order.
     pub set_pushes: Vec<usize>,
-    /// What it set.
-    pub touches: Touches,
-}
-
-/// Which parts of the motion an edit set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Touches {
-    /// The time step: t is counted anew from here, and pushes keep their seconds.
-    pub time_step: bool,
-    /// The time step, the scheme or gravity: a new segment begins.
-    pub segment: bool,
+    /// Whether it set the time step: t is counted anew from here, and pushes keep their seconds.
+    pub sets_time_step: bool,
+    /// Whether it set the time step, the scheme or gravity.
+    pub begins_segment: bool,
 }
 
 impl Edit {
@@ -127,9 +117,8 @@ impl Body {
         names
     }
 
-    pub(super) fn find(&self, key: &str, name: &str) -> Result<usize, Vec<Problem>> {
-        self.point(name)
-            .ok_or_else(|| vec![self.no_point(key, name)])
+    pub(super) fn find(&self, key: &str, name: &str) -> Result<usize, Problem> {
+        self.point(name).ok_or_else(|| self.no_point(key, name))
     }
 
     /// The problem that no point has the `name`, which stands at `key`.

@@ -2,19 +2,27 @@
 //! that say how long they act.
 
 use super::dotted::join;
-use super::file::{BodyFile, MotionFile, PushFile};
+use super::file::{BodyFile, FrictionFile, MotionFile, PartFile, PushFile, StartFile};
 use super::keys::GRAVITY;
 use super::limits::MOST_POINTS;
 use super::model::{Body, Motion, Push, Pushes, Window};
-use super::problem::{Problem, Problems};
+use super::problem::{Problem, Problems, listed, nearest};
 use super::solids;
-use crate::physics::{self, BodyError, PointMass, SchemeInfo};
+use crate::physics::{
+    self, BodyError, Damping, Friction, Part, PointMass, SchemeInfo, SymmetricTop, scheme,
+};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
+use toml::Value;
 
 /// The points that each part counts as, held against the most that there may be.
 const OF_PART: usize = 6;
+/// The largest coefficient of friction, divided by the least moment of the body, whose effect is still finite.
+const MOST_RATE: f64 = 1e100;
+/// A direction, a place or a moment is on or about the axle to this part of its size, as for
+/// [`SymmetricTop`]: less is the rounding of a scenario's digits.
+const WITHIN: f64 = 1e-9;
 
 pub(super) fn body(file: &BodyFile) -> Result<Body, Problems> {
     few_enough(file)?;
@@ -46,7 +54,7 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Problems> {
             }
             _ => "",
         };
-        vec![Problem::at("body", format!("{error}{few}"))]
+        Problem::at("body", format!("{error}{few}"))
     })?;
     Ok(Body {
         mechanics,
@@ -55,7 +63,7 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Problems> {
     })
 }
 
-fn few_enough(file: &BodyFile) -> Result<(), Vec<Problem>> {
+fn few_enough(file: &BodyFile) -> Result<(), Problem> {
     let count = file.rim_points() + file.point.len() + OF_PART * file.part.len();
     if count as i64 <= MOST_POINTS {
         return Ok(());
@@ -63,7 +71,7 @@ fn few_enough(file: &BodyFile) -> Result<(), Vec<Problem>> {
     let parts = file.part.first();
     let of_parts = parts.map_or("", |_| ", six for each part");
     let rule = format!("has {count} points{of_parts}; at most {MOST_POINTS} are allowed");
-    Err(vec![Problem::at("body", rule)])
+    Err(Problem::at("body", rule))
 }
 
 /// The names of points and parts as they are found, each with the index of its point, and what is wrong with them.
@@ -78,7 +86,7 @@ impl Named {
     fn add(&mut self, name: &str, point: usize, kind: &str, index: usize) {
         if self.names.insert(name.to_owned(), point).is_some() {
             self.problems.add(|| {
-                let value = toml::Value::String(name.to_owned());
+                let value = Value::String(name.to_owned());
                 let key = format!("body.{kind}.{index}.name");
                 let rule = match kind {
                     "point" => "is the name of another point too: each needs its own",
@@ -90,8 +98,8 @@ impl Named {
     }
 
     /// What is wrong with the part of this index, whose keys are those in its table.
-    fn refuse(&mut self, problems: Vec<Problem>, index: usize) {
-        for problem in problems {
+    fn refuse(&mut self, problems: Problems, index: usize) {
+        for problem in problems.list {
             let key = join(&format!("body.part.{index}"), &problem.key);
             let key = key.trim_end_matches('.').to_owned();
             self.problems.add(|| Problem { key, ..problem });
@@ -152,8 +160,7 @@ pub(super) fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Prob
     })
 }
 
-/// When the push at `key` acts.
-fn window(file: &PushFile, key: &str) -> Result<Window, Vec<Problem>> {
+fn window(file: &PushFile, key: &str) -> Result<Window, Problem> {
     let rule = match (file.first_step, file.steps, file.from_s, file.for_s) {
         (first, Some(count), None, None) => {
             let first = first.unwrap_or(1);
@@ -171,5 +178,112 @@ fn window(file: &PushFile, key: &str) -> Result<Window, Vec<Problem>> {
         (None, None, None, None) => "does not say for how long: add steps, or for_s",
         _ => "counts in steps and in seconds: keep first_step and steps, or from_s and for_s",
     };
-    Err(vec![Problem::at(key, rule)])
+    Err(Problem::at(key, rule))
+}
+
+pub(super) fn friction(
+    file: Option<&FrictionFile>,
+    body: &physics::Body,
+) -> Result<Friction, Problem> {
+    let Some(file) = file else {
+        return Ok(Friction::default());
+    };
+    let rates = [
+        ("spin_dry_Nm", file.spin_dry_Nm),
+        ("spin_viscous_Nms", file.spin_viscous_Nms),
+        ("spin_quadratic_Nms2", file.spin_quadratic_Nms2),
+        ("swing_viscous_Nms", file.swing_viscous_Nms),
+    ]
+    .map(|(name, rate)| (name, rate.unwrap_or(0.0)));
+    let [spin_dry, spin_viscous, spin_quadratic, swing_viscous] = rates.map(|(_, rate)| rate);
+    let friction = Friction {
+        spin_dry,
+        spin_viscous,
+        spin_quadratic,
+        swing_viscous,
+    };
+    let Some(damping) = Damping::new(body, &friction) else {
+        return Ok(Friction::default());
+    };
+    let least = damping.least_moment();
+    let Some((name, rate)) = rates.iter().find(|(_, rate)| *rate / least > MOST_RATE) else {
+        return Ok(friction);
+    };
+    let rule = format!(
+        "is too large for this body, whose least moment is {least:e} kg m^2: at most {:e}",
+        MOST_RATE * least
+    );
+    let key = format!("friction.{name}");
+    Err(Problem::with_value(key, &Value::Float(*rate), rule))
+}
+
+/// Refuses a `scheme` that is not true to `friction`.
+pub(super) fn objects(scheme: &'static SchemeInfo, friction: &Friction) -> Result<(), Problem> {
+    let Some(why) = scheme.admits.objection(friction) else {
+        return Ok(());
+    };
+    let able = listed(scheme::true_to(*friction).map(|scheme| scheme.name));
+    let value = Value::String(scheme.name.to_owned());
+    let rule = format!("cannot be true to this friction: it {why}; take one of {able}");
+    Err(Problem::with_value("motion.scheme", &value, rule))
+}
+
+/// What turns: `body`, of which the part that `file` names as the rotor spins alone, in a frame that does not.
+///
+/// The axle moves by the moments across of all that tilts, by L along the axle, and by the torque. Where the frame is
+/// symmetric too and turns freely about the axle, the gyroscope therefore moves as a rigid body whose moment about the axle
+/// is the rotor's: that is the body which is computed, and its spin, its energy and the work of friction are the rotor's.
+pub(super) fn spinning(
+    file: &StartFile,
+    body: &Body,
+    parts: &[PartFile],
+) -> Result<physics::Body, Problem> {
+    let whole = &body.mechanics;
+    let Some(name) = &file.rotor else {
+        return Ok(whole.clone());
+    };
+    let refused = |rule: &str| {
+        let value = Value::String(name.clone());
+        Err(Problem::with_value("start.rotor", &value, rule))
+    };
+    let Some(index) = parts.iter().position(|part| part.name == *name) else {
+        let near = nearest(name, parts.iter().map(|part| part.name.as_str()));
+        return refused(&format!("is no part of this body: {near}"));
+    };
+    if SymmetricTop::of(whole).is_none() {
+        return refused(
+            "needs a body that is symmetric about its axle, and this one is lopsided: leave it out",
+        );
+    }
+    match alone(&body.parts[index]) {
+        Ok(moment) => {
+            (whole.clone().with_rotor(moment)).or_else(|error| refused(&error.to_string()))
+        }
+        Err(rule) => refused(rule),
+    }
+}
+
+/// The moment about the axle of a `part` that can spin alone about it, kg m².
+fn alone(part: &Part) -> Result<f64, &'static str> {
+    let moments = part.moments();
+    let axis = part.directions.column(2);
+    let size = (moments.amax() / part.mass).sqrt();
+    let is_small = |number: f64, size: f64| number.abs() <= WITHIN * size;
+    let centre = part.centre;
+    let is_on_axle = [centre.x, centre.y]
+        .iter()
+        .all(|&across| is_small(across, size.max(centre.z.abs())));
+    let is_along = is_small(axis.x, 1.0) && is_small(axis.y, 1.0);
+    let is_round = is_small(moments.x - moments.y, moments.amax());
+    match (is_on_axle, is_along, is_round) {
+        (false, ..) => Err("must have its centre on the axle, x and y of at_m 0"),
+        (_, false, _) => Err("must have its axis along the axle, [0, 0, 1]"),
+        (.., false) => Err(
+            "must be symmetric about its axis: of any other the moments would change as it spins",
+        ),
+        _ if moments.z <= WITHIN * moments.amax() => {
+            Err("has no moment about the axle: no spin of it gives a momentum")
+        }
+        _ => Ok(moments.z),
+    }
 }

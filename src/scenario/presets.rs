@@ -28,6 +28,7 @@ pub const PRESETS: &[Preset] = presets![
     "method-2": "t draws the exact motion: how much of the swing in z is the time step's?"
     "wobble-push": "t draws the exact motion: does it wobble under the same push?"
     "wobble-push-accumulating": "o opens wobble-push: the same push, which does not grow."
+    "every-slip": "t: the exact motion. At this time step the scheme is 7 cm off it in 2 s."
     "fast-top": "e, then |L|: half of it doubles the precession and makes the nutation larger."
     "cusps": "o opens waves and loops: the same top, started with and against its precession."
     "loops": "o opens waves: the same top, started with its precession and not against it."

@@ -6,9 +6,6 @@ use super::{Edit, Scenario};
 use crate::text::number::decimal;
 
 /// `file` at the time step `time_step_s` (s): as long in seconds, and its pushes at the same times.
-///
-/// # Errors
-/// Where steps have a meaning that seconds cannot hold: a push that accumulates step by step, an edit at a step.
 pub fn at_time_step(file: &ScenarioFile, time_step_s: f64) -> Result<ScenarioFile, Problem> {
     let written_for_s = file.motion.time_step_s;
     if !file.edit.is_empty() {

@@ -16,19 +16,16 @@ pub const PANES: [&str; 6] = ["lesson", TRACES, ABOVE, THREE_D, "parameters", "s
 /// predicts, the line that says what there is to see.
 pub const HIDEABLE: [&str; PANES.len() + 3] = joined(&PANES, &["health", "predicted", "look_at"]);
 
-/// What can fill the screen.
 pub const FILLING: [&str; PANES.len() + 1] = joined(&PANES, &["none"]);
 
 /// What the strip of the fast motion can show; auto: the tilt, or x where the tilt does not swing.
 pub const DETAILS: [&str; 5] = [AUTO, "x", "y", "z", "tilt"];
-/// Chosen by the motion.
 pub const AUTO: &str = "auto";
 
 /// The page of the step pane after those of the phases.
 pub const WHY: &str = "why";
 /// The last phase of a step, whatever it is called.
 pub const LAST: &str = "last";
-/// All rows of a table.
 pub const ALL_ROWS: &str = "all";
 
 /// What the step pane can show besides a phase by its number.

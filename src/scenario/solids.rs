@@ -2,7 +2,7 @@
 
 use super::file::PartFile;
 use super::kind::vector;
-use super::problem::Problem;
+use super::problem::{Problem, Problems};
 use crate::physics::part::{Part, PartError, Shape};
 use crate::text::number::shortest;
 use nalgebra::Vector3;
@@ -13,38 +13,44 @@ pub(super) struct Form {
     name: &'static str,
     /// The dimensions without which there is no such solid.
     needs: &'static [&'static str],
-    /// Those that it may have too.
     may_have: &'static [&'static str],
+    /// The shape of a part that has the dimensions.
+    make: fn(&PartFile) -> Shape,
 }
 
 const fn form(
     name: &'static str,
     needs: &'static [&'static str],
     may_have: &'static [&'static str],
+    make: fn(&PartFile) -> Shape,
 ) -> Form {
     Form {
         name,
         needs,
         may_have,
+        make,
     }
 }
 
-/// Every shape there is.
+const TUBE: [&str; 3] = ["inner_radius_m", "outer_radius_m", "length_m"];
+
+#[rustfmt::skip]
 pub(super) static FORMS: [Form; 9] = [
-    form("ring", &["radius_m"], &[]),
-    form("cylinder", &["radius_m"], &["length_m"]),
-    form(
-        "tube",
-        &["inner_radius_m", "outer_radius_m", "length_m"],
-        &[],
-    ),
-    form("rod", &["length_m"], &[]),
-    form("ball", &["radius_m"], &[]),
-    form("shell", &["radius_m"], &[]),
-    form("cone", &["radius_m", "length_m"], &[]),
-    form("block", &["size_m"], &[]),
-    form("moments", &["moments_kg_m2"], &[]),
+    form("ring", &["radius_m"], &[], |file| Shape::Ring { radius: of(file.radius_m) }),
+    form("cylinder", &["radius_m"], &["length_m"], |file| Shape::Cylinder { radius: of(file.radius_m), length: of(file.length_m) }),
+    form("tube", &TUBE, &[], |file| Shape::Tube { inner: of(file.inner_radius_m), outer: of(file.outer_radius_m), length: of(file.length_m) }),
+    form("rod", &["length_m"], &[], |file| Shape::Rod { length: of(file.length_m) }),
+    form("ball", &["radius_m"], &[], |file| Shape::Ball { radius: of(file.radius_m) }),
+    form("shell", &["radius_m"], &[], |file| Shape::Shell { radius: of(file.radius_m) }),
+    form("cone", &["radius_m", "length_m"], &[], |file| Shape::Cone { radius: of(file.radius_m), length: of(file.length_m) }),
+    form("block", &["size_m"], &[], |file| Shape::Block { size: of(file.size_m).into() }),
+    form("moments", &["moments_kg_m2"], &[], |file| Shape::Moments(Vector3::from(of(file.moments_kg_m2)) / file.mass_kg)),
 ];
+
+/// The dimension that a form needs, or that is nothing where it may be left out.
+fn of<T: Default>(dimension: Option<T>) -> T {
+    dimension.unwrap_or_default()
+}
 
 /// The dimensions of any shape, in the order of the table of keys.
 pub(super) const DIMENSIONS: [&str; 6] = [
@@ -66,42 +72,33 @@ pub(super) const fn names() -> [&'static str; FORMS.len()] {
     names
 }
 
-/// Whether the shape called `shape` has the dimension `name`.
 pub(crate) fn has_dimension(shape: &str, name: &str) -> bool {
     let form = FORMS.iter().find(|form| form.name == shape);
     form.is_some_and(|form| form.needs.contains(&name) || form.may_have.contains(&name))
 }
 
 /// The part that `file` describes.
-///
-/// # Errors
-/// A dimension that is missing, or that its shape has not, or that no solid has; a direction of length 0. Keys are those in
-/// the part's table.
-pub(super) fn part(file: &PartFile) -> Result<Part, Vec<Problem>> {
+/// In a refusal the keys are those in the part's table.
+pub(super) fn part(file: &PartFile) -> Result<Part, Problems> {
     // An unknown shape has been refused by the keys.
     let form = FORMS.iter().find(|form| form.name == file.shape);
     let form = form.unwrap_or(&FORMS[0]);
-    let problems = wrong_dimensions(form, file);
-    if !problems.is_empty() {
-        return Err(problems);
-    }
-    let shape = shape(file).map_err(|problem| vec![problem])?;
+    Problems::from(wrong_dimensions(form, file)).or(())?;
+    check_dimensions(form, file)?;
     let axis = Vector3::from(file.axis.unwrap_or([0.0, 0.0, 1.0]));
     if axis == Vector3::zeros() {
         let rule = "must not be of length 0: it is a direction";
-        return Err(vec![Problem::with_value("axis", &vector(&axis), rule)]);
+        return Err(Problem::with_value("axis", &vector(&axis), rule).into());
     }
     let centre = Vector3::from(file.at_m);
-    Part::new(shape, file.mass_kg, centre, &axis).map_err(|error| {
-        let problem = match error {
-            PartError::OutOfRange => Problem::at("", error.to_string()),
-            PartError::Unreal(_) => {
-                let moments = vector(&Vector3::from(file.moments_kg_m2.unwrap_or_default()));
-                Problem::with_value("moments_kg_m2", &moments, format!("cannot be: {error}"))
-            }
-        };
-        vec![problem]
-    })
+    let part = Part::new((form.make)(file), file.mass_kg, centre, &axis);
+    Ok(part.map_err(|error| match error {
+        PartError::OutOfRange => Problem::at("", error.to_string()),
+        PartError::Unreal(_) => {
+            let moments = vector(&Vector3::from(file.moments_kg_m2.unwrap_or_default()));
+            Problem::with_value("moments_kg_m2", &moments, format!("cannot be: {error}"))
+        }
+    })?)
 }
 
 /// The dimensions that are missing, and those that a solid of this form has not.
@@ -123,53 +120,116 @@ fn wrong_dimensions(form: &Form, file: &PartFile) -> Vec<Problem> {
     DIMENSIONS.into_iter().filter_map(wrong).collect()
 }
 
-/// The shape of `file`, which has the dimensions of its form.
-fn shape(file: &PartFile) -> Result<Shape, Problem> {
-    let given = Option::<f64>::unwrap_or_default;
-    let (radius, length) = (given(file.radius_m), given(file.length_m));
-    let long = || {
-        let rule = "must be greater than zero";
-        let refused = || Problem::with_value("length_m", &Value::Float(length), rule);
-        (length > 0.0).then_some(length).ok_or_else(refused)
-    };
-    Ok(match file.shape.as_str() {
-        "cylinder" => Shape::Cylinder { radius, length },
-        "tube" => {
-            let (inner, outer) = (given(file.inner_radius_m), given(file.outer_radius_m));
-            if inner > outer {
-                let outer = shortest(outer);
-                let rule = format!("must not be greater than outer_radius_m, {outer}");
-                let inner = Value::Float(inner);
-                return Err(Problem::with_value("inner_radius_m", &inner, rule));
-            }
-            Shape::Tube {
-                inner,
-                outer,
-                length,
-            }
+/// Refuses dimensions that no solid of this form has.
+fn check_dimensions(form: &Form, file: &PartFile) -> Result<(), Problem> {
+    let refused =
+        |name: &str, value: Value, rule: &str| Err(Problem::with_value(name, &value, rule));
+    if let (Some(length), "rod" | "cone") = (file.length_m, form.name)
+        && length <= 0.0
+    {
+        return refused("length_m", length.into(), "must be greater than zero");
+    }
+    if let (Some(inner), Some(outer)) = (file.inner_radius_m, file.outer_radius_m)
+        && inner > outer
+    {
+        let rule = format!(
+            "must not be greater than outer_radius_m, {}",
+            shortest(outer)
+        );
+        return refused("inner_radius_m", inner.into(), &rule);
+    }
+    for (name, numbers) in [
+        ("size_m", file.size_m),
+        ("moments_kg_m2", file.moments_kg_m2),
+    ] {
+        let numbers = Vector3::from(of(numbers));
+        if numbers.min() < 0.0 {
+            return refused(name, vector(&numbers), "must hold no negative number");
         }
-        "rod" => Shape::Rod { length: long()? },
-        "ball" => Shape::Ball { radius },
-        "shell" => Shape::Shell { radius },
-        "cone" => Shape::Cone {
-            radius,
-            length: long()?,
-        },
-        "block" => Shape::Block {
-            size: not_negative("size_m", file.size_m)?,
-        },
-        "moments" => {
-            Shape::Moments(not_negative("moments_kg_m2", file.moments_kg_m2)? / file.mass_kg)
-        }
-        _ => Shape::Ring { radius },
-    })
+    }
+    Ok(())
 }
 
-fn not_negative(name: &str, numbers: Option<[f64; 3]>) -> Result<Vector3<f64>, Problem> {
-    let numbers = Vector3::from(numbers.unwrap_or_default());
-    if numbers.min() >= 0.0 {
-        return Ok(numbers);
+/// Prepares the file's `table` for a new `value` at `key`. Where a part is to have another shape, or a direction that its file
+/// does not give, its table gets the dimensions that the value asks for, as near to the old ones as there are.
+pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
+    let mut names = key.split('.');
+    let (Some("body"), Some("part")) = (names.next(), names.next()) else {
+        return;
+    };
+    let index = names.next().and_then(|index| index.parse::<usize>().ok());
+    let parts = table.get_mut("body").and_then(|body| body.get_mut("part"));
+    let part = parts
+        .zip(index)
+        .and_then(|(parts, index)| parts.get_mut(index));
+    let (Some(name), Some(Value::Table(part))) = (names.next(), part) else {
+        return;
+    };
+    match (name, value.as_str()) {
+        ("axis", _) if names.next().is_some() && !part.contains_key("axis") => {
+            part.insert("axis".to_owned(), vector(&Vector3::z()));
+        }
+        ("shape", Some(shape)) => {
+            let old: Result<PartFile, _> = part.clone().try_into();
+            let told = old.map_or(Vec::new(), |old| dimensions(&old, shape));
+            if !told.is_empty() {
+                part.retain(|key, _| !DIMENSIONS.contains(&key));
+            }
+            let told = told.into_iter();
+            part.extend(told.map(|(name, value)| (name.to_owned(), value)));
+        }
+        _ => {}
     }
-    let rule = "must hold no negative number";
-    Err(Problem::with_value(name, &vector(&numbers), rule))
+}
+
+/// The dimensions that a part of the shape `shape` has in the place of `old`; none where there is no such shape, or no such
+/// part.
+fn dimensions(old: &PartFile, shape: &str) -> Vec<(&'static str, Value)> {
+    let Ok(part) = part(old) else {
+        return Vec::new();
+    };
+    let size = size(&part.shape);
+    let (radius, length) = (0.5 * size.x.max(size.y), size.z);
+    let hole = match part.shape {
+        Shape::Tube { inner, .. } => inner,
+        _ => 0.5 * radius,
+    };
+    // A rod or a cone without length is nothing.
+    let length = match (length > 0.0, shape) {
+        (false, "rod" | "cone") => 2.0 * radius,
+        _ => length,
+    };
+    let values = [
+        radius.into(),
+        hole.into(),
+        radius.into(),
+        length.into(),
+        vector(&size),
+        vector(&part.moments()),
+    ];
+    let all = DIMENSIONS.into_iter().zip(values);
+    all.filter(|(name, _)| has_dimension(shape, name)).collect()
+}
+
+/// How long a solid is along its x, its y and its axis, m.
+fn size(shape: &Shape) -> Vector3<f64> {
+    let round = |radius: f64, length: f64| Vector3::new(2.0 * radius, 2.0 * radius, length);
+    match *shape {
+        Shape::Ring { radius } => round(radius, 0.0),
+        Shape::Cylinder { radius, length } | Shape::Cone { radius, length } => {
+            round(radius, length)
+        }
+        Shape::Tube { outer, length, .. } => round(outer, length),
+        Shape::Rod { length } => round(0.5 * length, length),
+        Shape::Ball { radius } | Shape::Shell { radius } => round(radius, 2.0 * radius),
+        Shape::Block { size } => size,
+        Shape::Moments(moments) => block_of(&moments),
+    }
+}
+
+/// The sides of the block that has these moments divided by the mass, m.
+fn block_of(moments: &Vector3<f64>) -> Vector3<f64> {
+    let [a, b, c] = (*moments).into();
+    let side = |twice: f64| (6.0 * twice.max(0.0)).sqrt();
+    Vector3::new(side(b + c - a), side(a + c - b), side(a + b - c))
 }

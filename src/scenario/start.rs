@@ -19,14 +19,11 @@ use toml::{Table, Value};
 const RPM: f64 = TAU / 60.0;
 
 /// The state at t = 0 under the gravity `gravity`, m/s²; pushes do not count.
-///
-/// # Errors
-/// Where the momentum is given in several ways or in none, or cannot be steady.
 pub(super) fn start(
     file: &StartFile,
     body: &physics::Body,
     gravity: f64,
-) -> Result<State, Vec<Problem>> {
+) -> Result<State, Problem> {
     is_told_once(file)?;
     let orientation = orientation(file);
     let turned = |frame: Option<Frame>, vector: [f64; 3]| match frame.unwrap_or_default() {
@@ -82,22 +79,18 @@ fn spin(file: &StartFile) -> Option<f64> {
     file.spin_rad_per_s.or(file.spin_rpm.map(|rpm| rpm * RPM))
 }
 
-fn refused(name: &str, value: impl Into<Value>, rule: impl Into<String>) -> Vec<Problem> {
-    vec![Problem::with_value(
-        format!("start.{name}"),
-        &value.into(),
-        rule,
-    )]
+fn refused(name: &str, value: impl Into<Value>, rule: impl Into<String>) -> Problem {
+    Problem::with_value(format!("start.{name}"), &value.into(), rule)
 }
 
-fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
+fn is_told_once(file: &StartFile) -> Result<(), Problem> {
     let written = Table::try_from(file).unwrap_or_default();
     let mut told = WAYS_TO_TELL
         .into_iter()
         .filter(|name| written.contains_key(*name));
     let Some(way) = told.next() else {
         let rule = format!("is missing ({STATED})");
-        return Err(vec![Problem::at("start.momentum_Js", rule)]);
+        return Err(Problem::at("start.momentum_Js", rule));
     };
     if let Some(other) = told.next() {
         let rule = format!("is given beside {way}: keep one of the two");
@@ -109,7 +102,7 @@ fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
     ] {
         if written.contains_key(frame) && way != own {
             let rule = format!("goes with {own}, and {way} is given: leave it out");
-            return Err(vec![Problem::at(format!("start.{frame}"), rule)]);
+            return Err(Problem::at(format!("start.{frame}"), rule));
         }
     }
     if file.steady == Some(true) && !SPIN.contains(&way) {
@@ -188,34 +181,37 @@ fn way_of(name: &str) -> Option<&'static [&'static str]> {
     WAYS.into_iter().find(|way| way.contains(&name))
 }
 
-/// Whether a file can have only one of the dotted keys `one` and `other`, since both tell the momentum at the start.
-pub fn exclude_each_other(one: &str, other: &str) -> bool {
-    let names = [one, other].map(|key| key.split('.').nth(1).unwrap_or_default());
-    let is_of_start = [one, other].iter().all(|key| key.starts_with("start."));
-    let ways = names.map(way_of);
-    let are_spins = names.iter().all(|name| SPIN[..2].contains(name));
-    is_of_start
-        && ways.iter().all(Option::is_some)
-        && (ways[0] != ways[1] || are_spins && names[0] != names[1])
+/// The keys of the start that a new value at the key `name` of the start replaces: the other ways to give the momentum, or
+/// the other spin.
+fn replaced(name: &str) -> Vec<&'static str> {
+    let own = way_of(name).unwrap_or_default();
+    let others = WAYS
+        .into_iter()
+        .filter(|way| !own.is_empty() && *way != own);
+    let spins = SPIN[..2]
+        .iter()
+        .filter(|spin| SPIN[..2].contains(&name) && **spin != name);
+    others.flatten().chain(spins).copied().collect()
 }
 
-/// Removes from the file's `table` what a new value at `key` replaces: the other ways to give the momentum, or the other
-/// spin.
+/// Whether a file can have only one of the dotted keys `one` and `other`, since both tell the momentum at the start.
+pub fn exclude_each_other(one: &str, other: &str) -> bool {
+    let of_start = |key: &'_ str| Some(key.strip_prefix("start.")?.split('.').next()?.to_owned());
+    let names = of_start(one).zip(of_start(other));
+    names.is_some_and(|(one, other)| replaced(&one).contains(&other.as_str()))
+}
+
+/// Removes from the file's `table` what a new value at `key` replaces.
 pub(super) fn make_room(table: &mut Table, key: &str) {
     let name = key.strip_prefix("start.").unwrap_or_default();
-    let is_frame_or_flag = ["momentum_frame", "omega_frame", "steady"].contains(&name);
-    let Some(own) = way_of(name).filter(|_| !is_frame_or_flag) else {
-        return;
-    };
-    remove(table, WAYS.into_iter().filter(|way| *way != own).flatten());
-    if own == SPIN {
-        remove(table, SPIN[..2].iter().filter(|spin| **spin != name));
+    if WAYS_TO_TELL.contains(&name) {
+        remove(table, &replaced(name));
     }
 }
 
-fn remove<'a>(table: &mut Table, names: impl Iterator<Item = &'a &'static str>) {
+fn remove(table: &mut Table, names: &[&str]) {
     if let Some(Value::Table(start)) = table.get_mut("start") {
-        names.for_each(|name| drop(start.remove(*name)));
+        start.retain(|name, _| !names.contains(&name));
     }
 }
 
@@ -238,7 +234,7 @@ pub(super) fn is_other_way(table: &Table, key: &str, value: &Value) -> bool {
 pub(super) fn tell_other_way(table: &mut Table, key: &str, value: &Value, now: &Scenario) {
     let name = key.split('.').nth(1).unwrap_or_default();
     let own = way_of(name).unwrap_or(&MOMENTUM);
-    remove(table, WAYS.into_iter().filter(|way| *way != own).flatten());
+    remove(table, &replaced(own[own.len() - 1]));
     let start = &now.start;
     let framed = |in_world: Vector3<f64>| match value.as_str() {
         Some("body") => vector(&start.orientation.tr_mul(&in_world)),

@@ -1,20 +1,21 @@
-//! Exports a run to a CSV file, or draws a figure of it, in the background.
-
-mod drawing;
-mod estimate;
-mod scp;
-
-pub use drawing::Drawn;
-pub use estimate::{Estimate, estimate};
-pub use scp::scp_line;
+//! Exports a run to a CSV file, or draws a figure of it, in the background; how large the CSV will be, and how it is fetched
+//! from this machine.
 
 use super::at_exit::{self, Registered, Release};
+use crate::data::Measured;
 use crate::export::destination::{Destination, DestinationError};
 use crate::export::stream::{self, Ended};
-use crate::export::{CsvWriter, Layout};
-use crate::run::{NotFinite, Simulation};
+use crate::export::{COLUMNS, CsvWriter, Layout};
+use crate::figure::kind::Kind;
+use crate::figure::labels::Labels;
+use crate::figure::of_runs::{self, EXACT_BESIDE, Request, Run};
+use crate::figure::{self, Format};
+use crate::run::{Clock, NotFinite, Sample, Simulation};
 use crate::scenario::Scenario;
+use crate::text::printable::printable;
+use std::ffi::OsStr;
 use std::io;
+use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -33,12 +34,21 @@ pub struct Exporting {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     pub path: PathBuf,
-    /// Number of rows; `None` for a figure.
     pub rows: Option<u64>,
     pub bytes: u64,
     pub warnings: Vec<String>,
     /// Where the run's numbers stopped being finite, if they did. The file has the rows before that.
     pub not_finite: Option<NotFinite>,
+}
+
+/// What a figure shows of a run.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    pub kind: Kind,
+    /// Whether the exact motion stands beside the run.
+    pub exact: bool,
+    pub measured: Option<Arc<Measured>>,
+    pub format: Format,
 }
 
 #[derive(Default)]
@@ -54,10 +64,6 @@ struct Shared {
 impl Exporting {
     /// Starts writing the run of `scenario`, from step 0 to its last step, to the file `path`. It writes the same bytes as
     /// `gyrolab run -o`, with the rows and columns of `layout`. The file appears once it is complete.
-    ///
-    /// # Errors
-    /// [`Exists`](DestinationError::Exists) when there is such a file and `replace` is false; any other error that opening
-    /// the file or starting the thread gives.
     pub fn begin(
         scenario: Arc<Scenario>,
         path: &Path,
@@ -72,6 +78,22 @@ impl Exporting {
         let written = path.clone();
         let write = move |shared: &Shared| write(scenario, csv, written, shared);
         Self::spawn(path, steps, write).map_err(refused)
+    }
+
+    /// Starts drawing a figure of the run of `scenario`, a column of a page wide, to the file `path`. It writes the same bytes
+    /// as `gyrolab figure -o`. The file appears once it is complete.
+    pub fn begin_figure(
+        scenario: Arc<Scenario>,
+        path: &Path,
+        drawn: Drawn,
+        replace: bool,
+    ) -> Result<Self, DestinationError> {
+        let refused = |error| DestinationError::refused(path, error);
+        let output = Destination::open_file(path, replace)?;
+        let path = std::path::absolute(path).map_err(refused)?;
+        let (steps, drawn_to) = (scenario.steps, path.clone());
+        let draw = move |shared: &Shared| draw(scenario, output, drawn_to, drawn, shared);
+        Self::spawn(path, steps, draw).map_err(refused)
     }
 
     fn spawn(
@@ -195,6 +217,145 @@ fn write(
     })
 }
 
+/// Draws the run of `scenario` on `output`, which becomes the file `path`.
+fn draw(
+    scenario: Arc<Scenario>,
+    output: Destination,
+    path: PathBuf,
+    drawn: Drawn,
+    shared: &Shared,
+) -> Result<Written, String> {
+    let request = Request {
+        kind: drawn.kind,
+        from_s: 0.0,
+        to_s: None,
+        exact: drawn.exact,
+        measured: drawn.measured,
+        width_pt: figure::COLUMN_PT,
+        labels: Labels::default(),
+    };
+    let run = Run {
+        named: scenario.file.title.clone(),
+        scenario,
+    };
+    let figure = of_runs::figure(&[run], &request, |step, _| shared.reach(step))?;
+    let figure = figure.filter(|_| shared.reach(shared.steps).is_continue());
+    let figure = figure.ok_or("the figure was stopped, and nothing was written")?;
+    let bytes = figure::write(&figure.scene, drawn.format).map_err(|error| error.to_string())?;
+    output
+        .write_and_keep(&bytes)
+        .map_err(|error| error.fact())?;
+    let told = figure.broke.iter().cloned().chain(figure.told());
+    let in_the_lab = |text: String| text.replace(EXACT_BESIDE, "t, then X draws that beside it");
+    Ok(Written {
+        path,
+        rows: None,
+        bytes: bytes.len() as u64,
+        warnings: told.map(in_the_lab).collect(),
+        not_finite: None,
+    })
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Estimate {
+    /// Number of rows. The export has fewer only if the numbers stop being finite.
+    pub rows: u64,
+    /// Number of bytes, within a few percent.
+    pub bytes: u64,
+}
+
+/// Estimates the size of the export of `scenario` with every `every`-th row. It takes a few milliseconds: it writes
+/// 64 rows with the numbers of the run's beginning and with steps and times spread over the whole run.
+pub fn estimate(scenario: &Arc<Scenario>, every: NonZeroU64) -> Estimate {
+    let rows = rows(scenario.steps, every.get());
+    let text = sample_rows(scenario, every.get()).unwrap_or_default(); // writing to memory does not fail
+    let text = String::from_utf8_lossy(&text);
+    let lines = text
+        .lines()
+        .rev()
+        .take_while(|line| !line.starts_with(COLUMNS[0].name));
+    let lengths: Vec<_> = lines.map(|line| line.len() + 1).collect();
+    let few: usize = lengths.iter().sum();
+    let row = few as f64 / lengths.len().max(1) as f64;
+    Estimate {
+        rows,
+        bytes: ((row * rows as f64).round() as u64).saturating_add((text.len() - few) as u64),
+    }
+}
+
+/// The number of rows of a run that ends at step `last`: rows 0, `every`, twice `every` and so on, and the last.
+fn rows(last: u64, every: u64) -> u64 {
+    last / every + 1 + u64::from(!last.is_multiple_of(every))
+}
+
+/// A CSV of 64 rows that have the numbers of the run's beginning, and steps and times spread over the whole run.
+fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
+    const ROWS: u64 = 64;
+    let points = scenario.body.mechanics.points().len() as u64;
+    let apart = ((1 << 15) / points).clamp(4, 32); // steps between rows; a step of a larger body takes longer
+    let apart = apart.min(scenario.steps / ROWS).max(1);
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    let mut csv = CsvWriter::new(Vec::new(), scenario)?;
+    for row in 0..ROWS {
+        let part = row as f64 / (ROWS - 1) as f64;
+        let step = (part * scenario.steps as f64) as u64 / every * every;
+        csv.write(&Sample {
+            step,
+            time_s: Clock::at(scenario, step).time_s(step),
+            ..simulation.sample()
+        })?;
+        let _ = simulation.step_to(((row + 1) * apart).min(scenario.steps)); // where the numbers stop being finite it repeats the last state
+    }
+    csv.finish()
+}
+
+/// The `scp` command that the user types on their own machine to fetch the file `path` from this one; `None` where the
+/// lab does not run over SSH. Where the name of the file, the user or the machine cannot be typed in a shell, a message
+/// that says so.
+pub fn scp_line(path: &Path) -> Option<String> {
+    // ssh sets it to "CLIENT CLIENT_PORT SERVER SERVER_PORT".
+    let connection = std::env::var("SSH_CONNECTION").ok()?;
+    let user = ["USER", "LOGNAME"]
+        .into_iter()
+        .find_map(std::env::var_os)
+        .unwrap_or_default();
+    let port = connection.split(' ').nth(3).unwrap_or_default();
+    let made = scp_line_from(port, &user, &gethostname::gethostname(), path.as_os_str());
+    Some(made.unwrap_or_else(|what| {
+        format!("no scp line: {what} holds characters that cannot be typed in a shell")
+    }))
+}
+
+/// The command, or which part of it cannot be typed. An empty `user` is left out.
+fn scp_line_from(
+    port: &str,
+    user: &OsStr,
+    host: &OsStr,
+    path: &OsStr,
+) -> Result<String, &'static str> {
+    let port = match port.parse::<u16>() {
+        Ok(22) | Err(_) => String::new(),
+        Ok(port) => format!("-P {port} "),
+    };
+    let user = if user.is_empty() {
+        String::new()
+    } else {
+        format!("{}@", name(user).ok_or("the user's name")?)
+    };
+    let host = name(host).ok_or("this machine's name")?;
+    let path = path.to_str().filter(|path| printable(path) == *path);
+    let place = format!("{user}{host}:{}", path.ok_or("its name")?);
+    let quoted = shlex::try_quote(&place).map_err(|_| "its name")?;
+    Ok(format!("scp {port}{quoted} ."))
+}
+
+/// `text` if it is a name of a user or a machine that scp does not mistake for an option or a path.
+fn name(text: &OsStr) -> Option<&str> {
+    let is_plain = |c: char| c.is_alphanumeric() || "._-@+%\\$".contains(c);
+    text.to_str()
+        .filter(|name| !name.is_empty() && !name.starts_with('-') && name.chars().all(is_plain))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -230,5 +391,42 @@ mod tests {
         cut_off.shared.prepare_for(Release::Exit);
         wait(&cut_off);
         assert_eq!((suspended.outcome(), cut_off.outcome()), (None, None));
+    }
+
+    fn line(port: &str, user: &str, host: &str, path: &str) -> Result<String, &'static str> {
+        let [user, host, path] = [user, host, path].map(OsStr::new);
+        scp_line_from(port, user, host, path)
+    }
+
+    #[test]
+    fn an_scp_line_can_be_pasted() {
+        assert_eq!(
+            line("22", "ada", "lab.example.org", "/home/ada/run-1.csv").unwrap(),
+            "scp ada@lab.example.org:/home/ada/run-1.csv ."
+        );
+        for path in [
+            "/tmp/Ada's run $1.csv",
+            "/tmp/a\"b`c!d\\e;f&g|h<i>j(k)l*m?n[o]p{q}r~s#t.csv",
+            "/tmp/速い.csv",
+        ] {
+            let line = line("2222", "", "lab", path).unwrap();
+            let words = ["scp", "-P", "2222", &format!("lab:{path}"), "."];
+            assert_eq!(shlex::split(&line).unwrap(), words, "{line}");
+        }
+    }
+
+    #[test]
+    fn names_that_cannot_be_typed_give_no_scp_line() {
+        for (user, host, path) in [
+            ("ada", "lab", "/tmp/a\u{1b}]0;x\u{7}.csv"),
+            ("ada", "lab", "/tmp/a\nb.csv"),
+            ("ada", "lab", "/tmp/a\u{200b}.csv"),
+            ("a\u{1b}[2Jda", "lab", "/tmp/a.csv"),
+            ("-oProxyCommand=sh", "lab", "/tmp/a.csv"),
+            ("ada", "la\u{202e}b", "/tmp/a.csv"),
+            ("ada", "", "/tmp/a.csv"),
+        ] {
+            line("22", user, host, path).unwrap_err();
+        }
     }
 }

@@ -7,12 +7,13 @@
 use super::at_exit::{self, Registered};
 use super::own::make_folder;
 use super::slot::{self, Slot};
+pub use super::slot::{Content, Text, later};
 use crate::text::printable::Shown;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, SystemTime};
 
@@ -20,28 +21,6 @@ use std::time::{Duration, SystemTime};
 const PATIENCE: Duration = Duration::from_millis(400);
 /// How often what was noted is saved; a running run does not keep the disk busy.
 const PERIOD: Duration = Duration::from_millis(500);
-
-/// A text that is written once, when it is first read; a clone shares it.
-pub type Text = Arc<LazyLock<String, Box<dyn FnOnce() -> String + Send>>>;
-
-pub fn later(write: impl FnOnce() -> String + Send + 'static) -> Text {
-    Arc::new(LazyLock::new(Box::new(write)))
-}
-
-/// The content of a session.
-#[derive(Clone, Debug)]
-pub struct Content {
-    /// What changes seldom, such as the runs and their journals.
-    pub work: Text,
-    /// What changes all the time, such as the present step. It is short.
-    pub place: String,
-}
-
-impl Content {
-    fn is_same(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.work, &other.work) && self.place == other.place
-    }
-}
 
 /// What is left of a session that has ended.
 #[derive(Debug)]
@@ -94,7 +73,6 @@ pub struct LeftAlone {
     pub reason: String,
 }
 
-/// A session in a listing.
 #[derive(Debug)]
 pub struct Listed {
     pub name: String,
@@ -120,10 +98,6 @@ pub fn folder() -> Result<PathBuf, String> {
 
 /// Resumes the newest session in `folder` that no running process holds and that `read` accepts; with a `name` only that
 /// one.
-///
-/// # Errors
-/// When `folder` cannot be listed, there is no session of that name, or the system gives no thread. A `folder` that does
-/// not exist yet is no error.
 pub fn resume<T>(
     folder: &Path,
     name: Option<&str>,
@@ -190,10 +164,7 @@ fn listed(folder: &Path, name: String) -> Listed {
 
 /// The names of all sessions in `folder`, the one saved last first; none where there is no such folder.
 fn sessions(folder: &Path) -> io::Result<Vec<String>> {
-    let found = slot::sessions(folder).or_else(|error| match error.kind() {
-        io::ErrorKind::NotFound => Ok(Vec::new()),
-        _ => Err(error),
-    });
+    let found = slot::sessions(folder);
     found.map_err(|error| told(&error, "cannot look for sessions in", folder))
 }
 
@@ -326,7 +297,6 @@ fn keep_writing(slot: Slot, state: &Mutex<State>, flushes: &Receiver<(Sender<()>
     }
 }
 
-/// Saves what was noted last.
 fn save(slot: &Slot, state: &Mutex<State>) {
     let noted = {
         let mut state = locked(state);

@@ -15,10 +15,8 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
-/// The file that the program writes.
 pub const FILE: &str = "settings.toml";
 
-/// The first lines of that file.
 const HEAD: &str = "# What was chosen in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and wins.\n";
 
 /// A setting's key, what it may hold, and its meaning.
@@ -47,7 +45,6 @@ pub const KEYS: [(&str, Kind, &str); 5] = [
 pub struct Read {
     /// Those of its settings that break no rule, by the keys of [`KEYS`].
     pub settings: Table,
-    /// What is wrong with the others.
     pub problems: Option<Problems>,
 }
 
@@ -168,31 +165,5 @@ mod tests {
         let config = home.path().join("config.toml");
         symlink(&target, &config).unwrap();
         assert_eq!(read_config(&config).settings["marker"], "dot".into());
-    }
-
-    #[test]
-    fn what_is_wrong_is_told_with_its_line_and_the_rest_is_used() {
-        let home = tempfile::tempdir().unwrap();
-        let path = home.path().join("config.toml");
-        let text = "fps = 5\nmarkers = 'dot'\nbackground = 'gray'\nmouse = 1\n";
-        fs::write(&path, text).unwrap();
-        let found = read_config(&path);
-        assert_eq!(found.settings["fps"], 5.into());
-        let told = found.problems.unwrap().to_string();
-        for words in [
-            "config.toml:2: markers: unknown key: did you mean marker?",
-            "config.toml:3: background (\"gray\") must be",
-            "config.toml:4: mouse (1) must be true or false",
-        ] {
-            assert!(told.contains(words), "{told}");
-        }
-        fs::write(&path, "fps = 5\nmarker = [\n").unwrap();
-        let told = read_config(&path).problems.unwrap().to_string();
-        assert!(told.contains("config.toml:"), "{told}");
-        // A choice mends the program's own file.
-        fs::write(home.path().join(FILE), text).unwrap();
-        remember(home.path(), "colour", "never".into()).unwrap();
-        let found = read(home.path());
-        assert_eq!((found.problems, &found.settings["fps"]), (None, &5.into()));
     }
 }

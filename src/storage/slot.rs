@@ -17,19 +17,40 @@
 //! disk: sessions must survive the death of the process, not of the machine.
 
 use super::own;
-use super::session::{Content, later};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, LazyLock};
 use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 const FORMAT: &str = "gyrolab session 4";
-/// The most unused sessions that are kept.
 const MOST_KEPT: usize = 20;
 /// A lock that is held for a shorter time belongs to a process that only looks at the session.
 const GLANCE: Duration = Duration::from_millis(10);
+
+/// A text that is written once, when it is first read; a clone shares it.
+pub type Text = Arc<LazyLock<String, Box<dyn FnOnce() -> String + Send>>>;
+
+pub fn later(write: impl FnOnce() -> String + Send + 'static) -> Text {
+    Arc::new(LazyLock::new(Box::new(write)))
+}
+
+/// The content of a session.
+#[derive(Clone, Debug)]
+pub struct Content {
+    /// What changes seldom, such as the runs and their journals.
+    pub work: Text,
+    /// What changes all the time, such as the present step. It is short.
+    pub place: String,
+}
+
+impl Content {
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.work, &other.work) && self.place == other.place
+    }
+}
 
 /// A session that this process holds as long as this value lives.
 pub(super) struct Slot {
@@ -44,11 +65,13 @@ pub(super) fn file(folder: &Path, name: &str, kind: &str) -> PathBuf {
 
 /// The names of the files in `folder` that end in `kind`, without that.
 fn names(folder: &Path, kind: &str) -> io::Result<Vec<String>> {
-    let files =
-        fs::read_dir(folder)?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let names =
-        files.filter_map(|file| Some(file.strip_suffix(kind)?.strip_suffix('.')?.to_owned()));
-    Ok(names.collect())
+    let files = match fs::read_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        files => files?,
+    };
+    let files = files.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let name = |file: String| Some(file.strip_suffix(kind)?.strip_suffix('.')?.to_owned());
+    Ok(files.filter_map(name).collect())
 }
 
 /// The names of the sessions in `folder`, the one written last first.
@@ -203,38 +226,5 @@ impl Drop for Slot {
     /// file open.
     fn drop(&mut self) {
         let _ = self.lock.unlock();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_changed_byte_is_detected() {
-        let folder = tempfile::tempdir().unwrap();
-        let slot = Slot::new(folder.path()).unwrap();
-        let wanted = ("title = \"Größe\"\nform = 2\n", "step = 12\n");
-        slot.save(&Content {
-            work: later(|| wanted.0.to_owned()),
-            place: wanted.1.to_owned(),
-        })
-        .unwrap();
-        let path = file(folder.path(), "1", "session");
-        let bytes = fs::read(&path).unwrap();
-        let read = |bytes: &[u8]| {
-            fs::write(&path, bytes).unwrap();
-            stored(folder.path(), "1").ok()
-        };
-        let content = read(&bytes).unwrap();
-        assert_eq!((content.work.as_str(), &*content.place), wanted);
-        for bit in 0..8 * bytes.len() {
-            let mut changed = bytes.clone();
-            changed[bit / 8] ^= 1 << (bit % 8);
-            assert!(read(&changed).is_none(), "bit {bit}");
-        }
-        for end in 0..bytes.len() {
-            assert!(read(&bytes[..end]).is_none(), "cut at {end}");
-        }
     }
 }

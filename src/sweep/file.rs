@@ -1,4 +1,5 @@
-//! The shape of sweep files, read with a place for everything that is wrong.
+//! The shape of sweep files, read with a place for everything that is wrong; and shards, the parts of a sweep's points for
+//! several machines.
 
 use crate::scenario::document::Document;
 use crate::scenario::dotted::join;
@@ -6,6 +7,9 @@ use crate::scenario::keys::{Kind, Range};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, Problems, ScenarioFile};
 use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::ops;
+use std::str::FromStr;
 use toml::{Table, Value};
 
 /// A sweep as its file tells it.
@@ -155,4 +159,51 @@ fn check(table: &Table, path: &str, known: &[(&str, Option<Kind>)]) -> Vec<Probl
         Some(refused(table, path, name, &rule))
     };
     table.iter().filter_map(problem).collect()
+}
+
+/// The shard `number` of `of`: of the points in their order the `number`-th of `of` ranges, which are as long as each other
+/// or differ by one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    pub number: u64,
+    pub of: u64,
+}
+
+const MOST_SHARDS: u64 = 1_000_000;
+
+impl Shard {
+    pub const WHOLE: Self = Self { number: 1, of: 1 };
+
+    /// The points, of all `points` of a sweep, that belong to it.
+    pub fn range(self, points: u64) -> ops::Range<u64> {
+        let begin = |number| points * number / self.of; // both are small enough for u64
+        begin(self.number - 1)..begin(self.number)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let numbers = text.split_once('/');
+        let numbers =
+            numbers.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        match numbers {
+            Some((number, of)) if (1..=of).contains(&number) && of <= MOST_SHARDS => {
+                Ok(Self { number, of })
+            }
+            Some((number, of)) if number > of && (1..=MOST_SHARDS).contains(&of) => {
+                Err(format!("must be one of the shards 1/{of} to {of}/{of}"))
+            }
+            _ => Err(format!(
+                "must be K/N, such as 3/8: the K-th of N shards, K from 1, N at most {MOST_SHARDS}"
+            )),
+        }
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
 }

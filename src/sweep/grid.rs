@@ -1,13 +1,10 @@
 //! A checked sweep: its points in their order, the scenario of each, and its row.
 
 use super::axis::{Axis, axes};
-use super::file::{Base, SweepFile};
-use super::shard::Shard;
-use crate::analysis::at_end;
+use super::file::{Base, Shard, SweepFile};
 use crate::analysis::readouts::{self, READOUTS, Readout, Source, Value as Readable};
 use crate::export::layout::commented;
-use crate::run::Clock;
-use crate::run::resampled;
+use crate::run::{Clock, resampled};
 use crate::scenario::document::Document;
 use crate::scenario::dotted::{find, join, number_of_push};
 use crate::scenario::rescale::{MOST_STEPS, accumulates};
@@ -25,7 +22,6 @@ const IN_STEPS_OR_SECONDS: [(&str, &str); 2] = [("first_step", "from_s"), ("step
 
 const MOST_POINTS: u64 = 1_000_000_000;
 
-/// One row of a sweep's CSV.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepRow {
     /// The line of the file, with its end.
@@ -124,7 +120,6 @@ impl Sweep {
         })
     }
 
-    /// The same sweep with this shard of its points.
     #[must_use]
     pub fn with_shard(mut self, shard: Shard) -> Self {
         self.file.shard = (shard != Shard::WHOLE).then(|| shard.to_string());
@@ -221,7 +216,6 @@ impl Sweep {
         pairs.collect::<Vec<_>>().join(", ")
     }
 
-    /// The scenario of the `row`-th row, from 0.
     pub fn scenario(&self, row: u64) -> Result<Scenario, String> {
         let mut document = self.base.clone();
         let mut time_step_s = None;
@@ -243,7 +237,7 @@ impl Sweep {
     pub fn row(&self, row: u64, go_on: &dyn Fn() -> bool) -> Option<SweepRow> {
         let found = self
             .scenario(row)
-            .and_then(|scenario| at_end::readouts(scenario, &self.measure, go_on));
+            .and_then(|scenario| readouts::at_end(scenario, &self.measure, go_on));
         let (cells, failure) = match found {
             Ok(cells) => (cells?, None),
             Err(why) => (vec![Readable::Nothing; self.measure.len()], Some(why)),
@@ -314,7 +308,6 @@ fn inside(problems: Problems, document: &Document) -> Problems {
     document.placed(list)
 }
 
-/// `cells` as one line of CSV.
 fn line(cells: &impl Serialize) -> String {
     let mut writer = csv::WriterBuilder::new()
         .has_headers(false)

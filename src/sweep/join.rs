@@ -1,11 +1,10 @@
 //! One CSV of a sweep's shards.
 
-use super::empty_rows::EmptyRows;
+use super::file::Shard;
 use super::grid::Sweep;
 use super::part::{
-    SweepFileError, There, cannot_read, cannot_write, first_difference, refused, whole,
+    EmptyRows, SweepFileError, There, cannot_read, cannot_write, first_difference, refused, whole,
 };
-use super::shard::Shard;
 use crate::export::Destination;
 use crate::scenario::document::Document;
 use crate::text::printable::Shown;

@@ -34,21 +34,3 @@ pub fn unwritten(error: &Error) -> String {
 pub fn advised(error: &Error) -> Error {
     Error::new(error.kind(), unwritten(error))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_users_can_mend_comes_with_what_to_do() {
-        use ErrorKind::{NotFound, PermissionDenied, StorageFull, TimedOut};
-        let kinds = [PermissionDenied, NotFound, StorageFull, TimedOut];
-        let [denied, missing, full, late] = kinds.map(Error::from);
-        assert!(unread(&missing).contains("check the name"));
-        assert!(unread(&denied).contains("permissions"));
-        assert!(unread(&late).starts_with("cannot be read: "));
-        assert!(unwritten(&denied).ends_with(": name a file in a folder that you may write to"));
-        assert!(unwritten(&full).contains("free some room"));
-        assert_eq!(unwritten(&late), late.to_string());
-    }
-}

@@ -1,6 +1,7 @@
 //! Numbers and words as people read them: what every other room writes with. It knows nothing of gyroscopes.
 //!
 //! - [`advice`]: why a file cannot be read or written.
+//! - [`ascii`]: formulas for terminals without UTF-8.
 //! - [`ladder`]: the numbers 1, 2 and 5 times a power of ten.
 //! - [`number`]: numbers in as few digits as a reader needs.
 //! - [`printable`]: text with nothing in it that steers a terminal.
@@ -9,6 +10,7 @@
 //! - [`wrap`]: text in lines of a width.
 
 pub mod advice;
+pub mod ascii;
 pub mod ladder;
 pub mod number;
 pub mod printable;

@@ -68,7 +68,6 @@ pub fn significant(number: f64, digits: usize) -> String {
     shortest(rounded(number, digits) + 0.0) // adding 0 makes 0 of -0
 }
 
-/// The number nearest to `number` that has `digits` significant digits.
 pub fn rounded(number: f64, digits: usize) -> f64 {
     let after_the_first = digits.saturating_sub(1);
     let text = format!("{number:.after_the_first$e}");

@@ -1,13 +1,15 @@
 //! The main loop: it carries out what keys mean, advances the run with time, and draws a frame when something has changed.
 
 use crate::class::Class;
+use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::{Lab, Request};
 use crate::lessons::Class as Lessons;
 use crate::storage::session::Session;
 use crate::tui::decoder::Typed;
+use crate::tui::keymap::{Does, Key};
 use crate::tui::mouse::Pointer;
 use crate::tui::pacing::Pacing;
-use crate::tui::press::{action_of, press};
+use crate::tui::press::{meaning_of, press};
 use crate::tui::screen;
 use crate::tui::terminal::{Event, Screen};
 use ratatui::layout::Rect;
@@ -44,7 +46,7 @@ pub fn run(
         let acted = !events.is_empty();
         for event in events {
             let taken = matches!(event, Event::Typed(Typed::Key(key))
-                if action_of(key, lab).is_some_and(|action| class.takes(action, lab, lessons)));
+                if class_takes(key, lab, (lessons, class), screen.size()?));
             if !taken
                 && handle(
                     event,
@@ -80,6 +82,28 @@ pub fn run(
             let bytes = screen.draw(|area, buf| screen::draw(lab, true, area, buf))?;
             pacing.drawn(now, bytes, screen.size()?.area());
         }
+    }
+}
+
+/// Tells `class` what `key` is about to do. Returns whether that was the class's, and is done.
+fn class_takes(
+    key: Key,
+    lab: &mut Lab,
+    (lessons, class): (&mut Lessons, &mut Class),
+    size: Rect,
+) -> bool {
+    match meaning_of(key, lab) {
+        Some(Does::Action(Action::Lesson(LessonKey::Next))) if screen::page_goes_on(lab, size) => {
+            false // it scrolls
+        }
+        Some(Does::Action(action)) => class.takes(action, lab, lessons),
+        Some(Does::Commands(meant)) => {
+            if let Ok(commands) = meant(lab, lab.popups().count) {
+                class.expect(&commands, lab, lessons);
+            }
+            false
+        }
+        None => false,
     }
 }
 
@@ -119,8 +143,8 @@ fn wait(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
         to_frame.max(Duration::from_millis(1))
     } else {
         let is_attentive = lab.files().is_exporting()
-            || lab.on_top().browser.is_loading()
-            || lab.player().is_seeking_advice()
+            || lab.popups().browser.is_loading()
+            || lab.adviser().is_seeking()
             || !lab.script().is_done();
         let rest = if is_attentive { ATTENTIVE } else { IDLE };
         let rest = lessons.wait().unwrap_or(rest).min(rest);
@@ -180,6 +204,9 @@ pub fn do_in_class(
     size: Rect,
 ) -> Option<Request> {
     match request {
+        Request::Lesson(LessonKey::Next) if screen::page_goes_on(lab, size) => {
+            screen::scroll_page(lab, Direction::PageDown, size);
+        }
         Request::Lesson(key) => {
             if let Some(direction) = lessons.act(key, lab) {
                 screen::scroll_page(lab, direction, size);

@@ -1,7 +1,7 @@
 //! A canvas of dots on which panes draw curves, whichever characters show the dots: how many of these fit in a cell of the
 //! screen, and which characters show them.
 
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::Theme;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -106,18 +106,15 @@ pub enum Ink {
 /// Dots that are drawn, and out of how many: dashes and dots tell the runs apart without colours.
 pub type Dashes = (usize, usize);
 
-/// The exact motion.
 pub const EXACT: Dashes = (2, 4);
 /// The pinned run: long dashes.
 pub const PINNED: Dashes = (5, 7);
-const DOTTED: Dashes = (1, 3);
-const LARGE_DOTTED: Dashes = (1, 2);
 
 /// The run before an edit: single dots, closer where the dots of `marker` are as large as cells.
 pub fn of_run_before(marker: Marker) -> Dashes {
     match marker {
-        Marker::Braille => DOTTED,
-        _ => LARGE_DOTTED,
+        Marker::Braille => (1, 3),
+        _ => (1, 2),
     }
 }
 
@@ -151,7 +148,6 @@ struct Cell {
     roles: [Role; 4],
 }
 
-/// Dots on an area of cells; columns and rows are counted from the upper left.
 pub struct Dots {
     area: Rect,
     marker: Marker,
@@ -173,12 +169,10 @@ impl Dots {
         self.marker.dots()
     }
 
-    /// Dots across.
     pub fn width(&self) -> usize {
         self.area.width as usize * self.marker.dots().0
     }
 
-    /// Dots down.
     pub fn height(&self) -> usize {
         self.area.height as usize * self.marker.dots().1
     }

@@ -1,7 +1,10 @@
-//! The one table of keys: what is pressed, in which mode, what it means, and what the footer and the help say of it.
+//! The one table of keys: what is pressed, in which mode, which commands or which action it means, and what the footer and
+//! the help say of it.
 
 pub use crate::lab::Mode;
-use crate::lab::action::{Action, Direction, FieldEdit, LessonKey};
+use crate::lab::action::{Action, Ask, Direction, FieldEdit, LessonKey, repeated};
+use crate::lab::command::{Command, Place, PushChoice};
+use crate::lab::{Lab as TheLab, Meant, Request};
 use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
     Right, ShiftDown, ShiftLeft, ShiftRight, ShiftUp, Tab, Up,
@@ -38,22 +41,102 @@ pub struct Binding {
     pub modes: &'static [Mode],
     /// Which keys; the first is the one that is shown.
     pub keys: &'static [Key],
-    pub action: Action,
+    pub does: Does,
     /// What the footer says, empty where it says nothing.
     pub footer: &'static str,
     pub help: &'static str,
     /// Further words by which the help finds it.
     pub search: &'static str,
+    /// The group of the help in which a key of the lab is listed.
+    pub purpose: &'static str,
+    pub worth: Worth,
 }
+
+/// What a key does.
+#[derive(Clone, Copy, Debug)]
+pub enum Does {
+    /// The commands that this function returns for the count that was typed before the key are carried out.
+    Commands(fn(&TheLab, Option<u64>) -> Meant),
+    Action(Action),
+}
+
+impl Does {
+    pub fn carry_out(self, lab: &mut TheLab) -> Option<Request> {
+        match self {
+            Self::Commands(meant) => {
+                lab.press(meant);
+                None
+            }
+            Self::Action(action) => lab.update(action),
+        }
+    }
+}
+
+/// How long the footer names a key where there is not room for all: the least go first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Worth {
+    Spare,
+    Useful,
+    Kept,
+    /// A key of the pane in focus.
+    Own,
+}
+
+const PLAY: &str = "play";
+const LOOK: &str = "look";
+const CHANGE: &str = "change the values";
+const PUSH: &str = "push";
+const KEEP: &str = "keep and export";
+const OPEN: &str = "open another run";
+const LEAVE: &str = "help, close, leave";
+/// The groups of the keys of the lab, in order.
+pub const PURPOSES: [&str; 7] = [PLAY, LOOK, CHANGE, PUSH, KEEP, OPEN, LEAVE];
 
 /// The keys that zoom a round picture while it has the focus.
 #[rustfmt::skip]
 pub const ZOOM_KEYS: &[Binding] = &[
-    row(&[Lab], &[Char('z')], Action::ZoomIn, "zoom", "show it larger, around what moves; 3z three notches"),
-    row(&[Lab], &[Char('Z')], Action::ZoomOut, "", "show it smaller"),
-    row(&[Lab], &[Home], Action::ZoomToWhole, "", "show the whole of it"),
+    does(&[Lab], &[Char('z')], zoomed_in, "zoom", "show it larger, around what moves; 3z three notches"),
+    does(&[Lab], &[Char('Z')], zoomed_out, "", "show it smaller"),
+    does(&[Lab], &[Home], |lab, _| one(lab.view().zoom_to(1.0)?), "", "show the whole of it"),
 ];
 
+pub fn zoomed_in(lab: &TheLab, count: Option<u64>) -> Meant {
+    one(lab.view().other_zoom(repeated(count))?)
+}
+
+pub fn zoomed_out(lab: &TheLab, count: Option<u64>) -> Meant {
+    one(lab.view().other_zoom(-repeated(count))?)
+}
+
+pub fn wider(lab: &TheLab, _: Option<u64>) -> Meant {
+    one(lab.view().other_window(true, lab.player())?)
+}
+
+pub fn narrower(lab: &TheLab, _: Option<u64>) -> Meant {
+    one(lab.view().other_window(false, lab.player())?)
+}
+
+/// One time step, or as many as the count says, on with 1 and back with -1.
+fn stepped(count: Option<u64>, sign: i64) -> Meant {
+    let steps = i64::try_from(count.unwrap_or(1)).unwrap_or(i64::MAX);
+    one(match steps {
+        0 => Command::Pause,
+        steps => Command::Step(sign * steps),
+    })
+}
+
+fn restarted(lab: &TheLab, _: Option<u64>) -> Meant {
+    let run = lab.player().playback.is_running().then_some(Command::Run);
+    let start = Command::GoTo(Place::Start);
+    Ok([start].into_iter().chain(run).collect())
+}
+
+/// What a key means that means one command.
+pub fn one(command: Command) -> Meant {
+    Ok(vec![command])
+}
+
+/// A key that means an action.
 pub const fn row(
     modes: &'static [Mode],
     keys: &'static [Key],
@@ -64,14 +147,38 @@ pub const fn row(
     Binding {
         modes,
         keys,
-        action,
+        does: Does::Action(action),
         footer,
         help,
         search: "",
+        purpose: LOOK,
+        worth: Worth::Spare,
+    }
+}
+
+/// A key that means commands.
+pub const fn does(
+    modes: &'static [Mode],
+    keys: &'static [Key],
+    meant: fn(&TheLab, Option<u64>) -> Meant,
+    footer: &'static str,
+    help: &'static str,
+) -> Binding {
+    Binding {
+        does: Does::Commands(meant),
+        ..row(modes, keys, Action::DoEntry, footer, help)
     }
 }
 
 impl Binding {
+    const fn to(self, purpose: &'static str) -> Self {
+        Self { purpose, ..self }
+    }
+
+    const fn worth(self, worth: Worth) -> Self {
+        Self { worth, ..self }
+    }
+
     /// The row with further `words` by which the help finds it.
     const fn found_by(self, words: &'static str) -> Self {
         Self {
@@ -84,57 +191,57 @@ impl Binding {
 /// Every binding but digits and typed text, in the order of footer and help.
 #[rustfmt::skip]
 pub static BINDINGS: &[Binding] = &[
-    row(&[Lab], &[Char(' ')], Action::TogglePause, "pause", "stop the run, or let it go on"),
-    row(&[Lab], &[Char('.')], Action::Step, "step", "one time step on; 10. takes ten"),
-    row(&[Lab], &[Char('p')], Action::Push, "push", "give the push that is chosen, now").found_by("kick force hit"),
-    row(&[Lab], &[Char('t')], Action::ToggleExact, "exact", "the exact motion beside the run, and how far apart they are").found_by("compare truth true overlay dashed"),
-    row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change"),
-    row(&[Lab], &[Enter], Action::Edit, "", "type the value that is selected"),
-    row(&[Lab], &[Char('x')], Action::Export, "export", "write the run up to here as CSV"),
-    row(&[Lab], &[Char('f')], Action::FillScreen, "fill", "fill the screen with the pane, or show all panes again"),
-    row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file"),
-    row(&[Lab], &[Char(',')], Action::StepBack, "back", "one time step back; 10, goes ten"),
-    row(&[Lab], &[Char('+'), Char('='), PageUp], Action::Faster, "faster", "play faster").found_by("speed"),
-    row(&[Lab], &[Char('-'), PageDown], Action::Slower, "slower", "play slower; the time step stays as it is").found_by("speed"),
-    row(&[Lab], &[Char('g')], Action::GoTo, "go to", "go to a step or a time; 400g goes to step 400"),
-    row(&[Lab], &[Char('r')], Action::Restart, "restart", "back to step 0; what was done stays"),
-    row(&[Lab], &[Char('P')], Action::ChoosePush, "", "choose the push: point, force, direction, length"),
-    row(&[Lab], &[Char('u')], Action::Undo, "undo", "take back what was done last"),
-    row(&[Lab], &[Char('U'), Ctrl('r')], Action::Redo, "", "do it again"),
-    row(&[Lab], &[Char('m')], Action::ToggleResiduals, "residuals", "residuals: measured data less the run, or both again; --measured FILE puts data beside a run"),
-    row(&[Lab], &[Char('i')], Action::TogglePin, "", "pin this run as the reference beside every other, or take it away").found_by("compare keep"),
-    row(&[Lab], &[Char('a')], Action::TakeAdvice, "", "take the advice about the numbers: the run from the start with what mends them"),
-    row(&[Lab], &[Char('X')], Action::Figure, "", "figure of the run up to here (a plot, a graph): SVG, PDF or PNG").found_by("screenshot picture image"),
-    row(&[Lab], &[Char('s')], Action::SaveRun, "", "save the run file: scenario and all that was done"),
-    row(&[Lab], &[Char('S')], Action::SavePresent, "", "save the present state as a scenario"),
+    row(&[Lab], &[Char(' ')], Action::TogglePause, "pause", "stop the run, or let it go on").to(PLAY).worth(Worth::Kept),
+    does(&[Lab], &[Char('.')], |_, count| stepped(count, 1), "step", "one time step on; 10. takes ten").to(PLAY).worth(Worth::Kept),
+    does(&[Lab], &[Char('p')], |_, _| one(Command::Push(PushChoice::default())), "push", "give the push that is chosen, now").found_by("kick force hit").to(PUSH).worth(Worth::Useful),
+    does(&[Lab], &[Char('t')], |lab, _| one(Command::Exact(!lab.player().run().shows_exact())), "exact", "the exact motion beside the run, and how far apart they are").found_by("compare truth true overlay dashed").worth(Worth::Useful),
+    row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change").to(CHANGE).worth(Worth::Useful),
+    row(&[Lab], &[Enter], Action::Edit, "", "type the value that is selected").to(CHANGE),
+    row(&[Lab], &[Char('x')], Action::Ask(Ask::Export), "export", "write the run up to here as CSV").to(KEEP).worth(Worth::Useful),
+    does(&[Lab], &[Char('f')], |lab, _| one(lab.view().fill_toggled()), "fill", "fill the screen with the pane, or show all panes again").worth(Worth::Useful),
+    row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file").to(OPEN).worth(Worth::Useful),
+    does(&[Lab], &[Char(',')], |_, count| stepped(count, -1), "back", "one time step back; 10, goes ten").to(PLAY),
+    does(&[Lab], &[Char('+'), Char('='), PageUp], |lab, count| one(lab.player().other_speed(repeated(count))?), "faster", "play faster").found_by("speed").to(PLAY),
+    does(&[Lab], &[Char('-'), PageDown], |lab, count| one(lab.player().other_speed(-repeated(count))?), "slower", "play slower; the time step stays as it is").found_by("speed").to(PLAY),
+    row(&[Lab], &[Char('g')], Action::GoTo, "go to", "go to a step or a time; 400g goes to step 400").to(PLAY),
+    does(&[Lab], &[Char('r')], restarted, "restart", "back to step 0; what was done stays").to(PLAY),
+    row(&[Lab], &[Char('P')], Action::ChoosePush, "", "choose the push: point, force, direction, length").to(PUSH),
+    does(&[Lab], &[Char('u')], |_, count| one(Command::Undo(repeated(count).unsigned_abs())), "undo", "take back what was done last").to(CHANGE),
+    does(&[Lab], &[Char('U'), Ctrl('r')], |_, count| one(Command::Redo(repeated(count).unsigned_abs())), "", "do it again").to(CHANGE),
+    does(&[Lab], &[Char('m')], |lab, _| one(Command::look("residuals", !lab.view().residuals)), "residuals", "residuals: measured data less the run, or both again; --measured FILE puts data beside a run").worth(Worth::Kept),
+    does(&[Lab], &[Char('i')], |lab, _| one(Command::Pin(!lab.comparison().is_pinned())), "", "pin this run as the reference beside every other, or take it away").found_by("compare keep"),
+    does(&[Lab], &[Char('a')], |lab, _| one(lab.adviser().followed(lab.player())?), "", "take the advice about the numbers: the run from the start with what mends them"),
+    row(&[Lab], &[Char('X')], Action::Ask(Ask::Figure), "", "figure of the run up to here (a plot, a graph): SVG, PDF or PNG").found_by("screenshot picture image").to(KEEP),
+    row(&[Lab], &[Char('s')], Action::Ask(Ask::RunFile), "", "save the run file: scenario and all that was done").to(KEEP),
+    row(&[Lab], &[Char('S')], Action::Ask(Ask::Present), "", "save the present state as a scenario").to(KEEP),
     row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the list of lessons; again: back to where one was"),
     row(&[Lab], &[Char('C')], Action::Class, "", "in a class: the teacher's acts; for a student: step aside, and back"),
     row(&[Lab], &[Tab], Action::NextPane, "pane", "the next pane"),
     row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
     row(&[Lab], &[Char('d')], Action::ThreeD, "3-D", "fill the screen with the 3-D view, or show all panes again"),
     row(&[Lab], &[Char('v')], Action::ToggleStep, "", "one time step, phase by phase, with its numbers; v takes it away again"),
-    row(&[Lab], &[Char('c')], Action::Settings, "settings", "settings: colours, dots, frames a second, the mouse, a bare screen, what is hidden").found_by("colors theme light dark background markers braille ascii fps health"),
-    row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name"),
-    row(&[Lab, Browser, Filter, Find, Help], &[Up], Action::Move(Direction::Up), "", "up: in lists and values; in 3-D the camera"),
-    row(&[Lab, Browser, Filter, Find, Help], &[Down], Action::Move(Direction::Down), "", "down"),
-    row(&[Lab], &[Left], Action::Move(Direction::Left), "", "values: nudge down; 3-D: turn the camera left"),
-    row(&[Lab], &[Right], Action::Move(Direction::Right), "", "values: nudge up; 3-D: turn the camera right"),
-    row(&[Lab], &[ShiftLeft], Action::MoveFar(Direction::Left), "", "the same ten times; a count does it too: 10 Left"),
-    row(&[Lab], &[ShiftRight], Action::MoveFar(Direction::Right), "", "the same ten times"),
-    row(&[Lab, Browser, Find, Help], &[ShiftUp], Action::MoveFar(Direction::Up), "", "ten lines up"),
-    row(&[Lab, Browser, Find, Help], &[ShiftDown], Action::MoveFar(Direction::Down), "", "ten lines down"),
+    row(&[Lab], &[Char('c')], Action::Ask(Ask::Settings), "settings", "settings: colours, dots, frames a second, the mouse, a bare screen, what is hidden").found_by("colors theme light dark background markers braille ascii fps health"),
+    row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name").to(CHANGE),
+    row(&[Lab, Browser, Filter, Find, Help], &[Up], Action::Move(Direction::Up), "", "up: in lists and values; in 3-D the camera").to(CHANGE),
+    row(&[Lab, Browser, Filter, Find, Help], &[Down], Action::Move(Direction::Down), "", "down").to(CHANGE),
+    row(&[Lab], &[Left], Action::Move(Direction::Left), "", "values: nudge down; 3-D: turn the camera left").to(CHANGE),
+    row(&[Lab], &[Right], Action::Move(Direction::Right), "", "values: nudge up; 3-D: turn the camera right").to(CHANGE),
+    row(&[Lab], &[ShiftLeft], Action::MoveFar(Direction::Left), "", "the same ten times; a count does it too: 10 Left").to(CHANGE),
+    row(&[Lab], &[ShiftRight], Action::MoveFar(Direction::Right), "", "the same ten times").to(CHANGE),
+    row(&[Lab, Browser, Find, Help], &[ShiftUp], Action::MoveFar(Direction::Up), "", "ten lines up").to(CHANGE),
+    row(&[Lab, Browser, Find, Help], &[ShiftDown], Action::MoveFar(Direction::Down), "", "ten lines down").to(CHANGE),
     row(&[Browser, Filter, Help], &[PageUp], Action::Move(Direction::PageUp), "", "a page up"),
     row(&[Browser, Filter, Help], &[PageDown], Action::Move(Direction::PageDown), "", "a page down"),
-    row(&[Lab], &[Char('w')], Action::WiderWindow, "", "traces: show twice the time"),
-    row(&[Lab], &[Char('W')], Action::NarrowerWindow, "", "traces: show half the time"),
-    row(&[Browser, Filter], &[Enter], Action::Choose, "open", "open what is selected"),
+    does(&[Lab], &[Char('w')], wider, "", "traces: show twice the time"),
+    does(&[Lab], &[Char('W')], narrower, "", "traces: show half the time"),
+    row(&[Browser, Filter], &[Enter], Action::Choose, "open", "open what is selected").worth(Worth::Kept),
     row(&[Browser], &[Char('/')], Action::Filter, "filter", "type a part of a name"),
     row(&[Find], &[Left], Action::Move(Direction::Left), "nudge", "nudge the value down"),
     row(&[Find], &[Right], Action::Move(Direction::Right), "", "nudge the value up"),
     row(&[Find], &[Enter], Action::Edit, "type it", "type the value that is found"),
     row(&[Help], &[Enter], Action::DoEntry, "do it", "do the entry that is selected"),
     row(&[Filter, Find, Help, Dialog], &[Backspace, Ctrl('h')], Action::InField(FieldEdit::Erase), "", "take the last character away"),
-    row(&[Dialog], &[Enter], Action::Accept, "take it", "take what is typed"),
+    row(&[Dialog], &[Enter], Action::Accept, "take it", "take what is typed").worth(Worth::Kept),
     row(&[Dialog], &[Delete, Ctrl('d')], Action::InField(FieldEdit::Delete), "", "take the character at the cursor away"),
     row(&[Filter, Find, Help, Dialog], &[Ctrl('u')], Action::InField(FieldEdit::Clear), "", "take all of it away"),
     row(&[Dialog], &[Left, Ctrl('b')], Action::InField(FieldEdit::Left), "", "the cursor to the left"),
@@ -143,32 +250,33 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Dialog], &[End, Ctrl('e')], Action::InField(FieldEdit::End), "", "to the end"),
     row(&[Dialog], &[Down, Tab], Action::InField(FieldEdit::Next), "", "the next line"),
     row(&[Dialog], &[Up, BackTab], Action::InField(FieldEdit::Previous), "", "the line before"),
-    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Esc], Action::Close, "", "close what lies on top; first it clears what is searched for"),
-    row(&[Lab, Browser, Help], &[Char('?')], Action::Help, "help", "this list, and away again: type to search it"),
-    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('l')], Action::Redraw, "", "draw the whole screen again"),
-    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('z')], Action::Suspend, "", "back to the shell; fg returns"),
-    row(&[Lab, Browser], &[Char('q')], Action::Quit, "quit", "leave the lab: exit"),
-    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('c')], Action::Quit, "", "leave the lab"),
+    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Esc], Action::Close, "", "close what lies on top; first it clears what is searched for").to(LEAVE),
+    row(&[Lab, Browser, Help], &[Char('?')], Action::Help, "help", "this list, and away again: type to search it").to(LEAVE).worth(Worth::Kept),
+    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('l')], Action::Redraw, "", "draw the whole screen again").to(LEAVE),
+    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('z')], Action::Suspend, "", "back to the shell; fg returns").to(LEAVE),
+    row(&[Lab, Browser], &[Char('q')], Action::Quit, "quit", "leave the lab: exit").to(LEAVE).worth(Worth::Kept),
+    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('c')], Action::Quit, "", "leave the lab").to(LEAVE),
 ];
 
 /// What `key` means in `mode` where the pane in focus adds these `keys`, which come before the others.
-pub fn action(
+pub fn meaning(
     keys: impl IntoIterator<Item = &'static Binding>,
     mode: Mode,
     key: Key,
-) -> Option<Action> {
+) -> Option<Does> {
     let bound = keys
         .into_iter()
         .chain(BINDINGS)
         .find(|row| row.modes.contains(&mode) && row.keys.contains(&key));
-    match (bound, mode, key) {
-        (Some(row), _, _) => Some(row.action),
-        (None, Lab, Char(digit)) => digit.to_digit(10).map(|digit| Action::Digit(digit as u8)),
+    let action = match (bound, mode, key) {
+        (Some(row), _, _) => return Some(row.does),
+        (None, Lab, Char(digit)) => Action::Digit(digit.to_digit(10)? as u8),
         (None, Filter | Find | Help | Dialog, Char(typed)) => {
-            Some(Action::InField(FieldEdit::Type(typed)))
+            Action::InField(FieldEdit::Type(typed))
         }
-        _ => None,
-    }
+        _ => return None,
+    };
+    Some(Does::Action(action))
 }
 
 /// What is to be said of `key`, which means nothing in `mode`.

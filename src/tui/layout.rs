@@ -21,6 +21,8 @@ const BESIDE_PAGE_FROM: u16 = 72;
 /// The fewest and the most columns of a page, and its share of the screen, %.
 const PAGE: (u16, u16) = (38, 64);
 const PAGE_SHARE: usize = 48;
+/// The rows of a page above a pane whose run it plays, where they do not stand side by side.
+const PAGE_ROWS: u16 = 8;
 /// The height the whole lab wants.
 const HEIGHT: u16 = 24;
 /// From this height on a hint may have two lines.
@@ -34,7 +36,6 @@ const MOST_LINES: u16 = 3;
 pub struct Said {
     /// Lines of the hint on a screen of this width.
     pub lines: u16,
-    /// Whether the numbers' health warns of something.
     pub warns: bool,
 }
 
@@ -66,10 +67,8 @@ pub struct Layout {
     pub title: Rect,
     /// The panes that have a place, from left to right.
     pub panes: Vec<(Pane, Rect)>,
-    /// The line of the whole run.
     pub timeline: Rect,
     pub measured: Rect,
-    /// The line about the numbers' health.
     pub health: Rect,
     /// The lines that say what to look at: one, or two where the screen is narrow.
     pub hint: Rect,
@@ -104,7 +103,11 @@ impl Layout {
         }
         let keys = cut_bottom(&mut rest, keys && area.height >= 7);
         let hint = cut_bottom(&mut rest, area.height >= 6);
-        let (lines, has_health) = if area.height >= TWO_LINES_FROM {
+        let (lines, has_health) = if view.sheet.is_some() && area.height >= TWO_LINES_FROM {
+            // What the lines below have not to say goes to the page.
+            let most = 1 + u16::from(area.width < ONE_LINE_FROM);
+            (said.lines.clamp(1, most), !view.hides(Part::Health))
+        } else if area.height >= TWO_LINES_FROM {
             (1 + u16::from(area.width < ONE_LINE_FROM), true)
         } else {
             on_low_screen(said, area.height, view.hides(Part::Health))
@@ -127,12 +130,9 @@ impl Layout {
         }
     }
 
-    /// Where `pane` stands, if it has a place.
     pub fn place_of(&self, pane: Pane) -> Option<Rect> {
-        let mut panes = self.panes.iter();
-        panes
-            .find(|(other, _)| *other == pane)
-            .map(|(_, place)| *place)
+        let place = |&(other, place): &(Pane, Rect)| (other == pane).then_some(place);
+        self.panes.iter().find_map(place)
     }
 
     /// The panes that stand side by side on `area`, with the lines of the whole lab around them, while none fills it.
@@ -177,6 +177,18 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
         let share = area.width as usize * PAGE_SHARE / 100;
         let [page, rest] = split_columns(area, (share as u16).clamp(PAGE.0, PAGE.1));
         let mut panes = panes(rest, &beside_page(view));
+        panes.insert(0, (Pane::LESSON, page));
+        return panes;
+    }
+    if !view.filled && view.may_show(Pane::LESSON) && view.focus == Pane::LESSON {
+        let plays = view.sheet.as_ref().is_some_and(|sheet| sheet.plays);
+        if !plays || area.height < 2 * PAGE_ROWS {
+            return vec![(Pane::LESSON, area)];
+        }
+        let [page, rest] = split_rows(area, PAGE_ROWS);
+        let mut view = beside_page(view);
+        view.filled = true;
+        let mut panes = panes(rest, &view);
         panes.insert(0, (Pane::LESSON, page));
         return panes;
     }

@@ -1,6 +1,6 @@
 //! The mouse: what a press, a drag or the wheel does where it points. Nothing needs it; every act has keys too.
 
-use super::keymap::Mode;
+use super::keymap::{Does, Mode, narrower, wider, zoomed_in, zoomed_out};
 use super::layout::Layout;
 use super::panes::{Seen, browser, chrome, timeline::Timeline, traces::Traces};
 use super::press::press;
@@ -76,7 +76,7 @@ impl Pointer {
             let key = chrome::key_at(lab, layout.keys, at.x)?;
             return press(key, lab);
         }
-        match lab.on_top().mode {
+        match lab.popups().mode {
             Mode::Lab => {}
             Mode::Browser | Mode::Filter => return press_in_browser(layout, at, lab),
             Mode::Help | Mode::Find | Mode::Dialog => return None,
@@ -99,7 +99,7 @@ impl Pointer {
     }
 
     fn drag(&mut self, layout: &Layout, at: Position, lab: &mut Lab) {
-        if lab.on_top().mode != Mode::Lab {
+        if lab.popups().mode != Mode::Lab {
             return;
         }
         match self.held {
@@ -146,34 +146,38 @@ fn read_off(place: Rect, at: Position, lab: &mut Lab) {
 
 /// Selects the entry at `at`, or opens it if it is selected already.
 fn press_in_browser(layout: &Layout, at: Position, lab: &mut Lab) -> Option<Request> {
-    let row = browser::row_at(&lab.on_top().browser, screen::place_on_top(lab, layout), at)?;
-    if lab.on_top().browser.selected == row {
+    let row = browser::row_at(&lab.popups().browser, screen::popup_place(lab, layout), at)?;
+    if lab.popups().browser.selected == row {
         return lab.update(Action::Choose);
     }
-    lab.select_in_browser(row);
+    lab.clear();
+    lab.popups_mut().browser.select(row);
     None
 }
 
 fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) -> Option<Request> {
     let choose = |if_up, if_down| if up { if_up } else { if_down };
-    let lines = choose(Action::Move(Direction::Up), Action::Move(Direction::Down));
-    if lab.on_top().mode != Mode::Lab {
+    let lines = choose(Direction::Up, Direction::Down);
+    let lines = Does::Action(Action::Move(lines));
+    if lab.popups().mode != Mode::Lab {
         for _ in 0..LINES {
-            lab.update(lines);
+            lines.carry_out(lab);
         }
         return None;
     }
     let (pane, _) = pane_at(layout, at)?;
-    let zoom = match pane {
-        Pane::TRACES => choose(Action::NarrowerWindow, Action::WiderWindow),
-        Pane::FROM_ABOVE | Pane::THREE_D => choose(Action::ZoomIn, Action::ZoomOut),
+    let does = match pane {
+        Pane::TRACES if up => Does::Commands(narrower),
+        Pane::TRACES => Does::Commands(wider),
+        Pane::FROM_ABOVE | Pane::THREE_D if up => Does::Commands(zoomed_in),
+        Pane::FROM_ABOVE | Pane::THREE_D => Does::Commands(zoomed_out),
         Pane::PARAMETERS | Pane::STEP if lab.view().focus == pane => lines,
-        Pane::LESSON => choose(
-            Action::Lesson(LessonKey::Move(Direction::PageUp)),
-            Action::Lesson(LessonKey::Move(Direction::PageDown)),
-        ),
+        Pane::LESSON => {
+            let page = choose(Direction::PageUp, Direction::PageDown);
+            Does::Action(Action::Lesson(LessonKey::Move(page)))
+        }
         _ => return None,
     };
     lab.turn_to(pane);
-    lab.update(zoom)
+    does.carry_out(lab)
 }

@@ -3,7 +3,7 @@
 //! Nothing else on a picture has the shape of the mark. Bars do not cover the curve. After a mark that covers the curve, the
 //! next few cells show the curve: marks close together would hide it.
 
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::Theme;
 use crate::tui::dots::on_sheet;
 use crate::tui::theme::Role;
@@ -40,17 +40,10 @@ enum Sign {
     Mark,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Cell {
-    sign: Sign,
-    role: Role,
-}
-
-/// Points on an area of cells.
 pub struct Points {
     area: Rect,
     marker: Marker,
-    cells: Vec<Cell>,
+    cells: Vec<(Sign, Role)>,
 }
 
 /// The ends of a bar, in cells from the upper left, which may lie outside of the picture.
@@ -58,10 +51,7 @@ pub type Ends = (f64, f64);
 
 impl Points {
     pub fn new(area: Rect, marker: Marker) -> Self {
-        let nothing = Cell {
-            sign: Sign::Nothing,
-            role: Role::Measured,
-        };
+        let nothing = (Sign::Nothing, Role::Measured);
         Self {
             area,
             marker,
@@ -125,28 +115,27 @@ impl Points {
             return;
         };
         let cell = &mut self.cells[y * size.0 + x];
-        if sign >= cell.sign {
-            *cell = Cell { sign, role };
+        if sign >= cell.0 {
+            *cell = (sign, role);
         }
     }
 
-    /// Draws the points over what is there.
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
         let width = usize::from(self.area.width.max(1));
         for (cells, y) in self.cells.chunks(width).zip(self.area.y..) {
             let mut to_be_seen = 0u8;
-            for (cell, x) in cells.iter().zip(self.area.x..) {
+            for (&(sign, role), x) in cells.iter().zip(self.area.x..) {
                 let Some(target) = buf.cell_mut((x, y)) else {
                     continue;
                 };
                 let is_free = target.symbol() == " ";
-                let (symbol, is_shown) = match cell.sign {
+                let (symbol, is_shown) = match sign {
                     Sign::Nothing => (' ', false),
                     Sign::Bar(symbol) | Sign::End(symbol) => (symbol, is_free),
                     Sign::Mark => (self.marker.point(), is_free || to_be_seen == 0),
                 };
                 if is_shown {
-                    target.set_char(symbol).set_style(theme.style(cell.role));
+                    target.set_char(symbol).set_style(theme.style(role));
                 }
                 to_be_seen = if is_shown && !is_free {
                     SEEN
@@ -154,71 +143,6 @@ impl Points {
                     to_be_seen.saturating_sub(1)
                 };
             }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    type Point = ((f64, f64), Option<Ends>, Option<Ends>);
-
-    /// The lines of a picture of `points` over lines of `behind`.
-    fn drawn(marker: Marker, points: &[Point], behind: &str) -> Vec<String> {
-        let area = Rect::new(0, 0, 7, 5);
-        let mut sheet = Points::new(area, marker);
-        for &(at, level, upright) in points {
-            sheet.add(at, level, upright, Role::Measured);
-        }
-        let mut buf = Buffer::empty(area);
-        for y in 0..area.height {
-            buf.set_string(0, y, behind, Theme::PLAIN.style(Role::Text));
-        }
-        sheet.render(&Theme::PLAIN, &mut buf);
-        let lines = buf.content.chunks(area.width.into());
-        let text = |line: &[ratatui::buffer::Cell]| {
-            let line: String = line.iter().map(ratatui::buffer::Cell::symbol).collect();
-            line.trim_end().to_owned()
-        };
-        lines.map(text).collect()
-    }
-
-    #[test]
-    fn a_bar_is_drawn_where_it_is_larger_than_the_cell_of_its_mark() {
-        let points = [
-            ((1.5, 2.5), None, Some((0.5, 4.5))),
-            ((4.5, 2.5), Some((3.2, 5.9)), Some((2.1, 2.9))),
-        ];
-        let shown = drawn(Marker::Braille, &points, "");
-        assert_eq!(shown, [" ┬", " │", " × ├×┤", " │", " ┴"]);
-        let both = [((1.5, 1.5), Some((0.0, 2.5)), Some((-3.0, 2.5)))];
-        let shown = drawn(Marker::Ascii, &both, "");
-        assert_eq!(shown, [" |", "|X|", " -", "", ""]);
-    }
-
-    #[test]
-    fn a_mark_outside_is_left_out_and_its_bar_is_cut_off() {
-        let points = [
-            ((2.0, -3.0), None, Some((-5.0, 1.5))),
-            ((f64::NAN, 2.0), None, None),
-            ((6.5, 9.0), None, Some((8.0, 10.0))),
-        ];
-        let shown = drawn(Marker::Braille, &points, "");
-        assert_eq!(shown, ["  │", "  ┴", "", "", ""]);
-    }
-
-    #[test]
-    fn the_curve_is_seen_between_points_that_stand_close_together() {
-        let row = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|x| ((x, 0.0), None, None));
-        let barred = [((2.0, 0.0), Some((1.0, 4.0)), None)];
-        for (points, behind, wanted) in [
-            (&row[..], ".......", "×...×.."),
-            (&row, "", "×××××××"),
-            (&row, "... ...", "×..××.."),
-            (&barred, ".. . ..", "..×.┤.."),
-        ] {
-            assert_eq!(drawn(Marker::Braille, points, behind)[0], wanted);
         }
     }
 }

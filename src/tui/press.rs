@@ -1,26 +1,29 @@
 //! What a key that is pressed does in the lab.
 
-use super::keymap::{self, Key};
+use super::keymap::{self, Does, Key};
 use super::panes::{self, help};
-use crate::lab::action::Action;
+use crate::lab::action::{Action, LessonKey};
 use crate::lab::{Lab, Request};
 
-/// The action of `key`, if it has one now.
-pub fn action_of(key: Key, lab: &Lab) -> Option<Action> {
-    keymap::action(panes::keys_of(lab), lab.on_top().mode, key)
+/// What `key` does now, if it does anything.
+pub fn meaning_of(key: Key, lab: &Lab) -> Option<Does> {
+    keymap::meaning(panes::keys_of(lab), lab.popups().mode, key)
 }
 
-/// Carries out the action of `key`, or shows a message that it has none.
+/// Does what `key` means, or shows a message that it means nothing.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
-    let mode = lab.on_top().mode;
+    let mode = lab.popups().mode;
     let mut own = panes::keys(lab.view().focus).iter();
     if own.any(|row| row.modes.contains(&mode) && row.keys.contains(&key)) {
-        lab.touch_pane();
+        lab.view_mut().is_touched = true;
     }
-    match action_of(key, lab) {
-        Some(Action::DoEntry) => help::do_entry(lab),
-        Some(action) => {
-            let request = lab.update(action);
+    match meaning_of(key, lab) {
+        Some(Does::Action(Action::DoEntry)) => help::do_entry(lab),
+        Some(Does::Action(Action::Digit(digit))) if begins_number(lab) => {
+            lab.update(Action::Lesson(LessonKey::Digit(digit)))
+        }
+        Some(does) => {
+            let request = does.carry_out(lab);
             help::limit(lab);
             request
         }
@@ -29,4 +32,10 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
             None
         }
     }
+}
+
+/// Whether a digit begins to type the number that the sheet asks for; behind the first digit of a count it goes on with
+/// the count.
+fn begins_number(lab: &Lab) -> bool {
+    lab.view().asks_number() && lab.popups().count.is_none()
 }

@@ -1,7 +1,7 @@
 //! Lines in space on a sheet of dots. What is nearer hides what is farther and leaves a gap beside it, so that one sees
 //! which of two crossing lines passes in front of the other.
 
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::playback::camera::{Camera, View};
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::plane::Plane;
@@ -23,7 +23,6 @@ const SHORTEST: f64 = 4.0;
 /// A rod is nearer than what lies along it by this part of the scene's reach.
 const IN_FRONT: f64 = 0.15;
 
-/// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
     /// Every dot, and those on both of its sides. What passes in front leaves no gap beside itself.
@@ -47,9 +46,7 @@ struct Speck {
 /// What an arrow is drawn over, where it is not seen as near as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Over {
-    /// What is farther.
     Farther,
-    /// Another arrow that lies along it.
     Arrow,
     /// Everything but what is farther than a rod that is nearly as near.
     BehindRod,
@@ -77,7 +74,6 @@ pub struct Scene {
     specks: Vec<Speck>,
 }
 
-/// What a scene shows of the world.
 pub struct Shown {
     /// What stands in the middle of the sheet, m to the right and up.
     pub middle: (f64, f64),
@@ -122,7 +118,6 @@ impl Scene {
         [from, to].map(|end| (self.dot(end), depth(end)))
     }
 
-    /// A line between two dots with their depths.
     fn line_of_dots(&mut self, ends: [((f64, f64), f64); 2], stroke: Stroke, ink: Ink) {
         let [(from, near), (to, far)] = ends;
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
@@ -161,7 +156,6 @@ impl Scene {
         }
     }
 
-    /// How far from the eye `point` is, m.
     pub fn depth(&self, point: &Vector3<f64>) -> f64 {
         self.camera.depth(point)
     }
@@ -172,7 +166,7 @@ impl Scene {
         self.line_of_dots(ends, Stroke::Thin, ink);
         let [(begin, _), (end, depth)] = ends;
         let (x, y) = (begin.0 - end.0, begin.1 - end.1);
-        let length = x.hypot(y);
+        let length = libm::hypot(x, y);
         if length < SHORTEST {
             return; // seen along itself, it has no head
         }
@@ -180,7 +174,7 @@ impl Scene {
         let share = head.min(MOST_OF_ARROW * length) / length;
         for part in -HEAD_STROKES..=HEAD_STROKES {
             let angle = HEAD_ANGLE * f64::from(part) / f64::from(HEAD_STROKES);
-            let (sin, cos) = angle.sin_cos();
+            let (sin, cos) = libm::sincos(angle);
             let stroke = (x * cos - y * sin, x * sin + y * cos);
             let stroke_end = (end.0 + share * stroke.0, end.1 + share * stroke.1);
             self.line_of_dots([(end, depth), (stroke_end, depth)], Stroke::Thin, ink);
@@ -190,7 +184,7 @@ impl Scene {
     /// A place beyond the tip of an arrow, for its letter: far enough not to cover the head.
     pub fn beyond(&self, from: &Vector3<f64>, tip: &Vector3<f64>) -> Vector3<f64> {
         let (begin, end) = (self.dot(from), self.dot(tip));
-        let length = (end.0 - begin.0).hypot(end.1 - begin.1);
+        let length = libm::hypot(end.0 - begin.0, end.1 - begin.1);
         if length < SHORTEST {
             *tip
         } else {

@@ -1,22 +1,26 @@
-//! The whole picture: every pane in its place, and on top what has been opened.
+//! The whole picture: every pane in its place, and on top what has been opened; drawn on a terminal, as text, or as the
+//! bytes that a terminal would be sent.
 
 use super::panes::{self, browser, chrome, form::FormPane, help, hint, lesson, measured, timeline};
 use crate::lab::Lab;
 use crate::lab::action::Direction;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::{Pane, Part};
 use crate::tui::dots;
 use crate::tui::keymap::Mode;
 use crate::tui::layout::{Layout, Said, split_rows};
 use crate::tui::theme::Role;
+use crossterm::style;
+use ratatui::backend::{Backend, ClearType, CrosstermBackend};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Rect};
 use ratatui::widgets::Widget;
+use std::{io, mem};
 
 /// Fits `lab` to a screen of this size; all of it is to be drawn again.
 pub fn fit(lab: &mut Lab, size: Rect) {
     let panes = Layout::side_by_side(size, lab.view());
-    lab.set_side_by_side(panes);
+    lab.view_mut().set_side_by_side(panes);
 }
 
 /// Fits `lab` to a screen of this size again where other panes are shown than before.
@@ -32,6 +36,12 @@ pub fn scroll_page(lab: &mut Lab, direction: Direction, size: Rect) {
     if let Some(place) = layout.place_of(Pane::LESSON) {
         lesson::scroll(lab, direction, place);
     }
+}
+
+/// Whether the page of the lesson goes on below what a screen of this size shows of it.
+pub fn page_goes_on(lab: &Lab, size: Rect) -> bool {
+    let place = layout(lab, true, size).place_of(Pane::LESSON);
+    place.is_some_and(|place| lesson::has_more(lab, place))
 }
 
 /// Where everything of `lab` stands on `area`; `keys` says whether there is a line of keys.
@@ -63,13 +73,12 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
         hint::draw(lab, keys && layout.is_cramped, place, buf);
     }
     chrome::keys(lab, layout.keys, buf);
-    draw_on_top(lab, place_on_top(lab, &layout), buf);
+    draw_popup(lab, popup_place(lab, &layout), buf);
     if lab.view().marker == Marker::Ascii {
         to_ascii(area, buf);
     }
 }
 
-/// Makes the frame on `area` heavy.
 fn point_at(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let style = lab.view().theme.style(Role::Push);
     let inside = area.inner(Margin::new(1, 1));
@@ -96,12 +105,12 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
     }
 }
 
-fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
+fn draw_popup(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    match lab.on_top().mode {
+    match lab.popups().mode {
         Mode::Lab | Mode::Find => {}
         Mode::Dialog => {
-            if let Some(dialog) = lab.on_top().dialog() {
+            if let Some(dialog) = lab.popups().dialog() {
                 let form = &dialog.form;
                 FormPane { form, theme }.render(area, buf);
             }
@@ -112,7 +121,7 @@ fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 /// The area of what lies on top of the panes: all of theirs, without the lines that a message takes of it.
-pub(super) fn place_on_top(lab: &Lab, layout: &Layout) -> Rect {
+pub(super) fn popup_place(lab: &Lab, layout: &Layout) -> Rect {
     let panes = layout.panes.iter().map(|(_, area)| *area);
     let body = panes.reduce(Rect::union).unwrap_or_default();
     let message = hint::place(lab, layout);
@@ -145,4 +154,43 @@ pub fn text(lab: &Lab, keys: bool, (width, height): (u16, u16)) -> String {
         line.trim_end().to_owned() + "\n"
     };
     (area.top()..area.bottom()).map(line).collect()
+}
+
+/// The lab drawn without a terminal, as the bytes that a terminal would be sent.
+pub struct Recorder {
+    sent: Vec<u8>,
+    shown: Buffer,
+}
+
+impl Recorder {
+    /// A terminal of so many columns and lines, and what clears it and hides its cursor. `lab` is fitted to it.
+    pub fn new(lab: &mut Lab, (columns, lines): (u16, u16)) -> io::Result<Self> {
+        // The recording is the same whatever NO_COLOR says.
+        style::force_color_output(true);
+        let area = Rect::new(0, 0, columns, lines);
+        let mut sent = Vec::new();
+        let mut backend = CrosstermBackend::new(&mut sent);
+        backend.clear_region(ClearType::All)?;
+        backend.hide_cursor()?;
+        fit(lab, area);
+        let shown = Buffer::empty(area);
+        Ok(Self { sent, shown })
+    }
+
+    /// Draws `lab` if its picture has changed, and gives what the terminal is sent for that: only what differs.
+    pub fn draw(&mut self, lab: &mut Lab) -> io::Result<String> {
+        let area = self.shown.area;
+        if lab.has_changed() {
+            refit(lab, area);
+        }
+        if lab.take_changed() {
+            let mut next = Buffer::empty(area);
+            draw(lab, true, area, &mut next);
+            let mut backend = CrosstermBackend::new(&mut self.sent);
+            backend.draw(self.shown.diff(&next).into_iter())?;
+            self.shown = next;
+        }
+        let sent = mem::take(&mut self.sent);
+        Ok(String::from_utf8_lossy(&sent).into_owned())
+    }
 }

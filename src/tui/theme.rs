@@ -2,8 +2,10 @@
 //!
 //! People with any kind of colour vision can tell x, y and z apart: cyan, yellow and magenta differ in brightness as well as
 //! in hue, and so do blue, red and dark cyan on a light screen. No meaning depends on colour alone: each curve has its
-//! letter, and without colours the roles differ by bold, dim and reversed.
+//! letter, and without colours the roles differ by bold, dim and reversed. What the environment variables say of colours
+//! and dots is read here.
 
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use ratatui::style::{Color, Modifier, Style};
 
@@ -14,7 +16,6 @@ const DARK_GREEN: u8 = 28;
 /// The role of a piece of the screen, which decides its style.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Role {
-    /// Values and sentences.
     #[default]
     Text,
     /// Units, labels and borders, less prominent than values.
@@ -34,15 +35,10 @@ pub enum Role {
     /// The path before that in space.
     OldTrack,
     Exact,
-    /// The previous run.
     Ghost,
-    /// The pinned run.
     Pinned,
-    /// What was measured.
     Measured,
-    /// Pushes and their times.
     Push,
-    /// What has the focus.
     Focus,
     Selected,
     Warning,
@@ -90,23 +86,63 @@ fn colour(role: Role, background: Background) -> Color {
     }
 }
 
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColourChoice {
+    /// Unless NO_COLOR is set or the terminal has none.
+    #[default]
+    Auto,
+    Always,
+    Never,
+}
+
+/// The dots for these environment variables: ASCII where the locale is not UTF-8, half blocks on the Linux console,
+/// whose fonts have no Braille, else Braille.
+pub fn marker(variable: impl Fn(&str) -> Option<String>) -> Marker {
+    let locale = ["LC_ALL", "LC_CTYPE", "LANG"]
+        .into_iter()
+        .filter_map(&variable)
+        .find(|value| !value.is_empty());
+    let is_utf8 = locale.is_some_and(|locale| {
+        let locale = locale.to_lowercase();
+        locale.contains("utf-8") || locale.contains("utf8")
+    });
+    match (is_utf8, variable("TERM").as_deref()) {
+        (false, _) | (_, Some("dumb")) => Marker::Ascii,
+        (true, Some("linux")) => Marker::HalfBlock,
+        (true, _) => Marker::Braille,
+    }
+}
+
+/// Whether these environment variables refuse colours (<https://no-color.org>).
+pub fn refuses_colour(variable: impl Fn(&str) -> Option<String>) -> bool {
+    variable("NO_COLOR").is_some_and(|value| !value.is_empty())
+}
+
+/// The theme for `choice` and these environment variables (<https://no-color.org>; COLORFGBG as rxvt sets it).
+pub fn theme(choice: ColourChoice, variable: impl Fn(&str) -> Option<String>) -> Theme {
+    let refused = refuses_colour(&variable);
+    let has_none = variable("TERM").is_none_or(|term| term == "dumb" || term.starts_with("vt"));
+    let colour = match choice {
+        ColourChoice::Auto => !refused && !has_none,
+        ColourChoice::Always => true,
+        ColourChoice::Never => false,
+    };
+    let light = variable("COLORFGBG")
+        .is_some_and(|value| matches!(value.rsplit(';').next(), Some("7" | "15")));
+    Theme {
+        colour,
+        background: if light {
+            Background::Light
+        } else {
+            Background::Dark
+        },
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use Role::*;
-
-    #[test]
-    fn nothing_else_on_the_traces_has_the_colour_of_the_exact_motion() {
-        for background in [Background::Dark, Background::Light] {
-            for role in [
-                X, Y, Z, Path, Recent, Old, Track, OldTrack, Push, Warning, Ghost, Pinned, Quiet,
-                Measured,
-            ] {
-                let both = [role, Exact].map(|role| colour(role, background));
-                assert_ne!(both[0], both[1], "{role:?} on {background:?}");
-            }
-        }
-    }
 
     #[test]
     fn every_colour_is_seen_on_white() {
@@ -131,7 +167,7 @@ mod tests {
                 if part <= 0.04045 {
                     part / 12.92
                 } else {
-                    ((part + 0.055) / 1.055).powf(2.4)
+                    libm::pow((part + 0.055) / 1.055, 2.4)
                 }
             });
             1.05 / (0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2] + 0.05)

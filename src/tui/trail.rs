@@ -35,10 +35,8 @@ pub struct Trail {
     around: Around,
 }
 
-/// What the path is drawn around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Around {
-    /// Nothing: the picture is of the path.
     Nothing,
     /// The body: areas are as sparse as can be, because it is drawn over them, and the path has a colour of its own.
     Body,
@@ -148,7 +146,6 @@ impl Trail {
         around.any(|(x, y)| self.age(x, y) == Some(Age::Recent))
     }
 
-    /// Sets the dots that are drawn of the path.
     pub fn draw(&self, dots: &mut Dots) {
         let dwelt = self.dwelt();
         // The strongest last: it decides how a cell looks in which there are dots of more than one age.
@@ -208,89 +205,4 @@ fn is_in_line(x: usize, y: usize, age: Age) -> bool {
 fn is_in_area(x: usize, y: usize, age: Age) -> bool {
     let is_corner = x.is_multiple_of(2) && y.is_multiple_of(2);
     is_corner && (age == Age::Turn || (x / 2 + y / 2).is_multiple_of(2))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::lab::view::markers::Marker;
-    use crate::lab::view::theme::Theme;
-    use crate::playback::recording::Moment;
-    use ratatui::buffer::Buffer;
-    use ratatui::layout::Rect;
-
-    const WIDTH: u16 = 60;
-
-    const AREA: Rect = Rect::new(0, 0, WIDTH, 10);
-
-    /// How many dots there are in each column of cells of the trail of a point that moves from the left to the right in
-    /// 120 s, at places `at` says by the time.
-    fn drawn(at: impl Fn(f64) -> (f64, f64)) -> Vec<u32> {
-        let mut dots = Dots::new(AREA, Marker::Braille);
-        trail(&dots, at).draw(&mut dots);
-        let mut buf = Buffer::empty(AREA);
-        dots.render(&Theme::PLAIN, &mut buf);
-        let in_cell = |x, y| {
-            let sign = buf[(x, y)].symbol().chars().next().unwrap_or(' ');
-            let bits = u32::from(sign).checked_sub(0x2800);
-            bits.map_or(0, u32::count_ones)
-        };
-        (0..WIDTH)
-            .map(|x| (0..10).map(|y| in_cell(x, y)).sum())
-            .collect()
-    }
-
-    fn trail(dots: &Dots, at: impl Fn(f64) -> (f64, f64)) -> Trail {
-        let mut recording = Recording::default();
-        let moment = |step: u32| {
-            let time_s = f64::from(step) * 0.05;
-            let (x, y) = at(time_s);
-            Moment {
-                time_s,
-                position: Vector3::new(x, y, 0.0),
-                axle_height: 1.0,
-            }
-        };
-        (0..2400).for_each(|step| recording.push(&moment(step)));
-        let now = moment(2400);
-        let ages = Ages::new(Some(2.0), Some(60.0));
-        let mut trail = Trail::new(dots, Around::Nothing);
-        let to_dot = |at: &Vector3<f64>| (at.x, at.y);
-        trail.follow(&recording, &ages, (now.time_s, &now.position), to_dot);
-        trail
-    }
-
-    #[test]
-    fn the_newest_dots_are_denser_than_the_old_ones() {
-        for slope in [0.0, 0.3, 0.1] {
-            let columns = drawn(|t| (t, 2.0 + slope * t));
-            let density =
-                |columns: &[u32]| columns.iter().sum::<u32>() as f64 / (2 * columns.len()) as f64;
-            let parts = [&columns[..25], &columns[30..45], &columns[50..59]];
-            let [old, turn, recent] = parts.map(density);
-            assert!(old > 0.2 && old < 0.5, "{old}");
-            assert!(turn > old + 0.2, "{old} {turn}");
-            assert!(recent > turn + 0.15, "{turn} {recent}");
-        }
-    }
-
-    #[test]
-    fn an_old_area_is_sparse_and_the_last_swings_are_a_line() {
-        // Twice up and down in each dot.
-        let zigzag = |t: f64| (t, 20.0 + 15.0 * libm::sin(12.0 * t));
-        let columns = drawn(zigzag);
-        let old: u32 = columns[10..25].iter().sum();
-        let area = 15.0 * 2.0 * 30.0;
-        assert!(f64::from(old) < 0.25 * area, "{old} of {area}");
-        assert!(f64::from(old) > 0.08 * area, "{old} of {area}");
-        let recent: u32 = columns[52..58].iter().sum();
-        assert!(recent > 6 * 2 * 20, "{recent}");
-    }
-
-    #[test]
-    fn where_the_point_dwelt_the_path_is_denser() {
-        // It stands still at x = 20 for a while.
-        let columns = drawn(|t| (t.min(20.0).max(t - 20.0), 7.0));
-        assert!(columns[10] > columns[5], "{columns:?}");
-    }
 }

@@ -6,6 +6,7 @@ use crate::analysis::cost::is_affordable;
 use crate::data::Series;
 use crate::figure::course::{Course, Recorder, Wanted};
 use crate::figure::kind::Kind;
+use crate::figure::labels::Labels;
 use crate::figure::of_runs::{self, Figure, Known, Request, Run};
 use crate::figure::{COLUMN_PT, Scene};
 use crate::run::Clock;
@@ -86,6 +87,7 @@ pub fn figures(
         exact: exact || is_exact,
         measured: None,
         width_pt: COLUMN_PT,
+        labels: Labels::default(),
     };
     let mut planned = beside.map_or(Vec::new(), |beside| of_data(beside, &whole, &also));
     planned.extend(of_run(scenario, readouts, beside, &whole, &also)?);
@@ -115,8 +117,8 @@ pub fn figures(
 
 /// What captions say of the exact motion and of the lines that join the steps.
 fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -> String {
-    let dashed = match (exact, is_exact) {
-        (true, _) => ", the exact motion dashed",
+    let beneath = match (exact, is_exact) {
+        (true, _) => ", the exact motion as a wide pale line beneath",
         (_, true) => "; the run is the exact motion itself",
         _ => "",
     };
@@ -124,9 +126,9 @@ fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -
         .swing_s()
         .map(|swing_s| swing_s / scenario.motion.time_step_s);
     let joined = steps
-        .filter(|steps| *steps < SMOOTH)
+        .filter(|steps| *steps < SMOOTH && !is_exact)
         .map(|steps| format!("; straight lines join the run's steps, about {steps:.0} a swing"));
-    format!("{dashed}{}", joined.unwrap_or_default())
+    format!("{beneath}{}", joined.unwrap_or_default())
 }
 
 /// The figures of what was measured, and of measured less run.

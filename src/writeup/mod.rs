@@ -1,4 +1,4 @@
-//! A run as a write-up: a folder with the run file, the CSV, figures, the measured numbers beside theory, and a page that
+//! A run as a write-up: a folder with the run file, the CSV, figures, its numbers beside theory, and a page that
 //! says what was run, whether to believe it, and how to make it again.
 //!
 //! The same run gives the same bytes each time: what the machine's clock says is left out.

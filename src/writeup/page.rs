@@ -9,7 +9,7 @@ use crate::scenario::Scenario;
 use crate::text::number::{NONE, fixed, shortest, significant};
 use std::fmt::{self, Write};
 
-const HOW_TO_READ_QUANTITIES: &str = "Measured means read off the steps of this run; theory is that of the exact motion \
+const HOW_TO_READ_QUANTITIES: &str = "The numbers of this run are read off its steps; theory is that of the exact motion \
     under the forces at the end of the run. Digits in parentheses are one standard error of reading the number off the \
     steps, in units of the last digits: 0.886033(24) is 0.886033 ± 0.000024. \"In errors\" is the difference in standard \
     errors. Up to about 3 of them, reading alone explains it (exactly ±1.00: the reading's own known error, stated and not \
@@ -42,7 +42,7 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     }
     let believed = readouts.health.sentence(readouts.advice.as_ref());
     writeln!(page, "{}\n", escaped(&believed))?;
-    writeln!(page, "## Measured beside theory\n")?;
+    writeln!(page, "## This run beside theory\n")?;
     let range = ExactRange::new(&writeup.scenario, readouts.sample.time_s);
     write_quantities(&mut page, &rows(&writeup.scenario, readouts, range))?;
     if let Some(beside) = &writeup.beside {
@@ -123,12 +123,12 @@ fn write_quantities(page: &mut String, rows: &[Row]) -> fmt::Result {
     if rows.is_empty() {
         return writeln!(
             page,
-            "The run is too short for that: nothing could be measured on it."
+            "The run is too short for that: nothing could be read off it."
         );
     }
     writeln!(
         page,
-        "| what | measured | theory | difference | in errors | unit |"
+        "| what | this run | theory | difference | in errors | unit |"
     )?;
     writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
     for row in rows {

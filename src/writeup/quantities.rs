@@ -1,4 +1,4 @@
-//! The measured numbers of a run beside the numbers of theory.
+//! The numbers that were read off a run beside the numbers of theory.
 
 use super::exact_range::ExactRange;
 use crate::analysis::Readouts;
@@ -135,7 +135,7 @@ fn words(readout: &Readout, is_strobed: bool, since_s: Option<f64>) -> (String, 
         meaning += &format!("; since the forces last changed, at t = {since_s} s");
     }
     if is_strobed {
-        meaning += "; strobed: the time step is too long to see the nutation, and what was measured is what the steps make of it";
+        meaning += "; strobed: the time step is too long to see the nutation, and the number is what the steps make of it";
     }
     (label, meaning)
 }

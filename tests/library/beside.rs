@@ -13,7 +13,7 @@ fn time_s(desk: &Desk) -> f64 {
 
 /// The end of the run before, s.
 fn ghost_s(lab: &Lab) -> Option<f64> {
-    lab.player().ghost().map(Ghost::end_s)
+    lab.comparison().ghost().map(Ghost::end_s)
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn nudges_that_follow_each_other_keep_the_first_ones_time_and_ghost() {
         desk.commands(&format!("nudge = {{ key = '{key}', times = {times} }}"));
         assert_eq!((desk.step(), ghost_s(&desk.lab)), (400, Some(40.0)));
         let highest = |ghost: &Ghost| ghost.recording.moments();
-        assert_eq!(desk.lab.player().ghost().map(highest), Some(401));
+        assert_eq!(desk.lab.comparison().ghost().map(highest), Some(401));
     }
     let edits = desk.scenario().file.edit;
     assert!(edits.iter().all(|edit| edit.step == 0), "{edits:?}");
@@ -159,8 +159,8 @@ fn the_pinned_run_stays_until_it_is_unpinned() {
     stage.press("i").shows("this run is pinned");
     // It is recorded while it is played on.
     stage.commands("go_to = '40 s'");
-    assert!(stage.lab.player().pinned().is_none() && stage.lab.player().is_pinned());
-    let pinned_s = |stage: &Stage| stage.lab.player().pinned().map(Ghost::end_s);
+    assert!(stage.lab.comparison().pinned().is_none() && stage.lab.comparison().is_pinned());
+    let pinned_s = |stage: &Stage| stage.lab.comparison().pinned().map(Ghost::end_s);
     for index in 0..100 {
         let tilt = 20 + index % 40;
         stage.commands(&format!("set = {{ 'start.tilt_deg' = {tilt} }}"));
@@ -173,7 +173,7 @@ fn the_pinned_run_stays_until_it_is_unpinned() {
         assert_eq!(pinned_s(&stage), Some(40.0), "{command}");
     }
     stage.shows("pinned").press("i").shows("taken away");
-    assert!(!stage.lab.player().is_pinned());
+    assert!(!stage.lab.comparison().is_pinned());
     stage.wait(6.0).shows_no("pinned");
 }
 
@@ -182,11 +182,11 @@ fn a_pinned_run_that_is_edited_is_kept_as_it_was() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '40 s'\npin = true\ngo_to = '20 s'");
     desk.commands("set = { 'motion.gravity_m_per_s2' = 0 }\ngo_to = '30 s'");
-    let pinned = desk.lab.player().pinned().unwrap();
+    let pinned = desk.lab.comparison().pinned().unwrap();
     assert_eq!(pinned.end_s(), 40.0);
-    assert!(desk.lab.player().ghost().is_none());
+    assert!(desk.lab.comparison().ghost().is_none());
     desk.press(&[Key::Char('i')]);
-    assert!(!desk.lab.player().is_pinned());
+    assert!(!desk.lab.comparison().is_pinned());
 }
 
 /// The line about the numbers.
@@ -199,7 +199,7 @@ fn health(stage: &Stage) -> String {
 /// Waits until the search for advice, which goes on in the background, has found some.
 fn wait_for_advice(stage: &mut Stage) {
     for _ in 0..6000 {
-        if stage.wait(0.0).lab.player().advice().is_some() {
+        if stage.wait(0.0).lab.adviser().advice().is_some() {
             return;
         }
         std::thread::sleep(std::time::Duration::from_millis(10));
@@ -260,7 +260,7 @@ fn advice_that_has_come_is_taken_at_once() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.lab.take_advice();
     stage.commands("pause = true\ngo_to = '40 s'");
-    while stage.lab.player().advice().is_none() {
+    while stage.lab.adviser().advice().is_none() {
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
     // The key comes before the lab has looked whether there is news.

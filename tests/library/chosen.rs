@@ -49,11 +49,11 @@ fn it_opens_when_it_has_been_read() {
     let (_folder, mut desk) = browsing();
     enter(&mut desk);
     assert!(
-        desk.lab.on_top().browser.is_loading(),
+        desk.lab.popups().browser.is_loading(),
         "the key has not waited"
     );
     assert_eq!(desk.lab.player().run().scenario().edits.len(), 0);
-    wait_until(&mut desk, |desk| desk.lab.on_top().mode == Mode::Lab);
+    wait_until(&mut desk, |desk| desk.lab.popups().mode == Mode::Lab);
     assert_eq!(desk.lab.player().run().scenario().edits.len(), 10_000);
     assert!(desk.lab.player().playback.is_running());
 }
@@ -63,9 +63,9 @@ fn esc_means_that_it_is_not_opened() {
     let (_folder, mut desk) = browsing();
     enter(&mut desk);
     press(Key::Esc, &mut desk.lab);
-    assert_eq!(desk.lab.on_top().mode, Mode::Browser);
-    wait_until(&mut desk, |desk| !desk.lab.on_top().browser.is_loading());
+    assert_eq!(desk.lab.popups().mode, Mode::Browser);
+    wait_until(&mut desk, |desk| !desk.lab.popups().browser.is_loading());
     desk.wait(5);
     assert_eq!(desk.lab.player().run().scenario().edits.len(), 0);
-    assert_eq!(desk.lab.on_top().mode, Mode::Browser);
+    assert_eq!(desk.lab.popups().mode, Mode::Browser);
 }

@@ -178,53 +178,24 @@ fn votes_are_counted_by_round_and_late_ones_apart() {
 }
 
 #[test]
-fn what_is_right_leads_to_advice_and_nonsense_is_refused() {
-    let lesson = |lines: &str| {
-        let text =
-            format!("# T\n\n## P\n\n```predict\nname = \"a\"\nask = \"How far?\"\n{lines}\n```\n");
-        reading::read("t.md", &text)
-    };
-    let choices = "choices = [\"one\", \"two\"]\n";
-    for (lines, rule) in [
-        (format!("{choices}right = 3"), "the number of a choice"),
-        (format!("{choices}right = 0"), "the number of a choice"),
+fn what_is_right_leads_to_advice() {
+    let text = "# T\n\n## P\n\n```predict\nname = \"a\"\nask = \"How far?\"\n\
+                choices = [\"one\", \"two\"]\nright = 2\n```\n";
+    let lesson = reading::read("t.md", text).unwrap();
+    let predict = lesson.predict("a").unwrap();
+    for (choices, advice) in [
+        ([2.0, 2.0, 1.0, 2.0], "right: 2, 75 %: go on"),
         (
-            format!("{choices}right = \"one\""),
-            "the number of a choice",
+            [2.0, 2.0, 1.0, 1.0],
+            "right: 2, 50 %: let them talk, then again",
         ),
-        (
-            format!("{choices}right = 1\nwithin = 2"),
-            "no place beside choices",
-        ),
-        ("unit = \"m\"\nright = 2".to_owned(), "needs within"),
-        ("unit = \"m\"\nwithin = 2".to_owned(), "needs right"),
-        ("unit = \"m\"\nright = 2\nwithin = 0".to_owned(), "above 0"),
-        (
-            "unit = \"m\"\nright = nan\nwithin = 1".to_owned(),
-            "must be a number",
-        ),
+        ([1.0, 2.0, 1.0, 1.0], "right: 2, 25 %: explain, then again"),
     ] {
-        let refused = lesson(&lines).unwrap_err().to_string();
-        assert!(refused.contains(rule), "{lines}: {refused}");
-    }
-    let (_dir, folder) = class();
-    for (index, choice) in [9.0, 9.5, 12.0, 9.1].into_iter().enumerate() {
-        let seat = new_seat(&folder, &format!("seat{index}"));
-        keep(&seat, vec![vote("a", 1, choice, false)]);
-    }
-    for (right, advice) in [
-        ("right = 9\nwithin = 0.5", "right: 9 ± 0.5, 75 %: go on"),
-        (
-            "right = 9\nwithin = 0.1",
-            "right: 9 ± 0.1, 50 %: let them talk, then again",
-        ),
-        (
-            "right = 12\nwithin = 0.1",
-            "right: 12 ± 0.1, 25 %: explain, then again",
-        ),
-    ] {
-        let lesson = lesson(&format!("unit = \"m\"\n{right}")).unwrap();
-        let predict = lesson.predict("a").unwrap();
+        let (_dir, folder) = class();
+        for (index, choice) in choices.into_iter().enumerate() {
+            let seat = new_seat(&folder, &format!("seat{index}"));
+            keep(&seat, vec![vote("a", 1, choice, false)]);
+        }
         let tally = Tally::of(&sittings(&folder), LESSON, predict, 1);
         assert_eq!(tally.advice(predict).as_deref(), Some(advice));
     }

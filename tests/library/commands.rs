@@ -218,50 +218,52 @@ proptest! {
     }
 }
 
+/// A command of each row of the table, in its order.
+const EXAMPLES: &str = "
+    open = 'cusps'
+    set = { 'motion.time_step_s' = 0.05 }
+    nudge = 'motion.time_step_s'
+    push = true
+    next_push = { for_s = 1 }
+    step = -2
+    go_to = '60 s'
+    run_until = 't_s >= 60'
+    run = true
+    pause = true
+    wait_s = 2.5
+    chapter = 'the push'
+    undo = 1
+    redo = 1
+    export = 'run.csv'
+    figure = 'run.svg'
+    save = 'run.toml'
+    speed = 'top'
+    look_at = 'the dip'
+    next = 'raise the tilt'
+    window_s = 60
+    detail_s = 0.5
+    detail_of = 'z'
+    since_s = 12.5
+    magnify = 4
+    cursor = 'next turn'
+    exact = true
+    measured = 'heidelberg-spin-decay'
+    residuals = true
+    pin = true
+    take_advice = true
+    show = ['traces', '3d']
+    hide = ['health']
+    fill = 'above'
+    phase = 'torque'
+    sum_to = 4
+    point_at = 'above'
+    bare = true
+    camera = { yaw_deg = 30 }
+    zoom = { above = 4, 3d = 2 }";
+
 #[test]
 fn every_row_of_the_table_is_written_under_its_name() {
-    let examples = "
-        open = 'cusps'
-        set = { 'motion.time_step_s' = 0.05 }
-        nudge = 'motion.time_step_s'
-        push = true
-        next_push = { for_s = 1 }
-        step = -2
-        go_to = '60 s'
-        run_until = 't_s >= 60'
-        run = true
-        pause = true
-        wait_s = 2.5
-        chapter = 'the push'
-        undo = 1
-        redo = 1
-        export = 'run.csv'
-        figure = 'run.svg'
-        save = 'run.toml'
-        speed = 'top'
-        look_at = 'the dip'
-        next = 'raise the tilt'
-        window_s = 60
-        detail_s = 0.5
-        detail_of = 'z'
-        since_s = 12.5
-        magnify = 4
-        cursor = 'next turn'
-        exact = true
-        measured = 'heidelberg-spin-decay'
-        residuals = true
-        pin = true
-        take_advice = true
-        show = ['traces', '3d']
-        hide = ['health']
-        fill = 'above'
-        phase = 'torque'
-        sum_to = 4
-        point_at = 'above'
-        bare = true
-        camera = { yaw_deg = 30 }
-        zoom = { above = 4, 3d = 2 }";
-    let named: Vec<_> = commands(examples)
+    let named: Vec<_> = commands(EXAMPLES)
         .iter()
         .map(|command| command.to_table().keys().next().unwrap().clone())
         .collect();
@@ -278,6 +280,19 @@ fn every_row_of_the_table_is_written_under_its_name() {
     all.sort_unstable();
     rows.sort_unstable();
     assert_eq!(all, rows);
+}
+
+#[test]
+fn a_part_of_the_lab_carries_each_command_out() {
+    let folder = tempfile::tempdir().unwrap();
+    for command in commands(EXAMPLES) {
+        let mut desk = Desk::open("method-2");
+        desk.lab.files_mut().work_in(folder.path());
+        if let Err(refusal) = desk.lab.carry_out(&command) {
+            let refusal = refusal.to_string();
+            assert!(!refusal.contains("no part of the lab"), "{command:?}");
+        }
+    }
 }
 
 #[test]
@@ -504,7 +519,9 @@ fn finished(preset: &str, text: &str) -> (Desk, Result<(), String>) {
     let mut desk = Desk::open(preset);
     let document = Document::parse("demo.toml", text).unwrap();
     desk.lab.take_commands(command::read(&document).unwrap());
-    let end = desk.lab.finish_script();
+    let end = desk
+        .lab
+        .finish_script_while(|_, _| std::ops::ControlFlow::Continue(()));
     (desk, end)
 }
 
@@ -604,7 +621,10 @@ fn files_are_written_and_not_overwritten_unasked() {
         [[do]]\nsave = { path = \"b.toml\", from_here = true }\n[[do]]\nexport = { path = \"a.csv\", force = true, to_step = 3 }\n[[do]]\nsave = \"a.toml\"";
     let read = command::read(&Document::parse("demo.toml", text).unwrap()).unwrap();
     desk.lab.take_commands(read);
-    let told = desk.lab.finish_script().unwrap_err();
+    let told = desk
+        .lab
+        .finish_script_while(|_, _| std::ops::ControlFlow::Continue(()))
+        .unwrap_err();
     assert!(
         told.contains("demo.toml:11: save: ") && told.contains("exists: force = true replaces it"),
         "{told}"

@@ -89,8 +89,8 @@ fn squeezed(text: &str) -> String {
 /// What is wrong with the picture of `stage`.
 fn trouble(stage: &Stage) -> Option<String> {
     let picture = Picture::of(stage);
-    let is_ascii = stage.lab.view().marker == gyrolab::lab::view::markers::Marker::Ascii;
-    let is_plain = stage.lab.on_top().mode == Mode::Lab && !hint::has_message(&stage.lab);
+    let is_ascii = stage.lab.view().marker == gyrolab::lab::view::theme::Marker::Ascii;
+    let is_plain = stage.lab.popups().mode == Mode::Lab && !hint::has_message(&stage.lab);
     let mut title = picture.rows.first().into_iter().flatten();
     if is_plain && title.all(|sign| *sign == ' ') {
         return Some("there is no title".to_owned());
@@ -260,7 +260,7 @@ fn press_everything(size: (u16, u16)) {
                 stage.key(key);
                 stage.wait(0.0);
                 check(&stage, &done);
-                let mode = stage.lab.on_top().mode;
+                let mode = stage.lab.popups().mode;
                 if mode != Mode::Lab {
                     if time == 1 {
                         press_all(&mut stage, mode, &done);
@@ -280,7 +280,7 @@ fn press_everything(size: (u16, u16)) {
 /// Presses the keys of what has been opened on top of the panes.
 fn press_all(stage: &mut Stage, mode: Mode, done: &str) {
     for key in keys(mode, Pane::TRACES) {
-        if stage.lab.on_top().mode != mode {
+        if stage.lab.popups().mode != mode {
             return;
         }
         stage.key(key);

@@ -5,6 +5,7 @@ use crate::support::words::has;
 use gyrolab::figure::chart::{Axis, Chart, Panel, Series, Style};
 use gyrolab::figure::course::{Course, Recorder, Wanted};
 use gyrolab::figure::kind::Kind;
+use gyrolab::figure::labels::Labels;
 use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
 use gyrolab::figure::page::ink::WHITE;
 use gyrolab::figure::table::Table;
@@ -43,6 +44,7 @@ fn request(kind: &str) -> Request {
         exact: false,
         measured: None,
         width_pt: COLUMN_PT,
+        labels: Labels::default(),
     }
 }
 
@@ -172,12 +174,15 @@ fn lines(scene: &Scene, panel: [Point; 2]) -> Vec<&Item> {
     scene.items.iter().filter(is_line).collect()
 }
 
-fn dashed(scene: &Scene) -> usize {
-    let is_dashed = |item: &&Item| match &item.paint {
-        Paint::Stroke(pen) => item.clip.is_some() && !pen.dash_pt.is_empty(),
+/// The wide lines in panels beneath the first run.
+fn wide(scene: &Scene) -> Vec<usize> {
+    let is_wide = |item: &Item| match &item.paint {
+        Paint::Stroke(pen) => item.clip.is_some() && pen.width_pt > 1.0,
         Paint::Fill(_) => false,
     };
-    scene.items.iter().filter(is_dashed).count()
+    let items = scene.items.iter().enumerate();
+    let wide = items.filter(|(_, item)| is_wide(item));
+    wide.map(|(index, _)| index).collect()
 }
 
 #[test]
@@ -266,11 +271,19 @@ fn a_path_in_space_has_three_axes_and_a_shadow() {
 }
 
 #[test]
-fn the_exact_motion_is_dashed_and_named() {
+fn the_exact_motion_is_wide_beneath_the_run_and_named() {
     let runs = [run("method-2", &["motion.steps=400"])];
     let figure = drawn(&runs, &with_exact("traces"));
-    says(&figure.scene, &["report", "exact"]);
-    assert_eq!(dashed(&figure.scene), 3);
+    says(
+        &figure.scene,
+        &["the report's scheme, Δt = 0.1 s", "exact motion"],
+    );
+    let wide = wide(&figure.scene);
+    assert_eq!(wide.len(), 3);
+    for exact in wide {
+        let [exact, run] = [exact, exact + 1].map(|index| &figure.scene.items[index]);
+        assert_eq!(exact.clip, run.clip, "the run is on top of it");
+    }
 }
 
 #[test]
@@ -278,7 +291,8 @@ fn a_path_of_few_steps_a_turn_is_drawn_as_points() {
     for kind in ["above", "3d"] {
         let runs = [run("method-1", &["motion.steps=200"])];
         let coarse = drawn(&runs, &with_exact(kind));
-        says(&coarse.scene, &["report, every step", "exact"]);
+        let name = "the report's scheme, Δt = 1 ms, every step";
+        says(&coarse.scene, &[name, "exact motion"]);
         let words = "about 10 time steps for a turn";
         has(told(&coarse).join("; "), words);
         // Nothing is drawn from one step to the next.
@@ -288,7 +302,7 @@ fn a_path_of_few_steps_a_turn_is_drawn_as_points() {
             dots.filter(|[left, top, right, bottom]| right - left < 0.03 && bottom - top < 0.03);
         assert!(dots.count() >= 200, "{kind}");
         let fine = drawn(&[run("cusps", &[])], &with_exact(kind));
-        says(&fine.scene, &["rk4", "exact"]);
+        says(&fine.scene, &["rk4, Δt = 1 ms", "exact motion"]);
         assert_eq!(fine.told().next(), None);
     }
 }
@@ -296,9 +310,9 @@ fn a_path_of_few_steps_a_turn_is_drawn_as_points() {
 #[test]
 fn the_circles_of_the_exact_motion_have_a_name_that_hides_none_of_them() {
     for (preset, name) in [
-        ("method-1", "limits of exact"),
-        ("cusps", "limits of exact"),
-        ("heidelberg", "radius of exact"),
+        ("method-1", "limits of exact motion"),
+        ("cusps", "limits of exact motion"),
+        ("heidelberg", "radius of exact motion"),
     ] {
         let runs = [run(preset, &["motion.steps=300"])];
         let figure = drawn(&runs, &with_exact("above"));
@@ -326,15 +340,15 @@ fn a_run_of_the_exact_motion_is_not_drawn_twice() {
     let exact = run("cusps", &["motion.scheme=\"exact\""]);
     let asked = with_exact("tilt_deg");
     let figure = drawn(std::slice::from_ref(&exact), &asked);
-    assert_eq!(dashed(&figure.scene), 0);
-    says(&figure.scene, &["exact"]);
+    assert!(wide(&figure.scene).is_empty());
+    says(&figure.scene, &["exact motion"]);
     let [only] = &told(&figure)[..] else {
         panic!("{:?}", told(&figure))
     };
     has(only, "exact motion itself");
     // Beside another scheme it is the exact motion of both, and has its own curve.
     let figure = drawn(&[run("cusps", &[]), exact], &asked);
-    assert_eq!(lines(&figure.scene, panels(&figure.scene)[0]).len(), 2);
+    assert_eq!(wide(&figure.scene).len(), 1);
 }
 
 #[test]
@@ -356,7 +370,7 @@ fn runs_beside_each_other_are_named_by_what_differs() {
     let cusps = |set: &str| run("cusps", &[set, "motion.steps=300"]);
     let schemes = ["report", "rk4"].map(|name| cusps(&format!("motion.scheme={name}")));
     let schemes = figure(&schemes);
-    says(&schemes, &["report", "rk4"]);
+    says(&schemes, &["the report's scheme", "rk4"]);
     assert!(!words(&schemes).iter().any(|word| word.contains('Δ')));
     let steps = [0.001, 0.01].map(|dt| cusps(&format!("motion.time_step_s={dt}")));
     says(&figure(&steps), &["Δt = 1 ms", "Δt = 10 ms"]);
@@ -450,7 +464,7 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
         let [warning] = &told(&figure)[..] else {
             panic!("{name} {kind}: {:?}", figure.warnings)
         };
-        has(&warning, "nothing of them is told apart");
+        has(&warning, "told apart");
         let (_, proposed) = warning.split_once("--to ").unwrap();
         let to_s: f64 = proposed.split(' ').next().unwrap().parse().unwrap();
         let part = Request {
@@ -467,6 +481,103 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
     ] {
         let figure = drawn(&[run(name, &[])], &request(kind));
         assert_eq!(figure.dense, None, "{name} {kind}");
+    }
+}
+
+#[test]
+fn curves_that_are_not_told_apart_are_bands_beside_a_magnified_stretch() {
+    let runs = [run("method-1", &[])];
+    let scene = drawn(&runs, &with_exact("traces")).scene;
+    is_tidy(&scene).unwrap();
+    let run = "the report's scheme, Δt = 1 ms";
+    says(
+        &scene,
+        &[run, "exact motion", "right: 0 to 0.1 s, magnified"],
+    );
+    let panels = panels(&scene);
+    assert_eq!(panels.len(), 6);
+    let seen = places(&runs[0]);
+    for (axis, panel) in panels[..3].iter().enumerate() {
+        // The edges of the band are the extremes, however long it is.
+        let band = |item: &&Item| item.clip == Some(*panel) && matches!(item.paint, Paint::Fill(_));
+        let bands: Vec<_> = scene.items.iter().filter(band).collect();
+        assert_eq!(bands.len(), 2);
+        let values = || seen.iter().map(|place| place[axis]);
+        let (low, high) = Axis::default().range_of(values());
+        let [_, top, _, bottom] = extent(bands[1]);
+        let is_whole = (bottom - top) / (panel[1].y - panel[0].y);
+        let share = (most(values()) - least(values())) / (high - low);
+        assert!((is_whole / share - 1.0).abs() < 0.01, "{is_whole} {share}");
+        // Those of the stretch have the same axis and more than a few points.
+        let beside = panels[axis + 3];
+        assert_eq!((beside[0].y, beside[1].y), (panel[0].y, panel[1].y));
+        let points = lines(&scene, beside);
+        assert!(points.iter().map(|line| line.path.0.len()).sum::<usize>() > 300);
+    }
+}
+
+#[test]
+fn the_exact_motion_between_its_steps_is_drawn_too() {
+    let set = ["motion.scheme=exact", "motion.steps=2300"];
+    let figure = drawn(&[run("method-2", &set)], &request("tilt_deg"));
+    // Its nutation of 0.0201 s is no swing of 3.85 s.
+    let told = told(&figure).join("; ");
+    has(told, "about 11");
+    assert!(figure.dense.unwrap().to_s <= 0.5);
+}
+
+#[test]
+fn words_and_axes_are_those_that_were_asked_for() {
+    let runs = [
+        run("cusps", &["motion.steps=300"]),
+        run("loops", &["motion.steps=300"]),
+    ];
+    let own = Labels {
+        title: Some("Two tops_1".to_owned()),
+        names: ["first", "second"].map(str::to_owned).to_vec(),
+        x: Some("time in s".to_owned()),
+        y: vec!["height in m".to_owned()],
+        is_log: [true, true],
+        y_range: Some((0.5, 2.0)),
+    };
+    let asked = |kind: &str, labels: &Labels| Request {
+        labels: labels.clone(),
+        ..request(kind)
+    };
+    let figure = drawn(&runs, &asked("z_m", &own));
+    is_tidy(&figure.scene).unwrap();
+    let labels = [
+        "Two tops_1",
+        "first",
+        "second",
+        "time in s",
+        "height in m",
+        "10⁻¹",
+    ];
+    says(&figure.scene, &labels);
+    assert_eq!(figure.scene.title, "Two tops_1");
+    has(told(&figure).join(""), "no place on a logarithmic axis");
+    let text = String::from_utf8(write(&figure.scene, Format::SvgText).unwrap()).unwrap();
+    assert!(text.contains(">height in m</tspan>") && text.contains("serif"));
+    let many = Labels {
+        y: vec![String::new(); 2],
+        ..Labels::default()
+    };
+    let log = Labels {
+        is_log: [false, true],
+        ..Labels::default()
+    };
+    let below = Labels {
+        y_range: Some((-1.0, 1.0)),
+        ..log.clone()
+    };
+    for (kind, labels, words) in [
+        ("z_m", &many, "--y-label is given 2 times"),
+        ("above", &log, "not for a path from above"),
+        ("3d", &log, "not for a path in space"),
+        ("z_m", &below, "begins above 0"),
+    ] {
+        has(refusal(&runs, &asked(kind, labels)), words);
     }
 }
 
@@ -490,15 +601,16 @@ fn lines_between_too_few_steps_of_a_nutation_are_told() {
         let set = [time_step, "motion.steps=500", "motion.scheme=exact"];
         told(&drawn(&[run("fast-top", &set)], &request(kind)))
     };
-    let [only] = &told("motion.time_step_s=0.02", "tilt_deg")[..] else {
-        panic!("none")
+    let begin = "fast-top has 4.16 time steps in a nutation of 0.0831 s: ";
+    let few = |time_step: &str, kind: &str| {
+        let mut all = told(time_step, kind).into_iter();
+        all.find(|told| told.starts_with(begin))
     };
-    assert!(
-        only.starts_with("fast-top has 4.16 time steps in a nutation of 0.0831 s: "),
-        "{only}"
-    );
-    has(&only, "; a time step of 0.002 s would show the nutation");
-    assert!(told("motion.time_step_s=0.001", "tilt_deg").is_empty());
+    let only = few("motion.time_step_s=0.02", "tilt_deg,step").unwrap();
+    has(only, "; a time step of 0.002 s would show the nutation");
+    assert_eq!(few("motion.time_step_s=0.001", "tilt_deg,step"), None);
+    // The exact motion is known between its steps: but for their number, its lines show the nutation.
+    assert_eq!(few("motion.time_step_s=0.02", "tilt_deg"), None);
 }
 
 #[test]
@@ -533,12 +645,8 @@ fn the_exact_motion_is_a_smooth_curve_beside_few_steps() {
         ..with_exact("z_m")
     };
     let figure = drawn(&[run("method-1", &[])], &asked);
-    let panel = panels(&figure.scene)[0];
-    let lines = lines(&figure.scene, panel);
-    let exact = lines.iter().filter(|line| match &line.paint {
-        Paint::Stroke(pen) => !pen.dash_pt.is_empty(),
-        Paint::Fill(_) => false,
-    });
+    let exact = wide(&figure.scene).into_iter();
+    let exact = exact.map(|index| &figure.scene.items[index]);
     // 0.02 s are two nutations, of 20 steps.
     let points: usize = exact.map(|line| line.path.points().count()).sum();
     assert!(points > 200, "{points}");
@@ -766,6 +874,7 @@ proptest! {
             name: gyrolab::figure::page::letters::shortened(&names.1, 7.0, gyrolab::figure::chart::legend::longest_name(width_mm * 72.0 / 25.4) - 6.0) + &index.to_string(),
             points: points.clone(),
             errors: [Vec::new(), errors.iter().map(|error| error.abs()).collect()],
+            band: Vec::new(),
             style: if index % 2 == 0 { Style::curve(index) } else { Style::marked_line(index) },
         });
         let chart = Chart {
@@ -774,6 +883,7 @@ proptest! {
             x: Axis { is_log: logs.0, ..Axis::new("*t*", "s") },
             panels: vec![Panel { y: Axis { is_log: logs.1, ..Axis::new("*x*", "m") }, series: series.collect(), slope }],
             is_true_to_scale: false,
+            magnified: None,
             are_read_off: true,
         };
         let scene = chart.scene();

@@ -21,13 +21,13 @@ fn the_help_does_the_entry_that_is_found() {
     stage.press("?/one time step on");
     stage.shows("help: one time step on_").press("\n").wait(0.1);
     assert_eq!(
-        (stage.lab.on_top().mode, stage.step()),
+        (stage.lab.popups().mode, stage.step()),
         (Mode::Lab, step + 1)
     );
     stage.press("?export\n").shows("export steps 0 to");
     stage.press(ESC);
     stage.press("?\u{1b}");
-    assert_eq!(stage.lab.on_top().mode, Mode::Lab);
+    assert_eq!(stage.lab.popups().mode, Mode::Lab);
     for key in "?quit".chars() {
         stage.key(Key::Char(key));
     }
@@ -97,21 +97,21 @@ fn a_key_of_another_place_is_not_done_but_says_where_it_works() {
     let mut stage = open(SMALL);
     stage.press("?take what is typed\n");
     stage.shows("in a dialog: this key works there");
-    assert_eq!(stage.lab.on_top().mode, Mode::Help);
+    assert_eq!(stage.lab.popups().mode, Mode::Help);
     // Opened from the list, the help does the list's keys.
     stage.press(ESC).press(ESC).press("o?type a part\n");
-    assert_eq!(stage.lab.on_top().mode, Mode::Filter);
+    assert_eq!(stage.lab.popups().mode, Mode::Filter);
 }
 
 #[test]
 fn the_selection_stops_at_both_ends_of_the_help() {
     let mut stage = open(Rect::new(0, 0, 40, 12));
     stage.press("?").press(&"↓".repeat(500)).press("↑");
-    let at = stage.lab.on_top().help.selected;
+    let at = stage.lab.popups().help.selected;
     stage.press("↓");
-    assert_eq!(stage.lab.on_top().help.selected, at + 1);
+    assert_eq!(stage.lab.popups().help.selected, at + 1);
     stage.press("cusps").press(ESC).press("↑");
-    assert_eq!(stage.lab.on_top().help.selected, 0);
+    assert_eq!(stage.lab.popups().help.selected, 0);
 }
 
 #[test]
@@ -160,10 +160,10 @@ fn a_name_that_no_value_has_is_said_and_cleared() {
     stage.shows("/qzx_");
     stage.key(Key::Backspace);
     stage.shows("/qz_").press(ESC);
-    assert_eq!(stage.lab.on_top().mode, Mode::Lab);
+    assert_eq!(stage.lab.popups().mode, Mode::Lab);
     stage.shows("parameters ").press("/").press(ESC);
     assert_eq!(
-        (stage.focus(), stage.lab.on_top().mode),
+        (stage.focus(), stage.lab.popups().mode),
         ("parameters", Mode::Lab)
     );
     // The push to come is found whatever was searched for.

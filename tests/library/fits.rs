@@ -250,7 +250,7 @@ fn torque(which: usize) -> impl Fn(usize) -> bool {
 #[test]
 fn heidelberg_one_weight_and_two_differ() {
     // The spins without their uncertainties: the published ones are those of the period alone.
-    let text = gyrolab::data::shipped::find("heidelberg-precession")
+    let text = gyrolab::data::find_shipped("heidelberg-precession")
         .unwrap()
         .text;
     let without = text.lines().map(|line| {
@@ -469,7 +469,7 @@ fn a_key_that_moves_nothing_leads_nowhere() {
 
 #[test]
 fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
-    use gyrolab::fit::table::{self, Asked};
+    use gyrolab::fit::report::{self, Asked};
     let (model, fit) = heidelberg("heidelberg-precession", &[MOMENT], &|_| true);
     let report = Report {
         fit: &fit,
@@ -492,14 +492,14 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     let path = folder.path().join("fit.csv");
     let scenario = model.scenario(&[fit.keys[0].value]).unwrap();
     let file = std::fs::File::create(&path).unwrap();
-    table::write(file, &report, &scenario, asked).unwrap();
+    report::write_csv(file, &report, &scenario, asked).unwrap();
     let again = Document::read(&path).unwrap().scenario().unwrap();
     let moments = again.file.body.part[0].moments_kg_m2.unwrap();
     assert_eq!(moments[2], fit.keys[0].value);
     let text = std::fs::read_to_string(&path).unwrap();
     let lines = text.lines().filter_map(|line| line.strip_prefix("# # "));
     let header: String = lines.flat_map(|line| [line, "\n"]).collect();
-    let header: table::Header = toml::from_str(&header).unwrap();
+    let header: report::Header = toml::from_str(&header).unwrap();
     assert_eq!(header.key[0].uncertainty, fit.keys[0].sigma);
     assert_eq!(header.fit.chi_squared, fit.quality.chi_squared);
     // Its figure has the values with their errors on the model, and below what is left of them.

@@ -164,7 +164,7 @@ fn esc_drops_what_is_left_of_a_script() {
 #[track_caller]
 fn await_pinned(desk: &mut Desk) {
     for _ in 0..4000 {
-        if desk.lab.player().pinned().is_some() {
+        if desk.lab.comparison().pinned().is_some() {
             return;
         }
         std::thread::sleep(Duration::from_millis(5));
@@ -178,16 +178,16 @@ fn the_pinned_run_comes_back_with_what_was_done_to_it() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '20 s'\npush = true\ngo_to = '40 s'\npin = true");
     desk.commands("set = { 'start.tilt_deg' = 30 }\ngo_to = '10 s'");
-    let before = desk.lab.player().pinned().unwrap().clone();
+    let before = desk.lab.comparison().pinned().unwrap().clone();
     let content = desk.lab.content();
     let mut back = resumed(&content);
-    assert!(back.lab.player().is_pinned());
+    assert!(back.lab.comparison().is_pinned());
     let is_same = |now: Content| now.place == content.place && **now.work == **content.work;
     let made_again = back.lab.content();
     assert!(is_same(made_again), "it is kept while it is made again");
     await_pinned(&mut back);
     assert!(is_same(back.lab.content()));
-    let again = back.lab.player().pinned().unwrap();
+    let again = back.lab.comparison().pinned().unwrap();
     assert_eq!(again.furthest, before.furthest);
     assert_eq!(again.end_s(), before.end_s());
     assert_eq!(again.marks, before.marks);
@@ -196,7 +196,7 @@ fn the_pinned_run_comes_back_with_what_was_done_to_it() {
     assert_eq!(dots(again), dots(&before), "the same numbers");
     back.press(&[Key::Char('i')]);
     let none = resumed(&back.lab.content());
-    assert!(!none.lab.player().is_pinned());
+    assert!(!none.lab.comparison().is_pinned());
 }
 
 #[test]
@@ -204,7 +204,7 @@ fn the_present_run_comes_back_pinned() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '40 s'\npin = true");
     let mut back = resumed(&desk.lab.content());
-    assert!(back.lab.player().is_pinned() && back.lab.player().pinned().is_none());
+    assert!(back.lab.comparison().is_pinned() && back.lab.comparison().pinned().is_none());
     back.commands("set = { 'start.tilt_deg' = 30 }");
-    assert_eq!(back.lab.player().pinned().unwrap().end_s(), 40.0);
+    assert_eq!(back.lab.comparison().pinned().unwrap().end_s(), 40.0);
 }

@@ -59,9 +59,9 @@ fn one_dialog_holds_the_settings_with_their_values() {
     stage.press("\n").shows("2 at most").press("←");
     stage.shows("30 at most");
     assert_eq!(stage.lab.view().fps, 30);
-    stage.lab.set_fps(12);
+    stage.lab.view_mut().fps = 12;
     stage.press("→").shows("15 at most");
-    stage.lab.set_fps(12);
+    stage.lab.view_mut().fps = 12;
     stage.press("←").shows("10 at most").press("\u{1b}");
     stage.shows_no("at most");
 }

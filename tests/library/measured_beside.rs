@@ -5,12 +5,13 @@ use crate::support::desk::Desk;
 use crate::support::scenarios::{preset, resumed};
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::{has, has_all};
+use gyrolab::data::compared::Sum;
 use gyrolab::data::{self, Measured, Quantity};
 use gyrolab::figure::kind::Kind;
+use gyrolab::figure::labels::Labels;
 use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
 use gyrolab::figure::{Item, Paint, Point};
 use gyrolab::lab::Lab;
-use gyrolab::lab::measured::Sum;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use gyrolab::storage::confined::Confined;
@@ -53,7 +54,7 @@ fn file(text: &str) -> (tempfile::TempDir, PathBuf) {
 }
 
 fn sum(lab: &Lab) -> Sum {
-    lab.player().measured().unwrap().compared.sum.clone()
+    lab.comparison().data().unwrap().compared.sum.clone()
 }
 
 #[test]
@@ -78,7 +79,7 @@ fn what_a_run_says_is_what_it_is_compared_with() {
     assert_eq!(sum(&desk.lab).chi_squared, 0.0);
     // The run goes on from the present step with an act; what came before stays as it was.
     desk.commands("go_to = 95\nset = { 'motion.gravity_m_per_s2' = 20 }\ngo_to = 200");
-    let edited = desk.lab.player().measured().unwrap().compared.clone();
+    let edited = desk.lab.comparison().data().unwrap().compared.clone();
     let shown = &edited.curves[0];
     assert!(
         shown[..10]
@@ -171,7 +172,7 @@ fn a_table_of_runs_and_what_is_outside_of_the_folder_are_refused() {
         .confine(Confined::within(&inside).unwrap());
     let why = refused(&mut desk, path.to_str().unwrap());
     assert!(why.contains("stays in its folder"), "{why}");
-    assert!(desk.lab.player().measured().is_none());
+    assert!(desk.lab.comparison().data().is_none());
     desk.commands("measured = 'heidelberg-spin-decay'");
 }
 
@@ -191,7 +192,7 @@ fn a_session_keeps_them_by_name() {
     assert!(again.lab.view().residuals);
     drop(folder);
     let without = resumed(&content);
-    assert!(without.player().measured().is_none());
+    assert!(without.comparison().data().is_none());
     let notice = without.notice().unwrap();
     has_all(&notice, ["bench.csv", "no such file"]);
 }
@@ -204,10 +205,10 @@ fn a_scenario_names_the_data_beside_its_run() {
     assert_eq!(sum(&desk.lab).points, 7);
     desk.commands("open = 'cusps'");
     // They were of the other run.
-    assert!(desk.lab.player().measured().is_none());
+    assert!(desk.lab.comparison().data().is_none());
     desk.commands("measured = 'heidelberg-spin-decay'\nopen = 'loops'");
     // They were chosen by hand.
-    assert!(desk.lab.player().measured().is_some());
+    assert!(desk.lab.comparison().data().is_some());
 }
 
 fn figure(kind: Option<&str>, text: &str) -> Figure {
@@ -227,6 +228,7 @@ fn figure_with(kind: Option<&str>, text: &str, known: &Known) -> Figure {
         exact: false,
         measured: Some(Arc::new(measured)),
         width_pt: 250.0,
+        labels: Labels::default(),
     };
     let run = Run {
         scenario: Arc::new(preset("method-2", &["motion.steps=200"])),

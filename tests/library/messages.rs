@@ -11,6 +11,7 @@ use gyrolab::lab::command;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Document;
 use gyrolab::tui::keymap::Key;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -27,7 +28,7 @@ fn health(scenario: &str, set: &[&str]) -> Health {
 
 /// Waits until the search for advice is over.
 fn await_advice(stage: &Stage) {
-    while stage.lab.player().is_seeking_advice() {
+    while stage.lab.adviser().is_seeking() {
         std::thread::sleep(Duration::from_millis(5));
     }
 }
@@ -108,7 +109,7 @@ fn numbers_that_are_no_longer_finite_are_told_with_what_helps() {
             stage.commands(edit);
         }
         stage.commands("go_to = 1").wait(0.1);
-        while is_advised && stage.lab.player().advice().is_none() {
+        while is_advised && stage.lab.adviser().advice().is_none() {
             std::thread::sleep(Duration::from_millis(5));
             stage.wait(0.0);
         }
@@ -143,9 +144,12 @@ fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
 fn advice_is_looked_for_where_the_lab_opens_paused() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
     stage.commands("pause = true");
-    stage.lab.begin_at(300).unwrap();
+    stage
+        .lab
+        .begin_at(300, |_, _| ControlFlow::Continue(()))
+        .unwrap();
     stage.lab.take_advice();
-    assert!(stage.lab.player().is_seeking_advice());
+    assert!(stage.lab.adviser().is_seeking());
     await_advice(&stage);
     stage.wait(0.1).shows("a: dt 0.002 s mends it");
 }

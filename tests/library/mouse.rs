@@ -155,7 +155,7 @@ fn a_press_in_the_browser_selects_and_another_opens() {
     desk.stage.press("o");
     let cusps = desk.place("cusps");
     desk.does(Did::Press, cusps);
-    let selected = desk.stage.lab.on_top().browser.choice().cloned().unwrap();
+    let selected = desk.stage.lab.popups().browser.choice().cloned().unwrap();
     assert_eq!(selected.name, "cusps");
     desk.does(Did::Press, cusps);
     desk.stage.shows(" Cusps ");

@@ -2,10 +2,10 @@
 
 use crate::support::ground::names;
 use crate::support::scenarios::preset as preset_named;
-use gyrolab::analysis::{Monitor, Readouts, Trial};
+use gyrolab::analysis::compare::compare;
+use gyrolab::analysis::{Monitor, Readouts};
 use gyrolab::export::Column;
 use gyrolab::run::Simulation;
-use gyrolab::run::resampled;
 use gyrolab::scenario::Scenario;
 use gyrolab::scenario::presets::PRESETS;
 use std::collections::BTreeSet;
@@ -301,7 +301,7 @@ fn the_figures_in_the_texts_are_those_of_the_runs() {
     let note = format!("at dt = {step} it is gone");
     assert!(words("wobble-push").contains(&note), "{note}");
     let push = preset_named("wobble-push", &[]);
-    let push = Arc::new(resampled(&push, step, push.motion.scheme));
-    let trial = Trial::run(&push, |_| ControlFlow::Continue(())).unwrap();
-    assert!(trial.most_distance_m < 0.002 * push.arm_m(), "{trial:?}");
+    let go_on = |_, _| ControlFlow::Continue(());
+    let rows = compare(&push, &[push.motion.scheme], &[step], go_on).unwrap();
+    assert!(rows[0].error_m.unwrap() < 0.002 * push.arm_m(), "{rows:?}");
 }

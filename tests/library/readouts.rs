@@ -197,7 +197,7 @@ fn theory_names_its_axis() {
         }
         let text = summary(readouts.clone()).to_string();
         assert!(text.contains(words), "{text}");
-        assert!(text.contains("measured about +z"), "{text}");
+        assert!(text.contains("in this run about +z"), "{text}");
         assert!(!text.contains("to 0.0000 degrees\n"), "{text}");
     }
     // Without gravity, but with L along +z, it is +z that the axle goes round.
@@ -221,7 +221,7 @@ fn a_strobed_nutation_is_named_with_theory_or_without() {
     let strobed = lopsided("1000", "0.1");
     assert_eq!(resolved(&strobed), false);
     let text = summary(readouts(&strobed)).to_string();
-    let words = " measured: strobed, the steps are too far apart to see it";
+    let words = " in this run: strobed, the steps are too far apart to see it";
     has(&text, words);
     assert!(resolved(&lopsided("60", "0.001")).is_null());
     for scheme in SCHEMES {
@@ -408,7 +408,9 @@ fn no_text_shows_what_is_no_number() {
 /// The lab on a large screen, at the end of the run.
 fn picture(scenario: &Scenario) -> String {
     let mut desk = Desk::with("x.toml", scenario.clone());
-    let _ = desk.lab.begin_at(scenario.steps); // where its numbers end it stays there
+    let _ = desk
+        .lab
+        .begin_at(scenario.steps, |_, _| ControlFlow::Continue(())); // where its numbers end it stays there
     screen::text(&desk.lab, true, (200, 50))
 }
 

@@ -132,7 +132,7 @@ proptest! {
             for curve in Curve::ALL {
                 prop_assert_eq!(whole.extent(curve), known.extent(curve), "{:?} at step {}", curve, reached);
             }
-            let (radius, known) = (path.radius(), straight.run().path().radius());
+            let (radius, known) = (path.radius, straight.run().path().radius);
             prop_assert!((radius - known).abs() <= 0.02 * known + 1e-9, "{} for {}", radius, known);
         }
         for (step, there) in seen {

@@ -4,10 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms from the lowest to the highest: each may import those before it.
-const ORDER: [&str; 21] = [
+const ORDER: [&str; 22] = [
     "text", "cores", "physics", "scenario", "run", "journal", "analysis", "playback", "export",
-    "data", "figure", "fit", "sweep", "verify", "writeup", "storage", "lab", "lessons", "class",
-    "tui", "cli",
+    "data", "figure", "fit", "sweep", "verify", "own_code", "writeup", "storage", "lab", "lessons",
+    "class", "tui", "cli",
 ];
 /// The room of the terminal, and the libraries that only it may use.
 const TERMINAL: &str = "tui";
@@ -102,4 +102,19 @@ fn only_one_room_knows_the_terminals_libraries() {
         .map(|source| source.path)
         .collect();
     assert!(outside.is_empty(), "{outside:?}");
+}
+
+#[test]
+fn the_lab_itself_stands_in_two_files() {
+    let own = sources()
+        .into_iter()
+        .filter(|source| source.code.contains("impl Lab {"))
+        .map(|source| source.path);
+    let mut own: Vec<_> = own.collect();
+    own.sort_unstable();
+    assert_eq!(
+        own,
+        ["lab/mod.rs", "lab/routing.rs"],
+        "its parts do the rest"
+    );
 }

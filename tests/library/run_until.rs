@@ -16,7 +16,9 @@ fn played(name: &str, condition: &str) -> (Desk, Result<(), String>) {
     let text = format!("[[do]]\nrun_until = \"{condition}\"");
     let document = Document::parse("demo.toml", &text).unwrap();
     desk.lab.take_commands(command::read(&document).unwrap());
-    let end = desk.lab.finish_script();
+    let end = desk
+        .lab
+        .finish_script_while(|_, _| std::ops::ControlFlow::Continue(()));
     (desk, end)
 }
 

@@ -2,7 +2,7 @@
 //! take a run over from any other.
 
 use crate::support::scenarios::{find_scheme, parse, preset};
-use gyrolab::analysis::Trial;
+use gyrolab::analysis::compare::compare;
 use gyrolab::export::{CsvWriter, stream};
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::physics::{Loads, SchemeInfo, State};
@@ -65,10 +65,9 @@ steps = 15
 
 /// The error at the end, m.
 fn error(scenario: &Scenario, scheme: &'static SchemeInfo, time_step_s: f64) -> f64 {
-    let scenario = Arc::new(resampled(scenario, time_step_s, scheme));
-    Trial::run(&scenario, |_| ControlFlow::Continue(()))
-        .unwrap()
-        .end_distance_m
+    let go_on = |_, _| ControlFlow::Continue(());
+    let rows = compare(scenario, &[scheme], &[time_step_s], go_on).unwrap();
+    rows[0].error_at_end_m.unwrap()
 }
 
 /// Time steps at which a scheme's error is its own: small enough for its order to show, and above rounding. Several, since

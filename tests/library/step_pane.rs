@@ -91,7 +91,7 @@ fn all_rows_add_up_to_the_schemes_own_sums() {
 #[track_caller]
 fn place(stage: &Stage) -> (u64, usize, usize) {
     let lab = &stage.lab;
-    let explained = lab.player().explained().expect("a step that is shown");
+    let explained = lab.step_pane().shown().expect("a step that is shown");
     let (_, number, count) = explained.phase(lab.view().page).expect("a phase");
     assert_eq!(explained.step, stage.step());
     (explained.step, number, count)
@@ -258,7 +258,7 @@ fn every_phase_of_every_scheme_has_a_name_in_the_list_and_a_page() {
             let set = format!("motion.scheme='{}'", scheme.name);
             let mut stage = Stage::open(preset, &[&set], SMALL);
             stage.commands("pause = true\nstep = 2\nshow = ['step', '3d']");
-            let workings = Arc::clone(&stage.lab.player().explained().unwrap().workings);
+            let workings = Arc::clone(&stage.lab.step_pane().shown().unwrap().workings);
             let count = workings.phases().count();
             for (index, phase) in workings.phases().enumerate() {
                 assert!(NAMES.contains(&phase.name), "{}", phase.name);
@@ -359,7 +359,7 @@ fn a_large_body_is_shown_as_any_other() {
     );
     let view = crate::support::scenarios::view(
         &scenario,
-        gyrolab::lab::view::markers::Marker::Braille,
+        gyrolab::lab::view::theme::Marker::Braille,
         true,
     );
     let mut lab = gyrolab::lab::Lab::new("x", Arc::new(scenario), view, false);

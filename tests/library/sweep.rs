@@ -1,8 +1,7 @@
 //! Sweeps in the library: those that are shipped, and the rows computed again.
 
 use gyrolab::scenario::Document;
-use gyrolab::sweep::shipped::{self, SWEEPS};
-use gyrolab::sweep::{Shard, Sweep};
+use gyrolab::sweep::{SWEEPS, Shard, Sweep, find};
 use gyrolab::verify::{Unverified, verify};
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +9,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 fn shipped(name: &str) -> Sweep {
-    let text = shipped::find(name).unwrap().text;
+    let text = find(name).unwrap().text;
     Sweep::open(&Document::parse(name, text).unwrap()).unwrap()
 }
 

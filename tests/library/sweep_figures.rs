@@ -77,7 +77,7 @@ fn a_sweep_shows_measured_points_with_bars_on_the_predicted_line() {
         &scene,
         &[
             "theory",
-            "measured",
+            "simulated",
             "errors of reading the run smaller than marks where no bar is drawn",
             "θ₀ (°)",
         ],
@@ -114,12 +114,15 @@ fn theory_is_drawn_once_with_what_was_measured() {
     assert_eq!(precession.y.name, "*Ω*_{p}");
     assert_eq!(
         names(&precession.series),
-        ["*M* *g* *h*/*L*_{3}", "measured, report", "measured, rk4"]
+        ["*M* *g* *h*/*L*_{3}", "simulated, report", "simulated, rk4"]
     );
     assert_eq!(precession.series[0].style.mark, Some(Mark::Cross));
     assert_eq!(precession.series[1].style.mark, Some(Mark::Dot));
     // What is neither has no mark of what was measured, and a name of its own.
-    assert_eq!(names(&turns.series), ["other values", "other values"]);
+    assert_eq!(
+        names(&turns.series),
+        ["simulated, without error", "simulated, without error"]
+    );
     assert_eq!(turns.series[0].style.mark, Some(Mark::Speck));
 }
 
@@ -133,8 +136,8 @@ fn theory_that_differs_between_the_curves_has_a_line_for_each_and_one_name() {
         [
             "*M* *g* *h*/*L*_{3}",
             "*M* *g* *h*/*L*_{3}",
-            "measured, *L*_{3,0} = 60 J s",
-            "measured, *L*_{3,0} = −80.5 J s"
+            "simulated, *L*_{3,0} = 60 J s",
+            "simulated, *L*_{3,0} = −80.5 J s"
         ]
     );
     let shown = words(&chart.scene()).join("; ");
@@ -144,9 +147,9 @@ fn theory_that_differs_between_the_curves_has_a_line_for_each_and_one_name() {
 #[test]
 fn a_curve_is_named_by_symbol_value_and_unit_of_its_key() {
     for (key, name) in [
-        ("start.azimuth_deg", "measured, *φ*_{0} = −100°"),
-        ("push.0.force_N.2", "measured, push 0 force *z* = −100 N"),
-        ("motion.time_step_s", "measured, Δ*t* = −100 s"),
+        ("start.azimuth_deg", "simulated, *φ*_{0} = −100°"),
+        ("push.0.force_N.2", "simulated, push 0 force *z* = −100 N"),
+        ("motion.time_step_s", "simulated, Δ*t* = −100 s"),
     ] {
         let rows = "-100.0,10,0.9,0.8,0.1\n-100.0,20,0.8,0.7,0.1\n";
         let chart = chart(&two_keys(key, rows));
@@ -159,9 +162,9 @@ fn a_curve_whose_runs_all_failed_says_so() {
     let rows = "report,10,0.9,0.8,0.1\nreport,20,0.8,0.7,0.1\nrk4,10,,,\nrk4,20,,,\n";
     let text = two_keys("motion.scheme", rows);
     let scene = chart(&text).scene();
-    let failed = "rk4: no run could be measured";
-    says(&scene, &["measured, report", failed]);
-    assert!(!words(&scene).contains(&"measured, rk4"));
+    let failed = "rk4: no run gave a number";
+    says(&scene, &["simulated, report", failed]);
+    assert!(!words(&scene).contains(&"simulated, rk4"));
     let told = of_table::warnings(&table(&text), &[]);
     let words = "the runs of 2 of 4 rows failed: they have no points";
     assert_eq!(told, [words]);

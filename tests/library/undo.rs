@@ -155,7 +155,7 @@ fn a_time_with_a_sign_counts_from_here() {
         desk.type_text("g"); // a command has no sign before a step or time
         desk.type_text(to);
         desk.press(&[Key::Enter]);
-        assert_eq!(desk.lab.on_top().mode, Mode::Lab, "{to}");
+        assert_eq!(desk.lab.popups().mode, Mode::Lab, "{to}");
         assert_eq!(desk.step(), step, "{to}");
     }
 }

@@ -322,7 +322,7 @@ fn esc_closes_one_thing_at_a_time_and_never_leaves() {
     for _ in 0..5 {
         assert_eq!(stage.key(Key::Esc), None);
     }
-    assert_eq!(stage.lab.on_top().mode, Mode::Lab);
+    assert_eq!(stage.lab.popups().mode, Mode::Lab);
     stage.shows("q leaves");
     assert_eq!(stage.key(Key::Char('q')), Some(Request::Quit));
 }
@@ -415,7 +415,7 @@ fn what_would_mend_a_run_is_found_on_the_side() {
     stage.wait(5.0).commands("pause = true");
     for _ in 0..600 {
         std::thread::sleep(Duration::from_millis(100));
-        if stage.wait(0.0).lab.player().advice().is_some() {
+        if stage.wait(0.0).lab.adviser().advice().is_some() {
             break;
         }
     }

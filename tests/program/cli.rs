@@ -746,3 +746,14 @@ fn the_next_export_removes_what_a_killed_one_has_left() {
     ground.stderr("run cusps --steps 2 -o 2.csv");
     assert_eq!(ground.files(), ["1.csv", "2.csv"]);
 }
+
+/// The last bits of the C library's sine, root and the like differ from system to system. All of them come from libm, the
+/// crate, in gyrolab and in every crate that it uses.
+#[test]
+#[cfg(target_os = "linux")]
+fn no_number_depends_on_the_c_librarys_mathematics() {
+    let program = fs::read(env!("CARGO_BIN_EXE_gyrolab")).unwrap();
+    let needs = |name: &str| program.windows(name.len()).any(|at| at == name.as_bytes());
+    assert!(needs("libc.so"), "the program names the libraries it needs");
+    assert!(!needs("libm.so"), "nm -D shows which functions it needs");
+}

@@ -37,6 +37,7 @@ fn exit_codes() {
         ("lesson --handout --template", 2),
         ("lesson my.md -o paper.md", 2),
         ("lesson my.md --handout --force", 2),
+        ("lesson my.md --results", 2),
     ] {
         let output = ground.run(args);
         assert_eq!(code(&output), expected, "{args}: {output:?}");
@@ -94,11 +95,17 @@ fn a_handout_obeys_the_rules_for_files() {
             "## Watch\n\n```text\n",
             "The axle goes round once in 64 s.",
             "- [ ] twice as fast\n- [ ] as fast as before\n- [ ] half as fast\n",
-            "It goes round ____________ times as fast as before. You said: ____________.",
+            "Twice the spin, for 10 s. Watch the axle.\n\nPredicted: ____________\n\nCame out: ____________",
         ],
     );
-    has_no(&paper, "defended");
-    has_no(&paper, "<!--");
+    for answer in ["defended", "<!--", "as fast as before. You", "Hint"] {
+        has_no(&paper, answer);
+    }
+    let results = ground.stdout("lesson my.md --handout --results");
+    has(
+        &results,
+        "It goes round 0.50 times as fast as before. You said: ____________.",
+    );
     assert_eq!(ground.stdout("lesson my.md --handout -o -"), paper);
     done(ground.run("lesson my.md --handout -o paper.md"));
     assert_eq!(ground.read("paper.md"), paper);

@@ -214,7 +214,7 @@ fn a_written_file_is_named_with_its_rows() {
 
 #[test]
 fn a_precession_that_there_is_not_is_told_why() {
-    let words = "none measured: the axle passes through the vertical";
+    let words = "none in this run: the axle passes through the vertical";
     has(Ground::new().stdout("run method-1"), words);
 }
 

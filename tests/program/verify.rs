@@ -246,3 +246,54 @@ fn ends_of_lines_are_told_of_a_sweep_as_of_a_run() {
         has(ground.stdout("verify a.csv"), "the same: all ");
     }
 }
+
+/// A program's own rows: the exit code says whether they agree, the JSON holds the keys of its table, a broken file is refused.
+#[test]
+fn own_rows_are_held_against_a_scenario() {
+    let ground = Ground::new();
+    done(ground.run("run every-slip --steps 50 --columns step,z_m,spin_rpm -o mine.csv"));
+    let agrees = done(ground.run("verify mine.csv --against every-slip"));
+    let told = [
+        "agrees with every-slip in 51 rows",
+        "the push's end, at step 200",
+        "Left out: spin_rpm",
+    ];
+    has_all(stdout(&agrees), told);
+    let against = "verify mine.csv --against every-slip --set motion.gravity_m_per_s2=9.79";
+    let differs = ground.run(&format!("{against} --json"));
+    assert_eq!(code(&differs), 1);
+    let json: serde_json::Value = serde_json::from_str(stdout(&differs)).unwrap();
+    let keys: Vec<_> = json
+        .as_object()
+        .unwrap()
+        .keys()
+        .map(String::as_str)
+        .collect();
+    let mut expected = [
+        "agrees",
+        "precision",
+        "rows",
+        "offset",
+        "first_step",
+        "columns",
+        "yours",
+        "scheme",
+        "worst_m",
+        "slips",
+        "unseen",
+    ];
+    expected.sort_unstable();
+    let mut keys = keys;
+    keys.sort_unstable();
+    assert_eq!(keys, expected);
+    assert_eq!(
+        (&json["agrees"], &json["columns"][0]),
+        (&false.into(), &"z_m".into())
+    );
+    let refused = ground.run("verify mine.csv --against every-slip --map 9=x_m");
+    failed(
+        &refused,
+        &["mine.csv: --map 9=x_m", "is no column of the file"],
+    );
+    assert_eq!(code(&ground.run("verify mine.csv --map 1=step")), 2);
+}

@@ -273,13 +273,13 @@ fn a_figure_that_is_covered_says_so_and_names_a_stretch_that_is_not() {
     let lab = Ground::new();
     done(lab.run("writeup method-1 -o w"));
     let page = lab.read("w/README.md");
-    let begin = "In this figure, on 86 mm about 203 swings cover the paper, ";
+    let begin = "In this figure, on 86 mm about 203 swings are not told apart";
     let remark = page.lines().find(|line| line.starts_with(begin)).unwrap();
     // The command is one that works.
     let command = remark.split('`').find(|part| part.starts_with("gyrolab "));
     let args = command.unwrap().strip_prefix("gyrolab ").unwrap();
     let said = lab.stderr(&args.replace("run.toml", "w/run.toml"));
-    has_no(said, "solid black");
+    has_no(said, "told apart");
     assert!(lab.file("part.pdf").exists());
 }
 

@@ -4,7 +4,7 @@
 
 use super::scenarios::{preset, view};
 use gyrolab::lab::command::{self, Command};
-use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::view::theme::Marker;
 use gyrolab::lab::{Answer, Lab};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};

@@ -3,7 +3,7 @@
 use gyrolab::journal::parameters;
 use gyrolab::lab::Lab;
 use gyrolab::lab::view::View;
-use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::view::theme::Marker;
 use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::physics::SchemeInfo;
 use gyrolab::scenario::file::ScenarioFile;

@@ -2,7 +2,7 @@
 
 use super::desk::commands;
 use super::scenarios::{preset, view};
-use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::view::theme::Marker;
 use gyrolab::lab::{Lab, Request};
 use gyrolab::lessons::Class;
 use gyrolab::tui::app;

@@ -49,7 +49,7 @@ impl Source {
             Self::Scenario => "the scenario",
             Self::State => "the run's last step",
             Self::EveryStep => "every step of the run, its start included",
-            Self::Measured => "measured on the steps since the forces last changed",
+            Self::Measured => "read off the steps since the forces last changed",
             Self::Scheme => "a formula for the scheme at this time step",
             Self::Exact => "held against the exact motion",
             Self::Theory => {
@@ -213,8 +213,8 @@ readouts! {
     "nutation_multiplier", "", Scheme, "the report's scheme alone: its factor on a nutation's size each step; the truth is 1", |r| r.health.nutation.map(|nutation| nutation.multiplier);
     "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg;
     "steady_lag_deg", "deg", Scheme, "the report's scheme alone: its angle between axle and L in slow steady precession at this tilt and spin, the true one times kappa psi/|1 - A|", |r| r.health.nutation.and_then(|nutation| nutation.scheme_lag_deg());
-    "predicted_lag_deg", "deg", Scheme, "the report's scheme alone: the mean angle between axle and L, |tau| dt/(|L| |1 - A|), at the last change of the forces; null where that linear theory is off by more than about a tenth, and where the scheme feeds the nutation in the run (kappa above 1)", |r| r.frozen.and_then(|frozen| frozen.lag_deg(r.sample.step.saturating_sub(r.since)));
-    "predicted_tilt_swing_deg", "deg", Scheme, "the report's scheme alone: the swing of the tilt about that lag, by the same theory; null too where the scheme damps or feeds the nutation in the run", |r| r.frozen.and_then(|frozen| frozen.swing_deg(r.sample.step.saturating_sub(r.since)));
+    "predicted_lag_deg", "deg", Scheme, "the report's scheme alone: the mean angle between axle and L, |tau| dt/(|L| |1 - A|), at the last change of the forces; null where that linear theory is off by more than about a tenth, and where the scheme feeds the nutation in the run (kappa above 1)", |r| r.report_theory.and_then(|theory| theory.lag_deg(r.sample.step.saturating_sub(r.since)));
+    "predicted_tilt_swing_deg", "deg", Scheme, "the report's scheme alone: the swing of the tilt about that lag, by the same theory; null too where the scheme damps or feeds the nutation in the run", |r| r.report_theory.and_then(|theory| theory.swing_deg(r.sample.step.saturating_sub(r.since)));
     "measured_tilt_swing_deg", "deg", Measured, "greatest tilt less least tilt, as the steps show it", |r| value(r.tilt_swing);
     "measured_tilt_swing_uncertainty_deg", "deg", Measured, "how much more the tilt swings between the steps", |r| uncertainty(r.tilt_swing);
     "true_steady_lag_deg", "deg", Theory, "that angle of the exact motion; given beside the report's scheme, null where the top spins too slowly for a steady precession", |r| r.health.nutation.and_then(|nutation| nutation.true_lag_deg);
@@ -237,13 +237,18 @@ readouts! {
     "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.lasting_theory().and_then(|theory| theory.nutation_period_s), "*T*_{n}";
     "measured_nutation_period_s", "s", Measured, "mean time from one greatest tilt to the next; none under friction", |r| value(r.nutation), "*T*_{n}";
     "measured_nutation_uncertainty_s", "s", Measured, "one standard error of reading it off the steps; the error that the scheme and its time step make is not in it", |r| uncertainty(r.nutation);
-    "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
+    "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what the steps show is strobed", |r| r.nutation_is_resolved();
     "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(Theory::precession_period_s), "*T*_{p}";
     "predicted_body_cone_period_s", "s", Theory, "free symmetric body: time in which the instantaneous axis goes once round the axle, seen from the body, (I1/|I3 - I1|) 2 pi/omega3; null under a load, without spin, for I3 = I1, and where only a rotor spins", |r| r.theory.filter(|theory| !r.has_rotor && !theory.is_of_a_moment).and_then(|theory| theory.body_cone_period_s), "*T*_{c}";
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
     "fast_top_nutation_rpm", "rpm", Theory, "the same in revolutions a minute", |r| r.theory.map(|theory| start::rpm(theory.fast_top_nutation)), "*ω*_{n}";
     "L_axle_Js", "J s", State, "L along the axle", |r| r.spin, "*L*_{3}";
     "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it", |r| start::rpm(r.spin_rad_per_s), "*ω*_{3}";
+    "w1_rad_per_s", "rad/s", State, "angular velocity along the body's own x", |r| r.sample.omega().x, "*ω*_{1}";
+    "w2_rad_per_s", "rad/s", State, "angular velocity along the body's own y", |r| r.sample.omega().y, "*ω*_{2}";
+    "w3_rad_per_s", "rad/s", State, "angular velocity along the axle", |r| r.sample.omega().z, "*ω*_{3}";
+    "foot_force_N", "N", State, "vertical force of the floor on the foot; null under friction", |r| r.foot_force, "*N*";
+    "measured_mean_foot_force_N", "N", State, "its mean since the start; null once the forces have changed", |r| r.mean_foot_force, "*N*";
     "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps; null where it stands without spin, its centre of mass below the pivot", |r| r.theory_about_z().and_then(|theory| theory.sleeping_limit);
     "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
     "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());

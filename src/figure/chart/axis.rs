@@ -5,7 +5,7 @@ use super::ticks::{Tick, Ticks};
 use crate::figure::page::ink::{self, LABEL_PT};
 
 /// Least distance of two labels beside each other, and of two above each other, pt.
-const BESIDE: f64 = 6.0;
+pub const BESIDE: f64 = 6.0;
 const ABOVE: f64 = 7.5;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,13 +1,14 @@
 //! A chart drawn on its page.
 
-use super::layout::{EDGE, GAP, Layout, Placed};
+use super::layout::{self, EDGE, GAP, Layout, Placed};
 use super::legend::Legend;
-use super::ticks::Ticks;
+use super::ticks::{Ticks, with_minus};
 use super::{Chart, Panel, Series};
 use super::{curve, slope};
 use crate::figure::page::ink::{self, BLACK, LABEL_PT, MARK_PT, at, pen};
 use crate::figure::page::letters;
 use crate::figure::page::scene::{Point, Scene};
+use crate::text::number::significant;
 use std::collections::HashSet;
 
 /// The most marks in a panel.
@@ -26,19 +27,21 @@ impl Chart {
         self.as_seen(&bare).placed(bare)
     }
 
-    /// The chart without what nobody could distinguish in the places of `layout`: points that stand upon each other, and
-    /// dashes of a line that fills its own gaps.
+    /// The chart in the places of `layout`, without points that stand upon each other and cores of lines that are seen.
     fn as_seen(&self, layout: &Layout) -> Self {
         let mut seen = self.clone();
         seen.x.range = layout.panels.first().map(|placed| placed.x.range);
-        for (panel, placed) in seen.panels.iter_mut().zip(&layout.panels) {
+        let magnified = seen.magnified.iter_mut();
+        let magnified = magnified.flat_map(|chart| &mut chart.panels);
+        let places = layout.panels.iter().chain(&layout.magnified);
+        for (panel, placed) in seen.panels.iter_mut().chain(magnified).zip(places) {
             panel.y.range = Some(placed.y.range);
+            let way_pt = |series: &Series| curve::way_pt(&placed.pieces(series));
+            let first_pt = panel.series.first().map_or(0.0, way_pt);
             for series in &mut panel.series {
                 placed.thin_marks(series);
-                if series.style.width_pt > 0.0 {
-                    let lines = placed.pieces(series);
-                    series.style = curve::told_apart(&lines, series.style.clone());
-                }
+                let core = series.style.core;
+                series.style.core = core.filter(|_| curve::hides(first_pt, way_pt(series)));
             }
         }
         seen
@@ -46,8 +49,8 @@ impl Chart {
 
     /// The chart in its places; `bare` leaves no room for a legend above the panels.
     fn placed(&self, bare: Layout) -> Scene {
-        let remark = self.remark(&bare);
-        let legend = Legend::of(self, remark.as_deref());
+        let remarks = self.remark(&bare).into_iter().chain(self.magnified());
+        let legend = Legend::of(self, remarks);
         let corner = legend.free_corner(self, &bare);
         let layout = match corner {
             Some(_) => bare,
@@ -55,10 +58,17 @@ impl Chart {
         };
         let mut scene = Scene::new(self.width_pt, layout.height_pt, &self.title);
         for (panel, placed) in self.panels.iter().zip(&layout.panels) {
-            panel.draw(placed, &layout, &mut scene);
+            panel.draw(placed, &mut scene);
+            panel.write_beside(placed, &layout, &mut scene);
             slope::draw(panel, placed, corner.as_ref(), &mut scene);
         }
-        self.write_below(&layout, &mut scene);
+        write_below(self, &layout.panels, &layout, &mut scene);
+        if let Some(magnified) = &self.magnified {
+            for (panel, placed) in magnified.panels.iter().zip(&layout.magnified) {
+                panel.draw(placed, &mut scene);
+            }
+            write_below(magnified, &layout.magnified, &layout, &mut scene);
+        }
         match corner {
             Some(corner) => legend.draw_in(&corner, &mut scene),
             None => {
@@ -69,19 +79,15 @@ impl Chart {
         scene
     }
 
-    fn write_below(&self, layout: &Layout, scene: &mut Scene) {
-        let Some(last) = layout.panels.last() else {
-            return;
-        };
-        for tick in &layout.ticks.major {
-            let place = at(last.x.place(tick.at), layout.labels_at());
-            scene.write(&tick.label, LABEL_PT, place, 0.5);
-        }
-        let (title, size) = &layout.title;
-        let middle = 0.5 * (last.frame.left + last.frame.right);
-        let half = 0.5 * ink::width(title, *size);
-        let middle = middle.min(self.width_pt - EDGE - half).max(EDGE + half);
-        scene.write(title, *size, at(middle, layout.title_at()), 0.5);
+    /// What the legend says of the stretch that is magnified.
+    fn magnified(&self) -> Option<String> {
+        let (from, to) = self.magnified.as_ref()?.x.range?;
+        let [from, to] = [from, to].map(|end| with_minus(&significant(end, 9)));
+        let unit = Some(&self.x.unit).filter(|unit| !unit.is_empty());
+        let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        let remark = format!("right: {from} to {to}{unit}, magnified");
+        let room = self.width_pt - 2.0 * EDGE;
+        Some(letters::shortened(&remark, LABEL_PT, room))
     }
 
     /// Whether something measured has marks without a known error.
@@ -169,20 +175,51 @@ impl Placed {
     }
 }
 
+/// Writes labels and title below `panels`, a column of `layout` that shows `chart`.
+fn write_below(chart: &Chart, panels: &[Placed], layout: &Layout, scene: &mut Scene) {
+    let Some(last) = panels.last() else {
+        return;
+    };
+    for tick in &last.below.major {
+        let place = at(last.x.place(tick.at), layout.labels_at());
+        scene.write(&tick.label, LABEL_PT, place, 0.5);
+    }
+    let columns = if layout.magnified.is_empty() {
+        1.0
+    } else {
+        2.0
+    };
+    let room = chart.width_pt / columns - 2.0 * EDGE;
+    let (title, size) = layout::fitted(chart.x.title(&last.below), room);
+    let middle = 0.5 * (last.frame.left + last.frame.right);
+    let half = 0.5 * ink::width(&title, size);
+    let middle = middle.min(chart.width_pt - EDGE - half).max(EDGE + half);
+    scene.write(&title, size, at(middle, layout.title_at()), 0.5);
+}
+
 impl Panel {
-    fn draw(&self, placed: &Placed, layout: &Layout, scene: &mut Scene) {
-        let frame = &placed.frame;
+    fn draw(&self, placed: &Placed, scene: &mut Scene) {
         let part = |is_behind: bool| {
             let series = self.series.iter();
             series.filter(move |series| series.style.is_behind == is_behind)
         };
-        for series in part(true) {
+        for series in self.series.iter().rev() {
+            placed.fill_band(series, scene);
+        }
+        for series in part(true).rev() {
             draw_points(series, placed, scene);
             placed.draw_line(series, scene);
         }
         part(false).for_each(|series| placed.draw_line(series, scene));
-        draw_frame(placed, layout, scene);
+        part(true)
+            .rev()
+            .for_each(|series| placed.draw_core(series, scene));
+        draw_frame(placed, scene);
         part(false).for_each(|series| draw_points(series, placed, scene));
+    }
+
+    fn write_beside(&self, placed: &Placed, layout: &Layout, scene: &mut Scene) {
+        let frame = &placed.frame;
         let (title, size) = &placed.title;
         let middle = at(layout.titles_at, 0.5 * (frame.top + frame.bottom));
         scene.write_up(title, *size, middle);
@@ -195,10 +232,10 @@ impl Panel {
 }
 
 /// The frame and its ticks, on all four sides, inwards.
-fn draw_frame(placed: &Placed, layout: &Layout, scene: &mut Scene) {
+fn draw_frame(placed: &Placed, scene: &mut Scene) {
     let frame = &placed.frame;
     scene.stroke(frame.outline(), pen(FRAME_PT, BLACK), None);
-    for (value, length) in lengths(&layout.ticks) {
+    for (value, length) in lengths(&placed.below) {
         let x = placed.x.place(value);
         for (edge, inwards) in [(frame.bottom, -length), (frame.top, length)] {
             scene.line([at(x, edge), at(x, edge + inwards)], FRAME_PT, BLACK);

@@ -1,7 +1,7 @@
 //! Where the parts of a chart stand on the page. Every label is measured, so that none is cut and none overlaps another.
 
-use super::axis::{Scale, widest};
-use super::ticks::Ticks;
+use super::axis::{BESIDE, Scale, widest};
+use super::ticks::{Tick, Ticks};
 use super::{Chart, Panel};
 use crate::figure::COLUMN_PT;
 use crate::figure::page::ink::{self, Frame, LABEL_PT, TITLE_PT};
@@ -28,7 +28,10 @@ pub struct Placed {
     pub frame: Frame,
     pub x: Scale,
     pub y: Scale,
+    /// The ticks of the axis y and of the axis x.
     pub ticks: Ticks,
+    pub below: Ticks,
+    /// The title of the axis y and the size of its letters, pt.
     pub title: (String, f64),
 }
 
@@ -37,50 +40,57 @@ pub struct Placed {
 #[derive(Clone, Debug)]
 pub struct Layout {
     pub panels: Vec<Placed>,
-    pub ticks: Ticks,
-    pub title: (String, f64),
+    /// The same panels with the stretch that is magnified; empty without one.
+    pub magnified: Vec<Placed>,
     /// Where the titles of the axes at the left have their baseline, pt.
     pub titles_at: f64,
     pub height_pt: f64,
+}
+
+impl Placed {
+    fn new(chart: &Chart, x: Scale, y: Scale, ticks: Ticks, title: (String, f64)) -> Self {
+        Self {
+            frame: Frame {
+                left: x.places.0,
+                top: y.places.1,
+                right: x.places.1,
+                bottom: y.places.0,
+            },
+            below: x.ticks_below(&chart.x),
+            x,
+            y,
+            ticks,
+            title,
+        }
+    }
 }
 
 impl Layout {
     /// The places of the parts of `chart`, `above` pt below the upper edge of the page.
     pub fn new(chart: &Chart, above: f64) -> Self {
         let label = ink::height(LABEL_PT);
-        let all = chart.panels.iter().flat_map(|panel| &panel.series);
-        let x_range = chart.x.range_of(all.flat_map(|series| series.reach(0)));
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
-        let (left, right, height) = sides(chart, x_range, &y_ranges);
+        let (left, right, height) = sides(chart, x_range(chart), &y_ranges);
         let top = above + EDGE + 0.5 * label;
-        let gap = label + PANEL_GAP;
-        let x = Scale::of(&chart.x, x_range, (left, right));
-        let below = x.ticks_below(&chart.x);
-        let place = |(index, (panel, ticks)): (usize, (&Panel, Ticks))| {
-            let top = top + index as f64 * (height + gap);
-            let frame = Frame {
-                left,
-                top,
-                right,
-                bottom: top + height,
-            };
-            Placed {
-                y: Scale::of(&panel.y, y_ranges[index], (frame.bottom, frame.top)),
-                x,
-                title: fitted(panel.y.title(&ticks), height + 0.7 * gap),
-                frame,
-                ticks,
-            }
+        let place = |chart: &Chart, x: Scale| {
+            let ticks = ticks_of(chart, &y_ranges, height);
+            let panels = chart.panels.iter().zip(&y_ranges).zip(ticks).enumerate();
+            let panels = panels.map(|(index, ((panel, range), ticks))| {
+                let top = top + index as f64 * (height + label + PANEL_GAP);
+                let y = Scale::of(&panel.y, *range, (top + height, top));
+                let title = fitted(panel.y.title(&ticks), height + 0.7 * (label + PANEL_GAP));
+                Placed::new(chart, x, y, ticks, title)
+            });
+            panels.collect::<Vec<_>>()
         };
-        let ticks = ticks_of(chart, &y_ranges, height);
-        let panels = chart.panels.iter().zip(ticks).enumerate();
-        let panels: Vec<_> = panels.map(place).collect();
+        let [x, beside] = columns(chart, left, right);
+        let panels = place(chart, x);
         let bottom = panels.last().map_or(top, |panel| panel.frame.bottom);
+        let magnified = chart.magnified.iter();
         Self {
-            title: fitted(chart.x.title(&below), chart.width_pt - 2.0 * EDGE),
             titles_at: EDGE + ink::height(TITLE_PT) + 1.0,
             height_pt: bottom + GAP + 1.5 * label + TITLE_BELOW + title_height() + EDGE,
-            ticks: below,
+            magnified: magnified.flat_map(|chart| place(chart, beside)).collect(),
             panels,
         }
     }
@@ -95,6 +105,35 @@ impl Layout {
     }
 }
 
+fn x_range(chart: &Chart) -> (f64, f64) {
+    let all = chart.panels.iter().flat_map(|panel| &panel.series);
+    chart.x.range_of(all.flat_map(|series| series.reach(0)))
+}
+
+/// The axes x of `chart` and of what it magnifies, from `left` to `right`: so far apart that their labels do not touch.
+fn columns(chart: &Chart, left: f64, right: f64) -> [Scale; 2] {
+    let scale = |chart: &Chart, places| Scale::of(&chart.x, x_range(chart), places);
+    let Some(magnified) = &chart.magnified else {
+        return [scale(chart, (left, right)); 2];
+    };
+    let half = 0.5 * (left + right);
+    let [from, to] = [scale(chart, (left, half)), scale(magnified, (half, right))];
+    let over = |scale: &Scale, axis, tick: fn(&[Tick]) -> Option<&Tick>, edge: f64| {
+        let ticks = scale.ticks_below(axis);
+        let label = tick(&ticks.major);
+        label.map_or(0.0, |tick| {
+            0.5 * ink::width(&tick.label, LABEL_PT) - (edge - scale.place(tick.at)).abs()
+        })
+    };
+    let over = over(&from, &chart.x, <[Tick]>::last, half).max(0.0)
+        + over(&to, &magnified.x, <[Tick]>::first, half).max(0.0);
+    let apart = 0.5 * (over + BESIDE);
+    [
+        scale(chart, (left, half - apart)),
+        scale(magnified, (half + apart, right)),
+    ]
+}
+
 /// Where the panels begin and end, and how high each is, pt.
 fn sides(chart: &Chart, x_range: (f64, f64), y_ranges: &[(f64, f64)]) -> (f64, f64, f64) {
     let mut height = panel_height(chart);
@@ -105,6 +144,11 @@ fn sides(chart: &Chart, x_range: (f64, f64), y_ranges: &[(f64, f64)]) -> (f64, f
         let widest = ticks.iter().map(widest).fold(0.0, f64::max);
         left = EDGE + title_height() + TITLE_GAP + widest + GAP;
         right = right.min(right_edge(chart, x_range, left, right));
+        if let Some(magnified) = &chart.magnified {
+            let half = 0.5 * (left + right);
+            let range = self::x_range(magnified);
+            right = right.min(right_edge(magnified, range, half, right));
+        }
         if chart.is_true_to_scale {
             let (width, span) = (right - left, x_range.1 - x_range.0);
             height = width / span * (y_ranges[0].1 - y_ranges[0].0);
@@ -119,7 +163,7 @@ fn title_height() -> f64 {
 }
 
 /// `title` with the size of letters at which it is no longer than `room`, pt.
-fn fitted(title: String, room: f64) -> (String, f64) {
+pub fn fitted(title: String, room: f64) -> (String, f64) {
     let size = TITLE_PT * (room / ink::width(&title, TITLE_PT)).min(1.0);
     (title, size.max(LEAST_TITLE_PT))
 }

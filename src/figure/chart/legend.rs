@@ -1,13 +1,16 @@
 //! Which line is what: in a corner of the panel where nothing is drawn, or above the panels.
 
+use super::curve::BAND_WHITE;
 use super::layout::{EDGE, Layout};
 use super::{Chart, Style};
-use crate::figure::page::ink::{self, Frame, LABEL_PT, WHITE, at};
+use crate::figure::page::ink::{self, Frame, LABEL_PT, WHITE, at, paler};
 use crate::figure::page::scene::{Path, Pen, Point, Scene};
 
 /// Length of the line of an entry, and its distance from the name, pt.
 const KEY: f64 = 17.0;
 const AFTER_KEY: f64 = 3.5;
+/// Half the height of a band beside its name, pt.
+const BAND: f64 = 2.6;
 const ROW: f64 = 9.6;
 const BETWEEN: f64 = 11.0;
 /// Between the legend and the panel's frame, and what must be free around it, pt.
@@ -35,10 +38,10 @@ pub fn longest_name(width_pt: f64) -> f64 {
 }
 
 impl Legend {
-    /// The legend of `series`, by name and style: every name once, and a remark, if there is one.
+    /// The legend of `series`, by name and style: every name once, and what there is to remark.
     pub fn new<'a>(
         series: impl Iterator<Item = (&'a str, &'a Style)>,
-        remark: Option<&str>,
+        remarks: impl IntoIterator<Item = String>,
     ) -> Self {
         let mut entries: Vec<Entry> = Vec::new();
         for (name, style) in series.filter(|(name, _)| !name.is_empty()) {
@@ -51,18 +54,18 @@ impl Legend {
                 name: name.to_owned(),
             });
         }
-        entries.extend(remark.map(|remark| Entry {
+        entries.extend(remarks.into_iter().map(|remark| Entry {
             style: None,
-            width_pt: ink::width(remark, LABEL_PT),
-            name: remark.to_owned(),
+            width_pt: ink::width(&remark, LABEL_PT),
+            name: remark,
         }));
         Self { entries }
     }
 
-    pub fn of(chart: &Chart, remark: Option<&str>) -> Self {
+    pub fn of(chart: &Chart, remarks: impl IntoIterator<Item = String>) -> Self {
         let series = chart.panels.iter().flat_map(|panel| &panel.series);
         let series = series.map(|series| (series.name.as_str(), &series.style));
-        Self::new(series, remark)
+        Self::new(series, remarks)
     }
 
     /// The rows in which it stands above the panels, within `room` pt.
@@ -92,7 +95,9 @@ impl Legend {
 
     /// A corner of the panel, where there is one panel, in which nothing is drawn.
     pub fn free_corner(&self, chart: &Chart, layout: &Layout) -> Option<Frame> {
-        let ([panel], [placed]) = (&chart.panels[..], &layout.panels[..]) else {
+        let ([panel], [placed], []) =
+            (&chart.panels[..], &layout.panels[..], &layout.magnified[..])
+        else {
             return None;
         };
         let widest = self.entries.iter().map(|entry| entry.width_pt);
@@ -150,6 +155,11 @@ impl Entry {
             return;
         };
         let y = place.y - 0.5 * ink::height(LABEL_PT);
+        if style.is_band {
+            let (from, to) = (at(place.x, y - BAND), at(place.x + KEY, y + BAND));
+            let corners = [from, at(to.x, from.y), to, at(from.x, to.y)];
+            scene.fill(Path::polygon(corners), paler(style.color, BAND_WHITE));
+        }
         if style.width_pt > 0.0 {
             let ends = [at(place.x, y), at(place.x + KEY, y)];
             let pen = Pen {
@@ -162,6 +172,9 @@ impl Entry {
                 ..style.pen()
             };
             scene.stroke(Path::polyline(ends), pen, None);
+            if let Some(core) = style.core_pen() {
+                scene.stroke(Path::polyline(ends), core, None);
+            }
         }
         if let Some(mark) = style.mark {
             scene.mark(mark, at(place.x + 0.5 * KEY, y), style.color);

@@ -12,7 +12,7 @@ pub mod slope;
 pub mod ticks;
 
 use crate::figure::extent;
-use crate::figure::page::ink::{BLACK, Mark, grey};
+use crate::figure::page::ink::{BLACK, Mark, grey, paler};
 use crate::figure::page::scene::{Color, Pen};
 use ticks::{Ticks, power_of_ten};
 
@@ -25,6 +25,8 @@ pub struct Chart {
     pub panels: Vec<Panel>,
     /// Whether a unit is as long on both axes; then there is one panel.
     pub is_true_to_scale: bool,
+    /// A stretch of the axis x that is magnified, to the right: its panels have the axes y of these.
+    pub magnified: Option<Box<Chart>>,
     /// Whether its errors are those of reading a number off a run: they do not hold what the scheme does to the run.
     pub are_read_off: bool,
 }
@@ -68,6 +70,8 @@ pub struct Series {
     /// One standard error of each point's first and of its second number; empty where there are none, NaN where one is not
     /// known.
     pub errors: [Vec<f64>; 2],
+    /// Where its line turns too often to be told apart: along the axis x, from where to where it goes.
+    pub band: Vec<[f64; 3]>,
     pub style: Style,
 }
 
@@ -76,8 +80,8 @@ impl Series {
         Self {
             name: name.into(),
             points,
-            errors: Default::default(),
             style,
+            ..Self::default()
         }
     }
 
@@ -124,10 +128,14 @@ pub struct Style {
     /// Lengths of strokes and gaps, pt; empty for a solid line.
     pub dash_pt: &'static [f64],
     pub mark: Option<Mark>,
-    /// Whether it is drawn behind all others.
+    /// Whether it is drawn behind the others, and behind those of its kind that come before it.
     pub is_behind: bool,
     /// Whether its line is a dot at each of its points, which are not joined.
     pub is_dots: bool,
+    /// Whether it is a band where its series has one.
+    pub is_band: bool,
+    /// The colour of a thin line along its middle, on top of the first curve where that would hide it.
+    pub core: Option<Color>,
 }
 
 impl Default for Style {
@@ -139,6 +147,8 @@ impl Default for Style {
             mark: None,
             is_behind: false,
             is_dots: false,
+            is_band: false,
+            core: None,
         }
     }
 }
@@ -177,21 +187,28 @@ const MARKS: [Mark; KINDS_OF_LINE] = [
 const DOT_PT: f64 = 1.1;
 
 impl Style {
-    /// The line of the curve `index` of several over time: colour, dashes and width tell them apart.
+    /// The line of the curve `index` of several: the first is thin and on top, each other one wider and beneath those before
+    /// it, so that where two have one place both are seen.
     pub fn curve(index: usize) -> Self {
+        /// How much wider each is than the one on top of it, pt.
+        const WIDER_PT: f64 = 0.6;
+        let kind = index % KINDS_OF_LINE;
         Self {
-            color: COLORS[index % COLORS.len()],
-            dash_pt: DASHES[index % DASHES.len()],
-            width_pt: if index == 0 { 0.7 } else { 0.85 },
+            color: COLORS[kind],
+            width_pt: Self::default().width_pt + WIDER_PT * kind as f64,
+            is_behind: index > 0,
+            core: (index > 0).then_some(COLORS[kind]),
             ..Self::default()
         }
     }
 
-    /// The exact motion: dashed, on top of the run.
-    pub fn exact() -> Self {
+    /// The exact motion, as the curve `index`: pale and wide, so that a run on top of it is seen wherever it goes.
+    pub fn exact(index: usize) -> Self {
+        let curve = Self::curve(index);
         Self {
-            width_pt: 0.8,
-            ..Self::curve(1)
+            color: paler(curve.color, 0.4),
+            width_pt: curve.width_pt + 0.6,
+            ..curve
         }
     }
 
@@ -272,19 +289,19 @@ impl Style {
             dash_pt: &[],
             width_pt: DOT_PT,
             is_dots: true,
+            core: None,
             ..self
         }
     }
 
-    /// The same as a thin solid line, for lines too dense to dash.
-    pub fn solid(self) -> Self {
-        /// Of its width.
-        const THIN: f64 = 0.4;
-        Self {
-            dash_pt: &[],
-            width_pt: THIN * self.width_pt,
-            ..self
-        }
+    /// The pen of its core.
+    pub fn core_pen(&self) -> Option<Pen> {
+        const CORE_PT: f64 = 0.7;
+        Some(Pen {
+            width_pt: CORE_PT,
+            color: self.core?,
+            ..self.pen()
+        })
     }
 
     pub fn pen(&self) -> Pen {

@@ -3,8 +3,7 @@
 use crate::export::Column;
 use crate::figure::chart::layout::Layout;
 use crate::figure::chart::{Chart, Panel, Series, Style};
-use crate::figure::dense::Dense;
-use crate::figure::request::{Drawn, Job, Request, Run};
+use crate::figure::request::{Dense, Drawn, Job, Request, Run};
 use crate::figure::{chords, dense, quantity, size};
 use crate::run::Truth;
 use std::f64::consts::{PI, TAU};
@@ -78,9 +77,9 @@ fn limits(run: &Run, pt_per_m: f64) -> Vec<Series> {
     let radius = |tilt: f64| at.norm() * libm::sin(tilt);
     let (inner, outer) = (radius(low), radius(high));
     let (name, radii) = if (outer - inner).abs() <= SAME * outer.max(inner) {
-        ("radius of exact", vec![0.5 * (inner + outer)])
+        ("radius of exact motion", vec![0.5 * (inner + outer)])
     } else {
-        ("limits of exact", vec![inner, outer])
+        ("limits of exact motion", vec![inner, outer])
     };
     let circle = |radius| Series::new(name, circle(radius, pt_per_m), Style::limit());
     radii.into_iter().map(circle).collect()

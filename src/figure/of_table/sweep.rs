@@ -89,8 +89,8 @@ const DECADES: f64 = 1e3;
 
 /// What follows the name of theory of which some line has gaps.
 const IN_GAPS: &str = " (gaps: no prediction)";
-/// What the legend calls values that were neither measured nor are theory, beside those that were measured.
-const OTHER: &str = "other values";
+/// What the legend calls values of the run that were not read off its steps, beside those that were.
+const OTHER: &str = "simulated, without error";
 
 /// The rows of `table` whose runs did not fail.
 fn rows_run(table: &Table, varied: &[String]) -> Vec<usize> {
@@ -244,7 +244,7 @@ impl Drawing<'_> {
 
     /// What the legend says of each curve that has no point: the names of those curves whose runs all failed.
     fn failed(&self, quantities: &[Quantity]) -> Result<Vec<Series>, String> {
-        const FAILED: &str = "no run could be measured";
+        const FAILED: &str = "no run gave a number";
         let parts = quantities.iter().flatten();
         let parts = parts.filter(|part| part.role != Role::Theory);
         let columns = parts.map(|part| numbers(self.table, &part.name));

@@ -3,9 +3,8 @@
 //! The ink is put into a grid of square cells, the boundary of the inked cells is followed, and its steps are made straight
 //! again. The grid is finer than the dots of a printer, and what it cannot tell apart is one area.
 
-use super::ink::at;
 use super::line::simplified;
-use super::scene::{Path, Point, Segment};
+use super::scene::{Path, Point, Segment, at};
 use crate::figure::extent;
 
 /// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one where the finer one gives too many points.

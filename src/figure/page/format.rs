@@ -2,7 +2,7 @@
 
 use std::path::Path as FilePath;
 
-use super::ink::at;
+use super::scene::{at, hundredths};
 use super::{Item, Paint, Point, Scene};
 use super::{pdf, png, svg};
 use crate::text::printable::Shown;
@@ -44,6 +44,8 @@ pub enum Unwritable {
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Format {
     Svg,
+    /// SVG with text as text, which can be selected and takes a font of its reader.
+    SvgText,
     Pdf,
     /// Portable Network Graphics, at [`DOTS_PER_INCH`].
     Png,
@@ -75,7 +77,8 @@ impl Format {
 pub fn write(scene: &Scene, format: Format) -> Result<Vec<u8>, Unwritable> {
     let scene = rounded(scene)?;
     match format {
-        Format::Svg => Ok(svg::written(&scene).into_bytes()),
+        Format::Svg => Ok(svg::written(&scene, false).into_bytes()),
+        Format::SvgText => Ok(svg::written(&scene, true).into_bytes()),
         Format::Pdf => Ok(pdf::written(&scene)),
         Format::Png => png::written(&scene, DOTS_PER_INCH),
     }
@@ -130,10 +133,6 @@ fn rounded_item(item: &Item) -> Option<Item> {
 
 fn hundredths_of(point: Point) -> Point {
     at(hundredths(point.x), hundredths(point.y))
-}
-
-pub fn hundredths(pt: f64) -> f64 {
-    libm::round(pt * 100.0) / 100.0 + 0.0
 }
 
 #[cfg(test)]

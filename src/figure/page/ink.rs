@@ -1,6 +1,7 @@
 //! Lines, marks and words, put on a page.
 
 use super::letters::{self, Label};
+pub use super::scene::at;
 use super::scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment, Words};
 
 pub const TITLE_PT: f64 = 8.0;
@@ -14,8 +15,10 @@ pub const fn grey(level: u8) -> Color {
     Color([level; 3])
 }
 
-pub const fn at(x: f64, y: f64) -> Point {
-    Point { x, y }
+/// `color` mixed with white; `white` is the part of that.
+pub fn paler(Color(parts): Color, white: f64) -> Color {
+    let mixed = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
+    Color(parts.map(mixed))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

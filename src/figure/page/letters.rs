@@ -9,7 +9,7 @@ mod setter;
 pub mod table;
 
 use self::setter::Setter;
-use crate::figure::{Path, Point};
+use super::scene::{Path, Placed};
 use crate::text::printable::printable;
 
 /// Height of capital letters and digits, as a share of their size.
@@ -29,14 +29,6 @@ pub struct Label {
     /// The text without markup: superscripts as characters or behind `^`, subscripts behind `_`.
     pub words: String,
     pub letters: Vec<Placed>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
-    pub letter: char,
-    pub is_italic: bool,
-    pub origin: Point,
-    pub size_pt: f64,
 }
 
 /// A text in markup as outlines. A character that the table does not have is drawn as a box. What is not closed ends with

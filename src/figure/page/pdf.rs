@@ -5,8 +5,7 @@ mod words;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 
-use super::format::hundredths;
-use super::ink;
+use super::scene::{at, hundredths};
 use super::svg::MITER_LIMIT;
 use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
 use crate::text::printable::printable;
@@ -119,7 +118,7 @@ fn shares(Color(parts): Color) -> [f32; 3] {
 }
 
 fn put_path(content: &mut Content, path: &Path) {
-    let mut at = ink::at(0.0, 0.0);
+    let mut at = at(0.0, 0.0);
     for segment in &path.0 {
         match *segment {
             Segment::Move(to) => content.move_to(to.x as f32, to.y as f32),
@@ -143,5 +142,5 @@ fn put_cubic(content: &mut Content, points: [Point; 3]) -> &mut Content {
 /// The control point of a cubic curve that is the parabola with this one, in hundredths.
 fn two_thirds(end: Point, control: Point) -> Point {
     let between = |from: f64, to: f64| hundredths(from + (to - from) * 2.0 / 3.0);
-    ink::at(between(end.x, control.x), between(end.y, control.y))
+    at(between(end.x, control.x), between(end.y, control.y))
 }

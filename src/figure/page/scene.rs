@@ -3,12 +3,28 @@
 //! Lengths are points (1/72 inch); the origin is the upper left corner, x to the right, y down. Text is a path too: the
 //! outlines of its letters, so that a page looks the same where no font is installed.
 
-use super::letters::Placed;
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     pub x: f64,
     pub y: f64,
+}
+
+pub const fn at(x: f64, y: f64) -> Point {
+    Point { x, y }
+}
+
+/// `pt` in whole hundredths.
+pub fn hundredths(pt: f64) -> f64 {
+    libm::round(pt * 100.0) / 100.0 + 0.0
+}
+
+/// A letter in its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    pub letter: char,
+    pub is_italic: bool,
+    pub origin: Point,
+    pub size_pt: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,8 @@
-//! A page as SVG 1.1: paths alone, no font, no script, no style sheet.
+//! A page as SVG 1.1: paths alone, no font, no script, no style sheet; where it is asked for, text as text.
 
 use std::fmt::Write; // which cannot fail on a `String`
 
+use super::scene::{Placed, Words};
 use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
 use crate::figure::PT_PER_MM;
 use crate::text::printable::printable;
@@ -9,8 +10,9 @@ use crate::text::printable::printable;
 /// How much farther a sharp corner may reach than half the line's width: what SVG takes if nothing is said.
 pub const MITER_LIMIT: f64 = 4.0;
 
-/// A page whose places are whole hundredths of a point. The words of a text are its label for readers of the screen.
-pub fn written(scene: &Scene) -> String {
+/// A page whose places are whole hundredths of a point. The words of a text are its label for readers of the screen; with
+/// `has_text` they are text.
+pub fn written(scene: &Scene, has_text: bool) -> String {
     let mut out = String::new();
     let (width, height) = (number(scene.width_pt), number(scene.height_pt));
     let sides_mm = [scene.width_pt, scene.height_pt].map(|pt| number(pt / PT_PER_MM));
@@ -30,7 +32,7 @@ pub fn written(scene: &Scene) -> String {
         );
     }
     for group in scene.groups() {
-        put_group(&mut out, group);
+        put_group(&mut out, group, has_text);
     }
     out += "</svg>\n";
     out
@@ -54,7 +56,7 @@ fn name(clip: &[Point; 2]) -> String {
 }
 
 /// Items that are drawn and cut off alike.
-fn put_group(out: &mut String, items: &[Item]) {
+fn put_group(out: &mut String, items: &[Item], has_text: bool) {
     let Some(first) = items.first() else {
         return;
     };
@@ -68,6 +70,10 @@ fn put_group(out: &mut String, items: &[Item]) {
     }
     *out += ">\n";
     for item in items {
+        if let Some(words) = item.words.as_ref().filter(|_| has_text) {
+            put_text(out, words);
+            continue;
+        }
         *out += "<path";
         if let Some(words) = &item.words {
             let words = escaped(&words.text);
@@ -76,6 +82,48 @@ fn put_group(out: &mut String, items: &[Item]) {
         let _ = writeln!(out, " d=\"{}\"/>", data(&item.path));
     }
     *out += "</g>\n";
+}
+
+/// The fonts of text, the one of the outlines first.
+const FONTS: &str = "STIX Two Text,STIXTwoText,Times New Roman,Times,Liberation Serif,serif";
+
+/// Words as text: a part of one style and height begins where its outlines do.
+fn put_text(out: &mut String, words: &Words) {
+    let turned = if words.is_upward {
+        " transform=\"rotate(-90)\""
+    } else {
+        ""
+    };
+    let _ = write!(
+        out,
+        "<text xml:space=\"preserve\" font-family=\"{FONTS}\"{turned}>"
+    );
+    let place = |letter: &Placed| {
+        let Point { x, y } = letter.origin;
+        if words.is_upward { (-y, x) } else { (x, y) }
+    };
+    let look = |letter: &Placed| {
+        (
+            letter.is_italic,
+            letter.size_pt,
+            hundredths(place(letter).1),
+        )
+    };
+    for part in words.letters.chunk_by(|a, b| look(a) == look(b)) {
+        let ((x, y), size) = (place(&part[0]), number(part[0].size_pt));
+        let style = if part[0].is_italic {
+            " font-style=\"italic\""
+        } else {
+            ""
+        };
+        let text: String = part.iter().map(|placed| placed.letter).collect();
+        let (x, y, text) = (number(x), number(y), escaped(&text));
+        let _ = write!(
+            out,
+            "<tspan x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{style}>{text}</tspan>"
+        );
+    }
+    *out += "</text>\n";
 }
 
 fn put_pen(out: &mut String, pen: &Pen) {

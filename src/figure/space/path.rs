@@ -5,8 +5,8 @@ use crate::figure::chart::Style;
 use crate::figure::chart::axis::Scale;
 use crate::figure::chart::curve;
 use crate::figure::extent;
-use crate::figure::page::ink::grey;
-use crate::figure::page::scene::{Color, Pen, Point, Scene};
+use crate::figure::page::ink::{grey, paler};
+use crate::figure::page::scene::{Pen, Point, Scene};
 use crate::figure::request::Drawn;
 use nalgebra::Vector3;
 
@@ -21,7 +21,7 @@ type Pieces = Vec<Vec<(Point, f64)>>;
 impl Space {
     /// The paths, the farthest parts first, and their shadows behind them.
     pub(super) fn paths(&self, drawn: &[Drawn], styles: &[Style], scene: &mut Scene) {
-        for (drawn, style) in drawn.iter().zip(styles) {
+        for (drawn, style) in drawn.iter().zip(styles).rev() {
             let on_floor = |at: &[f64; 3]| {
                 let boxed = self.boxed(at);
                 self.place(&Vector3::new(boxed.x, boxed.y, -0.5 * TALL))
@@ -44,24 +44,30 @@ impl Space {
         };
         let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
         let by_degree: Vec<_> = paths.iter().map(|path| by_degree(path, degree)).collect();
-        for nearness in 0..DEPTHS {
-            let part = nearness as f64 / (DEPTHS - 1) as f64;
-            let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
-            let looks = drawn.iter().zip(styles);
-            for (by_degree, (drawn, style)) in by_degree.iter().zip(looks) {
-                // A line may be thinner than it was meant to be; depth has a say as well.
-                let thin = (style.width_pt / drawn.style.width_pt).min(1.0);
-                let pen = Pen {
-                    dash_pt: style.dash_pt.to_vec(),
-                    ..round_pen(
-                        thin * width,
-                        paler(style.color, FARTHEST_WHITE * (1.0 - part)),
-                    )
-                };
-                draw(&by_degree[nearness], &pen, style, scene);
+        // The first run is on top of all others.
+        let pens: [fn(&Style) -> Option<Pen>; 2] = [|style| Some(style.pen()), Style::core_pen];
+        for pen in pens {
+            for (by_degree, style) in by_degree.iter().zip(styles).rev() {
+                for (nearness, pieces) in by_degree.iter().enumerate() {
+                    if let Some(pen) = pen(style) {
+                        draw_at(nearness, pieces, pen, style, scene);
+                    }
+                }
             }
         }
     }
+}
+
+/// Draws pieces of that nearness: what is near is wide and dark.
+fn draw_at(nearness: usize, pieces: &[Vec<Point>], pen: Pen, style: &Style, scene: &mut Scene) {
+    let part = nearness as f64 / (DEPTHS - 1) as f64;
+    let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
+    let pen = Pen {
+        width_pt: pen.width_pt * width / Style::default().width_pt,
+        color: paler(pen.color, FARTHEST_WHITE * (1.0 - part)),
+        ..pen
+    };
+    draw(pieces, &pen, style, scene);
 }
 
 fn draw(pieces: &[Vec<Point>], pen: &Pen, style: &Style, scene: &mut Scene) {
@@ -92,9 +98,4 @@ fn by_degree(
         }
     }
     pieces
-}
-
-fn paler(color: Color, white: f64) -> Color {
-    let mixed = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
-    Color(color.0.map(mixed))
 }

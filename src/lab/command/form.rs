@@ -15,10 +15,8 @@ use serde::de::DeserializeOwned;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// The largest number of repetitions by one command.
 const MOST_TIMES: i64 = 10_000;
 const MOST_STEPS: i64 = 1_000_000_000;
-/// The longest wait, s.
 const LONGEST_WAIT: f64 = 86_400.0;
 pub const MOST_MAGNIFIED: f64 = 1e6;
 
@@ -37,7 +35,6 @@ pub(super) enum Form {
     Fields(Fields),
 }
 
-/// A table of fields.
 pub(super) struct Fields {
     known: &'static [(&'static str, Form)],
     alone: Alone,
@@ -264,12 +261,10 @@ pub(super) fn below(name: &str, problem: Problem) -> Problem {
     Problem { key, ..problem }
 }
 
-/// `value`, unless there are `problems`.
 fn unless_any(problems: Vec<Problem>, value: Value) -> Result<Value, Vec<Problem>> {
     problems.is_empty().then_some(value).ok_or(problems)
 }
 
-/// Whether serde reads a `T` from `value`.
 fn is<T: DeserializeOwned>(value: &Value) -> bool {
     value.clone().try_into::<T>().is_ok()
 }

@@ -1,20 +1,13 @@
 //! Which pane has the focus, and whether it fills the screen.
 
 use super::{Pane, View};
-use crate::lab::Done;
 
 impl View {
     /// Fills the screen with `pane` and moves the focus there; with `None` shows all panes again.
-    pub fn fill(&mut self, pane: Option<Pane>) -> Done {
+    pub fn fill(&mut self, pane: Option<Pane>) {
         self.filled = pane.is_some();
         self.focus = pane.unwrap_or(self.focus);
         self.is_touched |= self.filled;
-        Done::SILENT
-    }
-
-    pub(in crate::lab) fn point_at(&mut self, pane: Option<Pane>) -> Done {
-        self.pointed_at = pane;
-        Done::SILENT
     }
 
     pub fn is_filled_by(&self, pane: Pane) -> bool {

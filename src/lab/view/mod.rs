@@ -1,29 +1,27 @@
 //! How a run is shown: which panes, which of them has the focus, how much time the traces show, and which dots and
 //! colours. `tui` draws accordingly. No number of a run depends on it.
 //!
-//! [`pane`] names the parts of the screen, `focus` moves between them; [`markers`] lists the kinds of dots, [`theme`] the
-//! choice of colours, [`step`] the pages of the step pane.
+//! [`pane`] names the parts of the screen, `focus` moves between them; `commands` carries out the commands of the view;
+//! [`theme`] has the choices of dots and colours, [`step`] the pages of the step pane.
 
+mod commands;
 mod focus;
-pub mod markers;
 pub mod pane;
 pub mod step;
 pub mod theme;
 
-use super::action::Direction;
 use super::sheet::Sheet;
 use crate::playback::camera::{Camera, Zoom};
 use crate::playback::recording::Curve;
 use crate::run::Clock;
 use crate::scenario::{Scenario, keys};
-use markers::Marker;
 pub use pane::{Pane, Part};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::ops::Deref;
 use std::sync::Arc;
 use step::Page;
-use theme::Theme;
+use theme::{Marker, Theme};
 use toml::{Table, Value};
 
 /// The longest time that one sweep of the traces may take at first, seconds of wall time.
@@ -32,8 +30,6 @@ const LONGEST_SWEEP_S: f64 = 120.0;
 const BARE: [Pane; 2] = [Pane::TRACES, Pane::FROM_ABOVE];
 /// Frames a second at most, where nothing is chosen.
 pub const FPS: u32 = 15;
-/// Degrees by which one press of an arrow turns the camera.
-const TURN_DEG: f64 = 10.0;
 
 /// What is looked at: what `[view]` of a scenario, a session and commands say of the screen. serde reads and writes it
 /// under the keys of `[view]`, and [`patched`](Self::patched) with some of them makes another one.
@@ -79,19 +75,27 @@ fn where_known<'de, T: DeserializeOwned, D: Deserializer<'de>>(
     Ok(Value::deserialize(deserializer)?.try_into().ok())
 }
 
+/// Whether `[view]` has the key or table `name`.
+pub fn is_key(name: &str) -> bool {
+    let path = format!("view.{name}");
+    keys::find(&path).is_ok() || keys::is_table(&path)
+}
+
 impl Look {
     /// Whether `key` of `[view]` is of a look. Speed, measured data, exact motion and the pane that fills the screen are
     /// not.
     pub fn has(key: &str) -> bool {
         const OTHERS: [&str; 4] = ["speed", "exact", "measured", "fill"];
-        let path = format!("view.{key}");
-        !OTHERS.contains(&key) && (keys::find(&path).is_ok() || keys::is_table(&path))
+        !OTHERS.contains(&key) && is_key(key)
     }
 
     /// The look with the values of `patch`, a table as `[view]` is one.
     pub fn patched(&self, patch: &Table) -> Result<Self, String> {
         let mut all = Table::try_from(self).map_err(|error| error.to_string())?;
         all.extend(patch.clone());
+        if patch.contains_key("phase") && !patch.contains_key("sum_to") {
+            all.remove("sum_to"); // all rows of the table on another page
+        }
         all.try_into()
             .map_err(|error: toml::de::Error| error.message().to_owned())
     }
@@ -128,7 +132,6 @@ pub struct View {
     pub sheet_scrolled: Option<usize>,
     /// Whether measured data stand beside the run: a line then tells of them.
     pub measured: bool,
-    /// Frames a second at most.
     pub fps: u32,
     /// Whether the lab listens to the mouse; otherwise the terminal has it, to select text.
     pub mouse: bool,
@@ -173,6 +176,50 @@ impl View {
         };
         view.fit(scenario);
         view
+    }
+
+    /// Shows `sheet` beside the panes, or none. It stays scrolled as it is where its title is the same. Returns whether it is
+    /// another one.
+    pub(super) fn set_sheet(&mut self, sheet: Option<Sheet>) -> bool {
+        if self.sheet.as_deref() == sheet.as_ref() {
+            return false;
+        }
+        let before = self.sheet.take();
+        let is_same = |(before, sheet): (Arc<Sheet>, &Sheet)| {
+            before.title == sheet.title && before.seen == sheet.seen
+        };
+        if !before.zip(sheet.as_ref()).is_some_and(is_same) {
+            self.sheet_scrolled = None;
+        }
+        self.sheet = sheet.map(Arc::new);
+        self.keep_focus();
+        true
+    }
+
+    /// Scrolls the sheet by `rows`; it is `shown` rows high of `all`, and begins at the row `first` now.
+    pub fn scroll_sheet(&mut self, rows: isize, first: usize, shown: usize, all: usize) {
+        let last = all.saturating_sub(shown);
+        let to = first.saturating_add_signed(rows).min(last);
+        self.sheet_scrolled = Some(to);
+    }
+
+    /// Whether the sheet asks for a number, and has the focus.
+    pub fn asks_number(&self) -> bool {
+        let asks = self.sheet.as_ref().is_some_and(|sheet| sheet.asks_number);
+        asks && self.focus == Pane::LESSON
+    }
+
+    pub fn turn_to_sheet(&mut self) {
+        if self.sheet.is_some() {
+            self.filled &= self.focus == Pane::LESSON;
+            self.focus = Pane::LESSON;
+        }
+    }
+
+    /// The panes that stand side by side on the screen while none fills it, from left to right.
+    pub fn set_side_by_side(&mut self, panes: Vec<Pane>) {
+        self.side_by_side = panes;
+        self.keep_focus();
     }
 
     /// Changes to another scenario: the traces show its run, and the rest is as its `[view]` says.
@@ -251,23 +298,8 @@ impl View {
         is_shown && !self.hides(Part::Pane(pane))
     }
 
-    /// The panes that may be on the screen, in the order in which the focus goes through them.
     pub fn to_show(&self) -> Vec<Pane> {
         let panes = self.panes.iter().copied();
         panes.filter(|pane| self.may_show(*pane)).collect()
-    }
-
-    /// The camera after an arrow key was pressed `times` times; each press turns it by 10 degrees.
-    pub(super) fn turned(&self, direction: Direction, times: i32) -> Camera {
-        let degrees = f64::from(times) * TURN_DEG;
-        let (yaw_deg, pitch_deg) = match direction {
-            Direction::Left => (-degrees, 0.0),
-            Direction::Right => (degrees, 0.0),
-            Direction::Up | Direction::PageUp => (0.0, degrees),
-            Direction::Down | Direction::PageDown => (0.0, -degrees),
-        };
-        let mut camera = self.camera;
-        camera.turn(yaw_deg, pitch_deg);
-        camera
     }
 }

@@ -34,7 +34,6 @@ impl Pane {
     /// The page of a lesson. It is shown as long as there is one.
     pub const LESSON: Self = Self("lesson");
 
-    /// Its name in files, commands and sessions.
     pub const fn id(self) -> &'static str {
         self.0
     }

@@ -73,18 +73,4 @@ impl View {
     pub fn shows_step(&self) -> bool {
         self.is_filled_by(Pane::STEP) || (!self.filled && self.may_show(Pane::STEP))
     }
-
-    /// The panes that share the screen once the step pane is shown beside them, or is no longer.
-    pub(in crate::lab) fn with_step_toggled(&self) -> Vec<Pane> {
-        const BESIDE: [Pane; 2] = [Pane::THREE_D, Pane::STEP];
-        if self.shown.is_empty() {
-            return BESIDE.to_vec();
-        }
-        let mut panes = self.shown.clone();
-        panes.retain(|pane| *pane != Pane::STEP && self.shown != BESIDE);
-        if !self.shown.contains(&Pane::STEP) {
-            panes.push(Pane::STEP);
-        }
-        panes
-    }
 }

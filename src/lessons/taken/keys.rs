@@ -1,12 +1,13 @@
 //! The keys of a lesson: turning its pages, predicting, and asking for help.
 
-use super::{Taken, UnderWay, holds};
+use super::{Taken, UnderWay, before_task, compared, holds};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::command::Command;
 use crate::lessons::clock::Clock;
-use crate::lessons::lesson::{Answer, Asked, Predict};
-use crate::lessons::predictions::Predictions;
+use crate::lessons::lesson::{Answer, Asked, Block, Predict};
+use crate::lessons::predictions::{Predictions, Tried};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 impl Taken {
@@ -16,7 +17,7 @@ impl Taken {
             LessonKey::Before => self.before(lab),
             LessonKey::Again => {
                 self.turn_to(self.place.page);
-                let stood = self.stand(lab);
+                let stood = self.stand(false, lab);
                 told(stood, lab);
             }
             LessonKey::ShowTask => return self.show_task(lab),
@@ -31,6 +32,7 @@ impl Taken {
             }
             LessonKey::Move(direction) => return Some(direction),
             LessonKey::Take => self.take(lab),
+            LessonKey::Digit(digit) => self.ask_number(Some(digit), lab),
             LessonKey::List | LessonKey::Leave => {}
         }
         None
@@ -38,6 +40,15 @@ impl Taken {
 
     /// Turns to the next page. Where a prediction is open, it asks for it once.
     fn next(&mut self, lab: &mut Lab) {
+        if self.plays() {
+            // To the end of the page's run at once.
+            let stood = self.stand(true, lab);
+            if stood.is_err() {
+                // The page is shown as far as it came; n turns it.
+                self.place.stated = Some(BTreeMap::new());
+            }
+            return told(stood, lab);
+        }
         if self.place.page >= self.lesson.pages.len() {
             lab.refuse("this is the last page: L lists the lessons, N turns back");
             return;
@@ -47,13 +58,19 @@ impl Taken {
             return;
         }
         self.keep_own_task(lab);
+        // The next page stands on the task of this one as the lesson does it.
+        let has_wandered =
+            self.has_wandered(lab) || self.page().is_some_and(|page| page.task().is_some());
         let page = self.place.page + 1;
         self.turn_to(page);
-        lab.turn_to_sheet();
-        let has_own = self.page().is_some_and(|page| page.lab().is_some());
-        // A page without a block of its own leaves the lab as the student has it.
-        if has_own {
-            let stood = self.stand(lab);
+        lab.view_mut().turn_to_sheet();
+        let kept = &self.place.kept;
+        // A page that neither does nor states anything leaves the lab as the student has it.
+        let needs_its_run = self
+            .page()
+            .is_some_and(|page| page.lab().is_some() || has_wandered && page.states_numbers(kept));
+        if needs_its_run {
+            let stood = self.stand(false, lab);
             told(stood, lab);
         }
     }
@@ -80,7 +97,7 @@ impl Taken {
         let page = self.place.page - 1;
         let stood = self.go_to(Some(page), lab);
         told(stood, lab);
-        lab.turn_to_sheet();
+        lab.view_mut().turn_to_sheet();
     }
 
     /// Shows the hints of the page and scrolls down to them, or does its task where they are shown already or there are none.
@@ -90,48 +107,63 @@ impl Taken {
             checks.any(|check| !check.hint.is_empty())
         });
         if has_hint && !std::mem::replace(&mut self.shows_hints, true) {
+            self.note_tried(Tried::Hint);
             return Some(Direction::PageDown);
         }
         let lesson = Arc::clone(&self.lesson);
         let page = self.place.page;
         match lesson.task_of(page, &self.place.predictions) {
-            Some(stage) => self.begin(&stage, UnderWay::Task(page), lab),
+            Some(stage) => {
+                self.note_tried(Tried::Shown);
+                self.begin(&stage, UnderWay::Task(page), lab);
+            }
             None => lab.refuse("this page has no task"),
         }
         None
     }
 
-    /// Selects the answer above or below; scrolls where none is to be chosen.
+    /// Points at the answer above or below; scrolls where none is to be chosen.
     fn select(&mut self, direction: Direction) -> Option<Direction> {
         let Some(Asked::Choice(choices)) = self.asked().map(|predict| &predict.asked) else {
             return Some(direction);
         };
         let last = choices.len().saturating_sub(1);
-        self.has_come_to_question = true;
-        self.selected = match direction {
-            Direction::Up => self.selected.saturating_sub(1),
-            _ => (self.selected + 1).min(last),
-        };
+        self.is_marked = false;
+        self.selected = Some(match (self.selected, direction) {
+            (None, Direction::Up) => last,
+            (None, _) => 0,
+            (Some(at), Direction::Up) => at.saturating_sub(1),
+            (Some(at), _) => (at + 1).min(last),
+        });
         None
     }
 
-    /// Locks the selected answer, or asks for a number.
+    /// Marks the answer that the keys point at, or locks it where it is marked; or asks for a number.
     fn take(&mut self, lab: &mut Lab) {
         let Some(predict) = self.asked().cloned() else {
             lab.refuse("nothing is asked here: n turns the page");
             return;
         };
-        match &predict.asked {
-            Asked::Choice(choices) => {
-                if let Some(choice) = choices.get(self.selected) {
-                    self.lock(&predict, Answer::Choice(choice.clone()), lab);
-                }
+        let Asked::Choice(choices) = &predict.asked else {
+            return self.ask_number(None, lab);
+        };
+        match self.selected.and_then(|at| choices.get(at)) {
+            None => {
+                lab.refuse("Up and Down choose an answer, Enter marks it, Enter again locks it");
             }
-            Asked::Number { unit } => {
-                let label = if unit.is_empty() { "number" } else { unit };
-                let about = "Enter locks it: a prediction is not changed";
-                lab.ask_number("your prediction", label, about);
+            Some(_) if !std::mem::replace(&mut self.is_marked, true) => {
+                lab.refuse("Enter again locks it: a prediction is not changed");
             }
+            Some(choice) => self.lock(&predict, Answer::Choice(choice.clone()), lab),
+        }
+    }
+
+    fn ask_number(&self, typed: Option<u8>, lab: &mut Lab) {
+        if let Some(Asked::Number { unit }) = self.asked().map(|predict| &predict.asked) {
+            let label = if unit.is_empty() { "number" } else { unit };
+            let about = "Enter locks it: a prediction is not changed";
+            lab.popups_mut()
+                .ask_number("your prediction", label, about, typed);
         }
     }
 
@@ -148,7 +180,7 @@ impl Taken {
             && self.again.take_if(|again| *again == predict.name).is_some()
         {
             self.voted = Some((predict.name.clone(), answer));
-            self.selected = 0;
+            (self.selected, self.is_marked, self.has_answered) = (None, false, true);
             lab.refuse("your vote of this round is in; your first answer stays beside it");
             return;
         }
@@ -156,10 +188,11 @@ impl Taken {
             lab.refuse(reason);
             return;
         }
-        (self.selected, self.has_come_to_question) = (0, true);
-        if let Some(stated) = &mut self.stated {
-            stated.take_in(&predict.name, &self.lesson, &self.place, lab);
+        (self.selected, self.is_marked, self.has_answered) = (None, false, true);
+        if self.place.seen.contains(&predict.name) {
+            self.place.late.insert(predict.name.clone());
         }
+        self.state_again(&predict.name, lab);
         let Some(page) = self.page() else {
             return;
         };
@@ -169,6 +202,24 @@ impl Taken {
             if hidden != lab.view().hidden {
                 lab.carry_out_now(&Command::look("hide", hidden));
             }
+        }
+    }
+}
+
+impl Taken {
+    /// Puts the prediction called `name`, which has just been locked, into what the page states about it.
+    fn state_again(&mut self, name: &str, lab: &Lab) {
+        let about = before_task(&self.lesson, &self.place).filter_map(|block| match block {
+            Block::Compare(compare) if compare.prediction == name => Some(compare),
+            _ => None,
+        });
+        let texts = about.map(|compare| {
+            let text = compared(compare, &self.lesson, &self.place, lab);
+            (compare.line.to_string(), text)
+        });
+        let texts: Vec<_> = texts.collect();
+        if let Some(stated) = &mut self.place.stated {
+            stated.extend(texts);
         }
     }
 }

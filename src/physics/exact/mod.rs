@@ -6,11 +6,9 @@
 //!
 //! [`ExactMotion`] takes the one that serves; the scheme `exact` follows it.
 
-mod elliptic;
 mod lagrange;
-mod near;
-mod part;
 mod phases;
+mod positions;
 mod scheme;
 mod series;
 mod sliding;
@@ -19,7 +17,7 @@ mod theta;
 mod turning;
 
 pub use lagrange::LagrangeTop;
-pub use near::AT_ONCE;
+pub use positions::AT_ONCE;
 pub(crate) use scheme::Exact;
 pub use taylor::AccurateMotion;
 

@@ -3,7 +3,7 @@
 use super::Report;
 use super::points::{Inertia, LANES, Moments, Pair};
 use crate::rotation::AxisAngle;
-use crate::workings::{Changes, Phase, Quantity, Table};
+use crate::workings::{Changes, Phase, Table};
 use nalgebra::{Matrix3, Vector3};
 use wide::f64x2;
 
@@ -40,20 +40,23 @@ impl Report {
         for (point, mass, [x, y, z], [_, _, _, xx, yy, zz, xy, xz, yz]) in self.each(&self.points) {
             table.add(point, [mass, x, y, z, xx, yy, zz, xy, xz, yz]);
         }
-        let moments = Moments::of_all(&self.points);
-        let mut quantities = vec![
-            Quantity::new("X", "", table),
-            Quantity::new("S", "kg m²", moments.second()),
-        ];
-        let frame = self.body.frame_moment();
-        let formula = if frame == 0.0 {
-            "I = Σ m (|X|² E − X Xᵀ) = (Sxx + Syy + Szz) E − S, S = Σ m X Xᵀ"
+        let (frame, inertia) = (self.body.frame_moment(), self.inertia.matrix());
+        let whole_spins = frame == 0.0;
+        let phase = Phase::of(
+            "inertia",
+            if whole_spins {
+                "I = Σ m (|X|² E − X Xᵀ) = (Sxx + Syy + Szz) E − S, S = Σ m X Xᵀ"
+            } else {
+                "I = Σ m (|X|² E − X Xᵀ) − F a aᵀ = (Sxx + Syy + Szz) E − S − F a aᵀ, S = Σ m X Xᵀ, F the moment about the axle a of what does not spin"
+            },
+        );
+        let phase = phase.with("X", "", table);
+        let phase = phase.with("S", "kg m²", Moments::of_all(&self.points).second());
+        if whole_spins {
+            phase.with("I", "kg m²", inertia)
         } else {
-            quantities.push(Quantity::new("F", "kg m²", frame));
-            "I = Σ m (|X|² E − X Xᵀ) − F a aᵀ = (Sxx + Syy + Szz) E − S − F a aᵀ, S = Σ m X Xᵀ, F the moment about the axle a of what does not spin"
-        };
-        quantities.push(Quantity::new("I", "kg m²", self.inertia.matrix()));
-        Phase::of("inertia", formula, quantities)
+            phase.with("F", "kg m²", frame).with("I", "kg m²", inertia)
+        }
     }
 
     pub(super) fn positions_phase(&self, before: &[Pair]) -> Phase {
@@ -69,12 +72,9 @@ impl Report {
         for ((point, _, [x, y, z], _), (_, _, [new_x, new_y, new_z], _)) in both {
             table.add(point, [x, y, z, new_x, new_y, new_z]);
         }
-        Phase::of(
-            "new positions",
-            "X ← R X, point by point",
-            vec![Quantity::new("X", "", table)],
-        )
-        .changing(Changes::Orientation)
+        Phase::of("new positions", "X ← R X, point by point")
+            .with("X", "", table)
+            .changing(Changes::Orientation)
     }
 
     pub(super) fn torque_phase(&self, first_moment: &Vector3<f64>, torque: &Vector3<f64>) -> Phase {
@@ -95,18 +95,7 @@ impl Report {
             let row = [force.x, force.y, force.z, torque.x, torque.y, torque.z];
             pushes.add(push.point, row);
         }
-        Phase::of(
-            "torque",
-            "τ = Σ X × F at the new positions: the weight's (−g Σ m y, g Σ m x, 0), and each push's",
-            vec![
-                Quantity::new("m X", "", points),
-                Quantity::new("Σ m X", "kg m", *first_moment),
-                Quantity::new("g", "m/s²", self.gravity),
-                Quantity::new("τ of the weight", "N m", self.weight_torque(first_moment)),
-                Quantity::new("F", "", pushes),
-                Quantity::new("τ", "N m", *torque),
-            ],
-        )
+        Phase::of("torque", "τ = Σ X × F at the new positions: the weight's (−g Σ m y, g Σ m x, 0), and each push's").with("m X", "", points).with("Σ m X", "kg m", *first_moment).with("g", "m/s²", self.gravity).with("τ of the weight", "N m", self.weight_torque(first_moment)).with("F", "", pushes).with("τ", "N m", *torque)
     }
 }
 
@@ -115,15 +104,10 @@ pub(super) fn velocity_phase(
     momentum: &Vector3<f64>,
     omega: &Vector3<f64>,
 ) -> Phase {
-    Phase::of(
-        "angular velocity",
-        "Ω = I⁻¹ L",
-        vec![
-            Quantity::new("I", "kg m²", inertia.matrix()),
-            Quantity::new("L", "J s", *momentum),
-            Quantity::new("Ω", "rad/s", *omega),
-        ],
-    )
+    Phase::of("angular velocity", "Ω = I⁻¹ L")
+        .with("I", "kg m²", inertia.matrix())
+        .with("L", "J s", *momentum)
+        .with("Ω", "rad/s", *omega)
 }
 
 /// The axis about which the step turns, and its projection: zeros where nothing turns.
@@ -133,27 +117,18 @@ pub(super) fn axis_phase(omega: &Vector3<f64>, dt: f64, turn: Option<&AxisAngle>
         None => (Vector3::zeros(), 0.0, Matrix3::zeros()),
     };
     let (sine, cosine) = turn.map_or((0.0, 1.0), |turn| (turn.sine, turn.cosine));
-    Phase::of(
-        "axis and angle",
-        "u = Ω/|Ω|, P = u uᵀ, angle = |Ω| dt",
-        vec![
-            Quantity::new("Ω", "rad/s", *omega),
-            Quantity::new("dt", "s", dt),
-            Quantity::new("u", "", axis),
-            Quantity::new("angle", "rad", angle),
-            Quantity::new("sin", "", sine),
-            Quantity::new("cos", "", cosine),
-            Quantity::new("P", "", projection),
-        ],
-    )
+    Phase::of("axis and angle", "u = Ω/|Ω|, P = u uᵀ, angle = |Ω| dt")
+        .with("Ω", "rad/s", *omega)
+        .with("dt", "s", dt)
+        .with("u", "", axis)
+        .with("angle", "rad", angle)
+        .with("sin", "", sine)
+        .with("cos", "", cosine)
+        .with("P", "", projection)
 }
 
 pub(super) fn rotation_phase(rotation: &Matrix3<f64>) -> Phase {
-    Phase::of(
-        "rotation",
-        "R = P + cos(|Ω| dt) (E − P) + sin(|Ω| dt) [u]×",
-        vec![Quantity::new("R", "", *rotation)],
-    )
+    Phase::of("rotation", "R = P + cos(|Ω| dt) (E − P) + sin(|Ω| dt) [u]×").with("R", "", *rotation)
 }
 
 pub(super) fn momentum_phase(
@@ -162,16 +137,11 @@ pub(super) fn momentum_phase(
     from: &Vector3<f64>,
     to: &Vector3<f64>,
 ) -> Phase {
-    Phase::of(
-        "new momentum",
-        "dL = dt τ, L ← L + dL",
-        vec![
-            Quantity::new("L", "J s", *from),
-            Quantity::new("dt", "s", dt),
-            Quantity::new("τ", "N m", *torque),
-            Quantity::new("dL", "J s", dt * torque),
-            Quantity::new("new L", "J s", *to),
-        ],
-    )
-    .changing(Changes::Momentum)
+    Phase::of("new momentum", "dL = dt τ, L ← L + dL")
+        .with("L", "J s", *from)
+        .with("dt", "s", dt)
+        .with("τ", "N m", *torque)
+        .with("dL", "J s", dt * torque)
+        .with("new L", "J s", *to)
+        .changing(Changes::Momentum)
 }

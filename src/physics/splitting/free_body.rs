@@ -294,4 +294,204 @@ fn about_first(angle: f64, (re, im): (f64, f64)) -> Matrix3<f64> {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use nalgebra::{Quaternion, UnitQuaternion, Vector4};
+
+    /// Numbers in (-1, 1), the same every time (splitmix64).
+    struct Random(u64);
+
+    impl Random {
+        fn number(&mut self) -> f64 {
+            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mut z = self.0;
+            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((z ^ (z >> 31)) >> 11) as f64 * 2.0_f64.powi(-52) - 1.0
+        }
+        fn vector(&mut self) -> Vector3<f64> {
+            Vector3::from_fn(|_, _| self.number())
+        }
+        fn rotation(&mut self) -> Matrix3<f64> {
+            Turn::new(self.vector() * 3.0).of_columns(&Matrix3::identity())
+        }
+        /// From 0.1 to 10, evenly in the logarithm.
+        fn size(&mut self) -> f64 {
+            libm::pow(10.0, self.number())
+        }
+    }
+
+    /// Inertia, start, angular momentum and time.
+    #[derive(Debug)]
+    struct Motion(Matrix3<f64>, Matrix3<f64>, Vector3<f64>, f64);
+
+    impl Motion {
+        /// Euler's equations and the quaternion's, by Taylor series of the order 50 in steps of a radian at the most: more steps of the
+        /// same kind would add up their rounding. The terms are kept with their powers of the step, so that none is too large.
+        fn integrated(&self) -> Matrix3<f64> {
+            let Self(inertia, start, momentum, t) = self;
+            let inverse = inertia.try_inverse().unwrap();
+            let steps = (t.abs() * inverse.norm() * momentum.norm()).ceil().max(1.0);
+            let (mut m, mut q) = (start.tr_mul(momentum), Quaternion::identity().coords);
+            for _ in 0..steps as usize {
+                let (mut ms, mut ws, mut qs) = (vec![m], vec![inverse * m], vec![q]);
+                for n in 0..50 {
+                    let over = t / steps / (n + 1) as f64;
+                    let dm: Vector3<f64> = (0..=n).map(|k| ms[k].cross(&ws[n - k])).sum();
+                    let product =
+                        |k| (Quaternion::from(qs[k]) * Quaternion::from_imag(ws[n - k])).coords;
+                    let dq: Vector4<f64> = (0..=n).map(product).sum();
+                    ms.push(dm * over);
+                    ws.push(inverse * ms[n + 1]);
+                    qs.push(dq * (0.5 * over));
+                }
+                (m, q) = (ms.iter().rev().sum(), qs.iter().rev().sum());
+                q /= q.norm();
+            }
+            let turn = UnitQuaternion::from_quaternion(Quaternion::from(q));
+            start * turn.to_rotation_matrix().matrix()
+        }
+
+        fn advanced(&self) -> Matrix3<f64> {
+            let Self(inertia, start, momentum, t) = self;
+            let mut q = *start;
+            FreeBody::new(inertia).advance(&mut q, momentum, *t);
+            q
+        }
+
+        fn is_near(&self, expected: &Matrix3<f64>, bound: f64) {
+            let error = (self.advanced() - expected).norm();
+            assert!(error < bound, "{error:e}, not below {bound:e}: {self:?}");
+        }
+
+        fn is_as_integrated(&self, bound: f64) {
+            let q = self.advanced();
+            let off = (q.tr_mul(&q) - Matrix3::identity()).norm();
+            assert!(off < 4e-15, "not orthonormal: {q}");
+            self.is_near(&self.integrated(), bound);
+        }
+    }
+
+    fn diagonal(a: f64, b: f64, c: f64) -> Matrix3<f64> {
+        Matrix3::from_diagonal(&Vector3::new(a, b, c))
+    }
+
+    #[test]
+    fn random_bodies_move_as_integrated() {
+        let mut random = Random(1);
+        let mut moments: Vec<_> = (0..600).map(|_| [0; 3].map(|_| random.size())).collect();
+        let thin_flat_and_extreme = [
+            [1.0, 2.0, 3.0],
+            [1e-9, 1.0, 1.0 + 1e-9],
+            [1e-6, 1.0, 1.1],
+            [1.0, 1e3, 1e3 + 1.0],
+            [1e-3, 1.0, 1.001],
+        ];
+        moments.extend(thin_flat_and_extreme.repeat(20));
+        for moments in moments {
+            let inertia = Matrix3::from_diagonal(&moments.into());
+            let (start, momentum) = (random.rotation(), random.vector() * random.size());
+            let t = 20.0 * random.number() * inertia.diagonal().min() / momentum.norm();
+            Motion(inertia, start, momentum, t).is_as_integrated(1e-13);
+        }
+    }
+
+    #[test]
+    fn bodies_with_tilted_principal_axes_move_as_integrated() {
+        let mut random = Random(2);
+        for _ in 0..300 {
+            let axes = random.rotation();
+            let moments = Vector3::from_fn(|_, _| random.size());
+            let inertia = axes * Matrix3::from_diagonal(&moments) * axes.transpose();
+            let inertia = (inertia + inertia.transpose()) * 0.5;
+            let (start, momentum) = (random.rotation(), random.vector());
+            let t = 5.0 * random.number() * moments.min() / momentum.norm();
+            // The matrix is rounded in parts of its largest moment; the smallest turns the body fastest.
+            let condition = moments.max() / moments.min();
+            Motion(inertia, start, momentum, t).is_as_integrated(2e-14 + 5e-16 * condition);
+        }
+    }
+
+    /// Down to a difference of rounding, where the two rotations take over.
+    #[test]
+    fn nearly_symmetric_bodies_go_over_continuously() {
+        let mut random = Random(4);
+        for exponent in 1..=16 {
+            let delta = libm::pow(10.0, -f64::from(exponent));
+            // Below the limit the moments are taken as equal, which is a change of 1e-14 of the rates.
+            let is_taken_as_equal = f64::from(u8::from(delta <= ROUNDING));
+            for inertia in [
+                diagonal(2.0, 2.0 + delta, 1.0),
+                diagonal(1.0, 1.0 + delta, 1.9),
+                diagonal(1.0 + delta, 1.9, 1.0),
+                diagonal(1.0, 1.0 + delta, 1.0 - delta),
+            ] {
+                for _ in 0..10 {
+                    let motion = Motion(
+                        inertia,
+                        random.rotation(),
+                        random.vector(),
+                        12.0 * random.number(),
+                    );
+                    motion.is_as_integrated(2e-14 + is_taken_as_equal * delta * 12.0 * 1.8);
+                }
+            }
+        }
+    }
+
+    /// On the separatrix L comes to rest along the middle axis; beside it the body tumbles.
+    #[test]
+    fn the_separatrix_and_its_neighbourhood() {
+        let start = Random(5).rotation();
+        for off in [0.0, 1e-16, -1e-15, 1e-12, -1e-9, 1e-6, -1e-4, 1e-2] {
+            for t in [0.1, -1.0, 4.0, 8.0_f64] {
+                // m1^2 (1/I1 - 1/I2) = m3^2 (1/I2 - 1/I3)
+                let m = Vector3::new(1.0 + off, 0.7, 3.0_f64.sqrt());
+                // Neighbours part by up to e^(lambda t).
+                let growth = libm::exp(m.norm() * (0.5 * (0.5 - 1.0 / 3.0_f64)).sqrt() * t.abs());
+                Motion(diagonal(1.0, 2.0, 3.0), start, start * m, t)
+                    .is_as_integrated(4e-15 * (growth + 20.0 * t.abs()));
+            }
+        }
+    }
+
+    #[test]
+    fn rotation_about_a_principal_axis_is_uniform() {
+        let start = Random(6).rotation();
+        for (i, moment) in [1.0, 2.0, 3.0].into_iter().enumerate() {
+            for offset in [0.0, 1e-300, 1e-160, 1e-20, 1e-9] {
+                for t in [0.3, -2.0, 9.0, 1e3_f64] {
+                    let is_unstable = i == 1;
+                    if is_unstable && t > 10.0 {
+                        continue; // the rounding of L has grown
+                    }
+                    let mut m = Vector3::from_element(offset);
+                    m[i] = -1.5;
+                    let axis: Vector3<f64> = start.column(i).into();
+                    let expected = Turn::new(axis * (-1.5 / moment * t)).of_columns(&start);
+                    let rate = if is_unstable { 0.5 } else { 0.0 };
+                    let growth = libm::exp(rate * t.abs());
+                    let bound = 4e-15 * (growth + t.abs()) + 10.0 * offset * growth;
+                    Motion(diagonal(1.0, 2.0, 3.0), start, start * m, t).is_near(&expected, bound);
+                }
+            }
+        }
+    }
+
+    /// The count of the periods: at once or in parts.
+    #[test]
+    fn long_times_are_many_short_ones() {
+        let mut random = Random(9);
+        for _ in 0..100 {
+            let [a, b, c] = [0; 3].map(|_| random.number());
+            let inertia = diagonal(1.0 + 0.9 * a, 3.0 + b, 6.0 + 1.5 * c);
+            let (start, momentum) = (random.rotation(), random.vector());
+            let body = FreeBody::new(&inertia);
+            let mut in_parts = start;
+            (0..8).for_each(|_| body.advance(&mut in_parts, &momentum, 256.0));
+            // Each part begins with a rounded L in the body, and keeps its slightly different rates to the end.
+            let phase = 2048.0 * momentum.norm() / inertia.diagonal().min();
+            Motion(inertia, start, momentum, 2048.0).is_near(&in_parts, 1e-14 * phase);
+        }
+    }
+}

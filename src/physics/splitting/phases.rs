@@ -1,7 +1,7 @@
 //! The phases of a step of a splitting scheme, with their numbers.
 
 use super::turn::Turn;
-use crate::workings::{Changes, Phase, Quantity};
+use crate::workings::{Changes, Phase};
 use nalgebra::{Matrix3, Vector3};
 
 /// Of a symmetric body: the spin that it has more than its turning about L, done once a step.
@@ -9,11 +9,9 @@ pub(super) fn spin(angle: f64, side: &Vector3<f64>) -> Phase {
     Phase::of(
         "spin about the axle",
         "e ← cos(angle) Qx + sin(angle) Qy, angle = (1/I₃ − 1/I₁) (L · a) dt",
-        vec![
-            Quantity::new("angle", "rad", angle),
-            Quantity::new("e", "", *side),
-        ],
     )
+    .with("angle", "rad", angle)
+    .with("e", "", *side)
     .changing(Changes::Orientation)
 }
 
@@ -28,14 +26,12 @@ pub(super) fn axle_kick(
     Phase::of(
         "kick",
         "L ← L + ΔL, ΔL = a × (h Σ s F), s F: a force times its height on the axle",
-        vec![
-            Quantity::new("h", "s", duration_s),
-            Quantity::new("Σ s F", "N m", *force),
-            Quantity::new("a", "", *axle),
-            Quantity::new("ΔL", "J s", *change),
-            Quantity::new("new L", "J s", *momentum),
-        ],
     )
+    .with("h", "s", duration_s)
+    .with("Σ s F", "N m", *force)
+    .with("a", "", *axle)
+    .with("ΔL", "J s", *change)
+    .with("new L", "J s", *momentum)
     .changing(Changes::Momentum)
 }
 
@@ -49,13 +45,11 @@ pub(super) fn axle_turn(
     Phase::of(
         "free motion",
         "a and e turn about L by the angle |w|, w = L h/I₁",
-        vec![
-            Quantity::new("h", "s", duration_s),
-            Quantity::new("w", "rad", turn.vector),
-            Quantity::new("new a", "", *axle),
-            Quantity::new("new e", "", *side),
-        ],
     )
+    .with("h", "s", duration_s)
+    .with("w", "rad", turn.vector)
+    .with("new a", "", *axle)
+    .with("new e", "", *side)
     .changing(Changes::Orientation)
 }
 
@@ -68,27 +62,20 @@ pub(super) fn put_together(
     Phase::of(
         "new orientation",
         "Q ← (e, a × e, a), e made a unit vector square to a",
-        vec![
-            Quantity::new("a", "", *axle),
-            Quantity::new("e", "", *side),
-            Quantity::new("new Q", "", *orientation),
-        ],
     )
+    .with("a", "", *axle)
+    .with("e", "", *side)
+    .with("new Q", "", *orientation)
     .changing(Changes::Orientation)
 }
 
 /// Of any body under any forces.
 pub(super) fn kick(duration_s: f64, torque: &Vector3<f64>, momentum: &Vector3<f64>) -> Phase {
-    Phase::of(
-        "kick",
-        "L ← L + h τ(Q)",
-        vec![
-            Quantity::new("h", "s", duration_s),
-            Quantity::new("τ", "N m", *torque),
-            Quantity::new("new L", "J s", *momentum),
-        ],
-    )
-    .changing(Changes::Momentum)
+    Phase::of("kick", "L ← L + h τ(Q)")
+        .with("h", "s", duration_s)
+        .with("τ", "N m", *torque)
+        .with("new L", "J s", *momentum)
+        .changing(Changes::Momentum)
 }
 
 /// The free motion of any body.
@@ -100,21 +87,16 @@ pub(super) fn free_motion(
     Phase::of(
         "free motion",
         "Q ← Q after the time h without forces, exactly; L stays",
-        vec![
-            Quantity::new("h", "s", duration_s),
-            Quantity::new("L", "J s", *momentum),
-            Quantity::new("new Q", "", *orientation),
-        ],
     )
+    .with("h", "s", duration_s)
+    .with("L", "J s", *momentum)
+    .with("new Q", "", *orientation)
     .changing(Changes::Orientation)
 }
 
 /// What rounding has added to the orientation is taken away.
 pub(super) fn orthonormal(orientation: &Matrix3<f64>) -> Phase {
-    Phase::of(
-        "rounding taken out",
-        "Q ← 3/2 Q − 1/2 Q Qᵀ Q",
-        vec![Quantity::new("new Q", "", *orientation)],
-    )
-    .changing(Changes::Orientation)
+    Phase::of("rounding taken out", "Q ← 3/2 Q − 1/2 Q Qᵀ Q")
+        .with("new Q", "", *orientation)
+        .changing(Changes::Orientation)
 }

@@ -68,34 +68,3 @@ fn closed(square: f64) -> (f64, f64) {
     let (sine, cosine) = sin_cos(angle);
     (sine / angle, (1.0 - cosine) / square)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn series_and_closed_form_agree() {
-        for i in 1..=2000 {
-            let square = f64::from(i) / 1000.0;
-            let angle = square.sqrt();
-            let (s, c) = series(square);
-            let half = libm::sin(0.5 * angle) / angle;
-            assert!((s - libm::sin(angle) / angle).abs() < 4e-16, "{square}");
-            assert!((c - 2.0 * half * half).abs() < 2e-16, "{square}");
-        }
-    }
-
-    #[test]
-    fn turns_by_the_angle_about_the_axis() {
-        let axis = Vector3::new(2.0, -1.0, 2.0) / 3.0;
-        let across = Vector3::new(1.0, 2.0, 0.0) / 5.0_f64.sqrt();
-        for angle in [0.0, 1e-9, 0.3, 1.4, 1.5, 3.0, 31.25, -2.0] {
-            let turn = Turn::new(axis * angle);
-            let expected = across * libm::cos(angle) + axis.cross(&across) * libm::sin(angle);
-            // The components of the vector are rounded, and with them the angle.
-            let rounding = 4.0 * f64::EPSILON * (1.0 + f64::abs(angle));
-            assert!((turn.of(across) - expected).norm() < rounding, "{angle}");
-            assert!((turn.of(axis) - axis).norm() < rounding, "{angle}");
-        }
-    }
-}

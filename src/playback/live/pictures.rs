@@ -1,10 +1,14 @@
-//! What the pictures of a run are drawn from: its curves over time, its path, and where it stands.
+//! What the pictures of a run are drawn from: its curves over time, its path, where it stands, and the
+//! exact motion beside it.
 
 use super::Path;
 use crate::physics::State;
 use crate::playback::recording::{Moment, Recording};
-use crate::run::Step;
+use crate::run::{Step, Truth};
+use crate::scenario::Scenario;
+use nalgebra::Vector3;
 use std::cmp::Ordering;
+use std::sync::Arc;
 
 /// The data of the pictures of one run; to be shown every step.
 pub(super) struct Pictures {
@@ -123,5 +127,86 @@ fn moment(step: &Step) -> Moment {
         time_s: step.time_s(),
         position: *step.position(),
         axle_height: step.after().axle().z,
+    }
+}
+
+/// The most samples of the exact motion that one call of [`follow`](Overlay::follow) computes. If the run is further
+/// ahead, only every second, third, ... step is sampled.
+const MOST_SAMPLES: f64 = 20_000.0;
+
+pub struct Overlay {
+    truth: Truth,
+    traced: Vector3<f64>,
+    /// Least time between two samples, s.
+    time_step_s: f64,
+    pub now: Moment,
+    pub recording: Recording,
+    pub path: Path,
+    has_ended: bool,
+}
+
+impl Overlay {
+    pub fn new(scenario: &Arc<Scenario>) -> Self {
+        let traced = scenario.body.mechanics.points()[scenario.trace].at;
+        let now = Moment::new(&scenario.start, &traced);
+        let mut overlay = Self {
+            truth: Truth::new(Arc::clone(scenario)),
+            traced,
+            time_step_s: scenario.motion.time_step_s,
+            now,
+            recording: Recording::default(),
+            path: Path::new(traced.norm()),
+            has_ended: false,
+        };
+        overlay.record(now);
+        overlay
+    }
+
+    /// Continues as the exact motion of `scenario`, which has the same motion up to the present time.
+    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+        self.truth.go_on_in(scenario);
+    }
+
+    pub fn follow(&mut self, time_s: f64, mut enough: impl FnMut() -> bool) {
+        let due = (time_s - self.now.time_s) / self.time_step_s;
+        let spacing_s = self.time_step_s * (due / MOST_SAMPLES).ceil().max(1.0);
+        while self.is_before(time_s) {
+            let next = self.now.time_s + spacing_s;
+            // The last sample is at exactly the run's time, without the rounding of the summed spacings.
+            let next = if next > time_s - 0.5 * self.time_step_s {
+                time_s
+            } else {
+                next
+            };
+            let state = self.truth.state_at(next);
+            let moment = Moment {
+                time_s: next,
+                ..Moment::new(&state, &self.traced)
+            };
+            self.has_ended = !moment.is_finite();
+            if !self.has_ended {
+                self.record(moment);
+            }
+            if enough() {
+                return;
+            }
+        }
+    }
+
+    fn record(&mut self, moment: Moment) {
+        self.recording.push(&moment);
+        let sample = self.recording.moments();
+        self.path.follow(sample, &moment.position);
+        self.now = moment;
+    }
+
+    /// Whether it can go on from a run that stands at `time_s` (s): it has not come further, nor ended.
+    pub fn goes_on_at(&self, time_s: f64) -> bool {
+        !self.has_ended && self.now.time_s <= time_s
+    }
+
+    /// Whether it has not come as far as `time_s` (s), and goes on.
+    pub fn is_before(&self, time_s: f64) -> bool {
+        !self.has_ended && self.now.time_s < time_s
     }
 }

@@ -1,6 +1,6 @@
 //! The list of presets and files, with a preview of what is selected.
 
-use super::{frame_on_top, longest, write};
+use super::{longest, popup_frame, write};
 use crate::lab::Lab;
 use crate::lab::browser::Browser;
 use crate::lab::preview::Preview;
@@ -21,12 +21,12 @@ const LIST: u16 = 30;
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let browser = &lab.on_top().browser;
+    let browser = &lab.popups().browser;
     let title = match browser.folder() {
         None => TITLE.to_owned(),
         Some(folder) => format!("{TITLE} of {}", folder.display()),
     };
-    let inside = frame_on_top(&title, area, theme, buf);
+    let inside = popup_frame(&title, area, theme, buf);
     if inside.is_empty() {
         return;
     }
@@ -37,7 +37,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         below.width
     };
     let [places, rest] = split_columns(below, width);
-    let is_typed = lab.on_top().mode == Mode::Filter;
+    let is_typed = lab.popups().mode == Mode::Filter;
     filter_line(browser, is_typed, theme, top, buf);
     list(browser, theme, places, buf);
     preview(browser, theme, rest, buf);

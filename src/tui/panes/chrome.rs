@@ -8,7 +8,7 @@ use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, Part};
 use crate::playback::reading::Reading;
 use crate::text::number::{fixed, significant};
-use crate::tui::keymap::{BINDINGS, Binding, Key, Mode};
+use crate::tui::keymap::{BINDINGS, Binding, Does, Key, Mode, Worth};
 use crate::tui::layout::split_columns;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -68,7 +68,7 @@ fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
 
 /// Digits after the point of a time that tell every step from the next, of a run whose shortest step is `time_step_s`.
 fn digits(time_step_s: f64) -> usize {
-    (-time_step_s.log10()).ceil().clamp(0.0, 6.0) as usize
+    (-libm::log10(time_step_s)).ceil().clamp(0.0, 6.0) as usize
 }
 
 /// Time, step and pace in fixed columns, or closer together where `width` is short of them.
@@ -89,8 +89,7 @@ fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
 pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let mut remarks = remarks(&lab.player().reading.readouts.health, None);
-    let player = lab.player();
-    if let Some([long, short]) = player.offer() {
+    if let Some([long, short]) = lab.adviser().offer(lab.player()) {
         let offer = Remark {
             long,
             short,
@@ -197,7 +196,7 @@ fn fitted(mut items: Vec<Item>, width: u16) -> (Vec<Item>, u16) {
 
 /// The keys that the footer names where there is room for all.
 fn footer(lab: &Lab) -> Vec<Item> {
-    let mode = lab.on_top().mode;
+    let mode = lab.popups().mode;
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
     let is_new = |row: &&Binding| of_mode.clone().all(|other| other.keys[0] != row.keys[0]);
@@ -205,7 +204,7 @@ fn footer(lab: &Lab) -> Vec<Item> {
     let always = [Pane::LESSON, Pane::STEP].contains(&lab.view().focus);
     let of_touched = of_pane.filter(|_| lab.view().is_touched || always);
     let of_lab = BINDINGS.iter().filter(is_new);
-    let of_lab = of_lab.map(|row| (row, worth(row.action)));
+    let of_lab = of_lab.map(|row| (row, row.worth));
     let rows = of_touched.map(|row| (row, Worth::Own)).chain(of_lab);
     let rows = rows.filter(|(row, _)| row.modes.contains(&mode) && !row.footer.is_empty());
     let items = rows.filter_map(|(row, worth)| {
@@ -216,7 +215,7 @@ fn footer(lab: &Lab) -> Vec<Item> {
     let esc = match mode {
         Mode::Lab if lab.view().filled && lab.view().sheet.is_some() => Some("to the page"),
         Mode::Lab => None,
-        Mode::Help if lab.on_top().help.text.is_empty() => Some("close"),
+        Mode::Help if lab.popups().help.text.is_empty() => Some("close"),
         Mode::Help | Mode::Filter | Mode::Find => Some("clear"),
         Mode::Browser | Mode::Dialog => Some("close"),
     };
@@ -233,44 +232,26 @@ fn word(lab: &Lab, row: &Binding) -> Option<&'static str> {
     let is_why = lab.view().page == Page::Why;
     let sheet = lab.view().sheet.as_ref();
     let enter = sheet.map_or("", |sheet| sheet.enter);
-    let is_of_use = match row.action {
-        Action::ToggleResiduals => lab.player().measured().is_some(),
-        Action::Lesson(LessonKey::Take) => !enter.is_empty(),
-        Action::Lesson(LessonKey::Next) => sheet.is_some_and(|sheet| sheet.has_next),
-        Action::Move(_) => !is_why,
+    let action = match row.does {
+        Does::Action(action) => Some(action),
+        Does::Commands(_) => None,
+    };
+    let is_of_use = match (row.footer, action) {
+        ("residuals", _) => lab.comparison().data().is_some(),
         // A run whose numbers are no longer finite cannot go on.
-        Action::TogglePause | Action::Step => !lab.player().run().simulation().has_ended(),
+        ("pause" | "step", _) => !lab.player().run().simulation().has_ended(),
+        (_, Some(Action::Lesson(LessonKey::Take))) => !enter.is_empty(),
+        (_, Some(Action::Lesson(LessonKey::Next))) => sheet.is_some_and(|sheet| sheet.has_next),
+        (_, Some(Action::Move(_))) => !is_why,
         _ => true,
     };
-    let word = match row.action {
-        Action::TogglePause if !lab.player().playback.is_running() => "go on",
-        Action::Lesson(LessonKey::Take) => enter,
-        Action::NextPhase if is_why => "next step",
-        Action::Why if is_why => "phases",
-        Action::Accept if lab.shows_settings() => "change",
+    let word = match (row.footer, action) {
+        ("pause", _) if !lab.player().playback.is_running() => "go on",
+        ("next phase", _) if is_why => "next step",
+        ("why sideways", _) if is_why => "phases",
+        (_, Some(Action::Lesson(LessonKey::Take))) => enter,
+        (_, Some(Action::Accept)) if lab.popups().shows_settings() => "change",
         _ => row.footer,
     };
     is_of_use.then_some(word)
-}
-
-/// How long the footer names a key where there is not room for all: the least go first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Worth {
-    Spare,
-    Useful,
-    Kept,
-    Own,
-}
-
-fn worth(action: Action) -> Worth {
-    use Action::{
-        Accept, Browse, Choose, Export, FillScreen, Help, Lesson, Parameters, Push, Quit, Step,
-        ToggleExact, TogglePause, ToggleResiduals,
-    };
-    match action {
-        TogglePause | Step | ToggleResiduals | Choose | Accept | Help | Quit => Worth::Kept,
-        Push | ToggleExact | Parameters | Export | FillScreen | Browse => Worth::Useful,
-        Lesson(LessonKey::Next) => Worth::Kept,
-        _ => Worth::Spare,
-    }
 }

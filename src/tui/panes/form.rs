@@ -1,6 +1,6 @@
 //! A form, over the bottom of the panes.
 
-use super::{frame_on_top, wrapped_to, write};
+use super::{popup_frame, wrapped_to, write};
 use crate::lab::form::{Field, Form};
 use crate::lab::view::theme::Theme;
 use crate::text::wrap::{columns, wrapped};
@@ -42,7 +42,7 @@ impl Widget for FormPane<'_> {
         let lines = self.lines(width - border, (area.height - border) as usize);
         let [_, place] = split_rows(area, area.height - lines.len() as u16 - border);
         let inside = if is_framed {
-            frame_on_top(&self.form.title, place, self.theme, buf)
+            popup_frame(&self.form.title, place, self.theme, buf)
         } else {
             Clear.render(place, buf);
             place

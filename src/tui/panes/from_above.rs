@@ -3,10 +3,10 @@
 //! It shows where the point is, and the shape of its last swings behind it, as a line. The turn before them and all
 //! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
 
-use super::{MOST_PUSHES, PaneRow, ROWS_A_LINE, Seen, Width, frame, round_title, write};
+use super::{MOST_PUSHES, PaneRow, ROWS_A_LINE, Seen, Width, round_frame, write};
 use crate::data::Place;
 use crate::lab::view::Pane;
-use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Marker;
 use crate::playback::ages::{Age, Ages};
 use crate::playback::camera::Zoom;
 use crate::playback::path::Path;
@@ -15,9 +15,8 @@ use crate::run::Clock;
 use crate::text::wrap::columns;
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
-use crate::tui::labels::Labels;
 use crate::tui::layout::split_rows;
-use crate::tui::plane::Plane;
+use crate::tui::plane::{Labels, Plane};
 use crate::tui::points::{Ends, Points};
 use crate::tui::theme::Role;
 use crate::tui::trail::{Around, Trail};
@@ -47,7 +46,6 @@ const ON_AXLE: f64 = 1e-6;
 /// Swings larger than this, dots, cover each other where they are close together.
 const LARGE_SWING: f64 = 4.0;
 
-/// The most lines of the legend.
 const MOST_LINES: u16 = 3;
 
 /// What stands between two words of a legend at length, and in short.
@@ -66,18 +64,14 @@ pub const ROW: PaneRow = PaneRow {
     keys: ZOOM_KEYS,
 };
 
-/// The path of a run from above.
 pub struct FromAbove<'a>(pub Seen<'a>);
 
 impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let zoom = self.0.view.zoom.above;
-        let title = round_title(ROW.title, zoom, self.0.reading, area.width);
-        let has_focus = self.0.view.focus == ROW.id;
-        let inside = frame(&title, area, has_focus, &self.0.view.theme, buf);
-        if inside.height < 2 || inside.width == 0 {
+        let Some(inside) = round_frame(&ROW, zoom, &self.0, area, buf) else {
             return;
-        }
+        };
         let without = |lines: usize| split_rows(inside, inside.height - lines as u16);
         let most = (inside.height / ROWS_A_LINE).clamp(1, MOST_LINES) as usize;
         let (plane, _) = self.plane(without(1)[0]);
@@ -111,7 +105,7 @@ impl FromAbove<'_> {
         let paths = [Some(self.0.run.path()), exact, before, pinned];
         let about = |path: &Path| {
             if middle == Vector2::zeros() {
-                path.radius()
+                path.radius
             } else {
                 path.radius_about(middle.x, middle.y).max(middle.norm())
             }
@@ -149,7 +143,7 @@ impl FromAbove<'_> {
 
     fn ages(&self, across: f64) -> Ages {
         let ages = self.0.reading.map(|reading| Ages::of(&reading.readouts));
-        let turn_dots = TAU * self.0.run.path().radius() * across;
+        let turn_dots = TAU * self.0.run.path().radius * across;
         ages.unwrap_or(Ages::UNKNOWN).on_picture(turn_dots)
     }
 
@@ -321,18 +315,13 @@ impl FromAbove<'_> {
     }
 
     fn in_fewest_lines(words: &[[&str; 2]], width: usize, room: usize, most: usize) -> Vec<String> {
-        for lines in 1..=most {
-            for form in [0, 1] {
-                let legend = in_lines(words, form, width, room);
-                if legend.len() <= lines {
-                    return legend;
-                }
-            }
-        }
+        let fits = |legend: &Vec<String>| legend.len() <= most;
+        let whole = [0, 1].map(|form| in_lines(words, form, width, room));
+        let whole = whole.into_iter().min_by_key(Vec::len).filter(fits);
         let fewer = (1..words.len()).rev();
         let mut fewer = fewer.map(|count| in_lines(&words[..count], 1, width, room));
-        let fits = |legend: &Vec<String>| legend.len() <= most;
-        fewer.find(fits).unwrap_or_else(|| vec![String::new()])
+        let legend = whole.or_else(|| fewer.find(fits));
+        legend.unwrap_or_else(|| vec![String::new()])
     }
 
     /// The legend and the scale on `area`, which has as many rows as the legend has lines.
@@ -352,7 +341,6 @@ impl FromAbove<'_> {
         }
     }
 
-    /// The scale: a line of a round length.
     fn bar(&self, plane: &Plane, width: usize) -> String {
         // The longer legend beside it leaves less room for the bar.
         let share = if self.0.run.overlay().is_some() {
@@ -390,17 +378,9 @@ impl FromAbove<'_> {
 
 /// `words` in lines of at most `width` columns, the last of at most `room`.
 fn in_lines(words: &[[&str; 2]], form: usize, width: usize, room: usize) -> Vec<String> {
-    let between = BETWEEN[form];
-    let mut lines = vec![String::new()];
-    for word in words.iter().map(|word| word[form]) {
-        match lines.last_mut() {
-            Some(line) if line.is_empty() => *line = word.to_owned(),
-            Some(line) if columns(line) + columns(between) + columns(word) <= width => {
-                *line += &format!("{between}{word}");
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
+    let (between, words) = (BETWEEN[form], words.iter().map(|word| word[form]));
+    let lines = super::in_lines(words, |word| word, between.len(), width);
+    let mut lines: Vec<_> = lines.iter().map(|line| line.join(between)).collect();
     if lines.last().is_some_and(|line| columns(line) > room) {
         lines.push(String::new());
     }

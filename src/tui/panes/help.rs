@@ -1,40 +1,39 @@
-//! The help: keys and words, searched by typing; Enter does the key that is selected.
+//! The help: keys and words, searched by typing; Enter does the key that is selected. Keys are grouped by their
+//! purpose, and the words are those of the glossary.
 
-mod entries;
-
-use super::{frame_on_top, write};
+use super::{PANES, popup_frame, write};
+use crate::lab::action::Action;
 use crate::lab::view::Pane;
 use crate::lab::{Lab, Mode, Request};
 use crate::text::wrap::{columns, wrapped};
+use crate::tui::keymap::{BINDINGS, Binding, Does, PURPOSES};
 use crate::tui::theme::Role;
-pub use entries::{Entry, entries, found};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// Column of keys and words.
+/// Column of keys and words, and the columns between them and their texts.
 const NAMES: usize = 2;
-/// Columns between them and their texts.
 const GAP: usize = 2;
 /// A text that would have fewer columns than this begins right after its key, not in a column of its own.
 const LEAST_TEXT: usize = 40;
 const SELECTED: &str = "►";
 
 fn selected(lab: &Lab) -> Option<Entry> {
-    let found = found(&lab.on_top().help.text);
-    found.get(lab.on_top().help.selected).copied()
+    let found = found(&lab.popups().help.text);
+    found.get(lab.popups().help.selected).copied()
 }
 
 /// Keeps the selection of the help among the entries that are found.
 pub fn limit(lab: &mut Lab) {
-    if lab.on_top().mode == Mode::Help {
-        lab.limit_help(found(&lab.on_top().help.text).len());
+    if lab.popups().mode == Mode::Help {
+        let entries = found(&lab.popups().help.text).len();
+        lab.popups_mut().help.limit(entries);
     }
 }
 
 /// Closes the help and does what the key of the selected entry does. For a key of a pane it moves the focus to that
 /// pane first. Where nothing can be done it says why.
 pub fn do_entry(lab: &mut Lab) -> Option<Request> {
-    use crate::lab::action::Action;
     let Some(entry) = selected(lab) else {
         lab.refuse("nothing is selected: Esc clears the search");
         return None;
@@ -43,11 +42,11 @@ pub fn do_entry(lab: &mut Lab) -> Option<Request> {
         lab.refuse("a word to read: Enter does nothing with it, Esc closes");
         return None;
     };
-    if !binding.modes.contains(&lab.on_top().under_help) {
+    if !binding.modes.contains(&lab.popups().under_help) {
         lab.refuse(format!("{}: this key works there", entry.group));
         return None;
     }
-    while lab.on_top().mode == Mode::Help {
+    while lab.popups().mode == Mode::Help {
         lab.update(Action::Help);
     }
     if let Some(pane) = entry.pane
@@ -55,26 +54,26 @@ pub fn do_entry(lab: &mut Lab) -> Option<Request> {
     {
         lab.turn_to(pane);
     }
-    match binding.action {
-        Action::Help => None,
-        action => lab.update(action),
+    match binding.does {
+        Does::Action(Action::Help) => None,
+        does => does.carry_out(lab),
     }
 }
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let search = lab.on_top().help.text.as_str();
+    let search = lab.popups().help.text.as_str();
     let found = found(search);
     let title = match search {
         "" => "help: type to search, Enter does it".to_owned(),
         search => format!("help: {search}_ ({})", found.len()),
     };
-    let inside = frame_on_top(&title, area, theme, buf);
+    let inside = popup_frame(&title, area, theme, buf);
     if found.is_empty() {
         let text = "nothing has that in it: Esc clears the search";
         write(inside, (1, 0), text, theme.style(Role::Text), buf);
     }
-    let selected = lab.on_top().help.selected;
+    let selected = lab.popups().help.selected;
     let selected = selected.min(found.len().saturating_sub(1));
     let lines = lines(&found, search.is_empty(), inside.width as usize);
     let first = first_shown(&lines, selected, inside.height as usize);
@@ -195,4 +194,127 @@ fn after(entry: &Entry, text: &str, width: usize) -> Vec<Pieces> {
     let rest = text.into_iter().skip(1);
     lines.extend(rest.map(|text| vec![(INDENT, text, Role::Text)]));
     lines
+}
+
+/// The words that the lab uses, each in one sentence: those of the motion first, then those of the numbers and of the screen.
+const GLOSSARY: &str = include_str!("help/glossary.txt");
+
+/// A key, or several that mean the same; or a word of the glossary.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// The heading under which it stands.
+    pub group: &'static str,
+    /// The pane whose key it is; `None` for a key that every pane has, and for a word.
+    pub pane: Option<Pane>,
+    /// Its key; `None` for a word.
+    pub binding: Option<&'static Binding>,
+    /// A word, or what the footer says of a key.
+    short: &'static str,
+    /// What it does, or means.
+    pub text: &'static str,
+}
+
+/// The groups of the keys of other modes, in order.
+const PLACES: [(Mode, &str); 5] = [
+    (Mode::Browser, "in the list of presets and files"),
+    (Mode::Filter, "while a part of a name is typed"),
+    (Mode::Find, "while a value is searched for"),
+    (Mode::Help, "in this list"),
+    (Mode::Dialog, "in a dialog"),
+];
+const WORDS: &str = "words";
+
+impl Entry {
+    pub fn name(&self) -> String {
+        self.binding.map_or(self.short.to_owned(), |binding| {
+            let keys: Vec<_> = binding.keys.iter().map(ToString::to_string).collect();
+            keys.join(" ")
+        })
+    }
+
+    /// How well it matches `search`, of which `lower` is the lower case: 0 is the best match; `None` where it does not
+    /// match.
+    fn answers(&self, search: &str, lower: &str) -> Option<u8> {
+        let keys = self.binding.map_or(&[][..], |binding| binding.keys);
+        let is_key =
+            |wanted: &dyn Fn(String) -> bool| keys.iter().any(|key| wanted(key.to_string()));
+        if is_key(&|key| key == search) {
+            return Some(0);
+        }
+        let short = self.short.to_lowercase();
+        if short == lower || is_key(&|key| key.to_lowercase() == lower) {
+            return Some(1);
+        }
+        if short.starts_with(lower) {
+            return Some(2);
+        }
+        let further = self.binding.map_or("", |binding| binding.search);
+        let all = format!("{} {short} {} {further}", self.name(), self.text).to_lowercase();
+        let is_word = |wanted: &str| {
+            let mut words = all.split(|c: char| !c.is_alphanumeric());
+            words.any(|word| word.starts_with(wanted))
+        };
+        let mut wanted = lower.split_whitespace();
+        if wanted.clone().all(is_word) {
+            return Some(3);
+        }
+        if wanted.clone().all(|word| all.contains(word)) {
+            return Some(4);
+        }
+        let group = self.group.to_lowercase();
+        let is_there = |word: &str| all.contains(word) || group.contains(word);
+        wanted.all(is_there).then_some(5)
+    }
+}
+
+fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let lines = GLOSSARY.lines();
+    lines.filter_map(|line| line.split_once(" = "))
+}
+
+pub fn entries() -> Vec<Entry> {
+    let of_mode = |(mode, group)| {
+        let rows = BINDINGS.iter().filter(move |row| row.modes[0] == mode);
+        let rows = rows.filter(move |row| mode != Mode::Lab || row.purpose == group);
+        rows.map(move |row| key(group, None, row))
+    };
+    let of_lab = PURPOSES.map(|group| (Mode::Lab, group)).into_iter();
+    let of_pane = PANES.iter().flat_map(|pane| {
+        let rows = pane.keys.iter();
+        rows.map(|row| key(pane.title, Some(pane.id), row))
+    });
+    let words = glossary().map(|(word, meaning)| Entry {
+        group: WORDS,
+        pane: None,
+        binding: None,
+        short: word,
+        text: meaning,
+    });
+    let keys = of_lab.flat_map(of_mode).chain(of_pane);
+    keys.chain(words)
+        .chain(PLACES.into_iter().flat_map(of_mode))
+        .collect()
+}
+
+/// The entries that match `search`, the best match first; if it is empty, all entries, group by group.
+pub fn found(search: &str) -> Vec<Entry> {
+    let (search, mut found) = (search.trim(), entries());
+    if search.is_empty() {
+        return found;
+    }
+    let lower = search.to_lowercase();
+    let rank = |entry: &Entry| entry.answers(search, &lower);
+    found.retain(|entry| rank(entry).is_some());
+    found.sort_by_key(rank); // stable: among equals the order of the groups
+    found
+}
+
+fn key(group: &'static str, pane: Option<Pane>, binding: &'static Binding) -> Entry {
+    Entry {
+        group,
+        pane,
+        binding: Some(binding),
+        short: binding.footer,
+        text: binding.help,
+    }
 }

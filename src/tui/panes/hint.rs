@@ -40,6 +40,7 @@ pub fn place(lab: &Lab, layout: &Layout) -> Rect {
     let own = place.union(layout.health).height;
     let most = match (lab.view().bare, layout.is_cramped) {
         (true, _) => place.height + 1,
+        (false, _) if lab.view().sheet.is_some() => own.max(MOST_LINES),
         (false, true) => own.max(MOST_LINES),
         (false, false) => own,
     };
@@ -77,17 +78,16 @@ pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
 
 /// Whether there is something to be said now, besides what there is to see.
 pub fn has_message(lab: &Lab) -> bool {
-    let on_top = lab.on_top();
-    on_top.count.is_some() || lab.notice().is_some() || on_top.notice.trouble().is_some()
+    let (popups, messages) = (lab.popups(), lab.messages());
+    popups.count.is_some() || lab.notice().is_some() || messages.trouble().is_some()
 }
 
-/// Before whatever is said while the session is not kept.
 const NOT_KEPT: &str = "session not kept";
 
 /// What stands in the line of hints. That the session is not kept stands there as long as it is so.
 fn said(lab: &Lab) -> (String, Role) {
-    let on_top = lab.on_top();
-    let message = match on_top.count {
+    let (popups, messages) = (lab.popups(), lab.messages());
+    let message = match popups.count {
         Some(MOST_COUNTED) => Some(format!(
             "{MOST_COUNTED} is the most that is counted: now the key; Esc forgets it"
         )),
@@ -96,7 +96,7 @@ fn said(lab: &Lab) -> (String, Role) {
         )),
         None => lab.notice(),
     };
-    match (message, on_top.notice.trouble()) {
+    match (message, messages.trouble()) {
         (Some(text), Some(_)) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), Role::Focus),
         (Some(text), None) => (text, Role::Focus),
         (None, Some(trouble)) => (trouble.to_owned(), Role::Warning),

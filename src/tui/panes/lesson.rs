@@ -4,8 +4,9 @@ use super::{PaneRow, Width, frame, longest, write};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::sheet::{Emphasis, Kind, Paragraph, Sheet};
-use crate::lab::view::Pane;
+use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::Theme;
+use crate::lab::view::{Pane, View};
 use crate::text::wrap::{columns, wrapped};
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
@@ -31,12 +32,12 @@ pub const EVERYWHERE: &[Binding] = KEYS.split_at(5).0;
 /// The keys that mean something while the pane has the focus; the first of them also elsewhere.
 #[rustfmt::skip]
 const KEYS: &[Binding] = &[
-    row(&[Mode::Lab], &[Key::Char('n')], Action::Lesson(LessonKey::Next), "next page", "the next page"),
+    row(&[Mode::Lab], &[Key::Char('n')], Action::Lesson(LessonKey::Next), "next page", "the rest of the page, then the next one; while a page's run plays: to its end"),
     row(&[Mode::Lab], &[Key::Char('N')], Action::Lesson(LessonKey::Before), "", "the page before; its run begins again"),
     row(&[Mode::Lab], &[Key::Char('b')], Action::Lesson(LessonKey::Again), "", "begin the page again: its run from where the page wants it"),
     row(&[Mode::Lab], &[Key::Char('h')], Action::Lesson(LessonKey::ShowTask), "", "a hint for the task of the page; again: show how it is done"),
     row(&[Mode::Lab], &[Key::Ctrl('n')], Action::Lesson(LessonKey::Notes), "", "for a class: notes, the next page and a clock that counts up, down, or shows the time"),
-    row(&[Mode::Lab], &[Key::Enter], Action::Lesson(LessonKey::Take), "answer", "lock the selected answer, or type a number; in the list: open the lesson"),
+    row(&[Mode::Lab], &[Key::Enter], Action::Lesson(LessonKey::Take), "answer", "mark the chosen answer, again: lock it; or type a number; in the list: open the lesson"),
     row(&[Mode::Lab], &[Key::Up], Action::Lesson(LessonKey::Move(Direction::Up)), "", "the answer above; without a question: scroll"),
     row(&[Mode::Lab], &[Key::Down], Action::Lesson(LessonKey::Move(Direction::Down)), "", "the answer below; without a question: scroll"),
     row(&[Mode::Lab], &[Key::PageUp], Action::Lesson(LessonKey::Move(Direction::PageUp)), "", "scroll the page up"),
@@ -68,7 +69,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     if inside.is_empty() {
         return;
     }
-    let page = Page::new(sheet, inside, view.sheet_scrolled, &view.theme);
+    let page = Page::new(sheet, inside, view);
     let shown = page.lines.iter().skip(page.first).zip(0..inside.height);
     for (line, y) in shown {
         let mut x = line.x;
@@ -111,10 +112,20 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
     };
     let inside = place.inner(ratatui::layout::Margin::new(1, 1));
     let shown = inside.height as usize;
-    let page = Page::new(&sheet, inside, lab.view().sheet_scrolled, &lab.view().theme);
+    let page = Page::new(&sheet, inside, lab.view());
     let (first, all) = (page.first, page.lines.len());
     let page = shown.saturating_sub(1).max(1) as isize;
-    lab.scroll_sheet(direction.rows(page), first, shown, all);
+    lab.view_mut()
+        .scroll_sheet(direction.rows(page), first, shown, all);
+}
+
+/// Whether the page of `lab`, whose pane has the area `place`, goes on below what is shown.
+pub fn has_more(lab: &Lab, place: Rect) -> bool {
+    let inside = place.inner(ratatui::layout::Margin::new(1, 1));
+    lab.view().sheet.as_ref().is_some_and(|sheet| {
+        let page = Page::new(sheet, inside, lab.view());
+        page.lines.len() > page.first + inside.height as usize
+    })
 }
 
 struct Page {
@@ -123,11 +134,10 @@ struct Page {
 }
 
 impl Page {
-    /// `sheet` in lines for the area `inside`, scrolled to the line `scrolled`, or else so far that its important
-    /// paragraph is in view.
-    fn new(sheet: &Sheet, inside: Rect, scrolled: Option<usize>, theme: &Theme) -> Self {
+    /// `sheet` in lines for the area `inside`, scrolled as `view` says, or else so far that what is to be seen is in view.
+    fn new(sheet: &Sheet, inside: Rect, view: &View) -> Self {
         let mut lines: Vec<Line> = Vec::new();
-        let mut end_of_seen = 0;
+        let mut seen = (0, 0);
         let mut before: Option<&Kind> = None;
         for (index, paragraph) in sheet.paragraphs.iter().enumerate() {
             if before.is_some_and(|before| are_apart(before, &paragraph.kind)) {
@@ -136,19 +146,24 @@ impl Page {
                     pieces: Vec::new(),
                 });
             }
-            lines.extend(lines_of(paragraph, inside.width, theme));
-            before = Some(&paragraph.kind);
-            if sheet.seen == Some(index) {
-                end_of_seen = lines.len();
+            let begin = lines.len();
+            let is_ascii = view.marker == Marker::Ascii;
+            let plain = is_ascii.then(|| paragraph.in_ascii());
+            let paragraph = plain.as_ref().unwrap_or(paragraph);
+            lines.extend(lines_of(paragraph, inside.width, &view.theme));
+            before = Some(&sheet.paragraphs[index].kind);
+            if sheet.seen.is_some_and(|(first, _)| first == index) {
+                seen.0 = begin;
+            }
+            if sheet.seen.is_some_and(|(_, last)| last == index) {
+                seen.1 = lines.len();
             }
         }
         let shown = inside.height as usize;
         let last = lines.len().saturating_sub(shown);
-        let first = scrolled.unwrap_or_else(|| end_of_seen.saturating_sub(shown));
-        Self {
-            lines,
-            first: first.min(last),
-        }
+        let usual = seen.1.saturating_sub(shown).min(seen.0);
+        let first = view.sheet_scrolled.unwrap_or(usual).min(last);
+        Self { lines, first }
     }
 }
 

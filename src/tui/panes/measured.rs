@@ -3,9 +3,10 @@
 use super::chrome::SEPARATOR;
 use super::{shortened, write};
 use crate::data::Quantity;
+use crate::data::compared::Sum;
 use crate::lab::Lab;
-use crate::lab::measured::{Beside, Sum};
-use crate::text::number::{short, shortest};
+use crate::lab::comparison::DataComparison;
+use crate::text::number::{counted, short, shortest};
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
@@ -17,7 +18,7 @@ use std::path::Path;
 const LEAST_NAME: usize = 12;
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
-    let Some(beside) = lab.player().measured() else {
+    let Some(beside) = lab.comparison().data() else {
         return;
     };
     let theme = &lab.view().theme;
@@ -44,10 +45,10 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
 
 /// The name of the data, their counts and the parts of the line that fit in `room` columns: short forms make room for the
 /// rest, then a shorter name, then the last parts give way.
-fn fitting(beside: &Beside, end_s: f64, room: usize) -> (String, String, Vec<String>) {
+fn fitting(beside: &DataComparison, end_s: f64, room: usize) -> (String, String, Vec<String>) {
     let sum = &beside.compared.sum;
     let name = file_name(&beside.name);
-    let [long, short] = counted(beside, sum, end_s);
+    let [long, short] = reached(beside, sum, end_s);
     let (all, mut in_short): (Vec<_>, Vec<_>) = parts(sum).into_iter().map(<_>::from).unzip();
     let mut forms = vec![(long.clone(), all), (long, in_short.clone())];
     forms.push((short.clone(), in_short.clone()));
@@ -76,18 +77,15 @@ fn file_name(name: &str) -> String {
     printable(&last).into_owned()
 }
 
-fn points(count: usize) -> String {
-    match count {
-        1 => "1 point".to_owned(),
-        _ => format!("{count} points"),
-    }
-}
-
 /// What was measured, how many values there are, and how many of them the run has reached: at length and in short.
 /// Where data go on after `end_s`, the end of the run, it says so, and the key that plays the run up to there.
-fn counted(beside: &Beside, sum: &Sum, end_s: f64) -> [String; 2] {
+fn reached(beside: &DataComparison, sum: &Sum, end_s: f64) -> [String; 2] {
     let names: Vec<_> = beside.quantities().map(Quantity::words).collect();
-    let (names, all, reached) = (names.join(", "), points(sum.points), sum.compared);
+    let (names, all, reached) = (
+        names.join(", "),
+        counted(sum.points as u64, "point"),
+        sum.compared,
+    );
     let last_s = beside.last_s().filter(|&last_s| last_s > end_s);
     let [long, short] = match last_s.map(shortest) {
         Some(last_s) if reached < sum.points => [

@@ -18,8 +18,8 @@ pub mod timeline;
 pub mod traces;
 
 use crate::lab::Lab;
-use crate::lab::explained::Explained;
-use crate::lab::measured::Beside;
+use crate::lab::comparison::DataComparison;
+use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
 use crate::playback::detail::Detail;
@@ -94,13 +94,17 @@ pub fn keys(pane: Pane) -> &'static [Binding] {
     row(pane).map_or(&[], |row| row.keys)
 }
 
-/// The keys of the pane in focus; beside a lesson's page in focus also the keys of the step pane; in a lesson also the keys
-/// that turn its pages.
+/// The keys of the pane in focus; in a lesson also the keys of the step pane where it is shown, and the keys that turn
+/// pages.
 pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
     let view = lab.view();
-    let is_beside = view.focus == Pane::LESSON && view.side_by_side.contains(&Pane::STEP);
+    let is_beside = view.sheet.is_some() && view.side_by_side.contains(&Pane::STEP);
     let own = keys(view.focus);
-    let beside = if is_beside { keys(Pane::STEP) } else { &[] };
+    let beside = match view.focus {
+        Pane::LESSON if is_beside => keys(Pane::STEP),
+        _ if is_beside => keys(Pane::STEP).split_at(step::PHASE_KEYS).0,
+        _ => &[],
+    };
     let is_free = |row: &&Binding| {
         let mut keys = own.iter().flat_map(|own| own.keys);
         keys.all(|key| !row.keys.contains(key))
@@ -123,28 +127,28 @@ pub struct Seen<'a> {
     pub ghost: Option<&'a Ghost>,
     /// The run that was pinned as the reference, unless it is the present one.
     pub pinned: Option<&'a Ghost>,
-    pub measured: Option<&'a Beside>,
+    pub measured: Option<&'a DataComparison>,
     /// The latest reading of the run, if it is read at all: by it a path is recent or old. The scene in space is that of
     /// its time: a turning wheel changes most of the picture, which would load a slow line in every frame.
     pub reading: Option<&'a Reading>,
     /// The time step that the step pane takes apart: the scene in space shows what its page is about.
-    pub explained: Option<&'a Explained>,
+    pub explained: Option<&'a StepWorkings>,
     pub detail: Detail,
     pub cursor: Option<&'a Sample>,
 }
 
 impl<'a> Seen<'a> {
     pub fn of(lab: &'a Lab) -> Self {
-        let player = lab.player();
+        let (player, comparison) = (lab.player(), lab.comparison());
         Self {
             view: lab.view(),
             run: player.run(),
-            ghost: player.ghost(),
-            pinned: player.pinned(),
-            measured: player.measured(),
+            ghost: comparison.ghost(),
+            pinned: comparison.pinned(),
+            measured: comparison.data(),
             reading: Some(&player.reading),
-            explained: player.explained(),
-            detail: player.detail,
+            explained: lab.step_pane().shown(),
+            detail: *player.detail(),
             cursor: player.cursor(),
         }
     }
@@ -168,9 +172,23 @@ pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &m
     inside
 }
 
+/// Draws the frame of the round pane `row`, magnified by `zoom`; returns the area inside, where it has room for a picture.
+fn round_frame(
+    row: &PaneRow,
+    zoom: f64,
+    seen: &Seen<'_>,
+    area: Rect,
+    buf: &mut Buffer,
+) -> Option<Rect> {
+    let title = round_title(row.title, zoom, seen.reading, area.width);
+    let has_focus = seen.view.focus == row.id;
+    let inside = frame(&title, area, has_focus, &seen.view.theme, buf);
+    (inside.height >= 2 && inside.width > 0).then_some(inside)
+}
+
 /// The title of a round pane: `name`, its magnification, and the step that it shows if the scheme has broken down
 /// since. The longest form that fits in `width` columns.
-pub(super) fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> String {
+fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> String {
     let title = if zoom == 1.0 {
         name.to_owned()
     } else {
@@ -189,18 +207,38 @@ pub(super) fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, widt
 
 /// The first of `forms`, the longest first, that fits in `width` columns; else the last.
 pub(super) fn longest(forms: impl IntoIterator<Item = String>, width: usize) -> String {
-    let mut last = String::new();
-    for form in forms {
-        last = form;
-        if columns(&last) <= width {
-            break;
+    let fitting = |kept: String, next| if columns(&kept) <= width { kept } else { next };
+    forms.into_iter().reduce(fitting).unwrap_or_default()
+}
+
+/// The words of a legend in lines of at most `width` columns, with `apart` columns between two words; a word that is wider
+/// has a line of its own.
+fn in_lines<T>(
+    words: impl Iterator<Item = T>,
+    text: impl Fn(&T) -> &str,
+    apart: usize,
+    width: usize,
+) -> Vec<Vec<T>> {
+    let mut lines: Vec<Vec<T>> = Vec::new();
+    let mut taken = 0;
+    for word in words {
+        let length = columns(text(&word));
+        match lines.last_mut() {
+            Some(line) if taken + apart + length <= width => {
+                taken += apart + length;
+                line.push(word);
+            }
+            _ => {
+                taken = length;
+                lines.push(vec![word]);
+            }
         }
     }
-    last
+    lines
 }
 
 /// As [`frame`], on top of whatever is there.
-pub(super) fn frame_on_top(title: &str, area: Rect, theme: &Theme, buf: &mut Buffer) -> Rect {
+pub(super) fn popup_frame(title: &str, area: Rect, theme: &Theme, buf: &mut Buffer) -> Rect {
     Clear.render(area, buf);
     frame(title, area, true, theme, buf)
 }

@@ -3,28 +3,24 @@
 
 mod numbers;
 mod page;
-mod table;
 mod why;
-mod words;
 
 use super::{PaneRow, Width, frame};
 use crate::lab::Lab;
-use crate::lab::action::{Action, Direction};
-use crate::lab::explained::{Explained, table_of};
+use crate::lab::action::{Action, Direction, repeated};
+use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, View};
 use crate::physics::workings::{Phase, Quantity, Value};
 use crate::scenario::Scenario;
 use crate::text::number::{rounded, shortest, significant};
 use crate::text::wrap::columns;
-use crate::tui::keymap::{Binding, Key, Mode, row};
+use crate::tui::keymap::{Binding, Key, Mode, does, one, row};
 use crate::tui::theme::Role;
-use numbers::Format;
+use numbers::{Format, TableView, is_summed};
 use page::{Line, Section};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use table::{TableView, is_summed};
-use words::of as words_of;
 
 /// From this height on all phases are listed above the page.
 const LISTED_FROM: u16 = 24;
@@ -44,13 +40,16 @@ pub const ROW: PaneRow = PaneRow {
     keys: KEYS,
 };
 
+/// The first of the keys go through the phases.
+pub const PHASE_KEYS: usize = 2;
+
 /// The keys that go through the step.
 #[rustfmt::skip]
 const KEYS: &[Binding] = &[
-    row(&[Mode::Lab], &[Key::Char('.')], Action::NextPhase, "next phase", "the next phase of the time step; after the last, the next time step"),
-    row(&[Mode::Lab], &[Key::Char(',')], Action::PhaseBack, "back", "the phase before; before the first, the time step before"),
+    does(&[Mode::Lab], &[Key::Char('.')], |lab, count| lab.step_pane().other_phase(repeated(count), lab.view(), lab.player()), "next phase", "the next phase of the time step; after the last, the next time step"),
+    does(&[Mode::Lab], &[Key::Char(',')], |lab, count| lab.step_pane().other_phase(-repeated(count), lab.view(), lab.player()), "back", "the phase before; before the first, the time step before"),
     row(&[Mode::Lab], &[Key::Char('v')], Action::ToggleStep, "close", "the panes without the time step again"),
-    row(&[Mode::Lab], &[Key::Char('y')], Action::Why, "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
+    does(&[Mode::Lab], &[Key::Char('y')], |lab, _| one(lab.view().why_toggled()), "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
     row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down), "add up", "add up the table point by point: one more"),
     row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up), "", "one point fewer"),
     row(&[Mode::Lab], &[Key::PageDown], Action::Move(Direction::PageDown), "", "ten points more"),
@@ -64,7 +63,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     if inside.is_empty() {
         return;
     }
-    match lab.player().explained() {
+    match lab.step_pane().shown() {
         None => nothing_yet(lab, inside, buf),
         Some(_) if view.page == Page::Why => why::draw(lab, inside, buf),
         Some(explained) => {
@@ -84,7 +83,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 fn title(lab: &Lab) -> String {
-    let Some(explained) = lab.player().explained() else {
+    let Some(explained) = lab.step_pane().shown() else {
         return ROW.title.to_owned();
     };
     let step = explained.step;
@@ -120,7 +119,7 @@ fn nothing_yet(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 struct PhasePage<'a> {
-    explained: &'a Explained,
+    explained: &'a StepWorkings,
     phase: &'a Phase,
     /// Its number, from 1.
     number: usize,
@@ -131,7 +130,7 @@ struct PhasePage<'a> {
 impl PhasePage<'_> {
     /// Its sections, for `room` lines.
     fn sections(&self, room: usize) -> Vec<Section> {
-        let words = words_of(self.phase.name);
+        let [happens, changes, seen] = words_of(self.phase.name);
         let text = |rank, text, indent, role| Section::text(rank, text, self.width, indent, role);
         let mut sections = Vec::new();
         if room >= LISTED_FROM.into() {
@@ -139,11 +138,11 @@ impl PhasePage<'_> {
         }
         let part = self.part();
         sections.push(text(8, &part, 0, Role::Quiet));
-        sections.push(text(2, words.happens, 0, Role::Text).apart());
+        sections.push(text(2, happens, 0, Role::Text).apart());
         sections.push(text(1, self.phase.formula, 2, Role::Focus).apart());
         sections.extend(self.quantities());
-        sections.push(self.labelled(4, "changes", words.changes).apart());
-        sections.push(self.labelled(6, "in 3-D", words.seen));
+        sections.push(self.labelled(4, "changes", changes).apart());
+        sections.push(self.labelled(6, "in 3-D", seen));
         sections.retain(|section| !section.lines.is_empty());
         page::fit(&mut sections, room);
         self.fill_tables(&mut sections, room);
@@ -295,5 +294,52 @@ fn name_of(scenario: &Scenario, point: usize) -> String {
         Some(name) => name,
         None if point < SHORT => format!("rim {point}"),
         None => point.to_string(),
+    }
+}
+
+/// The words about each phase of a time step: its name, what happens in it, what it changes and what for, and where that is
+/// to be seen in the 3-D view, empty where nothing is.
+#[rustfmt::skip]
+const TABLE: &[[&str; 4]] = &[
+    ["inertia", "How the masses lie about the pivot, added up point by point.", "nothing yet; gives I", "the body before the step (°)"],
+    ["angular velocity", "The axis about which the body turns now, and how fast: L divided by the inertia.", "nothing yet; gives Ω", "the arrow Ω"],
+    ["axis and angle", "The line u along Ω, and the angle about it in one time step.", "nothing yet; gives u and the angle", "the line u through the pivot"],
+    ["rotation", "The matrix that turns any point about u by that angle.", "nothing yet; gives R", "the body before (°) and after"],
+    ["new positions", "R turns every point to its new place.", "where the points are", "the body before (°) and after"],
+    ["torque", "How the forces turn the body about the pivot: each where its point is now.", "nothing yet; gives τ", "the arrow τ; forces: g and F"],
+    ["new momentum", "In the time dt the forces change L. The next step begins with the new L.", "L, and nothing else", "the arrow L, and dL at its tip"],
+    ["friction", "Friction slows the spin, and the swing of the axle: it takes from L while the body stands still.", "L, and nothing else", "the arrow L"],
+    ["kick", "The forces act for the time h: they change L while the body stands still.", "L, and nothing else", "the arrow L, and dL at its tip"],
+    ["free motion", "The body moves for the time h as if there were no forces: L stays.", "how the body stands", "the body before (°) and after"],
+    ["spin about the axle", "The body turns about its own axle, once for the whole step.", "how the body stands about its axle", "the body before (°) and after"],
+    ["rounding taken out", "Rounding has bent the orientation a little: it is made a rotation again.", "how the body stands, by a rounding", ""],
+    ["new orientation", "How the body stands at the end of the step.", "how the body stands", "the body before (°) and after"],
+    ["slope 1: at the beginning", "How fast orientation and momentum change as the step begins.", "nothing yet; four slopes make a step", "the arrow Ω"],
+    ["slope 2: half way by slope 1", "The same after half the step, if slope 1 held so long.", "nothing yet; four slopes make a step", "the arrow Ω"],
+    ["slope 3: half way by slope 2", "The same once more, with slope 2: better than slope 2.", "nothing yet; four slopes make a step", "the arrow Ω"],
+    ["slope 4: at the end by slope 3", "How fast they change as the step ends, if slope 3 held for all of it.", "nothing yet; four slopes make a step", "the arrow Ω"],
+    ["theta functions", "Two complex numbers that hold the orientation at the time t: exact, whatever the time step.", "nothing yet; gives α and β", ""],
+    ["Taylor series", "Orientation and momentum at the time t, from a series that is exact to the last digits.", "how the body stands, and L", "the body before (°) and after"],
+];
+
+/// The words about the phase of this `name`; empty where there are none.
+fn words_of(name: &str) -> [&'static str; 3] {
+    let found = TABLE.iter().find(|row| row[0] == name);
+    found.map_or([""; 3], |[_, happens, changes, seen]| {
+        [*happens, *changes, *seen]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::workings::NAMES;
+
+    #[test]
+    fn every_phase_has_words() {
+        for name in NAMES {
+            assert_ne!(words_of(name), [""; 3], "{name}");
+        }
+        assert_eq!(TABLE.len(), NAMES.len());
     }
 }

@@ -5,24 +5,23 @@
 
 mod arrows;
 mod body;
-mod way;
 
-use super::{PaneRow, ROWS_A_LINE, Seen, Width, frame, round_title, write};
+use super::{PaneRow, ROWS_A_LINE, Seen, Width, round_frame, write};
 use crate::lab::view::Pane;
 use crate::physics::friction::Damping;
 use crate::physics::{State, loads, observables};
-use crate::playback::ages::Ages;
+use crate::playback::ages::{Age, Ages};
 use crate::playback::camera::Zoom;
 use crate::playback::live::LiveRun;
 use crate::playback::recording::Curve;
 use crate::text::wrap::columns;
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
-use crate::tui::labels::Labels;
 use crate::tui::layout::split_rows;
+use crate::tui::plane::Labels;
 use crate::tui::scene::{self, Scene, Stroke};
 use crate::tui::theme::Role;
-use crate::tui::trail::{Around, Trail};
+use crate::tui::trail::{self, Around, Trail};
 use arrows::Shown;
 use body::{Shape, Sign};
 use nalgebra::Vector3;
@@ -30,7 +29,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use std::f64::consts::TAU;
-use way::Way;
 
 /// Length of the arrow of L, in lengths of the axle. Only its direction has a meaning. Where it lies along the axle, its end
 /// shows beyond the axle's top and the arrow of the angular velocity; a longer one would leave less room for the wheel.
@@ -50,7 +48,6 @@ const TILT_DEG: f64 = 5.0;
 const MARGIN: f64 = 1.06;
 /// A torque smaller than this share of the largest torque of the weight counts as zero.
 const NO_TORQUE: f64 = 1e-9;
-/// Straight pieces of a circle.
 const PARTS: usize = 72;
 
 pub const ROW: PaneRow = PaneRow {
@@ -65,20 +62,16 @@ pub const ROW: PaneRow = PaneRow {
     keys: ZOOM_KEYS,
 };
 
-/// The scene of a run.
 pub struct ThreeD<'a>(pub Seen<'a>);
 
 type Label = (&'static str, Role, Vector3<f64>);
 
 impl Widget for ThreeD<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let theme = &self.0.view.theme;
         let zoom = self.0.view.zoom.three_d;
-        let title = round_title(ROW.title, zoom, self.0.reading, area.width);
-        let inside = frame(&title, area, self.0.view.focus == ROW.id, theme, buf);
-        if inside.height < 2 || inside.width == 0 {
+        let Some(inside) = round_frame(&ROW, zoom, &self.0, area, buf) else {
             return;
-        }
+        };
         let subject = Subject::of(self.0);
         let most = (inside.height / ROWS_A_LINE).max(1) as usize;
         let lines = subject.legend_lines(inside.width as usize, most) as u16;
@@ -93,7 +86,6 @@ struct Subject<'a> {
     seen: Seen<'a>,
     ages: Ages,
     state: &'a State,
-    /// Where the traced point is.
     position: Vector3<f64>,
     shape: Shape,
     /// The size of the body, m: the unit of the arrows' lengths.
@@ -180,7 +172,7 @@ impl<'a> Subject<'a> {
     /// What the scene needs to show: the body as it precesses at the tilts that it has had, L, and the ground.
     fn shown(&self) -> scene::Shown {
         let circles = self.circles();
-        let (sin, cos) = self.seen.view.camera.pitch_deg.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(self.seen.view.camera.pitch_deg.to_radians());
         let end = |side: f64| move |&(radius, z): &(f64, f64)| z * cos + side * radius * sin.abs();
         let lowest = circles.iter().map(end(-1.0)).fold(0.0, f64::min);
         let highest = circles.iter().map(end(1.0)).fold(0.0, f64::max);
@@ -215,7 +207,7 @@ impl<'a> Subject<'a> {
             vec![(ground, 0.0), (0.0, ground)] // z too has a letter
         };
         for tilt in first as i32..=last as i32 {
-            let (sin, cos) = (f64::from(tilt) * TILT_DEG).to_radians().sin_cos();
+            let (sin, cos) = libm::sincos((f64::from(tilt) * TILT_DEG).to_radians());
             for &(across, height) in &self.shape.corners {
                 circles.extend([across, -across].map(|side| {
                     let radius = height * sin + side * cos;
@@ -226,15 +218,15 @@ impl<'a> Subject<'a> {
         for other in [self.seen.ghost, self.seen.pinned].into_iter().flatten() {
             if let Some(whole) = other.recording.whole() {
                 let z = whole.extent(Curve::Z);
-                circles.extend([z.min, z.max].map(|z| (other.path.radius(), z)));
+                circles.extend([z.min, z.max].map(|z| (other.path.radius, z)));
             }
         }
         if let Some(axis) = self.state.momentum.try_normalize(f64::MIN_POSITIVE) {
             let angle = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees() / (3.0 * TILT_DEG);
             for angle in [angle.floor(), angle.ceil()] {
-                let (sin, cos) = (angle * 3.0 * TILT_DEG).to_radians().sin_cos();
+                let (sin, cos) = libm::sincos((angle * 3.0 * TILT_DEG).to_radians());
                 let length = MOMENTUM * self.arm;
-                circles.push(((length * sin).hypot(CHANGE * self.reach), length * cos));
+                circles.push((libm::hypot(length * sin, CHANGE * self.reach), length * cos));
             }
         }
         circles
@@ -247,7 +239,7 @@ impl<'a> Subject<'a> {
         let floor = Vector3::z() * if stands { -STAND * self.reach } else { 0.0 };
         let radius = self.reach * if stands { FOOT } else { GROUND };
         let around = |part: usize| {
-            let (sin, cos) = (TAU * part as f64 / PARTS as f64).sin_cos();
+            let (sin, cos) = libm::sincos(TAU * part as f64 / PARTS as f64);
             floor + Vector3::new(radius * cos, radius * sin, 0.0)
         };
         let ink = Ink::Faint(Role::Quiet);
@@ -290,7 +282,7 @@ impl<'a> Subject<'a> {
         let now = (self.state.time_s, &self.position);
         let ages = self
             .ages
-            .on_picture(TAU * self.seen.run.path().radius() * scene.plane.scale.0);
+            .on_picture(TAU * self.seen.run.path().radius * scene.plane.scale.0);
         let to_dot = |at: &Vector3<f64>| scene.dot(at);
         trail.follow(self.seen.run.recording(), &ages, now, to_dot);
         trail.draw(dots);
@@ -331,4 +323,84 @@ fn torques(run: &LiveRun, state: &State) -> [Option<Vector3<f64>>; 2] {
     });
     let least = (NO_TORQUE * largest).max(f64::MIN_POSITIVE);
     [torque, torque + friction.unwrap_or_default()].map(|torque| torque.try_normalize(least))
+}
+
+/// Distances from the point, columns, a row counting as two: up to the first the path is drawn over everything, at the
+/// second the sign stands.
+const JOINED: f64 = 3.0;
+const HEAD: f64 = 7.0;
+/// Length of the stretch of path that gives the sign its direction, columns.
+const STRETCH: f64 = 1.5;
+
+/// A place on the sheet, dots across and down.
+type Place = (f64, f64);
+
+pub struct Way {
+    /// From the point backwards.
+    dots: Vec<Place>,
+    /// The sign that shows where the point goes, if the path is long enough.
+    pub head: Option<(&'static str, Role, (u16, u16))>,
+}
+
+impl Subject<'_> {
+    /// The way on which the point has come.
+    pub(super) fn way(&self, scene: &Scene) -> Way {
+        let until = self.state.time_s;
+        let [turn, recent] = [Age::Turn, Age::Recent].map(|age| self.ages.since(age, until));
+        let blocks = self.seen.run.recording().since(turn);
+        let blocks = blocks.filter(|block| block.end_s >= turn && block.end_s <= until);
+        let blocks: Vec<_> = blocks.collect();
+        let now = scene.dot(&self.position);
+        let (across, down) = (
+            scene.plane.in_cell.0 as f64,
+            0.5 * scene.plane.in_cell.1 as f64,
+        );
+        let columns =
+            |from: Place, to: Place| libm::hypot((to.0 - from.0) / across, (to.1 - from.1) / down);
+        let (mut way, mut joined) = (vec![now], 0);
+        let mut head = None;
+        for block in blocks.iter().rev() {
+            let at = scene.dot(&block.end());
+            let longest = trail::longest_line(scene.plane.size, block.end_s >= recent);
+            let last = way[way.len() - 1];
+            let apart = (at.0 - last.0).abs().max((at.1 - last.1).abs());
+            if apart.is_nan() || apart > longest {
+                break; // the path has a gap here
+            }
+            way.push(at);
+            joined += usize::from(joined + 2 == way.len() && columns(now, last) < JOINED);
+            if columns(now, at) < HEAD {
+                continue;
+            }
+            let mut newer = way.iter().rev();
+            let newer = newer.find(|place| columns(at, **place) >= STRETCH);
+            let to = newer.unwrap_or(&now);
+            let direction = ((to.0 - at.0) / across, (to.1 - at.1) / down);
+            let cell = scene.plane.cell_of(at);
+            head = cell.map(|cell| (sign(direction), Role::Focus, cell));
+            break;
+        }
+        way.truncate(joined + 1);
+        Way { dots: way, head }
+    }
+}
+
+/// The sign that points most nearly along `right`, `down`.
+fn sign((right, down): Place) -> &'static str {
+    match (right.abs() >= down.abs(), right >= 0.0, down >= 0.0) {
+        (true, true, _) => "►",
+        (true, false, _) => "◄",
+        (false, _, true) => "▼",
+        (false, _, false) => "▲",
+    }
+}
+
+impl Way {
+    pub fn join(&self, dots: &mut Dots) {
+        for pair in self.dots.windows(2) {
+            if let [from, to] = pair {
+                dots.line(*from, *to, Ink::Strong(Role::Focus));
+            }
+        }
+    }
 }

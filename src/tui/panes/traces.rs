@@ -3,16 +3,16 @@
 
 mod axis;
 mod border;
-mod curve;
 mod groups;
 mod plot;
 
 use super::{PaneRow, Seen, Width, frame, longest, write};
-use crate::lab::action::{Action, Direction};
+use crate::lab::action::{Action, Direction, repeated};
+use crate::lab::command::{Command, CursorTo};
 use crate::lab::view::Pane;
 use crate::playback::marks::Marks;
 use crate::tui::dots::{Dots, Ink};
-use crate::tui::keymap::{Binding, Key, Mode, row};
+use crate::tui::keymap::{Binding, Key, Mode, does, narrower, one, row, wider};
 use crate::tui::points::{Ends, Points};
 use crate::tui::theme::Role;
 use plot::Plot;
@@ -58,23 +58,22 @@ pub const ROW: PaneRow = PaneRow {
 const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Left], Action::Move(Direction::Left), "cursor", "the cursor to the left: its values are shown; Esc takes it away"),
     row(&[Mode::Lab], &[Key::Right], Action::Move(Direction::Right), "", "the cursor to the right"),
-    row(&[Mode::Lab], &[Key::Char('<')], Action::StepCursor(Direction::Left), "", "the cursor one step to the left; 10< ten"),
-    row(&[Mode::Lab], &[Key::Char('>')], Action::StepCursor(Direction::Right), "", "the cursor one step to the right"),
-    row(&[Mode::Lab], &[Key::Char('(')], Action::ToTurn(Direction::Left), "", "the cursor to the last turn of the tilt before it"),
-    row(&[Mode::Lab], &[Key::Char(')')], Action::ToTurn(Direction::Right), "", "the cursor to the next turn of the tilt"),
+    does(&[Mode::Lab], &[Key::Char('<')], |lab, count| one(lab.view().stepped_cursor(-i64::from(repeated(count)), lab.player())), "", "the cursor one step to the left; 10< ten"),
+    does(&[Mode::Lab], &[Key::Char('>')], |lab, count| one(lab.view().stepped_cursor(repeated(count).into(), lab.player())), "", "the cursor one step to the right"),
+    does(&[Mode::Lab], &[Key::Char('(')], |_, _| one(Command::Cursor(CursorTo::TurnBefore)), "", "the cursor to the last turn of the tilt before it"),
+    does(&[Mode::Lab], &[Key::Char(')')], |_, _| one(Command::Cursor(CursorTo::NextTurn)), "", "the cursor to the next turn of the tilt"),
     row(&[Mode::Lab], &[Key::Enter], Action::GoToCursor, "", "go to the step at the cursor; without one, to the values"),
-    row(&[Mode::Lab], &[Key::Char('w')], Action::WiderWindow, "", "show twice the time"),
-    row(&[Mode::Lab], &[Key::Char('W')], Action::NarrowerWindow, "zoom", "show half the time"),
-    row(&[Mode::Lab], &[Key::Char('[')], Action::Pan(Direction::Left), "pan", "show earlier times"),
-    row(&[Mode::Lab], &[Key::Char(']')], Action::Pan(Direction::Right), "", "show later times"),
-    row(&[Mode::Lab], &[Key::Char('z')], Action::Magnify(true), "values", "magnify the values"),
-    row(&[Mode::Lab], &[Key::Char('Z')], Action::Magnify(false), "", "magnify them less"),
+    does(&[Mode::Lab], &[Key::Char('w')], wider, "", "show twice the time"),
+    does(&[Mode::Lab], &[Key::Char('W')], narrower, "zoom", "show half the time"),
+    does(&[Mode::Lab], &[Key::Char('[')], |lab, count| one(lab.view().panned(-repeated(count), lab.player())), "pan", "show earlier times"),
+    does(&[Mode::Lab], &[Key::Char(']')], |lab, count| one(lab.view().panned(repeated(count), lab.player())), "", "show later times"),
+    does(&[Mode::Lab], &[Key::Char('z')], |lab, count| one(lab.view().other_magnification(repeated(count))), "values", "magnify the values"),
+    does(&[Mode::Lab], &[Key::Char('Z')], |lab, count| one(lab.view().other_magnification(-repeated(count))), "", "magnify them less"),
     row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up), "", "another curve in the strip zoom: tilt, z, y, x; Home: what swings"),
     row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down), "", "the same, the other way round"),
-    row(&[Mode::Lab], &[Key::Home], Action::WholeView, "whole", "show the run again as at first: no cursor, no zoom"),
+    does(&[Mode::Lab], &[Key::Home], |lab, _| Ok(lab.view().whole(lab.player())), "whole", "show the run again as at first: no cursor, no zoom"),
 ];
 
-/// The strips of a run.
 pub struct Traces<'a>(pub Seen<'a>);
 
 impl Widget for Traces<'_> {
@@ -136,7 +135,7 @@ impl Traces<'_> {
             self.draw_zero(plot, &mut dots);
         }
         for (columns, stroke, ink) in &plot.curves {
-            curve::draw(&mut dots, columns, &plot.scale, *stroke, *ink);
+            plot::draw_curve(&mut dots, columns, &plot.scale, *stroke, *ink);
         }
         dots.render(&self.0.view.theme, buf);
         self.draw_points(plot, buf);
@@ -227,7 +226,6 @@ impl Traces<'_> {
         longest(words.map(|word| format!("{range} {word}")), room)
     }
 
-    /// The line of the residual 0.
     fn draw_zero(&self, plot: &Plot, dots: &mut Dots) {
         let row = plot.scale.from_top(0.0) * dots.height() as f64;
         for x in (0..dots.width()).step_by(dots.in_a_cell().0) {

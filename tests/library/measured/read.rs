@@ -1,6 +1,6 @@
 //! Files of measured data as they are read.
 
-use gyrolab::data::shipped::SHIPPED;
+use gyrolab::data::SHIPPED;
 use gyrolab::data::{Data, Measured, Series, Table, open, read};
 use toml::Value;
 
@@ -111,4 +111,61 @@ fn the_data_that_come_with_the_program_are_read() {
         assert!(measured.about.contains("Heidelberg"), "{}", data.name);
         assert!(measured.clone().keep_rows(|_| true) > 6);
     }
+}
+
+/// The gyroscope's file of phyphox as it writes it, in its five variants.
+#[test]
+fn a_recording_of_phyphox_is_read_as_it_is() {
+    let names = "\"Time (s)\",\"Gyroscope x (rad/s)\",\"Gyroscope y (rad/s)\",\"Gyroscope z (rad/s)\",\"Absolute (rad/s)\"";
+    let rows =
+        "0.000000000E0,1.234567890E0,-2.5E-1,NaN,3.0E0\n1.000000000E-2,1.3E0,-2.0E-1,5.0E0,3.1E0\n";
+    for (separator, point) in [(",", "."), ("\t", "."), (";", "."), ("\t", ","), (";", ",")] {
+        let rows = rows.replace(',', separator).replace('.', point);
+        let measured = measured(&format!("{}\n{rows}", names.replace(',', separator)));
+        assert_eq!(measured.left_out, ["Absolute (rad/s)"]);
+        let series = measured.series().unwrap();
+        assert_eq!(series.times_s, [0.0, 0.01]);
+        let curves = series.curves.iter();
+        let curves: Vec<_> = curves
+            .map(|curve| {
+                (
+                    curve.quantity.name,
+                    curve.points.iter().map(|it| it.value).collect::<Vec<_>>(),
+                )
+            })
+            .collect();
+        let expected = [
+            ("w1_rad_per_s", vec![1.23456789, 1.3]),
+            ("w2_rad_per_s", vec![-0.25, -0.2]),
+            ("w3_rad_per_s", vec![5.0]),
+        ];
+        assert_eq!(curves, expected);
+    }
+}
+
+#[test]
+fn a_text_that_tracker_exports_is_read_as_it_is() {
+    for begin in ["", "#multi:\n"] {
+        let series = series(&format!(
+            "{begin}\tmass A\t\t\nt\tx\ty\t\n0.0\t1.5E-1\t-2\n0.033\t0.16\t-2.1\n"
+        ));
+        let names: Vec<_> = series
+            .curves
+            .iter()
+            .map(|curve| curve.quantity.name)
+            .collect();
+        assert_eq!(
+            (names, &series.times_s[..]),
+            (vec!["x_m", "y_m"], &[0.0, 0.033][..])
+        );
+    }
+}
+
+#[test]
+fn a_zip_is_told_to_be_unpacked() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("phyphox.csv");
+    std::fs::write(&path, b"PK\x03\x04\x14\x00\xff\xfe").unwrap();
+    let refused = open(path.to_str().unwrap()).unwrap_err().to_string();
+    assert!(refused.contains("unpack it"), "{refused}");
 }

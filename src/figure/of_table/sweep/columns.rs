@@ -2,12 +2,10 @@
 
 use crate::analysis::readouts::{self, Source};
 use crate::figure::chart::Axis;
-use crate::figure::page::letters;
-use crate::figure::quantity;
+use crate::figure::quantity::{self, MEASURED, SIMULATED};
 use crate::figure::table::Table;
 use crate::text::unit::Unit;
 
-const MEASURED: &str = "measured_";
 const PREDICTED: &str = "predicted_";
 const UNCERTAINTY: &str = "_uncertainty";
 
@@ -122,8 +120,8 @@ pub(super) fn axis(parts: &[Part]) -> Axis {
     if parts.len() == 1 {
         return own;
     }
-    let words = [MEASURED, PREDICTED].map(|word| letters::escape(word.trim_end_matches('_')));
-    let without = |word: &String| own.name.strip_prefix(&format!("{word} "));
+    let words = [SIMULATED, PREDICTED.trim_end_matches('_')];
+    let without = |word: &&str| own.name.strip_prefix(&format!("{word} "));
     let name = words.iter().find_map(without).map(str::to_owned);
     Axis {
         name: name.unwrap_or(own.name),
@@ -137,7 +135,7 @@ impl Part {
         let source = readouts::find(&self.name).map(|readout| readout.source);
         match self.role {
             Role::Value => String::new(),
-            Role::Measured => "measured".to_owned(),
+            Role::Measured => SIMULATED.to_owned(),
             Role::Theory if !is_alone && !self.name.starts_with(PREDICTED) => {
                 quantity::axis(&self.name).name
             }

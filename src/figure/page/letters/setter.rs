@@ -1,9 +1,10 @@
 //! Letters set one behind another: kerning, scripts, and what a slanted letter needs to its right.
 
+use super::Label;
 use super::table::{self, ITALIC, REGULAR, UNITS};
-use super::{Label, Placed};
-use crate::figure::page::ink::at;
-use crate::figure::{Path, Point};
+use crate::figure::page::scene::Placed;
+use crate::figure::page::scene::at;
+use crate::figure::page::scene::{Path, Point};
 
 /// Size of a sub- or superscript, as a share of its text's size.
 const SCRIPT: f64 = 0.7;

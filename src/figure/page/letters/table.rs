@@ -6,8 +6,8 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use crate::figure::page::ink::at;
-use crate::figure::{Path, Point, Segment};
+use crate::figure::page::scene::at;
+use crate::figure::page::scene::{Path, Point, Segment};
 
 /// How large the tables draw a letter: lengths are thousandths of its size.
 pub const UNITS: f64 = 1000.0;

@@ -1,9 +1,10 @@
 //! The words of a page as text that can be searched and copied: in fonts of the page's own, which hold the outlines of its
 //! letters and no others.
 
+use crate::figure::page::letters::CAP_HEIGHT;
 use crate::figure::page::letters::font::Font;
 use crate::figure::page::letters::table::{ITALIC, REGULAR};
-use crate::figure::page::letters::{CAP_HEIGHT, Placed};
+use crate::figure::page::scene::Placed;
 use crate::figure::page::scene::{Scene, Words};
 use pdf_writer::types::{CidFontType, FontFlags, SystemInfo, UnicodeCmap};
 use pdf_writer::writers::Resources;

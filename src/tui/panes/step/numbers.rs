@@ -1,11 +1,14 @@
-//! The numbers of a phase in columns: vectors and matrices of x, y and z, numbers by themselves, each with its unit.
+//! The numbers of a phase in columns: vectors and matrices of x, y and z, numbers by themselves, each with its unit; and
+//! a table of points, with the sum of the rows up to the chosen one below it. Only the rows that are drawn are read.
 
+use super::super::shortened;
 use super::page::{Line, Section};
-use crate::physics::workings::{Quantity, Value};
+use crate::physics::workings::{Quantity, Table, Value};
 use crate::text::number::{NONE, exponent, significant};
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 /// Columns of the symbols, and of the units.
 pub const SYMBOL: usize = 6;
@@ -133,29 +136,235 @@ pub fn heads(rank: u8, format: Format) -> Section {
     Section::new(rank, vec![Line::of(SYMBOL, heads.concat(), Role::Quiet)])
 }
 
+/// Columns of the points' names, with a space after them.
+const NAME: usize = 8;
+/// Columns of a mass between the name and the coordinates of its point, where there is room for nothing else.
+const MASS: usize = 5;
+const MASS_DIGITS: usize = 3;
+/// The fewest columns of a number that is still of use.
+const LEAST_CELL: usize = 9;
+/// How many numbers stand side by side where there is no room for all.
+const FEW: usize = 3;
+/// Rows of a table that are kept where there is little room.
+const LEAST_ROWS: usize = 4;
+
+pub struct TableView<'a> {
+    pub table: &'a Table,
+    /// How many of its rows are added up, and the sum of each column over them; `None`: no sum is wanted.
+    pub sum: Option<(usize, Vec<f64>)>,
+    pub name: &'a dyn Fn(usize) -> String,
+    pub width: usize,
+}
+
+impl TableView<'_> {
+    /// How many lines it keeps where there is little room.
+    pub fn least(&self) -> usize {
+        let groups = self.groups();
+        let rows = LEAST_ROWS.min(self.table.points.len()) * groups.len();
+        self.heads(&groups).len() + rows + self.sum_lines(&groups).len()
+    }
+
+    /// Its lines: the heads, the sum, and the rows for which `room` is left.
+    pub fn lines(&self, room: usize) -> Vec<Line> {
+        let groups = self.groups();
+        let sum = self.sum_lines(&groups);
+        let mut lines = self.heads(&groups);
+        let rows = room.saturating_sub(lines.len() + sum.len()) / groups.len();
+        let all = self.table.points.len();
+        let (shown, left) = match self.chosen() {
+            Some(last) => (last.saturating_sub(rows)..last.max(rows).min(all), 0),
+            None if all > rows => (0..rows.saturating_sub(1), all + 1 - rows.max(1)),
+            None => (0..all, 0),
+        };
+        lines.extend(self.rows(&groups, shown));
+        if left > 0 {
+            let what = if is_summed(self.table) {
+                "Down adds them up one by one"
+            } else {
+                "Down goes through them"
+            };
+            let text = format!("... {left} more: {what}");
+            lines.push(Line::of(0, text, Role::Quiet));
+        }
+        lines.extend(sum);
+        lines
+    }
+
+    /// How many rows are added up: the last of them is the chosen one.
+    fn chosen(&self) -> Option<usize> {
+        self.sum.as_ref().map(|(rows, _)| *rows)
+    }
+
+    /// The lines of the rows `shown`.
+    fn rows(&self, groups: &[Range<usize>], shown: Range<usize>) -> Vec<Line> {
+        let texts: Vec<_> = groups
+            .iter()
+            .map(|group| self.texts(group, &shown))
+            .collect();
+        let mut lines = Vec::with_capacity(shown.len() * groups.len());
+        for (at, row) in shown.enumerate() {
+            let role = match self.chosen() {
+                Some(last) if row >= last => Role::Quiet,
+                _ => Role::Text,
+            };
+            let name = (self.name)(self.table.points[row]);
+            let mut name = shortened(&name, NAME - 1).into_owned();
+            for (index, (group, texts)) in groups.iter().zip(&texts).enumerate() {
+                let mut line = Line::of(0, std::mem::take(&mut name), role);
+                if self.has_mass_aside(group) {
+                    let mass = significant(self.table.row(row)[0], MASS_DIGITS);
+                    line = line.and(NAME - 1, format!("{mass:>MASS$}"), role);
+                }
+                line.is_chosen = index == 0 && self.chosen() == Some(row + 1);
+                lines.push(line.and(self.begin(group), side_by_side(texts, at), role));
+            }
+        }
+        lines
+    }
+
+    /// Groups of columns that stand side by side. If there are several groups, a row takes a line for each.
+    fn groups(&self) -> Vec<Range<usize>> {
+        let count = self.table.columns.len();
+        let fits = |count: usize| NAME + count * LEAST_CELL <= self.width;
+        match (count, summed(self.table)) {
+            (count, _) if fits(count) => std::iter::once(0..count).collect(),
+            // The coordinates alone. Their products are only shown in the sum.
+            (10, products) => std::iter::once(1..products.start).collect(),
+            _ => (0..count.div_ceil(FEW))
+                .map(|group| group * FEW..((group + 1) * FEW).min(count))
+                .collect(),
+        }
+    }
+
+    /// Whether the column of masses stands before the columns of `group`, which it does not belong to.
+    fn has_mass_aside(&self, group: &Range<usize>) -> bool {
+        group.start == 1 && self.table.columns.len() == 10
+    }
+
+    /// The column of the screen in which the numbers of `group` begin.
+    fn begin(&self, group: &Range<usize>) -> usize {
+        if self.has_mass_aside(group) {
+            NAME - 1 + MASS
+        } else {
+            NAME
+        }
+    }
+
+    fn format(&self, group: &Range<usize>) -> Format {
+        Format::new(self.width.saturating_sub(self.begin(group)), group.len())
+    }
+
+    /// The numbers of each column of `group` on the rows `shown`.
+    fn texts(&self, group: &Range<usize>, shown: &Range<usize>) -> Vec<Vec<String>> {
+        let format = self.format(group);
+        let column = |column: usize| {
+            let cells = shown.clone().map(|row| self.table.row(row)[column]);
+            format.aligned(&cells.collect::<Vec<_>>())
+        };
+        group.clone().map(column).collect()
+    }
+
+    /// The symbols over the columns of each group with their unit, or under them their units where these differ.
+    fn heads(&self, groups: &[Range<usize>]) -> Vec<Line> {
+        let mut lines = Vec::new();
+        for group in groups {
+            let cell = self.format(group).cell;
+            let columns = &self.table.columns[group.clone()];
+            let symbols = columns.iter().map(|(symbol, _)| format!("{symbol:>cell$}"));
+            let symbols = symbols.collect::<String>();
+            let mut line = Line::of(self.begin(group), symbols, Role::Quiet);
+            if self.has_mass_aside(group) {
+                let mass = self.table.columns[0].1;
+                line = line.and(NAME - 1, format!("{mass:>MASS$}"), Role::Quiet);
+            }
+            if columns.iter().all(|(_, unit)| *unit == columns[0].1) {
+                let unit = format!("in {}", columns[0].1);
+                lines.push(line.and(0, unit, Role::Quiet));
+            } else {
+                let units = columns.iter().map(|(_, unit)| format!("{unit:>cell$}"));
+                let units = units.collect::<String>();
+                lines.extend([line, Line::of(self.begin(group), units, Role::Quiet)]);
+            }
+        }
+        lines
+    }
+
+    /// What the chosen row adds, and the sum up to it.
+    fn sum_lines(&self, groups: &[Range<usize>]) -> Vec<Line> {
+        let columns = summed(self.table);
+        let (Some(rows), Some((_, sums)), false) = (self.chosen(), &self.sum, columns.is_empty())
+        else {
+            return Vec::new();
+        };
+        let all = self.table.points.len();
+        let caption = match rows {
+            1 => format!("the first of {all} points gives"),
+            rows => format!("the first {rows} of {all} points add up to"),
+        };
+        let mut lines = vec![Line::of(0, caption, Role::Text)];
+        match groups {
+            [group] if group.contains(&columns.start) => {
+                let format = self.format(group);
+                let blank = " ".repeat((columns.start - group.start) * format.cell);
+                let sums = sums[columns].iter();
+                let sums: String = sums.map(|sum| format.aligned(&[*sum]).concat()).collect();
+                let line = Line::of(0, "sum", Role::Focus);
+                lines.push(line.and(NAME, blank + &sums, Role::Heading));
+            }
+            _ => lines.extend(columns.clone().step_by(FEW).flat_map(|begin| {
+                let group = begin..(begin + FEW).min(columns.end);
+                self.added(group, rows.saturating_sub(1), sums)
+            })),
+        }
+        lines
+    }
+
+    /// What `row` adds to each column of `group`, and their `sums`, with heads of their own.
+    fn added(&self, group: Range<usize>, row: usize, sums: &[f64]) -> [Line; 3] {
+        let adds = self.table.row(row);
+        let format = Format::of_vectors(self.width);
+        let columns = &self.table.columns[group.clone()];
+        let heads = columns
+            .iter()
+            .map(|(symbol, _)| format!("{symbol:>0$}", format.cell));
+        let heads = Line::of(SYMBOL, heads.collect::<String>(), Role::Quiet);
+        let unit = SYMBOL + group.len() * format.cell + 1;
+        let both = group.map(|column| format.aligned(&[adds[column], sums[column]]));
+        let both: Vec<_> = both.collect();
+        let line = |at: usize, name, role| {
+            let line = Line::of(0, name, Role::Focus).and(SYMBOL, side_by_side(&both, at), role);
+            line.and(unit, columns[0].1, Role::Quiet)
+        };
+        [
+            heads,
+            line(0, "adds", Role::Text),
+            line(1, "sum", Role::Heading),
+        ]
+    }
+}
+
+/// The cells of the row `at` of some `columns` of texts.
+fn side_by_side(columns: &[Vec<String>], at: usize) -> String {
+    columns.iter().map(|column| column[at].as_str()).collect()
+}
+
+/// The columns of `table` whose sums mean something.
+fn summed(table: &Table) -> Range<usize> {
+    match table.columns.first() {
+        Some(("m", _)) if table.columns.len() == 10 => 4..10,
+        Some(("m x", _)) => 0..table.columns.len(),
+        _ => 0..0,
+    }
+}
+
+/// Whether rows of `table` can be added up.
+pub fn is_summed(table: &Table) -> bool {
+    !summed(table).is_empty()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_vector_has_its_points_in_one_column() {
-        let format = Format::of_vectors(42);
-        assert_eq!((format.cell, format.digits), (10, 6));
-        for (numbers, shown) in [
-            (
-                &[0.0, -707.106781, 3.5][..],
-                "         0  -707.107     3.500",
-            ),
-            (&[1e-14, 0.5, -0.25], " 1.000e-14  0.500000 -0.250000"),
-            (&[1.5e9, -2e9, 0.001], " 1.50000e9 -2.0000e9 1.0000e-3"),
-            (&[8e-16, 220.9, -3e-12], "        ~0   220.900 -3.00e-12"),
-            (&[8e-16, 0.0, 8e-16], " 8.000e-16         0 8.000e-16"),
-            (&[f64::NAN], "       n/a"),
-            (&[-0.0], "         0"),
-        ] {
-            assert_eq!(format.aligned(numbers).concat(), shown, "{numbers:?}");
-        }
-    }
 
     #[test]
     fn no_number_is_wider_than_its_cell() {

@@ -11,11 +11,9 @@ use ratatui::layout::Rect;
 #[derive(Clone, Debug, Default)]
 pub struct Line {
     pub pieces: Vec<(usize, String, Role)>,
-    /// Whether it is marked as the chosen line.
     pub is_chosen: bool,
 }
 
-/// Lines that stand together.
 #[derive(Clone, Debug, Default)]
 pub struct Section {
     /// The section of the highest rank is left out first; those of rank 0 never are.

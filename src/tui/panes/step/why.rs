@@ -4,7 +4,7 @@ use super::super::write;
 use super::numbers::{self, Format};
 use super::page::{self, Section};
 use crate::lab::Lab;
-use crate::lab::explained::Explained;
+use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::View;
 use crate::physics::loads::torque;
 use crate::physics::workings::{Quantity, Value};
@@ -38,7 +38,7 @@ const LEAST_SEEN: f64 = 0.25;
 const ROUNDING: f64 = 1e-12;
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
-    let Some(explained) = lab.player().explained() else {
+    let Some(explained) = lab.step_pane().shown() else {
         return;
     };
     let view = lab.view();
@@ -59,7 +59,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     dip(explained, is_seen, view, right, buf);
 }
 
-fn reason(explained: &Explained) -> &'static str {
+fn reason(explained: &StepWorkings) -> &'static str {
     let (before, after) = &explained.states;
     let parts = &explained.workings.parts;
     let Some(part) = parts.last().filter(|_| before.momentum != after.momentum) else {
@@ -77,7 +77,7 @@ fn reason(explained: &Explained) -> &'static str {
 }
 
 /// The last quantity of the step that has this symbol, if it is a vector.
-fn last<'a>(explained: &'a Explained, symbols: &[&str]) -> Option<&'a Quantity> {
+fn last<'a>(explained: &'a StepWorkings, symbols: &[&str]) -> Option<&'a Quantity> {
     let quantities = explained
         .workings
         .phases()
@@ -89,7 +89,7 @@ fn last<'a>(explained: &'a Explained, symbols: &[&str]) -> Option<&'a Quantity> 
 }
 
 /// The numbers of the step that the pictures draw.
-fn vectors(explained: &Explained, width: usize) -> Vec<Section> {
+fn vectors(explained: &StepWorkings, width: usize) -> Vec<Section> {
     let format = Format::of_vectors(width);
     let before = Quantity::new("L", "J s", explained.states.0.momentum);
     let all = [
@@ -111,8 +111,7 @@ fn vectors(explained: &Explained, width: usize) -> Vec<Section> {
 struct Picture {
     plane: Plane,
     dots: Dots,
-    /// Signs with the dots at which they stand.
-    signs: Vec<((f64, f64), &'static str, Role)>,
+    signs: Vec<((u16, u16), &'static str, Role)>,
 }
 
 impl Picture {
@@ -141,7 +140,7 @@ impl Picture {
     }
 
     fn sign(&mut self, at: Vector2<f64>, sign: &'static str, role: Role) {
-        self.signs.push((self.dot(at), sign, role));
+        self.signs.push((self.plane.cell((at.x, at.y)), sign, role));
     }
 
     /// A line from one place along another, with its name at its tip.
@@ -152,7 +151,7 @@ impl Picture {
         let plane = self.plane;
         let head = (0.16 * along.norm()).min(0.12 * plane.size.1 as f64 / plane.scale.1);
         let back = -along.normalize() * head;
-        for (sin, cos) in [0.5_f64, -0.5].map(f64::sin_cos) {
+        for (sin, cos) in [0.5_f64, -0.5].map(libm::sincos) {
             let stroke = Vector2::new(back.x * cos - back.y * sin, back.x * sin + back.y * cos);
             self.line(tip, tip + stroke, Ink::Strong(role));
         }
@@ -162,22 +161,13 @@ impl Picture {
 
     fn draw(&self, area: Rect, view: &View, buf: &mut Buffer) {
         self.dots.render(&view.theme, buf);
-        let (across, down) = self.plane.in_cell;
-        let cell = |dot: f64, dots: usize, last: u16| {
-            ((dot / dots as f64).floor().max(0.0) as u16).min(last)
-        };
-        for ((x, y), sign, role) in &self.signs {
+        for &((x, y), sign, role) in &self.signs {
             let last = area.width.saturating_sub(sign.chars().count() as u16);
-            let place = (
-                cell(*x, across, last),
-                cell(*y, down, area.height.saturating_sub(1)),
-            );
-            write(area, place, sign, view.theme.style(*role), buf);
+            write(area, (x.min(last), y), sign, view.theme.style(role), buf);
         }
     }
 }
 
-/// The heading of a picture on `area`, and the area below it.
 fn headed(heading: &str, view: &View, area: Rect, buf: &mut Buffer) -> Rect {
     let [heading_line, below] = split_rows(area, 1);
     let style = view.theme.style(Role::Quiet);
@@ -185,7 +175,6 @@ fn headed(heading: &str, view: &View, area: Rect, buf: &mut Buffer) -> Rect {
     below
 }
 
-/// `text` in lines on `area`.
 fn text(text: &str, role: Role, view: &View, area: Rect, buf: &mut Buffer) {
     let lines = wrapped(text, area.width.into());
     for (line, y) in lines.iter().zip(0..area.height) {
@@ -195,7 +184,7 @@ fn text(text: &str, role: Role, view: &View, area: Rect, buf: &mut Buffer) {
 
 /// The directions of the torque and of the change of L that the picture from above shows, where there are any. Of a scheme
 /// that gives no torque it is the change of L in the step. Under friction that is not along the torque.
-fn torque_and_change(explained: &Explained) -> [Option<Vector2<f64>>; 2] {
+fn torque_and_change(explained: &StepWorkings) -> [Option<Vector2<f64>>; 2] {
     let (before, after) = &explained.states;
     let changed = after.momentum - before.momentum;
     let last_part = explained.workings.parts.last();
@@ -213,7 +202,7 @@ fn torque_and_change(explained: &Explained) -> [Option<Vector2<f64>>; 2] {
 }
 
 /// The axle from above with L, and at its tip the weight, τ and dL.
-fn from_above(explained: &Explained, view: &View, area: Rect, buf: &mut Buffer) {
+fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffer) {
     let area = headed("from above, o: top", view, area, buf);
     let (_, after) = &explained.states;
     let arm = explained.scenario.arm_m();
@@ -252,7 +241,7 @@ fn from_above(explained: &Explained, view: &View, area: Rect, buf: &mut Buffer) 
 }
 
 /// The path of the axle's tip in its first dip, magnified to fill the picture.
-fn dip(explained: &Explained, is_seen: bool, view: &View, area: Rect, buf: &mut Buffer) {
+fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &mut Buffer) {
     let area = headed("first dip, magnified", view, area, buf);
     let Some(dip) = explained.dip() else {
         let upright = "the axle is upright at first: no side of it is down";

@@ -1,14 +1,13 @@
 //! The arrows of the scene, and the line that says what their letters mean. Where the step pane is shown, only the arrows
 //! that its phase is about, the axis of its turn, and the body as it stood before the step.
 
-use super::super::MOST_PUSHES;
+use super::super::{MOST_PUSHES, in_lines};
 use super::body::Sign;
 use super::{CHANGE, Label, MOMENTUM, Subject, write};
-use crate::lab::explained::{Explained, table_of};
+use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::View;
 use crate::physics::workings::{Phase, Value};
 use crate::physics::{State, observables};
-use crate::text::wrap::columns;
 use crate::tui::dots::Ink;
 use crate::tui::scene::{Over, Scene, Stroke};
 use crate::tui::theme::Role;
@@ -134,7 +133,8 @@ impl Subject<'_> {
                 .into_iter()
                 .flat_map(|at| signs.iter().map(move |sign| (sign, at)));
             let signs = signs.map(|((words, role), at)| (words[at], *role));
-            in_lines(named.chain(signs), width)
+            let words = named.chain(signs).filter(|(word, _)| !word.is_empty());
+            in_lines(words, |(word, _)| word, APART, width)
         };
         let forms = [
             (0, Some(0)),
@@ -199,27 +199,9 @@ type Line = Vec<(&'static str, Role)>;
 /// Columns between two words of the legend.
 const APART: usize = 2;
 
-/// `words` in lines of at most `width` columns; a word that is wider has a line of its own.
-fn in_lines(words: impl Iterator<Item = (&'static str, Role)>, width: usize) -> Vec<Line> {
-    let mut lines: Vec<Line> = Vec::new();
-    let mut free = 0;
-    for (word, role) in words.filter(|(word, _)| !word.is_empty()) {
-        let length = columns(word) + APART;
-        match lines.last_mut() {
-            Some(line) if length <= free + APART => line.push((word, role)),
-            _ => {
-                lines.push(vec![(word, role)]);
-                free = width;
-            }
-        }
-        free = free.saturating_sub(length);
-    }
-    lines
-}
-
 #[derive(Clone, Copy)]
 pub struct Shown<'a> {
-    explained: &'a Explained,
+    explained: &'a StepWorkings,
     phase: &'a Phase,
     /// The point that was added last to the sum of the table, or chosen in it.
     point: Option<usize>,
@@ -227,7 +209,7 @@ pub struct Shown<'a> {
 
 impl<'a> Shown<'a> {
     /// The phase on the page of the step pane of `view`, if that is on the screen.
-    pub fn of(explained: Option<&'a Explained>, view: &View) -> Option<Self> {
+    pub fn of(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
         let explained = explained.filter(|_| view.shows_step())?;
         let (phase, ..) = explained.phase(view.page)?;
         let row = view.sum_to.and_then(|rows| rows.checked_sub(1));

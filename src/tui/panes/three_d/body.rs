@@ -4,6 +4,7 @@ use super::{PARTS, Subject};
 use crate::physics::{Part, State};
 use crate::playback::live::LiveRun;
 use crate::playback::outline::{self, Polyline};
+use crate::scenario::file::RimFile;
 use crate::tui::dots::Ink;
 use crate::tui::scene::{Scene, Stroke};
 use crate::tui::theme::Role;
@@ -33,7 +34,7 @@ pub type Sign = (&'static str, Role, (u16, u16));
 
 /// The body as it is drawn, upright: distances from the axle and heights.
 pub struct Shape {
-    pub rim: Option<Rim>,
+    pub rim: Option<RimFile>,
     /// Heights between which there is an axle.
     pub axle: (f64, f64),
     /// Distance from the axle and height of the rim and of each free point that is drawn.
@@ -47,16 +48,12 @@ impl Shape {
     pub fn of(run: &LiveRun) -> Self {
         let scenario = run.scenario();
         let points = scenario.body.mechanics.points();
-        let rim = scenario.file.body.rim.as_ref().map(|rim| Rim {
-            radius: rim.radius_m,
-            height: rim.height_m,
-            points: rim.points,
-        });
-        let after = rim.as_ref().map_or(0, |rim| rim.points);
+        let rim = scenario.file.body.rim.clone();
+        let after = scenario.file.body.rim_points();
         let count = scenario.file.body.point.len().min(MOST_FREE);
         let free: Vec<_> = points.iter().skip(after).take(count).collect();
         let corner = |at: &Vector3<f64>| (at.xy().norm(), at.z);
-        let of_rim = rim.iter().map(|rim| (rim.radius, rim.height));
+        let of_rim = rim.iter().map(|rim| (rim.radius_m, rim.height_m));
         let mut corners: Vec<_> = of_rim.collect();
         corners.extend(free.iter().map(|point| corner(&point.at)));
         corners.push(corner(&points[scenario.trace].at));
@@ -82,25 +79,18 @@ impl Shape {
 
     /// The size of the body, m.
     pub fn reach(&self) -> f64 {
-        let corners = self.corners.iter();
-        let reaches = corners.map(|(across, height)| across.hypot(*height));
+        let corners = self.corners.iter().copied();
+        let reaches = corners.map(|(across, height)| libm::hypot(across, height));
         reaches.fold(f64::MIN_POSITIVE, f64::max)
     }
 }
 
-/// Masses on a circle across the axle.
-pub struct Rim {
-    radius: f64,
-    height: f64,
-    points: usize,
-}
-
-impl Rim {
+impl RimFile {
     /// The point `index` of `points` on the rim, or on a circle that is `share` as large.
     fn at(&self, state: &State, index: usize, points: usize, share: f64) -> Vector3<f64> {
-        let (sin, cos) = (TAU * index as f64 / points as f64).sin_cos();
-        let radius = share * self.radius;
-        state.orientation * Vector3::new(radius * cos, radius * sin, self.height)
+        let (sin, cos) = libm::sincos(TAU * index as f64 / points as f64);
+        let radius = share * self.radius_m;
+        state.orientation * Vector3::new(radius * cos, radius * sin, self.height_m)
     }
 
     fn circle(&self, state: &State) -> Vec<Vector3<f64>> {
@@ -159,8 +149,8 @@ impl Subject<'_> {
             self.solid(solid, scene);
         }
         if let Some(rim) = &self.shape.rim {
-            let middle = scene.depth(&(axle * rim.height));
-            let look = |depth: f64| match is_near(depth, middle, rim.radius) {
+            let middle = scene.depth(&(axle * rim.height_m));
+            let look = |depth: f64| match is_near(depth, middle, rim.radius_m) {
                 Some(true) => (Stroke::Thick, text),
                 None => (Stroke::Thin, text),
                 Some(false) => (Stroke::Thin, Ink::Faint(Role::Quiet)),
@@ -203,7 +193,7 @@ impl Subject<'_> {
         if let Some(rim) = &self.shape.rim {
             scene.ring(&rim.circle(state), |_| BEFORE);
             let spoke = rim.at(state, 0, 1, 1.0);
-            scene.line(&(axle * rim.height), &spoke, stroke, ink);
+            scene.line(&(axle * rim.height_m), &spoke, stroke, ink);
         }
         for at in &self.shape.free {
             let foot = axle * at.z;
@@ -221,7 +211,7 @@ impl Subject<'_> {
         let hub = self.wheel();
         let middle = scene.depth(&hub);
         let rim = self.shape.rim.as_ref();
-        let radius = rim.map_or(self.reach, |rim| rim.radius);
+        let radius = rim.map_or(self.reach, |rim| rim.radius_m);
         let mut masses = self.places_of_masses(self.state, scene);
         masses.sort_by(|a, b| scene.depth(b).total_cmp(&scene.depth(a)));
         let signs = masses.iter().map(|at| {
@@ -245,10 +235,10 @@ impl Subject<'_> {
 
     /// Where the masses are at `state`: those in the picture, and those of the rim only if their signs have room there.
     fn places_of_masses(&self, state: &State, scene: &Scene) -> Vec<Vector3<f64>> {
-        let has_room = |rim: &&Rim| {
+        let has_room = |rim: &&RimFile| {
             // From the side the rim is at least as long as twice its width.
             let plane = &scene.plane;
-            let length = 4.0 * rim.radius * plane.scale.1 / plane.in_cell.1 as f64;
+            let length = 4.0 * rim.radius_m * plane.scale.1 / plane.in_cell.1 as f64;
             length * 2.0 >= CLOSEST * rim.points as f64
         };
         let rim = self.shape.rim.iter().filter(has_room);
@@ -260,7 +250,7 @@ impl Subject<'_> {
     /// The middle of the wheel, or the axle's top where there is none.
     pub(super) fn wheel(&self) -> Vector3<f64> {
         let rim = self.shape.rim.as_ref();
-        self.state.axle() * rim.map_or(self.shape.axle.1, |rim| rim.height)
+        self.state.axle() * rim.map_or(self.shape.axle.1, |rim| rim.height_m)
     }
 }
 

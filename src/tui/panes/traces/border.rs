@@ -100,11 +100,8 @@ impl Traces<'_> {
         };
         let across = self.0.view.marker.dots().0;
         let cells = zoomed.start / across..(zoomed.end - 1) / across + 1;
-        let style = self
-            .0
-            .view
-            .theme
-            .style(Content::Curve(self.0.detail.curve).role());
+        let role = Content::Curve(self.0.detail.curve).role();
+        let style = self.0.view.theme.style(role);
         for x in cells.clone() {
             put(x, ZOOM_BAR, style);
         }
@@ -116,12 +113,8 @@ impl Traces<'_> {
     /// Which of `width` cells of `strip` show times at which a push acts, up to where there is something to see.
     fn pushed(&self, marks: &Marks, strip: &Strip, width: u16) -> Vec<bool> {
         let across = self.0.view.marker.dots().0;
-        let reach_s = self
-            .0
-            .run
-            .now()
-            .time_s
-            .max(self.0.ghost.map_or(0.0, Ghost::end_s));
+        let before_s = self.0.ghost.map_or(0.0, Ghost::end_s);
+        let reach_s = self.0.run.now().time_s.max(before_s);
         let shown = |&(begin_s, end_s): &(f64, f64)| strip.shown(begin_s, end_s.min(reach_s));
         let mut pushed = vec![false; width as usize];
         for column in marks.pushes.iter().flat_map(shown) {

@@ -111,19 +111,7 @@ impl Traces<'_> {
         };
         let first = Content::Curve(self.0.detail.curve);
         let measured = self.measured_contents();
-        let mut by_worth = measured.clone();
-        let curves = [
-            self.0.detail.curve,
-            Curve::X,
-            Curve::Z,
-            Curve::Tilt,
-            Curve::Y,
-        ];
-        for content in curves.map(Content::Curve) {
-            if !by_worth.contains(&content) {
-                by_worth.push(content);
-            }
-        }
+        let mut by_worth = by_worth(&measured, self.0.detail.curve);
         let fast = STRIP.min(least(&first));
         let needed: u16 = if measured.contains(&first) {
             by_worth.iter().map(least).sum()
@@ -164,4 +152,16 @@ impl Traces<'_> {
         let column = cell as usize * across + (across - 1) / 2;
         Some(group.strip.time_s(column))
     }
+}
+
+/// All contents, the most important first: what was `measured`, the curve of the fast motion, and the others.
+fn by_worth(measured: &[Content], fast: Curve) -> Vec<Content> {
+    let mut contents = measured.to_vec();
+    let curves = [fast, Curve::X, Curve::Z, Curve::Tilt, Curve::Y];
+    for content in curves.map(Content::Curve) {
+        if !contents.contains(&content) {
+            contents.push(content);
+        }
+    }
+    contents
 }

@@ -1,17 +1,19 @@
 //! A strip as it is drawn: what it shows, of which time and values, and its curves.
 
+use super::Traces;
 use super::groups::Group;
-use super::{Traces, curve::Stroke};
-use crate::lab::measured::{Beside, Shown};
+use crate::data::compared::Shown;
+use crate::lab::comparison::DataComparison;
 use crate::playback::ghost::Ghost;
 use crate::playback::marks::Marks;
 use crate::playback::recording::{Curve, Extent, Recording};
 use crate::playback::scale::Scale;
 use crate::playback::strip::{Blocks, Column, Strip};
 use crate::text::number::fixed;
-use crate::tui::dots::Ink;
+use crate::tui::dots::{Dots, Ink};
 use crate::tui::theme::Role;
 use ratatui::layout::Rect;
+use std::ops::RangeInclusive;
 
 /// Digits after the point of a value at the cursor.
 const DECIMALS: usize = 6;
@@ -26,12 +28,10 @@ const PLANE_LEAST: f64 = 1e-4;
 /// The least range of residuals, where nothing has been compared yet.
 const RESIDUAL_LEAST: f64 = 1e-9;
 /// A band whose edges are nearer to one another than this, in dots, has no room for a gap: it is drawn as a thick line.
-pub(super) const THINNEST_BAND: usize = 2;
+const THINNEST_BAND: usize = 2;
 
-/// What a strip shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Content {
-    /// A curve that every run has.
     Curve(Curve),
     /// The quantity of this index among the measured ones, where it is none of those curves.
     Measured(usize),
@@ -145,13 +145,9 @@ impl Traces<'_> {
     /// Leaves out what was recorded beyond where the run stands: what follows the run may have been further.
     fn end_at_run(&self, plot: &Plot, columns: &mut [Option<Column>]) {
         if let Content::Measured(_) = plot.content {
-            let shown = plot
-                .strip
-                .shown(plot.strip.begin_s, self.0.run.now().time_s);
-            columns
-                .iter_mut()
-                .skip(shown.end)
-                .for_each(|column| *column = None);
+            let now_s = self.0.run.now().time_s;
+            let shown = plot.strip.shown(plot.strip.begin_s, now_s);
+            columns[shown.end..].fill(None);
         }
     }
 
@@ -238,12 +234,11 @@ impl Traces<'_> {
         curves.get(index).map(Vec::as_slice)
     }
 
-    /// The name and the unit of `content`.
     pub(super) fn named(&self, content: Content) -> (String, &'static str) {
         match content {
             Content::Curve(curve) => (curve.name().to_owned(), curve.unit()),
             Content::Measured(index) => {
-                let quantities = self.0.measured.map(Beside::quantities);
+                let quantities = self.0.measured.map(DataComparison::quantities);
                 let quantity = quantities.and_then(|mut quantities| quantities.nth(index));
                 quantity.map_or_else(Default::default, |quantity| {
                     (quantity.words(), quantity.unit())
@@ -338,9 +333,110 @@ fn extent_of(points: Option<&[Shown]>, strip: Option<&Strip>) -> Option<Extent> 
     points.map(extent).reduce(Extent::and)
 }
 
-/// The range of the residuals of `points`, about 0.
 fn residual_scale(points: Option<&[Shown]>) -> Scale {
     let reach = |point: &Shown| point.residual().unwrap_or(0.0).abs() + point.sigma.unwrap_or(0.0);
     let points = points.unwrap_or_default().iter();
     Scale::about_zero(points.map(reach).fold(RESIDUAL_LEAST, f64::max))
+}
+
+/// A value this part of a dot above the edge between two dots counts as below it: a value on the edge, such as a constant
+/// in the middle of its strip, would else go up and down with its rounding.
+const ROUNDING: f64 = 1e-4;
+
+/// Cells after which long and short dashes repeat.
+const LONG_AND_SHORT: usize = 6;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stroke {
+    /// All of them, and a band is filled with a few.
+    Full,
+    /// All of them, and of a band its edges alone.
+    Edges,
+    /// Those in every other cell: the exact motion.
+    Dashed,
+    /// Single ones: the run before.
+    Dotted,
+    /// Those in three cells, then in one, with a cell between: the pinned run.
+    LongAndShort,
+}
+
+impl Stroke {
+    /// Sets the dots of the column `x` from one row to another. Of a steep piece a dotted curve has two in each cell, counted
+    /// from the cell's top; a level piece is seen at any height.
+    fn set(self, dots: &mut Dots, x: usize, (from, to): (usize, usize), ink: Ink) {
+        let (across, down) = dots.in_a_cell();
+        let (is_drawn, apart) = match self {
+            Self::Full | Self::Edges => (true, 1),
+            Self::Dashed => ((x / across).is_multiple_of(2), 1),
+            Self::LongAndShort => (!matches!(x / across % LONG_AND_SHORT, 3 | 5), 1),
+            Self::Dotted => (x.is_multiple_of(across.max(2)), (down / 2).max(1)),
+        };
+        for y in (from..=to).step_by(apart).filter(|_| is_drawn) {
+            dots.set(x as f64, y as f64, ink);
+        }
+    }
+}
+
+/// Draws a curve as a line, or as a band where its swings are too fast to be drawn one by one.
+pub(super) fn draw_curve(
+    dots: &mut Dots,
+    columns: &[Option<Column>],
+    scale: &Scale,
+    stroke: Stroke,
+    ink: Ink,
+) {
+    let height = dots.height() as f64;
+    if height == 0.0 {
+        return;
+    }
+    let place = |value: f64| scale.from_top(value) * height + ROUNDING;
+    let row = |value: f64| place(value).clamp(0.0, height - 1.0) as usize;
+    let is_inside = |value: f64| (0.0..height + 2.0 * ROUNDING).contains(&place(value));
+    let mut before: Option<(usize, usize)> = None;
+    for (x, column) in columns.iter().enumerate() {
+        let last = before.take();
+        let whole = column.map(|column| column.band.unwrap_or(column.extent));
+        let (Some(column), Some(band)) = (column, whole.filter(|band| scale.meets(*band))) else {
+            continue;
+        };
+        let (top, bottom) = (row(band.max), row(band.min));
+        if column.band.is_none() || bottom < top + THINNEST_BAND {
+            let rows = (row(column.extent.max), row(column.extent.min));
+            stroke.set(dots, x, rows, ink);
+            continue;
+        }
+        let (last_top, last_bottom) = last.unwrap_or((top, bottom));
+        // An edge beyond the strip is not drawn: the band goes on there.
+        if is_inside(band.max) {
+            stroke.set(dots, x, toward(top, last_top), ink);
+        }
+        if is_inside(band.min) {
+            stroke.set(dots, x, toward(bottom, last_bottom), ink);
+        }
+        if stroke == Stroke::Full {
+            fill(dots, x, top..=bottom, ink);
+        }
+        before = Some((top, bottom));
+    }
+}
+
+/// Sets one of four dots between the edges of a band, on slanting lines that are seen to be no curves.
+fn fill(dots: &mut Dots, x: usize, rows: RangeInclusive<usize>, ink: Ink) {
+    let (across, down) = dots.in_a_cell();
+    let ink = match ink {
+        Ink::Strong(role) if across * down <= 2 => Ink::Under(role), // large dots would hide the edges
+        _ => ink,
+    };
+    for y in rows.filter(|y| (x + 2 * y).is_multiple_of(4)) {
+        dots.set(x as f64, y as f64, ink);
+    }
+}
+
+/// The rows from `row` to the one next to `before`, so that an edge has no gap.
+fn toward(row: usize, before: usize) -> (usize, usize) {
+    if before < row {
+        (before + 1, row)
+    } else {
+        (row, before.saturating_sub(1).max(row))
+    }
 }

@@ -1,0 +1,219 @@
+//! How far a run strays from the exact motion beside it, over every step, and how the tilts of both swing.
+//!
+//! The exact motion to the last bit costs as much as a step. Eight steps together are looked at within rounding, for a quarter
+//! of that; the farthest of all is computed to the last bit when it is asked for.
+
+use super::cost::is_affordable;
+use super::swings::{Swing, Swings, height};
+use crate::physics::State;
+use crate::physics::exact::AT_ONCE;
+use crate::run::Truth;
+use crate::scenario::Scenario;
+use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
+
+/// The exact motion beside one run, and how far the run has been off it.
+#[derive(Clone, Debug)]
+pub struct Beside {
+    /// `None` where it would take too long, or has left the range of numbers.
+    truth: Option<Truth>,
+    /// The newest steps, which are looked at together.
+    waiting: Vec<State>,
+    /// The step that is farthest off so far, where its distance is known within rounding alone.
+    farthest: Option<State>,
+    /// The distance of the farthest step, m.
+    most_m: f64,
+    swings: Swings,
+}
+
+impl Beside {
+    /// The exact motion beside the run of `scenario`, which stands at its start.
+    pub fn new(scenario: &Arc<Scenario>) -> Self {
+        let truth = is_affordable(scenario).then(|| Truth::new(Arc::clone(scenario)));
+        Self {
+            truth,
+            waiting: Vec::new(),
+            farthest: None,
+            most_m: 0.0,
+            swings: Swings::new(&scenario.start),
+        }
+    }
+
+    /// Goes on beside a run of `scenario`, whose past is the same.
+    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+        self.settle(); // its steps so far belong to the forces so far
+        match &mut self.truth {
+            Some(truth) => truth.go_on_in(scenario),
+            None => self.truth = Some(Truth::new(Arc::clone(scenario))),
+        }
+        self.truth.take_if(|_| !is_affordable(scenario));
+    }
+
+    /// Whether the run is compared with the exact motion.
+    pub fn is_known(&self) -> bool {
+        self.truth.is_some()
+    }
+
+    /// The exact motion, where the run is compared with it.
+    pub fn truth(&mut self) -> Option<&mut Truth> {
+        self.settle();
+        self.truth.as_mut()
+    }
+
+    /// Compares the next `state` of the run with the exact motion.
+    #[inline]
+    pub fn hold(&mut self, state: &State) {
+        self.wait(state);
+        if self.waiting.len() >= AT_ONCE {
+            self.look();
+        }
+    }
+
+    /// The same, at the latest when the run is [settled](Self::settle).
+    #[inline]
+    pub fn wait(&mut self, state: &State) {
+        if self.is_known() {
+            self.waiting.push(*state);
+        }
+    }
+
+    /// Looks at the steps that wait.
+    fn look(&mut self) {
+        let mut states = std::mem::take(&mut self.waiting);
+        for together in states.chunks(AT_ONCE) {
+            self.look_at(together);
+        }
+        states.clear();
+        self.waiting = states;
+    }
+
+    fn look_at(&mut self, states: &[State]) {
+        let near = self.truth.as_ref().zip(states.as_array());
+        let near = near.and_then(|(truth, states)| Some((states, near_exact(states, truth)?)));
+        if let Some((states, (distances_m, heights))) = near {
+            self.swings.follow(states, &heights);
+            for (state, distance_m) in states.iter().zip(distances_m) {
+                if distance_m > self.most_m {
+                    (self.farthest, self.most_m) = (Some(*state), distance_m);
+                }
+            }
+        } else {
+            for state in states {
+                self.settle_farthest(); // the forces may change here, and it stood under those before
+                let Some(truth) = &mut self.truth else {
+                    break;
+                };
+                let exact = truth.orientation_at(state.time_s);
+                self.swings.follow(&[*state], &[height(exact.m33)]);
+                let distance_m = distance_m(state, &exact, truth.scenario());
+                self.take_in(distance_m);
+            }
+        }
+    }
+
+    /// Looks at all steps so far, and computes the largest distance to the last bit.
+    pub fn settle(&mut self) {
+        self.look();
+        self.settle_farthest();
+    }
+
+    fn settle_farthest(&mut self) {
+        if let (Some(state), Some(truth)) = (self.farthest.take(), &mut self.truth) {
+            self.most_m = 0.0; // it was known within rounding
+            let distance_m = Deviation::distance_of(&state, truth);
+            self.take_in(distance_m);
+        }
+    }
+
+    /// Takes in a distance, m, known to the last bit. One that is no number ends the comparison: the exact motion has left the
+    /// range of numbers, and does not come back.
+    fn take_in(&mut self, distance_m: f64) {
+        if !distance_m.is_finite() {
+            self.truth = None;
+        } else if distance_m > self.most_m {
+            (self.farthest, self.most_m) = (None, distance_m);
+        }
+    }
+
+    /// How far off the run is in `state`; `None` where it is not compared with the exact motion.
+    pub fn deviation(&mut self, state: &State) -> Option<Deviation> {
+        self.settle();
+        let deviation = Deviation::of(state, self.truth.as_mut()?);
+        self.take_in(deviation.distance_m);
+        self.truth.as_ref().map(|_| deviation)
+    }
+
+    /// The largest distance of the traced point from the exact motion up to the last time that it was [settled](Self::settle),
+    /// m; 0 where it is not compared.
+    pub fn most_distance_m(&self) -> f64 {
+        self.most_m
+    }
+
+    /// How the tilt has swung up to then beside the exact motion's, where they differ most; `None` where it is not held
+    /// against that.
+    pub fn swing(&self) -> Option<Swing> {
+        self.truth.as_ref().and_then(|_| self.swings.worst())
+    }
+}
+
+/// Distance of the traced point of each of `states`, which follow one another, from where it should be, within a few units
+/// of rounding of the arm, m, and the [height] of the exact motion's axle; `None` where that is not had in less time, or is
+/// no number.
+fn near_exact(
+    states: &[State; AT_ONCE],
+    truth: &Truth,
+) -> Option<([f64; AT_ONCE], [f64; AT_ONCE])> {
+    let scenario = truth.scenario();
+    let at = &scenario.body.mechanics.points()[scenario.trace].at;
+    let times_s = states.each_ref().map(|state| state.time_s);
+    let [x, y, z] = truth.positions_near(at, &times_s)?;
+    let distances_m: [f64; AT_ONCE] = std::array::from_fn(|place| {
+        let exact = Vector3::new(x[place], y[place], z[place]);
+        (states[place].orientation * at - exact).norm()
+    });
+    // Mostly the traced point is one of the axle.
+    let cosines = if at.x == 0.0 && at.y == 0.0 && at.z != 0.0 {
+        z.map(|z| z / at.z)
+    } else {
+        truth.positions_near(&Vector3::z(), &times_s)?[2]
+    };
+    let are_numbers = distances_m.iter().all(|m| m.is_finite());
+    are_numbers.then(|| (distances_m, cosines.map(height)))
+}
+
+/// How far a run is off at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Distance of the traced point from where it should be, m.
+    pub distance_m: f64,
+    /// L·axle less the exact motion's, J s.
+    pub spin: f64,
+    /// L_z less the exact motion's, J s.
+    pub lz: f64,
+}
+
+impl Deviation {
+    /// Of a run that is `seen` so, from its `truth`.
+    pub fn of(seen: &State, truth: &mut Truth) -> Self {
+        let exact = truth.state_at(seen.time_s);
+        Self {
+            distance_m: distance_m(seen, &exact.orientation, truth.scenario()),
+            spin: seen.momentum.dot(&seen.axle()) - exact.momentum.dot(&exact.axle()),
+            lz: seen.momentum.z - exact.momentum.z,
+        }
+    }
+
+    /// Its distance alone, m.
+    #[inline]
+    pub fn distance_of(seen: &State, truth: &mut Truth) -> f64 {
+        let exact = truth.orientation_at(seen.time_s);
+        distance_m(seen, &exact, truth.scenario())
+    }
+}
+
+/// Distance of the traced point from where it is if the body stands as `exact`, m.
+#[inline]
+fn distance_m(seen: &State, exact: &Matrix3<f64>, scenario: &Scenario) -> f64 {
+    let at = &scenario.body.mechanics.points()[scenario.trace].at;
+    ((seen.orientation - exact) * at).norm()
+}

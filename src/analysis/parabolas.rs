@@ -1,0 +1,252 @@
+//! A run as its rows show it, for a lopsided body, a load aside, or time steps too long for the motion: the highest points
+//! of the axle by parabolas through three rows.
+
+use super::turns::{Measured, ROUNDING, StraightLine, Turn, Turns};
+use crate::physics::SymmetricTop;
+use crate::physics::observables::Azimuth;
+use crate::run::Step;
+use std::f64::consts::TAU;
+
+/// Fewer nutations than this do not say how much they differ from one another: of a symmetric body, and of a lopsided one,
+/// whose nutations grow longer and shorter over several of them.
+const FEWEST: [u64; 2] = [4, 16];
+/// A swing of a lopsided body's axle that is less than this part of the whole is none: a smaller one may lie unseen between
+/// two rows.
+const LEAST_PART: f64 = 0.05;
+/// Between rows that are further apart than this part of a nutation a highest point may be missed.
+const ROWS_TO_SEE_IT: f64 = 8.0;
+/// Nutations of a lopsided body that differ by more than this factor in length: between two of their highest points lay
+/// one that was too shallow to be seen.
+const MOST_UNLIKE: f64 = 1.5;
+/// Largest difference of equally long nutations as the rows show them, in rows.
+const ROWS_OF_CHANCE: f64 = 1.5;
+/// Weight of the scatter of nutations that differ at random, against the scatter of single points.
+const AT_RANDOM: f64 = 1.75;
+
+#[derive(Clone, Debug)]
+pub struct Parabolas {
+    /// The last three steps, the newest last.
+    looks: [Look; 3],
+    seen: u64,
+    /// The last highest point of the axle, still to be confirmed by a lower one after it.
+    candidate: Option<(Turn, f64)>,
+    lowest_since: f64,
+    last: Option<(u64, Turn)>,
+    count: u64,
+    turns: Turns,
+    is_lopsided: bool,
+    /// The shortest and the longest time between two highest points, s.
+    nutations_s: [f64; 2],
+    heights: [f64; 2],
+    /// Whether the azimuth has turned so far in one step that it cannot be told which way.
+    is_ambiguous: bool,
+    start: Look,
+    /// A step about half as far into the run as the newest.
+    half: Look,
+    next_half: Look,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    time_s: f64,
+    axle: [f64; 3],
+    azimuth: Azimuth,
+}
+
+impl Look {
+    fn at(step: &Step) -> Self {
+        let state = step.after();
+        Self {
+            time_s: state.time_s,
+            axle: state.axle().into(),
+            azimuth: *step.azimuth(),
+        }
+    }
+
+    fn azimuth_rad(&self) -> f64 {
+        self.azimuth.degrees().to_radians()
+    }
+}
+
+impl Parabolas {
+    /// Instruments for the run that begins at `step`.
+    pub fn new(step: &Step) -> Self {
+        let look = Look::at(step);
+        let body = &step.scenario().body.mechanics;
+        Self {
+            looks: [look; 3],
+            seen: 1,
+            candidate: None,
+            lowest_since: look.axle[2],
+            last: None,
+            count: 0,
+            turns: Turns::new(),
+            is_lopsided: SymmetricTop::of(body).is_none(),
+            nutations_s: [f64::INFINITY, 0.0],
+            heights: [look.axle[2]; 2],
+            is_ambiguous: false,
+            start: look,
+            half: look,
+            next_half: look,
+        }
+    }
+
+    #[inline]
+    pub fn follow(&mut self, step: &Step) {
+        let look = Look::at(step);
+        let before = self.looks[2].axle;
+        self.is_ambiguous |= before[0] * look.axle[0] + before[1] * look.axle[1] < 0.0;
+        self.looks = [self.looks[1], self.looks[2], look];
+        self.seen += 1;
+        let [a, b, c] = self.looks.map(|look| look.axle[2]);
+        self.heights = [self.heights[0].min(c), self.heights[1].max(c)];
+        if self.seen > 2 && b >= a && b > c && self.is_higher(b) {
+            self.candidate = Some((self.turn(), b));
+            self.lowest_since = f64::INFINITY;
+        }
+        if c < self.lowest_since {
+            self.lowest_since = c;
+            self.confirm();
+        }
+        if look.time_s - self.start.time_s >= 2.0 * (self.next_half.time_s - self.start.time_s) {
+            (self.half, self.next_half) = (self.next_half, look);
+        }
+    }
+
+    /// The turning point between the last three steps: the top of a parabola through them.
+    fn turn(&self) -> Turn {
+        let [a, b, c] = self.looks;
+        let parabola = |a: f64, b: f64, c: f64| ((c - a) / 2.0, a - 2.0 * b + c);
+        let (slope, bend) = parabola(a.axle[2], b.axle[2], c.axle[2]);
+        let shift = -slope / bend;
+        let [before, middle, after] = [a, b, c].map(|look| look.azimuth_rad());
+        let (way, curve) = parabola(before, middle, after);
+        let step = if shift < 0.0 {
+            b.time_s - a.time_s
+        } else {
+            c.time_s - b.time_s
+        };
+        Turn {
+            time_s: b.time_s + shift * step,
+            time_off_s: 0.0,
+            time_error_s: 0.0,
+            azimuth: middle + shift * way + shift * shift * curve / 2.0,
+            azimuth_off: 0.0,
+            azimuth_error: 0.0,
+            azimuth_rate: (way + shift * curve) / step,
+            level: libm::hypot(b.axle[0], b.axle[1]),
+        }
+    }
+
+    /// The least way that the axle rises to a highest point and sinks from it.
+    fn least_way(&self) -> f64 {
+        let [lowest, highest] = self.heights;
+        if self.is_lopsided {
+            ROUNDING.max(LEAST_PART * (highest - lowest))
+        } else {
+            ROUNDING
+        }
+    }
+
+    /// Whether a highest point at `height` is one to count: of a lopsided body, the highest of those between which the axle
+    /// has not sunk far enough.
+    fn is_higher(&self, height: f64) -> bool {
+        let is_beyond = match &self.candidate {
+            Some((_, candidate)) => height > *candidate,
+            None => height - self.lowest_since > self.least_way(),
+        };
+        is_beyond || !self.is_lopsided
+    }
+
+    /// Counts the candidate once the axle has truly sunk below it.
+    fn confirm(&mut self) {
+        let least = self.least_way();
+        let is_below = |(_, height): &(Turn, f64)| height - self.lowest_since > least;
+        let Some((turn, _)) = self.candidate.filter(is_below) else {
+            return;
+        };
+        self.candidate = None;
+        if self.turns.wants(self.count) {
+            self.turns.keep(self.count, turn);
+        }
+        if let Some((_, last)) = self.last {
+            let [shortest, longest] = self.nutations_s;
+            let time_s = turn.time_s - last.time_s;
+            self.nutations_s = [shortest.min(time_s), longest.max(time_s)];
+        }
+        self.last = Some((self.count, turn));
+        self.count += 1;
+    }
+
+    /// The line through the highest points, with what a parabola may be off by at its ends: through three steps of a
+    /// swing's top, ψ apart, up to (2/3√3) ψ²/12 of a step.
+    fn line(&self) -> Option<StraightLine> {
+        let fewest = FEWEST[usize::from(self.is_lopsided)];
+        let (number, last) = self.last.filter(|(number, _)| *number >= fewest)?;
+        let mut line = self.turns.line_to(number, last)?;
+        let step = self.looks[2].time_s - self.looks[1].time_s;
+        let psi = TAU * step * number as f64 / line.time_s();
+        let off_s = 2.0 / 27_f64.sqrt() * psi * psi / 12.0 * step;
+        for end in [&mut line.first, &mut line.last] {
+            end.time_error_s = off_s;
+            end.azimuth_error = (end.azimuth_rate * off_s).abs();
+        }
+        Some(line)
+    }
+
+    /// Whether the rows are near enough to one another to show each highest point: where they are not, nutations seem to
+    /// differ because some are taken for one. Of a lopsided body they may differ, and be taken for one, without seeming to.
+    fn shows_each(&self) -> bool {
+        let row = self.looks[2].time_s - self.looks[1].time_s;
+        let [shortest, longest] = self.nutations_s;
+        let seem_alike = longest - shortest <= ROWS_OF_CHANCE * row;
+        let is_near = shortest >= ROWS_TO_SEE_IT * row;
+        if self.is_lopsided {
+            is_near && longest <= MOST_UNLIKE * shortest
+        } else {
+            is_near || seem_alike
+        }
+    }
+
+    pub fn nutation_period_s(&self) -> Option<Measured> {
+        let line = self.line().filter(|_| self.shows_each())?;
+        let count = line.intervals as f64;
+        let value = line.time_s() / count;
+        let uncertainty = line.time_error_s(AT_RANDOM) / count;
+        Some(Measured {
+            value,
+            uncertainty: uncertainty.max(f64::EPSILON * value),
+            nutations: line.intervals,
+        })
+    }
+
+    pub fn precession_rad_per_s(&self) -> Option<Measured> {
+        if self.is_ambiguous {
+            return None;
+        }
+        let Some(line) = self.line() else {
+            return self.way_of_the_azimuth();
+        };
+        let value = line.rate();
+        Some(Measured {
+            value,
+            uncertainty: line.rate_error(AT_RANDOM).max(f64::EPSILON * value.abs()),
+            nutations: line.intervals,
+        })
+    }
+
+    /// The whole way of the azimuth over the time, for an axle that keeps its height.
+    fn way_of_the_azimuth(&self) -> Option<Measured> {
+        let now = self.looks[2];
+        let rate =
+            |from: &Look| (now.azimuth_rad() - from.azimuth_rad()) / (now.time_s - from.time_s);
+        let (whole, later) = (rate(&self.start), rate(&self.half));
+        let [lowest, highest] = self.heights;
+        let is_steady = highest - lowest <= ROUNDING;
+        (is_steady && whole.is_finite() && later.is_finite()).then(|| Measured {
+            value: whole,
+            uncertainty: (whole - later).abs().max(f64::EPSILON * whole.abs()),
+            nutations: 0,
+        })
+    }
+}

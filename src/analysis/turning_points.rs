@@ -1,0 +1,281 @@
+//! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
+
+use super::equations::{AT_TURN, Crossing, Equations, Motion, Row};
+use super::turns::{Measured, ROUNDING, StraightLine, Turns};
+use crate::physics::{LagrangeTop, SchemeInfo, SymmetricTop};
+use crate::run::Step;
+use nalgebra::Vector3;
+use std::f64::consts::{PI, TAU};
+
+/// A swing of the height below this part of the squared sine of the tilt is no nutation.
+const STEADY: f64 = 1e-9;
+/// No swing of the height is told from rounding below this.
+const LEAST_SWING: f64 = 1e-14;
+/// An axle that comes nearer to the vertical than this (rad) has no azimuth to speak of.
+const PASSES_RAD: f64 = 1e-7;
+/// Schemes of a finite order are followed between their rows while the body or its axle turns by less than this (rad).
+const FOLLOWED_RAD: f64 = 1.0;
+/// A time step in which the axle may turn by more than this (rad), and by half a turn as it passes the vertical, may hide
+/// a whole turn of the azimuth though its rows are near to one another.
+const HIDES_RAD: f64 = 1.5;
+/// Axles that turn by more than this between two rows (rad) are not followed.
+const TOO_FAR_RAD: f64 = 60.0;
+
+/// Least ratio of the rate at which a nutation moves the height to the error of a first-order scheme in that rate: below
+/// it the turning points are not where the rate changes its sign.
+const BEYOND_ERROR: f64 = 2.0;
+
+#[derive(Clone, Debug)]
+pub struct TurningPoints {
+    /// One over the moment across the axle, 1/(kg m²).
+    per_across: f64,
+    equations: Equations,
+    /// The order of the scheme; `None` of the exact motion.
+    order: Option<u32>,
+    /// Whether the azimuth's way has to be followed in every time step.
+    may_turn_far: bool,
+    /// The greatest height of the axle, less the least, that the start leads to, where that counts as no swing.
+    steady_swing: Option<f64>,
+    /// The axle must have gone so far from a turning point to confirm it.
+    confirmed_by: f64,
+    start: Row,
+    now: Row,
+    /// Full turns of the azimuth that the rows miss.
+    missed: i64,
+    is_rising: bool,
+    heights: [f64; 2],
+    candidate: Option<Crossing>,
+    last: Option<(u64, Crossing)>,
+    count: u64,
+    turns: Turns,
+    least_level: f64,
+}
+
+impl TurningPoints {
+    /// Instruments for the run that begins at `step`; `None` where its rows do not show the motion between them.
+    pub fn new(step: &Step) -> Option<Self> {
+        let body = &step.scenario().body.mechanics;
+        let top = SymmetricTop::of(body)?;
+        let load = step.loads().on_axle(body, &top)?;
+        // The equations of motion that are used here are those of a body without friction.
+        if !step.loads().friction.is_none() || libm::hypot(load.x, load.y) > 1e-12 * load.z.abs() {
+            return None;
+        }
+        let per_across = 1.0 / top.across;
+        let (start, motion) = (Row::of(step, per_across), step.motion());
+        let (swing, pull) = (start.swing, load * per_across);
+        let axle_rate = swing.momentum.norm() + pull.norm().sqrt();
+        let equations = Equations {
+            pull,
+            time_step_s: motion.time_step_s,
+            rates: [step.angular_velocity().norm(), axle_rate],
+        };
+        let (period_s, range) = swing_of_height(step, &top, load, &swing);
+        if !is_followed(motion.scheme, &equations, &swing, period_s, range) {
+            return None;
+        }
+        let is_steady = range < (STEADY * swing.level().powi(2)).max(LEAST_SWING);
+        let confirmed_by = if is_steady { 1.0 } else { 1e-3 * range }.min(ROUNDING);
+        let (climb, bend) = (swing.climb(), swing.bend(&pull));
+        let starts_at_turn = !is_steady && climb.abs() <= AT_TURN * motion.time_step_s * bend.abs();
+        let is_rising = if starts_at_turn { bend } else { climb } > 0.0;
+        Some(Self {
+            per_across,
+            equations,
+            may_turn_far: axle_rate * motion.time_step_s > HIDES_RAD,
+            order: motion.scheme.order,
+            steady_swing: is_steady.then_some(range),
+            confirmed_by,
+            start,
+            now: start,
+            missed: 0,
+            is_rising,
+            heights: [swing.axle.z; 2],
+            candidate: starts_at_turn.then_some(Crossing {
+                before: start,
+                after: None,
+                missed: 0,
+                is_top: !is_rising,
+            }),
+            last: None,
+            count: 0,
+            turns: Turns::new(),
+            least_level: swing.level(),
+        })
+    }
+
+    #[inline]
+    pub fn follow(&mut self, step: &Step) {
+        // Assigned at once: by way of a copy it would be stored in parts and read whole, for which processors wait.
+        let before = self.now;
+        self.now = Row::of(step, self.per_across);
+        let (a, b) = (&before.swing.axle, &self.now.swing.axle);
+        let missed = self.missed;
+        if self.may_turn_far || a.x * b.x + a.y * b.y < 0.0 {
+            self.missed += self.equations.missed_turns(&before, &self.now);
+        }
+        self.heights = [self.heights[0].min(b.z), self.heights[1].max(b.z)];
+        self.confirm();
+        let climb = self.now.swing.climb();
+        if climb != 0.0 && (climb > 0.0) != self.is_rising {
+            let is_top = self.is_rising;
+            self.is_rising = !is_top;
+            self.candidate = Some(Crossing {
+                before,
+                after: Some(self.now),
+                missed,
+                is_top,
+            });
+            self.confirm();
+        }
+    }
+
+    /// Counts the candidate once the axle has truly gone away from it. A turning point of the same kind as the last is
+    /// rounding.
+    fn confirm(&mut self) {
+        let Some(candidate) = &self.candidate else {
+            return;
+        };
+        let away = candidate.height() - self.now.swing.axle.z;
+        let away = if candidate.is_top { away } else { -away };
+        if away <= self.confirmed_by {
+            return;
+        }
+        let Some(candidate) = self.candidate.take() else {
+            return;
+        };
+        if self
+            .last
+            .is_some_and(|(_, last)| last.is_top == candidate.is_top)
+        {
+            return;
+        }
+        if self.turns.wants(self.count) {
+            let turn = self.equations.turn(&candidate);
+            self.least_level = self.least_level.min(turn.level);
+            self.turns.keep(self.count, turn);
+        }
+        self.last = Some((self.count, candidate));
+        self.count += 1;
+    }
+
+    fn line(&self) -> Option<StraightLine> {
+        let (number, crossing) = self.last.as_ref()?;
+        self.turns.line_to(*number, self.equations.turn(crossing))
+    }
+
+    /// What the error of a scheme may do to a single turning point, s. Where the scheme lets the tilt drift, highest points
+    /// come late and lowest ones early, so that half nutations have another length than whole ones have halves.
+    fn lag_s(&self, line: &StraightLine) -> f64 {
+        if line.between >= 3 || self.order.is_none() {
+            return 0.0; // more of them show it
+        }
+        if self.order == Some(1) {
+            return 0.5 * self.equations.time_step_s;
+        }
+        if line.intervals.is_multiple_of(2) {
+            return 0.0;
+        }
+        // The error of a step is known for the rate of the height; the drift of the height is larger by this factor.
+        let of_ends = libm::hypot(line.first.time_error_s, line.last.time_error_s);
+        of_ends / (self.equations.rates[1] * self.equations.time_step_s)
+    }
+
+    pub fn nutation_period_s(&self) -> Option<Measured> {
+        let line = self.line()?;
+        let of_one = 2.0 / line.intervals as f64;
+        let value = line.time_s() * of_one;
+        let error = libm::hypot(line.time_error_s(1.0), self.lag_s(&line)) * of_one;
+        Some(Measured {
+            value,
+            uncertainty: libm::hypot(error, f64::EPSILON * value),
+            nutations: line.intervals.div_ceil(2),
+        })
+    }
+
+    pub fn precession_rad_per_s(&self) -> Option<Measured> {
+        if self.least_level < PASSES_RAD {
+            return None;
+        }
+        let of_rates = f64::EPSILON * (self.equations.rates[0] + self.equations.rates[1]);
+        let Some(line) = self.line() else {
+            return self.steady_precession(of_rates);
+        };
+        let value = line.rate();
+        let lag = (line.last.azimuth_rate - value) * self.lag_s(&line) / line.time_s();
+        Some(Measured {
+            value,
+            uncertainty: libm::hypot(libm::hypot(line.rate_error(1.0), lag), of_rates),
+            nutations: line.intervals.div_ceil(2),
+        })
+    }
+
+    /// The whole way of the azimuth over the time, for an axle that keeps its height.
+    fn steady_precession(&self, of_rates: f64) -> Option<Measured> {
+        let [lowest, highest] = self.heights;
+        let swing = self.steady_swing?.max(highest - lowest);
+        let time = self.now.time_s - self.start.time_s;
+        let (now, start) = (self.now.azimuth_rad(), self.start.azimuth_rad());
+        let value = (now - start + TAU * self.missed as f64) / time;
+        if swing > ROUNDING || !value.is_finite() {
+            return None;
+        }
+        let Motion { axle, momentum } = self.start.swing;
+        let (level, along) = (self.start.swing.level().powi(2), momentum.dot(&axle));
+        // The azimuth's rate is (l_z - l3 u)/(1 - u²) at the height u.
+        let by_height = (2.0 * axle.z * (momentum.z - along * axle.z) / level - along) / level;
+        let of_ends = f64::EPSILON * (1.0 / level.sqrt() / time + self.equations.rates[1]);
+        let of_swing = 0.25 * by_height * swing;
+        Some(Measured {
+            value,
+            uncertainty: libm::hypot(libm::hypot(of_rates, of_ends), of_swing),
+            nutations: 0,
+        })
+    }
+}
+
+/// How the height of the axle swings from the state after `step` on, by nutation or, of a free top, as it turns about L: the
+/// period, s, and the greatest height less the least.
+fn swing_of_height(
+    step: &Step,
+    top: &SymmetricTop,
+    load: Vector3<f64>,
+    swing: &Motion,
+) -> (f64, f64) {
+    let length = swing.momentum.norm();
+    let (period_s, range) = if (load * (1.0 / top.across)).norm() == 0.0 {
+        let along = swing.momentum / length;
+        let range = 2.0 * along.cross(&swing.axle).norm() * libm::hypot(along.x, along.y);
+        (TAU / length, range)
+    } else {
+        let state = step.after();
+        let (across, along) = (top.across, top.along);
+        let exact = LagrangeTop::new(across, along, load, state.orientation, state.momentum);
+        let (low, high) = exact.tilt_range();
+        let range = 2.0 * libm::sin(0.5 * (high + low)) * libm::sin(0.5 * (high - low));
+        (exact.nutation_period().unwrap_or(f64::INFINITY), range)
+    };
+    (period_s, if range.is_finite() { range } else { 0.0 })
+}
+
+/// Whether the time step is short enough to follow, by the equations of motion, what `scheme` computes from row to row; the
+/// height swings in `period_s` by `range`, and as `swing` at first.
+fn is_followed(
+    scheme: &SchemeInfo,
+    equations: &Equations,
+    swing: &Motion,
+    period_s: f64,
+    range: f64,
+) -> bool {
+    let rate_error = 0.5 * equations.time_step_s * equations.pull.norm() * swing.level();
+    let is_lost = scheme.order == Some(1) && range * PI / period_s < BEYOND_ERROR * rate_error;
+    if is_lost || 2.0 * equations.time_step_s >= period_s {
+        return false;
+    }
+    let [spin, axle_rate] = equations.rates.map(|rate| rate * equations.time_step_s);
+    match (scheme.order, scheme.turns_exactly) {
+        (None, _) => axle_rate < TOO_FAR_RAD,
+        (Some(_), true) => axle_rate < FOLLOWED_RAD,
+        (Some(_), false) => spin.max(axle_rate) < FOLLOWED_RAD,
+    }
+}

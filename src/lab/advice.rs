@@ -1,0 +1,183 @@
+//! The advice about doubtful numbers: the search for it in the background, what is offered, and the run that follows it.
+
+use super::command::Command;
+use super::player::Player;
+use crate::analysis::health::{Advice, advise};
+use crate::journal::restart::as_advised;
+use crate::playback::background::{self, Job};
+use crate::run::Simulation;
+use crate::scenario::Scenario;
+use crate::text::number::shortest;
+use std::sync::Arc;
+
+/// What would mend the present run, and can be done to it.
+pub(super) struct Offer {
+    /// In words: a scheme and a time step.
+    pub(super) what: String,
+    /// " from the start" where the run has it already from an edit on; otherwise empty.
+    since: &'static str,
+    /// The run from its start, as advised.
+    pub(super) scenario: Arc<Scenario>,
+}
+
+#[derive(Default)]
+pub struct Adviser {
+    /// Whether to look for a scheme or time step that would make doubtful numbers right.
+    pub(super) is_on: bool,
+    search: Option<Job<Advice>>,
+    offer: Option<Offer>,
+}
+
+impl Adviser {
+    pub(super) fn forget(&mut self) {
+        (self.search, self.offer) = (None, None);
+    }
+
+    /// Begins to look for advice if the numbers are doubtful.
+    pub(super) fn look(&mut self, player: &Player) {
+        // Not while the user waits for a step to be reached: the search would take a processor from the stepping.
+        if self.is_on
+            && self.search.is_none()
+            && player.playback.steps_to_go().is_none()
+            && is_believed(player) == Some(false)
+        {
+            self.search = Some(background::advice(to_be_mended(player)));
+        }
+    }
+
+    /// Takes the answer of the search, if it has just come. Returns whether it has.
+    pub(super) fn advance(&mut self, player: &Player) -> bool {
+        let has_come = self.search.as_mut().is_some_and(Job::take_news);
+        if has_come {
+            self.offer = self.advice().and_then(|advice| offered(advice, player));
+        }
+        has_come
+    }
+
+    /// What was found that would make doubtful numbers right.
+    pub fn advice(&self) -> Option<&Advice> {
+        self.search.as_ref()?.answer()
+    }
+
+    pub fn is_seeking(&self) -> bool {
+        self.search.is_some() && self.advice().is_none()
+    }
+
+    /// What would mend doubtful numbers, with the key that does it, at length and in short; `None` where no remedy is
+    /// known, or where this run cannot be changed so.
+    pub fn offer(&self, player: &Player) -> Option<[String; 2]> {
+        let is_doubted = is_believed(player) == Some(false);
+        let Offer { what, since, .. } = self.offer.as_ref().filter(|_| is_doubted)?;
+        Some([
+            format!("{what}{since} mends it: a takes it"),
+            format!("a: {what}{since} mends it"),
+        ])
+    }
+
+    /// The command that follows the advice, or why there is none to follow now.
+    pub fn followed(&self, player: &Player) -> Result<Command, String> {
+        match self.why_none(player) {
+            Some(reason) => Err(reason.to_owned()),
+            None => Ok(Command::TakeAdvice),
+        }
+    }
+
+    fn why_none(&self, player: &Player) -> Option<&'static str> {
+        match (is_believed(player), self.is_seeking()) {
+            (Some(true), _) => Some("there is nothing to mend: the run keeps to the exact motion"),
+            (None, _) => {
+                Some("whether there is something to mend is not known: nothing is advised")
+            }
+            (Some(false), true) => {
+                Some("what mends the numbers is being sought: press a again in a moment")
+            }
+            (Some(false), false) => None,
+        }
+    }
+
+    /// The run that follows the advice. Where no advice has come yet, it is looked for at once.
+    pub(super) fn take_offer(&mut self, player: &Player) -> Result<Offer, String> {
+        if let Some(reason) = self.why_none(player).filter(|_| !self.is_seeking()) {
+            return Err(reason.to_owned());
+        }
+        let offer = self.offer.take().or_else(|| {
+            let known = self.advice().copied();
+            let advice = known.unwrap_or_else(|| advise(&to_be_mended(player)));
+            offered(&advice, player)
+        });
+        offer.ok_or_else(|| "no time step or scheme is known that mends this run".to_owned())
+    }
+}
+
+fn is_believed(player: &Player) -> Option<bool> {
+    player.reading.readouts.health.is_believed()
+}
+
+/// The run for which advice is sought, up to the later of its end and the step that it has reached. After an edit
+/// of the time step at step 0 the scenario has as many steps as before, but the lab plays as many seconds.
+fn to_be_mended(player: &Player) -> Arc<Scenario> {
+    let scenario = player.run().scenario();
+    let end_s = player.playback.end_s().max(player.run().now().time_s);
+    let steps = Simulation::step_at(scenario, end_s).max(1);
+    if steps == scenario.steps {
+        return Arc::clone(scenario);
+    }
+    Arc::new(Scenario {
+        steps,
+        ..(**scenario).clone()
+    })
+}
+
+/// The offer that `advice` makes; `None` where nothing is to be done, or where this run cannot be changed so.
+fn offered(advice: &Advice, player: &Player) -> Option<Offer> {
+    let (time_step_s, scheme) = match *advice {
+        Advice::TimeStep(time_step_s) => (time_step_s, None),
+        Advice::Scheme {
+            name, time_step_s, ..
+        } => (time_step_s, Some(name)),
+        Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
+    };
+    let end_s = player.playback.end_s();
+    let scenario = as_advised(player.run().scenario(), time_step_s, scheme, end_s).ok()?;
+    let motion = player.motion();
+    let is_in_force =
+        motion.time_step_s == time_step_s && scheme.is_none_or(|name| motion.scheme.name == name);
+    let scheme = scheme.map_or(String::new(), |scheme| format!("{scheme}, "));
+    let since = if is_in_force { " from the start" } else { "" };
+    Some(Offer {
+        what: format!("{scheme}dt {} s", shortest(time_step_s)),
+        since,
+        scenario: Arc::new(scenario),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::for_tests::{scenario, view};
+    use std::time::Duration;
+
+    #[test]
+    fn advice_is_sought_where_the_run_stands_and_not_on_its_way() {
+        let view = view(&[]);
+        let mut player = Player::new(scenario(), false);
+        let mut adviser = Adviser {
+            is_on: true,
+            ..Adviser::default()
+        };
+        let do_now = |player: &mut Player, command| player.carry_out(&command).unwrap().unwrap();
+        do_now(&mut player, Command::Step(1000));
+        player
+            .destination
+            .return_to(100_000_000, &mut player.playback);
+        player.read(Duration::ZERO, &view);
+        adviser.look(&player);
+        assert!(adviser.search.is_none());
+        do_now(&mut player, Command::Pause);
+        player.read(Duration::ZERO, &view);
+        adviser.look(&player);
+        assert!(adviser.search.is_some());
+        adviser.forget();
+        assert!(adviser.search.is_none() && !adviser.is_seeking());
+    }
+}

@@ -1,0 +1,123 @@
+//! A file of commands: a list of `[[do]]` tables with one command each.
+
+use super::form::{below, quoted};
+use super::{COMMANDS, Command, CommandRow};
+use crate::scenario::problem::nearest;
+use crate::scenario::{Document, Problem, Problems};
+use std::path::Path;
+use toml::{Table, Value};
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed {
+    pub command: Command,
+    /// Its line, from 1; `None` where that is not known.
+    pub line: Option<usize>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Commands {
+    /// The file, as the user named it.
+    pub origin: String,
+    pub list: Vec<Placed>,
+}
+
+pub fn to_toml(commands: &[Command]) -> String {
+    let tables = commands
+        .iter()
+        .map(|command| Value::Table(command.to_table()));
+    let file = Table::from_iter([("do".to_owned(), Value::Array(tables.collect()))]);
+    toml::to_string(&file).unwrap_or_default() // a command holds nothing that TOML cannot write
+}
+
+/// Whether `document` is a file of commands, by its `[[do]]`.
+pub fn is_file_of_commands(document: &Document) -> bool {
+    document.table().contains_key("do")
+}
+
+/// Reads the file of commands at `path`, or standard input where that is `-`.
+pub fn open(path: &Path) -> Result<Commands, Problems> {
+    read(&if path == Path::new("-") {
+        Document::read_from("standard input", std::io::stdin().lock())?
+    } else {
+        Document::read(path)?
+    })
+}
+
+pub fn read(document: &Document) -> Result<Commands, Problems> {
+    let mut problems = Problems::default();
+    let mut list = Vec::new();
+    for name in document.table().keys().filter(|name| *name != "do") {
+        let rule = "unknown key: a file of commands holds [[do]] and nothing else";
+        problems.add(|| Problem::at(name, rule));
+    }
+    match document.table().get("do") {
+        Some(Value::Array(tables)) => {
+            let keys = (0..tables.len()).map(|index| format!("do.{index}"));
+            let lines = document.lines_of(keys);
+            for ((index, value), line) in tables.iter().enumerate().zip(lines) {
+                match one(index, value) {
+                    Ok(command) => list.push(Placed { command, line }),
+                    Err(found) => problems.add_all(found),
+                }
+            }
+        }
+        Some(other) => problems.add(|| {
+            let rule = "must be an array of tables: write [[do]]";
+            Problem::with_value("do", other, rule)
+        }),
+        None => problems.add(|| {
+            let rule = "holds no command: write a table [[do]] for each";
+            Problem::at("", rule)
+        }),
+    }
+    let origin = document.origin().to_owned();
+    let commands = problems.or(Commands { origin, list });
+    commands.map_err(|problems| document.placed(problems))
+}
+
+/// The command in the table `do.index`.
+fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
+    let here = format!("do.{index}");
+    let wrong = |rule: String| Err(vec![Problem::at(here.as_str(), rule)]);
+    let Value::Table(table) = value else {
+        return Err(vec![Problem::with_value(here, value, "must be a table")]);
+    };
+    let known = |name: &&String| COMMANDS.iter().any(|row| row.name == name.as_str());
+    let beside = COMMANDS.iter().find(|row| table.contains_key(row.name));
+    let unknown: Vec<_> = table
+        .keys()
+        .filter(|name| !known(name))
+        .map(|name| below(&here, unknown(name, beside)))
+        .collect();
+    if !unknown.is_empty() {
+        return Err(unknown);
+    }
+    match table.iter().collect::<Vec<_>>()[..] {
+        [(name, value)] => Command::new(name, value).map_err(|problems| {
+            let problems = problems.into_iter();
+            problems
+                .map(|problem| below(&here, below(name, problem)))
+                .collect()
+        }),
+        [] => wrong("holds no command: there is gyrolab man for their names".to_owned()),
+        _ => {
+            let names: Vec<_> = table.keys().map(String::as_str).collect();
+            let names = names.join(", ");
+            wrong(format!(
+                "holds {names}: one command each, the next in a [[do]] of its own"
+            ))
+        }
+    }
+}
+
+/// The problem that `name` is no command. `beside` is a command in the same table: `name` may belong into its value.
+pub(super) fn unknown(name: &str, beside: Option<&CommandRow>) -> Problem {
+    let near = match beside {
+        Some(row) => format!(
+            "what belongs to {} stands in its value: {}",
+            row.name, row.value
+        ),
+        None => nearest(name, COMMANDS.iter().map(|row| row.name)),
+    };
+    Problem::at(quoted(name), format!("unknown command: {near}"))
+}

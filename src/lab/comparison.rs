@@ -1,0 +1,344 @@
+//! What the run is compared with: the exact motion, the run before an edit (its ghost), a pinned run, and measured data.
+
+mod data;
+
+use super::answer::{Answer, Done};
+use super::command::Command;
+use super::files::Files;
+use super::player::{Change, Player, furthest_s};
+use super::runs::Reference;
+use crate::analysis::cost;
+use crate::data::{Measured, find_shipped};
+use crate::playback::ghost::{Ghost, GhostToBe};
+use crate::playback::live::LiveRun;
+use crate::scenario::{Problems, Scenario};
+pub use data::DataComparison;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A run that is shorter than this share of its ghost does not replace the ghost: it was not played far enough.
+const SHORT: f64 = 0.1;
+/// Computing time for reading the run at the measured times in each round of the loop, while the run moves and while it
+/// stands still.
+const FOLLOWING: Duration = Duration::from_millis(6);
+const CATCHING_UP: Duration = Duration::from_millis(40);
+
+enum Pinned {
+    /// The present run: nothing has changed it since.
+    Present,
+    /// An earlier run, or the present one before an edit.
+    Before(Box<Ghost>),
+    /// An earlier run that a session has kept: its pictures are being made again.
+    Returning(GhostToBe),
+}
+
+#[derive(Default)]
+pub struct Comparison {
+    ghost: Option<Ghost>,
+    pinned: Option<Pinned>,
+    data: Option<DataComparison>,
+}
+
+impl Comparison {
+    /// Carries out what concerns the comparisons; `None` for a command that does not.
+    pub(super) fn carry_out(
+        &mut self,
+        command: &Command,
+        player: &mut Player,
+        files: &Files,
+    ) -> Option<Answer> {
+        Some(match command {
+            Command::Exact(shown) => Ok(show_exact(*shown, player)),
+            Command::Pin(pinned) => Ok(self.pin(*pinned)),
+            Command::Measured(name) => self.measure(name.as_deref(), player, files),
+            _ => return None,
+        })
+    }
+
+    /// To be called before the run of `player` goes over to `scenario`: keeps its pictures as ghost or pinned run, and
+    /// begins to compare the data with the other one.
+    pub(super) fn leave(&mut self, player: &Player, change: Change, scenario: &Arc<Scenario>) {
+        let run = player.run();
+        match change {
+            Change::Described => {}
+            Change::GoesOn => self.keep_pinned(run),
+            Change::ContinuesAt(0) => self.leave_ghost(run, false),
+            Change::ContinuesAt(_) => self.keep_pinned(run),
+            Change::BeginsAnew { is_again, .. } => {
+                self.leave_ghost(run, is_again && player.destination.is_of_edit());
+            }
+            _ if change.is_of_other_name() => {
+                self.keep_pinned(run);
+                self.ghost = None;
+            }
+            Change::Returns { .. } | Change::Opens => {
+                self.ghost = None;
+                self.leave_ghost(run, false);
+            }
+        }
+        let is_left = |ghost: &Ghost| Arc::ptr_eq(&ghost.scenario, run.scenario());
+        let is_ghost = self.ghost.as_ref().is_some_and(is_left);
+        if let Some(data) = &mut self.data {
+            match change {
+                Change::Described => {}
+                Change::GoesOn => data.go_on_in(scenario, player.playback.step_number()),
+                Change::ContinuesAt(step) => data.go_on_in(scenario, step),
+                _ if is_ghost => data.begin_after_ghost(scenario),
+                _ => data.begin(scenario),
+            }
+        }
+    }
+
+    /// Keeps `run` as the ghost if it was played far enough, unless `keeps_ghost`. A pinned run does not become the ghost,
+    /// since it is drawn as the pinned run.
+    fn leave_ghost(&mut self, run: &LiveRun, keeps_ghost: bool) {
+        let is_pinned = matches!(self.pinned, Some(Pinned::Present));
+        self.keep_pinned(run);
+        if keeps_ghost {
+            return;
+        }
+        if is_pinned {
+            self.ghost = None;
+            return;
+        }
+        let left = Ghost::of(run);
+        let is_short = |before: &Ghost| left.end_s() < SHORT * before.end_s();
+        if left.end_s() > 0.0 && !self.ghost.as_ref().is_some_and(is_short) {
+            self.ghost = Some(left);
+        }
+    }
+
+    /// Keeps the pictures of `run`, which is about to change, if it is pinned.
+    fn keep_pinned(&mut self, run: &LiveRun) {
+        if matches!(self.pinned, Some(Pinned::Present)) {
+            self.pinned = Some(Pinned::Before(Box::new(Ghost::of(run))));
+        }
+    }
+
+    fn pin(&mut self, pinned: bool) -> Done {
+        let was_pinned = self.is_pinned();
+        self.pinned = pinned.then_some(Pinned::Present);
+        Done::saying(match (pinned, was_pinned) {
+            (true, false) => {
+                "this run is pinned: all of it stays, in long and short dashes, whatever changes; i unpins it"
+            }
+            (true, true) => "this run is pinned now, instead of the one before",
+            (false, true) => "the pinned run is taken away",
+            (false, false) => "no run is pinned",
+        })
+    }
+
+    /// Puts the measured data `name` beside the run, or takes away those that are there.
+    fn measure(&mut self, name: Option<&str>, player: &Player, files: &Files) -> Answer {
+        let Some(name) = name else {
+            return Ok(Done::saying(if self.data.take().is_some() {
+                "the measured data are taken away"
+            } else {
+                "there are no measured data beside the run"
+            }));
+        };
+        let put = self.put_beside(name, player, files, false);
+        let left_out =
+            put.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))?;
+        Ok(left_out.map_or(Done::SILENT, Done::saying))
+    }
+
+    /// Reads the measured data `name` and puts them beside the run. `may_wait` says whether they may be a FIFO or a device,
+    /// which is read for any length of time. Returns which columns are left out, in words.
+    pub(super) fn put_beside(
+        &mut self,
+        name: &str,
+        player: &Player,
+        files: &Files,
+        may_wait: bool,
+    ) -> Result<Option<String>, Problems> {
+        let measured = files.open_measured(name, may_wait)?;
+        let left_out = measured.left_out_in_words();
+        self.data = Some(DataComparison::new(
+            name,
+            measured,
+            player.run().scenario(),
+        )?);
+        self.catch_up(player);
+        Ok(left_out)
+    }
+
+    /// To be called after another scenario was opened in place of `before`. Puts the data that its `[view]` names
+    /// beside its run, and removes those that the `[view]` of `before` named. Returns why that is not possible.
+    pub(super) fn measure_as_opened(
+        &mut self,
+        before: &Scenario,
+        player: &Player,
+        files: &Files,
+    ) -> Result<(), Problems> {
+        let named = |scenario: &Scenario| scenario.file.view.as_ref()?.measured.clone();
+        let shown = self.data.as_ref().map(|data| data.name.clone());
+        let wanted = named(player.run().scenario());
+        if wanted == shown || (wanted.is_none() && shown != named(before)) {
+            return Ok(());
+        }
+        self.data = None;
+        let Some(name) = wanted else {
+            return Ok(());
+        };
+        self.put_beside(&name, player, files, false).map(drop)
+    }
+
+    /// Compares the data with the run as it goes on, for at most its share of the computing time, and takes the pictures
+    /// of a pinned run once they are made again. Returns whether there was something to do.
+    pub(super) fn advance(&mut self, player: &Player, clock: &mut dyn FnMut() -> Duration) -> bool {
+        self.follow(player, clock) | self.take_pinned()
+    }
+
+    fn follow(&mut self, player: &Player, clock: &mut dyn FnMut() -> Duration) -> bool {
+        let (step, is_moving) = (player.playback.step_number(), player.is_moving());
+        let share = if is_moving { FOLLOWING } else { CATCHING_UP };
+        let data = self.data.as_mut();
+        let Some(data) = data.filter(|data| data.is_behind(step)) else {
+            return false;
+        };
+        let deadline = clock() + share;
+        data.follow(step, || clock() >= deadline);
+        // While the run moves, numbers are read a few times a second.
+        if !is_moving {
+            self.compare(player);
+        }
+        true
+    }
+
+    fn take_pinned(&mut self) -> bool {
+        if let Some(Pinned::Returning(run)) = &self.pinned
+            && let Some(ghost) = run.made()
+        {
+            self.pinned = Some(Pinned::Before(Box::new(ghost)));
+            return true;
+        }
+        false
+    }
+
+    /// Reads the run on to the present step, however long that takes.
+    pub(super) fn catch_up(&mut self, player: &Player) {
+        if let Some(data) = &mut self.data {
+            data.follow(player.playback.step_number(), || false);
+        }
+    }
+
+    /// Compares the data with the run as far as it has come.
+    pub(super) fn compare(&mut self, player: &Player) {
+        let step = player.playback.step_number();
+        if let Some(data) = &mut self.data {
+            if !data.is_behind(step) {
+                data.follow(step, || true);
+            }
+            data.compare(player.run().now().time_s);
+        }
+    }
+
+    /// The run before, where an edit has begun this one anew.
+    pub fn ghost(&self) -> Option<&Ghost> {
+        self.ghost.as_ref()
+    }
+
+    pub fn data(&self) -> Option<&DataComparison> {
+        self.data.as_ref()
+    }
+
+    pub(super) fn measured(&self) -> Option<Arc<Measured>> {
+        self.data.as_ref().map(|data| Arc::clone(&data.measured))
+    }
+
+    pub fn is_pinned(&self) -> bool {
+        self.pinned.is_some()
+    }
+
+    /// The pictures of the pinned run; `None` where none is pinned, or where it is the present run.
+    pub fn pinned(&self) -> Option<&Ghost> {
+        match &self.pinned {
+            Some(Pinned::Before(run)) => Some(run),
+            Some(Pinned::Present | Pinned::Returning(_)) | None => None,
+        }
+    }
+
+    /// The time that the pinned run had reached, s, where `run` is the present one; `None` where none is pinned, or its
+    /// pictures are not made yet.
+    pub fn pinned_end_s(&self, run: &LiveRun) -> Option<f64> {
+        match &self.pinned {
+            Some(Pinned::Present) => Some(furthest_s(run)),
+            Some(Pinned::Before(run)) => Some(run.end_s()),
+            Some(Pinned::Returning(_)) | None => None,
+        }
+    }
+
+    /// What a session keeps of the pinned run.
+    pub(super) fn reference(&self) -> Option<Reference> {
+        let (scenario, step) = match self.pinned.as_ref()? {
+            Pinned::Present => return Some(Reference::default()),
+            Pinned::Before(run) => (&run.scenario, run.furthest),
+            Pinned::Returning(run) => (&run.scenario, run.furthest),
+        };
+        let run = Some(Arc::clone(scenario));
+        Some(Reference { step, run })
+    }
+
+    /// Pins `reference` again: its pictures come a little later.
+    pub(super) fn pin_again(&mut self, reference: Reference) {
+        let begin = |scenario| Pinned::Returning(GhostToBe::begin(scenario, reference.step));
+        self.pinned = Some(reference.run.map_or(Pinned::Present, begin));
+    }
+
+    /// The name of the measured data beside the run, for a session. A file has its full path, unless the lab is
+    /// confined to a folder.
+    pub(super) fn data_to_keep(&self, files: &Files) -> Option<String> {
+        let name = &self.data.as_ref()?.name;
+        let is_whole = find_shipped(name).is_some() || files.confined().is_some();
+        let whole = std::path::absolute(name).ok().filter(|_| !is_whole);
+        let whole = whole.and_then(|path| path.to_str().map(str::to_owned));
+        Some(whole.unwrap_or_else(|| name.clone()))
+    }
+}
+
+fn show_exact(shown: bool, player: &mut Player) -> Done {
+    if shown != player.run().shows_exact() {
+        player.playback.set_exact(shown);
+    }
+    if !shown {
+        return Done::saying("without the exact motion");
+    }
+    Done::saying(match cost::objection(player.run().scenario()) {
+        Some(objection) => format!("{objection}: it is left out; a shorter run has it"),
+        None => "the exact motion (same start, same pushes) is dashed; t takes it away".to_owned(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::for_tests::scenario;
+
+    #[test]
+    fn a_run_that_was_played_stays_as_a_ghost() {
+        let (mut player, mut comparison) = (Player::new(scenario(), false), Comparison::default());
+        let mut go_over = |player: &mut Player, change| {
+            let scenario = scenario();
+            comparison.leave(player, change, &scenario);
+            player.follow(change, &scenario, None);
+            comparison.ghost().map(Ghost::end_s)
+        };
+        let anew = Change::BeginsAnew {
+            is_act: false,
+            is_again: false,
+        };
+        let step = |player: &mut Player, steps| {
+            player.carry_out(&Command::Step(steps)).unwrap().unwrap();
+        };
+        assert_eq!(go_over(&mut player, anew), None, "it stood at its start");
+        step(&mut player, 100);
+        let end_s = go_over(&mut player, anew);
+        assert!(end_s.is_some_and(|end_s| (end_s - 10.0).abs() < 1e-9));
+        assert_eq!(player.playback.step_number(), 100, "to the same time");
+        player.playback.begin(scenario()); // a run that was stopped on its way there
+        step(&mut player, 1);
+        assert_eq!(go_over(&mut player, anew), end_s, "one step is no run");
+        assert_eq!(go_over(&mut player, Change::Opens), None);
+    }
+}

@@ -1,0 +1,163 @@
+//! Measured data beside the run: the values of the same quantities in the run at the same times, and their residuals.
+//!
+//! A second simulation of the run's scenario follows the run, like the exact motion does, and reads it at the measured
+//! times. It also records the quantities that were measured and that the run's own recording does not have, so that their
+//! curves can be drawn. [`Compared`] has the two side by side.
+
+use crate::data::compared::Compared;
+use crate::data::{Measured, Quantity, Reader, Series};
+use crate::playback::recording::{Curve, Moment, Recording};
+use crate::run::Simulation;
+use crate::scenario::{Problems, Scenario};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+/// Quantities that a recording holds beside the tilt: in the places of x, y and z.
+const IN_A_RECORDING: usize = Curve::OF_POINT.len();
+
+/// Measured data, and the run's values for them so far.
+pub struct DataComparison {
+    pub name: String,
+    pub measured: Arc<Measured>,
+    series: Arc<Series>,
+    simulation: Simulation,
+    reader: Reader<Arc<Series>>,
+    recorded: Vec<Recording>,
+    before: Vec<Recording>,
+    /// Whether the run's numbers stopped being finite on the way.
+    has_broken: bool,
+    pub compared: Compared,
+}
+
+impl DataComparison {
+    /// `measured` beside the run of `scenario`, of which nothing has been read yet.
+    pub(super) fn new(
+        name: &str,
+        measured: Measured,
+        scenario: &Arc<Scenario>,
+    ) -> Result<Self, Problems> {
+        let series = Arc::new(measured.series()?.clone());
+        let mut comparison = Self {
+            name: name.to_owned(),
+            simulation: Simulation::new(Arc::clone(scenario)),
+            reader: Reader::new(Arc::clone(&series)),
+            recorded: Vec::new(),
+            before: Vec::new(),
+            has_broken: false,
+            compared: Compared::default(),
+            series,
+            measured: Arc::new(measured),
+        };
+        comparison.begin(scenario);
+        Ok(comparison)
+    }
+
+    pub fn quantities(&self) -> impl Iterator<Item = &'static Quantity> + Clone + '_ {
+        self.series.curves.iter().map(|curve| curve.quantity)
+    }
+
+    pub fn last_s(&self) -> Option<f64> {
+        self.series.times_s.last().copied()
+    }
+
+    /// The recording that has the quantity of this index, and its curve there; `None` where it is not recorded here.
+    pub fn recorded(&self, index: usize) -> Option<(&Recording, Curve)> {
+        self.place_of(index, &self.recorded)
+    }
+
+    pub fn recorded_before(&self, index: usize) -> Option<(&Recording, Curve)> {
+        self.place_of(index, &self.before)
+    }
+
+    fn place_of<'a>(
+        &self,
+        index: usize,
+        recordings: &'a [Recording],
+    ) -> Option<(&'a Recording, Curve)> {
+        let place = self.recorded_here().position(|(other, _)| other == index)?;
+        let recording = recordings.get(place / IN_A_RECORDING)?;
+        Some((recording, Curve::OF_POINT[place % IN_A_RECORDING]))
+    }
+
+    /// The quantities that the run's own recording does not have, each with its index.
+    fn recorded_here(&self) -> impl Iterator<Item = (usize, &'static Quantity)> + '_ {
+        let quantities = self.quantities().enumerate();
+        quantities.filter(|(_, quantity)| {
+            Curve::ALL
+                .iter()
+                .all(|curve| curve.column() != quantity.name)
+        })
+    }
+
+    pub(super) fn begin(&mut self, scenario: &Arc<Scenario>) {
+        self.simulation = Simulation::new(Arc::clone(scenario));
+        self.reader = Reader::new(Arc::clone(&self.series));
+        let recordings = self.recorded_here().count().div_ceil(IN_A_RECORDING);
+        self.recorded = vec![Recording::default(); recordings];
+        self.has_broken = false;
+        self.record();
+    }
+
+    /// Begins with `scenario`, and keeps what was recorded as that of the ghost.
+    pub(super) fn begin_after_ghost(&mut self, scenario: &Arc<Scenario>) {
+        self.before = std::mem::take(&mut self.recorded);
+        self.begin(scenario);
+    }
+
+    /// Goes on with `scenario`, which has the same motion up to `step`.
+    pub(super) fn go_on_in(&mut self, scenario: &Arc<Scenario>, step: u64) {
+        if self.simulation.step_number() > step || self.has_broken {
+            return self.begin(scenario);
+        }
+        self.simulation.go_on_in(Arc::clone(scenario));
+        self.reader.forget_after(self.simulation.now().time_s());
+    }
+
+    /// Whether it is behind a run that stands at `step`.
+    pub(super) fn is_behind(&self, step: u64) -> bool {
+        let has_to_go_on = !self.recorded.is_empty() || self.reader.next_time_s().is_some();
+        has_to_go_on && !self.has_broken && self.simulation.step_number() < step
+    }
+
+    /// Follows a run to `step`, or until `enough` returns true.
+    pub(super) fn follow(&mut self, step: u64, mut enough: impl FnMut() -> bool) {
+        while self.is_behind(step) {
+            let gone_on = self.reader.take(&self.simulation);
+            if gone_on.is_err() || self.simulation.step().is_err() {
+                self.has_broken = true;
+                return;
+            }
+            self.record();
+            if enough() {
+                return;
+            }
+        }
+        if !self.has_broken && self.simulation.step_number() <= step {
+            // The value measured at this very step. Where the next step breaks down, the run says so.
+            self.has_broken = self.reader.take(&self.simulation).is_err();
+        }
+    }
+
+    fn record(&mut self) {
+        let now = self.simulation.now();
+        let values: Vec<f64> = self
+            .recorded_here()
+            .map(|(_, quantity)| quantity.of(now))
+            .collect();
+        let (time_s, axle_height) = (now.time_s(), now.after().axle().z);
+        for (values, recording) in values.chunks(IN_A_RECORDING).zip(&mut self.recorded) {
+            let value = |place, _| values.get(place).copied().unwrap_or_default();
+            recording.push(&Moment {
+                time_s,
+                position: Vector3::from_fn(value),
+                axle_height,
+            });
+        }
+    }
+
+    pub(super) fn compare(&mut self, now_s: f64) {
+        let scenario = self.simulation.scenario();
+        let traced = &scenario.body.mechanics.points()[scenario.trace].at;
+        self.compared = Compared::new(&self.series, self.reader.values(), now_s, traced);
+    }
+}

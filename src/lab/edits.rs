@@ -1,0 +1,453 @@
+//! What the user does to the run: values and pushes, undo and redo, and the opening of another scenario.
+
+use super::advice::{Adviser, Offer};
+use super::answer::{Done, Refusal, UnderWay};
+use super::command::{Command, Force, PushChoice};
+use super::files::Files;
+use super::player::{Change, Player};
+use super::runs::{Runs, Way};
+use super::values::Values;
+use crate::journal::history::{History, Reversal};
+use crate::journal::next_push::NextPush;
+use crate::journal::restart::in_force;
+use crate::journal::restart::replaced;
+use crate::journal::{Act, number_of_push};
+use crate::run::pushes::acts_s;
+use crate::scenario::Scenario;
+use crate::scenario::file::PushFile;
+use crate::scenario::keys::Effect;
+use crate::scenario::problem::nearest;
+use std::sync::Arc;
+use std::time::Duration;
+use toml::Table;
+
+/// What is said of undo and redo: that there is nothing to do, what was done, to which run it leads, and the way back.
+const UNDO: [&str; 4] = [
+    "nothing to undo",
+    "undone",
+    "the run before",
+    "U brings it again",
+];
+const REDO: [&str; 4] = [
+    "nothing to do again",
+    "done again",
+    "the run after",
+    "u takes it back",
+];
+
+/// The runs, and the values that can be edited.
+pub struct Edits {
+    pub(super) runs: Runs,
+    pub(super) values: Values,
+}
+
+/// What an edit has done: the run goes over to another scenario. The other parts of the lab follow.
+pub(super) struct Edit {
+    pub(super) change: Change,
+    pub(super) scenario: Arc<Scenario>,
+    /// The time at which the run ends, s, where the edit has moved its end.
+    pub(super) end_s: Option<f64>,
+    said: Said,
+    under_way: Option<UnderWay>,
+}
+
+enum Said {
+    Nothing,
+    Text(String),
+    /// The value of this key, and from when on it acts.
+    Value(String),
+}
+
+/// What a command has come to.
+pub(super) enum Outcome {
+    /// The run is as it was.
+    Done(Done),
+    Edit(Edit),
+}
+
+impl From<Done> for Outcome {
+    fn from(done: Done) -> Self {
+        Self::Done(done)
+    }
+}
+
+impl From<Edit> for Outcome {
+    fn from(edit: Edit) -> Self {
+        Self::Edit(edit)
+    }
+}
+
+impl Said {
+    fn text(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+type Edited = Result<Outcome, Refusal>;
+
+impl Edits {
+    pub(super) fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
+        Self {
+            runs: Runs::new(name, scenario),
+            values: Values::new(scenario),
+        }
+    }
+
+    /// Takes up the history and the push to come of a session.
+    pub(super) fn resume(
+        &mut self,
+        history: History,
+        file: &Arc<Scenario>,
+        next_push: NextPush,
+        player: &Player,
+    ) {
+        self.runs = Runs::resumed(history, file);
+        self.values.next_push = next_push;
+        self.values.suit(player.run().scenario());
+    }
+
+    /// Carries out what changes the run of `player`, once; `None` for a command that does not.
+    pub(super) fn carry_out(
+        &mut self,
+        command: &Command,
+        player: &Player,
+        files: &Files,
+        adviser: &mut Adviser,
+        now: Duration,
+    ) -> Option<Edited> {
+        Some(match command {
+            Command::Open(name) => files
+                .open_scenario(name)
+                .map(|scenario| self.open(name, Arc::new(scenario), player).into())
+                .map_err(Refusal::from),
+            Command::Set(table) => self.set(table, false, player),
+            Command::Nudge { key, times } => self.nudge(key, *times, player, now),
+            Command::Push(choice) => self.push(choice, player),
+            Command::NextPush(choice) => self.choose_next_push(choice, player),
+            Command::Undo(_) => self.turn(Way::Undo, player),
+            Command::Redo(_) => self.turn(Way::Redo, player),
+            Command::TakeAdvice => adviser
+                .take_offer(player)
+                .map(|offer| self.take_offer(offer, player).into())
+                .map_err(Refusal::from),
+            _ => return None,
+        })
+    }
+
+    /// Records the step and the push to come with which the present run may be left now. The step is the one that the
+    /// run is on its way back to, if it is.
+    fn leave(&mut self, player: &Player) {
+        let step = player.step_to_keep();
+        self.runs.leave_at(step, &self.values.next_push);
+    }
+
+    /// Leaves the present run for that of `scenario`, opened as `name`.
+    pub(super) fn open(&mut self, name: &str, scenario: Arc<Scenario>, player: &Player) -> Edit {
+        self.leave(player);
+        self.runs.open(name, &scenario);
+        self.values.next_push = NextPush::of(&scenario);
+        Edit {
+            change: Change::Opens,
+            scenario,
+            end_s: None,
+            said: Said::Nothing,
+            under_way: None,
+        }
+    }
+
+    /// Sets all keys of `table` as one act, with `is_again` together with the act before. Keys of body and start begin a new
+    /// run; the others act from the next step on.
+    fn set(&mut self, table: &Table, is_again: bool, player: &Player) -> Edited {
+        let is_of_a_new_run = |key: &str| Effect::of(key) == Effect::NewRun;
+        let (new, rest): (Table, Table) = table
+            .clone()
+            .into_iter()
+            .partition(|(key, _)| is_of_a_new_run(key));
+        let acts = acts(rest);
+        if new.is_empty() {
+            let said = match table.len() {
+                1 => Said::Value(table.keys().cloned().collect()),
+                more => Said::Text(format!("{more} values; u takes them back")),
+            };
+            self.act(acts, is_again, said, player)
+        } else {
+            Ok(self.begin_with(&new, acts, is_again, player)?.into())
+        }
+    }
+
+    fn nudge(&mut self, key: &str, times: i32, player: &Player, now: Duration) -> Edited {
+        let Some(parameter) = self.values.parameter(key) else {
+            let listed = self.values.list.values.iter();
+            let near = nearest(key, listed.filter_map(|value| value.key.as_deref()));
+            return Err(format!("{key} is no value of this scenario: {near}").into());
+        };
+        let value = parameter
+            .nudged(times)
+            .map_err(|reason| format!("{} {reason}", parameter.label))?;
+        let is_again = self.values.is_nudged_again(key, now);
+        let table = Table::from_iter([(key.to_owned(), value)]);
+        let edited = self.set(&table, is_again, player)?;
+        self.values.note_nudge(key, now);
+        Ok(edited)
+    }
+
+    /// Pushes from the next step on: with the push to come, but for the values that `choice` has.
+    fn push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
+        let (push, given) = self.given(choice, player)?;
+        let said = format!(
+            "pushed: {}; u takes it back, P chooses another",
+            push.in_words()
+        );
+        self.act(vec![Act::Push(given)], false, Said::Text(said), player)
+    }
+
+    /// The push that `choice` stands for, as the user chooses it and as it acts at the present step.
+    fn given(&self, choice: &PushChoice, player: &Player) -> Result<(NextPush, PushFile), String> {
+        let push = self.chosen(choice, player)?;
+        let run = player.run();
+        let mut given = push.given(run.scenario(), run.simulation().state())?;
+        if let Some(Force::Vector(vector)) = choice.force_N {
+            given.force_N = vector; // exactly as it was written: norm and direction would round it
+        }
+        Ok((push, given))
+    }
+
+    /// Whether `command` gives a push at the step at which the last one was given, and the run was played on since.
+    pub(super) fn is_push_tried_again(&self, command: &Command, player: &Player) -> bool {
+        let here = player.playback.step_number();
+        let is_push =
+            matches!(command, Command::Push(choice) if self.given(choice, player).is_ok());
+        is_push
+            && player.run().furthest() > here
+            && self.runs.journal().ends_with_push_at(here)
+            && !self.runs.is_at_floor()
+    }
+
+    fn choose_next_push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
+        self.values.next_push = self.chosen(choice, player)?;
+        self.list_values(player);
+        Ok(Done::SILENT.into())
+    }
+
+    fn chosen(&self, choice: &PushChoice, player: &Player) -> Result<NextPush, String> {
+        let time_step_s = player.motion().time_step_s;
+        let scenario = player.run().scenario();
+        self.values.chosen(choice, scenario, time_step_s)
+    }
+
+    /// Begins a new run with the values of `set` in its scenario, and does `acts` at its beginning. With `is_again` it
+    /// replaces the present run, which began with another value of the same key.
+    fn begin_with(
+        &mut self,
+        set: &Table,
+        acts: Vec<Act>,
+        is_again: bool,
+        player: &Player,
+    ) -> Result<Edit, Refusal> {
+        let left_at = player.destination.step_to_leave_at(&player.playback);
+        self.runs.leave_at(left_at, &self.values.next_push);
+        let scenario = self.runs.begin_with(set, acts, is_again)?;
+        self.values.suit(&scenario);
+        let said = "a new run; the one before is dotted, and u goes back to it".to_owned();
+        Ok(Edit {
+            change: Change::BeginsAnew {
+                is_act: false,
+                is_again,
+            },
+            scenario,
+            end_s: Some(self.runs.present().end_s),
+            said: if left_at > 0 {
+                Said::Text(said)
+            } else {
+                Said::Nothing
+            },
+            under_way: None,
+        })
+    }
+
+    /// Begins the run anew as the advice says.
+    fn take_offer(&mut self, offer: Offer, player: &Player) -> Edit {
+        let left_at = player.destination.step_to_leave_at(&player.playback);
+        let replaced = replaced(player.run().scenario());
+        let replaced = replaced.map_or(String::new(), |edits| format!(", in place of {edits}"));
+        let Offer { what, scenario, .. } = offer;
+        self.runs.leave_at(left_at, &self.values.next_push);
+        self.runs.begin_as_advised(&scenario);
+        self.values.suit(&scenario);
+        Edit {
+            change: Change::BeginsAnew {
+                is_act: false,
+                is_again: false,
+            },
+            scenario,
+            end_s: None,
+            said: Said::Text(format!(
+                "{what} from the start{replaced}; the run before is dotted, u goes back to it"
+            )),
+            under_way: None,
+        }
+    }
+
+    /// Does `acts` at the present step as one act, all or none; with `is_again`, undo takes them back together with the
+    /// act before. An edit at step 0 of a run that was played further plays it as far again.
+    fn act(&mut self, acts: Vec<Act>, is_again: bool, said: Said, player: &Player) -> Edited {
+        let is_edited = acts.iter().any(|act| matches!(act, Act::Edit(_)));
+        let (destination, playback) = (&player.destination, &player.playback);
+        let acts_at_start_again = is_again && destination.acts_at_start_again();
+        let from_start =
+            is_edited && (acts_at_start_again || destination.stands_at_start(playback));
+        let here = playback.step_number();
+        let step = if from_start { 0 } else { here };
+        let steps = player.run().scenario().steps;
+        let is_described = acts.iter().all(|act| matches!(act, Act::Describe(_)));
+        let later = self.runs.journal().later_than(step);
+        let Some(scenario) = self.runs.act(step, acts, is_again, steps)? else {
+            return Ok(Done::SILENT.into());
+        };
+        Ok(Outcome::Edit(Edit {
+            change: if is_described {
+                Change::Described
+            } else if from_start {
+                Change::BeginsAnew {
+                    is_act: true,
+                    is_again,
+                }
+            } else {
+                Change::GoesOn
+            },
+            end_s: (scenario.steps != steps).then_some(self.runs.present().end_s),
+            scenario,
+            said: match later {
+                0 => said,
+                _ if is_described => said,
+                1 => Said::text("a later action has made way for it; u brings it back"),
+                _ => Said::Text(format!(
+                    "{later} later actions have made way for it; u brings them back"
+                )),
+            },
+            under_way: None,
+        }))
+    }
+
+    /// Undoes the last act, or does the last undone one again.
+    fn turn(&mut self, way: Way, player: &Player) -> Edited {
+        if way == Way::Undo && self.runs.is_at_floor() {
+            return Err("nothing to undo: the page began here; N turns back".into());
+        }
+        self.leave(player);
+        let [nothing, done, run, other_way] = match way {
+            Way::Undo => UNDO,
+            Way::Redo => REDO,
+        };
+        let turned = self.runs.turn(way, player.run().scenario().steps)?;
+        let turned = turned.ok_or(nothing)?;
+        let (change, said) = match turned.what {
+            Reversal::SameRun { step, act } => {
+                let said = format!("{done}: {}, at step {step}; {other_way}", act.in_words());
+                let is_described = matches!(act, Act::Describe(_));
+                let change = if is_described {
+                    Change::Described
+                } else {
+                    Change::ContinuesAt(step)
+                };
+                (change, said)
+            }
+            Reversal::OtherRun => {
+                let said = format!("{done}: this is {run}; {other_way}");
+                (
+                    self.return_to_run(turned.is_of_same_name, &turned.scenario),
+                    said,
+                )
+            }
+        };
+        Ok(Outcome::Edit(Edit {
+            change,
+            scenario: turned.scenario,
+            end_s: Some(self.runs.present().end_s),
+            said: Said::Text(said),
+            under_way: Some(UnderWay::Going),
+        }))
+    }
+
+    /// Prepares the push with which the run of `scenario`, the present one again, was left.
+    fn return_to_run(&mut self, is_of_same_name: bool, scenario: &Scenario) -> Change {
+        if !is_of_same_name {
+            self.values.next_push = NextPush::of(scenario);
+        }
+        let run = self.runs.present();
+        if let Some(push) = run.next_push.clone() {
+            self.values.next_push = push;
+        }
+        self.values.suit(scenario);
+        Change::Returns {
+            left_at: run.left_at,
+            is_of_same_name,
+        }
+    }
+
+    /// Brings up to date what depends on the scenario of `player`, which has changed.
+    pub(super) fn follow(&mut self, player: &Player) {
+        self.runs.compare_with_file(player.run().scenario());
+        self.list_values(player);
+    }
+
+    pub(super) fn list_values(&mut self, player: &Player) {
+        self.values.list_again(player.run(), self.runs.journal());
+    }
+
+    /// Lists the values again if others are in force.
+    pub(super) fn read(&mut self, player: &Player) {
+        let step = player.playback.step_number();
+        if self.values.is_outdated(step, self.runs.journal()) {
+            self.list_values(player);
+        }
+    }
+
+    /// The answer to the command that has made `edit`, which `player` has followed.
+    pub(super) fn answer(&self, edit: Edit, player: &Player) -> Done {
+        let said = match edit.said {
+            Said::Nothing => None,
+            Said::Text(text) => Some(text),
+            Said::Value(key) => Some(self.value_in_words(&key, player)),
+        };
+        let is_replaying = player.destination.is_replaying(&player.playback);
+        Done {
+            said,
+            under_way: edit.under_way.or(is_replaying.then_some(UnderWay::Going)),
+            ..Done::SILENT
+        }
+    }
+
+    fn value_in_words(&self, key: &str, player: &Player) -> String {
+        let value = self.values.in_words(key);
+        match Effect::of(key) {
+            Effect::None => format!("{value}; u takes it back"),
+            _ if is_of_a_push_that_is_over(key, player) => {
+                "that push is over and acts no more: u takes this back, \
+                and g goes to before it"
+                    .to_owned()
+            }
+            _ if player.destination.acts_at_start_again() => {
+                format!("{value}, from the start; the run before is dotted, u takes it back")
+            }
+            _ => format!("{value}, from the next step on; u takes it back"),
+        }
+    }
+}
+
+fn is_of_a_push_that_is_over(key: &str, player: &Player) -> bool {
+    let simulation = player.run().simulation();
+    let (step, time_s) = (simulation.step_number(), simulation.state().time_s);
+    let (_, pushes) = in_force(simulation.scenario(), step);
+    let push = number_of_push(key).and_then(|number| pushes.get(number));
+    push.is_some_and(|push| acts_s(push, simulation.scenario()).1 <= time_s)
+}
+
+/// The acts that set the keys of `table`: an edit, a description, or both.
+fn acts(table: Table) -> Vec<Act> {
+    let is_idle = |key: &str| Effect::of(key) == Effect::None;
+    let (idle, acting): (Table, Table) = table.into_iter().partition(|(key, _)| is_idle(key));
+    let edit = (!acting.is_empty()).then_some(Act::Edit(acting));
+    let description = (!idle.is_empty()).then_some(Act::Describe(idle));
+    edit.into_iter().chain(description).collect()
+}

@@ -1,0 +1,82 @@
+//! The window of the strip of the fast motion. While it passes too fast to be seen, it is chosen only once in a while.
+
+use crate::analysis::Readouts;
+use crate::lab::view::View;
+use crate::playback::Playback;
+use crate::playback::detail::{Detail, Placement, Wanted};
+use crate::playback::pace::Speed;
+use crate::playback::reading::Reading;
+use crate::playback::recording::Curve;
+use crate::run::Clock;
+use std::time::Duration;
+
+/// If the window passes in less wall time than this, s, the strip stands still for a while.
+const PASSES_S: f64 = 8.0;
+/// How long the strip then stands still.
+const HOLD: Duration = Duration::from_secs(1);
+
+pub(super) struct FastStrip {
+    pub(super) detail: Detail,
+    chosen_at: Duration,
+    /// Whether `detail` is of the run that was opened last.
+    is_of_run: bool,
+}
+
+impl FastStrip {
+    pub(super) fn of(playback: &Playback, reading: &Reading) -> Self {
+        let following = Wanted::following(Clock::end_s(playback.run().scenario()));
+        Self {
+            detail: Detail::new(playback.run(), &reading.readouts, &following, None),
+            chosen_at: Duration::ZERO,
+            is_of_run: true,
+        }
+    }
+
+    /// Another run was opened: the window says nothing about it.
+    pub(super) fn forget(&mut self) {
+        self.is_of_run = false;
+    }
+
+    /// Chooses the window at `now`, about `cursor_s` where the cursor is shown. Returns a message where it shows another
+    /// curve of the same run than before.
+    pub(super) fn choose(
+        &mut self,
+        now: Duration,
+        view: &View,
+        playback: &Playback,
+        readouts: &Readouts,
+        cursor_s: Option<f64>,
+    ) -> Option<&'static str> {
+        let is_fast = match playback.speed() {
+            _ if !playback.is_running() => false,
+            Speed::Top => true,
+            Speed::Times(speed) => speed * PASSES_S > self.detail.window_s,
+        };
+        let is_held = is_fast && cursor_s.is_none();
+        let run = playback.run();
+        let is_reached = self.detail.begin_s + self.detail.window_s <= run.now().time_s;
+        if is_held && self.is_of_run && is_reached && now < self.chosen_at + HOLD {
+            return None;
+        }
+        let place = match cursor_s {
+            Some(cursor_s) => Placement::About(cursor_s),
+            None if is_held => Placement::Latest,
+            None if playback.is_at_end() => Placement::UpToNow,
+            None => Placement::Following,
+        };
+        let wanted = Wanted {
+            window_s: view.detail_s,
+            curve: view.detail_of,
+            long_s: view.window_s,
+            place,
+        };
+        let before = self.is_of_run.then_some(&self.detail);
+        let detail = Detail::new(run, readouts, &wanted, before);
+        let is_other = before.is_some_and(|before| before.curve != detail.curve);
+        (self.detail, self.chosen_at, self.is_of_run) = (detail, now, true);
+        (is_other && view.detail_of.is_none()).then_some(match self.detail.curve {
+            Curve::Tilt => "the upper strip shows the tilt again: it swings",
+            _ => "the upper strip shows x now: it swings, and the tilt does not",
+        })
+    }
+}

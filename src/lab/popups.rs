@@ -1,0 +1,262 @@
+//! The popups, which lie over the panes and get the keys: the browser, the help, a dialog; and the count typed before a
+//! key.
+
+use super::action::FieldEdit;
+use super::browser::Browser;
+use super::dialog::Dialog;
+use super::files::Files;
+use super::form::{MOST_IN_LINE, edit_line, type_into};
+use super::preview::Preview;
+use std::path::Path;
+
+pub const MOST_COUNTED: u64 = 999_999_999;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// The panes: nothing lies on top of them.
+    #[default]
+    Lab,
+    Browser,
+    /// The line in which the user types the browser's filter.
+    Filter,
+    /// The line in which the user types a part of the name of a value.
+    Find,
+    /// The list of keys and words.
+    Help,
+    Dialog,
+}
+
+/// The browser, the help and the dialog, and which of them is open; the count.
+#[derive(Default)]
+pub struct Popups {
+    pub mode: Mode,
+    /// The mode to return to when the help is closed.
+    pub under_help: Mode,
+    /// The open dialog; `Some` exactly in [`Mode::Dialog`].
+    dialog: Option<Dialog>,
+    pub browser: Browser,
+    pub help: HelpSearch,
+    pub count: Option<u64>,
+}
+
+impl Popups {
+    pub fn dialog(&self) -> Option<&Dialog> {
+        self.dialog.as_ref()
+    }
+
+    /// Adds `digit` to `count`, the count that the key has removed.
+    pub(super) fn add_digit(&mut self, count: Option<u64>, digit: u8) {
+        let count = count.unwrap_or(0) * 10 + u64::from(digit);
+        self.count = Some(count.min(MOST_COUNTED));
+    }
+
+    pub(super) fn open_dialog(&mut self, dialog: Dialog) {
+        self.dialog = Some(dialog);
+        self.mode = Mode::Dialog;
+    }
+
+    /// Asks for a number, of which the digit `typed` is there already: `title` says for what, `label` what it is and in
+    /// which unit, `about` how to answer.
+    pub fn ask_number(&mut self, title: &str, label: &str, about: &str, typed: Option<u8>) {
+        self.open_dialog(Dialog::number(title, label, about));
+        if let Some(digit) = typed {
+            self.edit_field(FieldEdit::Type(char::from(b'0' + digit % 10)));
+        }
+    }
+
+    pub(super) fn take_dialog(&mut self) -> Option<Dialog> {
+        let dialog = self.dialog.take()?;
+        self.mode = Mode::Lab;
+        Some(dialog)
+    }
+
+    /// The file that was chosen to be opened and what it holds, once it has been read. Where the browser no longer has
+    /// the keys, the choice is forgotten.
+    pub(super) fn take_chosen(&mut self) -> Option<(String, Preview)> {
+        if !matches!(self.mode, Mode::Browser | Mode::Filter) {
+            self.browser.forget_chosen();
+        }
+        self.browser.take_chosen()
+    }
+
+    /// Opens the browser in the folder of `files`, with `name` selected.
+    pub(super) fn browse(&mut self, name: &str, files: &Files) {
+        let may_be_read = |path: &Path| files.admit(path).is_ok();
+        self.browser.begin(files.folder(), name, may_be_read);
+        self.mode = Mode::Browser;
+    }
+
+    /// Lists the folder that is selected in the browser, or begins to read the file; returns the name of an entry that can
+    /// be opened at once.
+    ///
+    /// # Errors
+    /// Why there is nothing to open.
+    pub(super) fn choose(&mut self, files: &Files) -> Result<Option<String>, String> {
+        let Some(entry) = self.browser.choice().cloned() else {
+            return Err("nothing is selected: Esc clears the filter".to_owned());
+        };
+        if entry.is_folder {
+            self.mode = Mode::Browser;
+            let is_listed = self.browser.enter(|path| files.admit(path).is_ok());
+            return is_listed
+                .then_some(None)
+                .ok_or_else(|| format!("{} cannot be opened any more", entry.name));
+        }
+        if !entry.is_file || !files.may_be_read_aside(Path::new(&entry.name)) {
+            return Ok(Some(entry.name));
+        }
+        self.browser.choose();
+        Ok(None)
+    }
+
+    pub fn shows_settings(&self) -> bool {
+        self.dialog.as_ref().is_some_and(Dialog::is_of_settings)
+    }
+
+    /// Opens the help on top of the present mode, or closes it.
+    pub(super) fn toggle_help(&mut self) {
+        self.help = HelpSearch::default();
+        if self.mode == Mode::Help {
+            self.mode = self.under_help;
+        } else {
+            self.under_help = self.mode;
+            self.mode = Mode::Help;
+        }
+    }
+
+    /// Closes the topmost of help, filters, browser and dialog; returns whether one of them was open. Of the help it first
+    /// clears the search. The filter of the values is the caller's to clear.
+    pub(super) fn close(&mut self) -> bool {
+        match self.mode {
+            Mode::Lab => return false,
+            Mode::Find => self.mode = Mode::Lab,
+            Mode::Help if !self.help.text.is_empty() => self.help = HelpSearch::default(),
+            Mode::Help => self.toggle_help(),
+            Mode::Filter => {
+                self.browser.filter_by(String::clear);
+                self.mode = Mode::Browser;
+            }
+            Mode::Browser if self.browser.forget_chosen() => {}
+            Mode::Browser => self.mode = Mode::Lab,
+            Mode::Dialog => drop(self.take_dialog()),
+        }
+        true
+    }
+
+    /// Moves the selection of the browser or the help by `rows`.
+    pub(super) fn shift(&mut self, rows: isize) {
+        match self.mode {
+            Mode::Browser | Mode::Filter => self.browser.shift(rows),
+            Mode::Help => self.help.shift(rows),
+            Mode::Lab | Mode::Find | Mode::Dialog => {}
+        }
+    }
+
+    pub(super) fn edit_field(&mut self, edit: FieldEdit) {
+        match (&mut self.dialog, self.mode) {
+            (Some(dialog), _) => dialog.edit_field(edit),
+            (None, Mode::Help) => self.help.search(|line| edit_line(line, edit)),
+            (None, _) => self.browser.filter_by(|line| edit_line(line, edit)),
+        }
+    }
+
+    /// Puts the pasted `text` into the dialog or the filter. Returns a message if it does not fit. In other modes pasting
+    /// does nothing: the letters of a pasted text are not meant as keys.
+    pub(super) fn paste(&mut self, text: &str) -> Option<String> {
+        match (&mut self.dialog, self.mode) {
+            (Some(dialog), _) => dialog.paste(text),
+            (None, Mode::Help) => {
+                self.help.search(|line| type_into(line, text));
+            }
+            (None, Mode::Filter) => {
+                let fits = self.browser.filter_by(|line| type_into(line, text));
+                let cut = || {
+                    format!(
+                        "the filter takes at most {MOST_IN_LINE} characters: what was pasted is cut"
+                    )
+                };
+                return (!fits).then(cut);
+            }
+            _ => {
+                let text = "what is pasted goes into fields and filters; here it does nothing";
+                return Some(text.to_owned());
+            }
+        }
+        None
+    }
+}
+
+/// The text that is searched for, and the selected entry.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HelpSearch {
+    pub text: String,
+    pub selected: usize,
+}
+
+impl HelpSearch {
+    /// Changes the text that is searched for; the first entry found is selected. `/` begins a search in other panes: at
+    /// the beginning it means nothing here.
+    fn search<T>(&mut self, change: impl FnOnce(&mut String) -> T) -> T {
+        let changed = change(&mut self.text);
+        self.text = self.text.trim_start_matches('/').to_owned();
+        self.selected = 0;
+        changed
+    }
+
+    pub(super) fn shift(&mut self, rows: isize) {
+        self.selected = self.selected.saturating_add_signed(rows);
+    }
+
+    /// Moves the selection to the last of `entries` entries, if it is beyond it.
+    pub fn limit(&mut self, entries: usize) {
+        self.selected = self.selected.min(entries.saturating_sub(1));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_opened_last_is_closed_first() {
+        let mut popups = Popups::default();
+        assert!(!popups.close());
+        popups.mode = Mode::Browser;
+        popups.toggle_help();
+        assert_eq!(popups.mode, Mode::Help);
+        assert!(popups.close());
+        popups.mode = Mode::Filter;
+        popups.edit_field(FieldEdit::Type('x'));
+        let filter = |popups: &Popups| (popups.mode, popups.browser.filter.clone());
+        assert_eq!(filter(&popups), (Mode::Filter, "x".to_owned()));
+        assert!(popups.close());
+        assert_eq!(filter(&popups), (Mode::Browser, String::new()));
+        assert!(popups.close());
+        popups.open_dialog(Dialog::go_to());
+        assert_eq!(popups.mode, Mode::Dialog);
+        assert!(popups.close() && popups.dialog().is_none());
+        assert_eq!(popups.mode, Mode::Lab);
+    }
+
+    #[test]
+    fn digits_make_a_count() {
+        let mut popups = Popups::default();
+        popups.add_digit(None, 4);
+        popups.add_digit(Some(4), 2);
+        assert_eq!(popups.count, Some(42));
+        popups.add_digit(Some(MOST_COUNTED), 9);
+        assert_eq!(popups.count, Some(MOST_COUNTED));
+    }
+
+    #[test]
+    fn pasted_text_goes_where_text_is_typed() {
+        let mut popups = Popups::default();
+        assert!(popups.paste("q").unwrap().contains("does nothing"));
+        popups.open_dialog(Dialog::go_to());
+        assert_eq!(popups.paste("400"), None);
+        assert_eq!(popups.take_dialog().unwrap().form.text(0), "400");
+        popups.mode = Mode::Filter;
+        let cut = popups.paste(&"x".repeat(MOST_IN_LINE + 1)).unwrap();
+        assert!(cut.contains("is cut"));
+    }
+}

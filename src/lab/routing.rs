@@ -1,0 +1,518 @@
+//! Leads actions and time to the parts of the lab.
+
+use super::action::{
+    Action, Ask, Direction, FieldEdit, LessonKey, PAGE, Request, repeated, signed,
+};
+use super::answer::{Answer, Done};
+use super::command::{Command, Commands, CursorTo, Place};
+use super::dialog::{Dialog, Question};
+use super::form::{edit_line, type_into};
+use super::messages::{self, halt_in_words};
+use super::popups::Mode;
+use super::preview::Preview;
+use super::view::Pane;
+use super::{Cleared, Lab, Script};
+use crate::playback::Halt;
+use crate::run::NotFinite;
+use crate::scenario::Scenario;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// The factor of the arrows with Shift.
+const FAR: i32 = 10;
+/// How often to look whether an export is complete while there is nothing else to do.
+const LOOK: Duration = Duration::from_millis(2);
+/// How long steps are taken before the caller decides whether to go on.
+const PART: Duration = Duration::from_millis(100);
+
+/// Actions.
+impl Lab {
+    /// Carries out `action`. Returns what only the main loop can do.
+    pub fn update(&mut self, action: Action) -> Option<Request> {
+        let cleared = self.clear();
+        if !action.keeps_nudge() {
+            self.edits.values.forget_nudge();
+        }
+        match self.act(action, cleared) {
+            Ok(None) => {}
+            Ok(request) => return request,
+            Err(reason) => self.say(reason),
+        }
+        self.view.keep_focus();
+        self.read_now();
+        None
+    }
+
+    /// # Errors
+    /// Why the action does nothing now.
+    fn act(&mut self, action: Action, cleared: Cleared) -> Result<Option<Request>, String> {
+        let count = cleared.count;
+        let times = repeated(count);
+        match action {
+            Action::TogglePause => self.toggle_pause(),
+            Action::GoTo => match count {
+                Some(step) => self.one(Command::GoTo(Place::Step(step))),
+                None => self.ask(Ask::Place)?,
+            },
+            Action::GoToCursor => match self.view.cursor {
+                Some(step) => self.one(Command::GoTo(Place::Step(step))),
+                None => self.turn_to_parameters(),
+            },
+            Action::ChoosePush => {
+                self.view.turn_to(Pane::PARAMETERS);
+                self.edits.values.select_next_push();
+                self.say("the push to come: p gives it");
+            }
+            Action::Parameters => self.turn_to_parameters(),
+            Action::Edit if self.view.focus != Pane::PARAMETERS => self.turn_to_parameters(),
+            Action::Edit => self.ask(Ask::Value)?,
+            Action::Ask(ask) => self.ask(ask)?,
+            Action::Digit(digit) => self.popups.add_digit(count, digit),
+            Action::NextPane => self.view.shift_focus(true),
+            Action::PreviousPane => self.view.shift_focus(false),
+            Action::ThreeD => self.view.toggle_three_d(),
+            Action::ToggleStep => {
+                let is_shown = self.view.shows_step();
+                self.carry_out_all(&self.view.step_toggled());
+                if !is_shown {
+                    self.view.turn_to(Pane::STEP);
+                }
+            }
+            Action::Move(direction) => self.move_by(direction, times)?,
+            Action::MoveFar(direction) => self.move_by(direction, times.saturating_mul(FAR))?,
+            Action::Browse => self.popups.browse(self.edits.runs.name(), &self.files),
+            Action::FindValue => {
+                self.view.turn_to(Pane::PARAMETERS);
+                self.edits.values.list.filter_by(String::clear);
+                self.popups.mode = Mode::Find;
+            }
+            Action::DoEntry => {} // tui has the entries, and carries it out
+            Action::Choose => self.open_chosen()?,
+            Action::Filter => self.popups.mode = Mode::Filter,
+            Action::InField(edit) => self.edit_field(edit),
+            Action::Accept if self.popups.shows_settings() => self.change_setting(true),
+            Action::Accept => return Ok(self.accept()),
+            Action::Help => self.popups.toggle_help(),
+            Action::Close => return Ok(self.close(&cleared)),
+            Action::Class => {
+                let rule = "this is no lab of a class: gyrolab man class says how one begins";
+                return Err(rule.to_owned());
+            }
+            Action::Lesson(key) => return Ok(Some(Request::Lesson(key))),
+            Action::Redraw => return Ok(Some(Request::Redraw)),
+            Action::Suspend if self.files.confined().is_some() => {
+                return Err("there is no shell to go back to: q leaves".to_owned());
+            }
+            Action::Suspend => return Ok(Some(Request::Suspend)),
+            Action::Quit if self.files.is_exporting() && !cleared.was_warned => {
+                self.messages.warn_of_export(self.now);
+            }
+            Action::Quit => return Ok(Some(Request::Quit)),
+        }
+        Ok(None)
+    }
+
+    fn ask(&mut self, ask: Ask) -> Result<(), String> {
+        let (files, edits) = (&self.files, &self.edits);
+        let dialog = Dialog::of(ask, files, edits, &self.player, &self.view)?;
+        self.popups.open_dialog(dialog);
+        Ok(())
+    }
+
+    /// Does what an arrow or page key does that is pressed `times` times.
+    fn move_by(&mut self, direction: Direction, times: i32) -> Result<(), String> {
+        let is_sideways = matches!(direction, Direction::Left | Direction::Right);
+        let (player, view) = (&self.player, &self.view);
+        let command = match (self.popups.mode, view.focus) {
+            (Mode::Lab, Pane::THREE_D) => view.turned(direction, times),
+            (Mode::Lab | Mode::Find, Pane::PARAMETERS) if is_sideways => {
+                let (times, scenario) = (signed(direction, times), player.run().scenario());
+                match self.edits.values.selected_nudged(times, scenario)? {
+                    Some(nudge) => nudge,
+                    None => return Ok(()),
+                }
+            }
+            (Mode::Lab | Mode::Find, Pane::PARAMETERS) => {
+                let rows = direction.rows(PAGE) * times as isize;
+                let list = &mut self.edits.values.list;
+                list.shift(rows.signum() * times as isize);
+                return Ok(());
+            }
+            (Mode::Lab, Pane::STEP) => self.step_pane.other_sum(direction, times, view)?,
+            (Mode::Lab, Pane::TRACES) if is_sideways => {
+                view.moved_cursor(signed(direction, times), player)
+            }
+            (Mode::Lab, Pane::TRACES) => view.other_detail(direction, times, player),
+            (Mode::Lab, _) => {
+                let rule = "z and Z zoom here; arrows turn the 3-D view (d) and choose values (e)";
+                return Err(rule.to_owned());
+            }
+            _ => {
+                self.popups.shift(direction.rows(PAGE) * times as isize);
+                return Ok(());
+            }
+        };
+        self.one(command);
+        Ok(())
+    }
+
+    fn turn_to_parameters(&mut self) {
+        self.view.turn_to(Pane::PARAMETERS);
+        self.say("Up, Down choose a value; Left, Right nudge it; Enter types it; u undoes");
+    }
+
+    pub fn turn_to(&mut self, pane: Pane) {
+        self.clear();
+        self.view.turn_to(pane);
+        self.read_now();
+    }
+
+    fn edit_field(&mut self, edit: FieldEdit) {
+        match edit {
+            edit if self.popups.mode == Mode::Find => {
+                let list = &mut self.edits.values.list;
+                list.filter_by(|line| edit_line(line, edit));
+            }
+            FieldEdit::Left | FieldEdit::Right if self.popups.shows_settings() => {
+                self.change_setting(edit == FieldEdit::Right);
+            }
+            edit => self.popups.edit_field(edit),
+        }
+    }
+
+    pub fn paste(&mut self, text: &str) {
+        if self.popups.mode == Mode::Find {
+            let list = &mut self.edits.values.list;
+            list.filter_by(|line| type_into(line, text));
+        } else {
+            self.clear();
+            if let Some(said) = self.popups.paste(text) {
+                self.say(said);
+            }
+        }
+        self.changed = true;
+    }
+
+    /// Changes the setting that is selected in the dialog, which then shows its new value.
+    fn change_setting(&mut self, forward: bool) {
+        let Some(selected) = self.popups.dialog().map(|dialog| dialog.form.selected) else {
+            return;
+        };
+        match self.settings.change(selected, forward, &mut self.view) {
+            Ok(command) => self.carry_out_all(command.as_slice()),
+            Err(trouble) => self.tell(trouble),
+        }
+        let dialog = Dialog::settings(&self.view, selected);
+        self.popups.open_dialog(dialog);
+    }
+
+    /// Carries out the command that the open dialog asked for. If it is refused, the dialog stays and shows the reason.
+    /// Returns the number that a room above asked for.
+    fn accept(&mut self) -> Option<Request> {
+        let dialog = self.popups.take_dialog()?;
+        let answer = match &dialog.question {
+            Question::Number => match dialog.number_typed() {
+                Ok(number) => return Some(Request::Answer(number)),
+                Err(reason) => Err(reason.into()),
+            },
+            Question::SavePresent(content) => {
+                let path = self.files.path_of(dialog.form.text(0));
+                let force = dialog.may_replace(&path);
+                self.files.save("the scenario", content, &path, force)
+            }
+            _ => match dialog.command(&self.files, &self.edits.values, &self.player) {
+                Ok(Some(command)) => self.carry_out(&command),
+                Ok(None) => Ok(Done::SILENT),
+                Err(reason) => Err(reason.into()),
+            },
+        };
+        match answer {
+            Ok(_) => self.tell_answer(answer),
+            Err(refusal) => self.popups.open_dialog(dialog.refused(refusal)),
+        }
+        None
+    }
+
+    /// Closes or stops the first of these that there is: a popup, the script, the steps asked for, the cursor, the pane that
+    /// fills the screen, the focus on the parameters, the export, the step pane in focus. If there is none of these, it says
+    /// how to leave, unless the key has already removed a message or a count.
+    fn close(&mut self, cleared: &Cleared) -> Option<Request> {
+        let is_found = self.popups.mode == Mode::Find;
+        let is_filtered = self.popups.mode == Mode::Lab && self.view.focus == Pane::PARAMETERS;
+        // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
+        let is_left = is_filtered && self.view.sheet.is_some();
+        let forget = |line: &mut String| !std::mem::take(line).is_empty();
+        let list = &mut self.edits.values.list;
+        if (is_found || is_filtered) && list.filter_by(forget) && !is_left {
+            self.popups.close();
+        } else if self.popups.close() {
+            // The popup was all that the key closes.
+        } else if !self.script.is_done() {
+            self.stop_script();
+        } else if self.player.playback.steps_to_go().is_some() {
+            self.one(Command::Pause);
+        } else if self.view.cursor.is_some() {
+            self.one(Command::Cursor(CursorTo::Nowhere));
+        } else if self.view.filled {
+            self.one(Command::Fill(None));
+            self.view.turn_to_sheet();
+            // On a screen that has no place for the values beside the run, they fill it: leaving them shows the run again.
+            if !self.view.side_by_side.contains(&Pane::PARAMETERS) {
+                self.view.leave_parameters();
+            }
+        } else if cleared.count.is_none() && self.view.leave_parameters() {
+            // The focus returns to the run even if the key has removed a message too.
+        } else if cleared.anything {
+            // The key has done something already.
+        } else if self.files.is_exporting() {
+            self.files.stop_export();
+        } else if self.view.focus == Pane::STEP && self.view.shows_step() {
+            self.carry_out_all(&self.view.step_toggled());
+        } else if self.view.sheet.is_some() {
+            return Some(Request::Lesson(LessonKey::Leave));
+        } else {
+            self.say("nothing to close; q leaves");
+        }
+        None
+    }
+
+    /// Opens the entry that is selected in the browser: plays its run, or lists what is in the folder.
+    fn open_chosen(&mut self) -> Result<(), String> {
+        if let Some(name) = self.popups.choose(&self.files)? {
+            let answer = self.carry_out(&Command::Open(name));
+            self.play_opened(answer);
+        }
+        self.open_what_was_read();
+        if self.popups.browser.is_choice_loading() {
+            self.say("reading it: it opens when it has been read, Esc stays here");
+        }
+        Ok(())
+    }
+
+    /// Opens the file that was chosen in the browser, once it has been read in the background.
+    fn open_what_was_read(&mut self) {
+        let Some((name, Preview::Known(known))) = self.popups.take_chosen() else {
+            return;
+        };
+        let answer = match known.as_ref() {
+            Ok(scenario) => {
+                self.edits.values.forget_nudge();
+                let scenario = Arc::new(scenario.clone());
+                let edit = self.edits.open(&name, scenario, &self.player);
+                let done = self.follow(edit);
+                self.view.keep_focus();
+                self.read_now();
+                Ok(done)
+            }
+            Err(reason) => Err(reason.lines().next().unwrap_or_default().into()),
+        };
+        self.play_opened(answer);
+    }
+
+    /// Changes to the run of `scenario`, which another lab shows as `name`, and which ends there at `end_s`. It is paused at
+    /// step 0.
+    pub fn show_run(&mut self, name: &str, scenario: Arc<Scenario>, end_s: f64) {
+        self.take_commands(Commands::default());
+        self.edits.values.forget_nudge();
+        let mut edit = self.edits.open(name, scenario, &self.player);
+        edit.end_s = Some(end_s);
+        self.edits.runs.set_end(end_s);
+        self.follow(edit);
+        self.view.keep_focus();
+        self.read_now();
+    }
+
+    /// Closes the browser and plays what has been opened, or says why nothing was.
+    fn play_opened(&mut self, answer: Answer) {
+        if answer.is_ok() {
+            self.popups.mode = Mode::Lab;
+            self.one(Command::Run);
+        }
+        self.tell_answer(answer);
+    }
+}
+
+/// Time.
+impl Lab {
+    /// Advances everything that changes with time up to now. `clock` returns the time since the lab was opened; it is read
+    /// several times, so that the steps of a fast run end in time for the next frame.
+    pub fn advance(&mut self, clock: &mut dyn FnMut() -> Duration) {
+        let now = clock();
+        let wall = now.saturating_sub(self.now);
+        self.now = now;
+        self.changed |= self.messages.expire(now);
+        let (halt, is_new) = self.player.advance(now, wall, clock);
+        self.changed |= is_new
+            | self.comparison.advance(&self.player, clock)
+            | self.adviser.advance(&self.player);
+        if let Some(halt) = halt {
+            self.halted(halt);
+        }
+        self.tell_what_was_found();
+        self.changed |= self.popups.browser.take_what_was_read();
+        self.open_what_was_read();
+        self.follow_export();
+        self.go_on_with_script(halt);
+        if self.changed && self.player.is_due(now, self.view.window_s) {
+            self.read_now();
+        }
+    }
+
+    /// Takes the run to `step` before returning, as long as `go_on` says so.
+    pub fn begin_at(
+        &mut self,
+        step: u64,
+        go_on: impl Fn(u64, u64) -> ControlFlow<()>,
+    ) -> Result<(), NotFinite> {
+        let arrived = self.player.playback.begin_at_while(step, go_on);
+        self.arrive();
+        arrived
+    }
+
+    /// Brings exact motion, measured data and numbers up to the present step.
+    fn arrive(&mut self) {
+        self.player.playback.catch_up_exact();
+        self.comparison.catch_up(&self.player);
+        self.read_now();
+    }
+
+    fn halted(&mut self, halt: Halt) {
+        let Self { player, .. } = self;
+        player.destination.has_halted(halt, &mut player.playback);
+        self.read_now();
+        let next = messages::next(&self.view, &self.edits.runs, &self.player);
+        let Some(text) = halt_in_words(halt, next.as_deref()) else {
+            return;
+        };
+        if let Halt::NotFinite(_) = halt {
+            let edits = self.edits.runs.journal();
+            let is_edited = edits.count_by(self.player.playback.step_number()) > 0;
+            self.messages.tell_of_break(&text, is_edited);
+            self.changed = true;
+            self.tell_what_was_found();
+        } else {
+            self.tell(text);
+        }
+    }
+
+    fn tell_what_was_found(&mut self) {
+        let (adviser, player) = (&self.adviser, &self.player);
+        self.changed |= self.messages.tell_what_was_found(adviser, player);
+    }
+
+    fn follow_export(&mut self) {
+        self.changed |= self.files.is_exporting();
+        if let Some(text) = self.files.follow_export() {
+            self.tell(text);
+        }
+    }
+
+    fn toggle_pause(&mut self) {
+        match (self.script.is_done(), self.script.is_waiting()) {
+            (false, true) => self.release_script(),
+            (false, false) => {
+                self.script.pause(&self.player, self.now);
+                self.one(Command::Pause);
+                self.tell(format!("paused: {}", self.script.left_in_words()));
+            }
+            (true, _) if self.player.is_moving() => self.one(Command::Pause),
+            (true, _) => self.one(Command::Run),
+        }
+    }
+
+    fn stop_script(&mut self) {
+        let left_out = self.script.drop_all();
+        self.one(Command::Pause);
+        self.say(left_out);
+    }
+
+    fn release_script(&mut self) {
+        if self.script.release(&mut self.player) {
+            self.go_on_with_script(None);
+        }
+    }
+
+    /// Carries out `commands` as time passes, in place of the present script.
+    pub fn take_commands(&mut self, commands: Commands) {
+        self.script = Script::new(commands);
+        self.go_on_with_script(None);
+    }
+
+    /// Removes what the commands of the script have said, unless one of them was refused.
+    pub fn forget_message_of_script(&mut self) {
+        if self.script.failure().is_none() {
+            self.messages.take_back();
+            self.changed = true;
+        }
+    }
+
+    /// Carries out the commands of the script that need not wait any longer. `halt` tells why the run has just stopped by
+    /// itself, if it has.
+    fn go_on_with_script(&mut self, halt: Option<Halt>) {
+        if let Err(text) = self.carry_out_script(halt) {
+            self.tell(text);
+        }
+    }
+
+    fn carry_out_script(&mut self, halt: Option<Halt>) -> Result<(), String> {
+        while let Some(next) = self
+            .script
+            .next(halt, self.now, &self.player, &mut self.files)?
+        {
+            let answer = self.carry_out(&next.command);
+            let done = self.script.take_answer(next, answer, &mut self.player)?;
+            self.tell_answer(Ok(done));
+        }
+        Ok(())
+    }
+
+    /// Carries out the script at once, without a clock; it waits for exports only. Calls `go_on` several times a second with
+    /// the step at which the run is and the one at which it will stop. When `go_on` breaks, the other commands are dropped.
+    ///
+    /// # Errors
+    /// Which command was refused, and why; the commands after it are not carried out.
+    pub fn finish_script_while(
+        &mut self,
+        mut go_on: impl FnMut(u64, u64) -> ControlFlow<()>,
+    ) -> Result<(), String> {
+        self.release_script();
+        let mut steps = 0;
+        while !self.script.is_done() {
+            let begin = Instant::now();
+            let playback = &mut self.player.playback;
+            let from = playback.step_number();
+            let halt = playback.finish_part(|| begin.elapsed() > PART);
+            steps += playback.step_number().abs_diff(from);
+            if let Some(halt) = halt {
+                self.halted(halt);
+            } else if go_on(playback.step_number(), playback.stops_at()).is_break() {
+                self.files.drop_export();
+                self.script.drop_all();
+                break;
+            }
+            self.pass_time();
+            if let Err(text) = self.script.limit(steps, &mut self.player) {
+                self.tell(text);
+            }
+            self.go_on_with_script(halt);
+        }
+        self.arrive();
+        self.script.take_failure().map_or(Ok(()), |text| {
+            self.messages.take_back(); // the caller says it
+            Err(text)
+        })
+    }
+
+    /// Lets pass the time for which the command under way waits.
+    fn pass_time(&mut self) {
+        if self.files.is_exporting() {
+            thread::sleep(LOOK);
+            self.follow_export();
+        }
+        if let Some(until) = self.script.waits_until() {
+            self.now = self.now.max(until);
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! The time step that the step pane takes apart, and the commands that its keys mean.
+
+use super::action::{Direction, PAGE};
+use super::command::{Command, Place};
+use super::player::Player;
+use super::view::step::Page;
+use super::view::{Pane, View};
+use crate::physics::workings::{Phase, Sums, Table, Value};
+use crate::physics::{State, Workings};
+use crate::playback::dip::Dip;
+use crate::scenario::Scenario;
+use crate::scenario::screen::ALL_ROWS;
+use std::sync::Arc;
+
+/// The most points of a body whose steps are taken apart while the run goes on. The step of a larger body is taken
+/// apart once the run stands still.
+const MOST_POINTS_MOVING: usize = 1000;
+
+/// A time step with the intermediate results of its scheme.
+#[derive(Clone, Debug)]
+pub struct StepWorkings {
+    pub step: u64,
+    pub states: (State, State),
+    /// The intermediate results: the numbers that made the step itself.
+    pub workings: Arc<Workings>,
+    pub scenario: Arc<Scenario>,
+    /// The sums of the table on the page, if some of its rows are added up.
+    sums: Option<(usize, Sums)>,
+    /// The first dip of the run, where the page shows it.
+    dip: Option<Dip>,
+}
+
+impl StepWorkings {
+    /// The workings of the step taken last; `None` at step 0.
+    fn of(player: &mut Player) -> Option<Self> {
+        let now = player.run().simulation().now();
+        let (step, states) = (now.number(), (*now.before()?, *now.after()));
+        let scenario = Arc::clone(now.scenario());
+        Some(Self {
+            step,
+            states,
+            workings: player.playback.workings()?,
+            scenario,
+            sums: None,
+            dip: None,
+        })
+    }
+
+    /// The first dip of the run up to this step; `None` where the page does not show it, and where the axle was upright.
+    pub fn dip(&self) -> Option<&Dip> {
+        self.dip.as_ref()
+    }
+
+    /// The phase on `page` with its number, from 1, and how many there are; `None` for a page that shows none.
+    pub fn phase(&self, page: Page) -> Option<(&Phase, usize, usize)> {
+        let index = page.index(&self.workings)?;
+        let phase = self.workings.phases().nth(index)?;
+        Some((phase, index + 1, self.workings.phases().count()))
+    }
+
+    /// The sum of each column over the first `rows` rows of `table`, the one on `page`; `None` where nobody has
+    /// asked for one.
+    pub fn sums(&self, page: Page, table: &Table, rows: usize) -> Option<Vec<f64>> {
+        let (of, sums) = self.sums.as_ref()?;
+        (Some(*of) == page.index(&self.workings)).then(|| sums.first(table, rows))
+    }
+
+    /// Makes what the page of `view` needs, unless it is there.
+    fn complete(&mut self, view: &View) {
+        let index = view.page.index(&self.workings);
+        let known = self.sums.as_ref().map(|(of, _)| *of);
+        if view.sum_to.is_some() && index.is_some() && known != index {
+            let phase = self.phase(view.page);
+            let table = phase.and_then(|(phase, ..)| table_of(phase));
+            self.sums = index.zip(table.map(Sums::of));
+        }
+        if view.page == Page::Why && self.dip.is_none() {
+            self.dip = Dip::of(&self.scenario, self.step);
+        }
+    }
+}
+
+/// The table of `phase` whose rows are added up: its first, if it has rows.
+pub fn table_of(phase: &Phase) -> Option<&Table> {
+    let mut values = phase.quantities.iter().map(|quantity| &quantity.value);
+    let first = values.find_map(|value| match value {
+        Value::Table(table) => Some(table),
+        _ => None,
+    });
+    first.filter(|table| !table.points.is_empty())
+}
+
+#[derive(Default)]
+pub struct StepPane {
+    shown: Option<StepWorkings>,
+}
+
+impl StepPane {
+    /// The time step that is taken apart; `None` at step 0, and while the pane is not shown.
+    pub fn shown(&self) -> Option<&StepWorkings> {
+        self.shown.as_ref()
+    }
+
+    /// Takes the present step apart where the pane is shown.
+    pub(super) fn read(&mut self, player: &mut Player, view: &View) {
+        player.keeps_workings = view.shows_step();
+        let now = player.run().simulation().now();
+        let (number, scenario) = (now.number(), Arc::clone(now.scenario()));
+        let is_large = scenario.body.mechanics.points().len() > MOST_POINTS_MOVING;
+        let is_known = |known: &StepWorkings| {
+            known.step == number && Arc::ptr_eq(&known.scenario, player.run().scenario())
+        };
+        if !player.keeps_workings || number == 0 || (is_large && player.is_moving()) {
+            self.shown = None;
+        } else if !self.shown.as_ref().is_some_and(is_known) {
+            self.shown = StepWorkings::of(player);
+        }
+        if player.keeps_workings {
+            player.playback.keep_workings(false);
+        }
+        if let Some(shown) = &mut self.shown {
+            shown.complete(view);
+        }
+    }
+
+    /// Refuses a page that names a phase which the scheme of the present step does not have.
+    pub(super) fn may_show(&self, page: Page, player: &Player) -> Result<(), String> {
+        let (Page::Named(name), Some(shown)) = (page, &self.shown) else {
+            return Ok(());
+        };
+        let phases = shown.workings.phases();
+        let mut names: Vec<_> = phases.map(|phase| phase.name).collect();
+        if names.contains(&name) {
+            return Ok(());
+        }
+        names.dedup();
+        let scheme = player.run().simulation().now().motion().scheme.name;
+        let names = names.join(", ");
+        Err(format!("{scheme} has no phase {name}: it has {names}"))
+    }
+
+    /// The commands that go `times` phases forward or back. The first phase of the next step follows the last phase of
+    /// a step.
+    pub fn other_phase(
+        &self,
+        times: i32,
+        view: &View,
+        player: &Player,
+    ) -> Result<Vec<Command>, String> {
+        let first = Command::look("phase", Page::default());
+        if player.is_moving() {
+            return Ok(vec![Command::Pause]);
+        }
+        let here = player.playback.step_number();
+        let Some(shown) = &self.shown else {
+            return if times > 0 {
+                Ok(vec![Command::Step(1), first])
+            } else {
+                Err("the run begins here: . takes the first time step".to_owned())
+            };
+        };
+        let count = shown.workings.phases().count().max(1) as i64;
+        let at = match view.page.index(&shown.workings) {
+            Some(index) => index as i64,
+            None if times > 0 => count - 1,
+            None => count,
+        };
+        let target = at + i64::from(times);
+        let (steps, index) = (target.div_euclid(count), target.rem_euclid(count));
+        let page = match (steps, index) {
+            (..0, index) if index == count - 1 => Page::Last,
+            _ => Page::Number(index as usize + 1),
+        };
+        if steps == 0 {
+            return Ok(vec![Command::look("phase", page)]);
+        }
+        if steps < 0 && steps.unsigned_abs() >= here {
+            return Ok(vec![Command::GoTo(Place::Start), first]);
+        }
+        Ok(vec![Command::Step(steps), Command::look("phase", page)])
+    }
+
+    /// The command that adds up more rows of the table, or fewer. Beyond either end all rows are added up.
+    pub(super) fn other_sum(
+        &self,
+        direction: Direction,
+        times: i32,
+        view: &View,
+    ) -> Result<Command, String> {
+        let phase = self.shown.as_ref().and_then(|shown| shown.phase(view.page));
+        let Some(table) = phase.and_then(|(phase, ..)| table_of(phase)) else {
+            return Err("no table here: . and , go through the phases".to_owned());
+        };
+        let all = table.points.len() as i64;
+        if matches!(direction, Direction::Left | Direction::Right) {
+            return Err("Up and Down add up the table; . and , go by phase".to_owned());
+        }
+        let rows = direction.rows(PAGE) as i64 * i64::from(times);
+        let now = match view.sum_to {
+            Some(now) => (now as i64).min(all),
+            None if rows > 0 => 0,
+            None => all,
+        };
+        let next = now + rows;
+        Ok(if (1..=all).contains(&next) {
+            Command::look("sum_to", next)
+        } else {
+            Command::look("sum_to", ALL_ROWS)
+        })
+    }
+}
+
+impl View {
+    /// The command that shows why the axle goes sideways, or the first phase again.
+    pub fn why_toggled(&self) -> Command {
+        let page = match self.page {
+            Page::Why => self.page_before,
+            _ => Page::Why,
+        };
+        Command::look("phase", page)
+    }
+
+    /// The commands that show the step pane beside another one, or take it away.
+    pub(super) fn step_toggled(&self) -> Vec<Command> {
+        const BESIDE: [Pane; 2] = [Pane::THREE_D, Pane::STEP];
+        let mut commands = Vec::new();
+        if self.filled {
+            commands.push(Command::Fill(None));
+        }
+        if self.shown.contains(&Pane::STEP) == self.shows_step() {
+            let mut panes = self.shown.clone();
+            panes.retain(|pane| *pane != Pane::STEP && self.shown != BESIDE);
+            if self.shown.is_empty() {
+                panes = BESIDE.to_vec();
+            } else if !self.shown.contains(&Pane::STEP) {
+                panes.push(Pane::STEP);
+            }
+            commands.push(Command::look("show", panes));
+        }
+        commands
+    }
+}

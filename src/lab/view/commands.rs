@@ -1,0 +1,261 @@
+//! The commands that change how the run is looked at, and those that the keys of its panes mean.
+
+use super::{Pane, View};
+use crate::lab::action::{Direction, signed};
+use crate::lab::answer::{Answer, Done};
+use crate::lab::command::{Command, CursorTo, MOST_MAGNIFIED, Place};
+use crate::lab::player::Player;
+use crate::lab::step_pane::StepPane;
+use crate::playback::camera::Zoom;
+use crate::playback::lookup;
+use crate::playback::recording::Curve;
+use crate::playback::strip::Strip;
+use crate::run::Simulation;
+use crate::scenario::screen::AUTO;
+use toml::Table;
+
+/// The share of the window by which a key moves the cursor, and by which it moves the window.
+const CURSOR_SHARE: f64 = 0.02;
+const PAN_SHARE: f64 = 0.5;
+/// What is said of residuals that are shown, and that are refused.
+const RESIDUALS: &str = "measured less run, where something was measured; m shows both again";
+const NO_DATA: &str = "there are no measured data beside the run: gyrolab --measured FILE";
+const TURN_DEG: f64 = 10.0;
+
+impl View {
+    /// Carries out what changes how the run is looked at; `None` for a command that does not.
+    pub(in crate::lab) fn carry_out(
+        &mut self,
+        command: &Command,
+        player: &Player,
+        step_pane: &StepPane,
+    ) -> Option<Answer> {
+        Some(match command {
+            Command::Since(since_s) => Ok(self.set_since(*since_s)),
+            Command::Magnify(times) => Ok(self.magnify(*times)),
+            Command::Cursor(to) => self.set_cursor(*to, player),
+            Command::Fill(pane) => {
+                self.fill(*pane);
+                Ok(Done::SILENT)
+            }
+            Command::PointAt(pane) => {
+                self.pointed_at = *pane;
+                Ok(Done::SILENT)
+            }
+            Command::Look(patch) => self.look(patch, player, step_pane),
+            _ => return None,
+        })
+    }
+
+    /// Shows the run as `patch`, keys of `[view]` and their values, says.
+    fn look(&mut self, patch: &Table, player: &Player, step_pane: &StepPane) -> Answer {
+        let look = self.look.patched(patch)?;
+        let least_s = 2.0 * player.motion().time_step_s;
+        let short = |what| Err(format!("the {what} two time steps at least: {least_s} s").into());
+        let mut said = None;
+        for key in patch.keys() {
+            said = match key.as_str() {
+                "window_s" if look.window_s < least_s => return short("traces show"),
+                "window_s" => Some(format!(
+                    "the traces show {} s; Home shows the usual time",
+                    look.window_s
+                )),
+                "detail_s" if look.detail_s < Some(least_s) => return short("strip shows"),
+                "detail_s" => look
+                    .detail_s
+                    .map(|detail_s| format!("the strip of the fast motion shows {detail_s} s")),
+                "detail_of" => Some(match look.detail_of {
+                    Some(curve) => format!("the upper strip shows {}", curve.name()),
+                    None => "the upper strip shows what swings: the tilt, or x".to_owned(),
+                }),
+                "phase" => {
+                    step_pane.may_show(look.page, player)?;
+                    None
+                }
+                "residuals" if !self.measured => return Err(NO_DATA.into()),
+                "residuals" if look.residuals => Some(RESIDUALS.to_owned()),
+                "residuals" => Some("measured values and the run".to_owned()),
+                "bare" if look.bare => Some("a bare screen: c brings the rest back".to_owned()),
+                _ => None,
+            };
+        }
+        self.take(look);
+        Ok(Done::saying_any(said))
+    }
+
+    fn set_since(&mut self, since_s: Option<f64>) -> Done {
+        self.since_s = since_s;
+        Done::saying(match since_s {
+            Some(since_s) => format!("the traces begin at {since_s} s; Home shows the run again"),
+            None => "the traces follow the run".to_owned(),
+        })
+    }
+
+    fn magnify(&mut self, times: f64) -> Done {
+        self.magnified = times;
+        Done::saying(if times > 1.0 {
+            format!("values are magnified {times} times; Home shows all of them again")
+        } else {
+            "values are shown in full".to_owned()
+        })
+    }
+
+    fn set_cursor(&mut self, to: CursorTo, player: &Player) -> Answer {
+        let run = player.run();
+        let here = self.cursor_or_here(player);
+        let turn = |forward| {
+            let found = lookup::turn(run, here, forward);
+            found.map(Some).map_err(|missing| missing.to_string())
+        };
+        let step = match to {
+            CursorTo::Nowhere => None,
+            CursorTo::Place(Place::End) => Some(run.furthest()),
+            CursorTo::Place(place) => Some(player.step_of(place)?),
+            CursorTo::NextTurn => turn(true)?,
+            CursorTo::TurnBefore => turn(false)?,
+        };
+        let step = step.map(|step| step.min(run.furthest()));
+        if let Some(step) = step {
+            let sample = lookup::sample(run, step).map_err(|missing| missing.to_string())?;
+            let (begin_s, window_s) = (self.begin_s(player), self.window_s);
+            if !(begin_s..=begin_s + window_s).contains(&sample.time_s) {
+                self.since_s = Some((sample.time_s - 0.5 * window_s).max(0.0));
+            }
+        }
+        self.cursor = step;
+        Ok(Done::SILENT)
+    }
+
+    /// Leaves the cursor at its time where the run of `player` has gone over to another scenario: that may be another step.
+    pub(in crate::lab) fn keep_cursor(&mut self, player: &Player) {
+        if let (Some(_), Some(cursor)) = (self.cursor, player.cursor()) {
+            self.cursor = Some(Simulation::step_at(player.run().scenario(), cursor.time_s));
+        }
+    }
+
+    /// Turns the camera so that the axle is seen aslant, unless its direction was chosen. A moving picture is left as it is:
+    /// the motion shows where the axle points.
+    pub(in crate::lab) fn turn_camera(&mut self, player: &Player) {
+        let playback = &player.playback;
+        let is_still = !playback.is_running() || playback.step_number() == 0;
+        if is_still && self.look.camera.is_none() {
+            self.camera = self.camera.aside_of(&player.reading.state.axle());
+        }
+    }
+
+    fn cursor_or_here(&self, player: &Player) -> u64 {
+        self.cursor.unwrap_or(player.playback.step_number())
+    }
+
+    /// The time at the left edge of the traces, s.
+    fn begin_s(&self, player: &Player) -> f64 {
+        let (now_s, window_s) = (player.run().now().time_s, self.window_s);
+        let following = || Strip::following(now_s, window_s, 1).begin_s;
+        self.since_s.unwrap_or_else(following)
+    }
+
+    /// The command that shows twice the time in the traces (`wider`), or half of it; where less than two time steps would
+    /// remain, which time is shown.
+    pub fn other_window(&self, wider: bool, player: &Player) -> Result<Command, String> {
+        let time_step_s = player.run().simulation().motion().time_step_s;
+        let window_s = self.window_s * if wider { 2.0 } else { 0.5 };
+        if window_s >= 2.0 * time_step_s && window_s.is_finite() {
+            Ok(Command::look("window_s", window_s))
+        } else {
+            Err(format!("the traces show {} s", self.window_s))
+        }
+    }
+
+    /// The command that shows another curve in the strip of the fast motion than it shows now.
+    pub(in crate::lab) fn other_detail(
+        &self,
+        direction: Direction,
+        times: i32,
+        player: &Player,
+    ) -> Command {
+        let shown = self.detail_of.unwrap_or(player.detail().curve);
+        let curves = [Curve::X, Curve::Y, Curve::Z, Curve::Tilt];
+        let now = curves.iter().position(|curve| *curve == shown).unwrap_or(0) as i32;
+        let by = match direction {
+            Direction::Up | Direction::PageUp => -times,
+            _ => times,
+        };
+        let next = (now + by).rem_euclid(curves.len() as i32) as usize;
+        Command::look("detail_of", curves[next])
+    }
+
+    pub(in crate::lab) fn moved_cursor(&self, fiftieths: i32, player: &Player) -> Command {
+        let steps = CURSOR_SHARE * self.window_s / player.motion().time_step_s;
+        self.stepped_cursor(steps.round().max(1.0) as i64 * i64::from(fiftieths), player)
+    }
+
+    pub fn stepped_cursor(&self, steps: i64, player: &Player) -> Command {
+        let step = self.cursor_or_here(player).saturating_add_signed(steps);
+        Command::Cursor(CursorTo::Place(Place::Step(step)))
+    }
+
+    /// The command that moves the window to later times, `times` halves of its length, or to earlier ones.
+    pub fn panned(&self, times: i32, player: &Player) -> Command {
+        let by_s = PAN_SHARE * self.window_s * f64::from(times);
+        Command::Since(Some((self.begin_s(player) + by_s).max(0.0)))
+    }
+
+    /// The command that doubles the magnification `notches` times, or halves it.
+    pub fn other_magnification(&self, notches: i32) -> Command {
+        let times = self.magnified * 2_f64.powi(notches);
+        Command::Magnify(times.clamp(1.0, MOST_MAGNIFIED))
+    }
+
+    /// The commands that show the run again, after the time or the values were chosen by hand.
+    pub fn whole(&self, player: &Player) -> Vec<Command> {
+        let usual_s = self.usual_window_s(player.run().scenario());
+        vec![
+            Command::look("detail_of", AUTO),
+            Command::Cursor(CursorTo::Nowhere),
+            Command::Magnify(1.0),
+            Command::look("window_s", usual_s),
+            Command::Since(None),
+        ]
+    }
+
+    /// The command that shows the round picture in focus `rungs` larger.
+    pub fn other_zoom(&self, rungs: i32) -> Result<Command, String> {
+        let now = match self.focus {
+            Pane::THREE_D => self.zoom.three_d,
+            _ => self.zoom.above,
+        };
+        match Zoom::shifted(now, rungs) {
+            Some(next) => self.zoom_to(next),
+            None if rungs > 0 => Err("this is the largest; Z makes it smaller".to_owned()),
+            None => Err("this is the smallest; z makes it larger".to_owned()),
+        }
+    }
+
+    /// The command that shows the round picture in focus `factor` times as large as the whole.
+    pub fn zoom_to(&self, factor: f64) -> Result<Command, String> {
+        let mut zoom = self.zoom;
+        match self.focus {
+            Pane::FROM_ABOVE => zoom.above = factor,
+            Pane::THREE_D => zoom.three_d = factor,
+            _ => return Err("the view from above and the 3-D view are zoomed: Tab".to_owned()),
+        }
+        Ok(Command::look("zoom", zoom))
+    }
+
+    /// The command that turns the camera as an arrow key does that is pressed `times` times.
+    pub(in crate::lab) fn turned(&self, direction: Direction, times: i32) -> Command {
+        let degrees = f64::from(signed(direction, times)) * TURN_DEG;
+        let mut camera = self.camera;
+        match direction {
+            Direction::Left | Direction::Right => camera.turn(degrees, 0.0),
+            Direction::Up | Direction::PageUp => camera.turn(0.0, degrees),
+            Direction::Down | Direction::PageDown => camera.turn(0.0, -degrees),
+        }
+        Command::look("camera", camera)
+    }
+
+    /// The command that fills the screen with the pane in focus, or shows all panes again.
+    pub fn fill_toggled(&self) -> Command {
+        Command::Fill((!self.filled).then_some(self.focus))
+    }
+}

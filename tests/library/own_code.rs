@@ -1,0 +1,276 @@
+//! Own programs of the report's scheme: each slip is named, right programs are not accused, broken files are refused.
+//!
+//! `tests/own_code` holds the files, and `program.py`, written apart from gyrolab, which made them.
+
+use crate::support::ground::names;
+use crate::support::scenarios::preset;
+use crate::support::words::has_all;
+use gyrolab::own_code::{self, Rows, Verdict, rows};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/own_code")
+        .join(name)
+}
+
+/// The names of the files of a folder without their ends, and their texts.
+fn files(name: &str) -> Vec<(String, String)> {
+    let folder = folder(name);
+    let all = names(&folder).into_iter();
+    let all: Vec<_> = all
+        .map(|file| {
+            let text = fs::read_to_string(folder.join(&file)).unwrap();
+            (file.trim_end_matches(".csv").to_owned(), text)
+        })
+        .collect();
+    assert!(all.len() >= 10, "{name}: {}", all.len());
+    all
+}
+
+fn read(text: &str, map: &str, every: Option<u64>, dt: f64) -> Result<Rows, String> {
+    let pairs = map.split(',').filter_map(|pair| pair.split_once('='));
+    let map: Vec<_> = pairs
+        .map(|(own, ours)| (own.to_owned(), ours.to_owned()))
+        .collect();
+    rows::read(text, &map, every, dt).map_err(|problems| problems.of("mine.csv").to_string())
+}
+
+fn judged(text: &str, against: &str, sets: &[&str]) -> Verdict {
+    let scenario = Arc::new(preset(against, sets));
+    let rows = read(text, "", None, scenario.motion.time_step_s).unwrap();
+    own_code::compare(&rows, against, &scenario, &|| true).unwrap()
+}
+
+/// What the slips of a file must be: those in its name.
+fn named(file: &str) -> Vec<&str> {
+    file.split('+')
+        .map(|slip| slip.split('_').next().unwrap())
+        .collect()
+}
+
+/// Slips that make the same rows in a scenario.
+const ALIKE: &[(&str, &str, &[&str])] = &[(
+    "method-1",
+    "no-gravity",
+    &["no-gravity", "L-kept", "L-turned"],
+)];
+
+#[test]
+fn every_slip_is_named_alone() {
+    for scenario in ["every-slip", "method-1", "method-2", "wobble-push"] {
+        for (file, text) in files(scenario) {
+            let verdict = judged(&text, scenario, &[]);
+            let alike = ALIKE
+                .iter()
+                .find(|(of, slip, _)| *of == scenario && *slip == file);
+            let expected = match alike {
+                Some((.., slips)) => slips.iter().map(|slip| vec![*slip]).collect(),
+                None => vec![named(&file)],
+            };
+            assert!(!verdict.agrees, "{scenario}/{file}");
+            assert_eq!(
+                verdict.slips, expected,
+                "{scenario}/{file}: {:?}",
+                verdict.lines
+            );
+        }
+    }
+}
+
+#[test]
+fn pairs_of_slips_are_named() {
+    let files = files("pairs");
+    assert_eq!(files.len(), 30);
+    for (file, text) in files {
+        let verdict = judged(&text, "every-slip", &[]);
+        let slips = verdict.slips.iter().map(|slips| {
+            let mut slips = slips.clone();
+            slips.sort_unstable();
+            slips
+        });
+        let mut expected = named(&file);
+        expected.sort_unstable();
+        assert_eq!(
+            slips.collect::<Vec<_>>(),
+            [expected],
+            "{file}: {:?}",
+            verdict.lines
+        );
+    }
+}
+
+#[test]
+fn right_programs_are_not_accused_whatever_their_digits() {
+    for (file, text) in files("right") {
+        let (scenario, kind) = file.rsplit_once('-').unwrap();
+        let verdict = judged(&text, scenario, &[]);
+        let precision = if kind == "single" { "single" } else { "double" };
+        assert!(
+            verdict.agrees && verdict.slips.is_empty(),
+            "{file}: {:?}",
+            verdict.lines
+        );
+        assert_eq!((verdict.precision, verdict.rows), (precision, 51), "{file}");
+        if kind == "17g" && scenario == "every-slip" {
+            assert!(verdict.unseen.is_empty(), "{:?}", verdict.unseen);
+        }
+        if kind == "17g" && scenario == "method-1" {
+            let hidden = [
+                "inertia-kept",
+                "inertia-diagonal",
+                "tilt-in-radians",
+                "push-late",
+            ];
+            assert!(
+                hidden.iter().all(|slip| verdict.unseen.contains(slip)),
+                "{:?}",
+                verdict.unseen
+            );
+        }
+    }
+}
+
+#[test]
+fn what_no_slip_explains_is_said() {
+    let text = fs::read_to_string(folder("right/every-slip-17g.csv")).unwrap();
+    for set in [
+        "push.0.force_N.2=-99",
+        "body.rim.point_mass_kg=0.51",
+        "start.momentum_Js.0=4",
+    ] {
+        let verdict = judged(&text, "every-slip", &[set]);
+        assert!(
+            !verdict.agrees && verdict.slips.is_empty(),
+            "{set}: {:?}",
+            verdict.slips
+        );
+        has_all(&verdict.lines.join("\n"), ["None of", "nor two together"]);
+    }
+}
+
+/// A file is read in whatever way it is printed, and may lack its first row or have it twice.
+#[test]
+fn the_same_rows_agree_however_they_are_printed() {
+    let text = fs::read_to_string(folder("right/every-slip-10g.csv")).unwrap();
+    let (names, rows) = text.split_once('\n').unwrap();
+    let parted =
+        |text: &str, separator: &str, point: &str| text.replace(',', separator).replace('.', point);
+    let by_number = "1=step,2=t_s,3=x_m,4=y_m,5=z_m,6=Lx_Js,7=Ly_Js,8=Lz_Js";
+    let foreign = "n, time, X, Y, Z, LX, LY, LZ";
+    let by_name = "n=step,time=t_s,X=x_m,Y=y_m,Z=z_m,LX=Lx_Js,LY=Ly_Js,LZ=Lz_Js";
+    for (text, map, offset) in [
+        (text.clone(), "", 0),
+        (parted(&text, ";", ","), "", 0),
+        (parted(&text, "\t", ","), "", 0),
+        (parted(&text, "   ", "."), "", 0),
+        (parted(rows, "  ", ","), by_number, 0),
+        (rows.replace(',', ", "), by_number, 0),
+        (format!("{foreign}\n{rows}"), by_name, 0),
+        (format!("# {names}\n{rows}"), by_number, 0),
+        (
+            rows.split_once('\n').unwrap().1.to_owned(),
+            "3=x_m,4=y_m",
+            1,
+        ),
+        (
+            format!("{}\n{rows}", rows.split_once('\n').unwrap().0),
+            "3=x_m,4=y_m,8=Lz_Js",
+            -1,
+        ),
+    ] {
+        let scenario = Arc::new(preset("every-slip", &[]));
+        let rows = read(&text, map, Some(40), scenario.motion.time_step_s).unwrap();
+        let verdict = own_code::compare(&rows, "every-slip", &scenario, &|| true).unwrap();
+        assert!(
+            verdict.agrees && verdict.rows >= 50,
+            "{map}: {:?}",
+            verdict.lines
+        );
+        assert_eq!(verdict.offset, offset, "{text:.200}");
+    }
+}
+
+#[test]
+fn broken_files_are_refused_with_line_and_remedy() {
+    for (text, map, told) in [
+        ("", "", ["mine.csv", "has no columns"]),
+        ("step,x_m\n", "", ["mine.csv", "has no rows"]),
+        ("1,2\n3,4\n", "", ["no line of names", "--map"]),
+        ("a,b\n1,2\n", "", ["none of the columns", "--map a=x_m"]),
+        (
+            "a,b\n1,2\n",
+            "c=x_m",
+            ["--map c=x_m", "is no column of the file"],
+        ),
+        (
+            "a,b\n1,2\n",
+            "3=x_m",
+            ["--map 3=x_m", "is no column of the file"],
+        ),
+        (
+            "a,b\n1,2\n",
+            "a=X",
+            ["--map a=X", "is no column that is read here"],
+        ),
+        (
+            "x_m,x_m\n1,2\n",
+            "",
+            ["mine.csv:1: x_m", "leave one of them out"],
+        ),
+        (
+            "step,x_m\n0,1\n1,2,3\n",
+            "",
+            ["mine.csv:3", "number of cells: 3, of columns: 2"],
+        ),
+        (
+            "step,x_m\n0,1\n1,high\n",
+            "",
+            ["mine.csv:3: x_m (high)", "must be a number"],
+        ),
+        (
+            "step,x_m\n0,1\n1,\n",
+            "",
+            ["mine.csv:3: x_m", "write a number in every row"],
+        ),
+        (
+            "step,x_m\n0,NaN\n",
+            "",
+            ["mine.csv:2: x_m", "nothing to compare"],
+        ),
+        (
+            "step,x_m\n0,1\n0.5,1\n",
+            "",
+            ["mine.csv:3: step (0.5)", "the number of a step"],
+        ),
+        (
+            "step,x_m\n1,1\n0,1\n",
+            "",
+            ["mine.csv:3: step (0)", "greater than in the row above"],
+        ),
+        (
+            "step,x_m\n1e12,1\n",
+            "",
+            ["mine.csv:2: step", "the number of a step"],
+        ),
+        (
+            "t_s,x_m\n0,1\n0.0015,1\n0.0301,1\n",
+            "",
+            ["mine.csv:3: t_s (0.0015)", "no time of a step"],
+        ),
+    ] {
+        let refused = read(text, map, None, 1e-3).expect_err(text);
+        has_all(&refused, told);
+    }
+}
+
+/// The rows up to the first number that is not finite are compared, and the file does not agree.
+#[test]
+fn a_run_that_ends_in_nan_does_not_agree() {
+    let text = fs::read_to_string(folder("right/method-1-17g.csv")).unwrap();
+    let verdict = judged(&(text + "2040,2.04,NaN,1,1,1,1,1\n"), "method-1", &[]);
+    assert!(!verdict.agrees && verdict.slips.is_empty());
+    has_all(&verdict.lines.join("\n"), ["not finite", "line 53"]);
+}
