@@ -361,14 +361,31 @@ impl Lab {
     }
 
     /// Takes the run to `step` before returning, as long as `go_on` says so.
+    ///
+    /// The strip of the fast motion keeps its window from one reading of the numbers to the next. They are read after 1, 2, 4
+    /// and so on steps, so that the picture does not depend on how fast the steps are taken.
     pub fn begin_at(
         &mut self,
         step: u64,
         go_on: impl Fn(u64, u64) -> ControlFlow<()>,
     ) -> Result<(), NotFinite> {
-        let arrived = self.player.playback.begin_at_while(step, go_on);
-        self.arrive();
-        arrived
+        let mut part = 1_u64;
+        loop {
+            let next = self
+                .player
+                .playback
+                .step_number()
+                .saturating_add(part)
+                .min(step);
+            let playback = &mut self.player.playback;
+            let arrived = playback.begin_at_while(next, |reached, _| go_on(reached, step));
+            self.arrive();
+            let reached = self.player.playback.step_number();
+            if arrived.is_err() || reached >= step || reached < next {
+                return arrived;
+            }
+            part = part.saturating_mul(2);
+        }
     }
 
     /// Brings exact motion, measured data and numbers up to the present step.

@@ -72,8 +72,7 @@ impl<A: Stepper, B: Stepper> Run for Twin<A, B> {
         let others = self.1.as_ref().map_or(values, Stepper::row);
         let has_parted = |place: usize| {
             let off = (values[place] - others[place]).abs();
-            // Not where one is no number, either.
-            !(off <= PARTED * within(place, values[place]))
+            off.is_nan() || off > PARTED * within(place, values[place])
         };
         let slack = [0.0; 6];
         (!(0..6).any(has_parted)).then_some(At { values, slack })

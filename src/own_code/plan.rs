@@ -99,11 +99,13 @@ impl Plan {
             start.tilt_deg.to_radians()
         };
         let (axis, points_alone) = changes.tilt_axis.unwrap_or(([1.0, 0.0, 0.0], false));
-        let about = |axis: [f64; 3]| match start.is_tilt {
-            true if changes.tilt_axis.is_some() || changes.tilt_in_radians => {
+        let is_changed = changes.tilt_axis.is_some() || changes.tilt_in_radians;
+        let about = |axis: [f64; 3]| {
+            if start.is_tilt && is_changed {
                 rotation::about(&Vector3::from(axis), angle)
+            } else {
+                start.orientation
             }
-            _ => start.orientation,
         };
         let turned = about(axis);
         let of_momentum = if points_alone {

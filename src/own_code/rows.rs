@@ -136,7 +136,7 @@ pub fn read(
     let mut column = |name: &'static str| numbers(&cells, name, &mut found);
     let (step, time) = (column(STEP), column(TIME));
     let columns = COLUMNS.iter().enumerate();
-    let columns = columns.filter_map(|(place, name)| Some((place, column(*name)?)));
+    let columns = columns.filter_map(|(place, name)| Some((place, column(name)?)));
     let columns: Vec<(usize, Numbers)> = columns.collect();
     found.or(())?;
     if columns.is_empty() {

@@ -90,6 +90,9 @@ pub struct Changes {
     pub(super) time_step_s: Option<f64>,
 }
 
+/// What is special about a variant of a slip, and the change that it makes.
+type Variant = (&'static str, fn(&mut Changes));
+
 /// One thing that goes wrong in programs of the report's step.
 #[derive(Debug)]
 pub struct Slip {
@@ -97,15 +100,14 @@ pub struct Slip {
     /// What the program does, and what the report does: two sentences without their ends.
     pub program: &'static str,
     pub report: &'static str,
-    /// Its variants: what is special about each, and the change.
-    pub variants: &'static [(&'static str, fn(&mut Changes))],
+    pub variants: &'static [Variant],
 }
 
 const fn slip(
     name: &'static str,
     program: &'static str,
     report: &'static str,
-    variants: &'static [(&'static str, fn(&mut Changes))],
+    variants: &'static [Variant],
 ) -> Slip {
     Slip {
         name,
