@@ -76,8 +76,13 @@ fn whole(gyrolab: &Command) -> anyhow::Result<String> {
     Ok(text)
 }
 
+/// The short help of a command and its examples.
 fn help(command: &Command) -> String {
-    command.clone().render_long_help().to_string()
+    let text = command.clone().render_help().to_string();
+    match command.get_after_long_help() {
+        Some(examples) => format!("{text}\n{examples}\n"),
+        None => text,
+    }
 }
 
 fn in_plain(sections: &[Section]) -> String {
@@ -329,15 +334,13 @@ fn examples_of(name: &str) -> Option<&'static str> {
     part(EXAMPLES, name)
 }
 
-/// `command` with its examples below its help and below that of its commands, behind what a command says there itself.
+/// `command` with its examples below its long help, behind what it says there itself, and so for its commands.
 pub(super) fn with_examples(command: Command) -> Command {
     let Some(examples) = examples_of(command.get_name()) else {
         return command.mut_subcommands(with_examples);
     };
     let own = command.get_after_help().map(|own| format!("{own}\n\n"));
-    let mut text = own.unwrap_or_default() + "Examples:";
-    for line in examples.lines() {
-        text = text + "\n  " + line;
-    }
-    command.after_help(text).mut_subcommands(with_examples)
+    let lines = examples.lines().map(|line| format!("\n  {line}"));
+    let text = own.unwrap_or_default() + "Examples:" + &lines.collect::<String>();
+    command.after_long_help(text).mut_subcommands(with_examples)
 }
