@@ -254,14 +254,17 @@ fn fixed(title: &'static str) -> Section {
     (title, text.unwrap_or_default().to_owned())
 }
 
-/// Each term on a line, and what it means indented below.
+/// Each term and what it means beside it; a long term has its meaning below it.
 fn terms(rows: &[(String, &str)]) -> String {
-    const INDENT: &str = "      ";
+    const INDENT: usize = 16;
     let row = |(term, meaning): &(String, &str)| {
-        let meaning = wrapped(meaning, WIDTH - INDENT.len());
-        let meaning = meaning.join(&format!("\n{INDENT}"));
-        let term = wrapped(term, WIDTH - 4).join("\n    ");
-        format!("  {term}\n{INDENT}{meaning}\n")
+        let meaning = wrapped(meaning, WIDTH - INDENT);
+        let meaning = meaning.join(&format!("\n{:INDENT$}", ""));
+        let begin = match wrapped(term, WIDTH - 4).join("\n    ") {
+            short if columns(&short) + 4 <= INDENT => format!("  {short:<14}"),
+            long => format!("  {long}\n{:INDENT$}", ""),
+        };
+        format!("{begin}{meaning}\n")
     };
     rows.iter().map(row).collect()
 }
