@@ -155,10 +155,8 @@ fn swing_of(health: &Health, nutation: &Nutation) -> Vec<(bool, Remark)> {
         Some(Remark::new(text, ratio >= LAG_IS_RIGHT))
     });
     let factor = if let Some(left) = changed {
-        let (verb, percent) = change(nutation);
-        let verb = if verb == "damps" { "damped" } else { "fed" };
         let gone = if left < 1e-3 { ": gone" } else { "" };
-        format!("nutation {verb} by {percent} % a step{gone}")
+        format!("nutation {}{gone}", self::changed(nutation))
     } else {
         format!("nutation ×{} a step", fixed(nutation.multiplier, 4))
     };
@@ -346,8 +344,7 @@ impl Health {
             );
         }
         if let Some(swing) = self.swing.filter(|swing| !swing.is_right()) {
-            let cause = cause_of_swing(self).filter(|_| swing.stretch_s.is_none());
-            let cause = cause.map_or(String::new(), |cause| format!(": {cause}"));
+            let cause = cause_of_swing(self).map_or(String::new(), |cause| format!(": {cause}"));
             return format!(
                 "The traced point holds, and the nutation does not: {swing}{cause}{mend}."
             );
@@ -377,17 +374,22 @@ fn cause_of_swing(health: &Health) -> Option<String> {
     let too_far = nutation.and_then(|nutation| nutation.lag_ratio);
     let too_far = too_far.filter(|ratio| *ratio > LAG_IS_RIGHT);
     if let (Some(nutation), Some(_)) = (nutation, health.changed_nutation()) {
-        Some(changes(&nutation))
+        Some(changed(&nutation))
     } else if let Some(ratio) = too_far {
         let ratio = short(ratio);
-        Some(format!(
-            "the scheme's axle lags behind L {ratio} times too far"
-        ))
+        Some(format!("axle lags L {ratio} times too far"))
     } else {
         let turns = health.turns_per_step;
         let is_far = TAU * turns >= TOO_FAR_RAD;
         is_far.then(|| format!("the body turns {} times a step", short(turns)))
     }
+}
+
+/// What becomes of a nutation: "damped by 0.1 % a step".
+fn changed(nutation: &Nutation) -> String {
+    let (verb, percent) = change(nutation);
+    let verb = if verb == "damps" { "damped" } else { "fed" };
+    format!("{verb} by {percent} % a step")
 }
 
 /// What the scheme does to the nutation.
