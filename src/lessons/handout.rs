@@ -5,10 +5,10 @@
 //! from the screen, and the pages that show what came out have room in the place of their words. Notes are left out, and
 //! so is how a task is done.
 
-use super::lesson::{Asked, Block, Compare, Lesson, Page, Predict, Shown};
+use super::lesson::{Asked, Block, Compare, Lesson, PREDICTION, Page, Predict, Shown, WITH};
 use super::names::{self, Kept};
 use super::play::{GoOn, Walk};
-use super::predictions::{PREDICTION, Place, Tried, WITH};
+use super::predictions::{Place, Tried};
 use crate::lab::Lab;
 use crate::scenario::Problem;
 

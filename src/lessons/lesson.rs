@@ -1,7 +1,6 @@
 //! A lesson as it was read: its pages, and the blocks of each in the order of the file.
 
 use super::names::Kept;
-use super::predictions::{PREDICTION, WITH};
 use super::text::Text;
 use crate::journal::expression::Expression;
 use crate::lab::command::{Command, Placed};
@@ -96,6 +95,10 @@ pub enum Answer {
     Number(f64),
     Choice(String),
 }
+
+/// In the text of a comparison: the prediction, and the number that it is compared with.
+pub(super) const PREDICTION: &str = "prediction";
+pub(super) const WITH: &str = "with";
 
 /// A prediction beside what happened.
 #[derive(Clone, Debug, PartialEq)]
