@@ -159,7 +159,7 @@ fn on_paper(block: &Block, walk: &Walk<'_>) -> Option<String> {
         Block::Compare(compare) => Some(blanked(compare, lab, kept)),
         Block::Check(check) if !check.hint.is_empty() => Some(format!("Hint: {}", check.hint)),
         Block::Shown(Shown { language, text }) => Some(fenced(language, text)),
-        Block::Lab(_) | Block::Task(_) | Block::Check(_) | Block::Notes(_) => None,
+        _ => None,
     }
 }
 

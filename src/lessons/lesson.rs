@@ -142,6 +142,18 @@ impl Lesson {
     }
 }
 
+impl Block {
+    /// The text in it, which may hold numbers of the run.
+    pub fn text(&self) -> Option<&Text> {
+        match self {
+            Self::Text(text) | Self::Notes(text) => Some(text),
+            Self::Predict(predict) => Some(&predict.ask),
+            Self::Compare(compare) => Some(&compare.text),
+            _ => None,
+        }
+    }
+}
+
 impl Page {
     /// What the lab does when the page is opened.
     pub fn lab(&self) -> Option<&Setup> {
@@ -192,18 +204,16 @@ impl Page {
             let mut names = expression.names();
             names.any(|name| !kept.contains_key(name) && ![PREDICTION, WITH].contains(&name))
         };
-        let mut blocks = self.blocks.iter();
-        blocks.any(|block| match block {
-            Block::Text(text) => text.numbers().any(|(_, expression)| is_of_run(expression)),
-            Block::Predict(predict) => {
-                let mut numbers = predict.ask.numbers();
-                numbers.any(|(_, expression)| is_of_run(expression))
-            }
-            Block::Compare(compare) => {
-                let mut numbers = compare.text.numbers().map(|(_, expression)| expression);
-                numbers.any(is_of_run) || compare.with.as_ref().is_some_and(is_of_run)
-            }
-            _ => false,
+        let shown = self.blocks.iter();
+        let mut shown = shown.filter(|block| !matches!(block, Block::Notes(_)));
+        shown.any(|block| {
+            let numbers = block.text().into_iter().flat_map(Text::numbers);
+            let with = match block {
+                Block::Compare(compare) => compare.with.as_ref(),
+                _ => None,
+            };
+            let mut numbers = numbers.map(|(_, expression)| expression).chain(with);
+            numbers.any(is_of_run)
         })
     }
 
