@@ -1,6 +1,6 @@
 //! `gyrolab compare`: its table, its CSV, and how it ends.
 
-use crate::support::ground::{Ground, code, done};
+use crate::support::ground::{Ground, done};
 use crate::support::words::has;
 use std::process::Output;
 

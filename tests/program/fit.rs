@@ -1,6 +1,6 @@
 //! `gyrolab fit`: what it prints, its CSV, its figure, its exit codes, and what it refuses.
 
-use crate::support::ground::{Ground, code, done, refused, stdout};
+use crate::support::ground::{Ground, code, done, stdout};
 use crate::support::words::{has, has_no};
 
 const NUTATION: &str = "fit heidelberg-nutation --in heidelberg --set body.point.0.at_m.2=0 \
