@@ -78,11 +78,11 @@ fn whole(gyrolab: &Command) -> anyhow::Result<String> {
 
 /// The short help of a command and its examples.
 fn help(command: &Command) -> String {
-    let text = command.clone().render_help().to_string();
-    match command.get_after_long_help() {
-        Some(examples) => format!("{text}\n{examples}\n"),
-        None => text,
+    let mut short = command.clone();
+    if let Some(examples) = command.get_after_long_help() {
+        short = short.after_help(examples.clone());
     }
+    short.render_help().to_string()
 }
 
 fn in_plain(sections: &[Section]) -> String {
