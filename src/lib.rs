@@ -35,6 +35,9 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+#[cfg(windows)]
+compile_error!("on Windows gyrolab runs in WSL, or over SSH on another machine: build it there");
+
 pub mod analysis;
 pub mod cli;
 pub mod cores;

@@ -44,7 +44,7 @@ pub(super) struct FigureArgs {
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
     to: Option<f64>,
 
-    /// Draw the exact motion beneath it, as a wide pale line
+    /// Draw the exact motion beside it: thin, or wide and pale beneath a run that covers it
     #[arg(long)]
     exact: bool,
 
