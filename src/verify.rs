@@ -1,7 +1,8 @@
 //! Is a CSV what its header says? What it holds, a run, a sweep, a comparison or a fit, is computed again and held against
-//! the file line by line.
+//! the file line by line; a figure is drawn again.
 
 mod against;
+mod figure;
 
 use crate::analysis::compare::{self, ComparisonRow};
 use crate::analysis::{Monitor, cost};
@@ -21,6 +22,7 @@ use crate::text::advice::unread;
 use crate::text::printable::printable;
 use against::Against;
 pub use against::Difference;
+pub use figure::{Redrawn, redraw};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -125,7 +127,11 @@ fn verified(
     let (rows, difference) = against.end()?;
     let of_header = difference.as_ref().map(|_| "of the run in its header: ");
     notes.extend(verdict.map(|verdict| of_header.unwrap_or_default().to_owned() + &verdict));
-    notes.splice(0..0, other_version(&document));
+    let version = document
+        .table()
+        .get("gyrolab")
+        .and_then(toml::Value::as_str);
+    notes.splice(0..0, version.and_then(other_version));
     Ok(Verified {
         rows,
         difference,
@@ -142,9 +148,8 @@ fn opened(path: &Path) -> Result<(Head, BufReader<File>), Unverified> {
 }
 
 /// Says that another version has written the file.
-fn other_version(document: &Document) -> Option<String> {
+fn other_version(version: &str) -> Option<String> {
     let own = env!("CARGO_PKG_VERSION");
-    let version = document.table().get("gyrolab")?.as_str()?;
     let version = printable(version);
     (version != own)
         .then(|| format!("written by gyrolab {version}, computed again by gyrolab {own}"))

@@ -1,16 +1,20 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{Changes, LengthArgs, ScenarioArgs, positive, scenario_of, time};
-use super::progress::{self, Interrupted, Interruption};
+use super::args::{Changes, LengthArgs, changed, positive, time};
+use super::progress::{self, Interrupted};
 use super::{ended_by, refuse, tell};
 use crate::analysis::cost;
 use crate::data;
+use crate::export::Destination;
 use crate::figure::kind::Kind;
 use crate::figure::labels::Labels;
-use crate::figure::of_runs::{self, Figure, Request, Run};
+use crate::figure::of_runs::{Request, Run};
 use crate::figure::table::Table;
-use crate::figure::{self, Format, PT_PER_MM, of_table};
+use crate::figure::{COLUMN_PT, Format, OfTable, PT_PER_MM, Source, WIDTHS_MM};
+use crate::origin;
 use crate::physics::scheme;
+use crate::scenario::head::is_file;
+use crate::scenario::{Document, Problem, Problems};
 use crate::text::printable::{Shown, printable};
 use anyhow::{bail, ensure};
 use clap::Args;
@@ -22,7 +26,8 @@ use std::sync::Arc;
 
 #[derive(Debug, Args)]
 pub(super) struct FigureArgs {
-    /// Presets' names, or files (.toml or .csv): what gyrolab run takes, or the CSV of compare, of a sweep or of a fit.
+    /// Presets' names, or files: what gyrolab run takes, the CSV of compare, of a sweep or of a fit, or a figure, whose own
+    /// options hold where none is given.
     /// Of compare the slope is told where the error falls evenly over three time steps or more
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<String>,
@@ -52,9 +57,9 @@ pub(super) struct FigureArgs {
     #[arg(long, value_name = "FILE")]
     measured: Option<String>,
 
-    /// Width of the page: 86mm for a column, 178mm for a page
-    #[arg(long, value_name = "MM", default_value = "86mm", value_parser = width)]
-    width: f64,
+    /// Width of the page: 86mm for a column, 178mm for a page [default: 86mm]
+    #[arg(long, value_name = "MM", value_parser = width)]
+    width: Option<f64>,
 
     /// Draw the run by each of these schemes
     #[arg(long, value_name = "A,B", value_delimiter = ',', conflicts_with = "scheme", value_parser = PossibleValuesParser::new(scheme::names()))]
@@ -106,22 +111,23 @@ struct LabelArgs {
 }
 
 impl LabelArgs {
-    fn labels(&self) -> Labels {
-        let log = self.log.as_deref().unwrap_or_default();
-        Labels {
-            title: self.title.clone(),
-            names: self.label.clone(),
-            x: self.x_label.clone(),
-            y: self.y_label.clone(),
-            is_log: ["x", "y"].map(|axis| log.contains(axis)),
-            y_range: self.y_range,
+    /// Writes what is given over `labels`.
+    fn change(&self, labels: &mut Labels) {
+        let given = |list: &Vec<String>| (!list.is_empty()).then(|| list.clone());
+        labels.title = self.title.clone().or(labels.title.take());
+        labels.names = given(&self.label).unwrap_or(std::mem::take(&mut labels.names));
+        labels.x = self.x_label.clone().or(labels.x.take());
+        labels.y = given(&self.y_label).unwrap_or(std::mem::take(&mut labels.y));
+        if let Some(log) = &self.log {
+            labels.is_log = ["x", "y"].map(|axis| log.contains(axis));
         }
+        labels.y_range = self.y_range.or(labels.y_range);
     }
 
-    /// The form in which `output` is written.
-    fn format(&self, output: &Path) -> anyhow::Result<Format> {
+    /// The form in which `output` is written; `had_text` says whether the figure that is drawn again had text as text.
+    fn format(&self, output: &Path, had_text: bool) -> anyhow::Result<Format> {
         match (Format::of(output)?, self.text) {
-            (Format::Svg, true) => Ok(Format::SvgText),
+            (Format::Svg, text) if text || had_text => Ok(Format::SvgText),
             (_, true) => {
                 bail!("--text is for .svg: the words of a .pdf can be selected as they are")
             }
@@ -140,9 +146,6 @@ fn range(text: &str) -> Result<(f64, f64), String> {
     ends.ok_or_else(|| "must be two numbers, the lower one first, such as 0..1".to_owned())
 }
 
-/// The narrowest and the widest page, mm.
-const WIDTHS_MM: (f64, f64) = (30.0, 1000.0);
-
 /// A width in mm: 86mm, 8.6cm or 86.
 fn width(text: &str) -> Result<f64, String> {
     let (number, unit) = match (text.strip_suffix("mm"), text.strip_suffix("cm")) {
@@ -151,22 +154,27 @@ fn width(text: &str) -> Result<f64, String> {
         _ => (text, 1.0),
     };
     let width_mm = number.trim().parse().map(|number: f64| number * unit);
-    let (least, most) = WIDTHS_MM;
     match width_mm {
-        Ok(width_mm) if (least..=most).contains(&width_mm) => Ok(width_mm),
+        Ok(width_mm) if WIDTHS_MM.contains(&width_mm) => Ok(width_mm),
         _ => Err(format!(
-            "must be a width such as 86mm, from {least}mm to {most}mm"
+            "must be a width such as 86mm, from {}mm to {}mm",
+            WIDTHS_MM.start(),
+            WIDTHS_MM.end()
         )),
     }
 }
 
 pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
-    let format = args.labels.format(&args.output)?;
-    let subject = subject(args)?;
+    args.labels.format(&args.output, false)?;
+    let (source, had_text) = source(args)?;
+    let format = args.labels.format(&args.output, had_text)?;
     let (output, interruption) = progress::open_for(&args.output, args.force)?;
-    let figure = drawn(&subject, args, &interruption)?;
-    let bytes = figure::write(&figure.scene, format)?;
-    output.write_and_keep(&bytes)?;
+    for line in said(&source) {
+        tell(format_args!("gyrolab: {line}"));
+    }
+    let figure = source.draw(interruption.meter());
+    let figure = figure.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?;
+    output.write_and_keep(&source.write(&figure.scene, format)?)?;
     interruption.may_act_at_once()?;
     for warning in figure.told() {
         tell(format_args!("gyrolab: {warning}"));
@@ -181,71 +189,141 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     Ok(ended_by(figure.broke.map(anyhow::Error::msg)))
 }
 
-enum Subject {
-    Runs(Vec<Run>, Request),
-    Table(Table),
+/// What is said before the figure is drawn.
+fn said(source: &Source) -> Vec<String> {
+    let mut said = Vec::new();
+    if let Source::Runs(runs, _) = source {
+        for run in runs.iter().filter(|run| run.named.ends_with(".csv")) {
+            said.push(format!(
+                "{}: its {} steps are computed anew from its header",
+                printable(&run.named),
+                run.scenario.steps
+            ));
+        }
+    }
+    for file in source.origin(Format::Svg).left_behind() {
+        said.push(format!(
+            "{}: longer than 1 MB when compressed, it does not travel with the figure: keep it beside",
+            printable(file)
+        ));
+    }
+    said
 }
 
-fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
-    let mut tables = Vec::new();
-    for named in &args.runs {
-        tables.extend(Table::read(Path::new(named))?);
+/// What a RUN of the command line names.
+enum Named {
+    Table(Table),
+    Run(Document),
+    Figure(Source, bool),
+}
+
+fn named(name: &str) -> anyhow::Result<Named> {
+    let path = Path::new(name);
+    if let Some(table) = Table::read(path)? {
+        return Ok(Named::Table(table));
+    }
+    if is_file(name) && !Destination::may_wait(path) {
+        let refused = |rule: String| Problems::one(name, Problem::at("", rule));
+        if let Some(figure) = origin::Figure::open(path).map_err(refused)? {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            let source = Source::of(&figure.origin, folder);
+            let (source, text) = source.map_err(|problems| problems.of(name))?;
+            return Ok(Named::Figure(source, text));
+        }
+    }
+    Ok(Named::Run(Document::open(name)?))
+}
+
+/// What is drawn, and whether it was drawn before with text as text.
+fn source(args: &FigureArgs) -> anyhow::Result<(Source, bool)> {
+    let (mut documents, mut tables) = (Vec::new(), Vec::new());
+    let mut before: Option<(Request, bool)> = None;
+    for name in &args.runs {
+        match named(name)? {
+            Named::Run(document) => documents.push((origin::name_of(name), document)),
+            Named::Table(table) => {
+                let asked = OfTable {
+                    kind: None,
+                    width_pt: COLUMN_PT,
+                    labels: Labels::default(),
+                };
+                tables.push((table, asked, false));
+            }
+            Named::Figure(Source::Table(table, asked), text) => tables.push((table, asked, text)),
+            Named::Figure(Source::Runs(runs, request), text) => {
+                for run in runs {
+                    let document = Document::from_file(&run.named, &run.scenario.file)?;
+                    documents.push((run.named, document));
+                }
+                before.get_or_insert((request, text));
+            }
+        }
     }
     match (tables.pop(), args.runs.len()) {
         (None, _) => {
-            let request = request(args)?;
-            let (runs, named) = (runs(args)?, args.labels.label.len());
+            let (request, text) = before.unwrap_or_default();
+            let mut request = asked(args, request)?;
+            let runs = runs(args, documents)?;
+            if args.labels.label.is_empty() && request.labels.names.len() != runs.len() {
+                request.labels.names.clear(); // those of the figure are of other runs
+            }
+            let named = request.labels.names.len();
             ensure!(
                 named == 0 || named == runs.len(),
                 "--label is given {named} times for {} runs: give it once per run, in order",
                 runs.len()
             );
-            Ok(Subject::Runs(runs, request))
+            Ok((Source::Runs(runs, request), text))
         }
         (Some(_), 2..) => {
             bail!("the table of a comparison, of a sweep or of a fit is drawn alone: give one file")
         }
-        (Some(table), _) => {
-            let is_changed = args.exact
-                || args.from.or(args.to).is_some()
-                || args.measured.is_some()
-                || !args.schemes.is_empty()
-                || !args.labels.label.is_empty()
-                || args.changes.is_some()
-                || args.length.is_some();
-            ensure!(
-                !is_changed,
-                "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --width, --force, --title, --text and those of its axes are for it",
-                args.runs[0]
-            );
-            Ok(Subject::Table(table))
+        (Some((table, mut asked, text)), _) => {
+            refuse_for_table(args)?;
+            asked.kind = args.kind.clone().or(asked.kind);
+            asked.width_pt = args.width.map_or(asked.width_pt, |mm| mm * PT_PER_MM);
+            args.labels.change(&mut asked.labels);
+            Ok((Source::Table(table, asked), text))
         }
     }
 }
 
-fn request(args: &FigureArgs) -> anyhow::Result<Request> {
+fn refuse_for_table(args: &FigureArgs) -> anyhow::Result<()> {
+    let is_changed = args.exact
+        || args.from.or(args.to).is_some()
+        || args.measured.is_some()
+        || !args.schemes.is_empty()
+        || !args.labels.label.is_empty()
+        || args.changes.is_some()
+        || args.length.is_some();
+    ensure!(
+        !is_changed,
+        "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --width, --force, --title, --text and those of its axes are for it",
+        args.runs[0]
+    );
+    Ok(())
+}
+
+/// What is asked for: `before` with what the command line changes in it.
+fn asked(args: &FigureArgs, before: Request) -> anyhow::Result<Request> {
+    let mut request = before;
     let kind = args.kind.as_deref().map(Kind::named).transpose();
     let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
-    let measured = args.measured.as_deref().map(data::open).transpose()?;
-    if let Some(left_out) = measured
-        .as_ref()
-        .and_then(data::Measured::left_out_in_words)
-    {
-        tell(format_args!("gyrolab: {left_out}"));
+    if let Some(name) = &args.measured {
+        let measured = data::open(name)?;
+        if let Some(left_out) = measured.left_out_in_words() {
+            tell(format_args!("gyrolab: {left_out}"));
+        }
+        request.kind = Kind::measured(measured.series()?);
+        request.measured = Some(Arc::new(measured));
     }
-    let usual = match &measured {
-        Some(measured) => Kind::measured(measured.series()?),
-        None => Kind::traces(),
-    };
-    Ok(Request {
-        kind: kind.unwrap_or(usual),
-        from_s: args.from.unwrap_or(0.0),
-        to_s: args.to,
-        exact: args.exact,
-        measured: measured.map(Arc::new),
-        width_pt: args.width * PT_PER_MM,
-        labels: args.labels.labels(),
-    })
+    request.kind = kind.unwrap_or(request.kind);
+    request.from_s = args.from.unwrap_or(request.from_s);
+    request.to_s = args.to.or(request.to_s);
+    request.exact |= args.exact;
+    request.width_pt = args.width.map_or(request.width_pt, |mm| mm * PT_PER_MM);
+    args.labels.change(&mut request.labels);
+    Ok(request)
 }
 
 /// Refuses `--kind` as clap refuses a value.
@@ -255,20 +333,16 @@ fn no_kind(args: &FigureArgs, refusal: &str) -> ! {
     refuse("figure", ErrorKind::ValueValidation, &message)
 }
 
-/// Every run that is named, by every scheme that is.
-fn runs(args: &FigureArgs) -> anyhow::Result<Vec<Run>> {
+/// Every run of `documents`, by every scheme that is named.
+fn runs(args: &FigureArgs, documents: Vec<(String, Document)>) -> anyhow::Result<Vec<Run>> {
     let mut runs = Vec::new();
-    for named in &args.runs {
+    for (named, document) in documents {
         let by_scheme = args.schemes.iter().map(Some);
         let as_it_is = args.schemes.is_empty().then_some(None);
         for scheme in by_scheme.chain(as_it_is) {
             let mut changes = args.changes.clone();
             changes.scheme = scheme.cloned().or(changes.scheme);
-            let scenario = ScenarioArgs {
-                scenario: named.clone(),
-                changes,
-            };
-            let scenario = scenario_of(&scenario, &args.length)?;
+            let scenario = changed(document.clone(), &changes, &args.length)?;
             if let Some(objection) = cost::objection(&scenario).filter(|_| args.exact) {
                 bail!("{named}: {objection}: leave --exact out, or give a shorter --duration");
             }
@@ -279,44 +353,4 @@ fn runs(args: &FigureArgs) -> anyhow::Result<Vec<Run>> {
         }
     }
     Ok(runs)
-}
-
-fn drawn(
-    subject: &Subject,
-    args: &FigureArgs,
-    interruption: &Interruption,
-) -> anyhow::Result<Figure> {
-    let (runs, request) = match subject {
-        Subject::Runs(runs, request) => (runs, request),
-        Subject::Table(table) => return drawn_table(table, args),
-    };
-    for run in runs.iter().filter(|run| run.named.ends_with(".csv")) {
-        tell(format_args!(
-            "gyrolab: {}: its {} steps are computed anew from its header",
-            Shown(Path::new(&run.named)),
-            run.scenario.steps
-        ));
-    }
-    let figure = of_runs::figure(runs, request, interruption.meter());
-    Ok(figure.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?)
-}
-
-fn drawn_table(table: &Table, args: &FigureArgs) -> anyhow::Result<Figure> {
-    let columns = args.kind.iter().flat_map(|kind| kind.split(','));
-    let columns: Vec<_> = columns.map(str::trim).collect();
-    let chart = of_table::chart(table, &columns, args.width * PT_PER_MM);
-    let refused = |refusal| anyhow::anyhow!("{}: {refusal}", args.runs[0]);
-    let mut chart = chart.map_err(refused)?;
-    let labels = args.labels.labels();
-    let hidden = labels.apply(&mut chart).map_err(refused)?;
-    let mut scene = chart.scene();
-    labels.write_title(&mut scene);
-    let mut warnings = of_table::warnings(table, &columns);
-    warnings.extend(hidden);
-    Ok(Figure {
-        scene,
-        warnings,
-        dense: None,
-        broke: None,
-    })
 }

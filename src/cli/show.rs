@@ -14,7 +14,7 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct ShowArgs {
-    /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote [with --do by default: method-2]
+    /// A preset's name, or a file: a scenario, a run file (.toml), a CSV or a figure that gyrolab wrote [with --do by default: method-2]
     #[arg(required_unless_present = "commands")]
     pub(super) scenario: Option<String>,
 

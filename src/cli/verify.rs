@@ -1,4 +1,4 @@
-//! `gyrolab verify`: whether a CSV is what its header says, or whether somebody's own program agrees with the scheme.
+//! `gyrolab verify`: whether a CSV or a figure is what the run in it gives, or whether somebody's own program agrees with the scheme.
 
 use super::args::{one_or_more, setting};
 use super::progress::{self, Interrupted, Interruption};
@@ -7,9 +7,10 @@ use crate::own_code::{self, Uncompared, Verdict};
 use crate::scenario::csv::{self, Renaming, renaming};
 use crate::scenario::{Document, Problems, Scenario};
 use crate::text::printable::{Shown, printable_lines};
-use crate::verify::{Unverified, Verified, verify as verified};
+use crate::verify::{Unverified, redraw, verify as verified};
 use anyhow::bail;
 use clap::Args;
+use std::fmt::Display;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -17,7 +18,7 @@ use std::sync::Arc;
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
-    /// CSVs that gyrolab run, compare, sweep, fit or the lab wrote; with --against what your own program wrote
+    /// CSVs and figures that gyrolab wrote, or folders of them such as a write-up; with --against what your own program wrote
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 
@@ -53,7 +54,7 @@ pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
     for file in &args.files {
         let result = match &scenario {
             Some(scenario) => own(file, args, scenario, &interruption),
-            None => computed_again(file, &interruption),
+            None => made_again(file, &interruption),
         };
         match result {
             Ok(is_good) if is_good => {}
@@ -68,11 +69,30 @@ pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
     Ok(code)
 }
 
-/// Computes `file` again and prints what has come out. Returns whether it is the same.
-fn computed_again(file: &Path, interruption: &Interruption) -> Result<bool, Unverified> {
+/// Computes or draws `file` again and prints what has come out. Returns whether it is the same.
+fn made_again(file: &Path, interruption: &Interruption) -> Result<bool, Unverified> {
+    if let Some(redrawn) = redraw(file, interruption.meter())? {
+        let same = "the same: drawn again from the run in it";
+        printed(&told(
+            file,
+            same,
+            redrawn.difference.as_ref(),
+            &redrawn.notes,
+        ))?;
+        return Ok(redrawn.difference.is_none());
+    }
     let fit = |command: &str| fit::again(command, interruption);
     let result = verified(file, fit, interruption.meter())?;
-    printed(&told(file, &result))?;
+    let same = match result.rows {
+        1 => "the same: its row, computed again".to_owned(),
+        rows => format!("the same: all {rows} rows, computed again"),
+    };
+    printed(&told(
+        file,
+        &same,
+        result.difference.as_ref(),
+        &result.notes,
+    ))?;
     Ok(result.difference.is_none())
 }
 
@@ -126,15 +146,14 @@ fn verdict(
     own_code::compare(&rows, name, scenario, &|| !interruption.has_come())
 }
 
-/// What has come out for `file`: a line for the rows, and a line for each note.
-fn told(file: &Path, result: &Verified) -> String {
-    let (file, rows) = (Shown(file), result.rows);
-    let mut text = match (&result.difference, rows) {
-        (Some(difference), _) => format!("{file}: differs: {difference}\n"),
-        (None, 1) => format!("{file}: the same: its row, computed again\n"),
-        (None, _) => format!("{file}: the same: all {rows} rows, computed again\n"),
+/// What has come out for `file`: a line that says whether it is the `same`, and a line for each note.
+fn told(file: &Path, same: &str, difference: Option<&impl Display>, notes: &[String]) -> String {
+    let file = Shown(file);
+    let mut text = match difference {
+        Some(difference) => format!("{file}: differs: {difference}\n"),
+        None => format!("{file}: {same}\n"),
     };
-    for note in &result.notes {
+    for note in notes {
         text += &format!("    {note}\n");
     }
     text

@@ -119,11 +119,10 @@ fn marked(scenario: Scenario, name: &str) -> Arc<Scenario> {
 }
 
 fn beside(name: &str) -> anyhow::Result<Beside> {
-    let text = data::text(name)?.into_owned();
-    let measured = data::read(name, &text)?;
+    let measured = data::open(name)?;
     if let Some(left_out) = measured.left_out_in_words() {
         tell(format_args!("gyrolab: {left_out}"));
     }
     measured.series()?; // a table of runs is refused before anything is run
-    Ok(Beside::new(measured, text))
+    Ok(Beside::new(measured))
 }

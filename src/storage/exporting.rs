@@ -8,8 +8,8 @@ use crate::export::stream::{self, Ended};
 use crate::export::{COLUMNS, CsvWriter, Layout};
 use crate::figure::kind::Kind;
 use crate::figure::labels::Labels;
-use crate::figure::of_runs::{self, EXACT_BESIDE, Request, Run};
-use crate::figure::{self, Format};
+use crate::figure::of_runs::{EXACT_BESIDE, Request, Run};
+use crate::figure::{self, Format, Source};
 use crate::run::{Clock, NotFinite, Sample, Simulation};
 use crate::scenario::Scenario;
 use crate::text::printable::printable;
@@ -238,10 +238,12 @@ fn draw(
         named: scenario.file.title.clone(),
         scenario,
     };
-    let figure = of_runs::figure(&[run], &request, |step, _| shared.reach(step))?;
+    let source = Source::Runs(vec![run], request);
+    let figure = source.draw(|step, _| shared.reach(step))?;
     let figure = figure.filter(|_| shared.reach(shared.steps).is_continue());
     let figure = figure.ok_or("the figure was stopped, and nothing was written")?;
-    let bytes = figure::write(&figure.scene, drawn.format).map_err(|error| error.to_string())?;
+    let bytes = source.write(&figure.scene, drawn.format);
+    let bytes = bytes.map_err(|error| error.to_string())?;
     output
         .write_and_keep(&bytes)
         .map_err(|error| error.fact())?;

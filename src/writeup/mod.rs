@@ -11,7 +11,7 @@ mod quantities;
 
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Source};
-use crate::figure::{self, Format, Unwritable};
+use crate::figure::{Format, Unwritable};
 use crate::run::NotFinite;
 use crate::scenario::Scenario;
 pub use figures::Drawing;
@@ -54,13 +54,13 @@ impl Writeup {
             (PAGE, page),
         ];
         let beside = self.beside.iter();
-        let beside = beside.map(|beside| (beside.name(), beside.text.clone()));
+        let beside = beside.map(|beside| (beside.name(), beside.measured.text.to_string()));
         let texts = texts.into_iter().chain(beside);
         let texts = texts.map(|(name, text)| (name.to_owned(), text.into_bytes()));
         let mut files: Vec<_> = texts.collect();
         for drawing in &self.drawings {
             for (ending, format) in [("svg", Format::Svg), ("pdf", Format::Pdf)] {
-                let bytes = figure::write(&drawing.scene, format)?;
+                let bytes = drawing.source.write(&drawing.scene, format)?;
                 files.push((format!("{}.{ending}", drawing.name), bytes));
             }
         }

@@ -1,0 +1,332 @@
+//! Where a figure comes from: the runs or the table that it shows and what it was asked to show of them, carried by the file
+//! of the figure itself.
+//!
+//! They are one text: a line with the SHA-256 of the rest, a head in TOML, then the files that the head lists, as they are.
+//! [`svg`], [`pdf`] and [`png`] put this text into the file of a picture and find it there; taken out, it leaves that file
+//! as it was.
+
+mod pdf;
+mod png;
+mod svg;
+
+use crate::text::advice::unread;
+use crate::text::printable::brief;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fs::File as Opened;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+
+/// The longest file of a figure that is read, bytes.
+const LONGEST_FIGURE: u64 = 128 << 20;
+/// The longest text that a figure carries, bytes.
+const LONGEST_TEXT: usize = 64 << 20;
+/// The longest head of it, bytes: the names of some thousand runs.
+const LONGEST_HEAD: usize = 256 << 10;
+/// Data and tables that are longer when compressed do not travel, bytes.
+const MOST_DATA: usize = 1 << 20;
+
+const MARK: &str = "# gyrolab figure, sha256 ";
+const NONE: &str = "holds no run: another program drew or rewrote it, or its metadata was stripped";
+const TWO: &str = "holds the metadata of two figures: nothing says which one is its own";
+const BROKEN: &str = "its metadata is damaged";
+
+/// What a figure was drawn from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Origin {
+    /// The version that drew it.
+    pub gyrolab: String,
+    /// What it was asked to show: keys and values of the room that draws.
+    pub figure: toml::Table,
+    pub files: Vec<File>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Holds {
+    Run,
+    Data,
+    Table,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct File {
+    pub holds: Holds,
+    pub name: String,
+    /// Its content, or the SHA-256 of a file that is too large to travel.
+    pub content: Result<String, String>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Head {
+    gyrolab: String,
+    picture_sha256: String,
+    figure: toml::Table,
+    #[serde(default)]
+    file: Vec<Listed>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Listed {
+    holds: Holds,
+    name: String,
+    bytes: Option<usize>,
+    sha256: Option<String>,
+}
+
+impl File {
+    pub fn new(holds: Holds, name: &str, text: &str) -> Self {
+        let fits = || text.len() <= MOST_DATA || packed(text.as_bytes()).len() <= MOST_DATA;
+        let travels = holds == Holds::Run || fits();
+        Self {
+            holds,
+            name: name_of(name),
+            content: if travels {
+                Ok(text.to_owned())
+            } else {
+                Err(sha256(text.as_bytes()))
+            },
+        }
+    }
+}
+
+impl Origin {
+    /// The files that hold this.
+    pub fn all(&self, holds: Holds) -> impl Iterator<Item = &File> {
+        self.files.iter().filter(move |file| file.holds == holds)
+    }
+
+    /// The names of files that are too large to travel.
+    pub fn left_behind(&self) -> impl Iterator<Item = &str> {
+        let large = self.files.iter().filter(|file| file.content.is_err());
+        large.map(|file| file.name.as_str())
+    }
+
+    /// The text that is carried by the `picture`, a file without it.
+    fn text(&self, picture: &[u8]) -> Option<String> {
+        let listed = |file: &File| Listed {
+            holds: file.holds,
+            name: file.name.clone(),
+            bytes: file.content.as_ref().ok().map(String::len),
+            sha256: file.content.as_ref().err().cloned(),
+        };
+        let head = toml::to_string(&Head {
+            gyrolab: self.gyrolab.clone(),
+            picture_sha256: sha256(picture),
+            figure: self.figure.clone(),
+            file: self.files.iter().map(listed).collect(),
+        });
+        let head = head.ok().filter(|head| head.len() <= LONGEST_HEAD)?;
+        let contents = self
+            .files
+            .iter()
+            .filter_map(|file| file.content.as_ref().ok());
+        let contents = contents.map(String::as_str).collect::<String>();
+        let rest = format!(", head {}\n{head}{contents}", head.len());
+        let text = format!("{MARK}{}{rest}", sha256(rest.as_bytes()));
+        (text.len() <= LONGEST_TEXT).then_some(text)
+    }
+
+    /// What the carried `text` holds, and the SHA-256 of its picture.
+    fn read(text: &str) -> Result<(Self, String), String> {
+        let rest = text.strip_prefix(MARK).ok_or(BROKEN)?;
+        let (sum, rest) = rest.split_at_checked(64).ok_or(BROKEN)?;
+        if sum != sha256(rest.as_bytes()) {
+            return Err(
+                "its run was changed after it was drawn: the SHA-256 is another".to_owned(),
+            );
+        }
+        let (length, rest) = rest.split_once('\n').ok_or(BROKEN)?;
+        let length = length
+            .strip_prefix(", head ")
+            .and_then(|it| it.parse().ok());
+        let length = length.filter(|length| *length <= LONGEST_HEAD);
+        let cut = length.and_then(|length| rest.split_at_checked(length));
+        let (head, mut rest) = cut.ok_or(BROKEN)?;
+        let head: Head = toml::from_str(head).map_err(|error| unknown(head, error.message()))?;
+        let mut files = Vec::new();
+        for listed in head.file {
+            let content = match (listed.bytes, listed.sha256) {
+                (Some(bytes), None) => {
+                    let (content, after) = rest.split_at_checked(bytes).ok_or(BROKEN)?;
+                    rest = after;
+                    Ok(content.to_owned())
+                }
+                (None, Some(sum)) => Err(sum),
+                _ => return Err(BROKEN.to_owned()),
+            };
+            let (holds, name) = (listed.holds, listed.name);
+            files.push(File {
+                holds,
+                name,
+                content,
+            });
+        }
+        let origin = Self {
+            gyrolab: head.gyrolab,
+            figure: head.figure,
+            files,
+        };
+        let is_whole = rest.is_empty() && !origin.files.is_empty();
+        is_whole
+            .then_some((origin, head.picture_sha256))
+            .ok_or(BROKEN.to_owned())
+    }
+}
+
+/// Why a head is not understood, with the version that wrote it where that is another.
+fn unknown(head: &str, message: &str) -> String {
+    let own = env!("CARGO_PKG_VERSION");
+    let table: toml::Table = head.parse().unwrap_or_default();
+    let version = table.get("gyrolab").and_then(toml::Value::as_str);
+    let version = version.filter(|version| *version != own);
+    let versions = version.map(|version| {
+        let version = brief(version, 40);
+        format!(" (drawn by gyrolab {version}, read by gyrolab {own})")
+    });
+    let message = brief(message, 120);
+    format!(
+        "its metadata is not understood: {message}{}",
+        versions.unwrap_or_default()
+    )
+}
+
+/// The forms of file that carry a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    Svg,
+    Pdf,
+    Png,
+}
+
+/// A file without the text that it carries, and that text.
+struct Parted {
+    picture: Vec<u8>,
+    text: Vec<u8>,
+}
+
+impl Form {
+    /// The form of a file by its first bytes; `None` where it is no figure.
+    pub fn of(bytes: &[u8]) -> Option<Self> {
+        let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
+        match text.trim_ascii_start() {
+            _ if bytes.starts_with(b"%PDF-") => Some(Self::Pdf),
+            _ if bytes.starts_with(png::SIGNATURE) => Some(Self::Png),
+            [b'<', ..] => Some(Self::Svg),
+            _ => None,
+        }
+    }
+
+    fn carry(self, picture: &[u8], text: &str) -> Option<Vec<u8>> {
+        match self {
+            Self::Svg => svg::carry(picture, text),
+            Self::Pdf => pdf::carry(picture, text),
+            Self::Png => png::carry(picture, text),
+        }
+    }
+
+    fn part(self, file: &[u8]) -> Result<Parted, &'static str> {
+        match self {
+            Self::Svg => svg::part(file),
+            Self::Pdf => pdf::part(file),
+            Self::Png => png::part(file),
+        }
+    }
+}
+
+/// The `picture`, a file that this program wrote, with its origin in it; `None` where that is too long.
+pub fn carry(picture: &[u8], origin: &Origin) -> Option<Vec<u8>> {
+    Form::of(picture)?.carry(picture, &origin.text(picture)?)
+}
+
+/// A figure that was read.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    pub form: Form,
+    pub origin: Origin,
+    /// Its file without what it carries.
+    pub picture: Vec<u8>,
+    /// What was changed in the file after it was drawn, where something was.
+    pub changed: Option<&'static str>,
+}
+
+impl Figure {
+    /// The figure whose file has these bytes; or why no run can be had of it.
+    pub fn of(file: &[u8]) -> Result<Self, String> {
+        let form = Form::of(file).ok_or(NONE)?;
+        let Parted { picture, text } = form.part(file)?;
+        let text = String::from_utf8(text).map_err(|_| BROKEN)?;
+        let (origin, sum) = Origin::read(&text)?;
+        let changed = if sum != sha256(&picture) {
+            Some("its picture was changed after it was drawn: the SHA-256 is another")
+        } else if form.carry(&picture, &text).as_deref() != Some(file) {
+            Some("its file was changed after it was drawn, though not its picture and not its run")
+        } else {
+            None
+        };
+        Ok(Self {
+            form,
+            origin,
+            picture,
+            changed,
+        })
+    }
+
+    /// Reads the figure in the file `path`; `None` where that is no figure, or not there.
+    pub fn open(path: &Path) -> Result<Option<Self>, String> {
+        if !path.is_file() {
+            return Ok(None);
+        }
+        let file = Opened::open(path).map_err(|error| unread(&error))?;
+        Self::read(&mut BufReader::new(file))
+    }
+
+    /// The same for what `reader` gives, of which only the first bytes are looked at where it is no figure.
+    pub fn read(reader: &mut impl BufRead) -> Result<Option<Self>, String> {
+        let first = reader.fill_buf().map_err(|error| unread(&error))?;
+        if Form::of(first).is_none() {
+            return Ok(None);
+        }
+        let mut file = Vec::new();
+        let read = reader.take(LONGEST_FIGURE + 1).read_to_end(&mut file);
+        read.map_err(|error| unread(&error))?;
+        if file.len() as u64 > LONGEST_FIGURE {
+            return Err("is longer than 128 MiB, the most that is read of a figure".to_owned());
+        }
+        Self::of(&file).map(Some)
+    }
+}
+
+/// What a file is called where it travels: no folder of this machine is told.
+pub fn name_of(name: &str) -> String {
+    let path = Path::new(name);
+    let file = path.file_name().filter(|_| path.is_absolute());
+    file.map_or(name.into(), |file| file.to_string_lossy())
+        .into_owned()
+}
+
+/// The SHA-256 of `bytes` in hexadecimal digits.
+pub fn sha256(bytes: &[u8]) -> String {
+    let sum = Sha256::digest(bytes);
+    sum.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    const COMPRESSION: u8 = 9;
+    miniz_oxide::deflate::compress_to_vec_zlib(bytes, COMPRESSION)
+}
+
+fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, &'static str> {
+    let unpacked = miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(bytes, LONGEST_TEXT);
+    unpacked.map_err(|_| BROKEN)
+}
+
+/// Where `mark` stands in `file`, once.
+fn place(file: &[u8], mark: &[u8]) -> Result<usize, &'static str> {
+    let places = file.windows(mark.len()).enumerate();
+    let mut places = places.filter(|(_, window)| *window == mark);
+    let (place, _) = places.next().ok_or(NONE)?;
+    places.next().map_or(Ok(place), |_| Err(TWO))
+}
