@@ -22,7 +22,7 @@ use crate::text::advice::unread;
 use crate::text::printable::printable;
 use against::Against;
 pub use against::Difference;
-pub use figure::{Redrawn, redraw};
+pub use figure::redraw;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs::File;

@@ -5,12 +5,10 @@ use super::progress::{self, Interrupted};
 use super::{ended_by, refuse, tell};
 use crate::analysis::cost;
 use crate::data;
-use crate::export::Destination;
 use crate::figure::kind::Kind;
-use crate::figure::labels::Labels;
-use crate::figure::of_runs::{Request, Run};
+use crate::figure::of_runs::Run;
 use crate::figure::table::Table;
-use crate::figure::{COLUMN_PT, Format, OfTable, PT_PER_MM, Source, WIDTHS_MM};
+use crate::figure::{Asked, Format, PT_PER_MM, Source, WIDTHS_MM};
 use crate::origin;
 use crate::physics::scheme;
 use crate::scenario::head::is_file;
@@ -111,23 +109,10 @@ struct LabelArgs {
 }
 
 impl LabelArgs {
-    /// Writes what is given over `labels`.
-    fn change(&self, labels: &mut Labels) {
-        let given = |list: &Vec<String>| (!list.is_empty()).then(|| list.clone());
-        labels.title = self.title.clone().or(labels.title.take());
-        labels.names = given(&self.label).unwrap_or(std::mem::take(&mut labels.names));
-        labels.x = self.x_label.clone().or(labels.x.take());
-        labels.y = given(&self.y_label).unwrap_or(std::mem::take(&mut labels.y));
-        if let Some(log) = &self.log {
-            labels.is_log = ["x", "y"].map(|axis| log.contains(axis));
-        }
-        labels.y_range = self.y_range.or(labels.y_range);
-    }
-
-    /// The form in which `output` is written; `had_text` says whether the figure that is drawn again had text as text.
-    fn format(&self, output: &Path, had_text: bool) -> anyhow::Result<Format> {
+    /// The form in which `output` is written.
+    fn format(&self, output: &Path) -> anyhow::Result<Format> {
         match (Format::of(output)?, self.text) {
-            (Format::Svg, text) if text || had_text => Ok(Format::SvgText),
+            (Format::Svg, true) => Ok(Format::SvgText),
             (_, true) => {
                 bail!("--text is for .svg: the words of a .pdf can be selected as they are")
             }
@@ -165,9 +150,11 @@ fn width(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
-    args.labels.format(&args.output, false)?;
-    let (source, had_text) = source(args)?;
-    let format = args.labels.format(&args.output, had_text)?;
+    let mut format = args.labels.format(&args.output)?;
+    let source = source(args)?;
+    if format == Format::Svg && source.asked.text {
+        format = Format::SvgText;
+    }
     let (output, interruption) = progress::open_for(&args.output, args.force)?;
     for line in said(&source) {
         tell(format_args!("gyrolab: {line}"));
@@ -191,104 +178,134 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
 
 /// What is said before the figure is drawn.
 fn said(source: &Source) -> Vec<String> {
-    let mut said = Vec::new();
-    if let Source::Runs(runs, _) = source {
-        for run in runs.iter().filter(|run| run.named.ends_with(".csv")) {
-            said.push(format!(
-                "{}: its {} steps are computed anew from its header",
-                printable(&run.named),
-                run.scenario.steps
-            ));
+    let from_csv = source.runs.iter().filter(|run| run.named.ends_with(".csv"));
+    let computed = from_csv.map(|run| {
+        let (named, steps) = (printable(&run.named), run.scenario.steps);
+        format!("{named}: its {steps} steps are computed anew from its header")
+    });
+    let files = source.origin(Format::Svg).files.into_iter();
+    let left_behind = files.filter(|file| file.sha256.is_some()).map(|file| {
+        let name = printable(&file.name);
+        format!("{name}: more than 1 MB when compressed, it does not travel with the figure: keep it beside")
+    });
+    computed.chain(left_behind).collect()
+}
+
+/// What the RUNs name, with what the command line changes.
+fn source(args: &FigureArgs) -> anyhow::Result<Source> {
+    let mut source = Source::default();
+    for name in &args.runs {
+        add(&mut source, name, args)?;
+    }
+    if source.table.is_some() {
+        refuse_for_table(args)?;
+    } else if let Some(kind) = &args.kind {
+        Kind::named(kind).unwrap_or_else(|refusal| no_kind(args, &refusal));
+    }
+    if let Some(name) = &args.measured {
+        let measured = data::open(name)?;
+        if let Some(left_out) = measured.left_out_in_words() {
+            tell(format_args!("gyrolab: {left_out}"));
+        }
+        measured.series()?; // a table of runs is refused before anything is run
+        source.measured = Some(Arc::new(measured));
+        (source.asked.measured_until_s, source.asked.kind) = (None, None);
+    }
+    let asked = &mut source.asked;
+    if asked.labels.names.len() != source.runs.len() {
+        asked.labels.names.clear(); // those of a figure are of other runs
+    }
+    ask(args, asked);
+    for run in source.runs.iter().filter(|_| asked.exact) {
+        if let Some(objection) = cost::objection(&run.scenario) {
+            bail!(
+                "{}: {objection}: leave --exact out, or give a shorter --duration",
+                run.named
+            );
         }
     }
-    for file in source.origin(Format::Svg).left_behind() {
-        said.push(format!(
-            "{}: longer than 1 MB when compressed, it does not travel with the figure: keep it beside",
-            printable(file)
-        ));
-    }
-    said
+    source.check()?;
+    Ok(source)
 }
 
-/// What a RUN of the command line names.
-enum Named {
-    Table(Table),
-    Run(Document),
-    Figure(Source, bool),
-}
-
-fn named(name: &str) -> anyhow::Result<Named> {
+/// Adds to `source` what a RUN of the command line names.
+fn add(source: &mut Source, name: &str, args: &FigureArgs) -> anyhow::Result<()> {
     let path = Path::new(name);
     if let Some(table) = Table::read(path)? {
-        return Ok(Named::Table(table));
+        source.table = Some(table);
+        return Ok(());
     }
-    if is_file(name) && !Destination::may_wait(path) {
-        let refused = |rule: String| Problems::one(name, Problem::at("", rule));
-        if let Some(figure) = origin::Figure::open(path).map_err(refused)? {
-            let folder = path.parent().unwrap_or(Path::new(""));
-            let source = Source::of(&figure.origin, folder);
-            let (source, text) = source.map_err(|problems| problems.of(name))?;
-            return Ok(Named::Figure(source, text));
-        }
+    let figure = if is_file(name) {
+        origin::Figure::open(path)
+    } else {
+        Ok(None)
+    };
+    let figure = figure.map_err(|rule| Problems::one(name, Problem::at("", rule)))?;
+    let Some(figure) = figure else {
+        return add_runs(source, &origin::name_of(name), &Document::open(name)?, args);
+    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let one = Source::of(&figure.origin, folder).map_err(|problems| problems.of(name))?;
+    for run in one.runs {
+        let document = Document::from_file(&run.named, &run.scenario.file)?;
+        add_runs(source, &run.named, &document, args)?;
     }
-    Ok(Named::Run(Document::open(name)?))
+    source.measured = source.measured.take().or(one.measured);
+    source.table = source.table.take().or(one.table);
+    source.asked = one.asked;
+    Ok(())
 }
 
-/// What is drawn, and whether it was drawn before with text as text.
-fn source(args: &FigureArgs) -> anyhow::Result<(Source, bool)> {
-    let (mut documents, mut tables) = (Vec::new(), Vec::new());
-    let mut before: Option<(Request, bool)> = None;
-    for name in &args.runs {
-        match named(name)? {
-            Named::Run(document) => documents.push((origin::name_of(name), document)),
-            Named::Table(table) => {
-                let asked = OfTable {
-                    kind: None,
-                    width_pt: COLUMN_PT,
-                    labels: Labels::default(),
-                };
-                tables.push((table, asked, false));
-            }
-            Named::Figure(Source::Table(table, asked), text) => tables.push((table, asked, text)),
-            Named::Figure(Source::Runs(runs, request), text) => {
-                for run in runs {
-                    let document = Document::from_file(&run.named, &run.scenario.file)?;
-                    documents.push((run.named, document));
-                }
-                before.get_or_insert((request, text));
-            }
+/// Adds the run of `document`, changed, by every scheme that is named.
+fn add_runs(
+    source: &mut Source,
+    named: &str,
+    document: &Document,
+    args: &FigureArgs,
+) -> anyhow::Result<()> {
+    let by_scheme = args.schemes.iter().map(Some);
+    let as_it_is = args.schemes.is_empty().then_some(None);
+    for scheme in by_scheme.chain(as_it_is) {
+        let mut changes = args.changes.clone();
+        changes.scheme = scheme.cloned().or(changes.scheme);
+        source.runs.push(Run {
+            scenario: Arc::new(changed(document.clone(), &changes, &args.length)?),
+            named: named.to_owned(),
+        });
+    }
+    Ok(())
+}
+
+/// Writes what the command line asks for over what is `asked`.
+fn ask(args: &FigureArgs, asked: &mut Asked) {
+    asked.kind = args.kind.clone().or(asked.kind.take());
+    asked.from_s = args.from.unwrap_or(asked.from_s);
+    asked.to_s = args.to.or(asked.to_s);
+    asked.exact |= args.exact;
+    asked.text |= args.labels.text;
+    asked.width_pt = args.width.map(|mm| mm * PT_PER_MM).or(asked.width_pt);
+    let (given, labels) = (&args.labels, &mut asked.labels);
+    labels.title = given.title.clone().or(labels.title.take());
+    labels.x = given.x_label.clone().or(labels.x.take());
+    for (given, list) in [
+        (&given.label, &mut labels.names),
+        (&given.y_label, &mut labels.y),
+    ] {
+        if !given.is_empty() {
+            list.clone_from(given);
         }
     }
-    match (tables.pop(), args.runs.len()) {
-        (None, _) => {
-            let (request, text) = before.unwrap_or_default();
-            let mut request = asked(args, request)?;
-            let runs = runs(args, documents)?;
-            if args.labels.label.is_empty() && request.labels.names.len() != runs.len() {
-                request.labels.names.clear(); // those of the figure are of other runs
-            }
-            let named = request.labels.names.len();
-            ensure!(
-                named == 0 || named == runs.len(),
-                "--label is given {named} times for {} runs: give it once per run, in order",
-                runs.len()
-            );
-            Ok((Source::Runs(runs, request), text))
-        }
-        (Some(_), 2..) => {
-            bail!("the table of a comparison, of a sweep or of a fit is drawn alone: give one file")
-        }
-        (Some((table, mut asked, text)), _) => {
-            refuse_for_table(args)?;
-            asked.kind = args.kind.clone().or(asked.kind);
-            asked.width_pt = args.width.map_or(asked.width_pt, |mm| mm * PT_PER_MM);
-            args.labels.change(&mut asked.labels);
-            Ok((Source::Table(table, asked), text))
-        }
+    if let Some(log) = &given.log {
+        labels.is_log = ["x", "y"].map(|axis| log.contains(axis));
     }
+    labels.y_range = given.y_range.or(labels.y_range);
 }
 
 fn refuse_for_table(args: &FigureArgs) -> anyhow::Result<()> {
+    ensure!(
+        args.runs.len() == 1,
+        "the table of a comparison, of a sweep or of a fit is drawn alone: give one file"
+    );
     let is_changed = args.exact
         || args.from.or(args.to).is_some()
         || args.measured.is_some()
@@ -304,53 +321,9 @@ fn refuse_for_table(args: &FigureArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What is asked for: `before` with what the command line changes in it.
-fn asked(args: &FigureArgs, before: Request) -> anyhow::Result<Request> {
-    let mut request = before;
-    let kind = args.kind.as_deref().map(Kind::named).transpose();
-    let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
-    if let Some(name) = &args.measured {
-        let measured = data::open(name)?;
-        if let Some(left_out) = measured.left_out_in_words() {
-            tell(format_args!("gyrolab: {left_out}"));
-        }
-        request.kind = Kind::measured(measured.series()?);
-        request.measured = Some(Arc::new(measured));
-    }
-    request.kind = kind.unwrap_or(request.kind);
-    request.from_s = args.from.unwrap_or(request.from_s);
-    request.to_s = args.to.or(request.to_s);
-    request.exact |= args.exact;
-    request.width_pt = args.width.map_or(request.width_pt, |mm| mm * PT_PER_MM);
-    args.labels.change(&mut request.labels);
-    Ok(request)
-}
-
 /// Refuses `--kind` as clap refuses a value.
 fn no_kind(args: &FigureArgs, refusal: &str) -> ! {
     let kind = printable(args.kind.as_deref().unwrap_or_default());
     let message = format!("invalid value '{kind}' for '--kind <KIND>': {refusal}");
     refuse("figure", ErrorKind::ValueValidation, &message)
-}
-
-/// Every run of `documents`, by every scheme that is named.
-fn runs(args: &FigureArgs, documents: Vec<(String, Document)>) -> anyhow::Result<Vec<Run>> {
-    let mut runs = Vec::new();
-    for (named, document) in documents {
-        let by_scheme = args.schemes.iter().map(Some);
-        let as_it_is = args.schemes.is_empty().then_some(None);
-        for scheme in by_scheme.chain(as_it_is) {
-            let mut changes = args.changes.clone();
-            changes.scheme = scheme.cloned().or(changes.scheme);
-            let scenario = changed(document.clone(), &changes, &args.length)?;
-            if let Some(objection) = cost::objection(&scenario).filter(|_| args.exact) {
-                bail!("{named}: {objection}: leave --exact out, or give a shorter --duration");
-            }
-            runs.push(Run {
-                scenario: Arc::new(scenario),
-                named: named.clone(),
-            });
-        }
-    }
-    Ok(runs)
 }

@@ -64,6 +64,10 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             measured: args.measured.clone(),
             size: (80, 24),
             markers: args.look.markers,
+            svg: false,
+            background: None,
+            output: None,
+            force: false,
         };
         return print_picture(&picture, Some(&why), confined);
     }

@@ -123,15 +123,14 @@ impl Measured {
         (!self.left_out.is_empty()).then(told)
     }
 
-    /// The same without what was measured after `until_s`, s.
+    /// The same without what was measured after `until_s`, s, where that is given.
     #[must_use]
-    pub fn until(mut self, until_s: f64) -> Self {
-        if let Data::Series(Series { times_s, .. }) = &self.data {
+    pub fn until(mut self, until_s: Option<f64>) -> Self {
+        if let (Data::Series(Series { times_s, .. }), Some(until_s)) = (&self.data, until_s) {
             let times_s = times_s.clone();
             self.keep_rows(|row| times_s[row] <= until_s);
         }
-        self.until_s = Some(until_s);
-        self
+        Self { until_s, ..self }
     }
 
     /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts, and returns how many values that are.

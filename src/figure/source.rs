@@ -1,4 +1,4 @@
-//! What a figure shows, what of that its file carries, and the way back.
+//! What a figure is drawn from, what of that its file carries, and the way back.
 
 use super::kind::Kind;
 use super::labels::Labels;
@@ -7,7 +7,7 @@ use super::page::format::{self, Format, Unwritable};
 use super::page::scene::Scene;
 use super::table::Table;
 use super::{COLUMN_PT, PT_PER_MM, of_table};
-use crate::data;
+use crate::data::{self, Measured};
 use crate::origin::{File, Holds, Origin, sha256};
 use crate::scenario::{Document, Problem, Problems, csv};
 use serde::{Deserialize, Serialize};
@@ -18,72 +18,54 @@ use std::sync::Arc;
 /// The narrowest and the widest page, mm.
 pub const WIDTHS_MM: RangeInclusive<f64> = 30.0..=1000.0;
 
-#[derive(Clone, Debug)]
-pub enum Source {
-    Runs(Vec<Run>, Request),
-    Table(Table, OfTable),
+/// What a figure shows: runs, beside what was measured where there is something, or else a table.
+#[derive(Clone, Debug, Default)]
+pub struct Source {
+    pub asked: Asked,
+    pub runs: Vec<Run>,
+    pub measured: Option<Arc<Measured>>,
+    pub table: Option<Table>,
 }
 
-/// What a figure of a table is to show: those of the columns that are named, all that make sense where none is.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OfTable {
+/// What of it is to be shown, as the figure's file has it; of a table kind, width and labels.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Asked {
+    /// The name of a [`Kind`], or the columns of a table; what is usual where there is none.
     pub kind: Option<String>,
-    pub width_pt: f64,
+    pub from_s: f64,
+    pub to_s: Option<f64>,
+    pub exact: bool,
+    /// What was measured later is not shown, s.
+    pub measured_until_s: Option<f64>,
+    /// The width of a column where there is none.
+    pub width_pt: Option<f64>,
+    /// Whether an SVG has its text as text.
+    pub text: bool,
     pub labels: Labels,
 }
 
-/// What a figure was asked to show, as its file has it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct Asked {
-    kind: Option<String>,
-    from_s: f64,
-    to_s: Option<f64>,
-    exact: bool,
-    /// What was measured later is not shown, s.
-    measured_until_s: Option<f64>,
-    width_pt: f64,
-    /// Whether an SVG has its text as text.
-    text: bool,
-    labels: Labels,
-}
-
-impl Default for Asked {
-    fn default() -> Self {
-        Self::of(&Request::default())
-    }
-}
-
-impl Asked {
-    fn of(request: &Request) -> Self {
-        Self {
+impl Source {
+    pub fn new(runs: &[Run], request: &Request) -> Self {
+        let Request { measured, .. } = request;
+        let asked = Asked {
             kind: Some(request.kind.name()),
             from_s: request.from_s,
             to_s: request.to_s,
             exact: request.exact,
-            measured_until_s: request.measured.as_ref().and_then(|it| it.until_s),
-            width_pt: request.width_pt,
+            measured_until_s: measured.as_ref().and_then(|it| it.until_s),
+            width_pt: Some(request.width_pt),
             text: false,
             labels: request.labels.clone(),
+        };
+        Self {
+            asked,
+            runs: runs.to_vec(),
+            measured: measured.clone(),
+            table: None,
         }
     }
 
-    /// Refuses numbers that no command line could have given.
-    fn check(&self) -> Result<(), &'static str> {
-        let is_time = |time_s: f64| time_s >= 0.0 && time_s.is_finite();
-        let times_s = [Some(self.from_s), self.to_s, self.measured_until_s];
-        let width_mm = (self.width_pt / PT_PER_MM * 1e6).round() / 1e6;
-        let is_range = |(low, high): (f64, f64)| low < high && (high - low).is_finite();
-        let is_sound = times_s.into_iter().flatten().all(is_time)
-            && WIDTHS_MM.contains(&width_mm)
-            && self.labels.y_range.is_none_or(is_range);
-        is_sound
-            .then_some(())
-            .ok_or("what was asked of this figure cannot be drawn")
-    }
-}
-
-impl Source {
     /// Draws it. `watch` is told the step reached and the last one, and says whether to go on; `None` where it said no.
     ///
     /// # Errors
@@ -92,15 +74,54 @@ impl Source {
         &self,
         watch: impl FnMut(u64, u64) -> ControlFlow<()>,
     ) -> Result<Option<Figure>, String> {
-        match self {
-            Self::Runs(runs, request) => of_runs::figure(runs, request, watch),
-            Self::Table(table, asked) => {
-                let drawn = asked
-                    .draw(table)
-                    .map_err(|refusal| format!("{}: {refusal}", table.origin));
-                drawn.map(Some)
-            }
+        self.check()?;
+        match &self.table {
+            Some(table) => match of_table::figure(table, &self.asked) {
+                Ok(figure) => Ok(Some(figure)),
+                Err(refusal) => Err(format!("{}: {refusal}", table.origin)),
+            },
+            None => of_runs::figure(&self.runs, &self.request()?, watch),
         }
+    }
+
+    /// Refuses what no command line gives, and other names than there are runs.
+    pub fn check(&self) -> Result<(), Problems> {
+        let (asked, runs, named) = (&self.asked, self.runs.len(), self.asked.labels.names.len());
+        let is_time = |time_s: f64| time_s >= 0.0 && time_s.is_finite();
+        let times_s = [Some(asked.from_s), asked.to_s, asked.measured_until_s];
+        let is_width = |pt: f64| WIDTHS_MM.contains(&((pt / PT_PER_MM * 1e6).round() / 1e6));
+        let is_range = |(low, high): (f64, f64)| low < high && (high - low).is_finite();
+        let is_sound = times_s.into_iter().flatten().all(is_time)
+            && asked.width_pt.is_none_or(is_width)
+            && asked.labels.y_range.is_none_or(is_range)
+            && (runs > 0 || self.table.is_some());
+        if !is_sound {
+            return Err(refused("was asked for what no figure can have"));
+        }
+        if ![0, runs].contains(&named) && self.table.is_none() {
+            return Err(refused(&format!(
+                "--label is given {named} times for {runs} runs: give it once per run, in order"
+            )));
+        }
+        Ok(())
+    }
+
+    fn request(&self) -> Result<Request, String> {
+        let asked = &self.asked;
+        let kind = match (&asked.kind, &self.measured) {
+            (Some(kind), _) => Kind::named(kind).map_err(|rule| format!("{kind} {rule}"))?,
+            (None, Some(measured)) => Kind::measured(measured.series()?),
+            (None, None) => Kind::traces(),
+        };
+        Ok(Request {
+            kind,
+            from_s: asked.from_s,
+            to_s: asked.to_s,
+            exact: asked.exact,
+            measured: self.measured.clone(),
+            width_pt: asked.width_pt.unwrap_or(COLUMN_PT),
+            labels: asked.labels.clone(),
+        })
     }
 
     /// The bytes of a file of the `scene` that was drawn, which carries what it was drawn from.
@@ -113,137 +134,62 @@ impl Source {
 
     /// What its file carries.
     pub fn origin(&self, format: Format) -> Origin {
-        let (mut asked, files) = match self {
-            Self::Runs(runs, request) => {
-                let run = |run: &Run| File::new(Holds::Run, &run.named, &run.scenario.to_toml());
-                let measured = request.measured.iter();
-                let measured = measured.map(|it| File::new(Holds::Data, &it.origin, &it.text));
-                let files = runs.iter().map(run).chain(measured).collect();
-                (Asked::of(request), files)
-            }
-            Self::Table(table, of_table) => {
-                let asked = Asked {
-                    kind: of_table.kind.clone(),
-                    width_pt: of_table.width_pt,
-                    labels: of_table.labels.clone(),
-                    ..Asked::default()
-                };
-                (
-                    asked,
-                    vec![File::new(Holds::Table, &table.origin, &table.text)],
-                )
-            }
+        let run = |run: &Run| File::new(Holds::Run, &run.named, &run.scenario.to_toml());
+        let data = self.measured.iter();
+        let data = data.map(|it| File::new(Holds::Data, &it.origin, &it.text));
+        let table = self.table.iter();
+        let table = table.map(|it| File::new(Holds::Table, &it.origin, &it.text));
+        let asked = Asked {
+            text: format == Format::SvgText,
+            ..self.asked.clone()
         };
-        asked.text = format == Format::SvgText;
-        Origin {
-            gyrolab: env!("CARGO_PKG_VERSION").to_owned(),
-            figure: toml::Table::try_from(asked).unwrap_or_default(),
-            files,
-        }
+        let files = self.runs.iter().map(run).chain(data).chain(table);
+        Origin::new(&asked, files.collect())
     }
 
-    /// What the figure of that `origin` shows, and whether its SVG has text as text. A file that was too large to travel is
-    /// sought in `folder`.
-    pub fn of(origin: &Origin, folder: &Path) -> Result<(Self, bool), Problems> {
-        let refused = |rule: String| Problems::from(Problem::at("", rule));
+    /// What the figure of that `origin` shows. A file that was too large to travel is sought in `folder`.
+    pub fn of(origin: &Origin, folder: &Path) -> Result<Self, Problems> {
         let asked: Result<Asked, _> = origin.figure.clone().try_into();
-        let asked = asked.map_err(|error| refused(error.message().to_owned()))?;
-        asked.check().map_err(|rule| refused(rule.to_owned()))?;
-        if let Some(table) = origin.all(Holds::Table).next() {
-            let opened = Table::of(&table.name, content(table, folder)?)?;
-            let table = opened.ok_or_else(|| refused(format!("{}: is no table", table.name)))?;
-            let of_table = OfTable {
-                kind: asked.kind,
-                width_pt: asked.width_pt,
-                labels: asked.labels,
-            };
-            return Ok((Self::Table(table, of_table), asked.text));
-        }
-        let mut runs = Vec::new();
-        for run in origin.all(Holds::Run) {
-            let document = Document::parse_header(&run.name, &content(run, folder)?)?;
-            runs.push(Run {
-                scenario: Arc::new(document.scenario()?),
-                named: run.name.clone(),
-            });
-        }
-        let named = asked.labels.names.len();
-        if runs.is_empty() || !(named == 0 || named == runs.len()) {
-            return Err(refused(
-                "holds not as many runs as names of runs".to_owned(),
-            ));
-        }
-        let mut measured = None;
-        for file in origin.all(Holds::Data) {
-            let data = data::read(&file.name, &content(file, folder)?)?;
-            measured = Some(Arc::new(match asked.measured_until_s {
-                Some(until_s) => data.until(until_s),
-                None => data,
-            }));
-        }
-        let kind = asked
-            .kind
-            .as_deref()
-            .map_or(Ok(Kind::traces()), Kind::named);
-        let request = Request {
-            kind: kind.map_err(refused)?,
-            from_s: asked.from_s,
-            to_s: asked.to_s,
-            exact: asked.exact,
-            measured,
-            width_pt: asked.width_pt,
-            labels: asked.labels,
+        let mut source = Self {
+            asked: asked.map_err(|error| refused(error.message()))?,
+            ..Self::default()
         };
-        Ok((Self::Runs(runs, request), asked.text))
+        for file in &origin.files {
+            let (named, text) = (file.name.clone(), content(file, folder)?);
+            match file.holds {
+                Holds::Run => {
+                    let scenario = Document::parse_header(&named, &text)?.scenario()?;
+                    let scenario = Arc::new(scenario);
+                    source.runs.push(Run { scenario, named });
+                }
+                Holds::Data => {
+                    let data = data::read(&named, &text)?;
+                    let data = data.until(source.asked.measured_until_s);
+                    source.measured = Some(Arc::new(data));
+                }
+                Holds::Table => source.table = Table::of(&named, text)?,
+            }
+        }
+        Ok(source)
     }
+}
+
+fn refused(rule: &str) -> Problems {
+    Problem::at("", rule).into()
 }
 
 /// What is in a carried `file`; of one that was too large for it what is in the file of that name in `folder`.
 fn content(file: &File, folder: &Path) -> Result<String, Problems> {
-    let sum = match &file.content {
-        Ok(text) => return Ok(text.clone()),
-        Err(sum) => sum,
+    let Some(sum) = &file.sha256 else {
+        return Ok(file.text.clone());
     };
-    let path = folder.join(Path::new(&file.name).file_name().unwrap_or_default());
-    let text = csv::text(&path)
-        .ok()
-        .filter(|text| sha256(text.as_bytes()) == *sum);
-    let rule = format!(
-        "needs {} (SHA-256 {sum}), which was too large to travel with it: put that file into the same folder",
-        file.name
-    );
-    text.ok_or_else(|| Problem::at("", rule).into())
-}
-
-impl OfTable {
-    fn draw(&self, table: &Table) -> Result<Figure, String> {
-        let columns = self.kind.iter().flat_map(|kind| kind.split(','));
-        let columns: Vec<_> = columns.map(str::trim).collect();
-        let mut chart = of_table::chart(table, &columns, self.width_pt)?;
-        let hidden = self.labels.apply(&mut chart)?;
-        let mut scene = chart.scene();
-        self.labels.write_title(&mut scene);
-        let mut warnings = of_table::warnings(table, &columns);
-        warnings.extend(hidden);
-        Ok(Figure {
-            scene,
-            warnings,
-            dense: None,
-            broke: None,
-        })
-    }
-}
-
-impl Default for Request {
-    fn default() -> Self {
-        Self {
-            kind: Kind::traces(),
-            from_s: 0.0,
-            to_s: None,
-            exact: false,
-            measured: None,
-            width_pt: COLUMN_PT,
-            labels: Labels::default(),
-        }
-    }
+    let name = Path::new(&file.name).file_name().unwrap_or_default();
+    let text = csv::text(&folder.join(name)).ok();
+    let text = text.filter(|text| sha256(text.as_bytes()) == *sum);
+    text.ok_or_else(|| {
+        let name = &file.name;
+        refused(&format!(
+            "needs {name} (SHA-256 {sum}), which was too large to travel with it: put that file into the same folder"
+        ))
+    })
 }

@@ -31,13 +31,20 @@ const NONE: &str = "holds no run: another program drew or rewrote it, or its met
 const TWO: &str = "holds the metadata of two figures: nothing says which one is its own";
 const BROKEN: &str = "its metadata is damaged";
 
+/// The key of what was asked of a picture that is the lab's screen, and no figure.
+pub const SCREEN: &str = "screen";
+
 /// What a figure was drawn from.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Origin {
     /// The version that drew it.
     pub gyrolab: String,
+    /// Of the picture that carries this, without it.
+    picture_sha256: String,
     /// What it was asked to show: keys and values of the room that draws.
     pub figure: toml::Table,
+    #[serde(rename = "file")]
     pub files: Vec<File>,
 }
 
@@ -49,88 +56,63 @@ pub enum Holds {
     Table,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct File {
     pub holds: Holds,
     pub name: String,
-    /// Its content, or the SHA-256 of a file that is too large to travel.
-    pub content: Result<String, String>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Head {
-    gyrolab: String,
-    picture_sha256: String,
-    figure: toml::Table,
-    #[serde(default)]
-    file: Vec<Listed>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Listed {
-    holds: Holds,
-    name: String,
-    bytes: Option<usize>,
-    sha256: Option<String>,
+    bytes: usize,
+    /// Of a file that is too large to travel.
+    pub sha256: Option<String>,
+    #[serde(skip)]
+    pub text: String,
 }
 
 impl File {
     pub fn new(holds: Holds, name: &str, text: &str) -> Self {
         let fits = || text.len() <= MOST_DATA || packed(text.as_bytes()).len() <= MOST_DATA;
         let travels = holds == Holds::Run || fits();
+        let carried = if travels { text } else { "" };
         Self {
             holds,
             name: name_of(name),
-            content: if travels {
-                Ok(text.to_owned())
-            } else {
-                Err(sha256(text.as_bytes()))
-            },
+            bytes: carried.len(),
+            sha256: (!travels).then(|| sha256(text.as_bytes())),
+            text: carried.to_owned(),
         }
     }
 }
 
 impl Origin {
+    pub fn new(asked: &impl Serialize, files: Vec<File>) -> Self {
+        Self {
+            gyrolab: env!("CARGO_PKG_VERSION").to_owned(),
+            picture_sha256: String::new(),
+            figure: toml::Table::try_from(asked).unwrap_or_default(), // a struct that is read back
+            files,
+        }
+    }
+
     /// The files that hold this.
     pub fn all(&self, holds: Holds) -> impl Iterator<Item = &File> {
         self.files.iter().filter(move |file| file.holds == holds)
     }
 
-    /// The names of files that are too large to travel.
-    pub fn left_behind(&self) -> impl Iterator<Item = &str> {
-        let large = self.files.iter().filter(|file| file.content.is_err());
-        large.map(|file| file.name.as_str())
-    }
-
     /// The text that is carried by the `picture`, a file without it.
     fn text(&self, picture: &[u8]) -> Option<String> {
-        let listed = |file: &File| Listed {
-            holds: file.holds,
-            name: file.name.clone(),
-            bytes: file.content.as_ref().ok().map(String::len),
-            sha256: file.content.as_ref().err().cloned(),
-        };
-        let head = toml::to_string(&Head {
-            gyrolab: self.gyrolab.clone(),
+        let head = toml::to_string(&Self {
             picture_sha256: sha256(picture),
-            figure: self.figure.clone(),
-            file: self.files.iter().map(listed).collect(),
+            ..self.clone()
         });
         let head = head.ok().filter(|head| head.len() <= LONGEST_HEAD)?;
-        let contents = self
-            .files
-            .iter()
-            .filter_map(|file| file.content.as_ref().ok());
-        let contents = contents.map(String::as_str).collect::<String>();
+        let contents: String = self.files.iter().map(|file| file.text.as_str()).collect();
         let rest = format!(", head {}\n{head}{contents}", head.len());
         let text = format!("{MARK}{}{rest}", sha256(rest.as_bytes()));
         (text.len() <= LONGEST_TEXT).then_some(text)
     }
 
-    /// What the carried `text` holds, and the SHA-256 of its picture.
-    fn read(text: &str) -> Result<(Self, String), String> {
+    /// What the carried `text` holds.
+    fn read(text: &str) -> Result<Self, String> {
         let rest = text.strip_prefix(MARK).ok_or(BROKEN)?;
         let (sum, rest) = rest.split_at_checked(64).ok_or(BROKEN)?;
         if sum != sha256(rest.as_bytes()) {
@@ -145,52 +127,28 @@ impl Origin {
         let length = length.filter(|length| *length <= LONGEST_HEAD);
         let cut = length.and_then(|length| rest.split_at_checked(length));
         let (head, mut rest) = cut.ok_or(BROKEN)?;
-        let head: Head = toml::from_str(head).map_err(|error| unknown(head, error.message()))?;
-        let mut files = Vec::new();
-        for listed in head.file {
-            let content = match (listed.bytes, listed.sha256) {
-                (Some(bytes), None) => {
-                    let (content, after) = rest.split_at_checked(bytes).ok_or(BROKEN)?;
-                    rest = after;
-                    Ok(content.to_owned())
-                }
-                (None, Some(sum)) => Err(sum),
-                _ => return Err(BROKEN.to_owned()),
-            };
-            let (holds, name) = (listed.holds, listed.name);
-            files.push(File {
-                holds,
-                name,
-                content,
-            });
+        let mut origin: Self = toml::from_str(head).map_err(|error| unknown(head, &error))?;
+        for file in &mut origin.files {
+            let (text, after) = rest.split_at_checked(file.bytes).ok_or(BROKEN)?;
+            (file.text, rest) = (text.to_owned(), after);
         }
-        let origin = Self {
-            gyrolab: head.gyrolab,
-            figure: head.figure,
-            files,
-        };
         let is_whole = rest.is_empty() && !origin.files.is_empty();
-        is_whole
-            .then_some((origin, head.picture_sha256))
-            .ok_or(BROKEN.to_owned())
+        is_whole.then_some(origin).ok_or(BROKEN.to_owned())
     }
 }
 
 /// Why a head is not understood, with the version that wrote it where that is another.
-fn unknown(head: &str, message: &str) -> String {
+fn unknown(head: &str, error: &toml::de::Error) -> String {
     let own = env!("CARGO_PKG_VERSION");
+    let message = brief(error.message(), 120);
     let table: toml::Table = head.parse().unwrap_or_default();
-    let version = table.get("gyrolab").and_then(toml::Value::as_str);
-    let version = version.filter(|version| *version != own);
-    let versions = version.map(|version| {
-        let version = brief(version, 40);
-        format!(" (drawn by gyrolab {version}, read by gyrolab {own})")
-    });
-    let message = brief(message, 120);
-    format!(
-        "its metadata is not understood: {message}{}",
-        versions.unwrap_or_default()
-    )
+    match table.get("gyrolab").and_then(toml::Value::as_str) {
+        Some(other) if other != own => format!(
+            "was drawn by gyrolab {}, and this is gyrolab {own}, which does not know all that is in it: {message}",
+            brief(other, 40)
+        ),
+        _ => format!("{BROKEN}: {message}"),
+    }
 }
 
 /// The forms of file that carry a text.
@@ -258,8 +216,8 @@ impl Figure {
         let form = Form::of(file).ok_or(NONE)?;
         let Parted { picture, text } = form.part(file)?;
         let text = String::from_utf8(text).map_err(|_| BROKEN)?;
-        let (origin, sum) = Origin::read(&text)?;
-        let changed = if sum != sha256(&picture) {
+        let origin = Origin::read(&text)?;
+        let changed = if origin.picture_sha256 != sha256(&picture) {
             Some("its picture was changed after it was drawn: the SHA-256 is another")
         } else if form.carry(&picture, &text).as_deref() != Some(file) {
             Some("its file was changed after it was drawn, though not its picture and not its run")

@@ -6,7 +6,7 @@ use crate::origin::{Figure, Holds};
 use crate::text::advice::unread;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// How the line of names begins in the CSV of a run with every column.
 const EVERY_COLUMN: &[u8] = b"step,t_s,";
@@ -104,10 +104,9 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
     if path.is_dir() {
         return Err(whole("is a folder: name a file in it".to_owned()));
     }
-    let (path, number) = numbered(path);
-    let mut reader = BufReader::new(File::open(&path).map_err(cannot)?);
+    let mut reader = BufReader::new(File::open(path).map_err(cannot)?);
     if let Some(figure) = Figure::read(&mut reader).map_err(whole)? {
-        return run_of_figure(&figure, &path, number);
+        return run_of_figure(&figure);
     }
     let head = Head::read(&mut reader).map_err(cannot)?;
     if head.is_of_csv() {
@@ -122,45 +121,23 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
     text_of_file(head.bytes.as_slice().chain(reader))
 }
 
-/// The file that `path` names, and the number of a run in it: `figure.svg:2` names the second one of that figure.
-fn numbered(path: &Path) -> (PathBuf, Option<usize>) {
-    let parts = path.to_str().filter(|_| !path.exists());
-    let parts = parts.and_then(|path| path.rsplit_once(':'));
-    let number = parts.and_then(|(file, number)| Some((PathBuf::from(file), number.parse().ok()?)));
-    // Whoever has checked the name has not seen where a link of the shorter name leads.
-    let is_plain = |file: &Path| file.symlink_metadata().is_ok_and(|it| it.is_file());
-    let number = number.filter(|(file, _)| is_plain(file));
-    number.map_or((path.to_owned(), None), |(file, number)| {
-        (file, Some(number))
-    })
-}
-
-/// The run file in a figure: of several the one of that `number`; of a table the one in its header.
-fn run_of_figure(figure: &Figure, path: &Path, number: Option<usize>) -> Result<String, Problem> {
-    let whole = |rule: String| Problem::at("", rule);
-    let runs: Vec<_> = figure.origin.all(Holds::Run).collect();
-    if let (Some(table), None) = (figure.origin.all(Holds::Table).next(), number) {
-        let text = table.content.as_ref().map_err(|_| {
-            whole(format!(
-                "shows a table that is too large to travel with it: name that file, {}",
-                table.name
-            ))
-        })?;
-        let head = Head::read(&mut text.as_bytes()).map_err(|error| whole(unread(&error)))?;
-        return head.run_file();
-    }
-    let place = match (number, runs.len()) {
-        (None, 1) => 0,
-        (Some(number), count) if (1..=count).contains(&number) => number - 1,
-        (_, count) => {
-            let file = path.display();
-            return Err(whole(format!(
-                "holds several runs: name one of them, {file}:1 to {file}:{count}"
-            )));
+/// The run file in a figure: of several the first, of a table the one in its header.
+fn run_of_figure(figure: &Figure) -> Result<String, Problem> {
+    match figure.origin.files.first() {
+        Some(file) if file.sha256.is_some() => {
+            let rule = format!(
+                "shows a table that did not travel with it: name {}",
+                file.name
+            );
+            Err(Problem::at("", rule))
         }
-    };
-    let text = runs.get(place).and_then(|run| run.content.clone().ok());
-    text.ok_or_else(|| whole("holds no run".to_owned()))
+        Some(file) if file.holds == Holds::Table => {
+            let head = Head::read(&mut file.text.as_bytes());
+            head.map_err(|error| Problem::at("", unread(&error)))?
+                .run_file()
+        }
+        file => Ok(file.map(|file| file.text.clone()).unwrap_or_default()),
+    }
 }
 
 /// Whether SCENARIO names a file, and no preset.

@@ -2,42 +2,36 @@
 
 use super::{Unverified, other_version};
 use crate::figure::{Format, Source, write};
-use crate::origin::{Figure, Form, Holds};
+use crate::origin::{Figure, Form, Holds, SCREEN};
 use crate::scenario::{Problem, Problems};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-#[derive(Clone, Debug, PartialEq)]
-pub struct Redrawn {
-    /// What differs; `None` where it is the same picture.
-    pub difference: Option<String>,
-    /// What else there is to say, a line each.
-    pub notes: Vec<String>,
-}
-
-/// Draws the figure in the file `path` again and compares; `None` where the file is no figure. `watch` is as for a CSV.
+/// Draws the figure in the file `path` again: what differs, where something does, and what else there is to say, a line each.
+/// `None` where the file is no figure. `watch` is as for a CSV.
 pub fn redraw(
     path: &Path,
     watch: impl Fn(u64, u64) -> ControlFlow<()>,
-) -> Result<Option<Redrawn>, Unverified> {
+) -> Result<Option<(Option<String>, Vec<String>)>, Unverified> {
     let of_file = |rule: String| Problems::one(path.display().to_string(), Problem::at("", rule));
     let Some(figure) = Figure::open(path).map_err(of_file)? else {
         return Ok(None);
     };
     let mut notes = Vec::from_iter(other_version(&figure.origin.gyrolab));
     if let Some(changed) = figure.changed {
-        let difference = Some(changed.to_owned());
-        return Ok(Some(Redrawn { difference, notes }));
+        return Ok(Some((Some(changed.to_owned()), notes)));
+    }
+    if figure.origin.figure.contains_key(SCREEN) {
+        let rule = "is a picture of the lab's screen, which is not drawn again; picture and run are as they were written, and gyrolab run takes the run";
+        return Err(of_file(rule.to_owned()).into());
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let source = Source::of(&figure.origin, folder);
-    let (source, text) = source.map_err(|problems| of_file(problems.in_one_line()))?;
-    let drawn = source
-        .draw(watch)
-        .map_err(of_file)?
-        .ok_or(Unverified::Stopped)?;
+    let source = source.map_err(|problems| of_file(problems.in_one_line()))?;
+    let drawn = source.draw(watch).map_err(of_file)?;
+    let drawn = drawn.ok_or(Unverified::Stopped)?;
     let format = match figure.form {
-        Form::Svg if text => Format::SvgText,
+        Form::Svg if source.asked.text => Format::SvgText,
         Form::Svg => Format::Svg,
         Form::Pdf => Format::Pdf,
         Form::Png => Format::Png,
@@ -48,27 +42,17 @@ pub fn redraw(
     if figure.origin.all(Holds::Table).next().is_some() {
         notes.push("drawn from the table in it; gyrolab verify computes that where it has a file of its own".to_owned());
     }
-    let difference = difference(&figure, &again);
-    if difference.is_none() && figure.picture != again.picture {
+    let (there, drawn) = (&figure.picture, &again.picture);
+    if there == drawn {
+        return Ok(Some((None, notes)));
+    }
+    let has_pixels = figure.form == Form::Png && pixels(drawn).is_some();
+    let are_same = has_pixels && pixels(there) == pixels(drawn);
+    if are_same {
         notes.push("its pixels are the same, compressed otherwise".to_owned());
     }
-    Ok(Some(Redrawn { difference, notes }))
-}
-
-/// What differs between two pictures.
-fn difference(figure: &Figure, again: &Figure) -> Option<String> {
-    let (there, drawn) = (&figure.picture, &again.picture);
-    let are_same = there == drawn
-        || figure.form == Form::Png && pixels(drawn).is_some() && pixels(there) == pixels(drawn);
-    let mut pairs = there.iter().zip(drawn);
-    let at = pairs.position(|(a, b)| a != b);
-    let at = at.unwrap_or(there.len().min(drawn.len()));
-    (!are_same).then(|| {
-        let (length, other) = (there.len(), drawn.len());
-        format!(
-            "its run, drawn again, is another picture: from byte {at} on ({length} bytes, drawn again {other})"
-        )
-    })
+    let other = "its run, drawn again, gives another picture";
+    Ok(Some(((!are_same).then(|| other.to_owned()), notes)))
 }
 
 /// The size and the pixels of a PNG no larger than those that are drawn.

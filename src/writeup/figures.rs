@@ -111,7 +111,7 @@ pub fn figures(
         }),
         caption: planned.caption,
         scene: figure.scene,
-        source: Source::Runs(runs.to_vec(), planned.request),
+        source: Source::new(&runs, &planned.request),
     }
     };
     Ok(drawn.map(|drawn| planned.into_iter().zip(drawn).map(drawing).collect()))

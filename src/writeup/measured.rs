@@ -65,7 +65,7 @@ impl Beside {
 
     /// The data that were measured before the end of the run.
     pub(super) fn reached(&self) -> Arc<Measured> {
-        Arc::new(Measured::clone(&self.measured).until(self.end_s))
+        Arc::new(Measured::clone(&self.measured).until(Some(self.end_s)))
     }
 
     /// What was measured, with how far the run is from it, one row a column.

@@ -28,7 +28,7 @@ pub const READOUTS_FILE: &str = "readouts.json";
 const AGAIN: &str = "again.csv";
 
 /// The name, among the readouts, of what was measured.
-const MEASURED_DATA: &str = "measured_data";
+pub const MEASURED_DATA: &str = "measured_data";
 
 #[derive(Clone, Debug)]
 pub struct Writeup {
@@ -47,11 +47,10 @@ impl Writeup {
     /// # Errors
     /// When a figure is too large for its form.
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Unwritable> {
-        let page = page::page(self).unwrap_or_default(); // a String takes what is written to it
         let texts = [
             (RUN_FILE, self.scenario.to_toml()),
             (READOUTS_FILE, self.readouts_json()),
-            (PAGE, page),
+            (PAGE, self.page()),
         ];
         let beside = self.beside.iter();
         let beside = beside.map(|beside| (beside.name(), beside.measured.text.to_string()));
@@ -67,8 +66,12 @@ impl Writeup {
         Ok(files)
     }
 
+    pub fn page(&self) -> String {
+        page::page(self).unwrap_or_default() // a String takes what is written to it
+    }
+
     /// The readouts without the times by the clock, one object.
-    fn readouts_json(&self) -> String {
+    pub fn readouts_json(&self) -> String {
         let lasting = READOUTS.iter();
         let lasting = lasting.filter(|readout| readout.source != Source::Clock);
         let named = lasting.map(|readout| {
