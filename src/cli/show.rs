@@ -1,7 +1,7 @@
 //! `gyrolab show`: the lab's picture as plain text or as SVG, at one step or after commands.
 
 use super::args::{Changes, size, steps};
-use super::new_lab::{self, DEFAULT, plain_lab};
+use super::new_lab::{self, DEFAULT};
 use super::{print, progress, tell};
 use crate::lab::view::theme::{Background, Marker, Theme};
 use crate::lab::{Lab, command};
@@ -67,20 +67,6 @@ pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {
 }
 
 impl ShowArgs {
-    /// A lab without colours, or for SVG with those of the background.
-    fn lab(&self) -> anyhow::Result<Lab> {
-        let name = self.scenario.as_deref().unwrap_or(DEFAULT);
-        if !self.svg {
-            return plain_lab(name, &self.changes, self.markers);
-        }
-        let theme = Theme {
-            colour: true,
-            background: self.background.unwrap_or(Background::Dark),
-        };
-        let markers = self.markers.unwrap_or(Marker::Braille);
-        new_lab::lab(name, &self.changes, Some(markers), theme, false)
-    }
-
     fn picture(&self, lab: &Lab) -> Vec<u8> {
         if !self.svg {
             return screen::text(lab, false, self.size).into_bytes();
@@ -102,7 +88,12 @@ pub(super) fn print_picture(
     confined: Option<Confined>,
 ) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
-    let mut lab = args.lab()?;
+    let theme = Theme {
+        colour: args.svg,
+        background: args.background.unwrap_or(Background::Dark),
+    };
+    let usual = args.svg.then_some(Marker::Braille); // whatever the terminal is
+    let mut lab = new_lab::lab(name, &args.changes, args.markers.or(usual), theme, false)?;
     if let Some(folder) = confined {
         lab.files_mut().confine(folder);
     }

@@ -127,27 +127,18 @@ impl Origin {
         let length = length.filter(|length| *length <= LONGEST_HEAD);
         let cut = length.and_then(|length| rest.split_at_checked(length));
         let (head, mut rest) = cut.ok_or(BROKEN)?;
-        let mut origin: Self = toml::from_str(head).map_err(|error| unknown(head, &error))?;
+        let mut origin: Self = toml::from_str(head).map_err(|error| {
+            let [version, why] =
+                [head.lines().next().unwrap_or_default(), error.message()].map(|it| brief(it, 120));
+            let own = env!("CARGO_PKG_VERSION");
+            format!("its metadata ({version}) is not understood by gyrolab {own}: {why}")
+        })?;
         for file in &mut origin.files {
             let (text, after) = rest.split_at_checked(file.bytes).ok_or(BROKEN)?;
             (file.text, rest) = (text.to_owned(), after);
         }
         let is_whole = rest.is_empty() && !origin.files.is_empty();
         is_whole.then_some(origin).ok_or(BROKEN.to_owned())
-    }
-}
-
-/// Why a head is not understood, with the version that wrote it where that is another.
-fn unknown(head: &str, error: &toml::de::Error) -> String {
-    let own = env!("CARGO_PKG_VERSION");
-    let message = brief(error.message(), 120);
-    let table: toml::Table = head.parse().unwrap_or_default();
-    match table.get("gyrolab").and_then(toml::Value::as_str) {
-        Some(other) if other != own => format!(
-            "was drawn by gyrolab {}, and this is gyrolab {own}, which does not know all that is in it: {message}",
-            brief(other, 40)
-        ),
-        _ => format!("{BROKEN}: {message}"),
     }
 }
 
@@ -217,9 +208,11 @@ impl Figure {
         let Parted { picture, text } = form.part(file)?;
         let text = String::from_utf8(text).map_err(|_| BROKEN)?;
         let origin = Origin::read(&text)?;
+        // Another version may have compressed the text otherwise.
+        let is_own = origin.gyrolab == env!("CARGO_PKG_VERSION");
         let changed = if origin.picture_sha256 != sha256(&picture) {
             Some("its picture was changed after it was drawn: the SHA-256 is another")
-        } else if form.carry(&picture, &text).as_deref() != Some(file) {
+        } else if is_own && form.carry(&picture, &text).as_deref() != Some(file) {
             Some("its file was changed after it was drawn, though not its picture and not its run")
         } else {
             None

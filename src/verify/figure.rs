@@ -27,7 +27,10 @@ pub fn redraw(
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let source = Source::of(&figure.origin, folder);
-    let source = source.map_err(|problems| of_file(problems.in_one_line()))?;
+    let source = source.map_err(|problems| {
+        let versions = notes.first().map(|note| format!(" ({note})"));
+        of_file(problems.in_one_line() + &versions.unwrap_or_default())
+    })?;
     let drawn = source.draw(watch).map_err(of_file)?;
     let drawn = drawn.ok_or(Unverified::Stopped)?;
     let format = match figure.form {

@@ -3,6 +3,7 @@
 use super::{AGAIN, CSV, PAGE, READOUTS_FILE, RUN_FILE};
 use crate::data::compared::{Compared, Sum};
 use crate::data::{Measured, Quantity, at_times};
+use crate::fit::solution::too_large;
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, counted, shortest, significant};
 use serde_json::{Value, json};
@@ -105,6 +106,9 @@ impl Beside {
                 significant(sum.chi_squared, 4),
                 points(sum.weighed)
             )?;
+            if let Some(too_large) = too_large(sum.chi_squared, sum.weighed as u64) {
+                writeln!(page, "\nBut {too_large}.")?;
+            }
         }
         Ok(())
     }
