@@ -3,6 +3,7 @@
 
 mod against;
 mod figure;
+mod unverified;
 
 use crate::analysis::compare::{self, ComparisonRow};
 use crate::analysis::{Monitor, cost};
@@ -18,8 +19,6 @@ use crate::scenario::rescale::MOST_STEPS;
 use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::sweep::Sweep;
 use crate::sweep::in_order::in_order;
-use crate::text::advice::unread;
-use crate::text::printable::printable;
 use against::Against;
 pub use against::Difference;
 pub use figure::redraw;
@@ -31,6 +30,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+pub use unverified::Unverified;
+use unverified::other_version;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verified {
@@ -39,33 +40,6 @@ pub struct Verified {
     pub difference: Option<Difference>,
     /// What else there is to say, a line each: another version, where the run ends early, whether to believe it.
     pub notes: Vec<String>,
-}
-
-#[derive(Debug, thiserror::Error)]
-pub enum Unverified {
-    /// It is no CSV of gyrolab's, or what its header holds cannot be computed.
-    #[error("{0}")]
-    Refused(Problems),
-    #[error("stopped")]
-    Stopped,
-}
-
-impl From<Problems> for Unverified {
-    fn from(problems: Problems) -> Self {
-        Self::Refused(problems)
-    }
-}
-
-impl From<String> for Unverified {
-    fn from(rule: String) -> Self {
-        Problems::one("", Problem::at("", rule)).into()
-    }
-}
-
-impl From<io::Error> for Unverified {
-    fn from(error: io::Error) -> Self {
-        unread(&error).into()
-    }
 }
 
 /// How the line of names begins in the CSV of a comparison.
@@ -145,14 +119,6 @@ fn opened(path: &Path) -> Result<(Head, BufReader<File>), Unverified> {
     }
     let mut file = BufReader::new(File::open(path)?);
     Ok((Head::read(&mut file)?, file))
-}
-
-/// Says that another version has written the file.
-fn other_version(version: &str) -> Option<String> {
-    let own = env!("CARGO_PKG_VERSION");
-    let version = printable(version);
-    (version != own)
-        .then(|| format!("written by gyrolab {version}, computed again by gyrolab {own}"))
 }
 
 /// The run file in the head of a CSV that gyrolab wrote.

@@ -5,12 +5,9 @@ mod comparison;
 mod fit;
 mod sweep;
 
-use super::COLUMN_PT;
 use super::chart::Chart;
 use super::page::ink::{self, LABEL_PT};
 use super::page::letters;
-use super::request::Figure;
-use super::source::Asked;
 use super::table::{Subject, Table};
 use crate::scenario::problem;
 
@@ -40,19 +37,6 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
         are_read_off: matches!(table.subject, Subject::Sweep(_)),
         ..Chart::default()
     })
-}
-
-/// The figure of `table` that is asked for.
-pub fn figure(table: &Table, asked: &Asked) -> Result<Figure, String> {
-    let columns = asked.kind.iter().flat_map(|kind| kind.split(','));
-    let columns: Vec<_> = columns.map(str::trim).collect();
-    let mut chart = chart(table, &columns, asked.width_pt.unwrap_or(COLUMN_PT))?;
-    let hidden = asked.labels.apply(&mut chart)?;
-    let mut figure = Figure::of(chart.scene());
-    asked.labels.write_title(&mut figure.scene);
-    figure.warnings = warnings(table, &columns);
-    figure.warnings.extend(hidden);
-    Ok(figure)
 }
 
 /// What the reader of that chart should know of it, each a sentence without its end.

@@ -3,8 +3,8 @@
 use super::kind::Kind;
 use super::labels::Labels;
 use super::of_runs::{self, Figure, Request, Run};
-use super::page::format::{self, Format, Unwritable};
-use super::page::scene::Scene;
+use super::page::format::{self, Format};
+use super::page::scene::{Scene, Unwritable};
 use super::table::Table;
 use super::{COLUMN_PT, PT_PER_MM, of_table};
 use crate::data::{self, Measured};
@@ -76,7 +76,7 @@ impl Source {
     ) -> Result<Option<Figure>, String> {
         self.check()?;
         match &self.table {
-            Some(table) => match of_table::figure(table, &self.asked) {
+            Some(table) => match of_table(table, &self.asked) {
                 Ok(figure) => Ok(Some(figure)),
                 Err(refusal) => Err(format!("{}: {refusal}", table.origin)),
             },
@@ -172,6 +172,19 @@ impl Source {
         }
         Ok(source)
     }
+}
+
+/// The figure of `table` that is asked for.
+fn of_table(table: &Table, asked: &Asked) -> Result<Figure, String> {
+    let columns = asked.kind.iter().flat_map(|kind| kind.split(','));
+    let columns: Vec<_> = columns.map(str::trim).collect();
+    let mut chart = of_table::chart(table, &columns, asked.width_pt.unwrap_or(COLUMN_PT))?;
+    let hidden = asked.labels.apply(&mut chart)?;
+    let mut figure = Figure::of(chart.scene());
+    asked.labels.write_title(&mut figure.scene);
+    figure.warnings = of_table::warnings(table, &columns);
+    figure.warnings.extend(hidden);
+    Ok(figure)
 }
 
 fn refused(rule: &str) -> Problems {

@@ -5,6 +5,7 @@
 //! [`svg`], [`pdf`] and [`png`] put this text into the file of a picture and find it there; taken out, it leaves that file
 //! as it was.
 
+mod parted;
 mod pdf;
 mod png;
 mod svg;
@@ -17,20 +18,16 @@ use std::fs::File as Opened;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
+use parted::{BROKEN, LONGEST_TEXT, NONE, Parted, packed};
+
 /// The longest file of a figure that is read, bytes.
 const LONGEST_FIGURE: u64 = 128 << 20;
-/// The longest text that a figure carries, bytes.
-const LONGEST_TEXT: usize = 64 << 20;
 /// The longest head of it, bytes: the names of some thousand runs.
 const LONGEST_HEAD: usize = 256 << 10;
 /// Data and tables that are longer when compressed do not travel, bytes.
 const MOST_DATA: usize = 1 << 20;
 
 const MARK: &str = "# gyrolab figure, sha256 ";
-const NONE: &str = "holds no run: another program drew or rewrote it, or its metadata was stripped";
-const TWO: &str = "holds the metadata of two figures: nothing says which one is its own";
-const BROKEN: &str = "its metadata is damaged";
-
 /// The key of what was asked of a picture that is the lab's screen, and no figure.
 pub const SCREEN: &str = "screen";
 
@@ -150,12 +147,6 @@ pub enum Form {
     Png,
 }
 
-/// A file without the text that it carries, and that text.
-struct Parted {
-    picture: Vec<u8>,
-    text: Vec<u8>,
-}
-
 impl Form {
     /// The form of a file by its first bytes; `None` where it is no figure.
     pub fn of(bytes: &[u8]) -> Option<Self> {
@@ -262,22 +253,4 @@ pub fn name_of(name: &str) -> String {
 pub fn sha256(bytes: &[u8]) -> String {
     let sum = Sha256::digest(bytes);
     sum.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-fn packed(bytes: &[u8]) -> Vec<u8> {
-    const COMPRESSION: u8 = 9;
-    miniz_oxide::deflate::compress_to_vec_zlib(bytes, COMPRESSION)
-}
-
-fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, &'static str> {
-    let unpacked = miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(bytes, LONGEST_TEXT);
-    unpacked.map_err(|_| BROKEN)
-}
-
-/// Where `mark` stands in `file`, once.
-fn place(file: &[u8], mark: &[u8]) -> Result<usize, &'static str> {
-    let places = file.windows(mark.len()).enumerate();
-    let mut places = places.filter(|(_, window)| *window == mark);
-    let (place, _) = places.next().ok_or(NONE)?;
-    places.next().map_or(Ok(place), |_| Err(TWO))
 }

@@ -1,7 +1,7 @@
 //! PDF: the text is an attached file, which is appended to the picture's file as PDF's own incremental updates are: the
 //! attachment, the catalog that names it, and where they stand.
 
-use super::{BROKEN, Parted, packed, place, unpacked};
+use super::parted::{BROKEN, Parted, packed, place, unpacked};
 
 const MARK: &str = "\n% gyrolab figure\n";
 const STREAM: &[u8] = b"\nstream\n";

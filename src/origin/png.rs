@@ -1,6 +1,6 @@
 //! PNG: the text is the last chunk before the end, a compressed iTXt with the keyword `gyrolab`.
 
-use super::{NONE, Parted, TWO, packed, unpacked};
+use super::parted::{NONE, Parted, TWO, packed, unpacked};
 
 pub const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 const KEYWORD: &[u8] = b"iTXtgyrolab\0";

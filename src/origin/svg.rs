@@ -1,7 +1,7 @@
 //! SVG: the text is the last element, `<metadata>`. What XML does not take as it is, and `%`, is written as `%` and two
 //! hexadecimal digits for each byte, so that no other program has a reason to write it otherwise.
 
-use super::{BROKEN, Parted, place};
+use super::parted::{BROKEN, Parted, place};
 
 const BEGIN: &str = "<metadata>\n";
 /// The begin, with the first letters of the text.

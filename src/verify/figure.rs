@@ -1,6 +1,6 @@
 //! A figure, drawn again from what its file carries.
 
-use super::{Unverified, other_version};
+use super::unverified::{Unverified, other_version};
 use crate::figure::{Format, Source, write};
 use crate::origin::{Figure, Form, Holds, SCREEN};
 use crate::scenario::{Problem, Problems};
