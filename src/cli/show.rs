@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct ShowArgs {
     /// A preset's name, or a file: a scenario, a run file (.toml), a CSV or a figure that gyrolab wrote [with --do by default: method-2]
     #[arg(required_unless_present = "commands")]

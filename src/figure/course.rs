@@ -298,13 +298,7 @@ pub fn exact(
     truth.state_at(begin_s);
     let closed = truth.motion().closed_form();
     let period_s = closed.and_then(LagrangeTop::nutation_period);
-    let fine_s = period_s.map_or(f64::INFINITY, |period_s| period_s / A_PERIOD);
-    let mut apart_s = fine_s.min(scenario.motion.time_step_s);
-    apart_s = apart_s.max((end_s - begin_s) / MOST);
-    if let Some(period_s) = period_s.filter(|period_s| apart_s > OTHER_PHASE * period_s) {
-        let whole = (apart_s / period_s - OTHER_PHASE).floor();
-        apart_s = (whole + OTHER_PHASE) * period_s;
-    }
+    let apart_s = apart_s(end_s - begin_s, scenario.motion.time_step_s, period_s);
     let count = ((end_s - begin_s) / apart_s).ceil().max(LEAST) as u64;
     let mut recorder = Recorder::of(scenario, wanted.clone(), true);
     let mut azimuth = Azimuth::start(&scenario.start.axle());
@@ -325,6 +319,16 @@ pub fn exact(
         swing_s: period_s,
         ..recorder.end(None)
     })
+}
+
+/// How far the moments of a stretch of the exact motion are apart, s.
+fn apart_s(length_s: f64, time_step_s: f64, period_s: Option<f64>) -> f64 {
+    let period_s = period_s.unwrap_or(f64::INFINITY);
+    let apart_s = (period_s / A_PERIOD).min(time_step_s).max(length_s / MOST);
+    if apart_s <= OTHER_PHASE * period_s {
+        return apart_s;
+    }
+    ((apart_s / period_s - OTHER_PHASE).floor() + OTHER_PHASE) * period_s
 }
 
 fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, gravity: f64) -> Sample {

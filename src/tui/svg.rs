@@ -77,15 +77,9 @@ fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, paper: [&'static str;
         *out +=
             &format!("<path fill=\"{ground}\" d=\"M{left} {top}h{width}v{HEIGHT}h-{width}z\"/>\n");
     }
-    let has = |modifier, attribute| {
-        if first.modifier.contains(modifier) {
-            attribute
-        } else {
-            ""
-        }
-    };
-    let dim = has(Modifier::DIM, " opacity=\".65\"");
-    let bold = has(Modifier::BOLD, " font-weight=\"bold\"");
+    let has = |modifier| usize::from(first.modifier.contains(modifier));
+    let dim = ["", " opacity=\".65\""][has(Modifier::DIM)];
+    let bold = ["", " font-weight=\"bold\""][has(Modifier::BOLD)];
     match mark(first) {
         Mark::Blank => {}
         Mark::Dots => {

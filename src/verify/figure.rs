@@ -7,12 +7,15 @@ use crate::scenario::{Problem, Problems};
 use std::ops::ControlFlow;
 use std::path::Path;
 
+/// What differs in a figure, and what else there is to say, a line each.
+type Redrawn = (Option<String>, Vec<String>);
+
 /// Draws the figure in the file `path` again: what differs, where something does, and what else there is to say, a line each.
 /// `None` where the file is no figure. `watch` is as for a CSV.
 pub fn redraw(
     path: &Path,
     watch: impl Fn(u64, u64) -> ControlFlow<()>,
-) -> Result<Option<(Option<String>, Vec<String>)>, Unverified> {
+) -> Result<Option<Redrawn>, Unverified> {
     let of_file = |rule: String| Problems::one(path.display().to_string(), Problem::at("", rule));
     let Some(figure) = Figure::open(path).map_err(of_file)? else {
         return Ok(None);
@@ -33,29 +36,31 @@ pub fn redraw(
     })?;
     let drawn = source.draw(watch).map_err(of_file)?;
     let drawn = drawn.ok_or(Unverified::Stopped)?;
-    let format = match figure.form {
-        Form::Svg if source.asked.text => Format::SvgText,
-        Form::Svg => Format::Svg,
-        Form::Pdf => Format::Pdf,
-        Form::Png => Format::Png,
-    };
-    let again = write(&drawn.scene, format, Some(&figure.origin));
+    let again = write(&drawn.scene, format(&figure, &source), Some(&figure.origin));
     let again = again.map_err(|error| of_file(error.to_string()))?;
     let again = Figure::of(&again).map_err(of_file)?;
     if figure.origin.all(Holds::Table).next().is_some() {
         notes.push("drawn from the table in it; gyrolab verify computes that where it has a file of its own".to_owned());
     }
     let (there, drawn) = (&figure.picture, &again.picture);
-    if there == drawn {
-        return Ok(Some((None, notes)));
+    let mut difference = None;
+    if there != drawn {
+        if figure.form == Form::Png && pixels(drawn).is_some() && pixels(there) == pixels(drawn) {
+            notes.push("its pixels are the same, compressed otherwise".to_owned());
+        } else {
+            difference = Some("its run, drawn again, gives another picture".to_owned());
+        }
     }
-    let has_pixels = figure.form == Form::Png && pixels(drawn).is_some();
-    let are_same = has_pixels && pixels(there) == pixels(drawn);
-    if are_same {
-        notes.push("its pixels are the same, compressed otherwise".to_owned());
+    Ok(Some((difference, notes)))
+}
+
+fn format(figure: &Figure, source: &Source) -> Format {
+    match figure.form {
+        Form::Svg if source.asked.text => Format::SvgText,
+        Form::Svg => Format::Svg,
+        Form::Pdf => Format::Pdf,
+        Form::Png => Format::Png,
     }
-    let other = "its run, drawn again, gives another picture";
-    Ok(Some(((!are_same).then(|| other.to_owned()), notes)))
 }
 
 /// The size and the pixels of a PNG no larger than those that are drawn.

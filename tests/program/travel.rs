@@ -91,18 +91,16 @@ fn two_hundred_figures_are_drawn_again_from_their_files() {
         "wobble-push",
         "heidelberg",
         "life-of-a-top",
+        "loops",
     ];
     let mut whats: Vec<String> = Vec::new();
     for preset in presets {
         let of = |option: &&str| format!("{preset} --duration 2 {option}");
         whats.extend(options.iter().map(of));
     }
-    for data in ["spin-decay", "nutation", "precession", "body-cone"] {
-        for kind in ["", "--kind residuals", "--exact"] {
-            whats.push(format!(
-                "heidelberg --duration 3 --measured heidelberg-{data} {kind}"
-            ));
-        }
+    for kind in ["", "--kind residuals", "--kind traces --exact", "--from 1"] {
+        let data = "--measured heidelberg-spin-decay";
+        whats.push(format!("heidelberg --duration 3 {data} {kind}"));
     }
     whats.extend(
         [
