@@ -206,7 +206,7 @@ fn every_preset_has_a_tidy_figure_of_every_kind() {
                 let figure = drawn(&runs, &request);
                 is_tidy(&figure.scene)
                     .unwrap_or_else(|why| panic!("{name} {kind} {width_mm}: {why}"));
-                assert!(!write(&figure.scene, Format::Svg).unwrap().is_empty());
+                assert!(!write(&figure.scene, Format::Svg, None).unwrap().is_empty());
             }
         }
     }
@@ -416,7 +416,7 @@ fn a_run_of_one_step_has_a_figure() {
     for kind in ["traces", "above", "3d"] {
         let figure = drawn(&runs, &request(kind));
         is_tidy(&figure.scene).unwrap();
-        write(&figure.scene, Format::Svg).unwrap();
+        write(&figure.scene, Format::Svg, None).unwrap();
     }
 }
 
@@ -559,7 +559,7 @@ fn words_and_axes_are_those_that_were_asked_for() {
     says(&figure.scene, &labels);
     assert_eq!(figure.scene.title, "Two tops_1");
     has(told(&figure).join(""), "no place on a logarithmic axis");
-    let text = String::from_utf8(write(&figure.scene, Format::SvgText).unwrap()).unwrap();
+    let text = String::from_utf8(write(&figure.scene, Format::SvgText, None).unwrap()).unwrap();
     assert!(text.contains(">height in m</tspan>") && text.contains("serif"));
     let many = Labels {
         y: vec![String::new(); 2],
@@ -892,6 +892,6 @@ proptest! {
         if let Err(why) = is_tidy(&scene) {
             prop_assert!(false, "{why}");
         }
-        prop_assert!(write(&scene, Format::Svg).is_ok());
+        prop_assert!(write(&scene, Format::Svg, None).is_ok());
     }
 }
