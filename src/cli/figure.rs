@@ -1,6 +1,6 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{Changes, LengthArgs, ScenarioArgs, positive, scenario_of, time};
+use super::args::{Changes, LengthArgs, MeasuredArgs, ScenarioArgs, positive, scenario_of, time};
 use super::progress::{self, Interrupted, Interruption};
 use super::{ended_by, refuse, tell};
 use crate::analysis::cost;
@@ -48,9 +48,8 @@ pub(super) struct FigureArgs {
     #[arg(long)]
     exact: bool,
 
-    /// Draw measured data with it: a CSV with a column t_s, or data that come with gyrolab (heidelberg-spin-decay)
-    #[arg(long, value_name = "FILE")]
-    measured: Option<String>,
+    #[command(flatten)]
+    beside: MeasuredArgs,
 
     /// Width of the page: 86mm for a column, 178mm for a page
     #[arg(long, value_name = "MM", default_value = "86mm", value_parser = width)]
@@ -208,7 +207,7 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
         (Some(table), _) => {
             let is_changed = args.exact
                 || args.from.or(args.to).is_some()
-                || args.measured.is_some()
+                || args.beside.measured.is_some()
                 || !args.schemes.is_empty()
                 || !args.labels.label.is_empty()
                 || args.changes.is_some()
@@ -226,7 +225,9 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
 fn request(args: &FigureArgs) -> anyhow::Result<Request> {
     let kind = args.kind.as_deref().map(Kind::named).transpose();
     let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
-    let measured = args.measured.as_deref().map(data::open).transpose()?;
+    let MeasuredArgs { measured, columns } = &args.beside;
+    let open = |name| data::open_with(name, &columns.map);
+    let measured = measured.as_deref().map(open).transpose()?;
     if let Some(left_out) = measured
         .as_ref()
         .and_then(data::Measured::left_out_in_words)

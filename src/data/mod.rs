@@ -21,7 +21,7 @@ pub use compared::{Residual, is_counted, residuals};
 pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
-pub use reading::{SHIPPED, find_shipped, open, open_with, read, text};
+pub use reading::{SHIPPED, find_shipped, open, open_with, read, read_with, text};
 
 use crate::analysis::readouts::Readout;
 use crate::scenario::problem::listed;

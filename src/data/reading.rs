@@ -69,7 +69,8 @@ pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
     read_with(origin, text, &[])
 }
 
-fn read_with(origin: &str, text: &str, map: &[Renaming]) -> Result<Measured, Problems> {
+/// The same, with columns renamed first.
+pub fn read_with(origin: &str, text: &str, map: &[Renaming]) -> Result<Measured, Problems> {
     let taken_apart = || {
         let mut cells = Csv::of(text, MOST_VALUES)?;
         cells.rename(map, |_| true)?;

@@ -130,7 +130,9 @@ impl Run for Single {
 
     fn step(&mut self) {
         self.scheme.take_step();
-        self.copies.iter_mut().for_each(Program::step);
+        for copy in &mut self.copies {
+            copy.step();
+        }
     }
 }
 

@@ -209,6 +209,7 @@ pub static BINDINGS: &[Binding] = &[
     does(&[Lab], &[Char('u')], |_, count| one(Command::Undo(repeated(count).unsigned_abs())), "undo", "take back what was done last").to(CHANGE),
     does(&[Lab], &[Char('U'), Ctrl('r')], |_, count| one(Command::Redo(repeated(count).unsigned_abs())), "", "do it again").to(CHANGE),
     does(&[Lab], &[Char('m')], |lab, _| one(Command::look("residuals", !lab.view().residuals)), "residuals", "residuals: measured data less the run, or both again; --measured FILE puts data beside a run").worth(Worth::Kept),
+    row(&[Lab], &[Char('M')], Action::ToDifference, "", "to the first step at which rows of your own program differ (--measured mine.csv), phase by phase beside it").found_by("own code verify slip mistake"),
     does(&[Lab], &[Char('i')], |lab, _| one(Command::Pin(!lab.comparison().is_pinned())), "", "pin this run as the reference beside every other, or take it away").found_by("compare keep"),
     does(&[Lab], &[Char('a')], |lab, _| one(lab.adviser().followed(lab.player())?), "", "take the advice about the numbers: the run from the start with what mends them"),
     row(&[Lab], &[Char('X')], Action::Ask(Ask::Figure), "", "figure of the run up to here (a plot, a graph): SVG, PDF or PNG").found_by("screenshot picture image").to(KEEP),
