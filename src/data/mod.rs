@@ -118,6 +118,27 @@ impl Measured {
         (!self.left_out.is_empty()).then(told)
     }
 
+    /// Keeps the rows of a time series from `from_s` to `to_s`, and counts the time from `from_s` on. Returns whether there
+    /// are some.
+    pub fn keep_between(&mut self, from_s: f64, to_s: f64) -> bool {
+        let Data::Series(series) = &mut self.data else {
+            return false;
+        };
+        let times_s = &mut series.times_s;
+        let first = times_s.partition_point(|time_s| *time_s < from_s);
+        let end = times_s.partition_point(|time_s| *time_s <= to_s).max(first);
+        *times_s = times_s[first..end].iter().map(|it| it - from_s).collect();
+        self.lines = self.lines[first..end].to_vec();
+        for curve in &mut series.curves {
+            curve
+                .points
+                .retain(|point| (first..end).contains(&point.row));
+            curve.points.iter_mut().for_each(|point| point.row -= first);
+        }
+        series.curves.retain(|curve| !curve.points.is_empty());
+        !series.curves.is_empty()
+    }
+
     /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts, and returns how many values that are.
     pub fn keep_rows(&mut self, is_kept: impl Fn(usize) -> bool) -> usize {
         let keep = |points: &mut Vec<Point>| {
