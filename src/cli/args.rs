@@ -192,6 +192,10 @@ pub(super) struct LessonArgs {
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
     pub(super) answers: bool,
 
+    /// Print the frame of the program that the lesson asks for, in this language: it runs, the physics is left out
+    #[arg(long, group = "printed", requires = "name", conflicts_with = "page", value_name = "LANGUAGE", value_parser = ["octave", "matlab", "python"])]
+    pub(super) frame: Option<String>,
+
     /// Follow a lab of this login on a second terminal: the notes of its page, what comes next, a clock
     #[arg(long, value_name = "SESSION", num_args = 0..=1, default_missing_value = "", conflicts_with_all = ["name", "page", "printed"])]
     pub(super) notes: Option<String>,
@@ -200,7 +204,7 @@ pub(super) struct LessonArgs {
     #[arg(long, group = "printed", conflicts_with = "name")]
     pub(super) template: bool,
 
-    /// Write the handout, the answers or the template to this file, or to stdout for -
+    /// Write the handout, the frame, the answers or the template to this file, or to stdout for -
     #[arg(short, long, requires = "printed", value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 
