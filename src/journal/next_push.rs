@@ -18,27 +18,40 @@ const WEIGHTS: f64 = 2.0;
 /// distance from the pivot.
 const UPRIGHT: f64 = 1e-9;
 
+/// When a push begins that begins when it is given.
+const NOW: &str = "now";
+
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct NextPush {
     pub point: String,
     pub size_N: f64,
     pub toward: Toward,
+    /// When it begins, s; 0 for the time at which it is given.
+    #[serde(default)]
+    pub from_s: f64,
     pub for_s: f64,
 }
 
-/// One of the four values of a [`NextPush`].
+/// One of the five values of a [`NextPush`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the names say it")]
 pub enum Field {
     Point,
     Size,
     Toward,
+    Begin,
     Length,
 }
 
 impl Field {
-    pub const ALL: [Self; 4] = [Self::Point, Self::Size, Self::Toward, Self::Length];
+    pub const ALL: [Self; 5] = [
+        Self::Point,
+        Self::Size,
+        Self::Toward,
+        Self::Begin,
+        Self::Length,
+    ];
 
     pub fn about(self) -> &'static str {
         match self {
@@ -47,6 +60,7 @@ impl Field {
             Self::Toward => {
                 "down, up, out or in (from the vertical), around or back, +x, -x, +y, -y, or three numbers"
             }
+            Self::Begin => "from which time of the run on, in s; now: when p is pressed",
             Self::Length => "how long, in s, or steps: 20 steps",
         }
     }
@@ -57,6 +71,7 @@ impl Field {
             Self::Point => ("point", ""),
             Self::Size => ("force", "N"),
             Self::Toward => ("toward", ""),
+            Self::Begin => ("from", "s"),
             Self::Length => ("for", "s"),
         }
     }
@@ -77,6 +92,7 @@ impl NextPush {
             point: file.point.clone(),
             size_N: size,
             toward: named.find(is_same).unwrap_or(Toward::Along(unit.into())),
+            from_s: 0.0,
             for_s: match push.window {
                 Window::Steps { count, .. } => count as f64 * scenario.written_for_s,
                 Window::Time { for_s, .. } => for_s,
@@ -96,6 +112,7 @@ impl NextPush {
             point: point.copied().unwrap_or_default().to_owned(),
             size_N: at_or_below(WEIGHTS * weight),
             toward: Toward::Down,
+            from_s: 0.0,
             for_s: at_or_below(SHARE * length_s),
         }
     }
@@ -115,6 +132,8 @@ impl NextPush {
             Field::Point => self.point.clone(),
             Field::Size => shortest(self.size_N),
             Field::Toward => self.toward.shown(),
+            Field::Begin if self.from_s == 0.0 => NOW.to_owned(),
+            Field::Begin => shortest(self.from_s),
             Field::Length => shortest(self.for_s),
         }
     }
@@ -134,6 +153,14 @@ impl NextPush {
                 next.toward = toward.map_or(self.toward, |(_, toward)| *toward);
             }
             Field::Size => next.size_N = climbed(self.size_N, times),
+            // One rung below a second is now.
+            Field::Begin if self.from_s == 0.0 && times > 0 => {
+                next.from_s = climbed(1.0, times - 1)
+            }
+            Field::Begin => {
+                let earlier = climbed(self.from_s, times);
+                next.from_s = if earlier < 1.0 { 0.0 } else { earlier };
+            }
             Field::Length => next.for_s = climbed(self.for_s, times),
         }
         next.checked()
@@ -161,6 +188,8 @@ impl NextPush {
             }
             Field::Size => next.size_N = number()?,
             Field::Toward => next.toward = Toward::typed(text)?,
+            Field::Begin if text.trim() == NOW => next.from_s = 0.0,
+            Field::Begin => next.from_s = number()?,
             Field::Length => {
                 next.for_s = match text.trim().split_once(" step") {
                     Some((steps, _)) => nudge::typed(steps, "")? * time_step_s,
@@ -177,6 +206,9 @@ impl NextPush {
         if !is_valid(self.size_N) {
             return Err("force must be greater than zero: the direction says where to".to_owned());
         }
+        if self.from_s != 0.0 && !is_valid(self.from_s) {
+            return Err("must begin at a time of the run, 0 s or later, or now".to_owned());
+        }
         if !is_valid(self.for_s) {
             return Err("must last longer than zero".to_owned());
         }
@@ -191,19 +223,31 @@ impl NextPush {
             .point(&self.point)
             .ok_or("this body has no named point to push: add a [[body.point]]")?;
         let at = observables::position(&body.mechanics, state, point);
+        let (from_s, now_s) = (self.from_s, state.time_s);
+        if 0.0 < from_s && from_s < now_s {
+            let [from, now] = [from_s, now_s].map(shortest);
+            return Err(format!(
+                "it begins at {from} s, and it is {now} s: r, or g and {from} s, goes there first (or from: now)"
+            ));
+        }
         let force = self.size_N * self.toward.direction(&at)?;
         Ok(PushFile {
             point: self.point.clone(),
             force_N: force.map(|component| component + 0.0).into(), // no -0
-            from_s: Some(state.time_s),
+            from_s: Some(from_s.max(now_s)),
             for_s: Some(self.for_s),
             ..PushFile::default()
         })
     }
 
     pub fn in_words(&self) -> String {
-        let [point, size, toward, length] = Field::ALL.map(|field| self.shown(field));
-        format!("{size} N on {point}, {toward}, for {length} s")
+        let [point, size, toward, from, length] = Field::ALL.map(|field| self.shown(field));
+        let from = if self.from_s == 0.0 {
+            String::new()
+        } else {
+            format!(", from {from} s on")
+        };
+        format!("{size} N on {point}, {toward}, for {length} s{from}")
     }
 }
 
