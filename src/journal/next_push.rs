@@ -71,7 +71,7 @@ impl Field {
             Self::Point => ("point", ""),
             Self::Size => ("force", "N"),
             Self::Toward => ("toward", ""),
-            Self::Begin => ("from", "s"),
+            Self::Begin => ("from", ""),
             Self::Length => ("for", "s"),
         }
     }
@@ -133,7 +133,7 @@ impl NextPush {
             Field::Size => shortest(self.size_N),
             Field::Toward => self.toward.shown(),
             Field::Begin if self.from_s == 0.0 => NOW.to_owned(),
-            Field::Begin => shortest(self.from_s),
+            Field::Begin => format!("{} s", shortest(self.from_s)),
             Field::Length => shortest(self.for_s),
         }
     }
@@ -189,7 +189,10 @@ impl NextPush {
             Field::Size => next.size_N = number()?,
             Field::Toward => next.toward = Toward::typed(text)?,
             Field::Begin if text.trim() == NOW => next.from_s = 0.0,
-            Field::Begin => next.from_s = number()?,
+            Field::Begin => {
+                let from_s = nudge::typed(text, "s");
+                next.from_s = from_s.map_err(|reason| format!("{label} {reason}"))?;
+            }
             Field::Length => {
                 next.for_s = match text.trim().split_once(" step") {
                     Some((steps, _)) => nudge::typed(steps, "")? * time_step_s,
@@ -245,7 +248,7 @@ impl NextPush {
         let from = if self.from_s == 0.0 {
             String::new()
         } else {
-            format!(", from {from} s on")
+            format!(", from {from} on")
         };
         format!("{size} N on {point}, {toward}, for {length} s{from}")
     }

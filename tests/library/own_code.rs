@@ -200,6 +200,13 @@ fn what_no_slip_explains_is_said() {
     }
 }
 
+#[test]
+fn a_program_that_does_not_move_does_not_agree() {
+    let text = "step,x_m,y_m,z_m\n0,0,0,1.131370849898476\n1,0,0,1.131370849898476\n";
+    let verdict = judged(text, "method-1", &[]);
+    assert_eq!((verdict.agrees, verdict.first_step), (false, Some(1)));
+}
+
 /// A file is read in whatever way it is printed, and may lack its first row or have it twice.
 #[test]
 fn the_same_rows_agree_however_they_are_printed() {
