@@ -33,25 +33,18 @@ pub struct NextPush {
     pub for_s: f64,
 }
 
-/// One of the five values of a [`NextPush`].
+/// One of the four values of a [`NextPush`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the names say it")]
 pub enum Field {
     Point,
     Size,
     Toward,
-    Begin,
     Length,
 }
 
 impl Field {
-    pub const ALL: [Self; 5] = [
-        Self::Point,
-        Self::Size,
-        Self::Toward,
-        Self::Begin,
-        Self::Length,
-    ];
+    pub const ALL: [Self; 4] = [Self::Point, Self::Size, Self::Toward, Self::Length];
 
     pub fn about(self) -> &'static str {
         match self {
@@ -60,8 +53,9 @@ impl Field {
             Self::Toward => {
                 "down, up, out or in (from the vertical), around or back, +x, -x, +y, -y, or three numbers"
             }
-            Self::Begin => "from which time of the run on, in s; now: when p is pressed",
-            Self::Length => "how long, in s, or steps: 20 steps",
+            Self::Length => {
+                "how long, in s, or steps: 20 steps; 0.3 from 2: for 0.3 s, from the time 2 s of the run on"
+            }
         }
     }
 
@@ -71,7 +65,6 @@ impl Field {
             Self::Point => ("point", ""),
             Self::Size => ("force", "N"),
             Self::Toward => ("toward", ""),
-            Self::Begin => ("from", ""),
             Self::Length => ("for", "s"),
         }
     }
@@ -132,8 +125,9 @@ impl NextPush {
             Field::Point => self.point.clone(),
             Field::Size => shortest(self.size_N),
             Field::Toward => self.toward.shown(),
-            Field::Begin if self.from_s == 0.0 => NOW.to_owned(),
-            Field::Begin => format!("{} s", shortest(self.from_s)),
+            Field::Length if self.from_s > 0.0 => {
+                format!("{} from {}", shortest(self.for_s), shortest(self.from_s))
+            }
             Field::Length => shortest(self.for_s),
         }
     }
@@ -153,14 +147,6 @@ impl NextPush {
                 next.toward = toward.map_or(self.toward, |(_, toward)| *toward);
             }
             Field::Size => next.size_N = climbed(self.size_N, times),
-            // One rung below a second is now.
-            Field::Begin if self.from_s == 0.0 && times > 0 => {
-                next.from_s = climbed(1.0, times - 1)
-            }
-            Field::Begin => {
-                let earlier = climbed(self.from_s, times);
-                next.from_s = if earlier < 1.0 { 0.0 } else { earlier };
-            }
             Field::Length => next.for_s = climbed(self.for_s, times),
         }
         next.checked()
@@ -175,7 +161,7 @@ impl NextPush {
         time_step_s: f64,
     ) -> Result<Self, String> {
         let (label, unit) = field.label();
-        let number = || nudge::typed(text, unit).map_err(|reason| format!("{label} {reason}"));
+        let number = |text| nudge::typed(text, unit).map_err(|reason| format!("{label} {reason}"));
         let mut next = self.clone();
         match field {
             Field::Point => {
@@ -186,17 +172,17 @@ impl NextPush {
                 })?;
                 next.point = point.to_owned();
             }
-            Field::Size => next.size_N = number()?,
+            Field::Size => next.size_N = number(text)?,
             Field::Toward => next.toward = Toward::typed(text)?,
-            Field::Begin if text.trim() == NOW => next.from_s = 0.0,
-            Field::Begin => {
-                let from_s = nudge::typed(text, "s");
-                next.from_s = from_s.map_err(|reason| format!("{label} {reason}"))?;
-            }
             Field::Length => {
-                next.for_s = match text.trim().split_once(" step") {
+                let (length, from) = text.split_once("from").unwrap_or((text, NOW));
+                next.for_s = match length.trim().split_once(" step") {
                     Some((steps, _)) => nudge::typed(steps, "")? * time_step_s,
-                    None => number()?,
+                    None => number(length)?,
+                };
+                next.from_s = match from.trim() {
+                    NOW => 0.0,
+                    from => number(from)?,
                 }
             }
         }
@@ -230,7 +216,7 @@ impl NextPush {
         if 0.0 < from_s && from_s < now_s {
             let [from, now] = [from_s, now_s].map(shortest);
             return Err(format!(
-                "it begins at {from} s, and it is {now} s: r, or g and {from} s, goes there first (or from: now)"
+                "it begins at {from} s, and it is {now} s: r, or g and {from} s, goes there first"
             ));
         }
         let force = self.size_N * self.toward.direction(&at)?;
@@ -244,13 +230,8 @@ impl NextPush {
     }
 
     pub fn in_words(&self) -> String {
-        let [point, size, toward, from, length] = Field::ALL.map(|field| self.shown(field));
-        let from = if self.from_s == 0.0 {
-            String::new()
-        } else {
-            format!(", from {from} on")
-        };
-        format!("{size} N on {point}, {toward}, for {length} s{from}")
+        let [point, size, toward, length] = Field::ALL.map(|field| self.shown(field));
+        format!("{size} N on {point}, {toward}, for {length} s")
     }
 }
 

@@ -189,8 +189,9 @@ impl PushChoice {
             Field::Point => choice.point = Some(push.point.clone()),
             Field::Size => choice.force_N = Some(Force::Size(push.size_N)),
             Field::Toward => choice.toward = Some(push.toward),
-            Field::Begin => choice.from_s = Some(push.from_s),
-            Field::Length => choice.for_s = Some(push.for_s),
+            Field::Length => {
+                (choice.for_s, choice.from_s) = (Some(push.for_s), Some(push.from_s));
+            }
         }
         choice
     }

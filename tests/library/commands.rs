@@ -845,7 +845,7 @@ fn swings_are_counted_from_one_turn_to_another() {
         [
             "2 swings of the tilt in 1.6",
             "period 0.82",
-            "theory: 0.822 s",
+            "theory: 0.8225",
         ],
     );
 }

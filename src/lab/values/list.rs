@@ -136,7 +136,7 @@ impl From<Parameter> for ListedValue {
 }
 
 impl ListedValue {
-    pub(super) fn all_of(push: &NextPush) -> [Self; 5] {
+    pub(super) fn all_of(push: &NextPush) -> [Self; 4] {
         Field::ALL.map(|field| Self {
             key: None,
             group: NEXT_PUSH.to_owned(),

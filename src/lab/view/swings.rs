@@ -23,22 +23,20 @@ pub(super) fn in_words(
     let mean_deg = middles.iter().sum::<f64>() / parts;
     let squares = middles.iter().map(|it| (it - mean_deg) * (it - mean_deg));
     let mean_sigma_deg = (squares.sum::<f64>() / (parts - 1.0).max(1.0) / parts).sqrt();
-    let stated = |value: f64, sigma: f64| {
-        uncertain(value, sigma).map_or_else(|| short(value), |it| it.to_string())
-    };
+    let period = uncertain(length_s / swings, period_sigma_s)?;
+    let mean = uncertain(mean_deg, mean_sigma_deg).map(|it| it.to_string());
     let number = |name| readouts.number(name);
     let ends = number("predicted_lowest_tilt_deg").zip(number("predicted_highest_tilt_deg"));
     let theory = match (number("predicted_nutation_period_s"), ends) {
         (Some(period_s), Some((low, high))) => {
-            let [period, mean] = [period_s, 0.5 * (low + high)].map(short);
-            format!("theory: {period} s, {mean} deg")
+            let period = period.to_the_same_digit(period_s);
+            format!("theory: {period} s, {} deg", short(0.5 * (low + high)))
         }
         _ => "no theory of it here".to_owned(),
     };
     Some(format!(
-        "{swings} swings of the tilt in {} s: period {} s, mean {} deg; {theory}",
+        "{swings} swings of the tilt in {} s: period {period} s, mean {} deg; {theory}",
         short(length_s),
-        stated(length_s / swings, period_sigma_s),
-        stated(mean_deg, mean_sigma_deg),
+        mean.unwrap_or_else(|| short(mean_deg)),
     ))
 }
