@@ -27,7 +27,7 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     writeln!(page, "# {}\n", escaped(&readouts.title))?;
     let file = &writeup.scenario.file;
     let look_at = file.viewed_text("look_at");
-    let look_at = look_at.map(|line| sentence(line));
+    let look_at = look_at.map(sentence);
     for text in file.about.iter().chain(&look_at) {
         writeln!(page, "{}\n", escaped(text))?;
     }
