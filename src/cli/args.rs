@@ -7,6 +7,7 @@ use crate::lab::view::theme::Background;
 use crate::lab::view::theme::Marker;
 use crate::physics::scheme;
 use crate::run::Simulation;
+use crate::scenario::csv::{Renaming, renaming};
 use crate::scenario::rescale::MOST_STEPS;
 use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::tui::terminal::MOST_CELLS;
@@ -67,9 +68,8 @@ pub(super) struct WorkbenchArgs {
     #[arg(long, value_name = "DIR")]
     pub(super) folder: Option<PathBuf>,
 
-    /// Put measured data beside the run: a CSV with a column t_s, or data that come with gyrolab (heidelberg-spin-decay)
-    #[arg(long, value_name = "FILE")]
-    pub(super) measured: Option<String>,
+    #[command(flatten)]
+    pub(super) beside: MeasuredArgs,
 
     /// Open with the run standing still
     #[arg(long)]
@@ -91,6 +91,25 @@ pub(super) struct WorkbenchArgs {
     pub(super) fps: Option<u32>,
 }
 
+/// Measured data beside a run.
+#[derive(Clone, Debug, Default, Args)]
+pub(super) struct MeasuredArgs {
+    /// Put measured data beside the run: a CSV with a column t_s, data that come with gyrolab (heidelberg-spin-decay), or
+    /// rows that your own program of the report's scheme wrote
+    #[arg(long, value_name = "FILE")]
+    pub(super) measured: Option<String>,
+
+    #[command(flatten)]
+    pub(super) columns: MapArgs,
+}
+
+#[derive(Clone, Debug, Default, Args)]
+pub(super) struct MapArgs {
+    /// What the columns of measured data are: the file's name or number (from 1) of each, and gyrolab's
+    #[arg(long, value_name = "COLUMN=NAME,...", value_delimiter = ',', value_parser = renaming)]
+    pub(super) map: Vec<Renaming>,
+}
+
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct Look {
     /// Colours: auto honours NO_COLOR [default: as chosen last in the lab, or auto]
@@ -105,7 +124,7 @@ pub(super) struct Look {
     #[arg(long, value_enum, value_name = "KIND")]
     pub(super) markers: Option<Marker>,
 
-    /// Leave the mouse to the terminal, to select text; the key M takes it
+    /// Leave the mouse to the terminal, to select text; c, the settings, takes it
     #[arg(long)]
     pub(super) no_mouse: bool,
 }
@@ -173,6 +192,10 @@ pub(super) struct LessonArgs {
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
     pub(super) answers: bool,
 
+    /// Print the frame of the program that the lesson asks for, in this language: it runs, the physics is left out
+    #[arg(long, group = "printed", requires = "name", conflicts_with = "page", value_name = "LANGUAGE", value_parser = ["octave", "matlab", "python"])]
+    pub(super) frame: Option<String>,
+
     /// Follow a lab of this login on a second terminal: the notes of its page, what comes next, a clock
     #[arg(long, value_name = "SESSION", num_args = 0..=1, default_missing_value = "", conflicts_with_all = ["name", "page", "printed"])]
     pub(super) notes: Option<String>,
@@ -181,7 +204,7 @@ pub(super) struct LessonArgs {
     #[arg(long, group = "printed", conflicts_with = "name")]
     pub(super) template: bool,
 
-    /// Write the handout, the answers or the template to this file, or to stdout for -
+    /// Write the handout, the frame, the answers or the template to this file, or to stdout for -
     #[arg(short, long, requires = "printed", value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 

@@ -1,13 +1,12 @@
 //! `gyrolab fit`: keys of a scenario, so that its runs come nearest to measured data.
 
-use super::args::{Changes, change};
+use super::args::{Changes, MapArgs, change, positive, time};
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::{one_on_stdout, print_result, tell, tell_of_rows};
 use crate::data::{self, Measured};
 use crate::export::Destination;
 use crate::fit::report::{self, Asked, Report};
 use crate::fit::{Fit, Free, Model, NoFit, fit as fitted};
-use crate::scenario::csv::{Renaming, renaming};
 use crate::scenario::{Document, Problem, Problems};
 use crate::text::number::{shortest, significant};
 use crate::text::printable::{Shown, brief};
@@ -40,13 +39,20 @@ pub(super) struct FitArgs {
     #[command(flatten)]
     pub(super) changes: Changes,
 
-    /// What the data's columns are: the file's name or number (from 1) of each, and gyrolab's
-    #[arg(long, value_name = "COLUMN=NAME,...", value_delimiter = ',', value_parser = renaming)]
-    pub(super) map: Vec<Renaming>,
+    #[command(flatten)]
+    pub(super) columns: MapArgs,
 
     /// Fit these rows of the data alone, counted from 1, such as 1,3,5-8
     #[arg(long, value_name = "ROWS")]
     pub(super) rows: Option<Rows>,
+
+    /// Begin at this time of the recording, s, which is the run's t = 0: of several throws, where one begins
+    #[arg(long, value_name = "S", conflicts_with = "rows", value_parser = time)]
+    pub(super) from: Option<f64>,
+
+    /// End at this time of the recording, s
+    #[arg(long, value_name = "S", conflicts_with = "rows", value_parser = positive)]
+    pub(super) to: Option<f64>,
 
     /// Write data, model and residuals as CSV to this file, or to stdout for -; gyrolab figure draws it
     #[arg(short, long, value_name = "FILE")]
@@ -158,8 +164,16 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
 
 /// What is fitted, and the scenario's own scheme, where no other was asked for.
 fn model(args: &FitArgs) -> Result<(Model, Option<&'static str>), Problems> {
-    let measured = data::open_with(&args.measured, &args.map)?;
-    let measured = chosen(measured, args.rows.as_ref())?;
+    let measured = data::open_with(&args.measured, &args.columns.map)?;
+    let mut measured = chosen(measured, args.rows.as_ref())?;
+    if args.from.or(args.to).is_some() {
+        measured.series()?;
+        let (from_s, to_s) = (args.from.unwrap_or(0.0), args.to.unwrap_or(f64::INFINITY));
+        if !measured.keep_between(from_s, to_s) {
+            let rule = "has no value measured in the time that --from and --to leave";
+            return Err(Problems::one(args.measured.clone(), Problem::at("", rule)));
+        }
+    }
     let (document, own) = scenario(args)?;
     let keys = args.free.iter();
     let keys = keys.map(|argument| Free::parse(argument, &document));
@@ -214,17 +228,21 @@ fn command(args: &FitArgs) -> String {
     words.extend(["--free", &free]);
     words.extend(args.changes.set.iter().flat_map(|set| ["--set", set]));
     let map = args
+        .columns
         .map
         .iter()
         .map(|(column, name)| format!("{column}={name}"));
     let map = map.collect::<Vec<_>>().join(",");
     let time_step = args.changes.time_step.map(shortest).unwrap_or_default();
+    let [from, to] = [args.from, args.to].map(|it| it.map(shortest).unwrap_or_default());
     let rows = args.rows.as_ref().map_or("", |rows| &rows.text);
     let scheme = args.changes.scheme.as_deref().unwrap_or_default();
     for (option, value) in [
         ("--time-step", &*time_step),
         ("--scheme", scheme),
         ("--rows", rows),
+        ("--from", &from),
+        ("--to", &to),
         ("--map", &map),
     ] {
         if !value.is_empty() {

@@ -31,6 +31,9 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     if args.answers {
         return notes::answers(args, name);
     }
+    if let Some(language) = &args.frame {
+        return print_frame(args, name, language);
+    }
     let lesson = reading::open(name)?;
     if args.handout {
         return write(args, |go_on| {
@@ -53,6 +56,12 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
         lesson.pages.len()
     ));
     print_page(&lesson, page, args.look)
+}
+
+fn print_frame(args: &LessonArgs, name: &str, language: &str) -> anyhow::Result<ExitCode> {
+    let none = || format!("{name}: asks for no program; write-it-yourself does");
+    let frame = shipped::frame(name, language).with_context(none)?;
+    write(args, |_| Ok(frame.to_owned()))
 }
 
 fn print_page(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCode> {

@@ -1,6 +1,6 @@
 //! `gyrolab show`: the lab's picture as plain text or as SVG, at one step or after commands.
 
-use super::args::{Changes, size, steps};
+use super::args::{Changes, MeasuredArgs, size, steps};
 use super::new_lab::{self, DEFAULT};
 use super::{print, progress, tell};
 use crate::lab::view::theme::{Background, Marker, Theme};
@@ -33,9 +33,8 @@ pub(super) struct ShowArgs {
     #[arg(long = "do", value_name = "FILE")]
     pub(super) commands: Option<PathBuf>,
 
-    /// Put measured data beside the run: a CSV with a column t_s, or data that come with gyrolab (heidelberg-spin-decay)
-    #[arg(long, value_name = "FILE")]
-    pub(super) measured: Option<String>,
+    #[command(flatten)]
+    pub(super) beside: MeasuredArgs,
 
     /// Columns and lines of the picture
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "80x24", value_parser = size)]
@@ -97,7 +96,8 @@ pub(super) fn print_picture(
     if let Some(folder) = confined {
         lab.files_mut().confine(folder);
     }
-    lab.begin_with_measured(args.measured.as_deref())?;
+    let beside = &args.beside;
+    lab.begin_with_measured(beside.measured.as_deref(), &beside.columns.map)?;
     // What is not there is refused before a picture is promised; commands on stdin are waited for.
     why.iter().for_each(tell);
     let commands = args.commands.as_deref().map(command::open).transpose()?;

@@ -1,6 +1,6 @@
 //! `gyrolab` and `gyrolab show`: the lab, live or as one picture.
 
-use super::args::{Look, WorkbenchArgs};
+use super::args::{Look, MeasuredArgs, WorkbenchArgs};
 use super::new_lab::{DEFAULT, of_workbench, variable};
 use super::sessions::{self, begun, come_back, come_back_to, tell_of_session};
 use super::settings;
@@ -61,7 +61,7 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             changes: args.changes.clone(),
             at: args.at,
             commands: args.commands.clone(),
-            measured: args.measured.clone(),
+            beside: args.beside.clone(),
             size: (80, 24),
             markers: args.look.markers,
             ..ShowArgs::default()
@@ -115,8 +115,9 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
     if let Some(folder) = confined {
         lab.files_mut().confine(folder);
     }
-    if args.resume.is_none() || args.measured.is_some() {
-        lab.begin_with_measured(args.measured.as_deref())?;
+    let MeasuredArgs { measured, columns } = &args.beside;
+    if args.resume.is_none() || measured.is_some() {
+        lab.begin_with_measured(measured.as_deref(), &columns.map)?;
     }
     lab.view_mut().mouse = !args.look.no_mouse;
     lab.view_mut().fps = args.fps.unwrap_or(FPS);

@@ -21,12 +21,14 @@ pub use compared::{Residual, is_counted, residuals};
 pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
-pub use reading::{SHIPPED, find_shipped, open, open_with, read, text};
+pub use reading::{SHIPPED, find_shipped, open, open_with, read, read_with, text};
 
 use crate::analysis::readouts::Readout;
 use crate::scenario::problem::listed;
 use crate::scenario::{Problem, Problems};
+use crate::text::number::shortest;
 use crate::text::printable::printable;
+use crate::text::unit::with_word;
 use std::sync::Arc;
 use toml::Value;
 
@@ -58,6 +60,39 @@ pub struct Series {
     pub times_s: Vec<f64>,
     /// A curve for each column, in the order of the file.
     pub curves: Vec<Curve>,
+}
+
+impl Series {
+    /// The same as a CSV with the program's names.
+    pub fn to_csv(&self) -> String {
+        let with_sigma = |curve| (curve, has_sigma(curve));
+        let curves: Vec<(&Curve, bool)> = self.curves.iter().map(with_sigma).collect();
+        let mut text = String::from("t_s");
+        for (curve, has_sigma) in &curves {
+            let name = curve.quantity.name;
+            text += &format!(",{name}");
+            if *has_sigma {
+                text += &format!(",{}", with_word(name, names::UNCERTAINTY));
+            }
+        }
+        for (row, time_s) in self.times_s.iter().enumerate() {
+            text += &format!("\n{}", shortest(*time_s));
+            for (curve, has_sigma) in &curves {
+                let place = curve.points.binary_search_by_key(&row, |point| point.row);
+                let point = place.ok().map(|place| &curve.points[place]);
+                let written = |number: Option<f64>| number.map_or(String::new(), shortest);
+                text += &format!(",{}", written(point.map(|point| point.value)));
+                if *has_sigma {
+                    text += &format!(",{}", written(point.and_then(|point| point.sigma)));
+                }
+            }
+        }
+        text + "\n"
+    }
+}
+
+fn has_sigma(curve: &Curve) -> bool {
+    curve.points.iter().any(|point| point.sigma.is_some())
 }
 
 #[derive(Clone, Debug)]
@@ -131,6 +166,27 @@ impl Measured {
             self.keep_rows(|row| times_s[row] <= until_s);
         }
         Self { until_s, ..self }
+    }
+
+    /// Keeps the rows of a time series from `from_s` to `to_s`, and counts the time from `from_s` on. Returns whether there
+    /// are some.
+    pub fn keep_between(&mut self, from_s: f64, to_s: f64) -> bool {
+        let Data::Series(series) = &mut self.data else {
+            return false;
+        };
+        let times_s = &mut series.times_s;
+        let first = times_s.partition_point(|time_s| *time_s < from_s);
+        let end = times_s.partition_point(|time_s| *time_s <= to_s).max(first);
+        *times_s = times_s[first..end].iter().map(|it| it - from_s).collect();
+        self.lines = self.lines[first..end].to_vec();
+        for curve in &mut series.curves {
+            curve
+                .points
+                .retain(|point| (first..end).contains(&point.row));
+            curve.points.iter_mut().for_each(|point| point.row -= first);
+        }
+        series.curves.retain(|curve| !curve.points.is_empty());
+        !series.curves.is_empty()
     }
 
     /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts, and returns how many values that are.

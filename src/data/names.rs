@@ -10,7 +10,7 @@ use crate::text::number::significant;
 use crate::text::unit::{Unit, with_word};
 
 /// In the name of a column that is the uncertainty of another.
-const UNCERTAINTY: &str = "uncertainty";
+pub(super) const UNCERTAINTY: &str = "uncertainty";
 
 #[derive(Clone, Debug)]
 pub(super) enum Is {

@@ -69,7 +69,8 @@ pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
     read_with(origin, text, &[])
 }
 
-fn read_with(origin: &str, text: &str, map: &[Renaming]) -> Result<Measured, Problems> {
+/// The same, with columns renamed first.
+pub fn read_with(origin: &str, text: &str, map: &[Renaming]) -> Result<Measured, Problems> {
     let taken_apart = || {
         let mut cells = Csv::of(text, MOST_VALUES)?;
         cells.rename(map, |_| true)?;
@@ -85,9 +86,13 @@ fn read_with(origin: &str, text: &str, map: &[Renaming]) -> Result<Measured, Pro
     } else {
         Data::Table(numbers.table(&columns))
     };
+    let renamed = match &data {
+        Data::Series(series) if !map.is_empty() => Some(series.to_csv()),
+        _ => None,
+    };
     let mut measured = Measured {
         origin: origin.to_owned(),
-        text: text.into(),
+        text: renamed.as_deref().unwrap_or(text).into(),
         until_s: None,
         about: cells.header.clone(),
         left_out,

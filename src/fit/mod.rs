@@ -2,7 +2,7 @@
 //! squares, with what the data say of these values and of the model.
 //!
 //! [`free`] says which keys are free, from where to where. A [`Model`] computes the runs for given values and holds them
-//! against the data. [`levenberg`] looks for the values, [`weights`] says how much each datum counts, [`solution`] what the
+//! against the data. `thrown` says where to begin for a body that flies freely. [`levenberg`] looks for the values, [`weights`] says how much each datum counts, [`solution`] what the
 //! minimum says of the keys and of the model, [`verdict`] whether it fits, in a sentence. [`search`] brings these together
 //! to a [`Fit`], [`report`] writes it for people and programs, and as a CSV.
 
@@ -12,6 +12,7 @@ pub mod model;
 pub mod report;
 pub mod search;
 pub mod solution;
+mod thrown;
 pub mod verdict;
 pub mod weights;
 

@@ -4,6 +4,7 @@ use super::free::Free;
 use super::levenberg::{self, Bounds, Failure, Minimum, Problem, Stop};
 use super::model::{GoOn, Model};
 use super::solution::{Quality, SILENT, Solution, variance};
+use super::thrown;
 use super::weights::Weights;
 use crate::cores;
 use crate::data::Residual;
@@ -87,6 +88,12 @@ pub fn fit(model: &Model, go_on: GoOn<'_>, tell: &(dyn Fn(u64, f64) + Sync)) -> 
         return Err(NoFit::TooFew { data, keys });
     }
     let mut p: Vec<f64> = model.free.iter().map(|free| free.start).collect();
+    if let Some(nearer) = thrown::start(model, &p) {
+        let off = |p: &[f64]| sum_of_squares(model, p, go_on);
+        if off(&nearer)? < off(&p)? {
+            p = nearer;
+        }
+    }
     let bounds = model.free.iter().map(|free| (free.from, free.to));
     let bounds: Vec<Bounds> = bounds.collect();
     let mut weights = Weights::at(model, &p, go_on)?;
@@ -113,6 +120,18 @@ pub fn fit(model: &Model, go_on: GoOn<'_>, tell: &(dyn Fn(u64, f64) + Sync)) -> 
         weights = next;
     }
     Err(NoFit::Unsettled)
+}
+
+/// How far the data are from the run with these values; infinitely where there is no such run.
+fn sum_of_squares(model: &Model, p: &[f64], go_on: GoOn<'_>) -> Result<f64, Stop> {
+    match model.values(p, None, go_on) {
+        Ok(values) => {
+            let residuals = model.residuals(&values);
+            Ok(residuals.iter().map(|it| it.value() * it.value()).sum())
+        }
+        Err(Stop::Impossible(_)) => Ok(f64::INFINITY),
+        Err(stop) => Err(stop),
+    }
 }
 
 impl NoFit {

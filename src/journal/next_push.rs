@@ -18,12 +18,18 @@ const WEIGHTS: f64 = 2.0;
 /// distance from the pivot.
 const UPRIGHT: f64 = 1e-9;
 
+/// When a push begins that begins when it is given.
+const NOW: &str = "now";
+
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct NextPush {
     pub point: String,
     pub size_N: f64,
     pub toward: Toward,
+    /// When it begins, s; 0 for the time at which it is given.
+    #[serde(default)]
+    pub from_s: f64,
     pub for_s: f64,
 }
 
@@ -47,7 +53,9 @@ impl Field {
             Self::Toward => {
                 "down, up, out or in (from the vertical), around or back, +x, -x, +y, -y, or three numbers"
             }
-            Self::Length => "how long, in s, or steps: 20 steps",
+            Self::Length => {
+                "how long, in s, or steps: 20 steps; 0.3 from 2: for 0.3 s, from the time 2 s of the run on"
+            }
         }
     }
 
@@ -77,6 +85,7 @@ impl NextPush {
             point: file.point.clone(),
             size_N: size,
             toward: named.find(is_same).unwrap_or(Toward::Along(unit.into())),
+            from_s: 0.0,
             for_s: match push.window {
                 Window::Steps { count, .. } => count as f64 * scenario.written_for_s,
                 Window::Time { for_s, .. } => for_s,
@@ -96,6 +105,7 @@ impl NextPush {
             point: point.copied().unwrap_or_default().to_owned(),
             size_N: at_or_below(WEIGHTS * weight),
             toward: Toward::Down,
+            from_s: 0.0,
             for_s: at_or_below(SHARE * length_s),
         }
     }
@@ -115,6 +125,9 @@ impl NextPush {
             Field::Point => self.point.clone(),
             Field::Size => shortest(self.size_N),
             Field::Toward => self.toward.shown(),
+            Field::Length if self.from_s > 0.0 => {
+                format!("{} from {}", shortest(self.for_s), shortest(self.from_s))
+            }
             Field::Length => shortest(self.for_s),
         }
     }
@@ -148,7 +161,7 @@ impl NextPush {
         time_step_s: f64,
     ) -> Result<Self, String> {
         let (label, unit) = field.label();
-        let number = || nudge::typed(text, unit).map_err(|reason| format!("{label} {reason}"));
+        let number = |text| nudge::typed(text, unit).map_err(|reason| format!("{label} {reason}"));
         let mut next = self.clone();
         match field {
             Field::Point => {
@@ -159,12 +172,17 @@ impl NextPush {
                 })?;
                 next.point = point.to_owned();
             }
-            Field::Size => next.size_N = number()?,
+            Field::Size => next.size_N = number(text)?,
             Field::Toward => next.toward = Toward::typed(text)?,
             Field::Length => {
-                next.for_s = match text.trim().split_once(" step") {
+                let (length, from) = text.split_once("from").unwrap_or((text, NOW));
+                next.for_s = match length.trim().split_once(" step") {
                     Some((steps, _)) => nudge::typed(steps, "")? * time_step_s,
-                    None => number()?,
+                    None => number(length)?,
+                };
+                next.from_s = match from.trim() {
+                    NOW => 0.0,
+                    from => number(from)?,
                 }
             }
         }
@@ -176,6 +194,9 @@ impl NextPush {
         let is_valid = |number: f64| number > 0.0 && number.is_finite();
         if !is_valid(self.size_N) {
             return Err("force must be greater than zero: the direction says where to".to_owned());
+        }
+        if self.from_s != 0.0 && !is_valid(self.from_s) {
+            return Err("must begin at a time of the run, 0 s or later, or now".to_owned());
         }
         if !is_valid(self.for_s) {
             return Err("must last longer than zero".to_owned());
@@ -191,11 +212,18 @@ impl NextPush {
             .point(&self.point)
             .ok_or("this body has no named point to push: add a [[body.point]]")?;
         let at = observables::position(&body.mechanics, state, point);
+        let (from_s, now_s) = (self.from_s, state.time_s);
+        if 0.0 < from_s && from_s < now_s {
+            let [from, now] = [from_s, now_s].map(shortest);
+            return Err(format!(
+                "it begins at {from} s, and it is {now} s: r, or g and {from} s, goes there first"
+            ));
+        }
         let force = self.size_N * self.toward.direction(&at)?;
         Ok(PushFile {
             point: self.point.clone(),
             force_N: force.map(|component| component + 0.0).into(), // no -0
-            from_s: Some(state.time_s),
+            from_s: Some(from_s.max(now_s)),
             for_s: Some(self.for_s),
             ..PushFile::default()
         })

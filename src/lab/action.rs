@@ -27,6 +27,8 @@ pub enum Action {
     ThreeD,
     /// Shows the step pane beside another one and moves the focus there, or takes it away.
     ToggleStep,
+    /// Goes to the first step at which rows of the user's own program differ from the run, with the step pane.
+    ToDifference,
     /// Moves a selection, nudges the selected value, or turns the camera.
     Move(Direction),
     /// As `Move`, ten times.

@@ -119,7 +119,7 @@ pub static COMMANDS: &[CommandRow] = &[
     row("open", "\"wobble-push\"", "open a preset or a file, SCENARIO as on the command line; it stands still at step 0", form::OPEN),
     row("set", "{ \"motion.time_step_s\" = 0.05 }", "set dotted keys of the scenario, from the next step on; of body or start in a new run", Form::Keys),
     row("nudge", "{ key = \"motion.time_step_s\", times = -1 }", "nudge a value up, or down where times is negative", form::NUDGE),
-    row("push", "true, or { point = \"top\", force_N = [0, 0, -50], for_s = 2 }", "give the push to come, or one of one's own; force_N can be a size beside toward = \"down\"", form::PUSH),
+    row("push", "true, or { point = \"top\", force_N = [0, 0, -50], for_s = 2 }", "give the push to come, or one of one's own, from now on or from_s; force_N can be a size beside toward = \"down\"", form::PUSH),
     row("next_push", "{ point = \"top\", force_N = 50, toward = \"down\", for_s = 2 }", "choose the push to come, or a part of it", form::NEXT_PUSH),
     row("step", "10", "take so many time steps, or go so many back", form::STEPS),
     row("go_to", "400, \"60 s\", \"start\" or \"end\"", "go to a step or a time at most 10000000 steps away and stop there", form::PLACE),
@@ -141,7 +141,7 @@ pub static COMMANDS: &[CommandRow] = &[
     row("detail_of", "\"z\"", "what that strip shows: x, y, z, tilt or auto, the tilt, or x where the tilt does not swing", View("detail_of")),
     row("since_s", "12.5, or \"none\"", "time at the left edge of the traces, s; none: they follow the run", form::SINCE),
     row("magnify", "4", "how many times the values of the traces are magnified, 1 to 1000000", form::MAGNIFY),
-    row("cursor", "400, \"60 s\", \"next turn\", \"turn before\" or \"none\"", "the step at which the traces are read off; turns are those of the tilt", form::CURSOR),
+    row("cursor", "400, \"60 s\", \"next turn\", \"turn before\", \"mark\" or \"none\"", "the step at which the traces are read off; turns are those of the tilt; mark: mark this one, and from one that is marked count the swings", form::CURSOR),
     row("exact", "true or false", "whether the exact motion is drawn beside the run", View("exact")),
     row("measured", "\"heidelberg-spin-decay\", \"data.csv\" or \"none\"", "put measured data beside the run: data that come with gyrolab, or a CSV file with a column t_s", View("measured")),
     row("residuals", "true or false", "whether measured data are shown less what the run says", View("residuals")),
@@ -219,6 +219,8 @@ pub struct PushChoice {
     pub force_N: Option<Force>,
     /// Direction of the force, if `force_N` is only a size.
     pub toward: Option<Toward>,
+    /// When it begins, s; 0 for now.
+    pub from_s: Option<f64>,
     pub for_s: Option<f64>,
 }
 
@@ -248,6 +250,9 @@ pub enum CursorTo {
     NextTurn,
     #[serde(rename = "turn before")]
     TurnBefore,
+    /// Stays, and marks its turn; from a mark at another turn, the swings between are counted.
+    #[serde(rename = "mark")]
+    Mark,
     /// Off the traces.
     #[serde(rename = "none")]
     Nowhere,

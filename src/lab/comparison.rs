@@ -1,18 +1,22 @@
 //! What the run is compared with: the exact motion, the run before an edit (its ghost), a pinned run, and measured data.
 
 mod data;
+mod own_code;
 
 use super::answer::{Answer, Done};
-use super::command::Command;
+use super::command::{Command, Place};
 use super::files::Files;
 use super::player::{Change, Player, furthest_s};
 use super::runs::Reference;
+use super::view::View;
 use crate::analysis::cost;
 use crate::data::{Measured, find_shipped};
 use crate::playback::ghost::{Ghost, GhostToBe};
 use crate::playback::live::LiveRun;
+use crate::scenario::csv::Renaming;
 use crate::scenario::{Problems, Scenario};
 pub use data::DataComparison;
+pub use own_code::OwnCode;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -137,7 +141,7 @@ impl Comparison {
                 "there are no measured data beside the run"
             }));
         };
-        let put = self.put_beside(name, player, files, false);
+        let put = self.put_beside(name, &[], player, files, false);
         let left_out =
             put.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))?;
         Ok(left_out.map_or(Done::SILENT, Done::saying))
@@ -148,17 +152,18 @@ impl Comparison {
     pub(super) fn put_beside(
         &mut self,
         name: &str,
+        map: &[Renaming],
         player: &Player,
         files: &Files,
         may_wait: bool,
     ) -> Result<Option<String>, Problems> {
-        let measured = files.open_measured(name, may_wait)?;
+        let text = files.measured_text(name, may_wait)?;
+        let scenario = player.run().scenario();
+        let (measured, own) = OwnCode::read(name, &text, map, scenario)?;
         let left_out = measured.left_out_in_words();
-        self.data = Some(DataComparison::new(
-            name,
-            measured,
-            player.run().scenario(),
-        )?);
+        let mut data = DataComparison::new(name, map, measured, scenario)?;
+        data.own = own;
+        self.data = Some(data);
         self.catch_up(player);
         Ok(left_out)
     }
@@ -181,7 +186,7 @@ impl Comparison {
         let Some(name) = wanted else {
             return Ok(());
         };
-        self.put_beside(&name, player, files, false).map(drop)
+        self.put_beside(&name, &[], player, files, false).map(drop)
     }
 
     /// Compares the data with the run as it goes on, for at most its share of the computing time, and takes the pictures
@@ -214,6 +219,37 @@ impl Comparison {
             return true;
         }
         false
+    }
+
+    /// Holds rows of an own program against the run of `player`, which is called `name`. Returns whether a verdict has just
+    /// been found, and the first one in words.
+    pub(super) fn judge(&mut self, name: &str, player: &Player) -> (bool, Option<String>) {
+        let data = self.data.as_mut();
+        let Some((data, own)) = data.and_then(|data| Some((&data.name, data.own.as_mut()?))) else {
+            return (false, None);
+        };
+        let is_found = own.judge(name, player.run().scenario());
+        (is_found, is_found.then(|| own.first_told(data)).flatten())
+    }
+
+    /// The rows of an own program among the measured data.
+    pub fn own_code(&self) -> Option<&OwnCode> {
+        self.data.as_ref()?.own.as_ref()
+    }
+
+    /// The commands that go to the first step at which such rows differ, with the time step taken apart.
+    pub fn to_difference(&self, view: &View) -> Result<Vec<Command>, String> {
+        let none = "there are no rows of a program of one's own beside a run of the report's scheme: gyrolab method-1 --measured mine.csv";
+        let data = self.data.as_ref().ok_or(none)?;
+        let own = data.own.as_ref().ok_or(none)?;
+        let first = own.verdict().and_then(|verdict| verdict.first_step);
+        let first = first.ok_or_else(|| own.told(&data.name))?;
+        let step = u64::try_from(first).unwrap_or(0);
+        let mut commands = vec![Command::GoTo(Place::Step(step))];
+        if !view.shows_step() {
+            commands.extend(view.step_toggled());
+        }
+        Ok(commands)
     }
 
     /// Reads the run on to the present step, however long that takes.

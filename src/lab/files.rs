@@ -15,6 +15,7 @@ use crate::storage::confined::Confined;
 use crate::storage::exporting::{self, Drawn, Exporting, Written};
 use crate::text::printable::{Shown, is_steering};
 use indicatif::{DecimalBytes, HumanCount};
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -73,9 +74,13 @@ impl Files {
         opened.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))
     }
 
-    /// Reads the measured data `name`: those that come with the program, or a file. `may_wait` says whether it may be a
-    /// FIFO or a device, which is read for any length of time.
-    pub(super) fn open_measured(&self, name: &str, may_wait: bool) -> Result<Measured, Problems> {
+    /// The text of the measured data `name`: those that come with the program, or a file. `may_wait` says whether it may be
+    /// a FIFO or a device, which is read for any length of time.
+    pub(super) fn measured_text(
+        &self,
+        name: &str,
+        may_wait: bool,
+    ) -> Result<Cow<'static, str>, Problems> {
         if data::find_shipped(name).is_none() {
             let refused = |rule: String| Problems::one(name, Problem::at("", rule));
             self.admit(Path::new(name)).map_err(refused)?;
@@ -83,7 +88,7 @@ impl Files {
                 refuse_waiting(name, "gyrolab --measured can read it")?;
             }
         }
-        data::open(name)
+        data::text(name)
     }
 
     pub fn is_exporting(&self) -> bool {

@@ -72,6 +72,11 @@ impl Lab {
             Action::NextPane => self.view.shift_focus(true),
             Action::PreviousPane => self.view.shift_focus(false),
             Action::ThreeD => self.view.toggle_three_d(),
+            Action::ToDifference => {
+                let commands = self.comparison.to_difference(&self.view)?;
+                self.carry_out_all(&commands);
+                self.view.turn_to(Pane::STEP);
+            }
             Action::ToggleStep => {
                 let is_shown = self.view.shows_step();
                 self.carry_out_all(&self.view.step_toggled());
@@ -331,6 +336,11 @@ impl Lab {
             | self.adviser.advance(&self.player);
         if let Some(halt) = halt {
             self.halted(halt);
+        }
+        let (is_judged, verdict) = self.comparison.judge(self.edits.runs.name(), &self.player);
+        self.changed |= is_judged;
+        if let Some(verdict) = verdict {
+            self.tell(verdict);
         }
         self.tell_what_was_found();
         self.changed |= self.popups.browser.take_what_was_read();

@@ -12,6 +12,7 @@ use crate::journal::Journal;
 use crate::journal::history::History;
 use crate::journal::next_push::NextPush;
 use crate::playback::pace::Speed;
+use crate::scenario::csv::Renaming;
 use crate::scenario::file::ScenarioFile;
 use crate::scenario::{Document, Problems, Scenario, keys};
 use crate::storage::session::{Content, Text, later};
@@ -69,6 +70,9 @@ pub(super) struct KeptPlace {
     pub(super) exporting: Option<String>,
     /// The measured data beside the run.
     pub(super) measured: Option<String>,
+    /// What its columns are called instead.
+    #[serde(default)]
+    pub(super) map: Vec<Renaming>,
     pub(super) next_push: NextPush,
     pub(super) script: Option<KeptScript>,
     /// What the room of the lessons keeps.
@@ -181,6 +185,9 @@ impl KeptPlace {
             look: view.look.clone(),
             exporting: exported_to.map(|path| Shown(path).to_string()),
             measured: comparison.data_to_keep(files),
+            map: comparison
+                .data()
+                .map_or_else(Vec::new, |data| data.map.clone()),
             next_push: edits.values.next_push.clone(),
             script: (!script.is_done()).then(|| KeptScript {
                 origin: script.origin.clone(),

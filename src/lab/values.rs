@@ -132,6 +132,7 @@ impl Values {
             }
         }
         push.toward = choice.toward.unwrap_or(push.toward);
+        push.from_s = choice.from_s.unwrap_or(push.from_s);
         push.for_s = choice.for_s.unwrap_or(push.for_s);
         push.checked()
     }
@@ -188,7 +189,9 @@ impl PushChoice {
             Field::Point => choice.point = Some(push.point.clone()),
             Field::Size => choice.force_N = Some(Force::Size(push.size_N)),
             Field::Toward => choice.toward = Some(push.toward),
-            Field::Length => choice.for_s = Some(push.for_s),
+            Field::Length => {
+                (choice.for_s, choice.from_s) = (Some(push.for_s), Some(push.from_s));
+            }
         }
         choice
     }

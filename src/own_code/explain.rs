@@ -48,6 +48,18 @@ impl Explanation {
     pub fn names(&self) -> Vec<&'static str> {
         self.variants.iter().map(|variant| variant.name).collect()
     }
+
+    /// The changes that it makes; `None` where its time step is another one.
+    pub fn changes(&self) -> Option<Changes> {
+        let has_steps = self.variants.iter().all(|variant| variant.slip.is_some());
+        has_steps.then(|| changes(&self.variants))
+    }
+}
+
+fn changes(variants: &[Variant]) -> Changes {
+    variants
+        .iter()
+        .fold(Changes::default(), |sum, variant| variant.apply(sum))
 }
 
 /// The search among programs of one plan for that which has made the rows.
@@ -154,9 +166,7 @@ impl Search<'_> {
 
 /// How far the rows agree with the program that has the changes of `variants`.
 fn followed(plan: &Plan, rows: &Rows, variants: &[Variant]) -> Followed {
-    let changes = variants
-        .iter()
-        .fold(Changes::default(), |sum, variant| variant.apply(sum));
+    let changes = changes(variants);
     let steps = variants.iter().find_map(|variant| match variant.change {
         Change::TimeStep(_, place) => Some(&rows.times.others[place].1),
         Change::Of(_) => None,

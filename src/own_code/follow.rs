@@ -130,7 +130,9 @@ impl Run for Single {
 
     fn step(&mut self) {
         self.scheme.take_step();
-        self.copies.iter_mut().for_each(Program::step);
+        for copy in &mut self.copies {
+            copy.step();
+        }
     }
 }
 
@@ -251,5 +253,8 @@ pub fn follow(
         _ if lane.agreeing > best.agreeing => lane,
         _ => best,
     };
-    lanes.into_iter().reduce(best).unwrap_or_default()
+    // That the start stands there twice is no agreement with the run.
+    let says_more = |lane: &Followed| lane.offset >= 0 || lane.agreeing > 1;
+    let lanes = lanes.into_iter().filter(says_more);
+    lanes.reduce(best).unwrap_or_default()
 }

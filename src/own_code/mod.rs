@@ -15,6 +15,7 @@ mod step;
 mod times;
 mod words;
 
+use crate::physics::workings::Quantity;
 use crate::run::Simulation;
 use crate::scenario::{Problem, Problems, Scenario};
 use explain::{Explanation, Search};
@@ -24,6 +25,7 @@ pub use rows::Rows;
 use serde::Serialize;
 use slips::Changes;
 use std::sync::Arc;
+pub use step::TRACED;
 use step::{Order, Program};
 
 /// What has come out of the comparison, as `--json` gives it.
@@ -48,6 +50,32 @@ pub struct Verdict {
     /// The same in words, a line each, the first of which begins behind the file's name.
     #[serde(skip)]
     pub lines: Vec<String>,
+    #[serde(skip)]
+    pub trial: Option<Trial>,
+}
+
+/// The program with the slip that makes the rows, as it stands before the first step at which they differ.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// The step that differs.
+    pub first: u64,
+    program: Program<f64>,
+    /// What the program does, and the slip's name.
+    pub words: String,
+}
+
+impl Trial {
+    /// The numbers of its step `step`, phase by phase; `None` for the steps before the first that differs, and for those so
+    /// much later that they take long to compute.
+    pub fn numbers(&self, step: u64) -> Option<Vec<(&'static str, Quantity)>> {
+        const MOST: u64 = 1000;
+        let later = step.checked_sub(self.first).filter(|later| *later < MOST)?;
+        let mut program = self.program.clone();
+        for _ in 0..later {
+            program.step();
+        }
+        Some(program.numbers())
+    }
 }
 
 /// Why nothing has come out.
@@ -115,7 +143,10 @@ pub fn compare(
     if !go_on() {
         return Err(Uncompared::Stopped);
     }
-    Ok(found.verdict())
+    Ok(Verdict {
+        trial: plan.as_ref().and_then(|plan| found.trial(plan)),
+        ..found.verdict()
+    })
 }
 
 impl Found<'_> {
@@ -147,6 +178,24 @@ impl Found<'_> {
             let closest = self.closest.take();
             self.closest = closest.or(close.into_iter().next());
         }
+    }
+}
+
+impl Found<'_> {
+    /// The program that makes the rows; `None` where none does, or where its steps are others than the run's.
+    fn trial(&self, plan: &Plan) -> Option<Trial> {
+        let (explanation, differs) = (self.explanations.first()?, self.beside.differs?);
+        let changes = explanation.changes()?;
+        let first = u64::try_from(differs.step.max(1)).ok()?;
+        let mut program = Program::new(plan, &changes, Order::Forward);
+        for _ in 1..first {
+            program.step();
+        }
+        Some(Trial {
+            first,
+            program,
+            words: self.named(explanation),
+        })
     }
 }
 

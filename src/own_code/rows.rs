@@ -1,6 +1,7 @@
 //! The file that a program has written: which columns are compared, to how many digits, and which time step each row is.
 
 use super::times::{self, STEP, TIME, Times};
+use crate::data::{Curve, Data, Measured, Point, Quantity, Series};
 use crate::scenario::csv::{Csv, Naming, Renaming};
 use crate::scenario::problem::{at_line, listed};
 use crate::scenario::{Problem, Problems};
@@ -80,6 +81,39 @@ impl Column {
 /// By how much right programs may differ in the column of this place.
 pub fn within(place: usize, value: f64) -> f64 {
     WITHIN[place / 3] * value.abs().max(1.0)
+}
+
+impl Rows {
+    /// The rows as measured data beside a run of this time step, each at the time of its step.
+    pub fn as_measured(&self, origin: &str, time_step_s: f64) -> Measured {
+        let dt = self.times.own_s.unwrap_or(time_step_s);
+        let steps = self.times.steps.of_rows.iter();
+        let curve = |(place, column): (usize, &Column)| {
+            let rows = self.values.iter().enumerate();
+            let point = |(row, values): (usize, &Vec<f64>)| Point {
+                row,
+                value: values[place],
+                sigma: None,
+            };
+            Some(Curve {
+                quantity: Quantity::find(column.name())?,
+                points: rows.map(point).collect(),
+            })
+        };
+        let series = Series {
+            times_s: steps.map(|step| (*step as f64 * dt).max(0.0)).collect(),
+            curves: self.columns.iter().enumerate().filter_map(curve).collect(),
+        };
+        Measured {
+            origin: origin.to_owned(),
+            text: series.to_csv().into(),
+            until_s: None,
+            about: String::new(),
+            lines: (1..=self.values.len() as u64).collect(),
+            left_out: self.left_out.clone(),
+            data: Data::Series(series),
+        }
+    }
 }
 
 /// A number as it is written.

@@ -7,8 +7,9 @@
 use super::arithmetic::{Matrix, Real, Vector, cross, dot, solve};
 use super::plan::Plan;
 use super::slips::{Centre, Changes, FOREVER, Sequence};
+use crate::physics::workings::{Quantity, Value};
 use crate::scenario::{Push, Window};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// In which order sums are added up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +17,17 @@ pub enum Order {
     Forward,
     Backward,
     EvenThenOdd,
+}
+
+/// The symbol of the traced point after the step.
+pub const TRACED: &str = "new X";
+
+/// How a step turns the points: about u by an angle, with the matrix R.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn<T> {
+    u: Vector<T>,
+    angle: T,
+    rotation: Matrix<T>,
 }
 
 /// A run of the report's step with changes in it. It stands at step 0 at first.
@@ -84,28 +96,59 @@ impl<T: Real> Program<T> {
         row
     }
 
-    /// One step of the report.
-    pub fn step(&mut self) {
+    /// One step of the report. Returns the angular velocity, the turn and the torque on its way.
+    pub fn step(&mut self) -> (Vector<T>, Option<Turn<T>>, Vector<T>) {
         self.clock += 1;
         self.earlier = self.momentum;
+        let mut early = None;
         if self.changes.sequence == Sequence::LBeforeTurn {
             let torque = self.torque();
             self.kick(torque);
+            early = Some(torque);
         }
         if !self.changes.inertia_kept {
             self.inertia = self.inertia();
         }
         let omega = solve(&self.inertia, &self.momentum);
-        let early = (self.changes.sequence == Sequence::TorqueBeforeTurn).then(|| self.torque());
-        let rotation = self.rotation(&omega);
-        self.turn(&omega, rotation.as_ref());
-        if let Some(rotation) = rotation.filter(|_| self.changes.turned.is_some()) {
-            self.momentum = self.times(&rotation, &self.momentum);
+        if self.changes.sequence == Sequence::TorqueBeforeTurn {
+            early = Some(self.torque());
         }
+        let turn = self.rotation(&omega);
+        self.turn(&omega, turn.as_ref().map(|turn| &turn.rotation));
+        if let Some(turn) = turn.filter(|_| self.changes.turned.is_some()) {
+            self.momentum = self.times(&turn.rotation, &self.momentum);
+        }
+        let torque = early.unwrap_or_else(|| self.torque());
         if self.changes.sequence != Sequence::LBeforeTurn {
-            let torque = early.unwrap_or_else(|| self.torque());
             self.kick(torque);
         }
+        (omega, turn, torque)
+    }
+
+    /// Takes a step, and gives what each phase of it results in, with the phase's name.
+    pub fn numbers(&mut self) -> Vec<(&'static str, Quantity)> {
+        let vector = |of: &Vector<T>| Value::from(Vector3::from(of.map(T::f64)));
+        let matrix = |of: &Matrix<T>| Value::from(Matrix3::from_fn(|i, j| of[i][j].f64()));
+        let (omega, turn, torque) = self.step();
+        let mut numbers = vec![
+            ("inertia", "I", "kg m²", matrix(&self.inertia)),
+            ("angular velocity", "Ω", "rad/s", vector(&omega)),
+            (
+                "new positions",
+                TRACED,
+                "m",
+                vector(&self.points[self.traced].0),
+            ),
+            ("torque", "τ", "N m", vector(&torque)),
+            ("new momentum", "new L", "J s", vector(&self.momentum)),
+        ];
+        if let Some(Turn { u, angle, rotation }) = &turn {
+            numbers.push(("axis and angle", "u", "", vector(u)));
+            numbers.push(("axis and angle", "angle", "rad", angle.f64().into()));
+            numbers.push(("rotation", "R", "", matrix(rotation)));
+        }
+        let quantity = |(phase, symbol, unit, value)| (phase, Quantity::new(symbol, unit, value));
+        numbers.into_iter().map(quantity).collect()
     }
 
     /// Equation (2): I = sum of m (|r|^2 E - r r^T), about the pivot.
@@ -173,7 +216,7 @@ impl<T: Real> Program<T> {
     }
 
     /// R = P + cos(|Omega| dt)(E - P) + sin(|Omega| dt)[u]x; `None` where there is no Omega.
-    fn rotation(&self, omega: &Vector<T>) -> Option<Matrix<T>> {
+    fn rotation(&self, omega: &Vector<T>) -> Option<Turn<T>> {
         let changes = &self.changes;
         let rate = T::of(self.dot(omega, omega).f64().sqrt());
         if rate.f64() == 0.0 || changes.first_order {
@@ -201,12 +244,13 @@ impl<T: Real> Program<T> {
             [u[2], zero, -u[0]],
             [-u[1], u[0], zero],
         ];
-        Some([0, 1, 2].map(|i| {
+        let rotation = [0, 1, 2].map(|i| {
             [0, 1, 2].map(|j| {
                 let (p, e) = (u[i] * u[j], T::of(f64::from(u8::from(i == j))));
                 p + cosine * (e - p) + sine * cross[i][j]
             })
-        }))
+        });
+        Some(Turn { u, angle, rotation })
     }
 
     fn turn(&mut self, omega: &Vector<T>, rotation: Option<&Matrix<T>>) {

@@ -42,6 +42,7 @@ impl Found<'_> {
             slips: self.explanations.iter().map(Explanation::names).collect(),
             unseen: self.unseen.clone(),
             lines: self.lines(agrees),
+            trial: None,
         }
     }
 
@@ -74,7 +75,7 @@ impl Found<'_> {
         )));
         if agrees {
             lines.extend(self.hidden());
-        } else {
+        } else if self.beside.differs.is_some() {
             lines.extend(self.explained());
         }
         lines.extend(self.left_out());
@@ -232,6 +233,12 @@ impl Found<'_> {
         });
         let worst = self.worst_of(followed.worst);
         format!("{begin} ({names}): {sentences}\nWith that all {rows}{up_to} agree ({worst}).")
+    }
+
+    /// The slips, and what the program and the report do.
+    pub(super) fn named(&self, explanation: &Explanation) -> String {
+        let names = explanation.names().join(" + ");
+        format!("{names}: {}", self.sentences(explanation))
     }
 
     /// What the program does, and what the report does.

@@ -20,7 +20,7 @@ impl<T: Send + Sync + 'static> Job<T> {
     /// Begins `work`, which can ask whether its answer is still wanted. If the system gives no thread, there is no answer.
     pub fn begin(
         name: &str,
-        work: impl FnOnce(&dyn Fn() -> bool) -> Option<T> + Send + 'static,
+        work: impl FnOnce(&(dyn Fn() -> bool + Sync)) -> Option<T> + Send + 'static,
     ) -> Self {
         let answer = Arc::new(OnceLock::new());
         let asker = Arc::downgrade(&answer);

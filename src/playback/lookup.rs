@@ -67,6 +67,20 @@ pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
     Err(Missing::NoTurn)
 }
 
+/// The turns of the tilt of `run` from step `from` to step `to`: the time, s, and the tilt, degrees, of each.
+pub fn turns(run: &LiveRun, from: u64, to: u64) -> Result<Vec<(f64, f64)>, Missing> {
+    let mut steps = Steps::before(run, from.saturating_sub(1));
+    let mut turns = Vec::new();
+    while steps.step_number() <= to && steps.step_number() < run.furthest() {
+        let now = steps.simulation.now();
+        let (time_s, tilt_deg) = (now.time_s(), now.tilt_deg());
+        if steps.step()?.is_some_and(|turn| turn >= from) {
+            turns.push((time_s, tilt_deg));
+        }
+    }
+    Ok(turns)
+}
+
 struct Steps {
     simulation: Simulation,
     left: u64,

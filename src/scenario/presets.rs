@@ -45,6 +45,7 @@ pub const PRESETS: &[Preset] = presets![
     "heavy-top": "e, then scheme; t draws the exact motion: which schemes keep to it at this dt?"
     "wing-nut": "e, then tilt: at 0.1 degrees it waits longer, and then turns over as fast."
     "phone": "e, then wy: at 0 nothing slips, and it comes round flat."
+    "thrown-phone": "e, then wx: about which of its three axes does a turn last?"
     "rugby-pass": "e, then wx: a larger slip of the wrist widens the circle, its time stays."
     "earth": "e, then tilt: does the pole go round faster when it leans less?"
     "heidelberg": "gyrolab lesson a-real-gyroscope goes through what was measured on it."

@@ -4,6 +4,7 @@
 
 use crate::support::desk::{Desk, commands};
 use crate::support::stage::{LARGE, SMALL, Stage};
+use crate::support::words::has_all;
 use gyrolab::export::layout::LayoutFile;
 use gyrolab::journal::expression::Expression;
 use gyrolab::journal::next_push::Toward;
@@ -71,11 +72,13 @@ fn a_push() -> impl Strategy<Value = PushChoice> {
         prop::option::of(force),
         prop::option::of(toward),
         prop::option::of(a_number()),
+        prop::option::of(a_number()),
     );
-    parts.prop_map(|(point, force_N, toward, for_s)| PushChoice {
+    parts.prop_map(|(point, force_N, toward, from_s, for_s)| PushChoice {
         toward: toward.filter(|_| !matches!(force_N, Some(Force::Vector(_)))),
         point,
         force_N,
+        from_s,
         for_s,
     })
 }
@@ -810,4 +813,39 @@ fn a_picture_of_one_pane_shows_none_that_is_hidden() {
     let desk = opened_with(&["view.hide=['traces']"]);
     let seen = picture(&desk, (40, 20));
     assert!(!seen.contains("over time"), "{seen}");
+}
+
+#[test]
+fn a_push_begins_at_the_time_that_it_names() {
+    let mut desk = Desk::open("method-2");
+    let pushed = "push = { force_N = 50, toward = 'down', from_s = 2, for_s = 0.5 }";
+    desk.commands(pushed);
+    let push = desk.scenario().file.push.last().unwrap().clone();
+    assert_eq!((push.from_s, push.for_s), (Some(2.0), Some(0.5)));
+    desk.commands("go_to = '3 s'");
+    let late = desk
+        .carry_out(&commands(pushed).remove(0))
+        .unwrap_err()
+        .to_string();
+    has_all(&late, ["begins at 2 s, and it is 3 s", "g and 2 s"]);
+    desk.commands("push = { from_s = 0 }");
+    let push = desk.scenario().file.push.last().unwrap().clone();
+    assert_eq!(push.from_s, Some(3.0));
+}
+
+#[test]
+fn swings_are_counted_from_one_turn_to_another() {
+    // It swings once in 0.8225 s.
+    let mut desk = Desk::open("cusps");
+    desk.commands("go_to = 3000\ncursor = 0\ncursor = 'next turn'\ncursor = 'mark'");
+    desk.commands(&"cursor = 'next turn'\n".repeat(4));
+    let said = desk.commands("cursor = 'mark'").unwrap();
+    has_all(
+        &said,
+        [
+            "2 swings of the tilt in 1.6",
+            "period 0.82",
+            "theory: 0.8225",
+        ],
+    );
 }

@@ -370,7 +370,7 @@ fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
     let step = stage.step();
     stage.press("LL").shows("2 of ");
     assert_eq!(stage.step(), step, "the run stays");
-    stage.press("L↓\u{1b}L").shows("> [ ] Method 1 and its");
+    stage.press("L↓\u{1b}L").shows("> [ ] Write it yourself");
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("LL");
     assert!(stage.lab.view().sheet.is_none());

@@ -55,6 +55,7 @@ mod sweep;
 mod sweep_figures;
 mod textbook;
 mod theory;
+mod thrown;
 mod truth;
 mod undo;
 mod wobble;

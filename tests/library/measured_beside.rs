@@ -201,7 +201,7 @@ fn a_session_keeps_them_by_name() {
 fn a_scenario_names_the_data_beside_its_run() {
     let scenario = preset("method-2", &["view.measured=\"heidelberg-spin-decay\""]);
     let mut desk = Desk::with("method-2", scenario);
-    desk.lab.begin_with_measured(None).unwrap();
+    desk.lab.begin_with_measured(None, &[]).unwrap();
     assert_eq!(sum(&desk.lab).points, 7);
     desk.commands("open = 'cusps'");
     // They were of the other run.

@@ -2,10 +2,14 @@
 //!
 //! `tests/own_code` holds the files, and `program.py`, written apart from gyrolab, which made them.
 
+use crate::support::desk::Desk;
 use crate::support::ground::names;
 use crate::support::scenarios::preset;
 use crate::support::words::has_all;
 use gyrolab::own_code::{self, Rows, Verdict, rows};
+use gyrolab::physics::workings::Value;
+use gyrolab::tui::keymap::Key;
+use gyrolab::tui::screen;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -133,6 +137,51 @@ fn right_programs_are_not_accused_whatever_their_digits() {
     }
 }
 
+/// Rows need no times there, and the verdict comes from a thread of its own.
+#[test]
+fn beside_a_run_the_step_that_differs_has_the_slips_own_numbers() {
+    let text = fs::read_to_string(folder("every-slip/torque-before-turn.csv")).unwrap();
+    let verdict = judged(&text, "every-slip", &[]);
+    let bare = tempfile::NamedTempFile::new().unwrap();
+    let without_times = text.replacen("t_s", "clock", 1);
+    fs::write(&bare, without_times).unwrap();
+    let mut desk = Desk::open("every-slip");
+    desk.commands(&format!("measured = '{}'", bare.path().display()));
+    let is_found = |desk: &Desk| {
+        desk.lab
+            .comparison()
+            .own_code()
+            .unwrap()
+            .verdict()
+            .is_some()
+    };
+    while !is_found(&desk) {
+        desk.wait(1);
+        std::thread::yield_now();
+    }
+    let own = desk.lab.comparison().own_code().unwrap();
+    assert_eq!(own.verdict().unwrap().lines[..2], verdict.lines[..2]);
+    let first = verdict.first_step.unwrap() as u64;
+    desk.press(&[Key::Char('M')]);
+    assert_eq!(desk.step(), first);
+    desk.commands("phase = 'torque'");
+    let shown = screen::text(&desk.lab, false, (80, 50));
+    has_all(&shown, ["torque-before-turn", "yours", "differs at"]);
+    // The numbers are those of the row.
+    let own = desk.lab.comparison().own_code().unwrap();
+    let numbers = own.trial().unwrap().numbers(first).unwrap();
+    let momentum = numbers.iter().find(|(_, it)| it.symbol == "new L").unwrap();
+    let Value::Vector(momentum) = momentum.1.value else {
+        panic!("{momentum:?}")
+    };
+    let row = text
+        .lines()
+        .find(|line| line.starts_with(&format!("{first},")))
+        .unwrap();
+    let written: f64 = row.split(',').nth(5).unwrap().parse().unwrap();
+    assert!((written - momentum.x).abs() < 1e-9, "{row}: {}", momentum.x);
+}
+
 #[test]
 fn what_no_slip_explains_is_said() {
     let text = fs::read_to_string(folder("right/every-slip-17g.csv")).unwrap();
@@ -149,6 +198,13 @@ fn what_no_slip_explains_is_said() {
         );
         has_all(&verdict.lines.join("\n"), ["None of", "nor two together"]);
     }
+}
+
+#[test]
+fn a_program_that_does_not_move_does_not_agree() {
+    let text = "step,x_m,y_m,z_m\n0,0,0,1.131370849898476\n1,0,0,1.131370849898476\n";
+    let verdict = judged(text, "method-1", &[]);
+    assert_eq!((verdict.agrees, verdict.first_step), (false, Some(1)));
 }
 
 /// A file is read in whatever way it is printed, and may lack its first row or have it twice.

@@ -133,3 +133,41 @@ fn what_is_wrong_is_told_with_the_remedy() {
         ground.refused(args, code, &[words]);
     }
 }
+
+/// Of two throws in one recording each is fitted by itself, and its CSV is computed again.
+#[test]
+fn a_part_of_a_recording_is_fitted_from_its_beginning_on() {
+    let ground = Ground::new();
+    let columns = "--columns t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s";
+    let mut recording = String::new();
+    for (begin_s, rate) in [(1.0, 8.0), (6.0, -9.0)] {
+        let thrown =
+            format!("run thrown-phone --set start.omega_rad_per_s.0={rate} {columns} -o -");
+        for row in ground
+            .stdout(&thrown)
+            .lines()
+            .filter(|line| !line.starts_with('#'))
+        {
+            match row.split_once(',') {
+                Some(("t_s", _)) if recording.is_empty() => recording += &format!("{row}\n"),
+                Some(("t_s", _)) | None => {}
+                Some((time, rates)) => {
+                    let time_s = begin_s + time.parse::<f64>().unwrap();
+                    recording += &format!("{time_s},{rates}\n");
+                }
+            }
+        }
+    }
+    ground.write("throws.csv", &recording);
+    let fit = "fit throws.csv --in thrown-phone --set start.omega_rad_per_s.1=1 \
+        --free start.omega_rad_per_s.0,start.omega_rad_per_s.1";
+    for (part, rate) in [("--from 1 --to 5", 8.0), ("--from 6", -9.0)] {
+        let json = ground.json(&format!("{fit} {part} --json"));
+        let found = json["keys"][0]["value"].as_f64().unwrap();
+        assert!((found - rate).abs() < 1e-6, "{part}: {found}");
+    }
+    done(ground.run(&format!("{fit} --from 6 -o found.csv")));
+    done(ground.run("verify found.csv"));
+    let none = format!("{fit} --from 11");
+    ground.refused(&none, 1, &["throws.csv: has no value measured"]);
+}

@@ -71,7 +71,7 @@ pub(super) const PLACE: Form = As(
 );
 pub(super) const CURSOR: Form = As(
     is::<CursorTo>,
-    "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\", \"end\", \"next turn\", \"turn before\" or \"none\"",
+    "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\", \"end\", \"next turn\", \"turn before\", \"mark\" or \"none\"",
 );
 pub(super) const CONDITION: Form = Text(|text| {
     let condition = Expression::condition(text);
@@ -107,13 +107,13 @@ pub(super) const NEXT_PUSH: Form = Form::Fields(Fields {
     alone: Alone::Nothing,
     rule: |table| {
         if table.is_empty() {
-            let rule = "must hold one of point, force_N, toward, for_s";
+            let rule = "must hold one of point, force_N, toward, from_s, for_s";
             return Err(Problem::at("", rule));
         }
         has_one_direction(table)
     },
 });
-const OF_PUSH: [(&str, Form); 4] = [
+const OF_PUSH: [(&str, Form); 5] = [
     ("point", Is(Line)),
     (
         "force_N",
@@ -123,6 +123,7 @@ const OF_PUSH: [(&str, Form); 4] = [
         }),
     ),
     ("toward", Text(|text| Toward::typed(text).map(|_| ()))),
+    ("from_s", Is(Number(Range::NotNegative))),
     ("for_s", Is(Number(Range::Positive))),
 ];
 pub(super) const EXPORT: Form = Form::Fields(Fields {

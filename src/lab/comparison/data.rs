@@ -4,10 +4,12 @@
 //! times. It also records the quantities that were measured and that the run's own recording does not have, so that their
 //! curves can be drawn. [`Compared`] has the two side by side.
 
+use super::OwnCode;
 use crate::data::compared::Compared;
 use crate::data::{Measured, Quantity, Reader, Series};
 use crate::playback::recording::{Curve, Moment, Recording};
 use crate::run::Simulation;
+use crate::scenario::csv::Renaming;
 use crate::scenario::{Problems, Scenario};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -18,7 +20,10 @@ const IN_A_RECORDING: usize = Curve::OF_POINT.len();
 /// Measured data, and the run's values for them so far.
 pub struct DataComparison {
     pub name: String,
+    /// What its columns are called instead.
+    pub(in crate::lab) map: Vec<Renaming>,
     pub measured: Arc<Measured>,
+    pub own: Option<OwnCode>,
     series: Arc<Series>,
     simulation: Simulation,
     reader: Reader<Arc<Series>>,
@@ -33,12 +38,15 @@ impl DataComparison {
     /// `measured` beside the run of `scenario`, of which nothing has been read yet.
     pub(super) fn new(
         name: &str,
+        map: &[Renaming],
         measured: Measured,
         scenario: &Arc<Scenario>,
     ) -> Result<Self, Problems> {
         let series = Arc::new(measured.series()?.clone());
         let mut comparison = Self {
             name: name.to_owned(),
+            map: map.to_vec(),
+            own: None,
             simulation: Simulation::new(Arc::clone(scenario)),
             reader: Reader::new(Arc::clone(&series)),
             recorded: Vec::new(),

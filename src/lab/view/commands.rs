@@ -1,5 +1,6 @@
 //! The commands that change how the run is looked at, and those that the keys of its panes mean.
 
+use super::swings;
 use super::{Pane, View};
 use crate::lab::action::{Direction, signed};
 use crate::lab::answer::{Answer, Done};
@@ -108,6 +109,7 @@ impl View {
             found.map(Some).map_err(|missing| missing.to_string())
         };
         let step = match to {
+            CursorTo::Mark => return self.mark_turn(player),
             CursorTo::Nowhere => None,
             CursorTo::Place(Place::End) => Some(run.furthest()),
             CursorTo::Place(place) => Some(player.step_of(place)?),
@@ -124,6 +126,27 @@ impl View {
         }
         self.cursor = step;
         Ok(Done::SILENT)
+    }
+
+    /// Marks the step of the cursor; where another is marked, says what the swings of the tilt between are.
+    fn mark_turn(&mut self, player: &Player) -> Answer {
+        let none = "the cursor is nowhere: ) and ( put it on a turn of the tilt";
+        let here = self.cursor.ok_or(none)?;
+        let Some(mark) = self.mark.take().filter(|mark| *mark != here) else {
+            self.mark = Some(here);
+            return Ok(Done::saying(
+                "marked: ) to a later turn of the tilt, and | counts the swings between",
+            ));
+        };
+        let (from, to) = (mark.min(here), mark.max(here));
+        let turns = lookup::turns(player.run(), from, to).map_err(|missing| missing.to_string())?;
+        let (time_step_s, readouts) = (player.motion().time_step_s, &player.reading.readouts);
+        let said = swings::in_words(&turns, time_step_s, readouts);
+        let few = "fewer than two turns of the tilt from the mark to the cursor";
+        Ok(Done {
+            stays: true,
+            ..Done::saying(said.ok_or(few)?)
+        })
     }
 
     /// Leaves the cursor at its time where the run of `player` has gone over to another scenario: that may be another step.

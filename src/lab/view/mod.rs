@@ -8,6 +8,7 @@ mod commands;
 mod focus;
 pub mod pane;
 pub mod step;
+mod swings;
 pub mod theme;
 
 use super::sheet::Sheet;
@@ -119,6 +120,8 @@ pub struct View {
     pub magnified: f64,
     /// The step at which the traces are read off.
     pub cursor: Option<u64>,
+    /// The step of a turn of the tilt from which swings are counted.
+    pub mark: Option<u64>,
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
     /// The phase to which the step pane returns from its last page.
@@ -163,6 +166,7 @@ impl View {
             since_s: None,
             magnified: 1.0,
             cursor: None,
+            mark: None,
             camera: Camera::default(),
             page_before: Page::default(),
             pointed_at: None,
@@ -235,7 +239,7 @@ impl View {
             residuals: self.look.residuals,
             ..Look::default()
         };
-        (self.since_s, self.magnified, self.cursor) = (None, 1.0, None);
+        (self.since_s, self.magnified, self.cursor, self.mark) = (None, 1.0, None, None);
         if self.look.camera.is_none() {
             self.camera = Camera::default();
         }

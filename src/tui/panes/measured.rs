@@ -49,7 +49,8 @@ fn fitting(beside: &DataComparison, end_s: f64, room: usize) -> (String, String,
     let sum = &beside.compared.sum;
     let name = file_name(&beside.name);
     let [long, short] = reached(beside, sum, end_s);
-    let (all, mut in_short): (Vec<_>, Vec<_>) = parts(sum).into_iter().map(<_>::from).unzip();
+    let parts = verdict(beside).into_iter().chain(parts(sum));
+    let (all, mut in_short): (Vec<_>, Vec<_>) = parts.map(<_>::from).unzip();
     let mut forms = vec![(long.clone(), all), (long, in_short.clone())];
     forms.push((short.clone(), in_short.clone()));
     while in_short.pop().is_some() {
@@ -101,6 +102,21 @@ fn reached(beside: &DataComparison, sum: &Sum, end_s: f64) -> [String; 2] {
         ],
     };
     [format!("({names}: {long})"), format!("({short})")]
+}
+
+/// What is found out about rows of an own program: at length and in short.
+fn verdict(beside: &DataComparison) -> Option<[String; 2]> {
+    let verdict = beside.own.as_ref()?.verdict()?;
+    let slip = verdict.slips.first().map(|names| names.join(" + "));
+    let slip = slip.map_or_else(String::new, |slip| format!(", {slip}"));
+    Some(match verdict.first_step {
+        Some(step) => [
+            format!("differs at step {step}{slip}: M"),
+            format!("differs at {step}: M"),
+        ],
+        None if verdict.agrees => ["agrees with the scheme", "agrees"].map(str::to_owned),
+        None => ["not finite"; 2].map(str::to_owned),
+    })
 }
 
 /// How far the data are from the run, the most important first: each at length and in short.

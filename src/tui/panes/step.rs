@@ -11,6 +11,8 @@ use crate::lab::action::{Action, Direction, repeated};
 use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, View};
+use crate::own_code::{TRACED, Trial};
+use crate::physics::observables::position;
 use crate::physics::workings::{Phase, Quantity, Value};
 use crate::scenario::Scenario;
 use crate::text::number::{rounded, shortest, significant};
@@ -68,10 +70,12 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         Some(_) if view.page == Page::Why => why::draw(lab, inside, buf),
         Some(explained) => {
             if let Some((phase, number, _)) = explained.phase(view.page) {
+                let own = lab.comparison().own_code();
                 let page = PhasePage {
                     explained,
                     phase,
                     number,
+                    trial: own.and_then(|own| trial_of(own.trial()?, explained.step, phase)),
                     view,
                     width: inside.width.into(),
                 };
@@ -123,6 +127,8 @@ struct PhasePage<'a> {
     phase: &'a Phase,
     /// Its number, from 1.
     number: usize,
+    /// What the user's program does otherwise, in words, and its numbers of the phase.
+    trial: Option<(&'a str, Vec<Quantity>)>,
     view: &'a View,
     width: usize,
 }
@@ -135,6 +141,11 @@ impl PhasePage<'_> {
         let mut sections = Vec::new();
         if room >= LISTED_FROM.into() {
             sections.push(self.list());
+        }
+        if let Some((words, _)) = &self.trial {
+            let words = format!("yours has {words}");
+            let section = Section::text(1, &words, self.width, 2, Role::Measured);
+            sections.push(section);
         }
         let part = self.part();
         sections.push(text(8, &part, 0, Role::Quiet));
@@ -242,8 +253,39 @@ impl PhasePage<'_> {
                 rank,
                 numbers::lines(quantity, format, is_last),
             ));
+            sections.extend(self.yours(quantity, format));
         }
+        sections.extend(self.traced(heads, format));
         sections
+    }
+
+    /// Where the step takes the traced point, in the run and in the user's program, where that has a slip.
+    fn traced(&self, heads: Option<Section>, format: Format) -> Vec<Section> {
+        let (scenario, (_, after)) = (&self.explained.scenario, &self.explained.states);
+        let at = position(&scenario.body.mechanics, after, scenario.trace);
+        let traced = Quantity::new(TRACED, "m", at);
+        let Some(yours) = self.yours(&traced, format) else {
+            return Vec::new();
+        };
+        let own = Section::new(3, numbers::lines(&traced, format, false));
+        heads.into_iter().chain([own, yours]).collect()
+    }
+
+    /// The numbers of the user's program in place of `quantity`, or that they are the same.
+    fn yours(&self, quantity: &Quantity, format: Format) -> Option<Section> {
+        let (_, numbers) = self.trial.as_ref()?;
+        let yours = numbers.iter().find(|it| it.symbol == quantity.symbol)?;
+        let mut lines = numbers::lines(yours, format, false);
+        if lines == numbers::lines(quantity, format, false) {
+            lines = vec![Line::of(numbers::SYMBOL + 1, "the same", Role::Measured)];
+        }
+        let pieces = lines.iter_mut().flat_map(|line| &mut line.pieces);
+        pieces.for_each(|piece| piece.2 = Role::Measured);
+        lines[0].pieces.retain(|piece| piece.0 >= numbers::SYMBOL);
+        lines[0]
+            .pieces
+            .push((0, "yours".to_owned(), Role::Measured));
+        Some(Section::new(1, lines))
     }
 
     /// How many rows are added up, and their sums.
@@ -280,6 +322,13 @@ impl PhasePage<'_> {
             }
         }
     }
+}
+
+/// What the program of `trial` does otherwise, in words, and its numbers of `phase` in its step `step`.
+fn trial_of<'a>(trial: &'a Trial, step: u64, phase: &Phase) -> Option<(&'a str, Vec<Quantity>)> {
+    let numbers = trial.numbers(step)?.into_iter();
+    let of_phase = numbers.filter(|(name, _)| *name == phase.name);
+    Some((&trial.words, of_phase.map(|(_, it)| it).collect()))
 }
 
 /// Whether `quantity` of `phase` is made of the sums over the table's rows.

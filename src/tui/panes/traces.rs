@@ -62,6 +62,7 @@ const KEYS: &[Binding] = &[
     does(&[Mode::Lab], &[Key::Char('>')], |lab, count| one(lab.view().stepped_cursor(repeated(count).into(), lab.player())), "", "the cursor one step to the right"),
     does(&[Mode::Lab], &[Key::Char('(')], |_, _| one(Command::Cursor(CursorTo::TurnBefore)), "", "the cursor to the last turn of the tilt before it"),
     does(&[Mode::Lab], &[Key::Char(')')], |_, _| one(Command::Cursor(CursorTo::NextTurn)), "", "the cursor to the next turn of the tilt"),
+    does(&[Mode::Lab], &[Key::Char('|')], |_, _| one(Command::Cursor(CursorTo::Mark)), "", "mark the turn at the cursor; at another turn, count the swings between: period, mean, and theory's"),
     row(&[Mode::Lab], &[Key::Enter], Action::GoToCursor, "", "go to the step at the cursor; without one, to the values"),
     does(&[Mode::Lab], &[Key::Char('w')], wider, "", "show twice the time"),
     does(&[Mode::Lab], &[Key::Char('W')], narrower, "zoom", "show half the time"),

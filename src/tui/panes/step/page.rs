@@ -8,7 +8,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 /// A line: texts with the columns where they begin.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Line {
     pub pieces: Vec<(usize, String, Role)>,
     pub is_chosen: bool,

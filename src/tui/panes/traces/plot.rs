@@ -232,6 +232,15 @@ impl Traces<'_> {
         (block.moments() == 1).then(|| block.extent(curve).max)
     }
 
+    /// The value that was measured at the step at `time_s`.
+    fn measured_at(&self, content: Content, time_s: f64) -> Option<f64> {
+        let half_s = 0.5 * self.0.run.simulation().motion().time_step_s;
+        let points = self.points(content)?;
+        let next = points.partition_point(|point| point.time_s < time_s - half_s);
+        let point = points.get(next)?;
+        (point.time_s <= time_s + half_s).then_some(point.value)
+    }
+
     /// The column (of cells) of the cursor on `plot`, and the value there with its unit, where it is known.
     pub(super) fn at_cursor(&self, plot: &Plot) -> Option<(u16, String)> {
         let cursor = self.0.cursor?;
@@ -241,7 +250,10 @@ impl Traces<'_> {
             Content::Measured(_) => self.value_at(plot.content, cursor.time_s),
         };
         let unit = self.named(plot.content).1;
-        let words = value.map(|value| format!("{} {unit}", fixed(value, DECIMALS)));
+        let measured = self.measured_at(plot.content, cursor.time_s);
+        let measured = measured.map(|value| format!(", data {}", fixed(value, DECIMALS)));
+        let measured = measured.unwrap_or_default();
+        let words = value.map(|value| format!("{} {unit}{measured}", fixed(value, DECIMALS)));
         Some((column as u16, words.unwrap_or_default()))
     }
 

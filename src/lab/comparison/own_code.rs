@@ -1,0 +1,128 @@
+//! Measured data that are rows of somebody's own program of the report's scheme: the verdict of `gyrolab verify --against`
+//! about the run as it stands, found in the background.
+
+use crate::data::quantity::TIME;
+use crate::data::{self, Measured};
+use crate::own_code::{self, Trial, Uncompared, Verdict, rows};
+use crate::playback::background::Job;
+use crate::scenario::csv::Renaming;
+use crate::scenario::{Problems, Scenario};
+use crate::text::printable::printable_lines;
+use std::path::Path;
+use std::sync::Arc;
+
+type Outcome = Result<Verdict, String>;
+
+/// The rows of a program, and what is found out about them.
+pub struct OwnCode {
+    text: Arc<str>,
+    map: Arc<[Renaming]>,
+    /// The run that they are held against, and the search for its verdict.
+    judged: Option<(Arc<Scenario>, Job<Outcome>)>,
+    /// Whether the first verdict was found; further ones, about edited runs, are not told.
+    is_told: bool,
+}
+
+impl OwnCode {
+    /// Reads the data in `text`, the file `name`, to stand beside the run of `scenario`. Where they are rows as a program of
+    /// the report's scheme writes them, they need no times, and the rows come back too.
+    pub(super) fn read(
+        name: &str,
+        text: &str,
+        map: &[Renaming],
+        scenario: &Scenario,
+    ) -> Result<(Measured, Option<Self>), Problems> {
+        let time_step_s = scenario.motion.time_step_s;
+        let measured = data::read_with(name, text, map);
+        let has_times = measured.as_ref().is_ok_and(|it| it.series().is_ok());
+        if scenario.motion.scheme.name != "report" {
+            return Ok((measured?, None));
+        }
+        let rows = match rows::read(text, map, None, time_step_s) {
+            // A program knows of no uncertainty.
+            Ok(rows) if rows.left_out.iter().any(|it| it.contains("uncertainty")) => {
+                return Ok((measured?, None));
+            }
+            Ok(rows) => rows,
+            // Neither a time series nor a scenario.
+            Err(problems)
+                if measured.is_err() && ![TIME, "="].iter().any(|it| text.contains(it)) =>
+            {
+                return Err(problems.of(name));
+            }
+            Err(_) => return Ok((measured?, None)),
+        };
+        let own = Self {
+            text: text.into(),
+            map: map.into(),
+            judged: None,
+            is_told: false,
+        };
+        let measured = measured.ok().filter(|_| has_times);
+        let measured = measured.unwrap_or_else(|| rows.as_measured(name, time_step_s));
+        Ok((measured, Some(own)))
+    }
+
+    /// Begins to hold the rows against the run of `scenario`, called `name`, unless that has begun. Returns whether a verdict
+    /// has just been found.
+    pub(super) fn judge(&mut self, name: &str, scenario: &Arc<Scenario>) -> bool {
+        if let Some((judged, job)) = &mut self.judged
+            && Arc::ptr_eq(judged, scenario)
+        {
+            return job.take_news();
+        }
+        let (text, map) = (Arc::clone(&self.text), Arc::clone(&self.map));
+        let (name, against) = (name.to_owned(), Arc::clone(scenario));
+        let job = Job::begin("own code", move |is_wanted| {
+            let rows = rows::read(&text, &map, None, against.motion.time_step_s);
+            let compared = rows.map_err(Uncompared::from);
+            match compared.and_then(|rows| own_code::compare(&rows, &name, &against, is_wanted)) {
+                Ok(verdict) => Some(Ok(verdict)),
+                Err(Uncompared::Refused(problems)) => Some(Err(problems.in_one_line())),
+                Err(Uncompared::Stopped) => None,
+            }
+        });
+        self.judged = Some((Arc::clone(scenario), job));
+        false
+    }
+
+    fn outcome(&self) -> Option<&Outcome> {
+        self.judged.as_ref()?.1.answer()
+    }
+
+    pub fn verdict(&self) -> Option<&Verdict> {
+        self.outcome()?.as_ref().ok()
+    }
+
+    pub fn trial(&self) -> Option<&Trial> {
+        self.verdict()?.trial.as_ref()
+    }
+
+    /// The verdict in words, if it is the first.
+    pub(super) fn first_told(&mut self, name: &str) -> Option<String> {
+        let is_told = std::mem::replace(&mut self.is_told, true);
+        (!is_told).then(|| self.told(name))
+    }
+
+    /// The verdict in words.
+    pub(super) fn told(&self, name: &str) -> String {
+        let name = Path::new(name).file_name().unwrap_or_default();
+        let name = name.to_string_lossy();
+        let words = match self.outcome() {
+            None => format!("{name} is being held against the run"),
+            Some(Err(why)) => format!("{name}: {why}"),
+            Some(Ok(verdict)) => match (verdict.first_step, &verdict.trial) {
+                (Some(step), Some(Trial { words, .. })) => {
+                    format!("{name} differs at step {step}, M goes there. It has {words}")
+                }
+                (Some(step), None) => {
+                    let more = verdict.lines[1..].join(" ");
+                    format!("{name} differs at step {step}, M goes there. {more}")
+                }
+                (None, _) => format!("{name}: {}", verdict.lines.join(" ")),
+            }
+            .replace('\n', " "),
+        };
+        printable_lines(&words).into_owned()
+    }
+}

@@ -1,0 +1,42 @@
+//! Swings of the tilt, counted from one of its turns to another.
+
+use crate::analysis::readouts::Readouts;
+use crate::text::number::{short, uncertain};
+
+/// Number, period and mean of the swings between `turns`, the time, s, and the tilt, degrees, of each, beside theory's in
+/// `readouts`; `None` for fewer than two turns.
+pub(super) fn in_words(
+    turns: &[(f64, f64)],
+    time_step_s: f64,
+    readouts: &Readouts,
+) -> Option<String> {
+    let ((begin_s, _), (end_s, _)) = turns.first().zip(turns.last())?;
+    let middles = turns.windows(2).map(|pair| 0.5 * (pair[0].1 + pair[1].1));
+    let middles: Vec<f64> = middles.collect();
+    let (parts, length_s) = (middles.len() as f64, end_s - begin_s);
+    if middles.is_empty() {
+        return None;
+    }
+    let swings = 0.5 * parts;
+    // Each turn is known to a time step: it is off by dt/sqrt(12) in the mean square.
+    let period_sigma_s = time_step_s / 6.0_f64.sqrt() / swings;
+    let mean_deg = middles.iter().sum::<f64>() / parts;
+    let squares = middles.iter().map(|it| (it - mean_deg) * (it - mean_deg));
+    let mean_sigma_deg = (squares.sum::<f64>() / (parts - 1.0).max(1.0) / parts).sqrt();
+    let period = uncertain(length_s / swings, period_sigma_s)?;
+    let mean = uncertain(mean_deg, mean_sigma_deg).map(|it| it.to_string());
+    let number = |name| readouts.number(name);
+    let ends = number("predicted_lowest_tilt_deg").zip(number("predicted_highest_tilt_deg"));
+    let theory = match (number("predicted_nutation_period_s"), ends) {
+        (Some(period_s), Some((low, high))) => {
+            let period = period.to_the_same_digit(period_s);
+            format!("theory: {period} s, {} deg", short(0.5 * (low + high)))
+        }
+        _ => "no theory of it here".to_owned(),
+    };
+    Some(format!(
+        "{swings} swings of the tilt in {} s: period {period} s, mean {} deg; {theory}",
+        short(length_s),
+        mean.unwrap_or_else(|| short(mean_deg)),
+    ))
+}

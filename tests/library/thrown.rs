@@ -1,0 +1,96 @@
+//! A phone that is thrown: from the noise of its gyroscope the fit finds the ratios of its moments, from values of its own.
+
+use crate::support::dice::Dice;
+use crate::support::scenarios::preset;
+use gyrolab::data::{Data, Measured, Point, at_times, read};
+use gyrolab::fit::{Fit, Free, Model, fit};
+use gyrolab::scenario::Document;
+use rayon::prelude::*;
+use std::sync::{Arc, OnceLock};
+
+const FREE: [&str; 5] = [
+    "body.part.0.moments_kg_m2.0",
+    "body.part.0.moments_kg_m2.1",
+    "start.omega_rad_per_s.0",
+    "start.omega_rad_per_s.1",
+    "start.omega_rad_per_s.2",
+];
+/// The moments of the phone that is thrown; the preset's are 2 and 13 % off in the first two.
+const MOMENTS: [f64; 3] = [3.0e-4, 8.5e-5, 3.7957e-4];
+const NOISE: f64 = 0.01;
+
+/// The rates without noise, 100 a second for 4 s.
+fn flight() -> &'static Measured {
+    static FLIGHT: OnceLock<Measured> = OnceLock::new();
+    FLIGHT.get_or_init(|| {
+        let head = "t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s\n".to_owned();
+        let rows = (0..400).map(|row| format!("{},0,0,0\n", f64::from(row) / 100.0));
+        let mut measured = read("phone.csv", &(head + &rows.collect::<String>())).unwrap();
+        let moments = format!("body.part.0.moments_kg_m2={MOMENTS:?}");
+        let scenario = preset(
+            "thrown-phone",
+            &[&moments, "start.omega_rad_per_s=[-9,1.1,0.6]"],
+        );
+        let Data::Series(series) = &mut measured.data else {
+            panic!("no series")
+        };
+        let values = at_times(series, &Arc::new(scenario), &|| true)
+            .unwrap()
+            .unwrap();
+        for (curve, values) in series.curves.iter_mut().zip(values) {
+            let points = curve.points.iter_mut().zip(values);
+            points.for_each(|(point, value)| *point = Point { value, ..*point });
+        }
+        measured
+    })
+}
+
+/// The fit of that flight with the noise of a phone.
+fn thrown(seed: u64) -> Fit {
+    let mut dice = Dice(seed);
+    for _ in 0..10 {
+        dice.unit();
+    }
+    let mut normal = || {
+        let (radius, angle) = (dice.between(1e-300, 1.0), dice.unit());
+        (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
+    };
+    let mut measured = flight().clone();
+    if let Data::Series(series) = &mut measured.data {
+        let points = series.curves.iter_mut().flat_map(|curve| &mut curve.points);
+        points.for_each(|point| point.value += NOISE * normal());
+    }
+    let document = Document::open("thrown-phone").unwrap();
+    let free = FREE.iter().map(|key| Free::parse(key, &document).unwrap());
+    let model = Model::new(&document, free.collect(), measured).unwrap();
+    fit(&model, &|| true, &|_, _| {}).unwrap_or_else(|error| panic!("seed {seed}: {error}"))
+}
+
+/// How many of so many fits have each ratio within two of its uncertainties.
+fn covered(trials: u64) -> [usize; 2] {
+    let seeds = (1..=trials).into_par_iter();
+    let fits: Vec<Fit> = seeds.map(|seed| thrown(seed * 0x9E37_79B9)).collect();
+    // The third moment is held, so the first two are the ratios.
+    [0, 1].map(|axis| {
+        let is_near = |fit: &&Fit| {
+            let key = &fit.keys[axis];
+            (key.value - MOMENTS[axis]).abs() <= 2.0 * key.sigma.unwrap()
+        };
+        fits.iter().filter(is_near).count()
+    })
+}
+
+#[test]
+fn the_ratios_of_moments_come_back_from_a_noisy_recording() {
+    for count in covered(100) {
+        assert!((90..=99).contains(&count), "{count}");
+    }
+}
+
+#[test]
+#[ignore = "a thousand fits"]
+fn the_ratios_of_moments_lie_within_two_sigma_as_often_as_they_should() {
+    for count in covered(1000) {
+        assert!((930..=980).contains(&count), "{count}");
+    }
+}
