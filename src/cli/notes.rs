@@ -10,6 +10,7 @@ use crate::lessons::class::KeptLessons;
 use crate::lessons::clock::{self, Clock};
 use crate::lessons::predictions::Place;
 use crate::lessons::{Asked, Lesson, handout, reading};
+use crate::storage::confined::Confined;
 use crate::storage::session::{self, Listed};
 use crate::text::printable::{printable, printable_lines};
 use crate::text::wrap::wrapped;
@@ -26,10 +27,14 @@ const WIDTH: usize = 78;
 const EVERY: Duration = Duration::from_millis(500);
 
 /// Prints or writes what was predicted in the lesson `args.name` beside what came out.
-pub(super) fn answers(args: &LessonArgs, name: &str) -> anyhow::Result<ExitCode> {
+pub(super) fn answers(
+    args: &LessonArgs,
+    name: &str,
+    confined: Option<&Confined>,
+) -> anyhow::Result<ExitCode> {
     let lesson = reading::open(name)?;
     let full_name = reading::full_name(name);
-    let folder = folder()?;
+    let folder = sessions::folder_of(confined).map_err(anyhow::Error::msg)?;
     let found = session::list(&folder)?.into_iter().filter_map(|session| {
         let mut lessons = lessons_of(&session)?.lessons;
         let place = lessons.remove(&full_name)?;

@@ -1,14 +1,16 @@
 //! `gyrolab` and `gyrolab show`: the lab, live or as one picture.
 
-use super::args::{Look, WorkbenchArgs};
+use super::args::{LessonArgs, WorkbenchArgs};
 use super::new_lab::{DEFAULT, of_workbench, variable};
 use super::sessions::{self, begun, come_back, come_back_to, tell_of_session};
-use super::settings;
 use super::show::{ShowArgs, print_picture};
+use super::{settings, tell};
+use crate::class::Class;
 use crate::lab::Lab;
 use crate::lab::command;
 use crate::lab::view::FPS;
-use crate::lessons::{Class, Lesson, Page};
+use crate::lessons::taken::Taken;
+use crate::lessons::{Class as Lessons, Lesson, Page};
 use crate::storage::confined::Confined;
 use crate::storage::exporting;
 use crate::text::printable::{Shown, printable};
@@ -22,16 +24,39 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 /// Opens the lab on the terminal, at a page of a lesson.
-pub(super) fn open_lesson(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCode> {
+pub(super) fn open_lesson(
+    lesson: &Lesson,
+    page: &Page,
+    args: &LessonArgs,
+    confined: Option<Confined>,
+) -> anyhow::Result<ExitCode> {
     let args = WorkbenchArgs {
         paused: true,
-        look,
+        look: args.look,
+        folder: args.folder.clone(),
         ..WorkbenchArgs::default()
     };
-    open_at(&args, DEFAULT, None, Some((lesson, page)))
+    let entrance = Entrance {
+        lesson: Some((lesson, page.number)),
+        ..Entrance::default()
+    };
+    open_at(&args, DEFAULT, confined, entrance)
+}
+
+/// What a lab is opened for beside its scenario.
+#[derive(Default)]
+pub(super) struct Entrance<'a> {
+    /// A lesson, and the number of its page.
+    pub(super) lesson: Option<(&'a Lesson, usize)>,
+    pub(super) class: Class,
+    /// What is said at the end of how to come back, where that is not by the session.
+    pub(super) back: Option<String>,
 }
 
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
+    if let (true, Some(folder)) = (args.seat, &args.folder) {
+        return super::class::seat(args, folder);
+    }
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
     let enter = |folder| Confined::enter(folder).with_context(|| sessions::named(folder));
     let confined = args.folder.as_deref().map(enter).transpose()?;
@@ -67,16 +92,18 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         };
         return print_picture(&picture, Some(&why), confined);
     }
-    open_at(args, name, confined, None)
+    open_at(args, name, confined, Entrance::default())
 }
 
-/// Opens the lab on the terminal with the scenario `name`, at a page of a lesson where one is given.
-fn open_at(
+/// Opens the lab on the terminal with the scenario `name`, for what `entrance` says.
+pub(super) fn open_at(
     args: &WorkbenchArgs,
     name: &str,
     confined: Option<Confined>,
-    lesson: Option<(&Lesson, &Page)>,
+    entrance: Entrance<'_>,
 ) -> anyhow::Result<ExitCode> {
+    let lesson = entrance.lesson;
+    let mut class = entrance.class;
     // A write past `ulimit -f` fails then, like one to a full disk, and does not end the process.
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     let commands = args.commands.as_deref().map(command::open).transpose()?;
@@ -94,7 +121,8 @@ fn open_at(
         lab.settings.folder = Some(folder);
     }
     furnish(&mut lab, args, confined)?;
-    if lesson.is_none() && commands.is_none() && args.scenario.is_none() && args.resume.is_none() {
+    let is_alone = matches!(class, Class::None) && lesson.is_none();
+    if is_alone && commands.is_none() && args.scenario.is_none() && args.resume.is_none() {
         lab.play_on();
     }
     lab.set_trouble(session.as_ref().err().cloned());
@@ -102,11 +130,27 @@ fn open_at(
     if let Some(commands) = commands {
         lab.take_commands(commands);
     }
-    let mut class = class(&mut lab, lesson)?;
-    app::run(&mut lab, &mut class, session.as_ref().ok()).context("the terminal cannot be used")?;
+    if let Class::Student(student) = &class {
+        lab.lessons = student.lessons().or(lab.lessons); // its file is never older than the session
+    }
+    let mut lessons = lessons(&mut lab, lesson)?;
+    let ran = app::run(&mut lab, &mut lessons, &mut class, session.as_ref().ok());
+    ran.context("the terminal cannot be used")?;
     tell_of_exports(&lab)?;
-    tell_of_session(session, args.folder.as_deref())?;
-    Ok(ExitCode::SUCCESS)
+    let Some(back) = entrance.back else {
+        tell_of_session(session, args.folder.as_deref())?;
+        return Ok(ExitCode::SUCCESS);
+    };
+    drop(session);
+    match &mut class {
+        Class::None => {}
+        Class::Teacher(teacher) => teacher.leave().map_err(anyhow::Error::msg)?,
+        Class::Student(student) => {
+            student.leave();
+            tell(student.ended.as_deref().unwrap_or_default());
+        }
+    }
+    super::print(&format!("{back}\n"))
 }
 
 /// Gives `lab` its folder, its measured data, and what the terminal can do.
@@ -124,16 +168,20 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
 }
 
 /// The lesson that the session of `lab` holds, or the page of one that is asked for.
-fn class(lab: &mut Lab, lesson: Option<(&Lesson, &Page)>) -> anyhow::Result<Class> {
-    let (mut class, taken) = Class::resumed(lab);
+fn lessons(lab: &mut Lab, lesson: Option<(&Lesson, usize)>) -> anyhow::Result<Lessons> {
+    let (mut lessons, taken) = Lessons::resumed(lab);
     if let Err(reason) = taken {
         lab.tell(format!("the lesson cannot be taken again: {reason}"));
     }
-    if let Some((lesson, page)) = lesson {
-        let opened = class.open(&lesson.name, Some(page.number), lab);
+    let stands = |taken: &Taken| (taken.lesson.name.clone(), taken.place.page);
+    let stands = lessons.taken().map(stands);
+    if let Some((lesson, page)) = lesson
+        && stands != Some((lesson.name.clone(), page))
+    {
+        let opened = lessons.open(&lesson.name, Some(page), lab);
         opened.map_err(anyhow::Error::msg)?;
     }
-    Ok(class)
+    Ok(lessons)
 }
 
 fn moment(args: &WorkbenchArgs) -> String {
@@ -152,6 +200,10 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
         let path = Shown(&written.path);
         let rows = written.rows.map(|rows| format!(": {rows} rows"));
         let rows = rows.unwrap_or_default();
+        if lab.files().confined().is_some_and(Confined::is_seat) {
+            writeln!(stdout, "{path}{rows}; your teacher has it")?;
+            continue;
+        }
         match exporting::scp_line(&written.path) {
             Some(line) => writeln!(
                 stdout,

@@ -50,6 +50,8 @@ pub enum Action {
     /// Closes a popup, or stops what is in progress.
     Close,
     Lesson(LessonKey),
+    /// The class: the teacher's acts, or stepping aside and coming back. The room above the lab does it.
+    Class,
     Redraw,
     /// Suspends the program until the shell resumes it.
     Suspend,

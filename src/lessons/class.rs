@@ -1,11 +1,14 @@
 //! The lessons of a lab: the list of them, the one that is taken, and where the others were left.
 
+use super::Kept;
+use super::lesson::Answer;
 use super::predictions::Place;
 use super::taken::Taken;
 use super::{page, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
-use crate::lab::sheet::Sheet;
+use crate::lab::sheet::{Paragraph, Sheet};
+use crate::storage::confined::Confined;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -23,6 +26,22 @@ pub struct Class {
     now: Duration,
     /// Whether the page is to be written again.
     has_changed: bool,
+    /// The lessons of the folder that the lab is confined to, by the full paths of their files.
+    own: Vec<String>,
+    dress: Dress,
+}
+
+/// What the room of the class adds to the page.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Dress {
+    /// What stands in the frame instead of the title; empty: the title. It has a form a line, the longest first.
+    pub framed: String,
+    /// What stands in the lower line of the frame, also a form a line.
+    pub border: String,
+    /// What stands below the question of this name.
+    pub votes: Option<(String, Vec<Paragraph>)>,
+    /// What stands there instead of the page.
+    pub instead: Option<Vec<Paragraph>>,
 }
 
 #[derive(Debug, Default)]
@@ -52,6 +71,18 @@ impl KeptLessons {
     pub fn read(kept: &Table) -> Result<Self, toml::de::Error> {
         kept.clone().try_into()
     }
+}
+
+/// The full paths of the lessons in `folder`, sorted; hidden files and what cannot be read as a lesson are left out.
+pub fn files_in(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let is_meant = |name: &String| name.ends_with(".md") && !name.starts_with('.');
+    let paths = names.filter(is_meant).map(|name| folder.join(name));
+    let paths = paths.filter(|path| reading::read_again(path).is_ok());
+    let mut paths: Vec<_> = paths.map(|path| path.display().to_string()).collect();
+    paths.sort_unstable();
+    paths
 }
 
 /// Says the first line of why a lesson could not be opened.
@@ -105,7 +136,7 @@ impl Class {
             Some(_) => reading::open(&name),
             None if !reading::is_file_name(&name) => reading::open(&name), // says which there are
             None => {
-                lab.files().admit(Path::new(&name))?;
+                lab.files().admit_reading(Path::new(&name))?;
                 reading::read_again(Path::new(&name))
             }
         };
@@ -131,6 +162,10 @@ impl Class {
     /// Does what `key` stands for. Returns the direction in which the page is to be scrolled, if that is what it means.
     pub fn act(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
         let mut scrolls = None;
+        if key == LessonKey::List {
+            let folder = lab.files().confined().map(Confined::lessons);
+            self.own = folder.map(files_in).unwrap_or_default();
+        }
         let names = self.names();
         match (&mut self.shown, key) {
             (Shown::List { from, .. }, LessonKey::List) => {
@@ -186,12 +221,73 @@ impl Class {
         };
     }
 
-    /// The names of the list: the lessons that come with the program, then the files that were opened.
+    /// The names of the list: the lessons of the lab's folder, those that come with the program, then the files that were
+    /// opened.
     fn names(&self) -> Vec<String> {
+        let own = self.own.iter().cloned();
         let shipped = shipped::LESSONS.iter().map(|lesson| lesson.name.to_owned());
         let files = self.left.keys();
-        let files = files.filter(|name| shipped::find(name).is_none()).cloned();
-        shipped.chain(files).collect()
+        let is_other = |name: &&String| shipped::find(name).is_none() && !self.own.contains(name);
+        let files = files.filter(is_other).cloned();
+        own.chain(shipped).chain(files).collect()
+    }
+
+    pub fn set_dress(&mut self, dress: Dress) {
+        self.has_changed |= self.dress != dress;
+        self.dress = dress;
+    }
+
+    /// Shows the page `page` of the lesson `name` as a class does: the run is not touched, and the page's numbers, with those
+    /// that the lesson has `kept`, are stated once it `has_arrived`.
+    pub fn follow(
+        &mut self,
+        (name, page): (&str, usize),
+        kept: &Kept,
+        has_arrived: bool,
+        lab: &mut Lab,
+    ) -> Result<(), String> {
+        if self.taken().is_none_or(|taken| taken.lesson.name != name) {
+            self.take(name, lab)?;
+        }
+        if let Shown::Lesson(taken) = &mut self.shown
+            && taken.follow(page, kept, has_arrived)
+        {
+            self.show(lab);
+            lab.view_mut().turn_to_sheet();
+        }
+        Ok(())
+    }
+
+    /// Goes on without a class.
+    pub fn unfollow(&mut self) {
+        if let Shown::Lesson(taken) = &mut self.shown {
+            taken.follows = None;
+        }
+    }
+
+    /// Asks the question of this name once more, though its prediction is locked.
+    pub fn ask_again(&mut self, question: Option<String>) {
+        if let Shown::Lesson(taken) = &mut self.shown
+            && taken.again != question
+        {
+            taken.again = question;
+            self.has_changed = true;
+        }
+    }
+
+    /// Lets the page be turned although its question is open: the teacher does not answer it.
+    pub fn waive(&mut self) {
+        if let Shown::Lesson(taken) = &mut self.shown {
+            taken.was_asked = true;
+        }
+    }
+
+    /// The answer to the question that was asked once more, and its name.
+    pub fn take_vote(&mut self) -> Option<(String, Answer)> {
+        match &mut self.shown {
+            Shown::Lesson(taken) => taken.voted.take(),
+            _ => None,
+        }
     }
 
     /// Takes `number` as the answer to the question that was asked last.
@@ -237,7 +333,7 @@ impl Class {
         match &mut self.shown {
             Shown::Nothing => None,
             Shown::List { selected, .. } => Some(page::list(&names, *selected, &self.left)),
-            Shown::Lesson(taken) => Some(page::sheet(taken, self.now, lab)),
+            Shown::Lesson(taken) => Some(page::sheet(taken, &self.dress, self.now, lab)),
         }
     }
 

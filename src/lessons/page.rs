@@ -1,5 +1,6 @@
 //! The page of a lesson, and the list of lessons, as a sheet beside the panes.
 
+use super::class::Dress;
 use super::lesson::{Asked, Block, Check, Compare, Page, Predict};
 use super::markdown::paragraphs;
 use super::predictions::Place;
@@ -57,19 +58,26 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
 }
 
 /// The page that is open in `taken`; `now` is the time since the lab was opened.
-pub(super) fn sheet(taken: &Taken, now: Duration, lab: &Lab) -> Sheet {
+pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> Sheet {
     let lesson = &taken.lesson;
     let (page, pages) = (taken.place.page, lesson.pages.len());
     let mut writer = Writer {
         taken,
+        dress,
         lab,
         sheet: Sheet {
+            framed: dress.framed.clone(),
+            border: dress.border.clone(),
             title: format!("{page} of {pages} · {}", lesson.title),
             has_next: page < pages,
             plays: taken.plays(),
             ..Sheet::default()
         },
     };
+    if let Some(paragraphs) = &dress.instead {
+        writer.extend(paragraphs.clone());
+        return writer.sheet;
+    }
     writer.notes(now);
     writer.page();
     writer.sheet
@@ -77,6 +85,7 @@ pub(super) fn sheet(taken: &Taken, now: Duration, lab: &Lab) -> Sheet {
 
 struct Writer<'a> {
     taken: &'a Taken,
+    dress: &'a Dress,
     lab: &'a Lab,
     sheet: Sheet,
 }
@@ -124,8 +133,19 @@ impl Writer<'_> {
                     self.extend(paragraphs(&source, &Kind::Text));
                 }
                 Block::Predict(predict) => {
+                    let first = self.sheet.paragraphs.len();
                     self.question(predict);
-                    if !self.taken.place.predictions.is_locked(predict) {
+                    if let Some((_, votes)) = self
+                        .dress
+                        .votes
+                        .as_ref()
+                        .filter(|(name, _)| *name == predict.name)
+                    {
+                        self.extend(votes.clone());
+                        self.sheet.seen = None;
+                        self.is_seen_from(first);
+                    }
+                    if self.taken.is_open(predict) {
                         return true;
                     }
                 }
@@ -199,7 +219,7 @@ impl Writer<'_> {
         let first = self.sheet.paragraphs.len();
         let ask = predict.ask.with_numbers(self.lab, kept);
         self.extend(paragraphs(&ask, &Kind::Question));
-        let is_open = !place.predictions.is_locked(predict);
+        let is_open = self.taken.is_open(predict);
         let given = place.predictions.answer(&predict.name);
         let given = given.map(|answer| answer.in_words(predict));
         match &predict.asked {

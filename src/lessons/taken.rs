@@ -2,8 +2,9 @@
 
 mod keys;
 
+use super::Kept;
 use super::clock::{self, Clock};
-use super::lesson::{Block, Compare, Lesson, Page, Predict};
+use super::lesson::{Answer, Block, Compare, Lesson, Page, Predict};
 use super::names::value;
 use super::predictions::{Place, Tried};
 use super::stage::Stage;
@@ -40,8 +41,14 @@ pub struct Taken {
     /// Whether the hints of the page's checks are shown.
     pub shows_hints: bool,
     under_way: Option<UnderWay>,
+    /// In a class that is followed: whether its run has arrived where the page wants it.
+    pub(super) follows: Option<bool>,
+    /// The question that is asked once more, though it is answered.
+    pub(super) again: Option<String>,
+    /// The answer to that question, and its name.
+    pub(super) voted: Option<(String, Answer)>,
     /// Whether turning the page was refused once, because a prediction is open.
-    was_asked: bool,
+    pub(super) was_asked: bool,
     /// The clock, where the teacher's notes are shown.
     pub clock: Option<Clock>,
     /// When the lesson was opened in this lab, on the clock of the lab.
@@ -81,6 +88,9 @@ impl Taken {
             stands: None,
             shows_hints: false,
             under_way: None,
+            follows: None,
+            again: None,
+            voted: None,
             was_asked: false,
             clock: None,
             since: now,
@@ -98,7 +108,26 @@ impl Taken {
 
     /// The question of the page that is not answered yet; the first of them.
     pub fn asked(&self) -> Option<&Predict> {
-        self.place.predictions.open_on(self.page()?).next()
+        self.page()?
+            .predicts()
+            .find(|predict| self.is_open(predict))
+    }
+
+    /// Whether an answer to `predict` is wanted: it is not locked, or it is asked once more.
+    pub fn is_open(&self, predict: &Predict) -> bool {
+        !self.place.predictions.is_locked(predict) || self.again.as_ref() == Some(&predict.name)
+    }
+
+    /// Shows the page `page` without touching the run. Returns whether that is new.
+    pub(super) fn follow(&mut self, page: usize, kept: &Kept, has_arrived: bool) -> bool {
+        let page = page.clamp(1, self.lesson.pages.len().max(1));
+        let is_new = self.place.page != page || self.follows.is_none();
+        if is_new {
+            self.turn_to(page);
+        }
+        self.follows = Some(has_arrived);
+        self.place.kept.extend(kept.clone());
+        is_new
     }
 
     /// Whether the check at this line of the file has held since the page was opened.
@@ -272,7 +301,8 @@ impl Taken {
 
     /// States the page's numbers once the run has arrived.
     fn state(&mut self, lab: &Lab) -> bool {
-        let has_arrived = self.under_way.is_none()
+        let has_arrived = self.follows.unwrap_or(true)
+            && self.under_way.is_none()
             && lab.script().is_done()
             && lab.player().playback.steps_to_go().is_none();
         if !self.is_under_way() || !has_arrived {

@@ -11,6 +11,15 @@ use std::path::Path;
 
 /// Opens the file at `path`. It is refused if it belongs to another user or is not a regular file.
 pub(super) fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
+    let file = open_regular(path, options)?;
+    if file.metadata()?.uid() != rustix::process::geteuid().as_raw() {
+        return Err(refused("it belongs to another user"));
+    }
+    Ok(file)
+}
+
+/// Opens the file at `path`, whoever owns it. It is refused if it is not a regular file.
+pub(super) fn open_regular(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
     let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK;
     let opened = options.custom_flags(flags.bits() as i32).open(path);
     let file =
@@ -21,17 +30,13 @@ pub(super) fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
                 _ => error,
             },
         )?;
-    let there = file.metadata()?;
-    if !there.is_file() {
+    if !file.metadata()?.is_file() {
         return Err(refused("it is not a file"));
-    }
-    if there.uid() != rustix::process::geteuid().as_raw() {
-        return Err(refused("it belongs to another user"));
     }
     Ok(file)
 }
 
-fn refused(reason: &str) -> io::Error {
+pub(super) fn refused(reason: &str) -> io::Error {
     io::Error::new(io::ErrorKind::PermissionDenied, reason)
 }
 

@@ -1,13 +1,15 @@
 //! The main loop: it carries out what keys mean, advances the run with time, and draws a frame when something has changed.
 
-use crate::lab::action::{Direction, LessonKey};
+use crate::class::Class;
+use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::{Lab, Request};
-use crate::lessons::Class;
+use crate::lessons::Class as Lessons;
 use crate::storage::session::Session;
 use crate::tui::decoder::Typed;
+use crate::tui::keymap::{Does, Key};
 use crate::tui::mouse::Pointer;
 use crate::tui::pacing::Pacing;
-use crate::tui::press::press;
+use crate::tui::press::{meaning_of, press};
 use crate::tui::screen;
 use crate::tui::terminal::{Event, Screen};
 use ratatui::layout::Rect;
@@ -20,9 +22,14 @@ const IDLE: Duration = Duration::from_millis(500);
 /// The same while something is done in the background: an export, a file read for the browser, a search for advice.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
-/// Runs `lab` and the lessons of its `class` on the terminal until the user leaves. It saves the lab in `session`, if
-/// given.
-pub fn run(lab: &mut Lab, class: &mut Class, session: Option<&Session>) -> io::Result<()> {
+/// Runs `lab` with its `lessons`, in a `class` or without one, on the terminal until the user leaves. It saves the lab in
+/// `session`, if given.
+pub fn run(
+    lab: &mut Lab,
+    lessons: &mut Lessons,
+    class: &mut Class,
+    session: Option<&Session>,
+) -> io::Result<()> {
     let mut screen = Screen::enter()?;
     let mut pacing = Pacing::new(lab.view().fps);
     let begin = Instant::now();
@@ -31,11 +38,26 @@ pub fn run(lab: &mut Lab, class: &mut Class, session: Option<&Session>) -> io::R
     loop {
         screen.set_mouse(lab.view().mouse)?;
         pacing.set_rate(lab.view().fps);
-        let wait = wait(lab, class, pacing.wait(begin.elapsed()));
+        let wait = wait(lab, lessons, pacing.wait(begin.elapsed()));
+        let wait = class
+            .wait(begin.elapsed())
+            .map_or(wait, |class| class.min(wait));
         let events = screen.events(wait)?;
         let acted = !events.is_empty();
         for event in events {
-            if handle(event, lab, class, &mut screen, &mut pointer, session)?.is_break() {
+            let taken = matches!(event, Event::Typed(Typed::Key(key))
+                if class_takes(key, lab, (lessons, class), screen.size()?));
+            if !taken
+                && handle(
+                    event,
+                    lab,
+                    (lessons, class),
+                    &mut screen,
+                    &mut pointer,
+                    session,
+                )?
+                .is_break()
+            {
                 return Ok(());
             }
         }
@@ -44,11 +66,16 @@ pub fn run(lab: &mut Lab, class: &mut Class, session: Option<&Session>) -> io::R
         let was_on_its_way = lab.player().playback.steps_to_go().is_some();
         lab.advance(&mut || begin.elapsed());
         let has_arrived = was_on_its_way && lab.player().playback.steps_to_go().is_none();
-        class.advance(begin.elapsed(), lab);
+        let is_over = class.advance(begin.elapsed(), lab, lessons).is_break();
+        lessons.advance(begin.elapsed(), lab);
+        if is_over {
+            keep(lab, class, session);
+            return Ok(());
+        }
         if lab.has_changed() {
             screen::refit(lab, screen.size()?);
         }
-        keep(lab, session);
+        keep(lab, class, session);
         let now = begin.elapsed();
         // The answer to a key is drawn at once, without waiting for the next frame; so is the step that was asked for.
         if (acted || has_arrived || pacing.is_due(now)) && lab.take_changed() {
@@ -58,13 +85,35 @@ pub fn run(lab: &mut Lab, class: &mut Class, session: Option<&Session>) -> io::R
     }
 }
 
+/// Tells `class` what `key` is about to do. Returns whether that was the class's, and is done.
+fn class_takes(
+    key: Key,
+    lab: &mut Lab,
+    (lessons, class): (&mut Lessons, &mut Class),
+    size: Rect,
+) -> bool {
+    match meaning_of(key, lab) {
+        Some(Does::Action(Action::Lesson(LessonKey::Next))) if screen::page_goes_on(lab, size) => {
+            false // it scrolls
+        }
+        Some(Does::Action(action)) => class.takes(action, lab, lessons),
+        Some(Does::Commands(meant)) => {
+            if let Ok(commands) = meant(lab, lab.popups().count) {
+                class.expect(&commands, lab, lessons);
+            }
+            false
+        }
+        None => false,
+    }
+}
+
 /// Saves the state of `lab` in `session`, and shows a message as long as saving fails.
-fn keep(lab: &mut Lab, session: Option<&Session>) {
+fn keep(lab: &mut Lab, class: &Class, session: Option<&Session>) {
     let Some(session) = session else {
         return;
     };
     session.note(lab.content());
-    lab.set_trouble(session.trouble());
+    lab.set_trouble(class.trouble().or_else(|| session.trouble()));
 }
 
 /// Panics for tests of how the program ends; it is compiled with debug assertions only. `GYROLAB_PANIC_AFTER_MS=1000` makes
@@ -86,7 +135,7 @@ fn panic_if_asked(elapsed: Duration) {
 }
 
 /// How long to wait for events, if the next frame is due in `to_frame`.
-fn wait(lab: &Lab, class: &Class, to_frame: Duration) -> Duration {
+fn wait(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
     if lab.player().playback.is_flat_out() {
         Duration::ZERO
     } else if lab.player().playback.is_busy() || lab.has_changed() {
@@ -98,7 +147,7 @@ fn wait(lab: &Lab, class: &Class, to_frame: Duration) -> Duration {
             || lab.adviser().is_seeking()
             || !lab.script().is_done();
         let rest = if is_attentive { ATTENTIVE } else { IDLE };
-        let rest = class.wait().unwrap_or(rest).min(rest);
+        let rest = lessons.wait().unwrap_or(rest).min(rest);
         lab.notice_ends_in().unwrap_or(rest).min(rest)
     }
 }
@@ -106,7 +155,7 @@ fn wait(lab: &Lab, class: &Class, to_frame: Duration) -> Duration {
 fn handle(
     event: Event,
     lab: &mut Lab,
-    class: &mut Class,
+    (lessons, class): (&mut Lessons, &mut Class),
     screen: &mut Screen,
     pointer: &mut Pointer,
     session: Option<&Session>,
@@ -127,10 +176,15 @@ fn handle(
         }
     };
     if matches!(request, Some(Request::Quit | Request::Suspend)) {
-        keep(lab, session); // what was pressed just before it came with it
+        keep(lab, class, session); // what was pressed just before it came with it
     }
     let size = screen.size()?;
-    match request.and_then(|request| do_in_class(request, lab, class, size)) {
+    if let Some(Request::Lesson(key)) = request
+        && class.takes_key(key, lab)
+    {
+        return Ok(ControlFlow::Continue(()));
+    }
+    match request.and_then(|request| do_in_class(request, lab, lessons, size)) {
         None | Some(Request::Lesson(_) | Request::Answer(_)) => {
             return Ok(ControlFlow::Continue(()));
         }
@@ -146,7 +200,7 @@ fn handle(
 pub fn do_in_class(
     request: Request,
     lab: &mut Lab,
-    class: &mut Class,
+    lessons: &mut Lessons,
     size: Rect,
 ) -> Option<Request> {
     match request {
@@ -154,11 +208,11 @@ pub fn do_in_class(
             screen::scroll_page(lab, Direction::PageDown, size);
         }
         Request::Lesson(key) => {
-            if let Some(direction) = class.act(key, lab) {
+            if let Some(direction) = lessons.act(key, lab) {
                 screen::scroll_page(lab, direction, size);
             }
         }
-        Request::Answer(number) => class.answer(number, lab),
+        Request::Answer(number) => lessons.answer(number, lab),
         other => return Some(other),
     }
     None

@@ -13,8 +13,10 @@
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
 //!   places those are, [`theme`] what colours look like and whether there are any, [`dots`] sets dots and says what they look like,
 //!   [`points`] what was measured, [`trail`] a path that fades, [`scene`] lines in space; [`plane`] takes metres to dots and cells.
+//! - [`board`] shows lines without a lab.
 
 pub mod app;
+pub mod board;
 pub mod decoder;
 pub mod dots;
 pub mod keyboard;

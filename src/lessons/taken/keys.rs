@@ -176,6 +176,14 @@ impl Taken {
 
     /// Locks `answer`. Once nothing on the page is open, what it hides is shown.
     fn lock(&mut self, predict: &Predict, answer: Answer, lab: &mut Lab) {
+        if self.place.predictions.is_locked(predict)
+            && self.again.take_if(|again| *again == predict.name).is_some()
+        {
+            self.voted = Some((predict.name.clone(), answer));
+            (self.selected, self.is_marked, self.has_answered) = (None, false, true);
+            lab.refuse("your vote of this round is in; your first answer stays beside it");
+            return;
+        }
         if let Err(reason) = self.place.predictions.lock(predict, answer) {
             lab.refuse(reason);
             return;

@@ -1,6 +1,6 @@
 //! The page of a lesson beside the run: its text, the question with its answers, what is to be reached, and the keys.
 
-use super::{PaneRow, Width, frame, write};
+use super::{PaneRow, Width, frame, longest, write};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::sheet::{Emphasis, Kind, Paragraph, Sheet};
@@ -55,7 +55,17 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let Some(sheet) = &view.sheet else {
         return;
     };
-    let inside = frame(&sheet.title, area, view.focus == ROW.id, &view.theme, buf);
+    let forms = |forms: &str, width: u16| {
+        let forms = forms.lines().map(str::to_owned);
+        longest(forms, width.into())
+    };
+    let framed = forms(&sheet.framed, area.width.saturating_sub(4));
+    let title = if framed.is_empty() {
+        &sheet.title
+    } else {
+        &framed
+    };
+    let inside = frame(title, area, view.focus == ROW.id, &view.theme, buf);
     if inside.is_empty() {
         return;
     }
@@ -74,13 +84,23 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         (_, true, true) => " PgDn: more ",
         (true, false, true) => " PgUp: back ",
         (_, true, false) => " Tab, PgDn: more ",
-        (_, false, _) => return,
+        (_, false, _) => "",
     };
     let border = Rect {
         y: area.bottom() - 1,
         height: 1,
         ..inside
     };
+    // What the border says of the class comes before the hint that there is more.
+    let room = border.width.saturating_sub(columns(more) as u16 + 3);
+    let said = forms(&sheet.border, room);
+    let fits = columns(&said) <= room.into();
+    if !said.is_empty() {
+        write(border, (0, 0), &format!(" {said} "), quiet, buf);
+    }
+    if more.is_empty() || !fits {
+        return;
+    }
     let x = border.width.saturating_sub(columns(more) as u16 + 1);
     write(border, (x, 0), more, quiet, buf);
 }

@@ -1,0 +1,251 @@
+//! The folder of a class, and the state that the teacher's lab publishes in it.
+
+use super::seat::Seat;
+use super::{ago, unix_ms};
+use crate::lessons::{Kept, Lesson, reading};
+use crate::playback::pace::Speed;
+use crate::storage::confined::SESSIONS;
+use crate::storage::shared;
+use crate::text::printable::Shown;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// The longest run file that a class can follow, bytes, and the longest state beside it.
+pub const LONGEST_RUN: usize = 64 * 1024;
+pub const LONGEST_STATE: usize = 64 * 1024;
+/// The teacher's lab is gone when its state was not touched for longer than this.
+const GONE: Duration = Duration::from_secs(4);
+/// The modes of folders in which both accounts write, and of the teacher's.
+pub(super) const OF_ALL: u32 = 0o2770;
+const OF_TEACHER: u32 = 0o2750;
+
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+#[derive(Clone, Debug)]
+pub struct Folder {
+    /// The folder that the command line names, as a full path.
+    pub root: PathBuf,
+}
+
+/// What the teacher's lab publishes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct State {
+    /// The version that wrote it.
+    pub gyrolab: String,
+    pub is_on: bool,
+    /// The full name of the lesson.
+    pub lesson: String,
+    /// The number of its open page, from 1.
+    pub page: usize,
+    /// How many seats are here, and how many of them have answered the question of the page.
+    pub here: usize,
+    pub answered: usize,
+    /// Whether the run has arrived where the page wants it.
+    pub has_arrived: bool,
+    /// The seats that the teacher has closed.
+    pub closed: BTreeSet<String>,
+    /// Names for which wrong codes before this time (s since 1970) count no more.
+    pub opened: BTreeMap<String, u64>,
+    /// By LESSON and then by the question's name.
+    pub questions: BTreeMap<String, BTreeMap<String, Question>>,
+    /// The numbers that the lesson has kept.
+    pub kept: Kept,
+    /// What is shown; `None` where the class does not follow.
+    pub shown: Option<Run>,
+}
+
+/// How the class stands with a question.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Question {
+    /// The present round, less 1.
+    pub earlier_rounds: u32,
+    pub stage: Stage,
+    /// When the round began, ms since 1970.
+    pub since_ms: u64,
+    /// The bars, where all may see them.
+    pub bars: Vec<(String, usize)>,
+}
+
+/// Who sees the votes of a round. The order is that of the key that shows more.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stage {
+    /// Nobody sees more than their number.
+    #[default]
+    Counted,
+    /// The teacher sees bars.
+    Teacher,
+    All,
+    /// Votes that come now are late.
+    Closed,
+}
+
+/// The run that the class follows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// The name under which it was opened.
+    pub name: String,
+    pub step: u64,
+    /// When it ends, s of the run: an edit of the time step holds it, and the run file does not say it.
+    pub end_s: f64,
+    /// When it stood there, ms since 1970.
+    pub at_ms: u64,
+    pub is_running: bool,
+    pub speed: Speed,
+    pub exact: bool,
+    /// How it is shown, as `[view]` says it.
+    pub look: toml::Table,
+    /// The run file.
+    pub run: String,
+}
+
+impl Question {
+    /// The present round, from 1.
+    pub fn round(&self) -> u32 {
+        self.earlier_rounds + 1
+    }
+}
+
+impl Folder {
+    /// The class in the folder DIR.
+    pub fn at(dir: &Path) -> Result<Self, String> {
+        let root = fs::canonicalize(dir).map_err(|error| format!("{}: {error}", Shown(dir)))?;
+        Ok(Self { root })
+    }
+
+    /// The same; its own folders are made where they do not exist.
+    pub fn open(dir: &Path) -> Result<Self, String> {
+        let cannot = |path: &Path, error| format!("{}: {error}", Shown(path));
+        let folder = Self::at(dir)?;
+        for path in [folder.own(), folder.seats(), folder.wrong()] {
+            shared::make_folder(&path, OF_ALL).map_err(|error| cannot(&path, error))?;
+        }
+        Ok(folder)
+    }
+
+    fn own(&self) -> PathBuf {
+        self.root.join(SESSIONS)
+    }
+
+    pub fn seats(&self) -> PathBuf {
+        self.own().join("seats")
+    }
+
+    pub(super) fn wrong(&self) -> PathBuf {
+        self.own().join("wrong")
+    }
+
+    /// The folder of the teacher, for the state and the sessions.
+    pub fn teacher(&self) -> PathBuf {
+        self.own().join("teacher")
+    }
+
+    pub(super) fn state_file(&self) -> PathBuf {
+        self.teacher().join("state")
+    }
+
+    /// Makes the teacher's folder.
+    pub fn make_teacher(&self) -> Result<(), String> {
+        let path = self.teacher();
+        shared::make_folder(&path, OF_TEACHER)
+            .map(drop)
+            .map_err(|error| format!("{}: {error}", Shown(&path)))
+    }
+
+    /// The teacher's state; `None` before any class.
+    ///
+    /// # Errors
+    /// When it cannot be read, or another version has written it.
+    pub fn state(&self) -> Result<Option<State>, String> {
+        let path = self.state_file();
+        let read = shared::read(&path, LONGEST_RUN + LONGEST_STATE);
+        let unread = |error: &dyn std::fmt::Display| format!("{}: {error}", Shown(&path));
+        let Some(text) = read.map_err(|error| unread(&error))? else {
+            return Ok(None);
+        };
+        let table: toml::Table = toml::from_str(&text).map_err(|_| unread(&"is damaged"))?;
+        let version = table.get("gyrolab").and_then(toml::Value::as_str);
+        let version = version.unwrap_or("unknown");
+        if version != VERSION {
+            return Err(format!(
+                "the teacher's gyrolab is {version}, this one is {VERSION}: both must be the same"
+            ));
+        }
+        table
+            .try_into()
+            .map(Some)
+            .map_err(|_| unread(&"is damaged"))
+    }
+
+    /// Publishes `state`.
+    ///
+    /// # Errors
+    /// When it is too long, or cannot be written; the one before stays.
+    pub fn publish(&self, state: &State) -> Result<(), String> {
+        let text = toml::to_string(state).map_err(|error| error.to_string())?;
+        if text.len() > LONGEST_RUN + LONGEST_STATE {
+            return Err("the class's state is above 64 kB".to_owned());
+        }
+        shared::replace(&self.state_file(), &text)
+            .map_err(|error| format!("the class cannot be told: {error}"))
+    }
+
+    pub fn touch_state(&self) {
+        let _ = shared::touch(&self.state_file()); // what is wrong is said where it is written
+    }
+
+    /// Whether the teacher's lab has touched its state a moment ago.
+    pub fn is_teacher_alive(&self) -> bool {
+        shared::modified(&self.state_file()).is_some_and(|time| ago(time) < GONE)
+    }
+
+    /// Whether nothing more can be written.
+    pub fn is_full(&self) -> bool {
+        rustix::fs::statvfs(&self.own()).is_ok_and(|there| there.f_bavail == 0)
+    }
+
+    /// The seats, in the order of their names.
+    pub fn all_seats(&self) -> Vec<Seat> {
+        let entries = fs::read_dir(self.seats()).into_iter().flatten().flatten();
+        let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+        let mut names: Vec<_> = names.filter(|name| super::login::is_seat(name)).collect();
+        names.sort_unstable();
+        names.iter().map(|name| Seat::of(self, name)).collect()
+    }
+
+    /// `lesson` without the folder's path.
+    pub fn short<'a>(&self, lesson: &'a str) -> &'a str {
+        let inside = Path::new(lesson).strip_prefix(&self.root).ok();
+        inside.and_then(Path::to_str).unwrap_or(lesson)
+    }
+
+    /// The lesson that is called `name` in the state or in a seat.
+    pub fn lesson(&self, name: &str) -> Option<Lesson> {
+        reading::open(name).ok()
+    }
+}
+
+impl State {
+    pub fn question(&self, name: &str) -> Question {
+        let questions = self.questions.get(&self.lesson);
+        questions
+            .and_then(|all| all.get(name))
+            .cloned()
+            .unwrap_or_default()
+    }
+
+    pub(super) fn question_mut(&mut self, name: &str) -> &mut Question {
+        let questions = self.questions.entry(self.lesson.clone()).or_default();
+        questions
+            .entry(name.to_owned())
+            .or_insert_with(|| Question {
+                since_ms: unix_ms(),
+                ..Question::default()
+            })
+    }
+}

@@ -1,0 +1,190 @@
+//! The files of a seat: where it stands in its lessons, its votes, and who has it open.
+
+use super::folder::{Folder, OF_ALL, VERSION};
+use super::{ago, unix_ms};
+use crate::lessons::Answer;
+use crate::lessons::class::KeptLessons;
+use crate::storage::confined::SESSIONS;
+use crate::storage::shared;
+use chrono::{DateTime, Utc};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// The longest file of a seat, bytes.
+const LONGEST: usize = 1 << 20;
+/// A seat is lost when its lab has given no sign for longer than this.
+const LOST: Duration = Duration::from_secs(10);
+
+/// A seat of a class.
+#[derive(Clone, Debug)]
+pub struct Seat {
+    /// Its word, such as `anna-4711`.
+    pub word: String,
+    /// Its folder.
+    pub folder: PathBuf,
+}
+
+/// What the file of a seat holds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Record {
+    /// The version that wrote it.
+    pub gyrolab: String,
+    /// Whether it has stepped aside from a class that follows.
+    pub is_aside: bool,
+    pub votes: Vec<Vote>,
+    /// The furthest page that was open, by lesson: what stands there was seen.
+    pub furthest: std::collections::BTreeMap<String, usize>,
+    /// The lessons, as a session keeps them.
+    pub lessons: toml::Table,
+}
+
+/// A vote: an answer that was locked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Vote {
+    pub lesson: String,
+    pub question: String,
+    /// From 1.
+    pub round: u32,
+    /// The number of the choice, from 1, or the number that was predicted.
+    pub choice: f64,
+    /// Whether the outcome had been seen, or the question was closed.
+    pub late: bool,
+    /// The page that was open, from 1.
+    pub page: usize,
+    /// Seconds since 1970 (UTC).
+    pub time_unix_s: u64,
+}
+
+/// Whether somebody sits there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    Here,
+    /// Its lab gives no sign.
+    Lost,
+    /// Its lab was left.
+    Away,
+}
+
+impl Vote {
+    /// Its time, as RFC 3339 writes it.
+    pub fn time(&self) -> String {
+        let time = DateTime::<Utc>::from_timestamp(self.time_unix_s as i64, 0).unwrap_or_default();
+        time.format("%Y-%m-%dT%H:%M:%SZ").to_string()
+    }
+}
+
+impl Record {
+    /// Where it stands in its lessons.
+    pub fn kept(&self) -> KeptLessons {
+        KeptLessons::read(&self.lessons).unwrap_or_default()
+    }
+
+    /// The last round in which it has voted on the question; 0 where in none.
+    pub fn rounds_of(&self, lesson: &str, question: &str) -> u32 {
+        let votes = self.votes.iter();
+        let of_it = votes.filter(|vote| vote.lesson == lesson && vote.question == question);
+        of_it.map(|vote| vote.round).max().unwrap_or(0)
+    }
+
+    /// The number of `answer` among `choices`, from 1; a number stands for itself.
+    pub fn number_of(answer: &Answer, choices: &[String]) -> f64 {
+        match answer {
+            Answer::Number(number) => *number,
+            Answer::Choice(words) => {
+                let at = choices.iter().position(|choice| choice == words);
+                at.map_or(0.0, |at| at as f64 + 1.0)
+            }
+        }
+    }
+}
+
+impl Seat {
+    pub(super) fn of(folder: &Folder, word: &str) -> Self {
+        Self {
+            word: word.to_owned(),
+            folder: folder.seats().join(word),
+        }
+    }
+
+    /// Makes the folders of a seat; returns whether it is new.
+    pub(super) fn make(&self) -> std::io::Result<bool> {
+        let is_new = shared::make_folder(&self.folder, OF_ALL)?;
+        shared::make_folder(&self.folder.join(SESSIONS), OF_ALL)?;
+        Ok(is_new)
+    }
+
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.folder.join(SESSIONS).join(name)
+    }
+
+    /// What its file holds.
+    ///
+    /// # Errors
+    /// When it cannot be read, or another version has written it.
+    pub fn record(&self) -> Result<Record, String> {
+        let text = shared::read(&self.file("seat"), LONGEST).map_err(|error| error.to_string())?;
+        let Some(text) = text else {
+            return Ok(Record::default());
+        };
+        let record: Record = toml::from_str(&text).map_err(|_| "is damaged".to_owned())?;
+        if record.gyrolab == VERSION {
+            Ok(record)
+        } else {
+            let version = record.gyrolab;
+            Err(format!(
+                "gyrolab {version} has written it, and this is {VERSION}"
+            ))
+        }
+    }
+
+    pub fn save(&self, record: &Record) -> Result<(), String> {
+        let record = Record {
+            gyrolab: VERSION.to_owned(),
+            ..record.clone()
+        };
+        let text = toml::to_string(&record).map_err(|error| error.to_string())?;
+        if text.len() > LONGEST {
+            return Err("the file of this seat is above 1 MB".to_owned());
+        }
+        shared::replace(&self.file("seat"), &text)
+            .map_err(|error| format!("your answers cannot be kept: {error}"))
+    }
+
+    /// Opens the seat in this process; a lab that has it open elsewhere sees that. Returns the word by which it is this
+    /// process's.
+    pub fn hold(&self) -> Result<String, String> {
+        let word = format!("{} {}", std::process::id(), unix_ms());
+        let held = shared::replace(&self.file("open"), &word);
+        held.map_err(|error| format!("the seat cannot be opened: {error}"))?;
+        Ok(word)
+    }
+
+    /// Whether the seat is still open under `word`. Gives a sign then.
+    pub(super) fn is_held(&self, word: &str) -> bool {
+        let path = self.file("open");
+        match shared::read(&path, 100) {
+            Ok(Some(held)) if held == word => {
+                let _ = shared::touch(&path); // without a sign the board says that the seat is lost
+                true
+            }
+            Ok(_) => false,
+            Err(_) => true, // nobody has said that it is another's
+        }
+    }
+
+    pub(super) fn leave(&self, word: &str) {
+        if shared::read(&self.file("open"), 100).is_ok_and(|held| held.as_deref() == Some(word)) {
+            let _ = std::fs::remove_file(self.file("open"));
+        }
+    }
+
+    pub fn presence(&self) -> Presence {
+        match shared::modified(&self.file("open")) {
+            None => Presence::Away,
+            Some(sign) if ago(sign) > LOST => Presence::Lost,
+            Some(_) => Presence::Here,
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! The votes of a question, counted: as bars, as advice to the teacher, and as CSV.
+
+use super::Folder;
+use super::folder::{Question, Stage, State};
+use super::seat::{Presence, Record, Seat, Vote};
+use crate::lab::sheet::{Kind, Paragraph};
+use crate::lessons::{Asked, Page, Predict};
+use crate::text::number::{shortest, significant};
+
+/// With fewer votes no bars go to the students: who has voted what could be guessed.
+pub const FEWEST: usize = 5;
+/// The most bars of predicted numbers.
+const MOST_BARS: usize = 9;
+/// The columns of the longest bar.
+const BAR: usize = 20;
+
+/// A seat with its record and whether somebody sits there.
+#[derive(Clone, Debug)]
+pub struct Sitting {
+    pub seat: Seat,
+    pub record: Record,
+    pub presence: Presence,
+}
+
+/// Every seat of the class. What cannot be read counts as a seat without votes.
+pub fn sittings(folder: &Folder) -> Vec<Sitting> {
+    let seats = folder.all_seats().into_iter();
+    seats
+        .map(|seat| Sitting {
+            record: seat.record().unwrap_or_default(),
+            presence: seat.presence(),
+            seat,
+        })
+        .collect()
+}
+
+/// The votes of one round of a question.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// A name for each answer, and how many gave it.
+    pub bars: Vec<(String, usize)>,
+    /// Votes in time.
+    pub votes: usize,
+    pub late: usize,
+    /// The share of the votes that are right, where the lesson says what is.
+    pub right: Option<f64>,
+}
+
+impl Tally {
+    pub fn of(seats: &[Sitting], lesson: &str, predict: &Predict, round: u32) -> Self {
+        let is_of_it = |vote: &&Vote| {
+            (vote.lesson.as_str(), vote.question.as_str(), vote.round)
+                == (lesson, &predict.name, round)
+        };
+        let votes = seats
+            .iter()
+            .filter_map(|sitting| sitting.record.votes.iter().find(is_of_it));
+        let (late, in_time): (Vec<_>, Vec<_>) = votes.partition(|vote| vote.late);
+        let choices: Vec<f64> = in_time.iter().map(|vote| vote.choice).collect();
+        let right = predict.right.filter(|_| !choices.is_empty());
+        let right = right.map(|right| {
+            let hits = choices.iter().filter(|choice| **choice == right as f64);
+            hits.count() as f64 / choices.len() as f64
+        });
+        Self {
+            bars: match &predict.asked {
+                Asked::Choice(all) => of_choices(all.len(), &choices),
+                Asked::Number { .. } => of_numbers(choices.clone()),
+            },
+            votes: choices.len(),
+            late: late.len(),
+            right,
+        }
+    }
+
+    /// What is right, how many said it, and what to do next.
+    pub fn advice(&self, predict: &Predict) -> Option<String> {
+        let percent = 100.0 * self.right?;
+        let next = match percent {
+            ..30.0 => "explain, then again",
+            ..=70.0 => "let them talk, then again",
+            _ => "go on",
+        };
+        let right = predict.right?;
+        Some(format!("right: {right}, {percent:.0} %: {next}"))
+    }
+}
+
+fn of_choices(count: usize, choices: &[f64]) -> Vec<(String, usize)> {
+    let given = |number: usize| {
+        choices
+            .iter()
+            .filter(|choice| **choice == number as f64)
+            .count()
+    };
+    (1..=count)
+        .map(|number| (number.to_string(), given(number)))
+        .collect()
+}
+
+/// The numbers to two digits, the most frequent of them, in their order.
+fn of_numbers(mut numbers: Vec<f64>) -> Vec<(String, usize)> {
+    numbers.sort_by(f64::total_cmp);
+    let mut bars: Vec<(String, usize)> = Vec::new();
+    for number in numbers {
+        let name = significant(number, 2);
+        match bars.last_mut() {
+            Some((last, count)) if *last == name => *count += 1,
+            _ => bars.push((name, 1)),
+        }
+    }
+    let mut counts: Vec<_> = bars.iter().map(|(_, count)| *count).collect();
+    counts.sort_unstable_by(|a, b| b.cmp(a));
+    let least = counts.get(MOST_BARS - 1).copied().unwrap_or(1);
+    bars.retain(|(_, count)| *count >= least);
+    bars.truncate(MOST_BARS);
+    bars
+}
+
+/// `bars` as a part of a page, a line each.
+pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
+    let most = bars.iter().map(|bar| bar.1).max().unwrap_or(0).max(1);
+    let width = bars.iter().map(|bar| bar.0.len()).max().unwrap_or(0);
+    let line = |(name, count): &(String, usize)| {
+        let bar = "█".repeat((count * BAR).div_ceil(most));
+        format!("{name:<width$} {bar} {count}\n")
+    };
+    Paragraph::new(Kind::Code, bars.iter().map(line).collect::<String>())
+}
+
+/// The question of `page` that the class is at: the first that is not closed, or else the last.
+pub fn question<'a>(page: &'a Page, state: &State) -> Option<(&'a Predict, Question)> {
+    let asked = |predict: &'a Predict| (predict, state.question(&predict.name));
+    let mut all: Vec<_> = page.predicts().map(asked).collect();
+    let open = all
+        .iter()
+        .position(|(_, question)| question.stage != Stage::Closed);
+    let last = all.len().checked_sub(1)?;
+    Some(all.swap_remove(open.unwrap_or(last)))
+}
+
+const COLUMNS: [&str; 8] = [
+    "lesson", "question", "round", "seat", "choice", "late", "page", "time",
+];
+
+/// All votes of the class as CSV, in the order of seats, and of each seat in the order of their time.
+pub fn csv(folder: &Folder) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(COLUMNS)?;
+    for sitting in sittings(folder) {
+        for vote in &sitting.record.votes {
+            writer.write_record([
+                folder.short(&vote.lesson),
+                &vote.question,
+                &vote.round.to_string(),
+                &sitting.seat.word,
+                &shortest(vote.choice),
+                &vote.late.to_string(),
+                &vote.page.to_string(),
+                &vote.time(),
+            ])?;
+        }
+    }
+    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
