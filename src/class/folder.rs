@@ -1,8 +1,10 @@
 //! The folder of a class, and the state that the teacher's lab publishes in it.
 
+use super::login::name_of;
 use super::seat::Seat;
 use super::{ago, unix_ms};
-use crate::lessons::{Kept, Lesson, reading};
+use crate::lessons::Kept;
+use crate::lessons::class::Followed;
 use crate::playback::pace::Speed;
 use crate::storage::confined::SESSIONS;
 use crate::storage::shared;
@@ -13,9 +15,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// The longest run file that a class can follow, bytes, and the longest state beside it.
+/// The longest run file that a class can follow, bytes; and the longest state with it.
 pub const LONGEST_RUN: usize = 64 * 1024;
-pub const LONGEST_STATE: usize = 64 * 1024;
+const LONGEST_STATE: usize = 2 * LONGEST_RUN;
 /// The teacher's lab is gone when its state was not touched for longer than this.
 const GONE: Duration = Duration::from_secs(4);
 /// The modes of folders in which both accounts write, and of the teacher's.
@@ -37,8 +39,9 @@ pub struct State {
     /// The version that wrote it.
     pub gyrolab: String,
     pub is_on: bool,
-    /// The full name of the lesson.
+    /// The full name of the lesson, and the checksum of its text.
     pub lesson: String,
+    pub sum: u32,
     /// The number of its open page, from 1.
     pub page: usize,
     /// How many seats are here, and how many of them have answered the question of the page.
@@ -48,8 +51,6 @@ pub struct State {
     pub has_arrived: bool,
     /// The seats that the teacher has closed.
     pub closed: BTreeSet<String>,
-    /// Names for which wrong codes before this time (s since 1970) count no more.
-    pub opened: BTreeMap<String, u64>,
     /// By LESSON and then by the question's name.
     pub questions: BTreeMap<String, BTreeMap<String, Question>>,
     /// The numbers that the lesson has kept.
@@ -104,13 +105,6 @@ pub struct Run {
     pub run: String,
 }
 
-impl Question {
-    /// The present round, from 1.
-    pub fn round(&self) -> u32 {
-        self.earlier_rounds + 1
-    }
-}
-
 impl Folder {
     /// The class in the folder DIR.
     pub fn at(dir: &Path) -> Result<Self, String> {
@@ -120,12 +114,16 @@ impl Folder {
 
     /// The same; its own folders are made where they do not exist.
     pub fn open(dir: &Path) -> Result<Self, String> {
-        let cannot = |path: &Path, error| format!("{}: {error}", Shown(path));
         let folder = Self::at(dir)?;
         for path in [folder.own(), folder.seats(), folder.wrong()] {
-            shared::make_folder(&path, OF_ALL).map_err(|error| cannot(&path, error))?;
+            make(&path, OF_ALL)?;
         }
         Ok(folder)
+    }
+
+    /// Makes the teacher's folder.
+    pub fn make_teacher(&self) -> Result<(), String> {
+        make(&self.teacher(), OF_TEACHER)
     }
 
     fn own(&self) -> PathBuf {
@@ -140,6 +138,11 @@ impl Folder {
         self.own().join("wrong")
     }
 
+    /// Forgets the wrong codes that were typed for `name`.
+    pub(super) fn unlock(&self, name: &str) {
+        let _ = fs::remove_file(self.wrong().join(name)); // where it stays, it counts on
+    }
+
     /// The folder of the teacher, for the state and the sessions.
     pub fn teacher(&self) -> PathBuf {
         self.own().join("teacher")
@@ -149,37 +152,25 @@ impl Folder {
         self.teacher().join("state")
     }
 
-    /// Makes the teacher's folder.
-    pub fn make_teacher(&self) -> Result<(), String> {
-        let path = self.teacher();
-        shared::make_folder(&path, OF_TEACHER)
-            .map(drop)
-            .map_err(|error| format!("{}: {error}", Shown(&path)))
-    }
-
     /// The teacher's state; `None` before any class.
     ///
     /// # Errors
     /// When it cannot be read, or another version has written it.
     pub fn state(&self) -> Result<Option<State>, String> {
         let path = self.state_file();
-        let read = shared::read(&path, LONGEST_RUN + LONGEST_STATE);
         let unread = |error: &dyn std::fmt::Display| format!("{}: {error}", Shown(&path));
-        let Some(text) = read.map_err(|error| unread(&error))? else {
-            return Ok(None);
-        };
+        let read = shared::read(&path, LONGEST_STATE).map_err(|error| unread(&error))?;
+        let Some(text) = read else { return Ok(None) };
         let table: toml::Table = toml::from_str(&text).map_err(|_| unread(&"is damaged"))?;
         let version = table.get("gyrolab").and_then(toml::Value::as_str);
-        let version = version.unwrap_or("unknown");
-        if version != VERSION {
+        if version != Some(VERSION) {
+            let version = version.unwrap_or("unknown");
             return Err(format!(
                 "the teacher's gyrolab is {version}, this one is {VERSION}: both must be the same"
             ));
         }
-        table
-            .try_into()
-            .map(Some)
-            .map_err(|_| unread(&"is damaged"))
+        let state = table.try_into().map_err(|_| unread(&"is damaged"))?;
+        Ok(Some(state))
     }
 
     /// Publishes `state`.
@@ -188,8 +179,8 @@ impl Folder {
     /// When it is too long, or cannot be written; the one before stays.
     pub fn publish(&self, state: &State) -> Result<(), String> {
         let text = toml::to_string(state).map_err(|error| error.to_string())?;
-        if text.len() > LONGEST_RUN + LONGEST_STATE {
-            return Err("the class's state is above 64 kB".to_owned());
+        if text.len() > LONGEST_STATE {
+            return Err("the class's state is above 128 kB".to_owned());
         }
         shared::replace(&self.state_file(), &text)
             .map_err(|error| format!("the class cannot be told: {error}"))
@@ -206,14 +197,14 @@ impl Folder {
 
     /// Whether nothing more can be written.
     pub fn is_full(&self) -> bool {
-        rustix::fs::statvfs(&self.own()).is_ok_and(|there| there.f_bavail == 0)
+        rustix::fs::statvfs(self.own()).is_ok_and(|there| there.f_bavail == 0)
     }
 
     /// The seats, in the order of their names.
     pub fn all_seats(&self) -> Vec<Seat> {
         let entries = fs::read_dir(self.seats()).into_iter().flatten().flatten();
         let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-        let mut names: Vec<_> = names.filter(|name| super::login::is_seat(name)).collect();
+        let mut names: Vec<_> = names.filter(|name| name_of(name).is_some()).collect();
         names.sort_unstable();
         names.iter().map(|name| Seat::of(self, name)).collect()
     }
@@ -223,29 +214,44 @@ impl Folder {
         let inside = Path::new(lesson).strip_prefix(&self.root).ok();
         inside.and_then(Path::to_str).unwrap_or(lesson)
     }
+}
 
-    /// The lesson that is called `name` in the state or in a seat.
-    pub fn lesson(&self, name: &str) -> Option<Lesson> {
-        reading::open(name).ok()
+fn make(path: &Path, mode: u32) -> Result<(), String> {
+    let made = shared::make_folder(path, mode).map(drop);
+    made.map_err(|error| format!("{}: {error}", Shown(path)))
+}
+
+impl Question {
+    /// The present round, from 1.
+    pub fn round(&self) -> u32 {
+        self.earlier_rounds + 1
     }
 }
 
 impl State {
+    /// What its lesson shows; `is_there` says whether the run has come where the teacher's is.
+    pub(super) fn followed(&self, is_there: bool) -> Followed<'_> {
+        Followed {
+            lesson: &self.lesson,
+            sum: self.sum,
+            page: self.page,
+            kept: &self.kept,
+            has_arrived: self.has_arrived && is_there,
+        }
+    }
+
     pub fn question(&self, name: &str) -> Question {
         let questions = self.questions.get(&self.lesson);
-        questions
-            .and_then(|all| all.get(name))
-            .cloned()
-            .unwrap_or_default()
+        let question = questions.and_then(|all| all.get(name));
+        question.cloned().unwrap_or_default()
     }
 
     pub(super) fn question_mut(&mut self, name: &str) -> &mut Question {
         let questions = self.questions.entry(self.lesson.clone()).or_default();
-        questions
-            .entry(name.to_owned())
-            .or_insert_with(|| Question {
-                since_ms: unix_ms(),
-                ..Question::default()
-            })
+        let new = || Question {
+            since_ms: unix_ms(),
+            ..Question::default()
+        };
+        questions.entry(name.to_owned()).or_insert_with(new)
     }
 }

@@ -14,10 +14,9 @@ const LONGEST: usize = 24;
 const DIGITS: usize = 4;
 /// The most seats of a class.
 pub const MOST_SEATS: usize = 200;
-/// After this many wrong codes a name is locked.
+/// After this many wrong codes a name is locked, and for how long, s.
 const MOST_WRONG: u32 = 5;
-/// For how long it is locked, s.
-pub const LOCKED_S: u64 = 60;
+const LOCKED_S: u64 = 60;
 
 pub const ASKS: &str = "A name for your seat (your teacher sees it, the others do not): ";
 const RULE: &str = "a name has letters, digits and hyphens, 24 at most; \
@@ -29,15 +28,11 @@ fn is_name(name: &str) -> bool {
     (1..=LONGEST).contains(&length) && name.chars().all(is_allowed) && !name.starts_with('-')
 }
 
-/// The name and the code of a seat's word.
-fn parts(word: &str) -> Option<(&str, &str)> {
+/// The name of a seat, if `word` is that of one.
+pub(super) fn name_of(word: &str) -> Option<&str> {
     let (name, code) = word.rsplit_once('-')?;
     let is_code = code.len() == DIGITS && code.bytes().all(|digit| digit.is_ascii_digit());
-    (is_code && is_name(name)).then_some((name, code))
-}
-
-pub(super) fn is_seat(word: &str) -> bool {
-    parts(word).is_some()
+    (is_code && is_name(name)).then_some(name)
 }
 
 /// The seat that `typed` asks for, and whether it is new.
@@ -46,10 +41,9 @@ pub(super) fn is_seat(word: &str) -> bool {
 /// Why there is none, in words for the student.
 pub fn take(folder: &Folder, typed: &str, now_unix_s: u64) -> Result<(Seat, bool), String> {
     let typed = typed.trim().to_lowercase();
-    match parts(&typed) {
-        Some((name, _)) => come_back(folder, &typed, name, now_unix_s).map(|seat| (seat, false)),
+    match name_of(&typed) {
+        Some(name) => come_back(folder, &typed, name, now_unix_s).map(|seat| (seat, false)),
         None if is_name(&typed) => begin(folder, &typed).map(|seat| (seat, true)),
-        None if typed.is_empty() => Err(RULE.to_owned()),
         None => {
             let shown: String = typed.chars().take(2 * LONGEST).collect();
             Err(format!("{}: {RULE}", printable(&shown)))
@@ -78,28 +72,23 @@ fn begin(folder: &Folder, name: &str) -> Result<Seat, String> {
 fn come_back(folder: &Folder, word: &str, name: &str, now_unix_s: u64) -> Result<Seat, String> {
     // One login after the other, so that each is counted.
     let _turn = File::open(folder.wrong()).and_then(|turn| turn.lock().map(|()| turn));
-    let state = folder.state().ok().flatten().unwrap_or_default();
-    let opened = state.opened.get(name).copied().unwrap_or(0);
-    let count = match wrong(folder, name) {
-        Some((MOST_WRONG.., at_s)) if now_unix_s >= at_s + LOCKED_S => 0,
-        Some((count, at_s)) if at_s >= opened => count,
-        _ => 0,
-    };
+    let count = wrong(folder, name, now_unix_s);
     if count >= MOST_WRONG {
         let rule = "wait a minute, or ask your teacher";
         return Err(format!("too many wrong codes for {name}: {rule}"));
     }
     let seat = Seat::of(folder, word);
     if seat.folder.is_dir() {
+        let state = folder.state().ok().flatten().unwrap_or_default();
         if state.closed.contains(word) {
             return Err("this seat is closed: ask your teacher".to_owned());
         }
-        let _ = fs::remove_file(folder.wrong().join(name)); // where it stays, it counts on
+        folder.unlock(name);
         return Ok(seat);
     }
     // A name without a seat has nothing to guess, and would fill the folder.
     let mut seats = folder.all_seats().into_iter();
-    if seats.any(|seat| parts(&seat.word).is_some_and(|(other, _)| other == name)) {
+    if seats.any(|seat| name_of(&seat.word) == Some(name)) {
         let text = format!("{} {now_unix_s}", count + 1);
         let counted = shared::replace(&folder.wrong().join(name), &text);
         counted.map_err(|error| format!("no code can be tried now: {error}"))?;
@@ -107,23 +96,21 @@ fn come_back(folder: &Folder, word: &str, name: &str, now_unix_s: u64) -> Result
     Err("there is no seat of that word; for a new seat type a name alone".to_owned())
 }
 
-/// How many wrong codes were typed for `name`, and when the last was, s since 1970.
-fn wrong(folder: &Folder, name: &str) -> Option<(u32, u64)> {
-    let text = shared::read(&folder.wrong().join(name), 100).ok()??;
-    let (count, at_s) = text.split_once(' ')?;
-    Some((count.parse().ok()?, at_s.parse().ok()?))
+/// How many wrong codes were typed for `name`; a lock that is over counts no more.
+fn wrong(folder: &Folder, name: &str, now_unix_s: u64) -> u32 {
+    let counted = || {
+        let text = shared::read(&folder.wrong().join(name), 100).ok()??;
+        let (count, at_s) = text.split_once(' ')?;
+        let (count, at_s): (u32, u64) = (count.parse().ok()?, at_s.parse().ok()?);
+        (count < MOST_WRONG || now_unix_s < at_s.saturating_add(LOCKED_S)).then_some(count)
+    };
+    counted().unwrap_or(0)
 }
 
 /// The names that are locked now.
-pub fn locked(folder: &Folder, opened: impl Fn(&str) -> u64, now_unix_s: u64) -> Vec<String> {
+pub fn locked(folder: &Folder, now_unix_s: u64) -> Vec<String> {
     let entries = fs::read_dir(folder.wrong()).into_iter().flatten().flatten();
     let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let is_locked = |name: &String| {
-        wrong(folder, name).is_some_and(|(count, at_s)| {
-            count >= MOST_WRONG && now_unix_s < at_s + LOCKED_S && at_s >= opened(name)
-        })
-    };
-    names
-        .filter(|name| is_name(name) && is_locked(name))
-        .collect()
+    let is_locked = |name: &String| is_name(name) && wrong(folder, name, now_unix_s) >= MOST_WRONG;
+    names.filter(is_locked).collect()
 }

@@ -2,11 +2,8 @@
 
 use super::folder::{Folder, OF_ALL, VERSION};
 use super::{ago, unix_ms};
-use crate::lessons::Answer;
-use crate::lessons::class::KeptLessons;
 use crate::storage::confined::SESSIONS;
 use crate::storage::shared;
-use chrono::{DateTime, Utc};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -21,7 +18,6 @@ const LOST: Duration = Duration::from_secs(10);
 pub struct Seat {
     /// Its word, such as `anna-4711`.
     pub word: String,
-    /// Its folder.
     pub folder: PathBuf,
 }
 
@@ -34,8 +30,6 @@ pub struct Record {
     /// Whether it has stepped aside from a class that follows.
     pub is_aside: bool,
     pub votes: Vec<Vote>,
-    /// The furthest page that was open, by lesson: what stands there was seen.
-    pub furthest: std::collections::BTreeMap<String, usize>,
     /// The lessons, as a session keeps them.
     pub lessons: toml::Table,
 }
@@ -67,36 +61,12 @@ pub enum Presence {
     Away,
 }
 
-impl Vote {
-    /// Its time, as RFC 3339 writes it.
-    pub fn time(&self) -> String {
-        let time = DateTime::<Utc>::from_timestamp(self.time_unix_s as i64, 0).unwrap_or_default();
-        time.format("%Y-%m-%dT%H:%M:%SZ").to_string()
-    }
-}
-
 impl Record {
-    /// Where it stands in its lessons.
-    pub fn kept(&self) -> KeptLessons {
-        KeptLessons::read(&self.lessons).unwrap_or_default()
-    }
-
     /// The last round in which it has voted on the question; 0 where in none.
     pub fn rounds_of(&self, lesson: &str, question: &str) -> u32 {
         let votes = self.votes.iter();
         let of_it = votes.filter(|vote| vote.lesson == lesson && vote.question == question);
         of_it.map(|vote| vote.round).max().unwrap_or(0)
-    }
-
-    /// The number of `answer` among `choices`, from 1; a number stands for itself.
-    pub fn number_of(answer: &Answer, choices: &[String]) -> f64 {
-        match answer {
-            Answer::Number(number) => *number,
-            Answer::Choice(words) => {
-                let at = choices.iter().position(|choice| choice == words);
-                at.map_or(0.0, |at| at as f64 + 1.0)
-            }
-        }
     }
 }
 
@@ -130,13 +100,12 @@ impl Seat {
         };
         let record: Record = toml::from_str(&text).map_err(|_| "is damaged".to_owned())?;
         if record.gyrolab == VERSION {
-            Ok(record)
-        } else {
-            let version = record.gyrolab;
-            Err(format!(
-                "gyrolab {version} has written it, and this is {VERSION}"
-            ))
+            return Ok(record);
         }
+        let version = record.gyrolab;
+        Err(format!(
+            "gyrolab {version} has written it, and this is {VERSION}"
+        ))
     }
 
     pub fn save(&self, record: &Record) -> Result<(), String> {
@@ -175,8 +144,8 @@ impl Seat {
     }
 
     pub(super) fn leave(&self, word: &str) {
-        if shared::read(&self.file("open"), 100).is_ok_and(|held| held.as_deref() == Some(word)) {
-            let _ = std::fs::remove_file(self.file("open"));
+        if self.is_held(word) {
+            let _ = std::fs::remove_file(self.file("open")); // where it stays, the seat is lost
         }
     }
 

@@ -1,23 +1,24 @@
 //! A student's lab: it follows the teacher's, and keeps in the files of its seat where it stands and what was voted.
 
-use super::aside::{changes_the_run, commands_the_run};
 use super::folder::{Folder, Run, Stage, State};
 use super::seat::{Record, Seat, Vote};
-use super::{EVERY, unix_ms, votes};
+use super::{EVERY, Role, unix_ms, votes};
 use crate::lab::Lab;
-use crate::lab::action::{Action, LessonKey};
+use crate::lab::action::LessonKey;
 use crate::lab::command::{Command, Place};
 use crate::lab::view::Part;
 use crate::lessons::class::Dress;
 use crate::lessons::predictions::Predictions;
-use crate::lessons::{Answer, Asked, Block, Class as Lessons, Lesson, Page, Setup};
+use crate::lessons::taken::Taken;
+use crate::lessons::{Answer, Asked, Class as Lessons, Setup};
+use crate::playback::Playback;
 use crate::playback::pace::Speed;
 use crate::scenario::{Document, Scenario};
 use crate::storage::shared;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
-use toml::{Table, Value};
+use toml::Table;
 
 /// A run that plays is put right where it is more than this off, s of wall time.
 const OFF_S: f64 = 0.6;
@@ -33,16 +34,17 @@ pub struct Student {
     is_new: bool,
     state: Option<State>,
     seen: Option<SystemTime>,
-    /// Whether the teacher's lab is open, and was at the last look.
+    /// Whether the teacher's lab was open at the last look.
     is_on: bool,
     /// What of the teacher's run is shown.
     shown: Shown,
+    stood: Option<Stand>,
     /// Whether a run that was played aside is pinned.
     has_pinned: bool,
     /// Why the lab ends, where it does.
-    pub ended: Option<String>,
-    pub next_look: Duration,
-    pub trouble: Option<String>,
+    ended: Option<&'static str>,
+    next_look: Duration,
+    trouble: Option<String>,
 }
 
 #[derive(Debug, Default)]
@@ -53,6 +55,29 @@ struct Shown {
     hidden: Vec<Part>,
     exact: Option<bool>,
     page: usize,
+}
+
+/// What a key changes that leads away from the class's run or page: run, step, goal, whether it plays, speed, page.
+type Stand = (
+    (usize, usize),
+    u64,
+    Option<u64>,
+    bool,
+    Speed,
+    Option<(String, usize)>,
+);
+
+fn stand(lab: &Lab, lessons: &Lessons) -> Stand {
+    let playback = &lab.player().playback;
+    let page = |taken: &Taken| (taken.lesson.name.clone(), taken.place.page);
+    (
+        lab.runs().depth(),
+        playback.step_number(),
+        playback.steps_to_go(),
+        playback.is_running() || !lab.script().is_done(),
+        playback.speed(),
+        lessons.taken().map(page),
+    )
 }
 
 impl Student {
@@ -68,6 +93,7 @@ impl Student {
             seen: None,
             is_on: false,
             shown: Shown::default(),
+            stood: None,
             has_pinned: false,
             ended: None,
             next_look: Duration::ZERO,
@@ -75,153 +101,98 @@ impl Student {
         }
     }
 
-    /// Where the seat stands in its lessons, as its file has it; `None` where nothing is known.
-    pub fn lessons(&self) -> Option<Table> {
-        Some(self.record.lessons.clone()).filter(|lessons| !lessons.is_empty())
-    }
-
-    /// Leaves the seat: the board says so.
-    pub fn leave(&self) {
-        self.seat.leave(&self.holds);
-    }
-
-    pub(super) fn advance(
-        &mut self,
-        now: Duration,
-        lab: &mut Lab,
-        lessons: &mut Lessons,
-    ) -> ControlFlow<()> {
-        self.note(lab, lessons);
-        if now >= self.next_look {
-            self.next_look = now + EVERY;
-            self.look(lab);
-            if self.follows() {
-                self.follow(lab, lessons);
-            } else {
-                lessons.unfollow();
-            }
-            self.ask_again(lessons);
-            lab.files_mut().note = self.note_for_exports(lessons);
-            let dress = self.dress(lessons);
-            lessons.set_dress(dress);
-        }
-        if self.is_new {
-            self.trouble = self.seat.save(&self.record).err();
-            self.is_new = self.trouble.is_some();
-        }
-        if self.ended.is_some() {
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
-    }
-
     /// Whether the lab shows what the teacher's shows.
     fn follows(&self) -> bool {
-        let is_followed = self
-            .state
-            .as_ref()
-            .is_some_and(|state| state.shown.is_some());
+        let state = self.state.as_ref();
+        let is_followed = state.is_some_and(|state| state.shown.is_some());
         self.is_on && is_followed && !self.record.is_aside
+    }
+
+    /// The state of the class, while it is on.
+    fn class(&self) -> Option<&State> {
+        self.state.as_ref().filter(|_| self.is_on)
     }
 
     /// Takes note of what was answered, and of the place in the lessons.
     fn note(&mut self, lab: &Lab, lessons: &mut Lessons) {
-        if let Some((question, answer)) = lessons.take_vote()
-            && let Some(lesson) = lessons.taken().map(|taken| Arc::clone(&taken.lesson))
-        {
-            self.vote(&lesson, &question, &answer);
-        }
-        let kept = lab.lessons.as_ref();
-        if kept.is_none_or(|kept| *kept == self.record.lessons) {
-            return;
-        }
-        self.record.lessons = kept.cloned().unwrap_or_default();
-        self.is_new = true;
-        let places = self.record.kept().lessons;
-        for (name, place) in &places {
-            let all = place.predictions.all();
-            let new: Vec<_> = all
-                .filter(|(question, _)| self.record.rounds_of(name, question) == 0)
-                .collect();
-            let lesson = (!new.is_empty()).then(|| self.folder.lesson(name));
-            for (question, answer) in new {
-                if let Some(Some(lesson)) = &lesson {
-                    self.vote(lesson, question, answer);
-                }
+        let again = lessons.take_vote();
+        if let Some(taken) = lessons.taken() {
+            let name = &taken.lesson.name;
+            let locked = taken.place.predictions.all();
+            let locked = locked.filter(|(question, _)| self.record.rounds_of(name, question) == 0);
+            let locked = locked.map(|(question, answer)| (question.clone(), answer.clone()));
+            for (question, answer) in locked.chain(again).collect::<Vec<_>>() {
+                let vote = self.vote(taken, question, &answer);
+                self.record.votes.extend(vote);
+                self.is_new = true;
             }
         }
-        for (name, place) in places {
-            let furthest = self.record.furthest.entry(name).or_default();
-            *furthest = place.page.max(*furthest);
+        if let Some(kept) = &lab.lessons
+            && *kept != self.record.lessons
+        {
+            self.record.lessons.clone_from(kept);
+            self.is_new = true;
         }
     }
 
-    fn vote(&mut self, lesson: &Lesson, question: &str, answer: &Answer) {
-        let Some(predict) = lesson.predict(question) else {
-            return;
+    /// The vote that `answer` to the question of this name is; `None` where the lesson no longer asks it.
+    fn vote(&self, taken: &Taken, question: String, answer: &Answer) -> Option<Vote> {
+        let (lesson, place) = (&taken.lesson, &taken.place);
+        let predict = lesson.predict(&question)?;
+        let choice = match (answer, &predict.asked) {
+            (Answer::Number(number), _) => *number,
+            (Answer::Choice(words), Asked::Choice(choices)) => {
+                let at = choices.iter().position(|choice| choice == words)?;
+                at as f64 + 1.0
+            }
+            (Answer::Choice(_), Asked::Number { .. }) => return None,
         };
-        let choices: &[String] = match &predict.asked {
-            Asked::Choice(choices) => choices,
-            Asked::Number { .. } => &[],
-        };
-        let is_of_class = |state: &&State| self.is_on && state.lesson == lesson.name;
-        let state = self.state.as_ref().filter(is_of_class);
-        let asked = state.map(|state| state.question(question));
+        let state = self.class().filter(|state| state.lesson == lesson.name);
+        let asked = state.map(|state| state.question(&question));
         let asked = asked.unwrap_or_default();
-        let mut pages = lesson.pages.iter();
-        let asks = |page: &&Page| page.predicts().any(|other| other.name == question);
-        let page = pages.find(asks).map_or(1, |page| page.number);
-        // The outcome stands on a later page: on its own it comes once the prediction is locked.
-        let tells = |block: &Block| matches!(block, Block::Compare(compare) if compare.prediction == question);
-        let outcome = pages.find(|page| page.blocks.iter().any(tells));
-        let furthest = self.record.furthest.get(&lesson.name).copied();
-        let has_seen = outcome.is_some_and(|outcome| furthest >= Some(outcome.number));
-        self.record.votes.push(Vote {
+        let is_first = self.record.rounds_of(&lesson.name, &question) == 0;
+        let seen = if is_first { &place.late } else { &place.seen };
+        Some(Vote {
             lesson: lesson.name.clone(),
-            question: question.to_owned(),
             round: asked.round(),
-            choice: Record::number_of(answer, choices),
-            late: has_seen || asked.stage == Stage::Closed,
-            page,
+            choice,
+            late: seen.contains(&question) || asked.stage == Stage::Closed,
+            page: place.page,
             time_unix_s: unix_ms() / 1000,
-        });
-        self.is_new = true;
+            question,
+        })
     }
 
     /// Looks at the files: whether the seat is still this lab's, and what the teacher shows.
     fn look(&mut self, lab: &mut Lab) {
         if !self.seat.is_held(&self.holds) {
-            let ended = "this seat was opened in another lab, which goes on from here";
-            self.ended = Some(ended.to_owned());
+            self.ended = Some("this seat was opened in another lab, which goes on from here");
         }
         let seen = shared::modified(&self.folder.state_file());
         if seen != self.seen {
-            match self.folder.state() {
-                Ok(state) => self.state = state,
-                Err(reason) => {
-                    lab.tell(reason);
-                    self.state = None;
-                }
-            }
+            let read = self.folder.state();
+            self.state = read.unwrap_or_else(|reason| {
+                lab.tell(reason);
+                None
+            });
             self.seen = seen;
         }
-        let Some(state) = &self.state else {
-            self.is_on = false;
-            return;
-        };
-        if state.closed.contains(&self.seat.word) {
-            self.ended = Some("your teacher has closed this seat".to_owned());
+        let state = self.state.as_ref();
+        if state.is_some_and(|state| state.closed.contains(&self.seat.word)) {
+            self.ended = Some("your teacher has closed this seat");
         }
-        let is_alive = self.folder.is_teacher_alive();
-        if self.is_on && !(state.is_on && is_alive) {
-            lab.tell(if state.is_on {
-                "the teacher's lab is gone: n and N turn pages"
+        let was_on = self.is_on;
+        let is_over = state.is_some_and(|state| !state.is_on);
+        self.is_on = state.is_some() && !is_over && self.folder.is_teacher_alive();
+        if was_on && !self.is_on {
+            let what = if is_over {
+                "the class is over"
             } else {
-                "the class is over: n and N turn pages"
-            });
+                "the teacher's lab is gone"
+            };
+            lab.tell(format!("{what}: n and N turn pages"));
             self.shown = Shown::default();
         }
-        self.is_on = state.is_on && is_alive;
     }
 
     /// Shows what the teacher shows.
@@ -231,59 +202,57 @@ impl Student {
         };
         let Some(run) = &state.shown else { return };
         let scenario = lab.player().run().scenario();
-        let is_same = self
+        let is_own = |(_, shown): &(_, _)| !Arc::ptr_eq(shown, scenario);
+        if self.shown.run.as_ref().is_some_and(is_own) {
+            return self.step_aside(lab, lessons); // the run was changed here
+        }
+        if self
             .shown
             .run
             .as_ref()
-            .map(|(file, shown)| (*file == run.run, Arc::ptr_eq(shown, scenario)));
-        match is_same {
-            Some((_, false)) => return self.step_aside(lab, lessons), // the run was changed by hand
-            Some((true, true)) => {}
-            _ => {
-                let read =
-                    Document::parse(&run.name, &run.run).and_then(|document| document.scenario());
-                let Ok(scenario) = read else {
-                    return lab.tell("the teacher's run cannot be read: n and N turn pages");
-                };
-                lab.show_run(&run.name, Arc::new(scenario), run.end_s);
-                let shown = Arc::clone(lab.player().run().scenario());
-                self.shown = Shown {
-                    run: Some((run.run.clone(), shown)),
-                    page: self.shown.page,
-                    ..Shown::default()
-                };
-            }
+            .is_none_or(|(file, _)| *file != run.run)
+            && let Err(reason) = self.open(run, lab)
+        {
+            return lab.tell(reason);
         }
         if self.shown.page != state.page {
-            self.shown.page = state.page;
-            if is_same.is_some() && std::mem::take(&mut self.has_pinned) {
+            let is_turned = std::mem::replace(&mut self.shown.page, state.page) != 0;
+            if is_turned && std::mem::take(&mut self.has_pinned) {
                 let _ = lab.carry_out(&Command::Pin(false)); // it belongs to the page before
             }
         }
         let is_there = go_with(run, lab);
-        let has_arrived = state.has_arrived && is_there;
-        let followed = lessons.follow((&state.lesson, state.page), &state.kept, has_arrived, lab);
-        if let Err(reason) = followed {
+        if let Err(reason) = lessons.follow(&state.followed(is_there), lab) {
             lab.tell(reason.lines().next().unwrap_or_default());
         }
         self.show_as(run, lab, lessons);
     }
 
-    /// Shows the run as the teacher does, where that has changed; what the page hides stays hidden until the prediction here
-    /// is locked.
+    /// Opens the run of the teacher.
+    fn open(&mut self, run: &Run, lab: &mut Lab) -> Result<(), &'static str> {
+        let read = Document::parse(&run.name, &run.run);
+        let scenario = read.and_then(|document| document.scenario());
+        let unread = "the teacher's run cannot be read: n and N turn pages";
+        let scenario = scenario.map_err(|_| unread)?;
+        lab.show_run(&run.name, Arc::new(scenario), run.end_s);
+        let shown = Arc::clone(lab.player().run().scenario());
+        self.shown = Shown {
+            run: Some((run.run.clone(), shown)),
+            page: self.shown.page,
+            ..Shown::default()
+        };
+        Ok(())
+    }
+
+    /// Shows the run as the teacher does, where that has changed.
     fn show_as(&mut self, run: &Run, lab: &mut Lab, lessons: &Lessons) {
         // What stands so already is left out: a key may be refused where it has no use.
         let own = Table::try_from(&lab.view().look).unwrap_or_default();
-        let is_new = |(key, value): &(&String, &Value)| {
-            let is_known = |look: &Table| look.get(*key) == Some(value);
-            *key != "hide" && !is_known(&self.shown.look) && !is_known(&own)
-        };
-        let patch: Table = run
-            .look
-            .iter()
-            .filter(is_new)
-            .map(|(key, value)| (key.clone(), value.clone()))
-            .collect();
+        let mut patch = run.look.clone();
+        patch.retain(|key, value| {
+            let is_known = |look: &Table| look.get(key) == Some(value);
+            key != "hide" && !is_known(&self.shown.look) && !is_known(&own)
+        });
         if !patch.is_empty() {
             let _ = lab.carry_out(&Command::Look(patch)); // what suits another screen may not suit this one
         }
@@ -292,68 +261,43 @@ impl Student {
             self.shown.exact = Some(run.exact);
             let _ = lab.carry_out(&Command::Exact(run.exact));
         }
-        let hidden = run.look.get("hide").cloned();
-        let hidden: Vec<Part> = hidden
-            .and_then(|hidden| hidden.try_into().ok())
-            .unwrap_or_default();
-        let page = lessons
-            .taken()
-            .and_then(|taken| Some((taken.page()?, &taken.place.predictions)))
-            .filter(|(page, _)| page.predicts().next().is_some());
-        let hidden = page.map_or(hidden.clone(), |(page, predictions)| {
-            let mut hidden = Predictions::hidden_after_lock(page, &hidden);
-            if !predictions.are_locked_on(page) {
-                hidden.extend(page.lab().map(Setup::hides).unwrap_or_default());
-            }
-            hidden
-        });
+        let hidden = hidden(run, lessons.taken());
         if hidden != self.shown.hidden {
             let _ = lab.carry_out(&Command::look("hide", &hidden));
             self.shown.hidden = hidden;
         }
     }
 
-    /// Asks the question of the page again where the class is at another round.
-    fn ask_again(&self, lessons: &mut Lessons) {
-        let again = self
-            .state
-            .as_ref()
-            .filter(|_| self.is_on)
-            .and_then(|state| {
-                let taken = lessons.taken();
-                let taken = taken.filter(|taken| taken.lesson.name == state.lesson)?;
-                let (predict, question) = votes::question(taken.page()?, state)?;
-                let voted = self.record.rounds_of(&state.lesson, &predict.name);
-                let is_open = question.stage != Stage::Closed && voted < question.round();
-                is_open.then(|| predict.name.clone())
-            });
-        lessons.ask_again(again);
+    /// The question of the page, where the class is at a round of it that was not voted in here.
+    fn asked_again(&self, lessons: &Lessons) -> Option<String> {
+        let (state, taken) = self.class().zip(lessons.taken())?;
+        let page = taken.page().filter(|_| taken.lesson.name == state.lesson)?;
+        let (predict, question) = votes::question(page, state)?;
+        let voted = self.record.rounds_of(&state.lesson, &predict.name);
+        let is_open = question.stage != Stage::Closed && voted < question.round();
+        is_open.then(|| predict.name.clone())
     }
 
     fn dress(&self, lessons: &Lessons) -> Dress {
-        let Some((state, taken)) = self
-            .state
-            .as_ref()
-            .filter(|_| self.is_on)
-            .zip(lessons.taken())
-        else {
+        let Some((state, taken)) = self.class().zip(lessons.taken()) else {
             return Dress::default();
         };
         let (page, pages) = (taken.place.page, taken.lesson.pages.len());
         let question = taken.page().filter(|_| taken.lesson.name == state.lesson);
         let question = question.and_then(|page| votes::question(page, state));
-        let asks = state.page == page && question.is_some();
+        let (on, of) = (
+            format!("the class is on {}", state.page),
+            format!("{page} of {pages}"),
+        );
         let framed = if self.record.is_aside {
-            let on = format!("the class is on {}", state.page);
-            format!("aside · {page} of {pages} · {on}\naside on {page} · {on}")
+            format!("aside · {of} · {on}\naside on {page} · {on}")
         } else if !self.follows() {
-            format!("{page} of {pages} · the class is on {}", state.page)
-        } else if asks {
-            let (answered, here) = (state.answered, state.here);
-            let of_page = format!("following · {page} of {pages}");
-            format!("{of_page} · {answered} of {here} answered\n{of_page} · {answered} of {here}")
+            format!("{of} · {on}")
+        } else if state.page == page && question.is_some() {
+            let answered = format!("following · {of} · {} of {}", state.answered, state.here);
+            format!("{answered} answered\n{answered}")
         } else {
-            format!("following · {page} of {pages}")
+            format!("following · {of}")
         };
         let border = match (state.shown.is_some(), self.record.is_aside) {
             (true, true) => "C: back to the class",
@@ -367,32 +311,7 @@ impl Student {
             votes: votes.map(|(predict, question)| {
                 (predict.name.clone(), vec![votes::drawn(&question.bars)])
             }),
-            instead: None,
-        }
-    }
-
-    pub(super) fn takes(&mut self, action: Action, lab: &mut Lab, lessons: &mut Lessons) -> bool {
-        match action {
-            Action::Class if !self.is_on => lab.refuse("no class is on"),
-            Action::Class if self.record.is_aside => self.come_back(lab),
-            Action::Class if self.follows() => self.step_aside(lab, lessons),
-            Action::Class => lab.refuse("the class is not followed now: n and N turn pages"),
-            Action::Lesson(LessonKey::Notes) if self.is_on => {
-                lab.refuse("the notes are the teacher's");
-            }
-            action if self.follows() && changes_the_run(action) => {
-                self.step_aside(lab, lessons);
-                return false;
-            }
-            _ => return false,
-        }
-        true
-    }
-
-    /// Steps aside where `commands` change the run.
-    pub(super) fn expect(&mut self, commands: &[Command], lab: &mut Lab, lessons: &mut Lessons) {
-        if self.follows() && commands.iter().any(commands_the_run) {
-            self.step_aside(lab, lessons);
+            ..Dress::default()
         }
     }
 
@@ -404,6 +323,15 @@ impl Student {
         lab.tell("you have stepped aside: C leads back to the class");
     }
 
+    /// Follows again. A run that was played meanwhile stays, pinned.
+    fn come_back(&mut self, lab: &mut Lab) {
+        (self.record.is_aside, self.is_new) = (false, true);
+        if lab.player().playback.step_number() > 0 && !lab.comparison().is_pinned() {
+            self.has_pinned = lab.carry_out(&Command::Pin(true)).is_ok();
+        }
+        lab.refuse("back in the class");
+    }
+
     /// What the header of an export says: the seat, and the page beside which it was made.
     fn note_for_exports(&self, lessons: &Lessons) -> Option<String> {
         let taken = lessons.taken().filter(|_| self.record.is_aside)?;
@@ -411,28 +339,108 @@ impl Student {
         let (seat, lesson) = (&self.seat.word, self.folder.short(lesson));
         Some(format!("seat {seat}, beside page {page} of {lesson}"))
     }
+}
 
-    /// Follows again. A run that was played meanwhile stays, pinned.
-    fn come_back(&mut self, lab: &mut Lab) {
-        (self.record.is_aside, self.is_new) = (false, true);
-        self.next_look = Duration::ZERO;
-        if lab.player().playback.step_number() > 0 && !lab.comparison().is_pinned() {
-            let _ = lab.carry_out(&Command::Pin(true));
-            self.has_pinned = true;
+impl Role for Student {
+    fn begin(&mut self, lab: &mut Lab) {
+        if !self.record.lessons.is_empty() {
+            lab.lessons = Some(self.record.lessons.clone()); // never older than the session
         }
-        lab.refuse("back in the class");
+    }
+
+    fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) -> ControlFlow<()> {
+        let was_new = self.is_new;
+        self.note(lab, lessons);
+        if now >= self.next_look || self.is_new && !was_new {
+            self.next_look = now + EVERY;
+            self.look(lab);
+            if self.follows() {
+                self.follow(lab, lessons);
+            } else {
+                lessons.unfollow();
+            }
+            lessons.ask_again(self.asked_again(lessons));
+            lab.files_mut().note = self.note_for_exports(lessons);
+            lessons.set_dress(self.dress(lessons), lab);
+            if self.is_new && self.ended.is_none() {
+                self.trouble = self.seat.save(&self.record).err();
+                self.is_new = self.trouble.is_some();
+            }
+        }
+        self.stood = Some(stand(lab, lessons));
+        if self.ended.is_some() {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn act(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+        if self.class().is_none() {
+            lab.refuse("no class is on");
+        } else if self.record.is_aside {
+            self.come_back(lab);
+        } else if self.follows() {
+            self.step_aside(lab, lessons);
+        } else {
+            lab.refuse("the class is not followed now: n and N turn pages");
+        }
+        self.next_look = Duration::ZERO;
+    }
+
+    fn takes(&mut self, key: LessonKey, lab: &mut Lab, _lessons: &Lessons) -> bool {
+        let is_of_teacher = key == LessonKey::Notes && self.is_on;
+        if is_of_teacher {
+            lab.refuse("the notes are the teacher's");
+        }
+        is_of_teacher
+    }
+
+    fn acted(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+        if self.follows()
+            && self
+                .stood
+                .as_ref()
+                .is_some_and(|it| *it != stand(lab, lessons))
+        {
+            self.step_aside(lab, lessons);
+        }
+    }
+
+    fn next_look(&self) -> Option<Duration> {
+        Some(self.next_look)
+    }
+
+    fn trouble(&self) -> Option<String> {
+        self.trouble.clone()
+    }
+
+    fn leave(&mut self) -> Result<String, String> {
+        self.seat.leave(&self.holds);
+        Ok(self.ended.unwrap_or_default().to_owned())
     }
 }
 
-/// Brings the run of `lab` to where `run` is by now. Returns whether it stands or plays there.
-fn go_with(run: &Run, lab: &mut Lab) -> bool {
-    let playback = &lab.player().playback;
-    if playback.steps_to_go().is_some() {
-        return false;
+/// What is hidden: what the page hides stays so until the predictions here are locked, whatever the teacher sees.
+fn hidden(run: &Run, taken: Option<&Taken>) -> Vec<Part> {
+    let shown = run.look.get("hide").cloned();
+    let shown: Vec<Part> = shown
+        .and_then(|hidden| hidden.try_into().ok())
+        .unwrap_or_default();
+    let page = taken.and_then(|taken| Some((taken.page()?, &taken.place.predictions)));
+    let Some((page, predictions)) = page.filter(|(page, _)| page.predicts().next().is_some())
+    else {
+        return shown;
+    };
+    let mut hidden = Predictions::hidden_after_lock(page, &shown);
+    if !predictions.are_locked_on(page) {
+        hidden.extend(page.lab().map(Setup::hides).unwrap_or_default());
     }
-    let time_step_s = lab.player().motion().time_step_s;
+    hidden
+}
+
+/// The step at which `run` is by now, and how many steps it may be off.
+fn wanted(run: &Run, playback: &Playback, time_step_s: f64) -> (u64, f64) {
     let since_s = unix_ms().saturating_sub(run.at_ms) as f64 / 1000.0;
-    // Steps that the run has gone on since, and that it may be off.
     let (ahead, off) = match run.speed {
         _ if !run.is_running => (0.0, 0.0),
         Speed::Top => (0.0, f64::INFINITY),
@@ -441,12 +449,19 @@ fn go_with(run: &Run, lab: &mut Lab) -> bool {
             speed * OFF_S / time_step_s + 1.0,
         ),
     };
-    let wanted = run
-        .step
-        .saturating_add(ahead as u64)
-        .min(playback.end_step());
+    let step = run.step.saturating_add(ahead as u64);
+    (step.min(playback.end_step()), off)
+}
+
+/// Brings the run of `lab` to where `run` is by now. Returns whether it stands or plays there. A command that is refused
+/// leaves it where it is.
+fn go_with(run: &Run, lab: &mut Lab) -> bool {
+    let playback = &lab.player().playback;
+    if playback.steps_to_go().is_some() {
+        return false;
+    }
+    let (wanted, off) = wanted(run, playback, lab.player().motion().time_step_s);
     let is_off = wanted.abs_diff(playback.step_number()) as f64 > off;
-    // A command that is refused leaves the run where it is.
     if playback.speed() != run.speed {
         let _ = lab.carry_out(&Command::Speed(run.speed));
     }

@@ -1,20 +1,18 @@
 //! The teacher's lab: what it shows goes to the class, and the votes of the class come to its pages.
 
 use super::folder::{Folder, LONGEST_RUN, Run, Stage, State, VERSION};
-use super::seat::Presence;
-use super::votes::{self, FEWEST, Sitting, Tally, sittings};
-use super::{EVERY, login, unix_ms};
+use super::votes::{self, FEWEST, Sitting, Tally, present, sittings};
+use super::{EVERY, Role, login, unix_ms};
 use crate::lab::Lab;
-use crate::lab::action::{Action, LessonKey};
+use crate::lab::action::LessonKey;
 use crate::lab::sheet::{Kind, Paragraph};
 use crate::lessons::class::Dress;
 use crate::lessons::{Class as Lessons, Page};
 use crate::scenario::Scenario;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
 use toml::Table;
-
-const TOO_LONG: &str = "the run's file is above 64 kB: the class cannot follow it";
 
 #[derive(Debug)]
 pub struct Teacher {
@@ -27,8 +25,8 @@ pub struct Teacher {
     seats: Vec<Sitting>,
     /// The run that was shown last, and its file.
     run: Option<(Arc<Scenario>, String)>,
-    pub next_look: Duration,
-    pub trouble: Option<String>,
+    next_look: Duration,
+    trouble: Option<String>,
 }
 
 /// What the class's key has opened.
@@ -40,23 +38,23 @@ enum Menu {
     Seats(usize),
 }
 
-/// An entry of the list of seats.
+/// An entry of the list of seats: a name that is locked by wrong codes, or a seat, by its number.
 enum Entry {
-    Seat(String),
-    /// A name that is locked by wrong codes.
     Locked(String),
+    Seat(usize),
 }
 
 impl Teacher {
     /// The class in `folder`, with the rounds of an earlier lab.
     pub fn new(folder: Folder, before: State) -> Self {
+        let state = State {
+            gyrolab: VERSION.to_owned(),
+            is_on: true,
+            ..before
+        };
         Self {
             folder,
-            state: State {
-                gyrolab: VERSION.to_owned(),
-                is_on: true,
-                ..before
-            },
+            state,
             published: None,
             is_followed: true,
             menu: Menu::Closed,
@@ -67,70 +65,40 @@ impl Teacher {
         }
     }
 
-    /// Says to the class that the lab was left.
-    pub fn leave(&mut self) -> Result<(), String> {
-        self.state.is_on = false;
-        self.folder.publish(&self.state)
-    }
-
-    pub(super) fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) {
-        lessons.waive();
-        let open = lessons
-            .taken()
-            .map(|taken| (taken.lesson.name.clone(), taken.place.page));
-        let is_turned = open.is_some_and(|(lesson, page)| {
-            (lesson, page) != (self.state.lesson.clone(), self.state.page)
-        });
-        if now < self.next_look && !is_turned {
-            return;
-        }
-        self.next_look = now + EVERY;
-        self.seats = sittings(&self.folder);
-        self.trouble = None;
-        self.look(lab, lessons);
+    fn publish(&mut self) {
         if self.published.as_ref() == Some(&self.state) {
-            self.folder.touch_state();
-        } else {
-            match self.folder.publish(&self.state) {
-                Ok(()) => self.published = Some(self.state.clone()),
-                Err(trouble) => self.trouble = Some(trouble),
-            }
+            return self.folder.touch_state();
         }
-        if self.folder.is_full() {
-            self.trouble = Some("the disk of the class is full: votes cannot be kept".to_owned());
+        match self.folder.publish(&self.state) {
+            Ok(()) => self.published = Some(self.state.clone()),
+            Err(trouble) => self.trouble = Some(trouble),
         }
-        let dress = self.dress(lessons);
-        lessons.set_dress(dress);
     }
 
     /// Makes the state that of the lab and of the votes.
     fn look(&mut self, lab: &Lab, lessons: &Lessons) {
+        self.seats = sittings(&self.folder);
         if let Some(taken) = lessons.taken() {
             self.state.lesson.clone_from(&taken.lesson.name);
+            self.state.sum = taken.lesson.sum;
             self.state.page = taken.place.page;
             self.state.kept.clone_from(&taken.place.kept);
             self.state.has_arrived = !taken.is_under_way();
         }
-        self.state.shown = if self.is_followed {
-            self.shown(lab)
-        } else {
-            None
-        };
-        let is_here = |sitting: &&Sitting| sitting.presence == Presence::Here;
-        self.state.here = self.seats.iter().filter(is_here).count();
+        self.state.shown = self.is_followed.then(|| self.shown(lab)).flatten();
+        self.state.here = present(&self.seats)[0];
         self.state.answered = 0;
-        if let Some(page) = lessons.taken().and_then(|taken| taken.page())
-            && let Some((predict, question)) = votes::question(page, &self.state)
+        let page = lessons.taken().and_then(|taken| taken.page());
+        if let Some((predict, question)) = page.and_then(|page| votes::question(page, &self.state))
         {
-            let (lesson, round) = (self.state.lesson.clone(), question.round());
-            let has_answered =
-                |sitting: &&Sitting| sitting.record.rounds_of(&lesson, &predict.name) >= round;
-            let here = self.seats.iter().filter(is_here);
+            let (lesson, round) = (&self.state.lesson, question.round());
+            let has_answered = |it: &&Sitting| it.record.rounds_of(lesson, &predict.name) >= round;
+            let here = self.seats.iter().filter(|sitting| sitting.is_here());
             self.state.answered = here.filter(has_answered).count();
-            let tally = Tally::of(&self.seats, &lesson, predict, round);
+            let tally = Tally::of(&self.seats, lesson, predict, round);
             let is_shown = question.stage == Stage::All && tally.votes >= FEWEST;
-            self.state.question_mut(&predict.name).bars =
-                if is_shown { tally.bars } else { Vec::new() };
+            let bars = if is_shown { tally.bars } else { Vec::new() };
+            self.state.question_mut(&predict.name).bars = bars;
         }
     }
 
@@ -138,20 +106,17 @@ impl Teacher {
     fn shown(&mut self, lab: &Lab) -> Option<Run> {
         let playback = &lab.player().playback;
         let scenario = playback.run().scenario();
-        if !self
+        let known = self.run.take();
+        let known = known.filter(|(run, _)| Arc::ptr_eq(run, scenario));
+        let (_, run) = self
             .run
-            .as_ref()
-            .is_some_and(|(run, _)| Arc::ptr_eq(run, scenario))
-        {
-            self.run = Some((Arc::clone(scenario), scenario.to_toml()));
-        }
-        let (_, run) = self.run.as_ref()?;
+            .insert(known.unwrap_or_else(|| (Arc::clone(scenario), scenario.to_toml())));
         if run.len() > LONGEST_RUN {
-            self.trouble = Some(TOO_LONG.to_owned());
+            let rule = "the run's file is above 64 kB: the class cannot follow it";
+            self.trouble = Some(rule.to_owned());
             return None;
         }
-        let is_running = playback.is_running();
-        let step = playback.step_number();
+        let (step, is_running) = (playback.step_number(), playback.is_running());
         let before = self.state.shown.as_ref();
         let still = before.filter(|before| !is_running && before.step == step);
         Some(Run {
@@ -169,31 +134,24 @@ impl Teacher {
 
     /// What the class adds to the page.
     fn dress(&self, lessons: &Lessons) -> Dress {
-        let count = |presence| {
-            let seats = self.seats.iter();
-            seats.filter(|sitting| sitting.presence == presence).count()
-        };
-        let here =
-            |sitting: &&Sitting| sitting.presence == Presence::Here && sitting.record.is_aside;
-        let aside = self.seats.iter().filter(here).count();
-        let taken = lessons.taken();
-        let title = taken.map_or(String::new(), |taken| {
+        let [here, lost, aside] = present(&self.seats);
+        let framed = lessons.taken().map(|taken| {
             let (page, pages) = (taken.place.page, taken.lesson.pages.len());
-            let (here, lost) = (count(Presence::Here), count(Presence::Lost));
-            let title = &taken.lesson.title;
             let counts = format!("{page} of {pages} · {here} here, {lost} lost, {aside} aside");
-            format!("{counts} · {title}\n{counts}\n{page} of {pages} · {here}, {lost} lost, {aside} aside")
+            let short = format!("{page} of {pages} · {here}, {lost} lost, {aside} aside");
+            format!("{counts} · {}\n{counts}\n{short}", taken.lesson.title)
         });
-        let page = taken.and_then(|taken| taken.page());
+        let page = lessons.taken().and_then(|taken| taken.page());
+        let border = match (self.menu, self.is_followed) {
+            (Menu::Closed, _) => "C: show, again, follow, seats\nC: class",
+            (Menu::Open, true) => "1 show 2 again 3 unfollow 4 seats",
+            (Menu::Open, false) => "1 show 2 again 3 follow 4 seats",
+            (Menu::Seats(_), _) => "Enter closes, opens; Esc: back",
+        };
         Dress {
-            framed: title,
-            border: match (self.menu, self.is_followed) {
-                (Menu::Closed, _) => "C: show, again, follow, seats\nC: class",
-                (Menu::Open, true) => "1 show 2 again 3 unfollow 4 seats",
-                (Menu::Open, false) => "1 show 2 again 3 follow 4 seats",
-                (Menu::Seats(_), _) => "Enter closes, opens; Esc: back",
-            }
-            .to_owned(),
+            framed: framed.unwrap_or_default(),
+            border: border.to_owned(),
+            asks_digit: self.menu == Menu::Open,
             votes: page.and_then(|page| self.votes(page)),
             instead: match self.menu {
                 Menu::Seats(selected) => Some(self.list(selected)),
@@ -205,172 +163,162 @@ impl Teacher {
     /// The name of the question that the class is at, and the votes as far as they are shown.
     fn votes(&self, page: &Page) -> Option<(String, Vec<Paragraph>)> {
         let (predict, question) = votes::question(page, &self.state)?;
-        let tally = Tally::of(&self.seats, &self.state.lesson, predict, question.round());
+        let (round, answered, here) = (question.round(), self.state.answered, self.state.here);
         let since_s = unix_ms().saturating_sub(question.since_ms) / 1000;
-        let line = format!(
-            "round {} · {} of {} · {}:{:02}",
-            question.round(),
-            self.state.answered,
-            self.state.here,
-            since_s / 60,
-            since_s % 60
-        );
+        let (minutes, seconds) = (since_s / 60, since_s % 60);
+        let line = format!("round {round} · {answered} of {here} · {minutes}:{seconds:02}");
         let mut lines = vec![Paragraph::new(Kind::Note, line)];
         if question.stage != Stage::Counted {
-            lines.push(votes::drawn(&tally.bars));
+            let tally = Tally::of(&self.seats, &self.state.lesson, predict, round);
             let late = (tally.late > 0).then(|| format!("late: {}", tally.late));
             let seen = match question.stage {
-                Stage::All if tally.votes < FEWEST => {
-                    Some(format!("under {FEWEST} votes the class sees no bars"))
-                }
-                Stage::All => Some("the class sees these bars".to_owned()),
-                Stage::Closed => Some("closed".to_owned()),
-                _ => None,
+                Stage::All if tally.votes < FEWEST => "under 5 votes the class sees no bars",
+                Stage::All => "the class sees these bars",
+                Stage::Closed => "closed",
+                Stage::Counted | Stage::Teacher => "you alone see these bars",
             };
-            let words = [tally.advice(predict), late, seen].into_iter().flatten();
+            lines.push(votes::drawn(&tally.bars));
+            let words = [tally.advice, late, Some(seen.to_owned())];
+            let words = words.into_iter().flatten();
             lines.extend(words.map(|words| Paragraph::new(Kind::Note, words)));
         }
         Some((predict.name.clone(), lines))
     }
 
     fn entries(&self) -> Vec<Entry> {
-        let opened = |name: &str| self.state.opened.get(name).copied().unwrap_or(0);
-        let locked = login::locked(&self.folder, opened, unix_ms() / 1000);
-        let seats = self
-            .seats
-            .iter()
-            .map(|sitting| Entry::Seat(sitting.seat.word.clone()));
-        locked.into_iter().map(Entry::Locked).chain(seats).collect()
+        let locked = login::locked(&self.folder, unix_ms() / 1000).into_iter();
+        let seats = (0..self.seats.len()).map(Entry::Seat);
+        locked.map(Entry::Locked).chain(seats).collect()
     }
 
     fn list(&self, selected: usize) -> Vec<Paragraph> {
         let line = |(index, entry): (usize, Entry)| {
-            let (text, is_given) = match &entry {
-                Entry::Locked(name) => (format!("{name}: locked by wrong codes"), true),
-                Entry::Seat(word) => {
-                    let is_closed = self.state.closed.contains(word);
-                    let presence = self.seats.iter().find(|sitting| sitting.seat.word == *word);
-                    let presence = presence.map(|sitting| sitting.presence);
-                    let state = match (is_closed, presence) {
-                        (true, _) => "closed",
-                        (_, Some(Presence::Here)) => "here",
-                        (_, Some(Presence::Lost)) => "lost",
-                        _ => "away",
-                    };
-                    (format!("{word}: {state}"), is_closed)
-                }
+            let text = match &entry {
+                Entry::Locked(name) => format!("{name}: locked by wrong codes"),
+                Entry::Seat(number) => self.seats[*number].in_words(&self.state),
             };
-            let is_selected = index == selected;
-            Paragraph::new(
-                Kind::Choice {
-                    is_selected,
-                    is_given,
-                },
-                text,
-            )
+            let kind = Kind::Choice {
+                is_selected: index == selected,
+                is_given: text.ends_with("closed") || text.ends_with("codes"),
+            };
+            Paragraph::new(kind, text)
         };
-        let mut lines: Vec<_> = self.entries().into_iter().enumerate().map(line).collect();
+        let lines: Vec<_> = self.entries().into_iter().enumerate().map(line).collect();
         if lines.is_empty() {
-            lines.push(Paragraph::new(Kind::Hint, "Nobody has taken a seat yet."));
+            return vec![Paragraph::new(Kind::Hint, "Nobody has taken a seat yet.")];
         }
         lines
     }
 
-    /// Takes note that a key carries out commands: it closes the menu, and the class is to see what they do.
-    pub(super) fn expect(&mut self) {
-        self.next_look = Duration::ZERO;
-        if self.menu == Menu::Open {
-            self.menu = Menu::Closed;
-        }
-    }
-
-    pub(super) fn takes(&mut self, action: Action, lab: &mut Lab) -> bool {
-        self.next_look = Duration::ZERO;
-        match (self.menu, action) {
-            (Menu::Closed, Action::Class) => self.menu = Menu::Open,
-            (_, Action::Class | Action::Close) if self.menu != Menu::Closed => {
-                self.menu = Menu::Closed;
-            }
-            (Menu::Open, Action::Digit(digit @ 1..=4)) => {
-                self.menu = Menu::Closed;
-                match digit {
-                    1 => self.show_more(lab),
-                    2 => self.again(lab),
-                    3 => self.is_followed = !self.is_followed,
-                    _ => {
-                        self.menu = Menu::Seats(0);
-                        lab.view_mut().turn_to_sheet();
-                    }
+    /// Does what the menu has under `digit`.
+    fn choose(&mut self, digit: u8, lab: &mut Lab, page: Option<&Page>) {
+        self.menu = Menu::Closed;
+        match digit {
+            1 | 2 => {
+                let asked = page.and_then(|page| votes::question(page, &self.state));
+                let Some((predict, _)) = asked else {
+                    return lab.refuse("this page asks nothing");
+                };
+                let question = self.state.question_mut(&predict.name);
+                if digit == 2 {
+                    question.earlier_rounds += 1;
+                    (question.stage, question.since_ms) = (Stage::Counted, unix_ms());
+                    return lab
+                        .refuse(format!("round {}: the class votes again", question.round()));
                 }
+                question.stage = match question.stage {
+                    Stage::Counted => Stage::Teacher,
+                    Stage::Teacher => Stage::All,
+                    Stage::All => Stage::Closed,
+                    Stage::Closed => return lab.refuse("closed: C 2 asks it again"),
+                };
             }
-            (Menu::Open, _) => {
-                self.menu = Menu::Closed;
-                return false;
-            }
-            _ => return false,
+            3 => self.is_followed = !self.is_followed,
+            4 => self.menu = Menu::Seats(0),
+            _ => lab.refuse("1 shows the votes, 2 asks again, 3 lets the class follow, 4: seats"),
         }
-        true
     }
 
-    /// The question of the page that the class is at.
-    fn question(&self) -> Option<String> {
-        let lesson = self.folder.lesson(&self.state.lesson)?;
-        let (predict, _) = votes::question(lesson.page(self.state.page)?, &self.state)?;
-        Some(predict.name.clone())
-    }
-
-    /// Shows the votes to one more: to the teacher, then to all; then closes the question.
-    fn show_more(&mut self, lab: &mut Lab) {
-        let Some(name) = self.question() else {
-            return lab.refuse("this page asks nothing");
-        };
-        let question = self.state.question_mut(&name);
-        question.stage = match question.stage {
-            Stage::Counted => Stage::Teacher,
-            Stage::Teacher => Stage::All,
-            Stage::All => Stage::Closed,
-            Stage::Closed => return lab.refuse("closed: C 2 asks it again"),
-        };
-    }
-
-    /// Asks the question once more.
-    fn again(&mut self, lab: &mut Lab) {
-        let Some(name) = self.question() else {
-            return lab.refuse("this page asks nothing");
-        };
-        let question = self.state.question_mut(&name);
-        question.earlier_rounds += 1;
-        (question.stage, question.since_ms) = (Stage::Counted, unix_ms());
-        lab.refuse(format!("round {}: the class votes again", question.round()));
-    }
-
-    pub(super) fn takes_key(&mut self, key: LessonKey, lab: &mut Lab) -> bool {
-        let Menu::Seats(selected) = self.menu else {
-            return false;
-        };
-        self.next_look = Duration::ZERO;
-        let entries = self.entries();
-        match (key, entries.get(selected)) {
-            (LessonKey::Move(direction), _) => {
-                let last = entries.len().saturating_sub(1);
-                self.menu =
-                    Menu::Seats(selected.saturating_add_signed(direction.rows(10)).min(last));
-            }
-            (LessonKey::Take, Some(Entry::Locked(name))) => {
-                self.state.opened.insert(name.clone(), unix_ms() / 1000 + 1);
-            }
-            (LessonKey::Take, Some(Entry::Seat(word))) => {
-                if !self.state.closed.remove(word) {
-                    self.state.closed.insert(word.clone());
+    /// Closes the selected seat, or opens it; lets a name that is locked try again.
+    fn close_or_open(&mut self, selected: usize, lab: &mut Lab) {
+        match self.entries().get(selected) {
+            Some(Entry::Locked(name)) => self.folder.unlock(name),
+            Some(Entry::Seat(number)) => {
+                let word = self.seats[*number].seat.word.clone();
+                if !self.state.closed.remove(&word) {
                     lab.refuse(format!("{word} is closed: Enter opens it again"));
+                    self.state.closed.insert(word);
                 }
             }
-            (LessonKey::Take, None) => {}
-            _ => {
+            None => {}
+        }
+    }
+}
+
+impl Role for Teacher {
+    fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) -> ControlFlow<()> {
+        let is_new = lessons.taken().is_some_and(|taken| {
+            (&taken.lesson.name, taken.place.page) != (&self.state.lesson, self.state.page)
+        });
+        if now >= self.next_look || is_new {
+            self.next_look = now + EVERY;
+            self.trouble = None;
+            self.look(lab, lessons);
+            self.publish();
+            if self.folder.is_full() {
+                let full = "the disk of the class is full: votes cannot be kept";
+                self.trouble = Some(full.to_owned());
+            }
+            lessons.waive();
+            lessons.set_dress(self.dress(lessons), lab);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn act(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+        self.menu = match self.menu {
+            Menu::Closed => Menu::Open,
+            _ => Menu::Closed,
+        };
+        lessons.set_dress(self.dress(lessons), lab);
+        lab.view_mut().turn_to_sheet();
+    }
+
+    fn takes(&mut self, key: LessonKey, lab: &mut Lab, lessons: &Lessons) -> bool {
+        match (self.menu, key) {
+            (Menu::Closed, _) => return false,
+            (Menu::Open, LessonKey::Digit(digit)) => {
+                let page = lessons.taken().and_then(|taken| taken.page());
+                self.choose(digit, lab, page);
+            }
+            (Menu::Seats(selected), LessonKey::Move(direction)) => {
+                let last = self.entries().len().saturating_sub(1);
+                let selected = selected.saturating_add_signed(direction.rows(10)).min(last);
+                self.menu = Menu::Seats(selected);
+            }
+            (Menu::Seats(selected), LessonKey::Take) => self.close_or_open(selected, lab),
+            (_, key) => {
                 self.menu = Menu::Closed;
-                return false;
+                return key == LessonKey::Leave;
             }
         }
         true
+    }
+
+    fn acted(&mut self, _lab: &mut Lab, _lessons: &mut Lessons) {
+        self.next_look = Duration::ZERO;
+    }
+
+    fn next_look(&self) -> Option<Duration> {
+        Some(self.next_look)
+    }
+
+    fn trouble(&self) -> Option<String> {
+        self.trouble.clone()
+    }
+
+    fn leave(&mut self) -> Result<String, String> {
+        self.state.is_on = false;
+        self.folder.publish(&self.state).map(|()| String::new())
     }
 }

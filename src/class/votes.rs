@@ -4,8 +4,10 @@ use super::Folder;
 use super::folder::{Question, Stage, State};
 use super::seat::{Presence, Record, Seat, Vote};
 use crate::lab::sheet::{Kind, Paragraph};
+use crate::lessons::lesson::Right;
 use crate::lessons::{Asked, Page, Predict};
 use crate::text::number::{shortest, significant};
+use chrono::{DateTime, Utc};
 
 /// With fewer votes no bars go to the students: who has voted what could be guessed.
 pub const FEWEST: usize = 5;
@@ -24,14 +26,41 @@ pub struct Sitting {
 
 /// Every seat of the class. What cannot be read counts as a seat without votes.
 pub fn sittings(folder: &Folder) -> Vec<Sitting> {
-    let seats = folder.all_seats().into_iter();
-    seats
-        .map(|seat| Sitting {
-            record: seat.record().unwrap_or_default(),
-            presence: seat.presence(),
-            seat,
-        })
-        .collect()
+    let sitting = |seat: Seat| Sitting {
+        record: seat.record().unwrap_or_default(),
+        presence: seat.presence(),
+        seat,
+    };
+    folder.all_seats().into_iter().map(sitting).collect()
+}
+
+/// How many of `seats` are here, lost, and stepped aside.
+pub fn present(seats: &[Sitting]) -> [usize; 3] {
+    let count = |is_so: &dyn Fn(&Sitting) -> bool| seats.iter().filter(|it| is_so(it)).count();
+    [
+        count(&Sitting::is_here),
+        count(&|it| it.presence == Presence::Lost),
+        count(&|it| it.is_here() && it.record.is_aside),
+    ]
+}
+
+impl Sitting {
+    pub fn is_here(&self) -> bool {
+        self.presence == Presence::Here
+    }
+
+    /// Its word, and how it is there, as the lists of the teacher have it.
+    pub fn in_words(&self, state: &State) -> String {
+        let word = &self.seat.word;
+        let is_there = match self.presence {
+            _ if state.closed.contains(word) => "closed",
+            Presence::Away => "away",
+            Presence::Lost => "lost",
+            Presence::Here if self.record.is_aside => "aside",
+            Presence::Here => "here",
+        };
+        format!("{word}: {is_there}")
+    }
 }
 
 /// The votes of one round of a question.
@@ -42,8 +71,8 @@ pub struct Tally {
     /// Votes in time.
     pub votes: usize,
     pub late: usize,
-    /// The share of the votes that are right, where the lesson says what is.
-    pub right: Option<f64>,
+    /// What is right, how many said it, and what to do next; where the lesson says what is.
+    pub advice: Option<String>,
 }
 
 impl Tally {
@@ -57,42 +86,38 @@ impl Tally {
             .filter_map(|sitting| sitting.record.votes.iter().find(is_of_it));
         let (late, in_time): (Vec<_>, Vec<_>) = votes.partition(|vote| vote.late);
         let choices: Vec<f64> = in_time.iter().map(|vote| vote.choice).collect();
-        let right = predict.right.filter(|_| !choices.is_empty());
-        let right = right.map(|right| {
-            let hits = choices.iter().filter(|choice| **choice == right as f64);
-            hits.count() as f64 / choices.len() as f64
-        });
         Self {
-            bars: match &predict.asked {
-                Asked::Choice(all) => of_choices(all.len(), &choices),
-                Asked::Number { .. } => of_numbers(choices.clone()),
-            },
             votes: choices.len(),
             late: late.len(),
-            right,
+            advice: predict
+                .right
+                .as_ref()
+                .and_then(|right| advice(right, &choices)),
+            bars: match &predict.asked {
+                Asked::Choice(all) => of_choices(all.len(), &choices),
+                Asked::Number { .. } => of_numbers(choices),
+            },
         }
-    }
-
-    /// What is right, how many said it, and what to do next.
-    pub fn advice(&self, predict: &Predict) -> Option<String> {
-        let percent = 100.0 * self.right?;
-        let next = match percent {
-            ..30.0 => "explain, then again",
-            ..=70.0 => "let them talk, then again",
-            _ => "go on",
-        };
-        let right = predict.right?;
-        Some(format!("right: {right}, {percent:.0} %: {next}"))
     }
 }
 
-fn of_choices(count: usize, choices: &[f64]) -> Vec<(String, usize)> {
-    let given = |number: usize| {
-        choices
-            .iter()
-            .filter(|choice| **choice == number as f64)
-            .count()
+fn advice(right: &Right, choices: &[f64]) -> Option<String> {
+    let hits = choices.iter().filter(|choice| right.takes(**choice));
+    let percent = 100 * hits.count() / Some(choices.len()).filter(|all| *all > 0)?;
+    let next = match percent {
+        ..30 => "explain, then again",
+        30..=70 => "let them talk, then again",
+        _ => "go on",
     };
+    let right = match right {
+        Right::Choice(number) => number.to_string(),
+        Right::Number { value, within } => format!("{} ± {}", shortest(*value), shortest(*within)),
+    };
+    Some(format!("right: {right}, {percent} %: {next}"))
+}
+
+fn of_choices(count: usize, choices: &[f64]) -> Vec<(String, usize)> {
+    let given = |number: usize| choices.iter().filter(|it| **it == number as f64).count();
     (1..=count)
         .map(|number| (number.to_string(), given(number)))
         .collect()
@@ -128,15 +153,16 @@ pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
     Paragraph::new(Kind::Code, bars.iter().map(line).collect::<String>())
 }
 
-/// The question of `page` that the class is at: the first that is not closed, or else the last.
+/// The question of `page` that the class is at: the first that is not closed, or else the first.
 pub fn question<'a>(page: &'a Page, state: &State) -> Option<(&'a Predict, Question)> {
     let asked = |predict: &'a Predict| (predict, state.question(&predict.name));
-    let mut all: Vec<_> = page.predicts().map(asked).collect();
-    let open = all
-        .iter()
-        .position(|(_, question)| question.stage != Stage::Closed);
-    let last = all.len().checked_sub(1)?;
-    Some(all.swap_remove(open.unwrap_or(last)))
+    let mut all = page.predicts().map(asked);
+    let first = all.next()?;
+    if first.1.stage != Stage::Closed {
+        return Some(first);
+    }
+    let open = all.find(|(_, question)| question.stage != Stage::Closed);
+    Some(open.unwrap_or(first))
 }
 
 const COLUMNS: [&str; 8] = [
@@ -157,10 +183,18 @@ pub fn csv(folder: &Folder) -> Result<String, csv::Error> {
                 &shortest(vote.choice),
                 &vote.late.to_string(),
                 &vote.page.to_string(),
-                &vote.time(),
+                &time(vote),
             ])?;
         }
     }
-    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    let bytes = writer
+        .into_inner()
+        .map_err(csv::IntoInnerError::into_error)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// The time of `vote`, as RFC 3339 writes it.
+fn time(vote: &Vote) -> String {
+    let time = DateTime::<Utc>::from_timestamp(vote.time_unix_s as i64, 0).unwrap_or_default();
+    time.format("%Y-%m-%dT%H:%M:%SZ").to_string()
 }

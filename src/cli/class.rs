@@ -7,8 +7,9 @@ use super::{print, progress, sessions, tell};
 use crate::class::folder::Folder;
 use crate::class::student::Student;
 use crate::class::teacher::Teacher;
-use crate::class::{Class, Seat, board, login, votes};
+use crate::class::{Seat, board, login, votes};
 use crate::export::Destination;
+use crate::lessons::class::KeptLessons;
 use crate::lessons::clock::unix_s;
 use crate::lessons::{handout, reading};
 use crate::storage::confined::{Confined, MOST_OF_SEAT};
@@ -54,15 +55,14 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     folder.make_teacher().map_err(anyhow::Error::msg)?;
     let confined = Confined::enter(&args.folder).with_context(|| sessions::named(&args.folder))?;
     let confined = confined.keeping_in(folder.teacher());
-    let before = folder
-        .state()
-        .map_err(anyhow::Error::msg)?
-        .unwrap_or_default();
+    let sessions = session::list(&folder.teacher())?;
     ensure!(
-        !(before.is_on && folder.is_teacher_alive()),
+        !sessions.iter().any(|session| session.is_in_use),
         "a class is on in {}: its board is gyrolab class --board --folder DIR",
         Shown(&folder.root)
     );
+    let before = folder.state().map_err(anyhow::Error::msg)?;
+    let before = before.unwrap_or_default();
     let (name, page) = match &args.lesson {
         Some(name) => (reading::full_name(name), 1),
         None if before.lesson.is_empty() => {
@@ -77,20 +77,17 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
             .context("the lesson of a class lies in its folder")?;
     }
     let lesson = reading::open(&name)?;
-    let has_session = session::list(&folder.teacher()).is_ok_and(|sessions| !sessions.is_empty());
     let workbench = WorkbenchArgs {
         paused: true,
         look: args.look,
-        resume: (args.resume && has_session).then(String::new),
+        resume: (args.resume && !sessions.is_empty()).then(String::new),
         ..WorkbenchArgs::default()
     };
+    let back = Shown(&args.folder);
+    let back = format!("gyrolab class --resume --folder {back} goes on");
     let entrance = Entrance {
         lesson: Some((&lesson, page.min(lesson.pages.len()))),
-        class: Class::Teacher(Box::new(Teacher::new(folder, before))),
-        back: Some(format!(
-            "gyrolab class --resume --folder {} goes on",
-            Shown(&args.folder)
-        )),
+        role: Some((Box::new(Teacher::new(folder, before)), back)),
     };
     open_at(&workbench, DEFAULT, Some(confined), entrance)
 }
@@ -111,13 +108,14 @@ fn answers(folder: &Folder, output: &Path, force: bool, look: Look) -> anyhow::R
     let mut files = 0;
     for seat in folder.all_seats() {
         let record = seat.record().unwrap_or_default();
+        let kept = KeptLessons::read(&record.lessons).unwrap_or_default();
         let mut text = String::new();
-        for (name, place) in record.kept().lessons {
-            let Some(lesson) = folder
-                .lesson(&name)
-                .filter(|_| !place.predictions.is_empty())
-            else {
+        for (name, place) in kept.lessons {
+            if place.predictions.is_empty() {
                 continue;
+            }
+            let Ok(lesson) = reading::open(&name) else {
+                continue; // its file is gone
             };
             let mut meter = interruption.meter();
             text += &handout::answers(&lesson, &place, new_lab(look)?, &mut meter)
@@ -147,11 +145,8 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
     // The teacher reads what the seat writes, and nobody else does; no file takes more than a seat may.
     rustix::process::umask(rustix::fs::Mode::from_raw_mode(0o027));
     let mut limit = rustix::process::getrlimit(Resource::Fsize);
-    limit.current = Some(
-        limit
-            .current
-            .map_or(MOST_OF_SEAT, |now| now.min(MOST_OF_SEAT)),
-    );
+    let now = limit.current.unwrap_or(MOST_OF_SEAT);
+    limit.current = Some(now.min(MOST_OF_SEAT));
     rustix::process::setrlimit(Resource::Fsize, limit)?;
     let folder = Folder::open(dir).map_err(anyhow::Error::msg)?;
     let Some(seat) = asked(&folder)? else {
@@ -175,8 +170,7 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
     let student = Student::new(folder, seat, holds, record);
     let entrance = Entrance {
         lesson: None,
-        class: Class::Student(Box::new(student)),
-        back: Some(back),
+        role: Some((Box::new(student), back)),
     };
     open_at(&args, DEFAULT, Some(confined), entrance)
 }

@@ -5,7 +5,7 @@ use super::new_lab::{DEFAULT, of_workbench, variable};
 use super::sessions::{self, begun, come_back, come_back_to, tell_of_session};
 use super::show::{ShowArgs, print_picture};
 use super::{settings, tell};
-use crate::class::Class;
+use crate::class::{Alone, Role};
 use crate::lab::Lab;
 use crate::lab::command;
 use crate::lab::view::FPS;
@@ -48,9 +48,8 @@ pub(super) fn open_lesson(
 pub(super) struct Entrance<'a> {
     /// A lesson, and the number of its page.
     pub(super) lesson: Option<(&'a Lesson, usize)>,
-    pub(super) class: Class,
-    /// What is said at the end of how to come back, where that is not by the session.
-    pub(super) back: Option<String>,
+    /// Its role in a class, and what is said at the end of how to come back to that.
+    pub(super) role: Option<(Box<dyn Role>, String)>,
 }
 
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
@@ -103,7 +102,7 @@ pub(super) fn open_at(
     entrance: Entrance<'_>,
 ) -> anyhow::Result<ExitCode> {
     let lesson = entrance.lesson;
-    let mut class = entrance.class;
+    let (mut role, back) = entrance.role.unwrap_or((Box::new(Alone), String::new()));
     // A write past `ulimit -f` fails then, like one to a full disk, and does not end the process.
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     let commands = args.commands.as_deref().map(command::open).transpose()?;
@@ -121,8 +120,12 @@ pub(super) fn open_at(
         lab.settings.folder = Some(folder);
     }
     furnish(&mut lab, args, confined)?;
-    let is_alone = matches!(class, Class::None) && lesson.is_none();
-    if is_alone && commands.is_none() && args.scenario.is_none() && args.resume.is_none() {
+    if lesson.is_none()
+        && back.is_empty()
+        && commands.is_none()
+        && args.scenario.is_none()
+        && args.resume.is_none()
+    {
         lab.play_on();
     }
     lab.set_trouble(session.as_ref().err().cloned());
@@ -130,26 +133,17 @@ pub(super) fn open_at(
     if let Some(commands) = commands {
         lab.take_commands(commands);
     }
-    if let Class::Student(student) = &class {
-        lab.lessons = student.lessons().or(lab.lessons); // its file is never older than the session
-    }
+    role.begin(&mut lab);
     let mut lessons = lessons(&mut lab, lesson)?;
-    let ran = app::run(&mut lab, &mut lessons, &mut class, session.as_ref().ok());
+    let ran = app::run(&mut lab, &mut lessons, &mut *role, session.as_ref().ok());
     ran.context("the terminal cannot be used")?;
     tell_of_exports(&lab)?;
-    let Some(back) = entrance.back else {
+    if back.is_empty() {
         tell_of_session(session, args.folder.as_deref())?;
         return Ok(ExitCode::SUCCESS);
-    };
-    drop(session);
-    match &mut class {
-        Class::None => {}
-        Class::Teacher(teacher) => teacher.leave().map_err(anyhow::Error::msg)?,
-        Class::Student(student) => {
-            student.leave();
-            tell(student.ended.as_deref().unwrap_or_default());
-        }
     }
+    drop(session);
+    tell(role.leave().map_err(anyhow::Error::msg)?);
     super::print(&format!("{back}\n"))
 }
 

@@ -96,10 +96,7 @@ impl Lab {
             Action::Accept => return Ok(self.accept()),
             Action::Help => self.popups.toggle_help(),
             Action::Close => return Ok(self.close(&cleared)),
-            Action::Class => {
-                let rule = "this is no lab of a class: gyrolab man class says how one begins";
-                return Err(rule.to_owned());
-            }
+            Action::Class => return Ok(Some(Request::Class)),
             Action::Lesson(key) => return Ok(Some(Request::Lesson(key))),
             Action::Redraw => return Ok(Some(Request::Redraw)),
             Action::Suspend if self.files.confined().is_some() => {

@@ -38,10 +38,23 @@ pub struct Dress {
     pub framed: String,
     /// What stands in the lower line of the frame, also a form a line.
     pub border: String,
+    /// Whether a digit is the class's.
+    pub asks_digit: bool,
     /// What stands below the question of this name.
     pub votes: Option<(String, Vec<Paragraph>)>,
     /// What stands there instead of the page.
     pub instead: Option<Vec<Paragraph>>,
+}
+
+/// What a class that is followed shows of a lesson: its name and checksum, the page, the numbers that were kept, and
+/// whether its run has arrived where the page wants it.
+#[derive(Clone, Copy, Debug)]
+pub struct Followed<'a> {
+    pub lesson: &'a str,
+    pub sum: u32,
+    pub page: usize,
+    pub kept: &'a Kept,
+    pub has_arrived: bool,
 }
 
 #[derive(Debug, Default)]
@@ -232,25 +245,23 @@ impl Class {
         own.chain(shipped).chain(files).collect()
     }
 
-    pub fn set_dress(&mut self, dress: Dress) {
-        self.has_changed |= self.dress != dress;
-        self.dress = dress;
+    pub fn set_dress(&mut self, dress: Dress, lab: &mut Lab) {
+        if self.dress != dress {
+            self.dress = dress;
+            self.show(lab);
+        }
     }
 
-    /// Shows the page `page` of the lesson `name` as a class does: the run is not touched, and the page's numbers, with those
-    /// that the lesson has `kept`, are stated once it `has_arrived`.
-    pub fn follow(
-        &mut self,
-        (name, page): (&str, usize),
-        kept: &Kept,
-        has_arrived: bool,
-        lab: &mut Lab,
-    ) -> Result<(), String> {
-        if self.taken().is_none_or(|taken| taken.lesson.name != name) {
-            self.take(name, lab)?;
+    /// Shows the page of `class`: the run is not touched, and the page's numbers are stated once the class has arrived.
+    pub fn follow(&mut self, class: &Followed<'_>, lab: &mut Lab) -> Result<(), String> {
+        if self
+            .taken()
+            .is_none_or(|taken| taken.lesson.name != class.lesson)
+        {
+            self.take(class.lesson, lab)?;
         }
         if let Shown::Lesson(taken) = &mut self.shown
-            && taken.follow(page, kept, has_arrived)
+            && taken.follow(class)
         {
             self.show(lab);
             lab.view_mut().turn_to_sheet();

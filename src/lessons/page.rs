@@ -80,6 +80,7 @@ pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> S
     }
     writer.notes(now);
     writer.page();
+    writer.sheet.asks_number |= dress.asks_digit;
     writer.sheet
 }
 
@@ -135,11 +136,8 @@ impl Writer<'_> {
                 Block::Predict(predict) => {
                     let first = self.sheet.paragraphs.len();
                     self.question(predict);
-                    if let Some((_, votes)) = self
-                        .dress
-                        .votes
-                        .as_ref()
-                        .filter(|(name, _)| *name == predict.name)
+                    if let Some((name, votes)) = &self.dress.votes
+                        && *name == predict.name
                     {
                         self.extend(votes.clone());
                         self.sheet.seen = None;
@@ -201,11 +199,7 @@ impl Writer<'_> {
         self.extend(paragraphs(&source, &Kind::Result));
         if place.predictions.answer(&compare.prediction).is_none() {
             let pages = &mut lesson.pages.iter();
-            let asks = |page: &&Page| {
-                let mut predicts = page.predicts();
-                predicts.any(|predict| predict.name == compare.prediction)
-            };
-            if let Some(page) = pages.find(asks) {
+            if let Some(page) = pages.find(|page| page.asks(&compare.prediction)) {
                 let text = format!("You predicted nothing: page {} asks for it.", page.number);
                 self.add(Paragraph::new(Kind::Hint, text));
             }

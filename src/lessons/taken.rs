@@ -2,7 +2,7 @@
 
 mod keys;
 
-use super::Kept;
+use super::class::Followed;
 use super::clock::{self, Clock};
 use super::lesson::{Answer, Block, Compare, Lesson, Page, Predict};
 use super::names::value;
@@ -41,8 +41,8 @@ pub struct Taken {
     /// Whether the hints of the page's checks are shown.
     pub shows_hints: bool,
     under_way: Option<UnderWay>,
-    /// In a class that is followed: whether its run has arrived where the page wants it.
-    pub(super) follows: Option<bool>,
+    /// In a class that is followed: whether its run has arrived where the page wants it, and the checksum of its lesson.
+    pub(super) follows: Option<(bool, u32)>,
     /// The question that is asked once more, though it is answered.
     pub(super) again: Option<String>,
     /// The answer to that question, and its name.
@@ -118,15 +118,20 @@ impl Taken {
         !self.place.predictions.is_locked(predict) || self.again.as_ref() == Some(&predict.name)
     }
 
-    /// Shows the page `page` without touching the run. Returns whether that is new.
-    pub(super) fn follow(&mut self, page: usize, kept: &Kept, has_arrived: bool) -> bool {
-        let page = page.clamp(1, self.lesson.pages.len().max(1));
-        let is_new = self.place.page != page || self.follows.is_none();
+    /// Shows the page of `class` without touching the run. Returns whether that is new.
+    pub(super) fn follow(&mut self, class: &Followed<'_>) -> bool {
+        let page = class.page.clamp(1, self.lesson.pages.len().max(1));
+        let before = self.follows.replace((class.has_arrived, class.sum));
+        let is_new = self.place.page != page || before.is_none();
         if is_new {
             self.turn_to(page);
         }
-        self.follows = Some(has_arrived);
-        self.place.kept.extend(kept.clone());
+        // The teacher has read the file anew: so does this lab, once.
+        let is_edited = class.sum != self.lesson.sum && before.map(|it| it.1) != Some(class.sum);
+        if let Some(watch) = self.watch.as_mut().filter(|_| is_edited) {
+            watch.look_again();
+        }
+        self.place.kept.extend(class.kept.clone());
         is_new
     }
 
@@ -301,7 +306,7 @@ impl Taken {
 
     /// States the page's numbers once the run has arrived.
     fn state(&mut self, lab: &Lab) -> bool {
-        let has_arrived = self.follows.unwrap_or(true)
+        let has_arrived = self.follows.is_none_or(|(has_arrived, _)| has_arrived)
             && self.under_way.is_none()
             && lab.script().is_done()
             && lab.player().playback.steps_to_go().is_none();
@@ -310,12 +315,12 @@ impl Taken {
         }
         self.place.stated = Some(stated(&self.lesson, &self.place, lab));
         let lesson = Arc::clone(&self.lesson);
-        let compares = lesson
-            .page(self.place.page)
-            .into_iter()
-            .flat_map(Page::compares);
+        let page = lesson.page(self.place.page);
+        let compares = page.into_iter().flat_map(Page::compares);
+        // What the page itself asks for comes out once it is answered.
         let names = compares.map(|compare| compare.prediction.clone());
-        self.place.seen.extend(names);
+        let told = names.filter(|name| !page.is_some_and(|page| page.asks(name)));
+        self.place.seen.extend(told);
         true
     }
 

@@ -74,22 +74,17 @@ impl Confined {
 
     /// Checks that the file `path` may be read: it lies in the folder, or in that of the class. Its full path is allowed.
     pub fn check_reading(&self, path: &Path) -> Result<(), String> {
-        let roots = [Some(&self.root), self.class.as_ref()];
-        let inside = roots.into_iter().flatten().find_map(|root| {
-            let root = root.clone();
-            let rest = path.strip_prefix(&root).ok()?.to_owned();
-            Some((
-                Self {
+        for root in [&self.root, self.class.as_ref().unwrap_or(&self.root)] {
+            if let Ok(rest) = path.strip_prefix(root) {
+                let root = root.clone();
+                return Self {
                     root,
                     ..self.clone()
-                },
-                rest,
-            ))
-        });
-        match inside {
-            Some((folder, rest)) => folder.check(&rest),
-            None => self.check(path),
+                }
+                .check(rest);
+            }
         }
+        self.check(path)
     }
 
     /// Checks that the file `path` may be written: as [`check`](Self::check), and a seat has room for it.
@@ -157,15 +152,15 @@ impl Confined {
 /// What the files in `folder` take together, bytes.
 fn size_of(folder: &Path) -> u64 {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let sizes = entries.filter_map(|entry| {
-        let there = entry.metadata().ok()?;
-        Some(if there.is_dir() {
-            size_of(&entry.path())
+    let there = entries.filter_map(|entry| Some((entry.path(), entry.metadata().ok()?)));
+    let size = |(path, there): (PathBuf, fs::Metadata)| {
+        if there.is_dir() {
+            size_of(&path)
         } else {
             there.len()
-        })
-    });
-    sizes.sum()
+        }
+    };
+    there.map(size).sum()
 }
 
 fn leads_out(path: &Path) -> String {

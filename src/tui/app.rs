@@ -1,15 +1,14 @@
 //! The main loop: it carries out what keys mean, advances the run with time, and draws a frame when something has changed.
 
-use crate::class::Class;
-use crate::lab::action::{Action, Direction, LessonKey};
+use crate::class::Role;
+use crate::lab::action::{Direction, LessonKey};
 use crate::lab::{Lab, Request};
 use crate::lessons::Class as Lessons;
 use crate::storage::session::Session;
 use crate::tui::decoder::Typed;
-use crate::tui::keymap::{Does, Key};
 use crate::tui::mouse::Pointer;
 use crate::tui::pacing::Pacing;
-use crate::tui::press::{meaning_of, press};
+use crate::tui::press::press;
 use crate::tui::screen;
 use crate::tui::terminal::{Event, Screen};
 use ratatui::layout::Rect;
@@ -22,12 +21,15 @@ const IDLE: Duration = Duration::from_millis(500);
 /// The same while something is done in the background: an export, a file read for the browser, a search for advice.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
-/// Runs `lab` with its `lessons`, in a `class` or without one, on the terminal until the user leaves. It saves the lab in
+/// Shortest wait until the files of a class are looked at again.
+const LEAST: Duration = Duration::from_millis(10);
+
+/// Runs `lab` with its `lessons`, in its role in a class, on the terminal until the user leaves. It saves the lab in
 /// `session`, if given.
 pub fn run(
     lab: &mut Lab,
     lessons: &mut Lessons,
-    class: &mut Class,
+    role: &mut dyn Role,
     session: Option<&Session>,
 ) -> io::Result<()> {
     let mut screen = Screen::enter()?;
@@ -39,43 +41,33 @@ pub fn run(
         screen.set_mouse(lab.view().mouse)?;
         pacing.set_rate(lab.view().fps);
         let wait = wait(lab, lessons, pacing.wait(begin.elapsed()));
-        let wait = class
-            .wait(begin.elapsed())
-            .map_or(wait, |class| class.min(wait));
+        let look = role.next_look().unwrap_or(Duration::MAX);
+        let wait = wait.min(look.saturating_sub(begin.elapsed()).max(LEAST));
         let events = screen.events(wait)?;
         let acted = !events.is_empty();
         for event in events {
-            let taken = matches!(event, Event::Typed(Typed::Key(key))
-                if class_takes(key, lab, (lessons, class), screen.size()?));
-            if !taken
-                && handle(
-                    event,
-                    lab,
-                    (lessons, class),
-                    &mut screen,
-                    &mut pointer,
-                    session,
-                )?
-                .is_break()
-            {
+            let (screen, pointer) = (&mut screen, &mut pointer);
+            if handle(event, lab, lessons, role, screen, pointer, session)?.is_break() {
                 return Ok(());
             }
+        }
+        if acted {
+            role.acted(lab, lessons);
         }
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
         let was_on_its_way = lab.player().playback.steps_to_go().is_some();
         lab.advance(&mut || begin.elapsed());
         let has_arrived = was_on_its_way && lab.player().playback.steps_to_go().is_none();
-        let is_over = class.advance(begin.elapsed(), lab, lessons).is_break();
+        let is_over = role.advance(begin.elapsed(), lab, lessons).is_break();
         lessons.advance(begin.elapsed(), lab);
-        if is_over {
-            keep(lab, class, session);
-            return Ok(());
-        }
         if lab.has_changed() {
             screen::refit(lab, screen.size()?);
         }
-        keep(lab, class, session);
+        keep(lab, role, session);
+        if is_over {
+            return Ok(());
+        }
         let now = begin.elapsed();
         // The answer to a key is drawn at once, without waiting for the next frame; so is the step that was asked for.
         if (acted || has_arrived || pacing.is_due(now)) && lab.take_changed() {
@@ -85,35 +77,13 @@ pub fn run(
     }
 }
 
-/// Tells `class` what `key` is about to do. Returns whether that was the class's, and is done.
-fn class_takes(
-    key: Key,
-    lab: &mut Lab,
-    (lessons, class): (&mut Lessons, &mut Class),
-    size: Rect,
-) -> bool {
-    match meaning_of(key, lab) {
-        Some(Does::Action(Action::Lesson(LessonKey::Next))) if screen::page_goes_on(lab, size) => {
-            false // it scrolls
-        }
-        Some(Does::Action(action)) => class.takes(action, lab, lessons),
-        Some(Does::Commands(meant)) => {
-            if let Ok(commands) = meant(lab, lab.popups().count) {
-                class.expect(&commands, lab, lessons);
-            }
-            false
-        }
-        None => false,
-    }
-}
-
 /// Saves the state of `lab` in `session`, and shows a message as long as saving fails.
-fn keep(lab: &mut Lab, class: &Class, session: Option<&Session>) {
+fn keep(lab: &mut Lab, role: &dyn Role, session: Option<&Session>) {
     let Some(session) = session else {
         return;
     };
     session.note(lab.content());
-    lab.set_trouble(class.trouble().or_else(|| session.trouble()));
+    lab.set_trouble(role.trouble().or_else(|| session.trouble()));
 }
 
 /// Panics for tests of how the program ends; it is compiled with debug assertions only. `GYROLAB_PANIC_AFTER_MS=1000` makes
@@ -155,7 +125,8 @@ fn wait(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
 fn handle(
     event: Event,
     lab: &mut Lab,
-    (lessons, class): (&mut Lessons, &mut Class),
+    lessons: &mut Lessons,
+    role: &mut dyn Role,
     screen: &mut Screen,
     pointer: &mut Pointer,
     session: Option<&Session>,
@@ -176,16 +147,19 @@ fn handle(
         }
     };
     if matches!(request, Some(Request::Quit | Request::Suspend)) {
-        keep(lab, class, session); // what was pressed just before it came with it
+        keep(lab, role, session); // what was pressed just before it came with it
     }
     let size = screen.size()?;
-    if let Some(Request::Lesson(key)) = request
-        && class.takes_key(key, lab)
-    {
-        return Ok(ControlFlow::Continue(()));
-    }
-    match request.and_then(|request| do_in_class(request, lab, lessons, size)) {
+    let request = match request {
+        Some(Request::Lesson(key)) if role.takes(key, lab, lessons) => None,
+        request => request.and_then(|request| do_in_class(request, lab, lessons, size)),
+    };
+    match request {
         None | Some(Request::Lesson(_) | Request::Answer(_)) => {
+            return Ok(ControlFlow::Continue(()));
+        }
+        Some(Request::Class) => {
+            role.act(lab, lessons);
             return Ok(ControlFlow::Continue(()));
         }
         Some(Request::Quit) => return Ok(ControlFlow::Break(())),

@@ -5,19 +5,13 @@ use super::panes::{self, help};
 use crate::lab::action::{Action, LessonKey};
 use crate::lab::{Lab, Request};
 
-/// What `key` does now, if it does anything.
-pub fn meaning_of(key: Key, lab: &Lab) -> Option<Does> {
-    keymap::meaning(panes::keys_of(lab), lab.popups().mode, key)
-}
-
-/// Does what `key` means, or shows a message that it means nothing.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     let mode = lab.popups().mode;
     let mut own = panes::keys(lab.view().focus).iter();
     if own.any(|row| row.modes.contains(&mode) && row.keys.contains(&key)) {
         lab.view_mut().is_touched = true;
     }
-    match meaning_of(key, lab) {
+    match keymap::meaning(panes::keys_of(lab), mode, key) {
         Some(Does::Action(Action::DoEntry)) => help::do_entry(lab),
         Some(Does::Action(Action::Digit(digit))) if begins_number(lab) => {
             lab.update(Action::Lesson(LessonKey::Digit(digit)))

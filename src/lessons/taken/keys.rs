@@ -219,6 +219,8 @@ impl Taken {
         });
         let texts: Vec<_> = texts.collect();
         if let Some(stated) = &mut self.place.stated {
+            let told = (!texts.is_empty()).then(|| name.to_owned());
+            self.place.seen.extend(told);
             stated.extend(texts);
         }
     }
