@@ -3,8 +3,8 @@
 use super::folder::{Folder, Stage, State};
 use super::votes::{self, Sitting, Tally, present, sittings};
 use super::{login, unix_ms};
-use crate::lessons::text::Text;
-use crate::lessons::{Asked, Page, Predict, reading};
+use crate::lessons::page::told;
+use crate::lessons::{Predict, reading};
 use crate::text::number::counted;
 use crate::text::wrap::{columns, wrapped};
 use chrono::Local;
@@ -43,51 +43,31 @@ pub fn lines(folder: &Folder, width: usize) -> Vec<String> {
     board.iter().flat_map(fitted).collect()
 }
 
-/// The page: its questions with their votes, its notes, and the next page.
+/// The page in words, with the votes on its questions.
 fn of_page(state: &State, seats: &[Sitting]) -> Vec<String> {
-    let lesson = match reading::open(&state.lesson) {
-        Ok(lesson) => lesson,
-        Err(problems) => return vec![problems.to_string()],
+    let told = match reading::open(&state.lesson) {
+        Ok(lesson) => told(&lesson, state.page, |predict| {
+            of_rounds(predict, state, seats)
+        }),
+        Err(problems) => problems.to_string(),
     };
-    let Some(page) = lesson.page(state.page) else {
-        return Vec::new();
-    };
-    let (number, pages) = (page.number, lesson.pages.len());
-    let heading = format!("{number} of {pages} · {} · {}", page.heading, lesson.title);
-    let mut lines = vec![String::new(), heading];
-    for predict in page.predicts() {
-        lines.extend([String::new(), format!("? {}", blank(&predict.ask))]);
-        if let Asked::Choice(choices) = &predict.asked {
-            let named = (1..).zip(choices);
-            lines.extend(named.map(|(number, choice)| format!("  {number} {choice}")));
-        }
-        lines.extend(of_rounds(predict, state, seats));
-    }
-    let notes = page.notes().map(blank);
-    lines.extend(notes.flat_map(|notes| [String::new(), format!("| {notes}")]));
-    let next = lesson.page(page.number + 1);
-    lines.extend(next.map(|next: &Page| format!("next: {}", next.heading)));
-    lines
+    told.lines().map(str::to_owned).collect()
 }
 
 /// The votes on `predict`, a round after the other. While a round goes on nobody's choice is shown.
-fn of_rounds(predict: &Predict, state: &State, seats: &[Sitting]) -> Vec<String> {
+fn of_rounds(predict: &Predict, state: &State, seats: &[Sitting]) -> String {
     let question = state.question(&predict.name);
     let round_of = |round| {
         let tally = Tally::of(seats, &state.lesson, predict, round);
         let (votes, late) = (counted(tally.votes as u64, "vote"), tally.late);
-        let is_shown = round < question.round() || question.stage != Stage::Counted;
-        let bars = votes::drawn(&tally.bars).text();
-        let bars = bars.lines().map(str::to_owned).chain(tally.advice);
-        let bars = bars.filter(|_| is_shown).map(|bar| format!("    {bar}"));
-        let counts = format!("  round {round}: {votes}, {late} late");
-        [counts].into_iter().chain(bars).collect::<Vec<_>>()
+        let counts = format!("  round {round}: {votes}, {late} late\n");
+        if round == question.round() && question.stage == Stage::Counted {
+            return counts;
+        }
+        let advice = tally.advice.map(|advice| advice + "\n");
+        counts + &votes::drawn(&tally.bars).text() + &advice.unwrap_or_default()
     };
-    (1..=question.round()).flat_map(round_of).collect()
-}
-
-fn blank(text: &Text) -> String {
-    text.filled(|_, _| "…".to_owned()).trim().to_owned()
+    (1..=question.round()).map(round_of).collect()
 }
 
 /// The seats in columns, and the names that are locked.

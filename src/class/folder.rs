@@ -26,7 +26,7 @@ const OF_TEACHER: u32 = 0o2750;
 
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Folder {
     /// The folder that the command line names, as a full path.
     pub root: PathBuf,

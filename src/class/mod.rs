@@ -58,7 +58,7 @@ pub trait Role {
     }
 
     /// Takes note of what keys have done.
-    fn acted(&mut self, _lab: &mut Lab, _lessons: &mut Lessons) {}
+    fn acted(&mut self, _lab: &mut Lab, _lessons: &Lessons) {}
 
     /// When the files are looked at next, on the clock of the lab.
     fn next_look(&self) -> Option<Duration> {

@@ -8,13 +8,15 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::time::Duration;
 
+/// It is raised when the form or the meaning of a seat's file changes.
+const FORMAT: u32 = 1;
 /// The longest file of a seat, bytes.
 const LONGEST: usize = 1 << 20;
 /// A seat is lost when its lab has given no sign for longer than this.
 const LOST: Duration = Duration::from_secs(10);
 
 /// A seat of a class.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Seat {
     /// Its word, such as `anna-4711`.
     pub word: String,
@@ -25,8 +27,8 @@ pub struct Seat {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Record {
-    /// The version that wrote it.
-    pub gyrolab: String,
+    /// The number of its format.
+    pub format: u32,
     /// Whether it has stepped aside from a class that follows.
     pub is_aside: bool,
     pub votes: Vec<Vote>,
@@ -99,18 +101,15 @@ impl Seat {
             return Ok(Record::default());
         };
         let record: Record = toml::from_str(&text).map_err(|_| "is damaged".to_owned())?;
-        if record.gyrolab == VERSION {
-            return Ok(record);
-        }
-        let version = record.gyrolab;
-        Err(format!(
-            "gyrolab {version} has written it, and this is {VERSION}"
-        ))
+        let is_own = record.format == FORMAT;
+        is_own
+            .then_some(record)
+            .ok_or_else(|| format!("another version of gyrolab wrote it, this is {VERSION}"))
     }
 
     pub fn save(&self, record: &Record) -> Result<(), String> {
         let record = Record {
-            gyrolab: VERSION.to_owned(),
+            format: FORMAT,
             ..record.clone()
         };
         let text = toml::to_string(&record).map_err(|error| error.to_string())?;

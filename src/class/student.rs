@@ -9,7 +9,7 @@ use crate::lab::command::{Command, Place};
 use crate::lab::view::Part;
 use crate::lessons::class::Dress;
 use crate::lessons::predictions::Predictions;
-use crate::lessons::taken::Taken;
+use crate::lessons::taken::{Taken, Voted};
 use crate::lessons::{Answer, Asked, Class as Lessons, Setup};
 use crate::playback::Playback;
 use crate::playback::pace::Speed;
@@ -23,7 +23,7 @@ use toml::Table;
 /// A run that plays is put right where it is more than this off, s of wall time.
 const OFF_S: f64 = 0.6;
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Student {
     folder: Folder,
     seat: Seat,
@@ -89,15 +89,7 @@ impl Student {
             holds,
             record,
             is_new: true,
-            state: None,
-            seen: None,
-            is_on: false,
-            shown: Shown::default(),
-            stood: None,
-            has_pinned: false,
-            ended: None,
-            next_look: Duration::ZERO,
-            trouble: None,
+            ..Self::default()
         }
     }
 
@@ -115,17 +107,10 @@ impl Student {
 
     /// Takes note of what was answered, and of the place in the lessons.
     fn note(&mut self, lab: &Lab, lessons: &mut Lessons) {
-        let again = lessons.take_vote();
-        if let Some(taken) = lessons.taken() {
-            let name = &taken.lesson.name;
-            let locked = taken.place.predictions.all();
-            let locked = locked.filter(|(question, _)| self.record.rounds_of(name, question) == 0);
-            let locked = locked.map(|(question, answer)| (question.clone(), answer.clone()));
-            for (question, answer) in locked.chain(again).collect::<Vec<_>>() {
-                let vote = self.vote(taken, question, &answer);
-                self.record.votes.extend(vote);
-                self.is_new = true;
-            }
+        for voted in lessons.take_votes() {
+            let vote = lessons.taken().and_then(|taken| self.vote(taken, voted));
+            self.record.votes.extend(vote);
+            self.is_new = true;
         }
         if let Some(kept) = &lab.lessons
             && *kept != self.record.lessons
@@ -135,31 +120,26 @@ impl Student {
         }
     }
 
-    /// The vote that `answer` to the question of this name is; `None` where the lesson no longer asks it.
-    fn vote(&self, taken: &Taken, question: String, answer: &Answer) -> Option<Vote> {
-        let (lesson, place) = (&taken.lesson, &taken.place);
-        let predict = lesson.predict(&question)?;
-        let choice = match (answer, &predict.asked) {
-            (Answer::Number(number), _) => *number,
+    fn vote(&self, taken: &Taken, voted: Voted) -> Option<Vote> {
+        let (lesson, question) = (taken.lesson.name.clone(), voted.question);
+        let choice = match (voted.answer, &taken.lesson.predict(&question)?.asked) {
+            (Answer::Number(number), _) => number,
             (Answer::Choice(words), Asked::Choice(choices)) => {
-                let at = choices.iter().position(|choice| choice == words)?;
-                at as f64 + 1.0
+                choices.iter().position(|choice| *choice == words)? as f64 + 1.0
             }
             (Answer::Choice(_), Asked::Number { .. }) => return None,
         };
-        let state = self.class().filter(|state| state.lesson == lesson.name);
+        let state = self.class().filter(|state| state.lesson == lesson);
         let asked = state.map(|state| state.question(&question));
         let asked = asked.unwrap_or_default();
-        let is_first = self.record.rounds_of(&lesson.name, &question) == 0;
-        let seen = if is_first { &place.late } else { &place.seen };
         Some(Vote {
-            lesson: lesson.name.clone(),
+            lesson,
+            question,
             round: asked.round(),
             choice,
-            late: seen.contains(&question) || asked.stage == Stage::Closed,
-            page: place.page,
+            late: voted.is_late || asked.stage == Stage::Closed,
+            page: taken.place.page,
             time_unix_s: unix_ms() / 1000,
-            question,
         })
     }
 
@@ -204,7 +184,7 @@ impl Student {
         let scenario = lab.player().run().scenario();
         let is_own = |(_, shown): &(_, _)| !Arc::ptr_eq(shown, scenario);
         if self.shown.run.as_ref().is_some_and(is_own) {
-            return self.step_aside(lab, lessons); // the run was changed here
+            return self.step_aside(lab); // the run was changed here
         }
         if self
             .shown
@@ -268,32 +248,21 @@ impl Student {
         }
     }
 
-    /// The question of the page, where the class is at a round of it that was not voted in here.
-    fn asked_again(&self, lessons: &Lessons) -> Option<String> {
-        let (state, taken) = self.class().zip(lessons.taken())?;
-        let page = taken.page().filter(|_| taken.lesson.name == state.lesson)?;
-        let (predict, question) = votes::question(page, state)?;
-        let voted = self.record.rounds_of(&state.lesson, &predict.name);
-        let is_open = question.stage != Stage::Closed && voted < question.round();
-        is_open.then(|| predict.name.clone())
-    }
-
+    /// What the class adds to the page.
     fn dress(&self, lessons: &Lessons) -> Dress {
         let Some((state, taken)) = self.class().zip(lessons.taken()) else {
             return Dress::default();
         };
         let (page, pages) = (taken.place.page, taken.lesson.pages.len());
-        let question = taken.page().filter(|_| taken.lesson.name == state.lesson);
-        let question = question.and_then(|page| votes::question(page, state));
-        let (on, of) = (
-            format!("the class is on {}", state.page),
-            format!("{page} of {pages}"),
-        );
+        let asked = taken.page().filter(|_| taken.lesson.name == state.lesson);
+        let asked = asked.and_then(|page| votes::question(page, state));
+        let of = format!("{page} of {pages}");
+        let on = format!("the class is on {}", state.page);
         let framed = if self.record.is_aside {
             format!("aside · {of} · {on}\naside on {page} · {on}")
         } else if !self.follows() {
             format!("{of} · {on}")
-        } else if state.page == page && question.is_some() {
+        } else if state.page == page && asked.is_some() {
             let answered = format!("following · {of} · {} of {}", state.answered, state.here);
             format!("{answered} answered\n{answered}")
         } else {
@@ -304,22 +273,29 @@ impl Student {
             (true, false) => "C: step aside",
             (false, _) => "",
         };
-        let votes = question.filter(|(_, question)| !question.bars.is_empty());
+        let again = asked.as_ref().filter(|(predict, question)| {
+            let voted = self.record.rounds_of(&state.lesson, &predict.name);
+            question.stage != Stage::Closed && voted < question.round()
+        });
+        let shown = asked
+            .as_ref()
+            .filter(|(_, question)| !question.bars.is_empty());
         Dress {
             framed,
             border: border.to_owned(),
-            votes: votes.map(|(predict, question)| {
+            is_followed: self.follows(),
+            again: again.map(|(predict, _)| predict.name.clone()),
+            votes: shown.map(|(predict, question)| {
                 (predict.name.clone(), vec![votes::drawn(&question.bars)])
             }),
             ..Dress::default()
         }
     }
 
-    fn step_aside(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+    fn step_aside(&mut self, lab: &mut Lab) {
         (self.record.is_aside, self.is_new) = (true, true);
         self.shown = Shown::default();
         self.next_look = Duration::ZERO;
-        lessons.unfollow();
         lab.tell("you have stepped aside: C leads back to the class");
     }
 
@@ -356,10 +332,7 @@ impl Role for Student {
             self.look(lab);
             if self.follows() {
                 self.follow(lab, lessons);
-            } else {
-                lessons.unfollow();
             }
-            lessons.ask_again(self.asked_again(lessons));
             lab.files_mut().note = self.note_for_exports(lessons);
             lessons.set_dress(self.dress(lessons), lab);
             if self.is_new && self.ended.is_none() {
@@ -374,13 +347,13 @@ impl Role for Student {
         ControlFlow::Continue(())
     }
 
-    fn act(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+    fn act(&mut self, lab: &mut Lab, _lessons: &mut Lessons) {
         if self.class().is_none() {
             lab.refuse("no class is on");
         } else if self.record.is_aside {
             self.come_back(lab);
         } else if self.follows() {
-            self.step_aside(lab, lessons);
+            self.step_aside(lab);
         } else {
             lab.refuse("the class is not followed now: n and N turn pages");
         }
@@ -395,14 +368,14 @@ impl Role for Student {
         is_of_teacher
     }
 
-    fn acted(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+    fn acted(&mut self, lab: &mut Lab, lessons: &Lessons) {
         if self.follows()
             && self
                 .stood
                 .as_ref()
                 .is_some_and(|it| *it != stand(lab, lessons))
         {
-            self.step_aside(lab, lessons);
+            self.step_aside(lab);
         }
     }
 

@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use toml::Table;
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Teacher {
     folder: Folder,
     state: State,
@@ -30,8 +30,9 @@ pub struct Teacher {
 }
 
 /// What the class's key has opened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Menu {
+    #[default]
     Closed,
     Open,
     /// The list of the seats, of which one is selected.
@@ -55,13 +56,8 @@ impl Teacher {
         Self {
             folder,
             state,
-            published: None,
             is_followed: true,
-            menu: Menu::Closed,
-            seats: Vec::new(),
-            run: None,
-            next_look: Duration::ZERO,
-            trouble: None,
+            ..Self::default()
         }
     }
 
@@ -151,12 +147,14 @@ impl Teacher {
         Dress {
             framed: framed.unwrap_or_default(),
             border: border.to_owned(),
+            is_of_teacher: true,
             asks_digit: self.menu == Menu::Open,
             votes: page.and_then(|page| self.votes(page)),
             instead: match self.menu {
                 Menu::Seats(selected) => Some(self.list(selected)),
                 _ => None,
             },
+            ..Dress::default()
         }
     }
 
@@ -269,7 +267,6 @@ impl Role for Teacher {
                 let full = "the disk of the class is full: votes cannot be kept";
                 self.trouble = Some(full.to_owned());
             }
-            lessons.waive();
             lessons.set_dress(self.dress(lessons), lab);
         }
         ControlFlow::Continue(())
@@ -305,7 +302,7 @@ impl Role for Teacher {
         true
     }
 
-    fn acted(&mut self, _lab: &mut Lab, _lessons: &mut Lessons) {
+    fn acted(&mut self, _lab: &mut Lab, _lessons: &Lessons) {
         self.next_look = Duration::ZERO;
     }
 

@@ -160,7 +160,7 @@ impl LengthArgs {
 #[derive(Debug, Args)]
 pub(super) struct ClassArgs {
     /// A shipped lesson's name, or a file (.md) in the folder
-    #[arg(required_unless_present_any = ["resume", "board", "votes", "answers"])]
+    #[arg(required_unless_present = "instead", conflicts_with = "instead")]
     pub(super) lesson: Option<String>,
 
     /// The folder of the class
@@ -168,24 +168,19 @@ pub(super) struct ClassArgs {
     pub(super) folder: PathBuf,
 
     /// Go on where the class was left: page, rounds and votes
-    #[arg(long, group = "instead", conflicts_with = "lesson")]
+    #[arg(long, group = "instead")]
     pub(super) resume: bool,
 
     /// Show the class on a second terminal: seats, votes, notes, the clock
-    #[arg(long, group = "instead", conflicts_with = "lesson")]
+    #[arg(long, group = "instead")]
     pub(super) board: bool,
 
     /// Print all votes as CSV
-    #[arg(long, group = "instead", conflicts_with = "lesson")]
+    #[arg(long, group = "instead")]
     pub(super) votes: bool,
 
     /// Write what each seat has predicted beside what came out, a Markdown file a seat
-    #[arg(
-        long,
-        group = "instead",
-        conflicts_with = "lesson",
-        requires = "output"
-    )]
+    #[arg(long, group = "instead", requires = "output")]
     pub(super) answers: bool,
 
     /// The folder for the answers

@@ -194,11 +194,8 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
         let path = Shown(&written.path);
         let rows = written.rows.map(|rows| format!(": {rows} rows"));
         let rows = rows.unwrap_or_default();
-        if lab.files().confined().is_some_and(Confined::is_seat) {
-            writeln!(stdout, "{path}{rows}; your teacher has it")?;
-            continue;
-        }
-        match exporting::scp_line(&written.path) {
+        let scp = exporting::scp_line(&written.path);
+        match scp.filter(|_| !lab.files().confined().is_some_and(Confined::is_seat)) {
             Some(line) => writeln!(
                 stdout,
                 "{path}{rows}; to fetch it, on your own computer:\n  {line}"

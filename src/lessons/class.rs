@@ -1,9 +1,8 @@
 //! The lessons of a lab: the list of them, the one that is taken, and where the others were left.
 
 use super::Kept;
-use super::lesson::Answer;
 use super::predictions::Place;
-use super::taken::Taken;
+use super::taken::{Taken, Voted};
 use super::{page, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
@@ -38,8 +37,13 @@ pub struct Dress {
     pub framed: String,
     /// What stands in the lower line of the frame, also a form a line.
     pub border: String,
-    /// Whether a digit is the class's.
+    /// Whether the page may be turned though its question is open, and whether a digit is the class's.
+    pub is_of_teacher: bool,
     pub asks_digit: bool,
+    /// Whether the class is followed.
+    pub is_followed: bool,
+    /// The question that is asked once more, though its prediction is locked.
+    pub again: Option<String>,
     /// What stands below the question of this name.
     pub votes: Option<(String, Vec<Paragraph>)>,
     /// What stands there instead of the page.
@@ -246,6 +250,11 @@ impl Class {
     }
 
     pub fn set_dress(&mut self, dress: Dress, lab: &mut Lab) {
+        if let Shown::Lesson(taken) = &mut self.shown {
+            taken.was_asked |= dress.is_of_teacher;
+            taken.again.clone_from(&dress.again);
+            taken.follows = taken.follows.filter(|_| dress.is_followed);
+        }
         if self.dress != dress {
             self.dress = dress;
             self.show(lab);
@@ -269,35 +278,11 @@ impl Class {
         Ok(())
     }
 
-    /// Goes on without a class.
-    pub fn unfollow(&mut self) {
-        if let Shown::Lesson(taken) = &mut self.shown {
-            taken.follows = None;
-        }
-    }
-
-    /// Asks the question of this name once more, though its prediction is locked.
-    pub fn ask_again(&mut self, question: Option<String>) {
-        if let Shown::Lesson(taken) = &mut self.shown
-            && taken.again != question
-        {
-            taken.again = question;
-            self.has_changed = true;
-        }
-    }
-
-    /// Lets the page be turned although its question is open: the teacher does not answer it.
-    pub fn waive(&mut self) {
-        if let Shown::Lesson(taken) = &mut self.shown {
-            taken.was_asked = true;
-        }
-    }
-
-    /// The answer to the question that was asked once more, and its name.
-    pub fn take_vote(&mut self) -> Option<(String, Answer)> {
+    /// The answers that were locked since this was last called.
+    pub fn take_votes(&mut self) -> Vec<Voted> {
         match &mut self.shown {
-            Shown::Lesson(taken) => taken.voted.take(),
-            _ => None,
+            Shown::Lesson(taken) => std::mem::take(&mut taken.votes),
+            _ => Vec::new(),
         }
     }
 

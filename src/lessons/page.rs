@@ -1,10 +1,11 @@
 //! The page of a lesson, and the list of lessons, as a sheet beside the panes.
 
 use super::class::Dress;
-use super::lesson::{Asked, Block, Check, Compare, Page, Predict};
+use super::lesson::{Asked, Block, Check, Compare, Lesson, Page, Predict};
 use super::markdown::paragraphs;
 use super::predictions::Place;
 use super::taken::Taken;
+use super::text::Text;
 use super::{names, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::sheet::{Kind, Paragraph, Sheet};
@@ -82,6 +83,32 @@ pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> S
     writer.page();
     writer.sheet.asks_number |= dress.asks_digit;
     writer.sheet
+}
+
+/// The page `number` in words for the one who teaches: its questions, each with what `after` says of it, its notes, and
+/// the next page.
+pub fn told(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> String) -> String {
+    let blank = |text: &Text| text.filled(|_, _| SOON.to_owned());
+    let mut text = format!("\n== {number} of {} · {}", lesson.pages.len(), lesson.title);
+    if let Some(page) = lesson.page(number) {
+        text += &format!("\n{}\n", page.heading);
+        for predict in page.predicts() {
+            text += &format!("\nasked: {}\n", blank(&predict.ask));
+            if let Asked::Choice(choices) = &predict.asked {
+                for (number, choice) in (1..).zip(choices) {
+                    text += &format!("  {number} {choice}\n");
+                }
+            }
+            text += &after(predict);
+        }
+        for notes in page.notes() {
+            text += &format!("\n{}\n", blank(notes).trim());
+        }
+    }
+    text + &match lesson.page(number + 1) {
+        Some(next) => format!("\nnext: {}", next.heading),
+        None => "\nthis is the last page".to_owned(),
+    }
 }
 
 struct Writer<'a> {

@@ -36,11 +36,6 @@ impl Predictions {
         self.locked.is_empty()
     }
 
-    /// The names of the questions that are answered, and the answers.
-    pub fn all(&self) -> impl Iterator<Item = (&String, &Answer)> {
-        self.locked.iter()
-    }
-
     pub fn answer(&self, name: &str) -> Option<&Answer> {
         self.locked.get(name)
     }

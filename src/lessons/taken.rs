@@ -45,8 +45,8 @@ pub struct Taken {
     pub(super) follows: Option<(bool, u32)>,
     /// The question that is asked once more, though it is answered.
     pub(super) again: Option<String>,
-    /// The answer to that question, and its name.
-    pub(super) voted: Option<(String, Answer)>,
+    /// The answers that were locked, until they are read.
+    pub(super) votes: Vec<Voted>,
     /// Whether turning the page was refused once, because a prediction is open.
     pub(super) was_asked: bool,
     /// The clock, where the teacher's notes are shown.
@@ -55,6 +55,14 @@ pub struct Taken {
     since: Duration,
     /// How long before that it was opened first.
     gone_before: Duration,
+}
+
+/// An answer that was locked to the question of this name, and whether its outcome had been seen.
+#[derive(Clone, Debug)]
+pub struct Voted {
+    pub question: String,
+    pub answer: Answer,
+    pub is_late: bool,
 }
 
 /// A block of a page that the lab carries out.
@@ -90,7 +98,7 @@ impl Taken {
             under_way: None,
             follows: None,
             again: None,
-            voted: None,
+            votes: Vec::new(),
             was_asked: false,
             clock: None,
             since: now,

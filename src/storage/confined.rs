@@ -52,6 +52,10 @@ impl Confined {
         Self { class, ..self }
     }
 
+    pub fn class(&self) -> Option<PathBuf> {
+        self.class.clone()
+    }
+
     pub fn is_seat(&self) -> bool {
         self.class.is_some()
     }

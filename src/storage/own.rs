@@ -49,8 +49,15 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
 /// Replaces the file at `path` by one that contains `text` and that is the user's alone. The file is complete at any
 /// moment; where the new one cannot be written, the old one stays.
 pub(super) fn replace(path: &Path, text: &str) -> io::Result<()> {
+    replace_with_mode(path, text, 0o600)
+}
+
+/// The same with this mode, whatever the umask is.
+pub(super) fn replace_with_mode(path: &Path, text: &str, mode: u32) -> io::Result<()> {
+    let mode = Permissions::from_mode(mode);
     let folder = path.parent().unwrap_or(Path::new("."));
-    let mut file = temporary::file_in(folder, &Permissions::from_mode(0o600))?;
+    let mut file = temporary::file_in(folder, &mode)?;
+    file.as_file().set_permissions(mode)?;
     file.as_file_mut().write_all(text.as_bytes())?; // whose errors do not speak of the temporary name
     file.persist(path)?;
     Ok(())

@@ -3,50 +3,37 @@
 //! may be able to write in that folder too.
 
 use super::own::{self, refused};
-use crate::export::temporary;
-use std::fs::{self, File, OpenOptions, Permissions};
-use std::io::{self, ErrorKind, Read, Write};
+use std::fs::{self, OpenOptions, Permissions};
+use std::io::{self, ErrorKind, Read};
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::Path;
 use std::time::SystemTime;
-
-/// The mode of a file: its owner writes it, the group reads it.
-const FILE: u32 = 0o640;
 
 /// Creates the folder with this mode if it does not exist; returns whether it did. One that exists keeps its mode.
 pub fn make_folder(path: &Path, mode: u32) -> io::Result<bool> {
     match fs::create_dir(path) {
         Ok(()) => fs::set_permissions(path, Permissions::from_mode(mode)).map(|()| true),
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-            if fs::symlink_metadata(path)?.is_dir() {
-                Ok(false)
-            } else {
-                Err(refused("it is not a folder"))
-            }
+            let is_folder = fs::symlink_metadata(path)?.is_dir();
+            is_folder
+                .then_some(false)
+                .ok_or(refused("it is not a folder"))
         }
         Err(error) => Err(error),
     }
 }
 
-fn open(path: &Path) -> io::Result<File> {
-    let file = own::open_regular(path, OpenOptions::new().read(true))?;
-    let owners = [
-        rustix::process::geteuid().as_raw(),
-        fs::symlink_metadata(path.parent().unwrap_or(Path::new(".")))?.uid(),
-    ];
-    if owners.contains(&file.metadata()?.uid()) {
-        Ok(file)
-    } else {
-        Err(refused("it belongs to another user"))
-    }
-}
-
 /// The text of the file at `path`; `None` where there is none. One of more than `most` bytes is refused.
 pub fn read(path: &Path, most: usize) -> io::Result<Option<String>> {
-    let file = match open(path) {
+    let file = match own::open_regular(path, OpenOptions::new().read(true)) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         file => file?,
     };
+    let folder = fs::metadata(path.parent().unwrap_or(Path::new(".")))?;
+    let owners = [rustix::process::geteuid().as_raw(), folder.uid()];
+    if !owners.contains(&file.metadata()?.uid()) {
+        return Err(refused("it belongs to another user"));
+    }
     let mut text = String::new();
     file.take(most as u64 + 1).read_to_string(&mut text)?;
     if text.len() > most {
@@ -58,13 +45,7 @@ pub fn read(path: &Path, most: usize) -> io::Result<Option<String>> {
 /// Replaces the file at `path` by one that contains `text`. The file is complete at any moment; where the new one cannot be
 /// written, the old one stays.
 pub fn replace(path: &Path, text: &str) -> io::Result<()> {
-    let mode = Permissions::from_mode(FILE);
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let mut file = temporary::file_in(folder, &mode)?;
-    file.as_file().set_permissions(mode)?;
-    file.as_file_mut().write_all(text.as_bytes())?;
-    file.persist(path)?;
-    Ok(())
+    own::replace_with_mode(path, text, 0o640)
 }
 
 /// Sets the time of the user's own file at `path` to now. It needs no room on the disk.
