@@ -32,7 +32,8 @@ use std::ops::ControlFlow;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// How often the files are looked at.
-pub const EVERY: Duration = Duration::from_millis(400);
+const EVERY: Duration = Duration::from_millis(400);
+const LEAST_WAIT: Duration = Duration::from_millis(10);
 
 /// What a class adds to a lab.
 pub trait Role {
@@ -60,9 +61,9 @@ pub trait Role {
     /// Takes note of what keys have done.
     fn acted(&mut self, _lab: &mut Lab, _lessons: &Lessons) {}
 
-    /// When the files are looked at next, on the clock of the lab.
-    fn next_look(&self) -> Option<Duration> {
-        None
+    /// How long the loop may wait until the files are looked at again.
+    fn wait(&self, _now: Duration) -> Duration {
+        Duration::MAX
     }
 
     /// Why the files cannot be written, if they cannot.

@@ -2,7 +2,7 @@
 
 use super::folder::{Folder, Run, Stage, State};
 use super::seat::{Record, Seat, Vote};
-use super::{EVERY, Role, unix_ms, votes};
+use super::{EVERY, LEAST_WAIT, Role, unix_ms, votes};
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
 use crate::lab::command::{Command, Place};
@@ -253,21 +253,8 @@ impl Student {
         let Some((state, taken)) = self.class().zip(lessons.taken()) else {
             return Dress::default();
         };
-        let (page, pages) = (taken.place.page, taken.lesson.pages.len());
         let asked = taken.page().filter(|_| taken.lesson.name == state.lesson);
         let asked = asked.and_then(|page| votes::question(page, state));
-        let of = format!("{page} of {pages}");
-        let on = format!("the class is on {}", state.page);
-        let framed = if self.record.is_aside {
-            format!("aside · {of} · {on}\naside on {page} · {on}")
-        } else if !self.follows() {
-            format!("{of} · {on}")
-        } else if state.page == page && asked.is_some() {
-            let answered = format!("following · {of} · {} of {}", state.answered, state.here);
-            format!("{answered} answered\n{answered}")
-        } else {
-            format!("following · {of}")
-        };
         let border = match (state.shown.is_some(), self.record.is_aside) {
             (true, true) => "C: back to the class",
             (true, false) => "C: step aside",
@@ -281,7 +268,7 @@ impl Student {
             .as_ref()
             .filter(|(_, question)| !question.bars.is_empty());
         Dress {
-            framed,
+            framed: self.title(state, taken, asked.is_some()),
             border: border.to_owned(),
             is_followed: self.follows(),
             again: again.map(|(predict, _)| predict.name.clone()),
@@ -289,6 +276,23 @@ impl Student {
                 (predict.name.clone(), vec![votes::drawn(&question.bars)])
             }),
             ..Dress::default()
+        }
+    }
+
+    /// The title of the page, a form a line; `asks` says whether the page has a question.
+    fn title(&self, state: &State, taken: &Taken, asks: bool) -> String {
+        let page = taken.place.page;
+        let of = format!("{page} of {}", taken.lesson.pages.len());
+        let on = format!("the class is on {}", state.page);
+        if self.record.is_aside {
+            format!("aside · {of} · {on}\naside on {page} · {on}")
+        } else if !self.follows() {
+            format!("{of} · {on}")
+        } else if state.page == page && asks {
+            let answered = format!("following · {of} · {} of {}", state.answered, state.here);
+            format!("{answered} answered\n{answered}")
+        } else {
+            format!("following · {of}")
         }
     }
 
@@ -379,8 +383,8 @@ impl Role for Student {
         }
     }
 
-    fn next_look(&self) -> Option<Duration> {
-        Some(self.next_look)
+    fn wait(&self, now: Duration) -> Duration {
+        self.next_look.saturating_sub(now).max(LEAST_WAIT)
     }
 
     fn trouble(&self) -> Option<String> {

@@ -2,7 +2,7 @@
 
 use super::folder::{Folder, LONGEST_RUN, Run, Stage, State, VERSION};
 use super::votes::{self, FEWEST, Sitting, Tally, present, sittings};
-use super::{EVERY, Role, login, unix_ms};
+use super::{EVERY, LEAST_WAIT, Role, login, unix_ms};
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
 use crate::lab::sheet::{Kind, Paragraph};
@@ -37,12 +37,6 @@ enum Menu {
     Open,
     /// The list of the seats, of which one is selected.
     Seats(usize),
-}
-
-/// An entry of the list of seats: a name that is locked by wrong codes, or a seat, by its number.
-enum Entry {
-    Locked(String),
-    Seat(usize),
 }
 
 impl Teacher {
@@ -183,29 +177,27 @@ impl Teacher {
         Some((predict.name.clone(), lines))
     }
 
-    fn entries(&self) -> Vec<Entry> {
-        let locked = login::locked(&self.folder, unix_ms() / 1000).into_iter();
-        let seats = (0..self.seats.len()).map(Entry::Seat);
-        locked.map(Entry::Locked).chain(seats).collect()
+    /// The names that are locked by wrong codes, then the words of the seats.
+    fn entries(&self) -> Vec<String> {
+        let mut entries = login::locked(&self.folder, unix_ms() / 1000);
+        entries.extend(self.seats.iter().map(|it| it.seat.word.clone()));
+        entries
     }
 
     fn list(&self, selected: usize) -> Vec<Paragraph> {
-        let line = |(index, entry): (usize, Entry)| {
-            let text = match &entry {
-                Entry::Locked(name) => format!("{name}: locked by wrong codes"),
-                Entry::Seat(number) => self.seats[*number].in_words(&self.state),
-            };
+        let line = |(index, entry): (usize, String)| {
+            let sitting = self.seats.iter().find(|it| it.seat.word == entry);
             let kind = Kind::Choice {
                 is_selected: index == selected,
-                is_given: text.ends_with("closed") || text.ends_with("codes"),
+                is_given: sitting.is_none() || self.state.closed.contains(&entry),
             };
+            let text = sitting.map(|sitting| sitting.in_words(&self.state));
+            let text = text.unwrap_or_else(|| format!("{entry}: locked by wrong codes"));
             Paragraph::new(kind, text)
         };
-        let lines: Vec<_> = self.entries().into_iter().enumerate().map(line).collect();
-        if lines.is_empty() {
-            return vec![Paragraph::new(Kind::Hint, "Nobody has taken a seat yet.")];
-        }
-        lines
+        let lines = self.entries().into_iter().enumerate().map(line);
+        let title = Paragraph::new(Kind::Heading, "The seats");
+        [title].into_iter().chain(lines).collect()
     }
 
     /// Does what the menu has under `digit`.
@@ -239,16 +231,14 @@ impl Teacher {
 
     /// Closes the selected seat, or opens it; lets a name that is locked try again.
     fn close_or_open(&mut self, selected: usize, lab: &mut Lab) {
-        match self.entries().get(selected) {
-            Some(Entry::Locked(name)) => self.folder.unlock(name),
-            Some(Entry::Seat(number)) => {
-                let word = self.seats[*number].seat.word.clone();
-                if !self.state.closed.remove(&word) {
-                    lab.refuse(format!("{word} is closed: Enter opens it again"));
-                    self.state.closed.insert(word);
-                }
-            }
-            None => {}
+        let Some(entry) = self.entries().into_iter().nth(selected) else {
+            return;
+        };
+        if login::name_of(&entry).is_none() {
+            self.folder.unlock(&entry);
+        } else if !self.state.closed.remove(&entry) {
+            lab.refuse(format!("{entry} is closed: Enter opens it again"));
+            self.state.closed.insert(entry);
         }
     }
 }
@@ -306,8 +296,8 @@ impl Role for Teacher {
         self.next_look = Duration::ZERO;
     }
 
-    fn next_look(&self) -> Option<Duration> {
-        Some(self.next_look)
+    fn wait(&self, now: Duration) -> Duration {
+        self.next_look.saturating_sub(now).max(LEAST_WAIT)
     }
 
     fn trouble(&self) -> Option<String> {

@@ -1,6 +1,7 @@
 //! `gyrolab class` and `gyrolab --seat`: a class in a folder.
 
 use super::args::{ClassArgs, Look, WorkbenchArgs};
+use super::lesson::admit;
 use super::new_lab::{DEFAULT, new_lab, refused};
 use super::workbench::{Entrance, open_at};
 use super::{print, progress, sessions, tell};
@@ -70,12 +71,7 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
         }
         None => (before.lesson.clone(), before.page.max(1)),
     };
-    if reading::is_file_name(&name) {
-        let inside = confined.check_reading(Path::new(&name));
-        inside
-            .map_err(anyhow::Error::msg)
-            .context("the lesson of a class lies in its folder")?;
-    }
+    admit(&name, &confined).context("the lesson of a class lies in its folder")?;
     let lesson = reading::open(&name)?;
     let workbench = WorkbenchArgs {
         paused: true,

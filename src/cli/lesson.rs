@@ -32,11 +32,8 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     let Some(name) = &args.name else {
         return print(&list(confined.as_ref())?);
     };
-    if let Some(folder) = confined.as_ref().filter(|_| reading::is_file_name(name)) {
-        let name = reading::full_name(name);
-        folder
-            .check_reading(Path::new(&name))
-            .map_err(anyhow::Error::msg)?;
+    if let Some(folder) = &confined {
+        admit(name, folder)?;
     }
     if args.answers {
         return notes::answers(args, name, confined.as_ref());
@@ -57,15 +54,25 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         return workbench::open_lesson(&lesson, page, args, confined);
     }
+    print_page(&lesson, page, args.look)
+}
+
+/// Checks that the lesson that NAME names comes with the program, or lies in `folder`.
+pub(super) fn admit(name: &str, folder: &Confined) -> anyhow::Result<()> {
+    if reading::is_file_name(name) {
+        let name = reading::full_name(name);
+        let inside = folder.check_reading(Path::new(&name));
+        inside.map_err(anyhow::Error::msg)?;
+    }
+    Ok(())
+}
+
+fn print_page(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCode> {
     tell(format_args!(
         "gyrolab: there is no terminal to open the lesson on, so page {} of {} is printed",
         page.number,
         lesson.pages.len()
     ));
-    print_page(&lesson, page, args.look)
-}
-
-fn print_page(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCode> {
     let interruption = progress::interruption()?;
     let mut walk = Walk::new(lesson, new_lab(look)?);
     let walked = walk.jump(page, &mut interruption.meter());

@@ -116,16 +116,10 @@ pub(super) fn open_at(
         None => (of_workbench(args, name)?, begun(folder.clone())),
     };
     chosen.tell(&mut lab);
-    if let Ok(folder) = folder {
-        lab.settings.folder = Some(folder);
-    }
+    lab.settings.folder = folder.ok();
     furnish(&mut lab, args, confined)?;
-    if lesson.is_none()
-        && back.is_empty()
-        && commands.is_none()
-        && args.scenario.is_none()
-        && args.resume.is_none()
-    {
+    let is_of_its_own = lesson.is_none() && back.is_empty() && commands.is_none();
+    if is_of_its_own && args.scenario.is_none() && args.resume.is_none() {
         lab.play_on();
     }
     lab.set_trouble(session.as_ref().err().cloned());

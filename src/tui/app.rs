@@ -21,9 +21,6 @@ const IDLE: Duration = Duration::from_millis(500);
 /// The same while something is done in the background: an export, a file read for the browser, a search for advice.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
-/// Shortest wait until the files of a class are looked at again.
-const LEAST: Duration = Duration::from_millis(10);
-
 /// Runs `lab` with its `lessons`, in its role in a class, on the terminal until the user leaves. It saves the lab in
 /// `session`, if given.
 pub fn run(
@@ -41,9 +38,7 @@ pub fn run(
         screen.set_mouse(lab.view().mouse)?;
         pacing.set_rate(lab.view().fps);
         let wait = wait(lab, lessons, pacing.wait(begin.elapsed()));
-        let look = role.next_look().unwrap_or(Duration::MAX);
-        let wait = wait.min(look.saturating_sub(begin.elapsed()).max(LEAST));
-        let events = screen.events(wait)?;
+        let events = screen.events(wait.min(role.wait(begin.elapsed())))?;
         let acted = !events.is_empty();
         for event in events {
             let (screen, pointer) = (&mut screen, &mut pointer);
@@ -56,9 +51,7 @@ pub fn run(
         }
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
-        let was_on_its_way = lab.player().playback.steps_to_go().is_some();
-        lab.advance(&mut || begin.elapsed());
-        let has_arrived = was_on_its_way && lab.player().playback.steps_to_go().is_none();
+        let has_arrived = advance(lab, begin);
         let is_over = role.advance(begin.elapsed(), lab, lessons).is_break();
         lessons.advance(begin.elapsed(), lab);
         if lab.has_changed() {
@@ -75,6 +68,13 @@ pub fn run(
             pacing.drawn(now, bytes, screen.size()?.area());
         }
     }
+}
+
+/// Advances the run. Returns whether it has arrived where it was to go.
+fn advance(lab: &mut Lab, begin: Instant) -> bool {
+    let was_on_its_way = lab.player().playback.steps_to_go().is_some();
+    lab.advance(&mut || begin.elapsed());
+    was_on_its_way && lab.player().playback.steps_to_go().is_none()
 }
 
 /// Saves the state of `lab` in `session`, and shows a message as long as saving fails.
@@ -131,21 +131,7 @@ fn handle(
     pointer: &mut Pointer,
     session: Option<&Session>,
 ) -> io::Result<ControlFlow<()>> {
-    let request = match event {
-        Event::Typed(Typed::Key(key)) => press(key, lab),
-        Event::Typed(Typed::Paste(text)) => {
-            lab.paste(&text);
-            None
-        }
-        Event::Typed(Typed::Mouse(mouse)) => pointer.act(mouse, screen.size()?, lab),
-        Event::Suspend => Some(Request::Suspend),
-        // A screen that was smaller for a moment has lost a part of its content, even if it has its old size again.
-        Event::Resized => Some(Request::Redraw),
-        Event::Resumed => {
-            screen.resume()?;
-            Some(Request::Redraw)
-        }
-    };
+    let request = request_of(event, lab, screen, pointer)?;
     if matches!(request, Some(Request::Quit | Request::Suspend)) {
         keep(lab, role, session); // what was pressed just before it came with it
     }
@@ -168,6 +154,30 @@ fn handle(
     }
     screen::fit(lab, screen.size()?); // all of it is to be drawn, at the size there is now
     Ok(ControlFlow::Continue(()))
+}
+
+/// Does in the lab what `event` means. Returns what only the main loop can do.
+fn request_of(
+    event: Event,
+    lab: &mut Lab,
+    screen: &mut Screen,
+    pointer: &mut Pointer,
+) -> io::Result<Option<Request>> {
+    Ok(match event {
+        Event::Typed(Typed::Key(key)) => press(key, lab),
+        Event::Typed(Typed::Paste(text)) => {
+            lab.paste(&text);
+            None
+        }
+        Event::Typed(Typed::Mouse(mouse)) => pointer.act(mouse, screen.size()?, lab),
+        Event::Suspend => Some(Request::Suspend),
+        // A screen that was smaller for a moment has lost a part of its content, even if it has its old size again.
+        Event::Resized => Some(Request::Redraw),
+        Event::Resumed => {
+            screen.resume()?;
+            Some(Request::Redraw)
+        }
+    })
 }
 
 /// Does what `request` asks of the lessons, on a screen of this `size`; gives back any other request.

@@ -27,11 +27,12 @@ fn sit(ground: &Ground, name: &str) -> (Terminal, String) {
 
 /// Votes for the second choice.
 fn vote(lab: &mut Terminal) {
-    lab.wait_for("[ ] stays as it is");
-    lab.press(DOWN);
-    lab.wait_for("> [ ] is about ten times smaller");
+    lab.wait_for("[ ] is about ten times smaller");
+    lab.ask(DOWN, "> [ ] stays as it is");
+    lab.ask(DOWN, "> [ ] is about ten times smaller");
+    lab.ask("\r", "> [x] is about ten times smaller");
     lab.press("\r");
-    lab.wait_for("[x] is about ten times smaller");
+    lab.wait_until("a locked vote", |lab| !lab.words().contains("> [x]"));
 }
 
 #[test]

@@ -55,11 +55,8 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let Some(sheet) = &view.sheet else {
         return;
     };
-    let forms = |forms: &str, width: u16| {
-        let forms = forms.lines().map(str::to_owned);
-        longest(forms, width.into())
-    };
-    let framed = forms(&sheet.framed, area.width.saturating_sub(4));
+    let room = area.width.saturating_sub(4).into();
+    let framed = longest(sheet.framed.lines().map(str::to_owned), room);
     let title = if framed.is_empty() {
         &sheet.title
     } else {
@@ -91,18 +88,17 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         height: 1,
         ..inside
     };
-    // What the border says of the class comes before the hint that there is more.
-    let room = border.width.saturating_sub(columns(more) as u16 + 3);
-    let said = forms(&sheet.border, room);
-    let fits = columns(&said) <= room.into();
-    if !said.is_empty() {
-        write(border, (0, 0), &format!(" {said} "), quiet, buf);
+    write_border(&sheet.border, more, border, quiet, buf);
+}
+
+/// Writes what the border says of the class, and `more` where it fits beside that.
+fn write_border(said: &str, more: &str, border: Rect, style: Style, buf: &mut Buffer) {
+    let room = border.width.saturating_sub(columns(more) as u16 + 1);
+    let said = longest(said.lines().map(|form| format!(" {form} ")), room.into());
+    write(border, (0, 0), &said, style, buf);
+    if columns(&said) <= room.into() && !more.is_empty() {
+        write(border, (room, 0), more, style, buf);
     }
-    if more.is_empty() || !fits {
-        return;
-    }
-    let x = border.width.saturating_sub(columns(more) as u16 + 1);
-    write(border, (x, 0), more, quiet, buf);
 }
 
 /// Scrolls the sheet of `lab`, whose pane has the area `place`, as a key does.
