@@ -7,7 +7,7 @@
 //! DIR/.gyrolab/wrong/anna                 wrong codes typed for that name
 //! ```
 //!
-//! Each file is written whole by one account and read by the other, twice a second. A run is deterministic: a student's
+//! Each file is written whole by one account and read by the other, three times a second. A run is deterministic: a student's
 //! lab computes what the teacher's shows.
 //!
 //! - [`folder`]: the folders, and the teacher's [`State`]; [`seat`]: the files of a seat; [`login`]: taking a seat.
@@ -32,7 +32,7 @@ use std::ops::ControlFlow;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// How often the files are looked at.
-const EVERY: Duration = Duration::from_millis(400);
+const EVERY: Duration = Duration::from_millis(300);
 const LEAST_WAIT: Duration = Duration::from_millis(10);
 
 /// What a class adds to a lab.

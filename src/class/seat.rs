@@ -12,8 +12,9 @@ use std::time::Duration;
 const FORMAT: u32 = 1;
 /// The longest file of a seat, bytes.
 const LONGEST: usize = 1 << 20;
-/// A seat is lost when its lab has given no sign for longer than this.
+/// A seat is lost when its lab has given no sign for longer than this, and away after an hour.
 const LOST: Duration = Duration::from_secs(10);
+const AWAY: Duration = Duration::from_secs(3600);
 
 /// A seat of a class.
 #[derive(Clone, Debug, Default)]
@@ -59,7 +60,7 @@ pub enum Presence {
     Here,
     /// Its lab gives no sign.
     Lost,
-    /// Its lab was left.
+    /// Its lab was left, or has given no sign for long.
     Away,
 }
 
@@ -150,9 +151,9 @@ impl Seat {
 
     pub fn presence(&self) -> Presence {
         match shared::modified(&self.file("open")) {
-            None => Presence::Away,
-            Some(sign) if ago(sign) > LOST => Presence::Lost,
-            Some(_) => Presence::Here,
+            Some(sign) if ago(sign) <= LOST => Presence::Here,
+            Some(sign) if ago(sign) <= AWAY => Presence::Lost,
+            _ => Presence::Away,
         }
     }
 }

@@ -164,7 +164,9 @@ impl Student {
         let was_on = self.is_on;
         let is_over = state.is_some_and(|state| !state.is_on);
         self.is_on = state.is_some() && !is_over && self.folder.is_teacher_alive();
-        if was_on && !self.is_on {
+        if self.is_on && !was_on {
+            lab.refuse("the class is on");
+        } else if was_on && !self.is_on {
             let what = if is_over {
                 "the class is over"
             } else {

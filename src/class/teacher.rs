@@ -61,7 +61,10 @@ impl Teacher {
         }
         match self.folder.publish(&self.state) {
             Ok(()) => self.published = Some(self.state.clone()),
-            Err(trouble) => self.trouble = Some(trouble),
+            Err(trouble) => {
+                self.trouble = Some(trouble);
+                self.folder.touch_state(); // the lab is there
+            }
         }
     }
 
@@ -158,20 +161,20 @@ impl Teacher {
         let (round, answered, here) = (question.round(), self.state.answered, self.state.here);
         let since_s = unix_ms().saturating_sub(question.since_ms) / 1000;
         let (minutes, seconds) = (since_s / 60, since_s % 60);
-        let line = format!("round {round} · {answered} of {here} · {minutes}:{seconds:02}");
+        let seen = match question.stage {
+            Stage::Counted | Stage::Teacher => "",
+            Stage::All => " · shown",
+            Stage::Closed => " · closed",
+        };
+        let line = format!("round {round} · {answered} of {here} · {minutes}:{seconds:02}{seen}");
         let mut lines = vec![Paragraph::new(Kind::Note, line)];
         if question.stage != Stage::Counted {
             let tally = Tally::of(&self.seats, &self.state.lesson, predict, round);
             let late = (tally.late > 0).then(|| format!("late: {}", tally.late));
-            let seen = match question.stage {
-                Stage::All if tally.votes < FEWEST => "under 5 votes the class sees no bars",
-                Stage::All => "the class sees these bars",
-                Stage::Closed => "closed",
-                Stage::Counted | Stage::Teacher => "you alone see these bars",
-            };
+            let is_withheld = question.stage == Stage::All && tally.votes < FEWEST;
+            let few = is_withheld.then(|| "under 5 votes the class sees no bars".to_owned());
             lines.push(votes::drawn(&tally.bars));
-            let words = [tally.advice, late, Some(seen.to_owned())];
-            let words = words.into_iter().flatten();
+            let words = [tally.advice, late, few].into_iter().flatten();
             lines.extend(words.map(|words| Paragraph::new(Kind::Note, words)));
         }
         Some((predict.name.clone(), lines))

@@ -253,7 +253,9 @@ impl Class {
         if let Shown::Lesson(taken) = &mut self.shown {
             taken.was_asked |= dress.is_of_teacher;
             taken.again.clone_from(&dress.again);
-            taken.follows = taken.follows.filter(|_| dress.is_followed);
+            if !dress.is_followed {
+                taken.unfollow();
+            }
         }
         if self.dress != dress {
             self.dress = dress;

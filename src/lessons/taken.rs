@@ -143,6 +143,12 @@ impl Taken {
         is_new
     }
 
+    /// Goes on without the class. Where its run had not arrived, the page is left as if its own run had been.
+    pub(super) fn unfollow(&mut self) {
+        let is_left = matches!(self.follows.take(), Some((false, _))) && self.is_under_way();
+        self.under_way = is_left.then_some(UnderWay::Left).or(self.under_way);
+    }
+
     /// Whether the check at this line of the file has held since the page was opened.
     pub fn has_reached(&self, line: usize) -> bool {
         self.reached.contains(&line)
@@ -163,10 +169,12 @@ impl Taken {
         self.under_way == Some(UnderWay::Left)
     }
 
-    /// Goes on with a page whose run was on its way when the page was left.
+    /// Goes on with a page whose run was on its way when the page was left, or had been left before it arrived.
     pub(super) fn go_on(&mut self, lab: &Lab) {
         if self.is_under_way() && !lab.script().is_done() {
             self.under_way = Some(UnderWay::Lab(self.place.page));
+        } else if self.plays() {
+            self.under_way = Some(UnderWay::Left);
         }
     }
 
