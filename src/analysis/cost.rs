@@ -59,7 +59,7 @@ fn has_closed_form(scenario: &Scenario) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::presets::scenario;
+    use crate::scenario::preset as scenario;
 
     #[test]
     fn strong_friction_is_as_dear_as_fast_turning() {

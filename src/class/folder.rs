@@ -1,10 +1,8 @@
 //! The folder of a class, and the state that the teacher's lab publishes in it.
 
-use super::login::name_of;
-use super::seat::Seat;
 use super::{ago, unix_ms};
 use crate::lessons::Kept;
-use crate::lessons::class::Followed;
+use crate::lessons::taken::Followed;
 use crate::playback::pace::Speed;
 use crate::storage::confined::SESSIONS;
 use crate::storage::shared;
@@ -198,15 +196,6 @@ impl Folder {
     /// Whether nothing more can be written.
     pub fn is_full(&self) -> bool {
         rustix::fs::statvfs(self.own()).is_ok_and(|there| there.f_bavail == 0)
-    }
-
-    /// The seats, in the order of their names.
-    pub fn all_seats(&self) -> Vec<Seat> {
-        let entries = fs::read_dir(self.seats()).into_iter().flatten().flatten();
-        let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-        let mut names: Vec<_> = names.filter(|name| name_of(name).is_some()).collect();
-        names.sort_unstable();
-        names.iter().map(|name| Seat::of(self, name)).collect()
     }
 
     /// `lesson` without the folder's path.

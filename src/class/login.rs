@@ -2,16 +2,12 @@
 //! name for a minute, for every login: they are counted in the folder.
 
 use super::Folder;
-use super::seat::Seat;
+use super::seat::{LONGEST_NAME, Seat, all_seats, is_name, name_of};
 use crate::storage::shared;
 use crate::text::printable::printable;
 use std::fs::{self, File};
 use std::hash::{BuildHasher, Hasher, RandomState};
 
-/// The most characters of a name.
-const LONGEST: usize = 24;
-/// The digits of a code.
-const DIGITS: usize = 4;
 /// The most seats of a class.
 pub const MOST_SEATS: usize = 200;
 /// After this many wrong codes a name is locked, and for how long, s.
@@ -21,19 +17,6 @@ const LOCKED_S: u64 = 60;
 pub const ASKS: &str = "A name for your seat (your teacher sees it, the others do not): ";
 const RULE: &str = "a name has letters, digits and hyphens, 24 at most; \
     the word of a seat ends in a hyphen and four digits, such as anna-4711";
-
-fn is_name(name: &str) -> bool {
-    let is_allowed = |c: char| c.is_alphanumeric() || c == '-';
-    let length = name.chars().count();
-    (1..=LONGEST).contains(&length) && name.chars().all(is_allowed) && !name.starts_with('-')
-}
-
-/// The name of a seat, if `word` is that of one.
-pub(super) fn name_of(word: &str) -> Option<&str> {
-    let (name, code) = word.rsplit_once('-')?;
-    let is_code = code.len() == DIGITS && code.bytes().all(|digit| digit.is_ascii_digit());
-    (is_code && is_name(name)).then_some(name)
-}
 
 /// The seat that `typed` asks for, and whether it is new.
 ///
@@ -45,14 +28,14 @@ pub fn take(folder: &Folder, typed: &str, now_unix_s: u64) -> Result<(Seat, bool
         Some(name) => come_back(folder, &typed, name, now_unix_s).map(|seat| (seat, false)),
         None if is_name(&typed) => begin(folder, &typed).map(|seat| (seat, true)),
         None => {
-            let shown: String = typed.chars().take(2 * LONGEST).collect();
+            let shown: String = typed.chars().take(2 * LONGEST_NAME).collect();
             Err(format!("{}: {RULE}", printable(&shown)))
         }
     }
 }
 
 fn begin(folder: &Folder, name: &str) -> Result<Seat, String> {
-    if folder.all_seats().len() >= MOST_SEATS {
+    if all_seats(folder).len() >= MOST_SEATS {
         return Err(format!(
             "this class has {MOST_SEATS} seats, the most that it can have: ask your teacher"
         ));
@@ -87,7 +70,7 @@ fn come_back(folder: &Folder, word: &str, name: &str, now_unix_s: u64) -> Result
         return Ok(seat);
     }
     // A name without a seat has nothing to guess, and would fill the folder.
-    let mut seats = folder.all_seats().into_iter();
+    let mut seats = all_seats(folder).into_iter();
     if seats.any(|seat| name_of(&seat.word) == Some(name)) {
         let text = format!("{} {now_unix_s}", count + 1);
         let counted = shared::replace(&folder.wrong().join(name), &text);

@@ -5,11 +5,16 @@ use super::{ago, unix_ms};
 use crate::storage::confined::SESSIONS;
 use crate::storage::shared;
 use serde::{Deserialize, Serialize};
+use std::fs;
 use std::path::PathBuf;
 use std::time::Duration;
 
 /// It is raised when the form or the meaning of a seat's file changes.
 const FORMAT: u32 = 1;
+/// The most characters of a name.
+pub(super) const LONGEST_NAME: usize = 24;
+/// The digits of a code.
+const DIGITS: usize = 4;
 /// The longest file of a seat, bytes.
 const LONGEST: usize = 1 << 20;
 /// A seat is lost when its lab has given no sign for longer than this, and away after an hour.
@@ -62,6 +67,28 @@ pub enum Presence {
     Lost,
     /// Its lab was left, or has given no sign for long.
     Away,
+}
+
+pub(super) fn is_name(name: &str) -> bool {
+    let is_allowed = |c: char| c.is_alphanumeric() || c == '-';
+    let length = name.chars().count();
+    (1..=LONGEST_NAME).contains(&length) && name.chars().all(is_allowed) && !name.starts_with('-')
+}
+
+/// The name of a seat, if `word` is that of one.
+pub(super) fn name_of(word: &str) -> Option<&str> {
+    let (name, code) = word.rsplit_once('-')?;
+    let is_code = code.len() == DIGITS && code.bytes().all(|digit| digit.is_ascii_digit());
+    (is_code && is_name(name)).then_some(name)
+}
+
+/// The seats of the class, in the order of their names.
+pub fn all_seats(folder: &Folder) -> Vec<Seat> {
+    let entries = fs::read_dir(folder.seats()).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut names: Vec<_> = names.filter(|name| name_of(name).is_some()).collect();
+    names.sort_unstable();
+    names.iter().map(|name| Seat::of(folder, name)).collect()
 }
 
 impl Record {
@@ -145,7 +172,7 @@ impl Seat {
 
     pub(super) fn leave(&self, word: &str) {
         if self.is_held(word) {
-            let _ = std::fs::remove_file(self.file("open")); // where it stays, the seat is lost
+            let _ = fs::remove_file(self.file("open")); // where it stays, the seat is lost
         }
     }
 

@@ -7,7 +7,7 @@ use crate::lab::Lab;
 use crate::lab::action::LessonKey;
 use crate::lab::command::{Command, Place};
 use crate::lab::view::Part;
-use crate::lessons::class::Dress;
+use crate::lessons::page::Dress;
 use crate::lessons::predictions::Predictions;
 use crate::lessons::taken::{Taken, Voted};
 use crate::lessons::{Answer, Asked, Class as Lessons, Setup};
@@ -258,8 +258,8 @@ impl Student {
         let asked = taken.page().filter(|_| taken.lesson.name == state.lesson);
         let asked = asked.and_then(|page| votes::question(page, state));
         let border = match (state.shown.is_some(), self.record.is_aside) {
-            (true, true) => "C: back to the class",
-            (true, false) => "C: step aside",
+            (true, true) => "k: back to the class",
+            (true, false) => "k: step aside",
             (false, _) => "",
         };
         let again = asked.as_ref().filter(|(predict, question)| {
@@ -302,7 +302,7 @@ impl Student {
         (self.record.is_aside, self.is_new) = (true, true);
         self.shown = Shown::default();
         self.next_look = Duration::ZERO;
-        lab.tell("you have stepped aside: C leads back to the class");
+        lab.tell("you have stepped aside: k leads back to the class");
     }
 
     /// Follows again. A run that was played meanwhile stays, pinned.

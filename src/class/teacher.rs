@@ -1,12 +1,13 @@
 //! The teacher's lab: what it shows goes to the class, and the votes of the class come to its pages.
 
 use super::folder::{Folder, LONGEST_RUN, Run, Stage, State, VERSION};
+use super::seat::name_of;
 use super::votes::{self, FEWEST, Sitting, Tally, present, sittings};
 use super::{EVERY, LEAST_WAIT, Role, login, unix_ms};
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
 use crate::lab::sheet::{Kind, Paragraph};
-use crate::lessons::class::Dress;
+use crate::lessons::page::Dress;
 use crate::lessons::{Class as Lessons, Page};
 use crate::scenario::Scenario;
 use std::ops::ControlFlow;
@@ -136,7 +137,7 @@ impl Teacher {
         });
         let page = lessons.taken().and_then(|taken| taken.page());
         let border = match (self.menu, self.is_followed) {
-            (Menu::Closed, _) => "C: show, again, follow, seats\nC: class",
+            (Menu::Closed, _) => "k: show, again, follow, seats\nk: class",
             (Menu::Open, true) => "1 show 2 again 3 unfollow 4 seats",
             (Menu::Open, false) => "1 show 2 again 3 follow 4 seats",
             (Menu::Seats(_), _) => "Enter closes, opens; Esc: back",
@@ -223,7 +224,7 @@ impl Teacher {
                     Stage::Counted => Stage::Teacher,
                     Stage::Teacher => Stage::All,
                     Stage::All => Stage::Closed,
-                    Stage::Closed => return lab.refuse("closed: C 2 asks it again"),
+                    Stage::Closed => return lab.refuse("closed: k 2 asks it again"),
                 };
             }
             3 => self.is_followed = !self.is_followed,
@@ -237,7 +238,7 @@ impl Teacher {
         let Some(entry) = self.entries().into_iter().nth(selected) else {
             return;
         };
-        if login::name_of(&entry).is_none() {
+        if name_of(&entry).is_none() {
             self.folder.unlock(&entry);
         } else if !self.state.closed.remove(&entry) {
             lab.refuse(format!("{entry} is closed: Enter opens it again"));

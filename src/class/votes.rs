@@ -2,7 +2,7 @@
 
 use super::Folder;
 use super::folder::{Question, Stage, State};
-use super::seat::{Presence, Record, Seat, Vote};
+use super::seat::{Presence, Record, Seat, Vote, all_seats};
 use crate::lab::sheet::{Kind, Paragraph};
 use crate::lessons::lesson::Right;
 use crate::lessons::{Asked, Page, Predict};
@@ -31,7 +31,7 @@ pub fn sittings(folder: &Folder) -> Vec<Sitting> {
         presence: seat.presence(),
         seat,
     };
-    folder.all_seats().into_iter().map(sitting).collect()
+    all_seats(folder).into_iter().map(sitting).collect()
 }
 
 /// How many of `seats` are here, lost, and stepped aside.

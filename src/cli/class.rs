@@ -6,6 +6,7 @@ use super::new_lab::{DEFAULT, new_lab, refused};
 use super::workbench::{Entrance, open_at};
 use super::{print, progress, sessions, tell};
 use crate::class::folder::Folder;
+use crate::class::seat::all_seats;
 use crate::class::student::Student;
 use crate::class::teacher::Teacher;
 use crate::class::{Seat, board, login, votes};
@@ -102,7 +103,7 @@ fn answers(folder: &Folder, output: &Path, force: bool, look: Look) -> anyhow::R
     std::fs::create_dir_all(output).with_context(|| Shown(output).to_string())?;
     let interruption = progress::interruption()?;
     let mut files = 0;
-    for seat in folder.all_seats() {
+    for seat in all_seats(folder) {
         let record = seat.record().unwrap_or_default();
         let kept = KeptLessons::read(&record.lessons).unwrap_or_default();
         let mut text = String::new();

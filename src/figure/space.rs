@@ -80,9 +80,11 @@ pub(super) fn scene(job: &Job<'_>, drawn: &[Drawn]) -> (Scene, Option<Dense>) {
 
 /// The direction that the first run's file asks for, or the usual one; never so low or so high that a side of the box vanishes.
 fn camera(runs: &[Run]) -> Camera {
-    let file = runs.first().and_then(|run| run.scenario.file.view.as_ref());
-    let camera = file.and_then(|view| view.camera).map(Camera::of);
-    let camera = camera.unwrap_or_default();
+    let file = runs
+        .first()
+        .and_then(|run| run.scenario.file.viewed("camera"));
+    let camera = file.and_then(|camera| camera.clone().try_into().ok());
+    let camera: Camera = camera.unwrap_or_default();
     Camera {
         yaw_deg: camera.yaw_deg,
         pitch_deg: camera.pitch_deg.clamp(PITCHES_DEG.0, PITCHES_DEG.1),

@@ -25,7 +25,7 @@ const LONGEST_NAME: usize = 30;
 
 /// The `look_at` line of the file of `scenario`: what the viewer should watch for.
 pub fn look_at(scenario: &Scenario) -> Option<&str> {
-    scenario.file.view.as_ref()?.look_at.as_deref()
+    scenario.file.viewed_text("look_at")
 }
 
 /// The scenario that the words of a file were written for.
@@ -92,8 +92,10 @@ impl Original {
         }
         let is_its = look_at(&self.scenario) == look_at(now);
         if let Some(view) = file.view.as_mut().filter(|_| is_its) {
-            view.look_at = view.look_at.take().map(|_| difference);
-            view.next = None;
+            if let Some(look_at) = view.get_mut("look_at") {
+                *look_at = difference.into();
+            }
+            view.remove("next");
         }
         file.expected.clear();
         Arc::new(marked)
@@ -103,8 +105,8 @@ impl Original {
 /// The preset with the same `look_at` or `about` as `scenario`, as it is shipped.
 fn preset_with_words_of(scenario: &Scenario) -> Option<(&'static Preset, Scenario)> {
     let words = |file: &ScenarioFile| {
-        let look_at = file.view.as_ref().and_then(|view| view.look_at.clone());
-        (file.about.clone(), look_at)
+        let look_at = file.viewed_text("look_at");
+        (file.about.clone(), look_at.map(str::to_owned))
     };
     let (about, look_at) = words(&scenario.file);
     let may_have = |preset: &&Preset| {

@@ -4,7 +4,7 @@
 use crate::physics::{State, rotation};
 use crate::run::Clock;
 use crate::scenario::dotted::number_of_push;
-use crate::scenario::file::{EditFile, MotionFile, PushFile, ScenarioFile, StartFile, ViewFile};
+use crate::scenario::file::{EditFile, MotionFile, PushFile, ScenarioFile, StartFile};
 use crate::scenario::problem::{Problem, Problems};
 use crate::scenario::rescale::{MOST_STEPS, at_time_step};
 use crate::scenario::{Document, Motion, Push, Pushes, Scenario, Window};
@@ -39,7 +39,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
     let push = push.map_err(|problem| Problems::one(origin, problem))?;
     let old = &scenario.file;
     let time_s = number::significant(state.time_s, 7);
-    let speed = old.view.as_ref().and_then(|view| view.speed);
+    let speed = old.viewed("speed").cloned();
     let file = ScenarioFile {
         title: format!("{}, from t = {time_s} s", old.title),
         trace: old.trace.clone(),
@@ -56,10 +56,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
         },
         push,
         friction: old.friction,
-        view: speed.map(|speed| ViewFile {
-            speed: Some(speed),
-            ..ViewFile::default()
-        }),
+        view: speed.map(|speed| Table::from_iter([("speed".to_owned(), speed)]).into()),
         ..ScenarioFile::default()
     };
     Document::from_file(origin, &file)?.scenario()

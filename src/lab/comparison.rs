@@ -171,7 +171,7 @@ impl Comparison {
         player: &Player,
         files: &Files,
     ) -> Result<(), Problems> {
-        let named = |scenario: &Scenario| scenario.file.view.as_ref()?.measured.clone();
+        let named = |scenario: &Scenario| scenario.file.viewed_text("measured").map(str::to_owned);
         let shown = self.data.as_ref().map(|data| data.name.clone());
         let wanted = named(player.run().scenario());
         if wanted == shown || (wanted.is_none() && shown != named(before)) {

@@ -206,9 +206,9 @@ pub(super) fn halt_in_words(halt: Halt, next: Option<&str>) -> Option<String> {
 /// The line about what to try after the run: as a command or the scenario has it, or else the preset, as long as its
 /// motion is as it was opened.
 pub(super) fn next<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Option<Cow<'a, str>> {
-    let file = player.run().scenario().file.view.as_ref();
+    let file = &player.run().scenario().file;
     let set = view.next.as_deref();
-    let set = set.or_else(|| file?.next.as_deref());
+    let set = set.or_else(|| file.viewed_text("next"));
     let preset = || match runs.changed_from_file() {
         None => presets::find(runs.name()).map(|preset| preset.next),
         Some(_) => None,

@@ -487,9 +487,9 @@ impl Lab {
     /// Puts the measured data `name` beside the run, as the command line wants it, or else those that the scenario's
     /// `[view]` names.
     pub fn begin_with_measured(&mut self, name: Option<&str>) -> Result<(), Problems> {
-        let file = self.player.run().scenario().file.view.as_ref();
-        let of_file = file.and_then(|view| view.measured.clone());
-        if let Some(name) = name.map(str::to_owned).or(of_file) {
+        let file = &self.player.run().scenario().file;
+        let of_file = file.viewed_text("measured");
+        if let Some(name) = name.or(of_file).map(str::to_owned) {
             let (player, files) = (&self.player, &self.files);
             let left_out = self.comparison.put_beside(&name, player, files, true)?;
             self.read_now();

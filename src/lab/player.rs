@@ -402,7 +402,7 @@ pub(super) const WHERE: &str =
     "a step (421), a time (12.5 s), so many on or back (+50, -2 s), start or end";
 
 fn begins_with_exact(scenario: &Scenario) -> Option<bool> {
-    scenario.file.view.as_ref()?.exact
+    scenario.file.viewed("exact")?.as_bool()
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 mod content;
 
-use super::lesson::{Asked, Check, Compare, Keep, Predict, Right, Setup};
+use super::lesson::{Asked, Block, Check, Compare, Keep, Predict, Right, Setup};
 use super::names::Names;
 use crate::journal::expression::Expression;
 use crate::lab::command::{COMMANDS, Command, Placed};
@@ -12,6 +12,11 @@ use crate::scenario::dotted::join;
 use crate::text::printable::is_steering;
 use content::Content;
 use toml::{Table, Value};
+
+/// The words behind a fence that mean something in a lesson.
+pub(super) const WORDS: [&str; 7] = [
+    "lesson", "lab", "task", "predict", "compare", "check", "notes",
+];
 
 /// The keys of `lab` and `task` besides those of `[view]`. They are carried out in the order of the table of commands, the
 /// last at the end.
@@ -151,10 +156,19 @@ fn keep(content: &mut Content, names: &mut Names, page: usize, known_from: usize
     kept
 }
 
-pub(super) fn predict(
+/// A block that stands on a page as often as one likes.
+pub(super) fn block(
     reader: &Reader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
-) -> Found<Predict> {
+) -> Found<Block> {
+    match reader.word {
+        "predict" => predict(reader, find).map(Block::Predict),
+        "compare" => compare(reader, find).map(Block::Compare),
+        _ => check(reader, find).map(Block::Check),
+    }
+}
+
+fn predict(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Found<Predict> {
     let mut content = reader.content(&["name", "ask", "choices", "unit", "right", "within"])?;
     let name = content.needed("name", false, "compare calls the prediction by it");
     let ask = content.text("ask", "the question", find);
@@ -242,10 +256,7 @@ fn choices(content: &mut Content, value: &Value) -> Vec<String> {
 }
 
 /// A prediction beside what happened.
-pub(super) fn compare(
-    reader: &Reader<'_>,
-    find: impl Fn(&str) -> Result<(), String>,
-) -> Found<Compare> {
+fn compare(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Found<Compare> {
     let mut content = reader.content(&["prediction", "with", "text"])?;
     let prediction = content.needed("prediction", false, "the name of a predict block");
     let has_with = content.get("with").is_some();
@@ -269,10 +280,7 @@ pub(super) fn compare(
 }
 
 /// What holds once the student has done the task.
-pub(super) fn check(
-    reader: &Reader<'_>,
-    find: impl Fn(&str) -> Result<(), String>,
-) -> Found<Check> {
+fn check(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Found<Check> {
     let mut content = reader.content(&["that", "goal", "hint"])?;
     let hint = content.line("hint", true);
     let goals = goals(&mut content);

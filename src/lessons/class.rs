@@ -1,12 +1,12 @@
 //! The lessons of a lab: the list of them, the one that is taken, and where the others were left.
 
-use super::Kept;
+use super::page::Dress;
 use super::predictions::Place;
-use super::taken::{Taken, Voted};
+use super::taken::{Followed, Taken, Voted};
 use super::{page, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
-use crate::lab::sheet::{Paragraph, Sheet};
+use crate::lab::sheet::Sheet;
 use crate::storage::confined::Confined;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -28,37 +28,6 @@ pub struct Class {
     /// The lessons of the folder that the lab is confined to, by the full paths of their files.
     own: Vec<String>,
     dress: Dress,
-}
-
-/// What the room of the class adds to the page.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Dress {
-    /// What stands in the frame instead of the title; empty: the title. It has a form a line, the longest first.
-    pub framed: String,
-    /// What stands in the lower line of the frame, also a form a line.
-    pub border: String,
-    /// Whether the page may be turned though its question is open, and whether a digit is the class's.
-    pub is_of_teacher: bool,
-    pub asks_digit: bool,
-    /// Whether the class is followed.
-    pub is_followed: bool,
-    /// The question that is asked once more, though its prediction is locked.
-    pub again: Option<String>,
-    /// What stands below the question of this name.
-    pub votes: Option<(String, Vec<Paragraph>)>,
-    /// What stands there instead of the page.
-    pub instead: Option<Vec<Paragraph>>,
-}
-
-/// What a class that is followed shows of a lesson: its name and checksum, the page, the numbers that were kept, and
-/// whether its run has arrived where the page wants it.
-#[derive(Clone, Copy, Debug)]
-pub struct Followed<'a> {
-    pub lesson: &'a str,
-    pub sum: u32,
-    pub page: usize,
-    pub kept: &'a Kept,
-    pub has_arrived: bool,
 }
 
 #[derive(Debug, Default)]

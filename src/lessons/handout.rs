@@ -5,10 +5,10 @@
 //! from the screen, and the pages that show what came out have room in the place of their words. Notes are left out, and
 //! so is how a task is done.
 
-use super::lesson::{Asked, Block, Compare, Lesson, Page, Predict, Right, Shown};
+use super::lesson::{Asked, Block, Compare, Lesson, PREDICTION, Page, Predict, Right, Shown, WITH};
 use super::names::{self, Kept};
 use super::play::{GoOn, Walk};
-use super::predictions::{PREDICTION, Place, Tried, WITH};
+use super::predictions::{Place, Tried};
 use crate::lab::Lab;
 use crate::scenario::Problem;
 
@@ -159,7 +159,7 @@ fn on_paper(block: &Block, walk: &Walk<'_>) -> Option<String> {
         Block::Compare(compare) => Some(blanked(compare, lab, kept)),
         Block::Check(check) if !check.hint.is_empty() => Some(format!("Hint: {}", check.hint)),
         Block::Shown(Shown { language, text }) => Some(fenced(language, text)),
-        Block::Lab(_) | Block::Task(_) | Block::Check(_) | Block::Notes(_) => None,
+        _ => None,
     }
 }
 

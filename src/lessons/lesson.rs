@@ -1,7 +1,6 @@
 //! A lesson as it was read: its pages, and the blocks of each in the order of the file.
 
 use super::names::Kept;
-use super::predictions::{PREDICTION, WITH};
 use super::text::Text;
 use crate::journal::expression::Expression;
 use crate::lab::command::{Command, Placed};
@@ -116,6 +115,10 @@ pub enum Answer {
     Choice(String),
 }
 
+/// In the text of a comparison: the prediction, and the number that it is compared with.
+pub(super) const PREDICTION: &str = "prediction";
+pub(super) const WITH: &str = "with";
+
 /// A prediction beside what happened.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compare {
@@ -155,6 +158,18 @@ impl Lesson {
     pub fn predict(&self, name: &str) -> Option<&Predict> {
         let mut all = self.pages.iter().flat_map(Page::predicts);
         all.find(|predict| predict.name == name)
+    }
+}
+
+impl Block {
+    /// The text in it, which may hold numbers of the run.
+    pub fn text(&self) -> Option<&Text> {
+        match self {
+            Self::Text(text) | Self::Notes(text) => Some(text),
+            Self::Predict(predict) => Some(&predict.ask),
+            Self::Compare(compare) => Some(&compare.text),
+            _ => None,
+        }
     }
 }
 
@@ -213,18 +228,16 @@ impl Page {
             let mut names = expression.names();
             names.any(|name| !kept.contains_key(name) && ![PREDICTION, WITH].contains(&name))
         };
-        let mut blocks = self.blocks.iter();
-        blocks.any(|block| match block {
-            Block::Text(text) => text.numbers().any(|(_, expression)| is_of_run(expression)),
-            Block::Predict(predict) => {
-                let mut numbers = predict.ask.numbers();
-                numbers.any(|(_, expression)| is_of_run(expression))
-            }
-            Block::Compare(compare) => {
-                let mut numbers = compare.text.numbers().map(|(_, expression)| expression);
-                numbers.any(is_of_run) || compare.with.as_ref().is_some_and(is_of_run)
-            }
-            _ => false,
+        let shown = self.blocks.iter();
+        let mut shown = shown.filter(|block| !matches!(block, Block::Notes(_)));
+        shown.any(|block| {
+            let numbers = block.text().into_iter().flat_map(Text::numbers);
+            let with = match block {
+                Block::Compare(compare) => compare.with.as_ref(),
+                _ => None,
+            };
+            let mut numbers = numbers.map(|(_, expression)| expression).chain(with);
+            numbers.any(is_of_run)
         })
     }
 

@@ -1,6 +1,5 @@
 //! The page of a lesson, and the list of lessons, as a sheet beside the panes.
 
-use super::class::Dress;
 use super::lesson::{Asked, Block, Check, Compare, Lesson, Page, Predict};
 use super::markdown::paragraphs;
 use super::predictions::Place;
@@ -15,6 +14,26 @@ use std::time::Duration;
 
 /// What stands for a number that is not there yet, because the lab is still on its way.
 const SOON: &str = "…";
+
+/// What the room of the class adds to the page.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Dress {
+    /// What stands in the frame instead of the title; empty: the title. It has a form a line, the longest first.
+    pub framed: String,
+    /// What stands in the lower line of the frame, also a form a line.
+    pub border: String,
+    /// Whether the page may be turned though its question is open, and whether a digit is the class's.
+    pub is_of_teacher: bool,
+    pub asks_digit: bool,
+    /// Whether the class is followed.
+    pub is_followed: bool,
+    /// The question that is asked once more, though its prediction is locked.
+    pub again: Option<String>,
+    /// What stands below the question of this name.
+    pub votes: Option<(String, Vec<Paragraph>)>,
+    /// What stands there instead of the page.
+    pub instead: Option<Vec<Paragraph>>,
+}
 
 /// The list of the lessons called `names`, of which one is `selected`; `left` tells where some of them were left.
 pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Place>) -> Sheet {

@@ -113,20 +113,15 @@ impl<'a> Walk<'a> {
 
     fn unstated_on(&self, page: &Page, found: &mut Problems) {
         for block in &page.blocks {
-            match block {
-                Block::Text(text) | Block::Notes(text) => self.unstated_in(text, found),
-                Block::Predict(predict) => self.unstated_in(&predict.ask, found),
-                Block::Compare(compare) => {
-                    self.unstated_in(&compare.text, found);
-                    let with = compare.with.as_ref();
-                    if let Some(with) =
-                        with.filter(|_| compare.came_out(&self.lab, &self.kept).is_none())
-                    {
-                        let rule = format!("is {NONE} on this page: {}", self.numbers_of(with));
-                        found.add(|| on_line(compare.line, Problem::at("compare.with", rule)));
-                    }
-                }
-                Block::Lab(_) | Block::Task(_) | Block::Check(_) | Block::Shown(_) => {}
+            if let Some(text) = block.text() {
+                self.unstated_in(text, found);
+            }
+            if let Block::Compare(compare) = block
+                && let Some(with) = &compare.with
+                && compare.came_out(&self.lab, &self.kept).is_none()
+            {
+                let rule = format!("is {NONE} on this page: {}", self.numbers_of(with));
+                found.add(|| on_line(compare.line, Problem::at("compare.with", rule)));
             }
         }
     }

@@ -1,6 +1,6 @@
 //! What a student has predicted in a lesson. A prediction is locked: it is not changed any more.
 
-use super::lesson::{Answer, Compare, Lesson, Page, Predict, Setup};
+use super::lesson::{Answer, Compare, Lesson, PREDICTION, Page, Predict, Setup, WITH};
 use super::names::{Kept, value};
 use super::text::Format;
 use crate::lab::Lab;
@@ -145,11 +145,8 @@ fn end_of_sentence(text: &str) -> usize {
     })
 }
 
-/// In the text of a comparison: the prediction, and the number that it is compared with.
-pub(super) const PREDICTION: &str = "prediction";
 /// Stands for a prediction that was not made.
 const NOTHING: &str = "…";
-pub(super) const WITH: &str = "with";
 
 /// How far a student got with a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

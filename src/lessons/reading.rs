@@ -10,7 +10,7 @@ pub use super::opening::{LONGEST, full_name, is_file_name, open, read_again, rea
 use super::blocks::{self, Reader};
 use super::lesson::{Block, Compare, Lesson, Page, Setup, Shown};
 use super::names::Names;
-use super::structure::{Element, Kind, LANGUAGES, Lines, WORDS, on_line, structure};
+use super::structure::{Element, Kind, LANGUAGES, Lines, on_line, structure};
 use super::text::Text;
 use crate::scenario::problem::{listed, nearest};
 use crate::scenario::{Problem, Problems};
@@ -28,7 +28,7 @@ pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
     let one = |problem| Problems::one(origin, problem);
     let lines = Lines::of(&text);
     plain(&text, &lines).map_err(one)?;
-    let elements = structure(&text, &lines).map_err(one)?;
+    let elements = structure(&text, &lines, &blocks::WORDS).map_err(one)?;
     if elements.len() > MOST_BLOCKS {
         let rule = format!("has more than {MOST_BLOCKS} pages and blocks, the most of a lesson");
         return Err(one(Problem::at("", rule)));
@@ -211,8 +211,8 @@ impl Assembly {
                 text: inside.to_owned(),
             }));
         }
-        if !WORDS.contains(&word) {
-            let near = nearest(word, WORDS.into_iter().chain(LANGUAGES));
+        if !blocks::WORDS.contains(&word) {
+            let near = nearest(word, blocks::WORDS.into_iter().chain(LANGUAGES));
             let also = if near.starts_with("did you mean") {
                 format!(" (shown as they are: {})", listed(LANGUAGES.into_iter()))
             } else {
@@ -242,9 +242,7 @@ impl Assembly {
         let read = match word {
             "lesson" => return self.add_head(&reader),
             "lab" | "task" => return self.add_setup(word, line),
-            "predict" => blocks::predict(&reader, find).map(Block::Predict),
-            "compare" => blocks::compare(&reader, find).map(Block::Compare),
-            _ => blocks::check(&reader, find).map(Block::Check),
+            _ => blocks::block(&reader, find),
         };
         match read {
             Ok(block) => {

@@ -4,10 +4,6 @@ use crate::scenario::Problem;
 use pulldown_cmark::{CodeBlockKind, Event, HeadingLevel, Parser, Tag, TagEnd};
 use std::ops::Range;
 
-/// The words behind a fence that mean something in a lesson.
-pub(super) const WORDS: [&str; 7] = [
-    "lesson", "lab", "task", "predict", "compare", "check", "notes",
-];
 /// The words behind a fence whose block is shown as it is.
 pub(super) const LANGUAGES: [&str; 6] = ["text", "sh", "toml", "csv", "python", "matlab"];
 
@@ -45,11 +41,16 @@ pub(super) fn on_line(line: usize, mut problem: Problem) -> Problem {
     problem
 }
 
-/// The parts of `text` in order.
-pub(super) fn structure<'a>(text: &'a str, lines: &Lines) -> Result<Vec<Element<'a>>, Problem> {
+/// The parts of `text` in order; `words` behind a fence mean something in a lesson.
+pub(super) fn structure<'a>(
+    text: &'a str,
+    lines: &Lines,
+    words: &[&str],
+) -> Result<Vec<Element<'a>>, Problem> {
     let mut walk = Walk {
         text,
         lines,
+        words,
         elements: Vec::new(),
         end: 0,
     };
@@ -96,6 +97,7 @@ pub(super) fn structure<'a>(text: &'a str, lines: &Lines) -> Result<Vec<Element<
 struct Walk<'a, 'b> {
     text: &'a str,
     lines: &'b Lines,
+    words: &'b [&'b str],
     elements: Vec<Element<'a>>,
     end: usize,
 }
@@ -145,7 +147,7 @@ impl<'a> Walk<'a, '_> {
         let line = self.lines.at(range.start);
         let mut words = info.split_whitespace();
         let word = words.next().unwrap_or_default();
-        let is_of_lessons = WORDS.contains(&word);
+        let is_of_lessons = self.words.contains(&word);
         if !is_alone {
             let rule = "stands in a list or a quotation: a block begins at the edge of the page";
             return if is_of_lessons {
@@ -164,7 +166,7 @@ impl<'a> Walk<'a, '_> {
             let rule = format!("stands alone behind its fence, without {extra}");
             return Err(on_line(line, Problem::at(word, rule)));
         }
-        if let Some(at) = another_fence(inside, fence_of(block)) {
+        if let Some(at) = another_fence(inside, fence_of(block), self.words) {
             let begin = line + 1 + at;
             let rule = format!(
                 "is not closed before line {begin}, where another block begins: a line {} must end it",
@@ -208,10 +210,10 @@ fn between_fences(block: &str) -> Option<&str> {
 }
 
 /// The line of `inside`, from 0, at which another block of a lesson begins: with a `fence` like the one around it, or longer.
-fn another_fence(inside: &str, fence: &str) -> Option<usize> {
+fn another_fence(inside: &str, fence: &str, words: &[&str]) -> Option<usize> {
     inside.lines().position(|line| {
         let rest = line.strip_prefix(fence);
         let word = rest.map(|rest| rest.trim_start_matches(['`', '~']).trim());
-        word.is_some_and(|word| WORDS.contains(&word))
+        word.is_some_and(|word| words.contains(&word))
     })
 }

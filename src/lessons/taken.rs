@@ -2,7 +2,7 @@
 
 mod keys;
 
-use super::class::Followed;
+use super::Kept;
 use super::clock::{self, Clock};
 use super::lesson::{Answer, Block, Compare, Lesson, Page, Predict};
 use super::names::value;
@@ -55,6 +55,17 @@ pub struct Taken {
     since: Duration,
     /// How long before that it was opened first.
     gone_before: Duration,
+}
+
+/// What a class that is followed shows of a lesson: its name and checksum, the page, the numbers that were kept, and
+/// whether its run has arrived where the page wants it.
+#[derive(Clone, Copy, Debug)]
+pub struct Followed<'a> {
+    pub lesson: &'a str,
+    pub sum: u32,
+    pub page: usize,
+    pub kept: &'a Kept,
+    pub has_arrived: bool,
 }
 
 /// An answer that was locked to the question of this name, and whether its outcome had been seen.

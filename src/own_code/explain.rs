@@ -3,7 +3,8 @@
 use super::follow::{Followed, OFFSETS, Twin, follow};
 use super::plan::Plan;
 use super::rows::Rows;
-use super::step::{Changes, Order, Program, SLIPS, Slip};
+use super::slips::{Changes, SLIPS, Slip};
+use super::step::{Order, Program};
 use super::times::Steps;
 use crate::cores;
 use crate::text::number::shortest;

@@ -2,7 +2,7 @@
 //! which slip has made them?
 //!
 //! `rows` reads the file, `times` finds the time step of each row, `follow` compares them with a run. `step` has the
-//! report's step in plain code and the table of slips, `plan` what it begins with, `explain` the search among them.
+//! report's step in plain code, `slips` the table of slips, `plan` what it begins with, `explain` the search among them.
 //! `words` says what has come out.
 
 mod arithmetic;
@@ -10,6 +10,7 @@ mod explain;
 mod follow;
 mod plan;
 pub mod rows;
+mod slips;
 mod step;
 mod times;
 mod words;
@@ -21,8 +22,9 @@ use follow::{Followed, OFFSETS, Scheme, Single, Twin, follow};
 use plan::Plan;
 pub use rows::Rows;
 use serde::Serialize;
+use slips::Changes;
 use std::sync::Arc;
-use step::{Changes, Order, Program};
+use step::{Order, Program};
 
 /// What has come out of the comparison, as `--json` gives it.
 #[derive(Clone, Debug, Serialize)]

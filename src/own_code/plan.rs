@@ -1,6 +1,6 @@
 //! Body and start of a program of the report's step.
 
-use super::step::Changes;
+use super::slips::Changes;
 use crate::physics::rotation;
 use crate::scenario::file::Frame;
 use crate::scenario::{Push, Scenario, Window};

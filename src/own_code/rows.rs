@@ -1,6 +1,6 @@
 //! The file that a program has written: which columns are compared, to how many digits, and which time step each row is.
 
-use super::times::{self, Times};
+use super::times::{self, STEP, TIME, Times};
 use crate::scenario::csv::{Csv, Naming, Renaming};
 use crate::scenario::problem::{at_line, listed};
 use crate::scenario::{Problem, Problems};
@@ -8,9 +8,6 @@ use crate::text::printable::brief;
 
 /// The columns that are compared: the traced point, world frame, and L about the pivot.
 pub const COLUMNS: [&str; 6] = ["x_m", "y_m", "z_m", "Lx_Js", "Ly_Js", "Lz_Js"];
-/// The columns that say which step a row is.
-pub const STEP: &str = "step";
-pub const TIME: &str = "t_s";
 /// The most values of one file, rows times columns.
 const MOST_VALUES: usize = 1_000_000;
 /// By how much right programs may differ, m and J s, times the value where it is above 1.

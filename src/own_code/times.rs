@@ -1,10 +1,12 @@
 //! Which time step each row of a file is: by its number, else by its time, else by its place.
 
-use super::rows::{STEP, TIME};
 use crate::scenario::problem::at_line;
 use crate::scenario::{Problem, Problems};
 use crate::text::number::{rounded, shortest};
 
+/// The columns that say which step a row is.
+pub const STEP: &str = "step";
+pub const TIME: &str = "t_s";
 /// The last step that is computed.
 const MOST_STEPS: f64 = 1e6;
 /// By how much of it a time step may seem to differ, as times in single precision do.

@@ -3,7 +3,7 @@
 use super::explain::{COUNT, Explanation, MOST_FOR_PAIRS, Variant};
 use super::follow::Worst;
 use super::rows::COLUMNS;
-use super::step::ANOTHER_READING;
+use super::slips::ANOTHER_READING;
 use super::{Found, Verdict};
 use crate::run::pushes;
 use crate::text::number::{counted, short, shortest, significant};

@@ -7,34 +7,9 @@
 //! feed one whose k1 dt/I3 is above 2. While the body does not turn, though, ω under a constant torque and friction is
 //! known in closed form: about the axle it is a Riccati equation, across it decays exponentially. Schemes take that.
 
-use super::Body;
 use super::workings::{Changes, Phase};
+use super::{Body, Friction};
 use nalgebra::{Matrix3, Vector3};
-
-/// The coefficients of friction. All are zero, or more.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Friction {
-    /// k0: dry friction on the spin, N m.
-    pub spin_dry: f64,
-    /// k1: viscous friction on the spin, N m s.
-    pub spin_viscous: f64,
-    /// k2: friction on the spin by the square of its rate, N m s².
-    pub spin_quadratic: f64,
-    /// k4: viscous friction on the swing, N m s.
-    pub swing_viscous: f64,
-}
-
-impl Friction {
-    /// Whether there is no friction.
-    pub fn is_none(&self) -> bool {
-        !self.is_on_spin() && self.swing_viscous == 0.0
-    }
-
-    /// Whether the spin is rubbed.
-    pub(crate) fn is_on_spin(&self) -> bool {
-        self.spin_dry > 0.0 || self.spin_viscous > 0.0 || self.spin_quadratic > 0.0
-    }
-}
 
 /// Friction on one body.
 #[derive(Clone, Debug, PartialEq)]

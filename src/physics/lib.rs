@@ -93,8 +93,8 @@ pub mod workings;
 
 pub use body::{Body, BodyError, PointMass};
 pub use exact::{ExactMotion, LagrangeTop};
-pub use friction::{Damping, Friction};
-pub use loads::{Loads, PointForce};
+pub use friction::Damping;
+pub use loads::{Friction, Loads, PointForce};
 pub use nalgebra;
 pub use part::Part;
 pub use scheme::SchemeInfo;

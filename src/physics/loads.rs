@@ -1,6 +1,6 @@
 //! What acts on the body: gravity on every point, pushes on single ones, and friction.
 
-use super::{Body, Friction};
+use super::Body;
 use nalgebra::{Matrix3, Vector3};
 
 /// A force on one point of the body, constant in the world frame while the loads hold.
@@ -21,6 +21,31 @@ pub struct Loads {
     pub pushes: Vec<PointForce>,
     /// Friction about the pivot.
     pub friction: Friction,
+}
+
+/// The coefficients of friction. All are zero, or more.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Friction {
+    /// k0: dry friction on the spin, N m.
+    pub spin_dry: f64,
+    /// k1: viscous friction on the spin, N m s.
+    pub spin_viscous: f64,
+    /// k2: friction on the spin by the square of its rate, N m s².
+    pub spin_quadratic: f64,
+    /// k4: viscous friction on the swing, N m s.
+    pub swing_viscous: f64,
+}
+
+impl Friction {
+    /// Whether there is no friction.
+    pub fn is_none(&self) -> bool {
+        !self.is_on_spin() && self.swing_viscous == 0.0
+    }
+
+    /// Whether the spin is rubbed.
+    pub(crate) fn is_on_spin(&self) -> bool {
+        self.spin_dry > 0.0 || self.spin_viscous > 0.0 || self.spin_quadratic > 0.0
+    }
 }
 
 impl Loads {

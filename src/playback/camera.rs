@@ -1,6 +1,5 @@
 //! The parallel projection of the world onto a picture, along a direction that the user turns.
 
-use crate::scenario::file::CameraFile;
 use crate::scenario::keys::{PITCH_DEG, ZOOM};
 use crate::text::ladder;
 use nalgebra::Vector3;
@@ -68,15 +67,6 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// The direction that a file states, or the usual one.
-    pub fn of(file: CameraFile) -> Self {
-        let usual = Self::default();
-        Self {
-            yaw_deg: file.yaw_deg.unwrap_or(usual.yaw_deg),
-            pitch_deg: file.pitch_deg.unwrap_or(usual.pitch_deg),
-        }
-    }
-
     /// Turns the viewing direction by these angles, degrees; the pitch stays within −90 to 90.
     pub fn turn(&mut self, yaw_deg: f64, pitch_deg: f64) {
         self.yaw_deg = (self.yaw_deg + yaw_deg).rem_euclid(360.0);

@@ -58,7 +58,7 @@ impl Dip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::presets::scenario;
+    use crate::scenario::preset as scenario;
 
     #[test]
     fn a_released_top_dips_and_comes_up_to_its_side() {

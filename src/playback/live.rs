@@ -444,7 +444,7 @@ impl Checkpoints {
 impl LiveRun {
     /// The run of a preset at the step `steps`.
     pub fn played(preset: &str, steps: u64) -> Self {
-        let mut run = Self::new(crate::scenario::presets::scenario(preset, &[]));
+        let mut run = Self::new(crate::scenario::preset(preset, &[]));
         run.step_to(steps).unwrap();
         run
     }

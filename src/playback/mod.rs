@@ -37,6 +37,7 @@ use reading::Reading;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use toml::Value;
 
 /// The longest time of stepping between two readings of the keyboard.
 const STEPPING: Duration = Duration::from_millis(12);
@@ -75,7 +76,7 @@ pub struct Playback {
 
 impl Playback {
     pub fn new(scenario: Arc<Scenario>, running: bool) -> Self {
-        let speed = scenario.file.view.as_ref().and_then(|view| view.speed);
+        let speed = scenario.file.viewed("speed").and_then(Value::as_float);
         let (stop, end_s) = (scenario.steps, Clock::end_s(&scenario));
         let run = LiveRun::new(scenario);
         Self {

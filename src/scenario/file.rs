@@ -1,6 +1,13 @@
 //! The shape of scenario and run files, as serde reads and writes them. What each key means is in [`super::keys`].
 
-use serde::{Deserialize, Serialize};
+use super::dotted::join;
+use super::keys::{self, Kind};
+use super::kind::float;
+pub use super::solids::PartFile;
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Serialize, Serializer};
+use std::ops::{Deref, DerefMut};
+use toml::{Table, Value};
 
 /// A scenario file; with `gyrolab` and any number of edits, a run file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -34,6 +41,15 @@ impl ScenarioFile {
             ..self
         }
     }
+
+    /// What `[view]` says of `key`.
+    pub fn viewed(&self, key: &str) -> Option<&Value> {
+        self.view.as_ref()?.get(key)
+    }
+
+    pub fn viewed_text(&self, key: &str) -> Option<&str> {
+        self.viewed(key)?.as_str()
+    }
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -64,21 +80,6 @@ pub struct PointFile {
     pub name: String,
     pub at_m: [f64; 3],
     pub mass_kg: Option<f64>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PartFile {
-    pub shape: String,
-    pub name: String,
-    pub mass_kg: f64,
-    pub at_m: [f64; 3],
-    pub axis: Option<[f64; 3]>,
-    pub radius_m: Option<f64>,
-    pub inner_radius_m: Option<f64>,
-    pub outer_radius_m: Option<f64>,
-    pub length_m: Option<f64>,
-    pub size_m: Option<[f64; 3]>,
-    pub moments_kg_m2: Option<[f64; 3]>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -146,26 +147,68 @@ pub struct FrictionFile {
     pub swing_viscous_Nms: Option<f64>,
 }
 
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ViewFile {
-    pub speed: Option<f64>,
-    pub look_at: Option<String>,
-    pub next: Option<String>,
-    pub window_s: Option<f64>,
-    /// Length of time that the strip of the fast motion shows, s.
-    pub detail_s: Option<f64>,
-    pub detail_of: Option<String>,
-    pub exact: Option<bool>,
-    pub show: Option<Vec<String>>,
-    pub hide: Option<Vec<String>>,
-    pub fill: Option<String>,
-    pub phase: Option<Choice>,
-    pub sum_to: Option<Choice>,
-    pub bare: Option<bool>,
-    pub measured: Option<String>,
-    pub residuals: Option<bool>,
-    pub camera: Option<CameraFile>,
-    pub zoom: Option<ZoomFile>,
+/// Some keys of `[view]` and their values, as a table. It is written in the order of [`keys::KEYS`].
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(from = "Table")]
+pub struct ViewFile(Table);
+
+impl From<Table> for ViewFile {
+    /// `table` with floats in the place of whole numbers where a key holds a number.
+    fn from(mut table: Table) -> Self {
+        make_floats(&mut table, "view");
+        Self(table)
+    }
+}
+
+fn make_floats(table: &mut Table, under: &str) {
+    for (name, value) in table {
+        let path = join(under, name);
+        if let Value::Table(inner) = value {
+            make_floats(inner, &path);
+        } else if let (Some(number), Ok((_, Kind::Number(_)))) = (float(value), keys::find(&path)) {
+            *value = Value::Float(number);
+        }
+    }
+}
+
+impl Deref for ViewFile {
+    type Target = Table;
+
+    fn deref(&self) -> &Table {
+        &self.0
+    }
+}
+
+impl DerefMut for ViewFile {
+    fn deref_mut(&mut self) -> &mut Table {
+        &mut self.0
+    }
+}
+
+impl Serialize for ViewFile {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        InOrder("view", &self.0).serialize(serializer)
+    }
+}
+
+/// The table at a dotted path, to be written in the order of [`keys::KEYS`].
+struct InOrder<'a>(&'a str, &'a Table);
+
+impl Serialize for InOrder<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self(path, table) = self;
+        let mut map = serializer.serialize_map(None)?;
+        for name in keys::names(path) {
+            match table.get(name) {
+                Some(Value::Table(inner)) => {
+                    map.serialize_entry(name, &InOrder(&join(path, name), inner))?;
+                }
+                Some(value) => map.serialize_entry(name, value)?,
+                None => {}
+            }
+        }
+        map.end()
+    }
 }
 
 /// A whole number or a word.
@@ -174,19 +217,6 @@ pub struct ViewFile {
 pub enum Choice {
     Number(u64),
     Word(String),
-}
-
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct CameraFile {
-    pub yaw_deg: Option<f64>,
-    pub pitch_deg: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ZoomFile {
-    pub above: Option<f64>,
-    #[serde(rename = "3d")]
-    pub three_d: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -200,5 +230,5 @@ pub struct ExpectedFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EditFile {
     pub step: u64,
-    pub set: toml::Table,
+    pub set: Table,
 }

@@ -407,7 +407,7 @@ fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Problems
 }
 
 /// The names that may stand in the tables of the pattern `under`, each once.
-fn names(under: &str) -> Vec<&'static str> {
+pub(super) fn names(under: &str) -> Vec<&'static str> {
     let mut names: Vec<_> = below(under)
         .filter_map(|(rest, _)| rest.split('.').next())
         .filter(|name| *name != "*")

@@ -29,3 +29,11 @@ pub use file::ScenarioFile;
 pub(crate) use kind::{float, vector};
 pub use model::{Body, Edit, Motion, Push, Pushes, Scenario, Window};
 pub use problem::{Problem, Problems};
+
+/// The scenario of the preset `name` in which these values are set, for tests.
+#[cfg(test)]
+pub fn preset(name: &str, sets: &[&str]) -> std::sync::Arc<Scenario> {
+    let mut document = Document::open(name).unwrap();
+    sets.iter().for_each(|set| document.set(set).unwrap());
+    std::sync::Arc::new(document.scenario().unwrap())
+}

@@ -54,11 +54,3 @@ pub const PRESETS: &[Preset] = presets![
 pub fn find(name: &str) -> Option<&'static Preset> {
     PRESETS.iter().find(|preset| preset.name == name)
 }
-
-/// The scenario of the preset `name` in which these values are set, for tests.
-#[cfg(test)]
-pub fn scenario(name: &str, sets: &[&str]) -> std::sync::Arc<super::Scenario> {
-    let mut document = super::Document::open(name).unwrap();
-    sets.iter().for_each(|set| document.set(set).unwrap());
-    std::sync::Arc::new(document.scenario().unwrap())
-}

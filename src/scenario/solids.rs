@@ -1,12 +1,27 @@
 //! The solid parts of a body: from `[[body.part]]` to [`Part`], with the dimensions that each shape has.
 
-use super::file::PartFile;
 use super::kind::vector;
 use super::problem::{Problem, Problems};
 use crate::physics::part::{Part, PartError, Shape};
 use crate::text::number::shortest;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PartFile {
+    pub shape: String,
+    pub name: String,
+    pub mass_kg: f64,
+    pub at_m: [f64; 3],
+    pub axis: Option<[f64; 3]>,
+    pub radius_m: Option<f64>,
+    pub inner_radius_m: Option<f64>,
+    pub outer_radius_m: Option<f64>,
+    pub length_m: Option<f64>,
+    pub size_m: Option<[f64; 3]>,
+    pub moments_kg_m2: Option<[f64; 3]>,
+}
 
 /// A shape as a file names it, and its dimensions.
 pub(super) struct Form {

@@ -5,6 +5,7 @@
 //! so.
 
 use super::panes::{PANES, PaneRow, Width};
+use super::split::{split_columns, split_rows};
 use crate::lab::view::{Pane, Part, View};
 use ratatui::layout::Rect;
 
@@ -37,28 +38,6 @@ pub struct Said {
     /// Lines of the hint on a screen of this width.
     pub lines: u16,
     pub warns: bool,
-}
-
-/// The first `height` rows of `area`, and the others.
-pub fn split_rows(area: Rect, height: u16) -> [Rect; 2] {
-    let height = height.min(area.height);
-    let below = Rect {
-        y: area.y + height,
-        height: area.height - height,
-        ..area
-    };
-    [Rect { height, ..area }, below]
-}
-
-/// The first `width` columns of `area`, and the others.
-pub fn split_columns(area: Rect, width: u16) -> [Rect; 2] {
-    let width = width.min(area.width);
-    let right = Rect {
-        x: area.x + width,
-        width: area.width - width,
-        ..area
-    };
-    [Rect { width, ..area }, right]
 }
 
 /// Where everything stands; what has no place has an empty area.

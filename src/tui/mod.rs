@@ -12,7 +12,8 @@
 //! - [`keymap`] is the one table of keys, [`press`](mod@press) carries out what a key means.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
 //!   places those are, [`theme`] what colours look like and whether there are any, [`dots`] sets dots and says what they look like,
-//!   [`points`] what was measured, [`trail`] a path that fades, [`scene`] lines in space; [`plane`] takes metres to dots and cells.
+//!   [`points`] what was measured, [`trail`] a path that fades, [`scene`] lines in space; [`plane`] takes metres to dots and cells,
+//!   [`split`] a part of the screen to two.
 //! - [`board`] shows lines without a lab.
 
 pub mod app;
@@ -30,6 +31,7 @@ pub mod points;
 pub mod press;
 pub mod scene;
 pub mod screen;
+pub mod split;
 pub mod terminal;
 pub mod theme;
 pub mod trail;

@@ -26,8 +26,8 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     let readouts = &writeup.readouts;
     writeln!(page, "# {}\n", escaped(&readouts.title))?;
     let file = &writeup.scenario.file;
-    let look_at = file.view.as_ref().and_then(|view| view.look_at.as_ref());
-    let look_at = look_at.map(|line| sentence(line));
+    let look_at = file.viewed_text("look_at");
+    let look_at = look_at.map(sentence);
     for text in file.about.iter().chain(&look_at) {
         writeln!(page, "{}\n", escaped(text))?;
     }

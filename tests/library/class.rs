@@ -1,7 +1,7 @@
 //! The folder of a class: seats, wrong codes, votes by round, and what the two accounts write in it.
 
 use gyrolab::class::folder::{Stage, State};
-use gyrolab::class::seat::{Presence, Record, Vote};
+use gyrolab::class::seat::{Presence, Record, Vote, all_seats};
 use gyrolab::class::votes::{self, Tally, sittings};
 use gyrolab::class::{Folder, Seat, login};
 use gyrolab::lessons::reading;
@@ -97,7 +97,7 @@ fn hostile_names_make_no_seat() {
             "{refused:?}"
         );
     }
-    assert!(folder.all_seats().is_empty());
+    assert!(all_seats(&folder).is_empty());
 }
 
 #[test]

@@ -693,7 +693,12 @@ fn hidden_is_hidden() {
     desk.commands("step = 300");
     let size = (200, 50);
     let seen = picture(&desk, size);
-    let look_at = desk.scenario().file.view.unwrap().look_at.unwrap();
+    let look_at = desk
+        .scenario()
+        .file
+        .viewed_text("look_at")
+        .unwrap()
+        .to_owned();
     let first = look_at.split(' ').take(3).collect::<Vec<_>>().join(" ");
     for words in ["predicted", "E drift", "parameters", " 3-D ", &first] {
         assert!(seen.contains(words), "no {words} in\n{seen}");

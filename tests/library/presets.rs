@@ -29,8 +29,9 @@ fn the_table_of_presets_is_the_folder() {
 fn every_preset_says_what_it_is_and_what_to_look_at() {
     for preset in PRESETS {
         let file = preset_named(preset.name, &[]).file;
-        let look_at = file.view.and_then(|view| view.look_at);
-        let lengths = [file.about, file.source, look_at].map(|text| text.unwrap().len());
+        let look_at = file.viewed_text("look_at");
+        let lengths = [file.about.as_deref(), file.source.as_deref(), look_at]
+            .map(|text| text.unwrap().len());
         let [about, source, look_at] = lengths;
         assert!(about > 80 && source > 10, "{}", preset.name);
         assert!((21..=160).contains(&look_at), "{}", preset.name);
@@ -76,7 +77,7 @@ fn readouts_of(scenario: Scenario) -> Readouts {
 /// What a preset says of itself, in one text.
 fn words(name: &str) -> String {
     let file = preset_named(name, &[]).file;
-    file.about.unwrap() + &file.view.unwrap().look_at.unwrap()
+    file.about.clone().unwrap() + file.viewed_text("look_at").unwrap()
 }
 
 /// A figure in a text of the preset `name`, whose place in `wanted` says with how many decimals: `{:.2}`.

@@ -55,13 +55,13 @@ fn a_class_follows_votes_and_loses_nothing() {
     let votes = ground.stdout("class --votes --folder .");
     has_all(&votes, &[&format!("{LESSON},finer,1,{word},2,false,2,")]);
     // Stepping aside, and the class goes on meanwhile.
-    ben.ask("n", "aside on 2 · the class is on 2");
+    ben.ask("n", "predict first");
     ben.ask("n", "aside on 3 · the class is on 2");
     teacher.press("n");
     ben.wait_for("the class is on 3");
     teacher.press("N");
     ben.wait_for("the class is on 2");
-    ben.ask("C", "following · 2 of 10");
+    ben.ask("k", "following · 2 of 10");
     // Back by the seat's word, with page and prediction.
     let mut anna = ground.open("--folder . --seat");
     anna.ask(&format!("{word}\r"), "following · 2 of 10");
@@ -72,7 +72,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     anna.wait_for_end();
     assert!(anna.sent_text().contains("opened in another lab"));
     // A second round, and a teacher's lab that is killed.
-    teacher.ask("C", "1 show 2 again");
+    teacher.ask("k", "1 show 2 again");
     teacher.press("2");
     vote(&mut again);
     teacher.wait_for("round 2 · 1 of 2");
@@ -113,7 +113,7 @@ fn a_seat_reaches_nothing_of_another() {
     let seat = ground.file(&format!(".gyrolab/seats/{word}/mine.csv"));
     assert!(seat.exists());
     // The teacher closes it.
-    teacher.ask("C", "4 seats");
+    teacher.ask("k", "4 seats");
     teacher.ask("4", &format!("{word}: here"));
     teacher.press("\r");
     anna.wait_for_end();

@@ -608,15 +608,6 @@ fn presets_are_listed_and_printed() {
 }
 
 #[test]
-fn schemes_are_listed_with_their_orders() {
-    let list = Ground::new().stdout("schemes");
-    for (name, order) in [("report ", "order 1"), ("rk4 ", "order 4")] {
-        let is_row = |line: &str| line.starts_with(name) && line.contains(order);
-        assert!(list.lines().any(is_row), "{list}");
-    }
-}
-
-#[test]
 fn check_looks_at_every_file() {
     let lab = Ground::new();
     let good = lab.stdout("presets method-2");
@@ -690,15 +681,6 @@ fn talk_that_cannot_be_written_ends_nothing() {
         let words = "gyrolab: cannot write to stdout: No space left on device";
         failed(&output, &[words]);
     }
-}
-
-#[test]
-fn a_scenario_may_come_through_a_pipe() {
-    let lab = Ground::new();
-    lab.write("mine.toml", &lab.stdout("presets method-2"));
-    let run = "cat mine.toml | \"$G\" run /dev/stdin --steps 3 -o -";
-    let csv = done(lab.shell(run));
-    assert_eq!(steps(stdout(&csv)), [0.0, 1.0, 2.0, 3.0]);
 }
 
 #[test]

@@ -3,8 +3,8 @@
 
 use crate::support::dice::Dice;
 use crate::support::ground::{Ground, done};
-use crate::support::pty::Terminal;
-use crate::support::words::{has, has_all};
+use crate::support::pty::{LEAVES_ALTERNATE_SCREEN, SHOWS_CURSOR, Terminal};
+use crate::support::words::has;
 use std::fs;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -149,106 +149,6 @@ fn a_value_is_nudged_and_typed_refused_and_taken_back() {
     assert_eq!(run.matches("[[edit]]").count(), 1, "{run}");
     has(&run, "[[edit]]\nstep = 100\n");
     has(&run, "\"motion.time_step_s\" = 0.05");
-    lab.quit();
-}
-
-#[test]
-fn another_tilt_begins_a_run_and_undo_goes_back_to_the_old_one() {
-    let ground = Ground::new();
-    let mut lab = paused_at(&ground, 100);
-    let before = saved(&mut lab, "before.toml");
-    select(&mut lab, 5);
-    lab.wait_for("►tilt 45 deg");
-    set(&mut lab, "30");
-    lab.wait_for("►tilt 30 deg");
-    lab.wait_for_step(100); // played to the time at which the one before stood
-    steps(&mut lab, "3.", 103);
-    lab.ask("u", "undone: this is the run before");
-    lab.wait_for_step(100);
-    lab.wait_for("►tilt 45 deg");
-    assert_eq!(saved(&mut lab, "back.toml"), before);
-    lab.ask("U", "done again: this is the run after");
-    lab.wait_for_step(103);
-    lab.wait_for("►tilt 30 deg");
-    let run = saved(&mut lab, "run.toml");
-    has_all(&run, ["tilt_deg = 30", "steps = 103\n"]);
-    lab.quit();
-}
-
-#[test]
-fn a_push_is_chosen_given_marked_and_saved() {
-    let ground = Ground::new();
-    let mut lab = paused_at(&ground, 100);
-    assert!(!lab.screen().contains("═"));
-    lab.ask("P", "►force 50 N");
-    set(&mut lab, "75");
-    lab.wait_for("►force 75 N");
-    lab.press(&format!("{DOWN}{RIGHT}"));
-    lab.wait_for("►toward up");
-    lab.ask("p", "pushed: 75 N on top, up, for 20 s");
-    steps(&mut lab, "50.", 150);
-    lab.wait_for("═"); // below the traces, when it acts
-    let run = saved(&mut lab, "run.toml");
-    let push = &run[run.find("[[push]]").unwrap()..];
-    has_all(
-        &push,
-        [
-            "point = \"top\"",
-            "force_N = [0.0, 0.0, 75.0]",
-            "from_s = 10.0",
-            "for_s = 20.0",
-        ],
-    );
-    lab.quit();
-}
-
-#[test]
-fn forward_again_the_numbers_are_those_of_the_first_time() {
-    let ground = Ground::new();
-    let mut lab = paused_at(&ground, 0);
-    steps(&mut lab, "300.", 300);
-    push(&mut lab);
-    steps(&mut lab, "100.", 400);
-    let first = (shown(&lab), exported(&mut lab, "first.csv"));
-    lab.press(",");
-    lab.wait_for_step(399);
-    assert_ne!(shown(&lab), first.0);
-    lab.press("10,");
-    lab.wait_for_step(389);
-    lab.ask("g", "a step (421), a time (12.5 s)");
-    answer(&mut lab, "12.5 s");
-    lab.wait_for_step(125);
-    lab.wait_for("t 12.5 s");
-    lab.ask("g", "go to a step");
-    answer(&mut lab, "40 o'clock");
-    lab.wait_for("must be a step (421)");
-    lab.ask(ESC, "q quit");
-    lab.press("r");
-    lab.wait_for_step(0);
-    lab.press("400g");
-    lab.wait_for_step(400);
-    assert_eq!(shown(&lab), first.0);
-    assert_eq!(exported(&mut lab, "again.csv"), first.1);
-    lab.press(",.");
-    lab.wait_until("forward again", |lab| {
-        lab.step() == Some(400) && !lab.screen().contains("wrote")
-    });
-    assert_eq!(shown(&lab), first.0);
-    lab.quit();
-}
-
-#[test]
-fn a_step_beyond_all_is_gone_to_with_progress_until_esc() {
-    let ground = Ground::new();
-    let mut lab = paused_at(&ground, 10);
-    lab.ask("g", "go to a step");
-    answer(&mut lab, "900000000");
-    lab.wait_for("to go, Esc stops");
-    lab.ask(ESC, "stopped with");
-    let stopped = lab.step().unwrap();
-    assert!((10..900_000_000).contains(&stopped), "{stopped}");
-    lab.press("20g");
-    lab.wait_for_step(20);
     lab.quit();
 }
 
@@ -418,13 +318,13 @@ fn all_at_once(cases: &[&str], test: impl Fn(&str) + Sync) {
     });
 }
 
-/// Ends the lab by the signal `by`, or by the loss of its line.
-fn ended(lab: &mut Terminal, by: &str) {
+/// Ends the lab by the signal `by`, or by the loss of its line; gives its exit code.
+fn ended(lab: &mut Terminal, by: &str) -> u32 {
     match by {
         "line" => lab.lose_line(),
         signal => lab.signal(signal),
     }
-    lab.wait_for_end();
+    lab.wait_for_end().exit_code()
 }
 
 /// The content of all session files.
@@ -521,24 +421,6 @@ fn no_key_is_lost_when_the_size_changes_at_the_same_moment() {
     lab.quit();
 }
 
-#[test]
-fn the_runs_before_are_kept_too() {
-    let ground = Ground::new();
-    let mut lab = paused_at(&ground, 70);
-    push(&mut lab);
-    let before = saved(&mut lab, "before.toml");
-    select(&mut lab, 5);
-    set(&mut lab, "30");
-    lab.wait_for_step(70);
-    lab.quit();
-    let mut lab = resumed(&ground);
-    lab.wait_for_step(70);
-    lab.ask("u", "undone: this is the run before");
-    lab.wait_for_step(70);
-    assert_eq!(saved(&mut lab, "after.toml"), before);
-    lab.quit();
-}
-
 /// Keys may arrive together with the end of the program, from a fast typist on a slow line.
 #[test]
 fn what_is_pressed_just_before_the_end_is_kept() {
@@ -560,16 +442,6 @@ fn what_is_pressed_just_before_the_end_is_kept() {
     });
 }
 
-#[test]
-fn keys_that_come_together_count_one_by_one() {
-    let ground = Ground::new();
-    let mut lab = paused_at(&ground, 30);
-    steps(&mut lab, "....5.,p..", 40);
-    let run = saved(&mut lab, "run.toml");
-    assert!(run.contains("from_s = 3.8000000000000003"), "{run}");
-    lab.quit();
-}
-
 /// Waits until Ctrl-Z has stopped the process.
 #[track_caller]
 fn wait_until_stopped(lab: &Terminal) {
@@ -588,9 +460,15 @@ fn after_every_end_there_is_all_that_was_done() {
         let mut lab = paused_at(&ground, 30);
         push(&mut lab);
         steps(&mut lab, "5.", 35);
-        ended(&mut lab, end);
-        if end != "line" {
+        let code = ended(&mut lab, end);
+        let signals = ["HUP", "INT", "QUIT", "TERM"]
+            .iter()
+            .zip([129, 130, 131, 143]);
+        for (_, expected) in signals.filter(|(signal, _)| **signal == end) {
+            assert_eq!(code, expected, "{end}");
             lab.has_given_the_terminal_back();
+            let farewell = format!("{LEAVES_ALTERNATE_SCREEN}{SHOWS_CURSOR}");
+            assert!(lab.sent_text().ends_with(&farewell), "{end}");
         }
         let mut lab = resumed(&ground);
         assert_eq!(lab.step(), Some(35), "{end}");
@@ -611,6 +489,14 @@ fn after_a_panic_there_is_all_that_was_done() {
     steps(&mut lab, "5.", 35);
     assert_eq!(lab.wait_for_end().exit_code(), 101);
     lab.has_given_the_terminal_back();
+    lab.wait_until("the message", |lab| {
+        let sent = lab.sent_text();
+        let mut after = sent.split(LEAVES_ALTERNATE_SCREEN).skip(1);
+        after
+            .next()
+            .is_some_and(|farewell| farewell.contains("a panic was asked for"))
+            && after.next().is_none()
+    });
     let mut lab = resumed(&ground);
     assert_eq!(lab.step(), Some(35));
     assert!(saved(&mut lab, "run.toml").contains("[[push]]"));
@@ -635,7 +521,6 @@ fn a_shell_stops_it_and_brings_it_back() {
     lab.wait_for("q quit");
     lab.wait_for_step(30);
     steps(&mut lab, "5.", 35);
-    lab.forget();
     lab.press("q");
     lab.has_given_the_terminal_back();
     lab.press("exit\r");

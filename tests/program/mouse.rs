@@ -1,11 +1,6 @@
-//! The mouse in the real program: reports as a terminal sends them, and the modes that the terminal is left in.
+//! The mouse in the real program: reports as a terminal sends them, and whose the mouse is.
 
-use crate::support::ground::Ground;
-use crate::support::pty::{LEAVES_ALTERNATE_SCREEN, Terminal};
-
-const ON: &str = "\u{1b}[?1000h\u{1b}[?1002h\u{1b}[?1006h";
-const OFF: &str = "\u{1b}[?1006l\u{1b}[?1002l\u{1b}[?1000l";
-const CTRL_Z: &str = "\u{1a}";
+use crate::support::pty::{MOUSE_OFF, MOUSE_ON, Terminal};
 
 /// The report of a press at the cell `x`, `y`, counted from 1.
 fn press(x: u16, y: u16) -> String {
@@ -24,21 +19,11 @@ fn cell(lab: &Terminal, words: &str) -> (u16, u16) {
     found.unwrap_or_else(|| panic!("no {words} in\n{screen}"))
 }
 
-/// Whether the mouse was asked for and given back as often, and last given back before the screen was.
-fn has_given_the_mouse_back(lab: &Terminal) {
-    lab.has_given_the_terminal_back();
-    let sent = lab.sent_text();
-    assert!(!sent.contains("\u{1b}[?1003h"), "moves are not asked for");
-    assert_eq!(sent.matches(ON).count(), sent.matches(OFF).count());
-    assert!(sent.rfind(OFF) > sent.rfind(ON));
-    assert!(sent.rfind(OFF) < sent.rfind(LEAVES_ALTERNATE_SCREEN));
-}
-
 #[test]
 fn what_is_pressed_is_done() {
     let mut lab = Terminal::open("--paused --at 900");
     lab.wait_for("q quit");
-    lab.wait_until("the mouse", |lab| lab.sent_text().contains(ON));
+    lab.wait_until("the mouse", |lab| lab.sent_text().contains(MOUSE_ON));
     // The traces: the cursor.
     lab.ask(&press(6, 18), "┌ step ");
     // A pane, by its frame.
@@ -66,7 +51,7 @@ fn what_is_pressed_is_done() {
     let (x, y) = cell(&lab, "q quit");
     lab.press(&press(x, y));
     assert_eq!(lab.wait_for_end().exit_code(), 0);
-    has_given_the_mouse_back(&lab);
+    lab.has_given_the_terminal_back();
 }
 
 #[test]
@@ -102,64 +87,18 @@ fn hostile_places_do_nothing() {
 }
 
 #[test]
-fn the_terminal_has_its_mouse_back_after_every_end() {
-    let mut lab = Terminal::open("--paused");
-    lab.wait_for("q quit");
-    lab.quit();
-    has_given_the_mouse_back(&lab);
-    for signal in ["TERM", "HUP"] {
-        let mut lab = Terminal::open(&[]);
-        lab.wait_for("q quit");
-        lab.signal(signal);
-        lab.wait_for_end();
-        has_given_the_mouse_back(&lab);
-    }
-}
-
-#[test]
-#[cfg(debug_assertions)]
-fn the_terminal_has_its_mouse_back_after_a_panic() {
-    let variables = [("TERM", "xterm"), ("GYROLAB_PANIC_AFTER_MS", "600")];
-    let mut lab = Terminal::open_with(&[], &variables);
-    lab.wait_for("q quit");
-    assert_eq!(lab.wait_for_end().exit_code(), 101);
-    has_given_the_mouse_back(&lab);
-}
-
-#[test]
-fn the_shell_has_the_mouse_while_the_lab_is_stopped() {
-    let ground = Ground::new();
-    let mut lab = ground.open_shell();
-    lab.wait_for("shell>");
-    lab.press(&format!(
-        "{} --paused --at 30\r",
-        env!("CARGO_BIN_EXE_gyrolab")
-    ));
-    lab.wait_for("q quit");
-    lab.press(CTRL_Z);
-    has_given_the_mouse_back(&lab);
-    lab.ask("\r", "shell>");
-    lab.forget();
-    lab.press("fg\r");
-    lab.wait_for("q quit");
-    lab.wait_until("the mouse", |lab| lab.sent_text().contains(ON));
-    lab.press("q");
-    has_given_the_mouse_back(&lab);
-}
-
-#[test]
 fn the_mouse_can_stay_with_the_terminal() {
     let mut lab = Terminal::open("--paused --no-mouse");
     lab.wait_for("q quit");
     lab.ask(".", "step 1");
-    assert!(!lab.sent_text().contains(ON));
+    assert!(!lab.sent_text().contains(MOUSE_ON));
     lab.ask("c\x1b[A\r", "mouse acts on the lab");
-    lab.wait_until("the mouse", |lab| lab.sent_text().contains(ON));
+    lab.wait_until("the mouse", |lab| lab.sent_text().contains(MOUSE_ON));
     lab.ask("\r", "mouse selects the terminal's text");
-    lab.wait_until("the mouse back", |lab| lab.sent_text().contains(OFF));
+    lab.wait_until("the mouse back", |lab| lab.sent_text().contains(MOUSE_OFF));
     lab.ask("\x1b", "q quit");
     lab.quit();
-    has_given_the_mouse_back(&lab);
+    lab.has_given_the_terminal_back();
 }
 
 #[test]

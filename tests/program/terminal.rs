@@ -1,7 +1,7 @@
 //! The program itself in a pty: what it does to a terminal, and how it gives it back at every end.
 
 use crate::support::ground::{Args, Ground, done, stderr};
-use crate::support::pty::{LEAVES_ALTERNATE_SCREEN, SHOWS_CURSOR, Terminal};
+use crate::support::pty::{LEAVES_ALTERNATE_SCREEN, Terminal};
 use crate::support::words::has_all;
 use std::thread;
 use std::time::Duration;
@@ -69,37 +69,6 @@ fn a_window_of_any_size_is_drawn_within_little_memory() {
     shell.wait_until("a picture", |shell| shell.sent().len() > 10_000);
     shell.press("q");
     shell.wait_for("ended 0");
-}
-
-#[test]
-fn signals_to_end_give_the_terminal_back() {
-    for (signal, code) in [("TERM", 143), ("INT", 130), ("HUP", 129), ("QUIT", 131)] {
-        let mut terminal = opened("--fps 60");
-        terminal.signal(signal);
-        assert_eq!(terminal.wait_for_end().exit_code(), code, "{signal}");
-        terminal.has_given_the_terminal_back();
-        let sent = terminal.sent_text();
-        let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN).unwrap();
-        let words = format!("{LEAVES_ALTERNATE_SCREEN}{SHOWS_CURSOR}");
-        assert_eq!(&sent[farewell..], words);
-    }
-}
-
-#[test]
-#[cfg(debug_assertions)]
-fn a_panic_gives_the_terminal_back_and_is_told_there() {
-    let variables = [("TERM", "xterm"), ("GYROLAB_PANIC_AFTER_MS", "600")];
-    let mut terminal = Terminal::open_with(&[], &variables);
-    terminal.wait_for("q quit");
-    assert_eq!(terminal.wait_for_end().exit_code(), 101);
-    terminal.has_given_the_terminal_back();
-    terminal.wait_until("the message", |terminal| {
-        let sent = terminal.sent_text();
-        let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN);
-        farewell.is_some_and(|farewell| sent[farewell..].contains("a panic was asked for"))
-    });
-    let sent = terminal.sent_text();
-    assert_eq!(sent.matches(LEAVES_ALTERNATE_SCREEN).count(), 1);
 }
 
 #[test]

@@ -17,6 +17,8 @@ const PATIENCE: Duration = Duration::from_secs(20);
 const LAST_BYTES: Duration = Duration::from_secs(2);
 pub const LEAVES_ALTERNATE_SCREEN: &str = "\u{1b}[?1049l";
 pub const SHOWS_CURSOR: &str = "\u{1b}[?25h";
+pub const MOUSE_ON: &str = "\u{1b}[?1000h\u{1b}[?1002h\u{1b}[?1006h";
+pub const MOUSE_OFF: &str = "\u{1b}[?1006l\u{1b}[?1002l\u{1b}[?1000l";
 
 impl Ground {
     pub fn open(&self, args: impl Args) -> Terminal {
@@ -302,6 +304,7 @@ impl Terminal {
         self.wait_for_end();
     }
 
+    /// Asserts that screen, cursor and mouse are the terminal's again.
     #[track_caller]
     pub fn has_given_the_terminal_back(&self) {
         self.wait_until("the cursor", |terminal| {
@@ -309,6 +312,12 @@ impl Terminal {
             let left = sent.rfind(LEAVES_ALTERNATE_SCREEN);
             left.is_some_and(|left| sent[left..].contains(SHOWS_CURSOR))
         });
+        let sent = self.sent_text();
+        assert!(!sent.contains("\u{1b}[?1003h"), "moves are not asked for");
+        let [on, off] = [MOUSE_ON, MOUSE_OFF].map(|mode| sent.matches(mode).count());
+        assert_eq!(on, off, "the mouse is given back as often as it was taken");
+        assert!(sent.rfind(MOUSE_OFF) >= sent.rfind(MOUSE_ON));
+        assert!(sent.rfind(MOUSE_OFF) < sent.rfind(LEAVES_ALTERNATE_SCREEN));
     }
 }
 

@@ -16,5 +16,5 @@ pub mod png;
 pub mod scene;
 pub mod svg;
 
-pub use format::{Format, Unwritable, write};
-pub use scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+pub use format::{Format, write};
+pub use scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment, Unwritable};

@@ -224,9 +224,7 @@ impl View {
 
     /// Changes to another scenario: the traces show its run, and the rest is as its `[view]` says.
     pub fn fit(&mut self, scenario: &Scenario) {
-        let file = scenario.file.view.as_ref();
-        let mut patch = file.and_then(|file| Table::try_from(file).ok());
-        let patch = patch.get_or_insert_default();
+        let mut patch = scenario.file.view.clone().unwrap_or_default();
         patch.retain(|key, _| !["look_at", "next"].contains(&key)); // the scenario's, which may be edited
         let usual = Look {
             window_s: self.usual_window_s(scenario),
@@ -241,11 +239,11 @@ impl View {
         if self.look.camera.is_none() {
             self.camera = Camera::default();
         }
-        self.take(usual.patched(patch).unwrap_or(usual));
+        self.take(usual.patched(&patch).unwrap_or(usual));
         if !self.may_show(self.focus) {
             self.keep_focus_among(&self.to_show());
         }
-        if let Some(fill) = file.and_then(|file| file.fill.as_deref()) {
+        if let Some(fill) = patch.get("fill").and_then(Value::as_str) {
             self.fill(Pane::named(fill));
         }
     }
@@ -272,14 +270,15 @@ impl View {
 
     /// The time that the traces show of the run of `scenario` while none is chosen by hand, s.
     pub fn usual_window_s(&self, scenario: &Scenario) -> f64 {
-        let view = scenario.file.view.as_ref();
+        let file = &scenario.file;
+        let number = |key| file.viewed(key).and_then(Value::as_float);
         // The whole run, or what of it is played in two minutes.
         let first_s = || {
-            let speed = view.and_then(|view| view.speed).unwrap_or(keys::SPEED);
+            let speed = number("speed").unwrap_or(keys::SPEED);
             let window_s = Clock::end_s(scenario).min(LONGEST_SWEEP_S * speed);
             window_s.max(2.0 * scenario.motion.time_step_s)
         };
-        view.and_then(|view| view.window_s).unwrap_or_else(first_s)
+        number("window_s").unwrap_or_else(first_s)
     }
 
     pub fn hides(&self, part: Part) -> bool {

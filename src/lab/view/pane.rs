@@ -22,17 +22,21 @@ pub enum Part {
 
 impl Pane {
     /// x, y, z and tilt over time.
-    pub const TRACES: Self = Self(screen::TRACES);
-    pub const FROM_ABOVE: Self = Self(screen::ABOVE);
+    pub const TRACES: Self = Self::called(screen::TRACES);
+    pub const FROM_ABOVE: Self = Self::called(screen::ABOVE);
     /// The scene in space.
-    pub const THREE_D: Self = Self(screen::THREE_D);
+    pub const THREE_D: Self = Self::called(screen::THREE_D);
     /// The scenario's values and the readouts.
-    pub const PARAMETERS: Self = Self("parameters");
+    pub const PARAMETERS: Self = Self::called("parameters");
     /// One time step, phase by phase. It is shown where it is asked for.
-    pub const STEP: Self = Self("step");
-
+    pub const STEP: Self = Self::called("step");
     /// The page of a lesson. It is shown as long as there is one.
-    pub const LESSON: Self = Self("lesson");
+    pub const LESSON: Self = Self::called("lesson");
+
+    /// The pane of an id that is one of [`PANES`].
+    pub const fn called(id: &'static str) -> Self {
+        Self(id)
+    }
 
     pub const fn id(self) -> &'static str {
         self.0

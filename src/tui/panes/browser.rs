@@ -9,7 +9,7 @@ use crate::scenario::Scenario;
 use crate::text::printable::printable;
 use crate::text::wrap::wrapped;
 use crate::tui::keymap::Mode;
-use crate::tui::layout::{split_columns, split_rows};
+use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
@@ -151,7 +151,7 @@ fn below<'a>(name: &'a str, folder: Option<&Path>) -> &'a str {
 
 fn described(scenario: &Scenario, width: usize) -> Vec<(String, Role)> {
     let file = &scenario.file;
-    let look_at = file.view.as_ref().and_then(|view| view.look_at.as_deref());
+    let look_at = file.viewed_text("look_at");
     let motion = &scenario.motion;
     let run = format!(
         "{} scheme, {} steps of {} s",

@@ -9,7 +9,7 @@ use crate::lab::view::{Pane, Part};
 use crate::playback::reading::Reading;
 use crate::text::number::{fixed, significant};
 use crate::tui::keymap::{BINDINGS, Binding, Does, Key, Mode, Worth};
-use crate::tui::layout::split_columns;
+use crate::tui::split::split_columns;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

@@ -4,7 +4,7 @@ use super::{popup_frame, wrapped_to, write};
 use crate::lab::form::{Field, Form};
 use crate::lab::view::theme::Theme;
 use crate::text::wrap::{columns, wrapped};
-use crate::tui::layout::{split_columns, split_rows};
+use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

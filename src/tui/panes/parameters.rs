@@ -15,7 +15,7 @@ use crate::scenario::{Motion, Scenario};
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
 use crate::tui::keymap::{Binding, Key, Mode, row};
-use crate::tui::layout::{split_columns, split_rows};
+use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use lines::{
     COLUMN, Line, PREDICTED, VALUE_END, body_lines, derived_lines, fewer_digits, further_lines,

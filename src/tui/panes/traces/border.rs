@@ -2,7 +2,7 @@
 //! act on the run and where the time is that the strip of the fast motion shows.
 
 use super::super::longest;
-use super::plot::Content;
+use super::groups::Content;
 use super::{ROW, Traces, ZOOM, write};
 use crate::playback::ghost::Ghost;
 use crate::playback::marks::Marks;

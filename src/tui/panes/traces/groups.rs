@@ -1,10 +1,10 @@
 //! Which strips there are, and where they stand.
 
-use super::plot::Content;
 use super::{ALL, NAME, STRIP, Traces, axis};
 use crate::playback::recording::Curve;
 use crate::playback::strip::Strip;
-use crate::tui::layout::split_rows;
+use crate::tui::split::split_rows;
+use crate::tui::theme::Role;
 use ratatui::layout::{Margin, Position, Rect};
 
 /// From this width on the values stand beside the strips, and not on a line above each.
@@ -12,6 +12,28 @@ const BESIDE_FROM: u16 = 48;
 /// The fewest rows of a strip with measured points, and the shares of the remaining rows that it gets.
 const STRIP_WITH_POINTS: u16 = 3;
 const WITH_POINTS: u16 = 3;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Content {
+    Curve(Curve),
+    /// The quantity of this index among the measured ones, where it is none of those curves.
+    Measured(usize),
+}
+
+impl Content {
+    pub fn of_every_run() -> [Self; 4] {
+        Curve::ALL.map(Self::Curve)
+    }
+
+    pub fn role(self) -> Role {
+        match self {
+            Self::Curve(Curve::X) => Role::X,
+            Self::Curve(Curve::Y) => Role::Y,
+            Self::Curve(Curve::Z) => Role::Z,
+            Self::Curve(Curve::Tilt) | Self::Measured(_) => Role::Path,
+        }
+    }
+}
 
 /// Strips one above the other over the same time, and the axis below them.
 pub(super) struct Group {

@@ -1,7 +1,7 @@
 //! A strip as it is drawn: what it shows, of which time and values, and its curves.
 
 use super::Traces;
-use super::groups::Group;
+use super::groups::{Content, Group};
 use crate::data::compared::Shown;
 use crate::lab::comparison::DataComparison;
 use crate::playback::ghost::Ghost;
@@ -29,28 +29,6 @@ const PLANE_LEAST: f64 = 1e-4;
 const RESIDUAL_LEAST: f64 = 1e-9;
 /// A band whose edges are nearer to one another than this, in dots, has no room for a gap: it is drawn as a thick line.
 const THINNEST_BAND: usize = 2;
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Content {
-    Curve(Curve),
-    /// The quantity of this index among the measured ones, where it is none of those curves.
-    Measured(usize),
-}
-
-impl Content {
-    pub fn of_every_run() -> [Self; 4] {
-        Curve::ALL.map(Self::Curve)
-    }
-
-    pub fn role(self) -> Role {
-        match self {
-            Self::Curve(Curve::X) => Role::X,
-            Self::Curve(Curve::Y) => Role::Y,
-            Self::Curve(Curve::Z) => Role::Z,
-            Self::Curve(Curve::Tilt) | Self::Measured(_) => Role::Path,
-        }
-    }
-}
 
 /// Whose curve it is, in the order in which they are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,0 +1,25 @@
+//! A part of the screen, split in two.
+
+use ratatui::layout::Rect;
+
+/// The first `height` rows of `area`, and the others.
+pub fn split_rows(area: Rect, height: u16) -> [Rect; 2] {
+    let height = height.min(area.height);
+    let below = Rect {
+        y: area.y + height,
+        height: area.height - height,
+        ..area
+    };
+    [Rect { height, ..area }, below]
+}
+
+/// The first `width` columns of `area`, and the others.
+pub fn split_columns(area: Rect, width: u16) -> [Rect; 2] {
+    let width = width.min(area.width);
+    let right = Rect {
+        x: area.x + width,
+        width: area.width - width,
+        ..area
+    };
+    [Rect { width, ..area }, right]
+}
