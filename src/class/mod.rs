@@ -71,7 +71,7 @@ pub trait Role {
         None
     }
 
-    /// Takes note that the lab was left. Returns what is said of that.
+    /// Takes note that the lab was left. Returns what is said of that, and of how to come back.
     fn leave(&mut self) -> Result<String, String> {
         Ok(String::new())
     }

@@ -395,7 +395,13 @@ impl Role for Student {
 
     fn leave(&mut self) -> Result<String, String> {
         self.seat.leave(&self.holds);
-        Ok(self.ended.unwrap_or_default().to_owned())
+        let back = || {
+            format!(
+                "Your seat is {}: type that when you come back.",
+                self.seat.word
+            )
+        };
+        Ok(self.ended.map_or_else(back, str::to_owned))
     }
 }
 

@@ -10,6 +10,7 @@ use crate::lab::sheet::{Kind, Paragraph};
 use crate::lessons::page::Dress;
 use crate::lessons::{Class as Lessons, Page};
 use crate::scenario::Scenario;
+use crate::text::printable::Shown;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
@@ -310,6 +311,8 @@ impl Role for Teacher {
 
     fn leave(&mut self) -> Result<String, String> {
         self.state.is_on = false;
-        self.folder.publish(&self.state).map(|()| String::new())
+        self.folder.publish(&self.state)?;
+        let root = Shown(&self.folder.root);
+        Ok(format!("gyrolab class --resume --folder {root} goes on"))
     }
 }

@@ -3,7 +3,7 @@
 use super::args::{ClassArgs, Look, WorkbenchArgs};
 use super::lesson::admit;
 use super::new_lab::{DEFAULT, new_lab, refused};
-use super::workbench::{Entrance, open_at};
+use super::workbench::open_at;
 use super::{print, progress, sessions, tell};
 use crate::class::folder::Folder;
 use crate::class::seat::all_seats;
@@ -63,8 +63,10 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
         "a class is on in {}: its board is gyrolab class --board --folder DIR",
         Shown(&folder.root)
     );
-    let before = folder.state().map_err(anyhow::Error::msg)?;
-    let before = before.unwrap_or_default();
+    let before = match folder.state() {
+        Err(reason) if args.resume => bail!(reason),
+        state => state.ok().flatten().unwrap_or_default(),
+    };
     let (name, page) = match &args.lesson {
         Some(name) => (reading::full_name(name), 1),
         None if before.lesson.is_empty() => {
@@ -80,13 +82,9 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
         resume: (args.resume && !sessions.is_empty()).then(String::new),
         ..WorkbenchArgs::default()
     };
-    let back = Shown(&args.folder);
-    let back = format!("gyrolab class --resume --folder {back} goes on");
-    let entrance = Entrance {
-        lesson: Some((&lesson, page.min(lesson.pages.len()))),
-        role: Some((Box::new(Teacher::new(folder, before)), back)),
-    };
-    open_at(&workbench, DEFAULT, Some(confined), entrance)
+    let page = Some((&lesson, page.min(lesson.pages.len())));
+    let teacher = Box::new(Teacher::new(folder, before));
+    open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher))
 }
 
 fn show_board(folder: &Folder) -> anyhow::Result<ExitCode> {
@@ -163,13 +161,8 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
         paused: is_on || args.paused,
         ..args.clone()
     };
-    let back = format!("Your seat is {}: type that when you come back.", seat.word);
-    let student = Student::new(folder, seat, holds, record);
-    let entrance = Entrance {
-        lesson: None,
-        role: Some((Box::new(student), back)),
-    };
-    open_at(&args, DEFAULT, Some(confined), entrance)
+    let student = Box::new(Student::new(folder, seat, holds, record));
+    open_at(&args, DEFAULT, Some(confined), None, Some(student))
 }
 
 /// Asks for a name or the word of a seat until there is one; `None` where nothing more is typed.

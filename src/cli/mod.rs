@@ -183,7 +183,10 @@ fn open_lab(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         Cli::command().find_subcommand(name).is_none(),
         "{name} is a command, and commands come before their options: gyrolab {name} ..."
     );
-    workbench::open(args)
+    match &args.folder {
+        Some(folder) if args.seat => class::seat(args, folder),
+        _ => workbench::open(args),
+    }
 }
 
 const MISUSED: u8 = 2;

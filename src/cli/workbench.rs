@@ -3,8 +3,8 @@
 use super::args::{LessonArgs, WorkbenchArgs};
 use super::new_lab::{DEFAULT, of_workbench, variable};
 use super::sessions::{self, begun, come_back, come_back_to, tell_of_session};
+use super::settings;
 use super::show::{ShowArgs, print_picture};
-use super::{settings, tell};
 use crate::class::{Alone, Role};
 use crate::lab::Lab;
 use crate::lab::command;
@@ -36,26 +36,11 @@ pub(super) fn open_lesson(
         folder: args.folder.clone(),
         ..WorkbenchArgs::default()
     };
-    let entrance = Entrance {
-        lesson: Some((lesson, page.number)),
-        ..Entrance::default()
-    };
-    open_at(&args, DEFAULT, confined, entrance)
-}
-
-/// What a lab is opened for beside its scenario.
-#[derive(Default)]
-pub(super) struct Entrance<'a> {
-    /// A lesson, and the number of its page.
-    pub(super) lesson: Option<(&'a Lesson, usize)>,
-    /// Its role in a class, and what is said at the end of how to come back to that.
-    pub(super) role: Option<(Box<dyn Role>, String)>,
+    let page = Some((lesson, page.number));
+    open_at(&args, DEFAULT, confined, page, None)
 }
 
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
-    if let (true, Some(folder)) = (args.seat, &args.folder) {
-        return super::class::seat(args, folder);
-    }
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
     let enter = |folder| Confined::enter(folder).with_context(|| sessions::named(folder));
     let confined = args.folder.as_deref().map(enter).transpose()?;
@@ -91,18 +76,19 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         };
         return print_picture(&picture, Some(&why), confined);
     }
-    open_at(args, name, confined, Entrance::default())
+    open_at(args, name, confined, None, None)
 }
 
-/// Opens the lab on the terminal with the scenario `name`, for what `entrance` says.
+/// Opens the lab on the terminal with the scenario `name`, at the page of this number of a lesson, in a role of a class.
 pub(super) fn open_at(
     args: &WorkbenchArgs,
     name: &str,
     confined: Option<Confined>,
-    entrance: Entrance<'_>,
+    lesson: Option<(&Lesson, usize)>,
+    role: Option<Box<dyn Role>>,
 ) -> anyhow::Result<ExitCode> {
-    let lesson = entrance.lesson;
-    let (mut role, back) = entrance.role.unwrap_or((Box::new(Alone), String::new()));
+    let is_alone = role.is_none();
+    let mut role = role.unwrap_or(Box::new(Alone));
     // A write past `ulimit -f` fails then, like one to a full disk, and does not end the process.
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     let commands = args.commands.as_deref().map(command::open).transpose()?;
@@ -118,8 +104,8 @@ pub(super) fn open_at(
     chosen.tell(&mut lab);
     lab.settings.folder = folder.ok();
     furnish(&mut lab, args, confined)?;
-    let is_of_its_own = lesson.is_none() && back.is_empty() && commands.is_none();
-    if is_of_its_own && args.scenario.is_none() && args.resume.is_none() {
+    let is_new = is_alone && lesson.is_none() && commands.is_none();
+    if is_new && args.scenario.is_none() && args.resume.is_none() {
         lab.play_on();
     }
     lab.set_trouble(session.as_ref().err().cloned());
@@ -132,13 +118,12 @@ pub(super) fn open_at(
     let ran = app::run(&mut lab, &mut lessons, &mut *role, session.as_ref().ok());
     ran.context("the terminal cannot be used")?;
     tell_of_exports(&lab)?;
-    if back.is_empty() {
+    if is_alone {
         tell_of_session(session, args.folder.as_deref())?;
         return Ok(ExitCode::SUCCESS);
     }
     drop(session);
-    tell(role.leave().map_err(anyhow::Error::msg)?);
-    super::print(&format!("{back}\n"))
+    super::print(&(role.leave().map_err(anyhow::Error::msg)? + "\n"))
 }
 
 /// Gives `lab` its folder, its measured data, and what the terminal can do.

@@ -148,10 +148,6 @@ impl Class {
     /// Does what `key` stands for. Returns the direction in which the page is to be scrolled, if that is what it means.
     pub fn act(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
         let mut scrolls = None;
-        if key == LessonKey::List {
-            let folder = lab.files().confined().map(Confined::lessons);
-            self.own = folder.map(files_in).unwrap_or_default();
-        }
         let names = self.names();
         match (&mut self.shown, key) {
             (Shown::List { from, .. }, LessonKey::List) => {
@@ -197,6 +193,8 @@ impl Class {
     fn open_list(&mut self, lab: &mut Lab) {
         let here = self.taken().map(|taken| taken.lesson.name.clone());
         self.leave(lab);
+        let folder = lab.files().confined().map(Confined::lessons);
+        self.own = folder.map(files_in).unwrap_or_default();
         let names = self.names();
         let selected = here
             .as_ref()

@@ -29,11 +29,10 @@ pub fn run(
     role: &mut dyn Role,
     session: Option<&Session>,
 ) -> io::Result<()> {
-    let mut screen = Screen::enter()?;
+    let (mut screen, mut pointer) = (Screen::enter()?, Pointer::default());
     let mut pacing = Pacing::new(lab.view().fps);
     let begin = Instant::now();
     screen::fit(lab, screen.size()?);
-    let mut pointer = Pointer::default();
     loop {
         screen.set_mouse(lab.view().mouse)?;
         pacing.set_rate(lab.view().fps);
@@ -45,15 +44,11 @@ pub fn run(
             if handle(event, lab, lessons, role, screen, pointer, session)?.is_break() {
                 return Ok(());
             }
-        }
-        if acted {
             role.acted(lab, lessons);
         }
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
-        let has_arrived = advance(lab, begin);
-        let is_over = role.advance(begin.elapsed(), lab, lessons).is_break();
-        lessons.advance(begin.elapsed(), lab);
+        let (has_arrived, is_over) = advance(lab, lessons, role, begin);
         if lab.has_changed() {
             screen::refit(lab, screen.size()?);
         }
@@ -61,8 +56,8 @@ pub fn run(
         if is_over {
             return Ok(());
         }
-        let now = begin.elapsed();
         // The answer to a key is drawn at once, without waiting for the next frame; so is the step that was asked for.
+        let now = begin.elapsed();
         if (acted || has_arrived || pacing.is_due(now)) && lab.take_changed() {
             let bytes = screen.draw(|area, buf| screen::draw(lab, true, area, buf))?;
             pacing.drawn(now, bytes, screen.size()?.area());
@@ -70,11 +65,19 @@ pub fn run(
     }
 }
 
-/// Advances the run. Returns whether it has arrived where it was to go.
-fn advance(lab: &mut Lab, begin: Instant) -> bool {
+/// Advances run, class and lessons. Returns whether the run has arrived where it was to go, and whether the lab is to end.
+fn advance(
+    lab: &mut Lab,
+    lessons: &mut Lessons,
+    role: &mut dyn Role,
+    begin: Instant,
+) -> (bool, bool) {
     let was_on_its_way = lab.player().playback.steps_to_go().is_some();
     lab.advance(&mut || begin.elapsed());
-    was_on_its_way && lab.player().playback.steps_to_go().is_none()
+    let has_arrived = was_on_its_way && lab.player().playback.steps_to_go().is_none();
+    let is_over = role.advance(begin.elapsed(), lab, lessons).is_break();
+    lessons.advance(begin.elapsed(), lab);
+    (has_arrived, is_over)
 }
 
 /// Saves the state of `lab` in `session`, and shows a message as long as saving fails.
