@@ -114,6 +114,11 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_time_that_is_none_says_nothing_of_the_motion() {
+        assert_eq!(Ages::new(Some(f64::NAN), Some(0.0)), Ages::UNKNOWN);
+    }
+
+    #[test]
     fn recent_begins_at_notches_and_reaches_back_far_enough() {
         let ages = Ages::new(Some(0.1), Some(100.0));
         let begins: Vec<_> = (0..100)

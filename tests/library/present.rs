@@ -6,7 +6,7 @@ use gyrolab::journal::restart::{in_force, scenario_from};
 use gyrolab::physics::State;
 use gyrolab::physics::observables::position;
 use gyrolab::run::Simulation;
-use gyrolab::scenario::Scenario;
+use gyrolab::scenario::{Document, Scenario};
 use proptest::prelude::*;
 use std::sync::Arc;
 use toml::Table;
@@ -117,6 +117,16 @@ fn what_it_says_and_what_it_leaves_out() {
         assert!((push.from_s.unwrap() - from_s).abs() < 1e-12, "{push:?}");
         assert!((push.for_s.unwrap() - for_s).abs() < 1e-12, "{push:?}");
     }
+}
+
+#[test]
+fn what_is_looked_at_is_written_in_the_order_of_the_keys_and_with_floats() {
+    let view = "\n[view]\nspeed = 20.0\nlook_at = \"l\"\nexact = true\nshow = [\"traces\"]\nphase = 3\nbare = false\n\
+        \n[view.camera]\nyaw_deg = 3.0\npitch_deg = 20.0\n\n[view.zoom]\nabove = 4.0\n3d = 2.0\n";
+    let mut document = Document::parse("x.toml", &text("rk4", 0.0, UPRIGHT, view)).unwrap();
+    assert!(document.scenario().unwrap().to_toml().ends_with(view));
+    document.set("view.speed=20").unwrap();
+    assert!(document.scenario().unwrap().to_toml().ends_with(view));
 }
 
 #[test]

@@ -207,6 +207,8 @@ fn round_pictures_are_zoomed_where_they_have_the_focus() {
     stage.press("Z").shows("from above ×5").shows("z zoom");
     stage.press("9Z9Z").shows("from above ×0.5");
     stage.shows("this is the smallest");
+    stage.press("9z9z").shows("from above ×100");
+    stage.shows("this is the largest");
     stage.key(Key::Home);
     stage.wait(0.0).shows("┌ from above ─");
     stage.press("dz").shows("┌ 3-D ×2 ─");

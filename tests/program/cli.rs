@@ -1,7 +1,7 @@
 //! The program itself, against what it promises: exit codes, what goes to stdout and what to stderr, files that
 //! appear whole or not at all, and CSVs that run again to the same bytes.
 
-use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
+use crate::support::ground::{Ground, code, done, failed, refused, stderr, stdout};
 use crate::support::pty::signal;
 use crate::support::words::{has, has_all, has_no};
 use std::fs;
@@ -467,7 +467,7 @@ fn a_signal_ends_the_wait_for_the_reader_of_a_fifo() {
 }
 
 #[test]
-fn ctrl_c_ends_a_run_with_130_and_leaves_nothing() {
+fn a_signal_ends_a_command_with_130_and_leaves_nothing() {
     let lab = Ground::new();
     lab.write("old.csv", "precious");
     // A header that takes its time: the signal comes in the midst of it.
@@ -475,25 +475,79 @@ fn ctrl_c_ends_a_run_with_130_and_leaves_nothing() {
         (0..50_000).map(|n| format!("[[body.point]]\nname = \"p{n}\"\nat_m = [0, 0, 1]\n"));
     let big = lab.stdout("presets method-2") + &points.collect::<String>();
     lab.write("big.toml", &big);
-    for args in [
-        "method-2 -o new.csv",
-        "method-2 -o old.csv --force",
-        "big.toml -o new.csv",
+    // Nine million steps of a scheme that steps by milliseconds, in every run of a fit.
+    lab.write("long.csv", "t_s,tilt_deg\n0,20\n9000,20\n");
+    // The rows between the start and the last step are left out: nothing differs until that is computed.
+    let short = lab.stdout("run method-2 --steps 2 --every 2000000000 -o -");
+    lab.write(
+        "rows.csv",
+        &short.replace("# steps = 2\n", "# steps = 2000000000\n"),
+    );
+    let there = lab.files();
+    let steps = "--steps 9000000000000000000 --every 1000000";
+    for (args, is_written) in [
+        (&*format!("run method-2 {steps} -o new.csv"), true),
+        (&*format!("run method-2 {steps} -o old.csv --force"), true),
+        (&*format!("run big.toml {steps} -o new.csv"), true),
         // Each step integrates for a good part of a second, and 4096 of them are taken without a look at the signal.
-        "wing-nut --scheme exact --set motion.time_step_s=1e4 -o new.csv",
+        (
+            &*format!(
+                "run wing-nut {steps} --scheme exact --set motion.time_step_s=1e4 -o new.csv"
+            ),
+            true,
+        ),
+        // One scheme whose looks are far apart, and many on all cores.
+        (
+            "compare method-2 --schemes report --time-steps 1e-12 -o new.csv",
+            true,
+        ),
+        ("compare cusps --duration 1e5 -o new.csv", true),
+        ("writeup method-2 --steps 100000000 -o folder", true),
+        (
+            "fit long.csv --in cusps --scheme rk4 --free start.tilt_deg -o new.csv",
+            false,
+        ),
+        ("verify rows.csv", false),
     ] {
-        let huge = format!("run --steps 9000000000000000000 --every 1000000 {args}");
-        let mut command = lab.command(&huge);
-        let pipes = command.stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut command = lab.command(args);
+        let pipes = command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = pipes.spawn().unwrap();
-        // The signal comes as soon as there is a temporary file.
-        let is_begun = || lab.files().iter().any(|name| name.ends_with(".part"));
-        wait_until(&mut child, is_begun);
+        if is_written {
+            // The signal comes as soon as there is a temporary file.
+            wait_until(&mut child, || lab.files() != there);
+        } else {
+            std::thread::sleep(std::time::Duration::from_millis(500));
+        }
         signal(child.id(), "INT");
         let output = child.wait_with_output().unwrap();
-        assert_eq!(code(&output), 130, "{args}: {output:?}");
-        assert_eq!(lab.files(), ["big.toml", "old.csv"]);
+        refused(args, &output, 130, &[]);
+        assert_eq!(
+            (stdout(&output), lab.files()),
+            ("", there.clone()),
+            "{args}"
+        );
         assert_eq!(lab.read("old.csv"), "precious");
+    }
+}
+
+/// With a stack larger than any memory no thread can be had.
+#[test]
+fn without_threads_the_numbers_are_the_same() {
+    let lab = Ground::new();
+    for command in [
+        "compare cusps --steps 100",
+        "fit heidelberg-nutation --in heidelberg --free body.part.0.moments_kg_m2.2",
+    ] {
+        let told = |least_stack: &str| {
+            let mut command = lab.command(command);
+            let output = done(command.env("RUST_MIN_STACK", least_stack).output().unwrap());
+            // The last column of a comparison is the time that it took.
+            let lines = stdout(&output)
+                .lines()
+                .map(|line| line.get(..78).unwrap_or(line));
+            lines.map(str::to_owned).collect::<Vec<_>>()
+        };
+        assert_eq!(told("4611686018427387904"), told("2097152"), "{command}");
     }
 }
 

@@ -1,10 +1,8 @@
 //! `gyrolab compare`: its table, its CSV, and how it ends.
 
-use crate::support::ground::{Ground, code, done};
-use crate::support::pty::signal;
+use crate::support::ground::{Ground, done};
 use crate::support::words::has;
-use std::process::{Output, Stdio};
-use std::time::Duration;
+use std::process::Output;
 
 const COLUMNS: [&str; 11] = [
     "scheme",
@@ -66,20 +64,6 @@ const ORDERS: [(&str, &str, f64); 4] = [
     ("strang", "0.01,0.005,0.0025", 2.0),
     ("srkn11b", "0.1,0.0625,0.04", 6.0),
 ];
-
-/// A stack larger than any memory: no thread can be had.
-#[test]
-fn without_threads_it_takes_one_core() {
-    let lab = Ground::new();
-    let compare = |least_stack: &str| {
-        let mut command = lab.command("compare cusps --steps 100");
-        let text = told_by(command.env("RUST_MIN_STACK", least_stack).output().unwrap());
-        // All but the last column, which is the time it took.
-        let lines = text.lines().map(|line| line.get(..78).unwrap_or(line));
-        lines.map(str::to_owned).collect::<Vec<_>>()
-    };
-    assert_eq!(compare("4611686018427387904"), compare("2097152"));
-}
 
 #[test]
 fn the_orders_of_the_schemes_are_in_the_table() {
@@ -243,29 +227,6 @@ fn a_scheme_whose_numbers_break_has_no_error_to_show() {
     // Nor has one beside an exact motion that leaves the range of numbers.
     let csv = told(&lab, &format!("{} -o -", args("1e100")));
     assert!(rows(&csv).iter().all(|row| row[3] == "n/a"), "{csv}");
-}
-
-#[test]
-fn a_signal_ends_it_with_130_and_leaves_no_file() {
-    let lab = Ground::new();
-    // One scheme whose looks are far apart, and many on all cores.
-    for args in [
-        "compare method-2 --schemes report --time-steps 1e-12 -o t.csv",
-        "compare cusps --duration 1e5 -o t.csv",
-    ] {
-        let mut command = lab.command(args);
-        let pipes = command.stdout(Stdio::null()).stderr(Stdio::piped());
-        let mut child = pipes.spawn().unwrap();
-        while lab.files().is_empty() {
-            assert!(child.try_wait().unwrap().is_none(), "{args} has ended");
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        std::thread::sleep(Duration::from_millis(200));
-        signal(child.id(), "INT");
-        let output = child.wait_with_output().unwrap();
-        assert_eq!(code(&output), 130, "{args}: {output:?}");
-        assert_eq!(lab.files(), [""; 0], "{args}");
-    }
 }
 
 #[test]

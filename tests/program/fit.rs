@@ -1,11 +1,7 @@
 //! `gyrolab fit`: what it prints, its CSV, its figure, its exit codes, and what it refuses.
 
-use crate::support::ground::{Ground, code, done, refused, stdout};
-use crate::support::pty::signal;
+use crate::support::ground::{Ground, code, done, stdout};
 use crate::support::words::{has, has_no};
-use std::process::Stdio;
-use std::thread::sleep;
-use std::time::Duration;
 
 const NUTATION: &str = "fit heidelberg-nutation --in heidelberg --set body.point.0.at_m.2=0 \
     --free=body.part.0.moments_kg_m2.2";
@@ -136,31 +132,4 @@ fn what_is_wrong_is_told_with_the_remedy() {
     ] {
         ground.refused(args, code, &[words]);
     }
-}
-
-#[test]
-fn ctrl_c_ends_it_with_130_and_leaves_no_file() {
-    let ground = Ground::new();
-    // Nine million steps of a scheme that steps by milliseconds, in every run.
-    ground.write("long.csv", "t_s,tilt_deg\n0,20\n9000,20\n");
-    let args = "fit long.csv --in cusps --scheme rk4 --free start.tilt_deg -o fit.csv";
-    let mut command = ground.command(args);
-    let fit = command.stderr(Stdio::null()).spawn().unwrap();
-    sleep(Duration::from_millis(500));
-    signal(fit.id(), "INT");
-    refused(args, &fit.wait_with_output().unwrap(), 130, &[]);
-    assert_eq!(ground.files(), ["long.csv"]);
-}
-
-/// A stack larger than any memory: no thread can be had.
-#[test]
-fn without_threads_it_finds_the_same() {
-    let ground = Ground::new();
-    let fit = |least_stack: &str| {
-        let mut command = ground.command(NUTATION);
-        let output = command.env("RUST_MIN_STACK", least_stack).output().unwrap();
-        assert!(output.stderr.is_empty(), "{output:?}");
-        stdout(&done(output)).to_owned()
-    };
-    assert_eq!(fit("4611686018427387904"), fit("2097152"));
 }

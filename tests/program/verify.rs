@@ -119,19 +119,6 @@ fn a_header_that_was_changed_by_hand_is_told_as_such() {
 }
 
 #[test]
-fn ctrl_c_ends_a_verification() {
-    let ground = Ground::new();
-    // The rows between the start and the last step are left out: nothing differs until that is computed.
-    done(ground.shell("$G run method-2 --steps 2 --every 2000000000 -o - > short.csv"));
-    let long = ground
-        .read("short.csv")
-        .replace("# steps = 2\n", "# steps = 2000000000\n");
-    ground.write("long.csv", &long);
-    let output = ground.shell("timeout --preserve-status -s INT 2 $G verify long.csv");
-    assert_eq!((code(&output), stdout(&output)), (130, ""));
-}
-
-#[test]
 fn rows_and_columns_that_cannot_be_are_refused() {
     let ground = Ground::new();
     for (options, exit, words) in [

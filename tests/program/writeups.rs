@@ -1,13 +1,10 @@
 //! `gyrolab writeup`: what is in the folder, that the same run gives the same bytes, and that no file is lost.
 
 use crate::support::ground::{Ground, code, done, failed, names};
-use crate::support::pty::signal;
 use crate::support::words::{has, has_all, has_no};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
-use std::thread;
-use std::time::{Duration, Instant};
 
 /// Every file of the folder with its bytes, in the order of the names.
 fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
@@ -239,21 +236,6 @@ fn what_cannot_be_written_is_refused_with_its_reason() {
         failed(&output, &["cannot write closed/w", "ermission"]);
     }
     assert_eq!(lab.files(), ["closed", "file"]);
-}
-
-#[test]
-fn a_signal_leaves_no_folder() {
-    let lab = Ground::new();
-    let mut command = lab.command("writeup method-2 --steps 100000000 -o w");
-    let mut running = command.spawn().unwrap();
-    let begin = Instant::now();
-    while lab.files().is_empty() {
-        assert!(begin.elapsed() < Duration::from_secs(60), "it never began");
-        thread::sleep(Duration::from_millis(5));
-    }
-    signal(running.id(), "TERM");
-    assert_eq!(running.wait().unwrap().code(), Some(130));
-    assert_eq!(lab.files(), [""; 0]);
 }
 
 #[test]
