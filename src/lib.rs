@@ -8,6 +8,7 @@
 //!
 //! - [`text`](mod@text): numbers and words as people read them, without control characters that a terminal would obey.
 //! - [`cores`]: work on all cores.
+//! - [`origin`]: the run, the data and the request that the file of a figure carries.
 //! - [`physics`]: body, state, loads, schemes, observables: a crate of its own, in `src/physics`.
 //! - [`scenario`]: a TOML file becomes a checked [`Scenario`](scenario::Scenario); every refusal names file,
 //!   line, key, value and rule. The shipped presets live here too.
@@ -36,6 +37,9 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+#[cfg(windows)]
+compile_error!("on Windows gyrolab runs in WSL, or over SSH on another machine: build it there");
+
 pub mod analysis;
 pub mod class;
 pub mod cli;
@@ -47,6 +51,7 @@ pub mod fit;
 pub mod journal;
 pub mod lab;
 pub mod lessons;
+pub mod origin;
 pub mod own_code;
 pub mod playback;
 pub mod run;

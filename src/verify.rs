@@ -1,7 +1,9 @@
 //! Is a CSV what its header says? What it holds, a run, a sweep, a comparison or a fit, is computed again and held against
-//! the file line by line.
+//! the file line by line; a figure is drawn again.
 
 mod against;
+mod figure;
+mod unverified;
 
 use crate::analysis::compare::{self, ComparisonRow};
 use crate::analysis::{Monitor, cost};
@@ -17,10 +19,9 @@ use crate::scenario::rescale::MOST_STEPS;
 use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::sweep::Sweep;
 use crate::sweep::in_order::in_order;
-use crate::text::advice::unread;
-use crate::text::printable::printable;
 use against::Against;
 pub use against::Difference;
+pub use figure::redraw;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -29,6 +30,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+pub use unverified::Unverified;
+use unverified::other_version;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verified {
@@ -37,33 +40,6 @@ pub struct Verified {
     pub difference: Option<Difference>,
     /// What else there is to say, a line each: another version, where the run ends early, whether to believe it.
     pub notes: Vec<String>,
-}
-
-#[derive(Debug, thiserror::Error)]
-pub enum Unverified {
-    /// It is no CSV of gyrolab's, or what its header holds cannot be computed.
-    #[error("{0}")]
-    Refused(Problems),
-    #[error("stopped")]
-    Stopped,
-}
-
-impl From<Problems> for Unverified {
-    fn from(problems: Problems) -> Self {
-        Self::Refused(problems)
-    }
-}
-
-impl From<String> for Unverified {
-    fn from(rule: String) -> Self {
-        Problems::one("", Problem::at("", rule)).into()
-    }
-}
-
-impl From<io::Error> for Unverified {
-    fn from(error: io::Error) -> Self {
-        unread(&error).into()
-    }
 }
 
 /// How the line of names begins in the CSV of a comparison.
@@ -125,7 +101,11 @@ fn verified(
     let (rows, difference) = against.end()?;
     let of_header = difference.as_ref().map(|_| "of the run in its header: ");
     notes.extend(verdict.map(|verdict| of_header.unwrap_or_default().to_owned() + &verdict));
-    notes.splice(0..0, other_version(&document));
+    let version = document
+        .table()
+        .get("gyrolab")
+        .and_then(toml::Value::as_str);
+    notes.splice(0..0, version.and_then(other_version));
     Ok(Verified {
         rows,
         difference,
@@ -139,15 +119,6 @@ fn opened(path: &Path) -> Result<(Head, BufReader<File>), Unverified> {
     }
     let mut file = BufReader::new(File::open(path)?);
     Ok((Head::read(&mut file)?, file))
-}
-
-/// Says that another version has written the file.
-fn other_version(document: &Document) -> Option<String> {
-    let own = env!("CARGO_PKG_VERSION");
-    let version = document.table().get("gyrolab")?.as_str()?;
-    let version = printable(version);
-    (version != own)
-        .then(|| format!("written by gyrolab {version}, computed again by gyrolab {own}"))
 }
 
 /// The run file in the head of a CSV that gyrolab wrote.

@@ -98,37 +98,42 @@ fn broken_down(health: &Health) -> Remark {
 }
 
 fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
-    let (long, short) = match advice {
-        Advice::TimeStep(step) => {
-            let step = shortest(*step);
-            let long = if health.can_be_rescaled {
-                format!("--time-step {step}")
-            } else {
-                format!("a time step of {step} s throughout")
-            };
-            (long, format!("dt {step} s"))
+    let short = match advice {
+        Advice::TimeStep(step) => format!("dt {} s", shortest(*step)),
+        Advice::Scheme {
+            name, time_step_s, ..
+        } => format!("{name}, dt {} s", shortest(*time_step_s)),
+        Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
+    };
+    Some(Remark {
+        long: remedy(health, advice)? + " would mend it",
+        short: short + " mends it",
+        warns: false,
+    })
+}
+
+/// What mends the run: options of the command line where it can be run again with them.
+fn remedy(health: &Health, advice: &Advice) -> Option<String> {
+    Some(match advice {
+        Advice::TimeStep(step) if health.can_be_rescaled => {
+            format!("--time-step {}", shortest(*step))
         }
+        Advice::TimeStep(step) => format!("dt {} s throughout", shortest(*step)),
         Advice::Scheme {
             name,
             time_step_s,
             tried_s,
         } => {
             let step = shortest(*time_step_s);
-            let long = if health.can_be_rescaled {
+            if health.can_be_rescaled {
                 format!("--scheme {name} --time-step {step}")
             } else if time_step_s == tried_s {
                 format!("--scheme {name}")
             } else {
                 format!("{name} at {step} s throughout")
-            };
-            (long, format!("{name}, dt {step} s"))
+            }
         }
         Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
-    };
-    Some(Remark {
-        long: long + " would mend it",
-        short: short + " mends it",
-        warns: false,
     })
 }
 
@@ -150,10 +155,8 @@ fn swing_of(health: &Health, nutation: &Nutation) -> Vec<(bool, Remark)> {
         Some(Remark::new(text, ratio >= LAG_IS_RIGHT))
     });
     let factor = if let Some(left) = changed {
-        let (verb, percent) = change(nutation);
-        let verb = if verb == "damps" { "damped" } else { "fed" };
         let gone = if left < 1e-3 { ": gone" } else { "" };
-        format!("nutation {verb} by {percent} % a step{gone}")
+        format!("nutation {}{gone}", self::changed(nutation))
     } else {
         format!("nutation ×{} a step", fixed(nutation.multiplier, 4))
     };
@@ -319,7 +322,7 @@ pub fn constants_in_full(health: &Health) -> Option<String> {
 const TOO_FAR_RAD: f64 = 1.0;
 
 impl Health {
-    /// In one sentence: whether the numbers hold, what is wrong with them, and what would mend it.
+    /// In one sentence of at most 40 words: whether the numbers hold, what is wrong with them, and what would mend it.
     pub fn sentence(&self, advice: Option<&Advice>) -> String {
         let Some(most) = self.most_distance_m else {
             return "Not held against the exact motion, which would take too long or leaves the range of numbers.".to_owned();
@@ -341,9 +344,9 @@ impl Health {
             );
         }
         if let Some(swing) = self.swing.filter(|swing| !swing.is_right()) {
+            let cause = cause_of_swing(self).map_or(String::new(), |cause| format!(": {cause}"));
             return format!(
-                "The traced point holds, and the nutation does not: the point has kept within {far} of the exact motion, but {swing}{}{mend}.",
-                cause_of_swing(self)
+                "The traced point holds, and the nutation does not: {swing}{cause}{mend}."
             );
         }
         let picture = picture(self);
@@ -361,38 +364,38 @@ impl Health {
 fn picture(health: &Health) -> String {
     match health.picture {
         Picture::Right => String::new(),
-        Picture::Unknown => {
-            format!(" (in a step the body turns {})", health.picture)
-        }
-        _ => format!(
-            "; only a picture of the turning body would mislead, which turns {} times a step: {}",
-            short(health.turns_per_step),
-            health.picture
-        ),
+        picture => format!("; only a picture of the turning body would mislead: {picture}"),
     }
 }
 
 /// Why the tilt does not swing as it should, where that is known.
-fn cause_of_swing(health: &Health) -> String {
-    let lag_ratio = health.nutation.and_then(|nutation| nutation.lag_ratio);
-    if let (Some(nutation), Some(left)) = (health.nutation, health.changed_nutation()) {
-        let now = match left {
-            left if left < 1e-3 => "is gone".to_owned(),
-            left => format!("has {} times its size", short(left)),
-        };
-        let (verb, percent) = change(&nutation);
-        format!(": the scheme {verb} the nutation by {percent} % a step, so that it {now}")
-    } else if let Some(ratio) = lag_ratio.filter(|ratio| *ratio > LAG_IS_RIGHT) {
+fn cause_of_swing(health: &Health) -> Option<String> {
+    let nutation = health.nutation;
+    let too_far = nutation.and_then(|nutation| nutation.lag_ratio);
+    let too_far = too_far.filter(|ratio| *ratio > LAG_IS_RIGHT);
+    if let (Some(nutation), Some(_)) = (nutation, health.changed_nutation()) {
+        Some(changed(&nutation))
+    } else if let Some(ratio) = too_far {
         let ratio = short(ratio);
-        format!(
-            ": at this time step the scheme's axle lags behind L {ratio} times as far as it should and swings about that"
-        )
-    } else if TAU * health.turns_per_step >= TOO_FAR_RAD {
-        let turns = short(health.turns_per_step);
-        format!(": the body turns {turns} times in a time step")
+        Some(format!("axle lags L {ratio} times too far"))
     } else {
-        String::new()
+        let turns = health.turns_per_step;
+        let is_far = TAU * turns >= TOO_FAR_RAD;
+        is_far.then(|| format!("the body turns {} times a step", short(turns)))
     }
+}
+
+/// What becomes of a nutation: "damped by 0.1 % a step".
+fn changed(nutation: &Nutation) -> String {
+    let (verb, percent) = change(nutation);
+    let verb = if verb == "damps" { "damped" } else { "fed" };
+    format!("{verb} by {percent} % a step")
+}
+
+/// What the scheme does to the nutation.
+fn changes(nutation: &Nutation) -> String {
+    let (verb, percent) = change(nutation);
+    format!("the scheme {verb} the nutation by {percent} % a step")
 }
 
 fn cause(health: &Health) -> String {
@@ -400,65 +403,26 @@ fn cause(health: &Health) -> String {
     let (turns, name) = (short(health.turns_per_step), health.scheme.name);
     match health.nutation {
         _ if !health.is_a_rotation => {
-            format!("the scheme {name} breaks down at this time step, {NO_ROTATION}")
+            format!("the scheme {name} breaks down, {NO_ROTATION}")
         }
-        Some(_) if psi >= PI => {
-            format!(
-                "the body turns {turns} times in a time step, so that the swing of the axle is strobed: it is the time step's"
-            )
-        }
-        Some(nutation) if health.nutation_is_the_cause() => {
-            let (verb, percent) = change(&nutation);
-            format!(
-                "the scheme {verb} the nutation by {percent} % a step, which should last as it is"
-            )
-        }
-        _ if !psi.is_finite() => {
-            "the body turns further in a time step than numbers reach".to_owned()
-        }
+        Some(_) if psi >= PI => format!("the body turns {turns} times a step, strobing the swing"),
+        Some(nutation) if health.nutation_is_the_cause() => changes(&nutation),
+        _ if !psi.is_finite() => "the body turns further in a step than numbers reach".to_owned(),
         _ if psi >= TOO_FAR_RAD => {
-            format!(
-                "the body turns {turns} times in a time step, more than the scheme {name} can follow with this body"
-            )
+            format!("at {turns} turns a step the scheme {name} cannot follow")
         }
         _ if health.scheme.order.is_none() => {
             "what another scheme did before the edit is carried on exactly".to_owned()
         }
-        _ => format!("the error that the scheme {name} makes at this time step has added up"),
+        _ => format!("the errors of the scheme {name} have added up"),
     }
 }
 
 fn how_to_mend(health: &Health, advice: &Advice) -> String {
-    // A run with edits at steps is refused another time step: it has to be written anew.
-    let throughout = if health.can_be_rescaled {
-        ""
-    } else {
-        " throughout, with its edits of gravity and pushes at the same times,"
-    };
-    let step_in = |time_step_s: &f64| format!("{} s{throughout}", shortest(*time_step_s));
     match advice {
         Advice::Holds => String::new(),
-        Advice::Nothing => "; nothing that could be tried in reasonable time mends it".to_owned(),
-        Advice::BoundToItsTimeStep => {
-            "; no other scheme mends it at this time step, and at another one its accumulating pushes make it another run"
-                .to_owned()
-        }
-        Advice::TimeStep(step) if health.can_be_rescaled => {
-            let step = shortest(*step);
-            format!("; a time step of {step} s (--time-step {step}) mends it")
-        }
-        Advice::TimeStep(step) => format!("; a time step of {} mends it", step_in(step)),
-        Advice::Scheme {
-            name,
-            time_step_s,
-            tried_s,
-        } => {
-            let step = step_in(time_step_s);
-            if time_step_s == tried_s {
-                return format!("; the scheme {name} at {step} mends it");
-            }
-            let tried = shortest(*tried_s);
-            format!("; no time step down to {tried} s mends it, but the scheme {name} at {step} does")
-        }
+        Advice::Nothing => "; nothing tried in reasonable time mends it".to_owned(),
+        Advice::BoundToItsTimeStep => "; nothing mends it at this time step".to_owned(),
+        _ => remedy(health, advice).map_or(String::new(), |it| format!("; {it} mends it")),
     }
 }

@@ -296,10 +296,10 @@ impl Swing {
 }
 
 impl fmt::Display for Swing {
-    /// What is wrong: "the tilt swings from 29.690 to 30.000 degrees, and should from 30.000 to 30.074".
+    /// What is wrong: "the tilt swings from 29.690 to 30.000 degrees, not from 30.000 to 30.074".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some((from_s, to_s)) = self.stretch_s {
-            write!(f, "from {} s to {} s ", short(from_s), short(to_s))?;
+            write!(f, "from {} to {} s ", short(from_s), short(to_s))?;
         }
         if !self.tilts_differ {
             let (way, are) = (
@@ -316,11 +316,11 @@ impl fmt::Display for Swing {
             );
         }
         let [a, b, c, d] = self.tilts();
-        write!(f, "the tilt swings from {a} to {b} degrees, and ")?;
+        write!(f, "the tilt swings from {a} to {b} degrees, ")?;
         if self.is_there() {
-            write!(f, "should from {c} to {d}")
+            write!(f, "not from {c} to {d}")
         } else {
-            write!(f, "should stay at {c}")
+            write!(f, "and should stay at {c}")
         }
     }
 }

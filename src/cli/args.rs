@@ -20,7 +20,7 @@ use std::str::FromStr;
 
 #[derive(Debug, Args)]
 pub(super) struct ScenarioArgs {
-    /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote
+    /// A preset's name, or a file: a scenario, a run file (.toml), a CSV or a figure that gyrolab wrote
     pub(super) scenario: String,
 
     #[command(flatten)]
@@ -50,7 +50,7 @@ impl Changes {
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct WorkbenchArgs {
-    /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote [default: method-2]
+    /// A preset's name, or a file: a scenario, a run file (.toml), a CSV or a figure that gyrolab wrote [default: method-2]
     pub(super) scenario: Option<String>,
 
     #[command(flatten)]
@@ -390,8 +390,16 @@ fn without_unit(text: &str, meant: &str) -> Option<String> {
 
 /// The scenario with all that the command line changes in it, so that its run file tells the whole run.
 pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Scenario, Problems> {
-    let mut document = Document::open(&args.scenario)?;
-    change(&mut document, &args.changes)?;
+    changed(Document::open(&args.scenario)?, &args.changes, length)
+}
+
+/// The scenario of `document` with these changes.
+pub(super) fn changed(
+    mut document: Document,
+    changes: &Changes,
+    length: &LengthArgs,
+) -> Result<Scenario, Problems> {
+    change(&mut document, changes)?;
     if let Some(steps) = length.steps {
         document.set(&format!("motion.steps={steps}"))?;
     }
@@ -401,8 +409,9 @@ pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Sc
     };
     if duration / scenario.motion.time_step_s > MOST_STEPS {
         let rule = format!("{duration:e} s are more than {MOST_STEPS:e} time steps");
-        let problem = Problem::at("--duration", rule);
-        return Err(Problems::one(args.scenario.clone(), problem));
+        let mut problem = Problem::at("", rule);
+        problem.place = Some("--duration".to_owned());
+        return Err(Problems::one(document.origin(), problem));
     }
     let steps = Simulation::step_at(&scenario, duration).max(1);
     document.set(&format!("motion.steps={steps}"))?;

@@ -1,16 +1,18 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{Changes, LengthArgs, ScenarioArgs, positive, scenario_of, time};
-use super::progress::{self, Interrupted, Interruption};
+use super::args::{Changes, LengthArgs, changed, positive, time};
+use super::progress::{self, Interrupted};
 use super::{ended_by, refuse, tell};
 use crate::analysis::cost;
 use crate::data;
 use crate::figure::kind::Kind;
-use crate::figure::labels::Labels;
-use crate::figure::of_runs::{self, Figure, Request, Run};
+use crate::figure::of_runs::Run;
 use crate::figure::table::Table;
-use crate::figure::{self, Format, PT_PER_MM, of_table};
+use crate::figure::{Asked, Format, PT_PER_MM, Source, WIDTHS_MM};
+use crate::origin;
 use crate::physics::scheme;
+use crate::scenario::head::is_file;
+use crate::scenario::{Document, Problem, Problems};
 use crate::text::printable::{Shown, printable};
 use anyhow::{bail, ensure};
 use clap::Args;
@@ -22,7 +24,8 @@ use std::sync::Arc;
 
 #[derive(Debug, Args)]
 pub(super) struct FigureArgs {
-    /// Presets' names, or files (.toml or .csv): what gyrolab run takes, or the CSV of compare, of a sweep or of a fit.
+    /// Presets' names, or files: what gyrolab run takes, the CSV of compare, of a sweep or of a fit, or a figure, whose own
+    /// options hold where none is given.
     /// Of compare the slope is told where the error falls evenly over three time steps or more
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<String>,
@@ -44,7 +47,7 @@ pub(super) struct FigureArgs {
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
     to: Option<f64>,
 
-    /// Draw the exact motion beneath it, as a wide pale line
+    /// Draw the exact motion beside it: thin, or wide and pale beneath a run that covers it
     #[arg(long)]
     exact: bool,
 
@@ -52,9 +55,9 @@ pub(super) struct FigureArgs {
     #[arg(long, value_name = "FILE")]
     measured: Option<String>,
 
-    /// Width of the page: 86mm for a column, 178mm for a page
-    #[arg(long, value_name = "MM", default_value = "86mm", value_parser = width)]
-    width: f64,
+    /// Width of the page: 86mm for a column, 178mm for a page [default: 86mm]
+    #[arg(long, value_name = "MM", value_parser = width)]
+    width: Option<f64>,
 
     /// Draw the run by each of these schemes
     #[arg(long, value_name = "A,B", value_delimiter = ',', conflicts_with = "scheme", value_parser = PossibleValuesParser::new(scheme::names()))]
@@ -106,18 +109,6 @@ struct LabelArgs {
 }
 
 impl LabelArgs {
-    fn labels(&self) -> Labels {
-        let log = self.log.as_deref().unwrap_or_default();
-        Labels {
-            title: self.title.clone(),
-            names: self.label.clone(),
-            x: self.x_label.clone(),
-            y: self.y_label.clone(),
-            is_log: ["x", "y"].map(|axis| log.contains(axis)),
-            y_range: self.y_range,
-        }
-    }
-
     /// The form in which `output` is written.
     fn format(&self, output: &Path) -> anyhow::Result<Format> {
         match (Format::of(output)?, self.text) {
@@ -140,9 +131,6 @@ fn range(text: &str) -> Result<(f64, f64), String> {
     ends.ok_or_else(|| "must be two numbers, the lower one first, such as 0..1".to_owned())
 }
 
-/// The narrowest and the widest page, mm.
-const WIDTHS_MM: (f64, f64) = (30.0, 1000.0);
-
 /// A width in mm: 86mm, 8.6cm or 86.
 fn width(text: &str) -> Result<f64, String> {
     let (number, unit) = match (text.strip_suffix("mm"), text.strip_suffix("cm")) {
@@ -151,22 +139,29 @@ fn width(text: &str) -> Result<f64, String> {
         _ => (text, 1.0),
     };
     let width_mm = number.trim().parse().map(|number: f64| number * unit);
-    let (least, most) = WIDTHS_MM;
     match width_mm {
-        Ok(width_mm) if (least..=most).contains(&width_mm) => Ok(width_mm),
+        Ok(width_mm) if WIDTHS_MM.contains(&width_mm) => Ok(width_mm),
         _ => Err(format!(
-            "must be a width such as 86mm, from {least}mm to {most}mm"
+            "must be a width such as 86mm, from {}mm to {}mm",
+            WIDTHS_MM.start(),
+            WIDTHS_MM.end()
         )),
     }
 }
 
 pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
-    let format = args.labels.format(&args.output)?;
-    let subject = subject(args)?;
+    let mut format = args.labels.format(&args.output)?;
+    let source = source(args)?;
+    if format == Format::Svg && source.asked.text {
+        format = Format::SvgText;
+    }
     let (output, interruption) = progress::open_for(&args.output, args.force)?;
-    let figure = drawn(&subject, args, &interruption)?;
-    let bytes = figure::write(&figure.scene, format)?;
-    output.write_and_keep(&bytes)?;
+    for line in said(&source) {
+        tell(format_args!("gyrolab: {line}"));
+    }
+    let figure = source.draw(interruption.meter());
+    let figure = figure.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?;
+    output.write_and_keep(&source.write(&figure.scene, format)?)?;
     interruption.may_act_at_once()?;
     for warning in figure.told() {
         tell(format_args!("gyrolab: {warning}"));
@@ -181,71 +176,149 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     Ok(ended_by(figure.broke.map(anyhow::Error::msg)))
 }
 
-enum Subject {
-    Runs(Vec<Run>, Request),
-    Table(Table),
+/// What is said before the figure is drawn.
+fn said(source: &Source) -> Vec<String> {
+    let from_csv = source.runs.iter().filter(|run| run.named.ends_with(".csv"));
+    let computed = from_csv.map(|run| {
+        let (named, steps) = (printable(&run.named), run.scenario.steps);
+        format!("{named}: its {steps} steps are computed anew from its header")
+    });
+    let files = source.origin(Format::Svg).files.into_iter();
+    let left_behind = files.filter(|file| file.sha256.is_some()).map(|file| {
+        let name = printable(&file.name);
+        format!("{name}: more than 1 MB when compressed, it does not travel with the figure: keep it beside")
+    });
+    computed.chain(left_behind).collect()
 }
 
-fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
-    let mut tables = Vec::new();
-    for named in &args.runs {
-        tables.extend(Table::read(Path::new(named))?);
+/// What the RUNs name, with what the command line changes.
+fn source(args: &FigureArgs) -> anyhow::Result<Source> {
+    let mut source = Source::default();
+    for name in &args.runs {
+        add(&mut source, name, args)?;
     }
-    match (tables.pop(), args.runs.len()) {
-        (None, _) => {
-            let request = request(args)?;
-            let (runs, named) = (runs(args)?, args.labels.label.len());
-            ensure!(
-                named == 0 || named == runs.len(),
-                "--label is given {named} times for {} runs: give it once per run, in order",
-                runs.len()
-            );
-            Ok(Subject::Runs(runs, request))
+    if source.table.is_some() {
+        refuse_for_table(args)?;
+    } else if let Some(kind) = &args.kind {
+        Kind::named(kind).unwrap_or_else(|refusal| no_kind(args, &refusal));
+    }
+    if let Some(name) = &args.measured {
+        let measured = data::open(name)?;
+        if let Some(left_out) = measured.left_out_in_words() {
+            tell(format_args!("gyrolab: {left_out}"));
         }
-        (Some(_), 2..) => {
-            bail!("the table of a comparison, of a sweep or of a fit is drawn alone: give one file")
-        }
-        (Some(table), _) => {
-            let is_changed = args.exact
-                || args.from.or(args.to).is_some()
-                || args.measured.is_some()
-                || !args.schemes.is_empty()
-                || !args.labels.label.is_empty()
-                || args.changes.is_some()
-                || args.length.is_some();
-            ensure!(
-                !is_changed,
-                "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --width, --force, --title, --text and those of its axes are for it",
-                args.runs[0]
+        measured.series()?; // a table of runs is refused before anything is run
+        source.measured = Some(Arc::new(measured));
+        (source.asked.measured_until_s, source.asked.kind) = (None, None);
+    }
+    let asked = &mut source.asked;
+    if asked.labels.names.len() != source.runs.len() {
+        asked.labels.names.clear(); // those of a figure are of other runs
+    }
+    ask(args, asked);
+    for run in source.runs.iter().filter(|_| asked.exact) {
+        if let Some(objection) = cost::objection(&run.scenario) {
+            bail!(
+                "{}: {objection}: leave --exact out, or give a shorter --duration",
+                run.named
             );
-            Ok(Subject::Table(table))
         }
     }
+    source.check()?;
+    Ok(source)
 }
 
-fn request(args: &FigureArgs) -> anyhow::Result<Request> {
-    let kind = args.kind.as_deref().map(Kind::named).transpose();
-    let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
-    let measured = args.measured.as_deref().map(data::open).transpose()?;
-    if let Some(left_out) = measured
-        .as_ref()
-        .and_then(data::Measured::left_out_in_words)
-    {
-        tell(format_args!("gyrolab: {left_out}"));
+/// Adds to `source` what a RUN of the command line names.
+fn add(source: &mut Source, name: &str, args: &FigureArgs) -> anyhow::Result<()> {
+    let path = Path::new(name);
+    if let Some(table) = Table::read(path)? {
+        source.table = Some(table);
+        return Ok(());
     }
-    let usual = match &measured {
-        Some(measured) => Kind::measured(measured.series()?),
-        None => Kind::traces(),
+    let figure = if is_file(name) {
+        origin::Figure::open(path)
+    } else {
+        Ok(None)
     };
-    Ok(Request {
-        kind: kind.unwrap_or(usual),
-        from_s: args.from.unwrap_or(0.0),
-        to_s: args.to,
-        exact: args.exact,
-        measured: measured.map(Arc::new),
-        width_pt: args.width * PT_PER_MM,
-        labels: args.labels.labels(),
-    })
+    let figure = figure.map_err(|rule| Problems::one(name, Problem::at("", rule)))?;
+    let Some(figure) = figure else {
+        return add_runs(source, &origin::name_of(name), &Document::open(name)?, args);
+    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let one = Source::of(&figure.origin, folder).map_err(|problems| problems.of(name))?;
+    for run in one.runs {
+        let document = Document::from_file(&run.named, &run.scenario.file)?;
+        add_runs(source, &run.named, &document, args)?;
+    }
+    source.measured = source.measured.take().or(one.measured);
+    source.table = source.table.take().or(one.table);
+    source.asked = one.asked;
+    Ok(())
+}
+
+/// Adds the run of `document`, changed, by every scheme that is named.
+fn add_runs(
+    source: &mut Source,
+    named: &str,
+    document: &Document,
+    args: &FigureArgs,
+) -> anyhow::Result<()> {
+    let by_scheme = args.schemes.iter().map(Some);
+    let as_it_is = args.schemes.is_empty().then_some(None);
+    for scheme in by_scheme.chain(as_it_is) {
+        let mut changes = args.changes.clone();
+        changes.scheme = scheme.cloned().or(changes.scheme);
+        source.runs.push(Run {
+            scenario: Arc::new(changed(document.clone(), &changes, &args.length)?),
+            named: named.to_owned(),
+        });
+    }
+    Ok(())
+}
+
+/// Writes what the command line asks for over what is `asked`.
+fn ask(args: &FigureArgs, asked: &mut Asked) {
+    asked.kind = args.kind.clone().or(asked.kind.take());
+    asked.from_s = args.from.unwrap_or(asked.from_s);
+    asked.to_s = args.to.or(asked.to_s);
+    asked.exact |= args.exact;
+    asked.text |= args.labels.text;
+    asked.width_pt = args.width.map(|mm| mm * PT_PER_MM).or(asked.width_pt);
+    let (given, labels) = (&args.labels, &mut asked.labels);
+    labels.title = given.title.clone().or(labels.title.take());
+    labels.x = given.x_label.clone().or(labels.x.take());
+    for (given, list) in [
+        (&given.label, &mut labels.names),
+        (&given.y_label, &mut labels.y),
+    ] {
+        if !given.is_empty() {
+            list.clone_from(given);
+        }
+    }
+    if let Some(log) = &given.log {
+        labels.is_log = ["x", "y"].map(|axis| log.contains(axis));
+    }
+    labels.y_range = given.y_range.or(labels.y_range);
+}
+
+fn refuse_for_table(args: &FigureArgs) -> anyhow::Result<()> {
+    ensure!(
+        args.runs.len() == 1,
+        "the table of a comparison, of a sweep or of a fit is drawn alone: give one file"
+    );
+    let is_changed = args.exact
+        || args.from.or(args.to).is_some()
+        || args.measured.is_some()
+        || !args.schemes.is_empty()
+        || !args.labels.label.is_empty()
+        || args.changes.is_some()
+        || args.length.is_some();
+    ensure!(
+        !is_changed,
+        "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --width, --force, --title, --text and those of its axes are for it",
+        args.runs[0]
+    );
+    Ok(())
 }
 
 /// Refuses `--kind` as clap refuses a value.
@@ -253,70 +326,4 @@ fn no_kind(args: &FigureArgs, refusal: &str) -> ! {
     let kind = printable(args.kind.as_deref().unwrap_or_default());
     let message = format!("invalid value '{kind}' for '--kind <KIND>': {refusal}");
     refuse("figure", ErrorKind::ValueValidation, &message)
-}
-
-/// Every run that is named, by every scheme that is.
-fn runs(args: &FigureArgs) -> anyhow::Result<Vec<Run>> {
-    let mut runs = Vec::new();
-    for named in &args.runs {
-        let by_scheme = args.schemes.iter().map(Some);
-        let as_it_is = args.schemes.is_empty().then_some(None);
-        for scheme in by_scheme.chain(as_it_is) {
-            let mut changes = args.changes.clone();
-            changes.scheme = scheme.cloned().or(changes.scheme);
-            let scenario = ScenarioArgs {
-                scenario: named.clone(),
-                changes,
-            };
-            let scenario = scenario_of(&scenario, &args.length)?;
-            if let Some(objection) = cost::objection(&scenario).filter(|_| args.exact) {
-                bail!("{named}: {objection}: leave --exact out, or give a shorter --duration");
-            }
-            runs.push(Run {
-                scenario: Arc::new(scenario),
-                named: named.clone(),
-            });
-        }
-    }
-    Ok(runs)
-}
-
-fn drawn(
-    subject: &Subject,
-    args: &FigureArgs,
-    interruption: &Interruption,
-) -> anyhow::Result<Figure> {
-    let (runs, request) = match subject {
-        Subject::Runs(runs, request) => (runs, request),
-        Subject::Table(table) => return drawn_table(table, args),
-    };
-    for run in runs.iter().filter(|run| run.named.ends_with(".csv")) {
-        tell(format_args!(
-            "gyrolab: {}: its {} steps are computed anew from its header",
-            Shown(Path::new(&run.named)),
-            run.scenario.steps
-        ));
-    }
-    let figure = of_runs::figure(runs, request, interruption.meter());
-    Ok(figure.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?)
-}
-
-fn drawn_table(table: &Table, args: &FigureArgs) -> anyhow::Result<Figure> {
-    let columns = args.kind.iter().flat_map(|kind| kind.split(','));
-    let columns: Vec<_> = columns.map(str::trim).collect();
-    let chart = of_table::chart(table, &columns, args.width * PT_PER_MM);
-    let refused = |refusal| anyhow::anyhow!("{}: {refusal}", args.runs[0]);
-    let mut chart = chart.map_err(refused)?;
-    let labels = args.labels.labels();
-    let hidden = labels.apply(&mut chart).map_err(refused)?;
-    let mut scene = chart.scene();
-    labels.write_title(&mut scene);
-    let mut warnings = of_table::warnings(table, &columns);
-    warnings.extend(hidden);
-    Ok(Figure {
-        scene,
-        warnings,
-        dense: None,
-        broke: None,
-    })
 }

@@ -76,8 +76,13 @@ fn whole(gyrolab: &Command) -> anyhow::Result<String> {
     Ok(text)
 }
 
+/// The short help of a command and its examples.
 fn help(command: &Command) -> String {
-    command.clone().render_long_help().to_string()
+    let mut short = command.clone();
+    if let Some(examples) = command.get_after_long_help() {
+        short = short.after_help(examples.clone());
+    }
+    short.render_help().to_string()
 }
 
 fn in_plain(sections: &[Section]) -> String {
@@ -249,14 +254,17 @@ fn fixed(title: &'static str) -> Section {
     (title, text.unwrap_or_default().to_owned())
 }
 
-/// Each term on a line, and what it means indented below.
+/// Each term and what it means beside it; a long term has its meaning below it.
 fn terms(rows: &[(String, &str)]) -> String {
-    const INDENT: &str = "      ";
+    const INDENT: usize = 16;
     let row = |(term, meaning): &(String, &str)| {
-        let meaning = wrapped(meaning, WIDTH - INDENT.len());
-        let meaning = meaning.join(&format!("\n{INDENT}"));
-        let term = wrapped(term, WIDTH - 4).join("\n    ");
-        format!("  {term}\n{INDENT}{meaning}\n")
+        let meaning = wrapped(meaning, WIDTH - INDENT);
+        let meaning = meaning.join(&format!("\n{:INDENT$}", ""));
+        let begin = match wrapped(term, WIDTH - 4).join("\n    ") {
+            short if columns(&short) + 4 <= INDENT => format!("  {short:<14}"),
+            long => format!("  {long}\n{:INDENT$}", ""),
+        };
+        format!("{begin}{meaning}\n")
     };
     rows.iter().map(row).collect()
 }
@@ -329,15 +337,13 @@ fn examples_of(name: &str) -> Option<&'static str> {
     part(EXAMPLES, name)
 }
 
-/// `command` with its examples below its help and below that of its commands, behind what a command says there itself.
+/// `command` with its examples below its long help, behind what it says there itself, and so for its commands.
 pub(super) fn with_examples(command: Command) -> Command {
     let Some(examples) = examples_of(command.get_name()) else {
         return command.mut_subcommands(with_examples);
     };
     let own = command.get_after_help().map(|own| format!("{own}\n\n"));
-    let mut text = own.unwrap_or_default() + "Examples:";
-    for line in examples.lines() {
-        text = text + "\n  " + line;
-    }
-    command.after_help(text).mut_subcommands(with_examples)
+    let lines = examples.lines().map(|line| format!("\n  {line}"));
+    let text = own.unwrap_or_default() + "Examples:" + &lines.collect::<String>();
+    command.after_long_help(text).mut_subcommands(with_examples)
 }

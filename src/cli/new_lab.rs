@@ -61,19 +61,6 @@ pub(super) fn marker(markers: Option<Marker>) -> Marker {
     markers.unwrap_or_else(|| theme::marker(variable))
 }
 
-/// A lab without colours, for pictures as plain text.
-pub(super) fn plain_lab(
-    name: &str,
-    changes: &Changes,
-    markers: Option<Marker>,
-) -> anyhow::Result<Lab> {
-    let plain = Theme {
-        colour: false,
-        background: Background::Dark,
-    };
-    lab(name, changes, markers, plain, false)
-}
-
 /// A lab with what `name` names, as the command line wants it.
 pub(super) fn of_workbench(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
     let theme = theme(args.look);
@@ -86,8 +73,13 @@ pub(super) fn of_workbench(args: &WorkbenchArgs, name: &str) -> anyhow::Result<L
     Ok(lab)
 }
 
+/// A lab without colours.
 pub(super) fn new_lab(look: Look) -> anyhow::Result<Lab> {
-    plain_lab(DEFAULT, &Changes::default(), look.markers)
+    let plain = Theme {
+        colour: false,
+        background: Background::Dark,
+    };
+    lab(DEFAULT, &Changes::default(), look.markers, plain, false)
 }
 
 pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {

@@ -36,6 +36,10 @@ pub(super) struct RunArgs {
     #[command(flatten)]
     pub(super) layout: LayoutArgs,
 
+    /// Say all that is known of the run: theory, lag, what a time step does
+    #[arg(long, conflicts_with = "json")]
+    all: bool,
+
     /// Give the summary as one JSON object
     #[arg(long)]
     pub(super) json: bool,
@@ -72,6 +76,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     }
     interruption.may_act_at_once()?;
     let summary = Summary::new(played.readouts(), played.wall).with_time_steps_of(&scenario);
+    let summary = summary.in_full(args.all);
     print_result(&summary, args.output.as_deref(), args.json)?;
     if let Some(rows) = played.rows.filter(|_| !to_stdout) {
         tell_of_rows(rows, output_path);

@@ -1,20 +1,23 @@
-//! `gyrolab show`: the lab's picture as plain text, at one step or after commands.
+//! `gyrolab show`: the lab's picture as plain text or as SVG, at one step or after commands.
 
 use super::args::{Changes, size, steps};
-use super::new_lab::{DEFAULT, plain_lab};
+use super::new_lab::{self, DEFAULT};
 use super::{print, progress, tell};
-use crate::lab::command;
-use crate::lab::view::theme::Marker;
+use crate::lab::view::theme::{Background, Marker, Theme};
+use crate::lab::{Lab, command};
+use crate::origin::{self, File, Holds, Origin, SCREEN};
 use crate::storage::confined::Confined;
 use crate::tui::screen;
+use crate::tui::svg::svg;
 use anyhow::Context;
 use clap::Args;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct ShowArgs {
-    /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote [with --do by default: method-2]
+    /// A preset's name, or a file: a scenario, a run file (.toml), a CSV or a figure that gyrolab wrote [with --do by default: method-2]
     #[arg(required_unless_present = "commands")]
     pub(super) scenario: Option<String>,
 
@@ -41,10 +44,40 @@ pub(super) struct ShowArgs {
     /// What dots are made of [default: by locale and terminal]
     #[arg(long, value_enum, value_name = "KIND")]
     pub(super) markers: Option<Marker>,
+
+    /// Give the picture as SVG, in colour, for a slide; the file carries the run, and gyrolab opens it
+    #[arg(long)]
+    pub(super) svg: bool,
+
+    /// What the colours are for [default: dark]
+    #[arg(long, value_enum, value_name = "SCREEN", requires = "svg")]
+    pub(super) background: Option<Background>,
+
+    /// Write the picture to this file, or to stdout for -
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+
+    /// Replace an existing file
+    #[arg(long, requires = "output")]
+    pub(super) force: bool,
 }
 
 pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {
     print_picture(args, None, None)
+}
+
+impl ShowArgs {
+    fn picture(&self, lab: &Lab) -> Vec<u8> {
+        if !self.svg {
+            return screen::text(lab, false, self.size).into_bytes();
+        }
+        let picture = svg(lab, self.size, self.background.unwrap_or(Background::Dark)).into_bytes();
+        let scenario = lab.player().run().scenario();
+        let name = self.scenario.as_deref().unwrap_or(DEFAULT);
+        let files = vec![File::new(Holds::Run, name, &scenario.to_toml())];
+        let origin = Origin::new(&BTreeMap::from([(SCREEN, true)]), files);
+        origin::carry(&picture, &origin).unwrap_or(picture)
+    }
 }
 
 /// Prints the lab's picture at the end of a run, or after commands, which do not leave the folder `confined`; `why` says
@@ -55,7 +88,12 @@ pub(super) fn print_picture(
     confined: Option<Confined>,
 ) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
-    let mut lab = plain_lab(name, &args.changes, args.markers)?;
+    let theme = Theme {
+        colour: args.svg,
+        background: args.background.unwrap_or(Background::Dark),
+    };
+    let usual = args.svg.then_some(Marker::Braille); // whatever the terminal is
+    let mut lab = new_lab::lab(name, &args.changes, args.markers.or(usual), theme, false)?;
     if let Some(folder) = confined {
         lab.files_mut().confine(folder);
     }
@@ -67,7 +105,7 @@ pub(super) fn print_picture(
         Some(_) => 0,
         None => lab.player().run().scenario().steps,
     };
-    let interruption = progress::interruption()?;
+    let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let ended = lab.begin_at(args.at.unwrap_or(end), interruption.meter());
     let mut done = Ok(());
     if let (Ok(()), Some(commands)) = (&ended, commands) {
@@ -75,8 +113,11 @@ pub(super) fn print_picture(
         done = lab.finish_script_while(interruption.meter());
     }
     interruption.may_act_at_once()?;
-    let picture = screen::text(&lab, false, args.size);
-    print(&picture)?;
+    let picture = args.picture(&lab);
+    match output {
+        Some(output) => output.write_and_keep(&picture)?,
+        None => drop(print(&String::from_utf8_lossy(&picture))?),
+    }
     ended.with_context(|| name.to_owned())?; // the picture up to there is shown all the same
     done.map_err(anyhow::Error::msg)?;
     Ok(ExitCode::SUCCESS)

@@ -1,15 +1,20 @@
-//! `gyrolab verify`: whether a CSV is what its header says, or whether somebody's own program agrees with the scheme.
+//! `gyrolab verify`: whether a CSV or a figure is what the run in it gives, or whether somebody's own program agrees with the scheme.
 
 use super::args::{one_or_more, setting};
 use super::progress::{self, Interrupted, Interruption};
-use super::{fit, print, tell};
+use super::{fit, print, tell, writeup};
 use crate::own_code::{self, Uncompared, Verdict};
 use crate::scenario::csv::{self, Renaming, renaming};
 use crate::scenario::{Document, Problems, Scenario};
-use crate::text::printable::{Shown, printable_lines};
-use crate::verify::{Unverified, Verified, verify as verified};
-use anyhow::bail;
+use crate::text::printable::{Shown, brief, printable_lines};
+use crate::verify::{Unverified, redraw, verify as verified};
+use crate::writeup::{MEASURED_DATA, PAGE, READOUTS_FILE, RUN_FILE};
+use anyhow::{Context, bail};
 use clap::Args;
+use std::collections::HashSet;
+use std::fmt::Display;
+use std::fs;
+use std::io;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -17,7 +22,7 @@ use std::sync::Arc;
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
-    /// CSVs that gyrolab run, compare, sweep, fit or the lab wrote; with --against what your own program wrote
+    /// CSVs and figures that gyrolab wrote, or folders of them such as a write-up; with --against what your own program wrote
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 
@@ -49,31 +54,128 @@ pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
     let interruption = progress::interruption()?;
     let scenario = args.against.as_ref().map(|name| scenario(name, &args.set));
     let scenario = scenario.transpose()?;
-    let mut code = ExitCode::SUCCESS;
+    let mut is_good = true;
     for file in &args.files {
-        let result = match &scenario {
-            Some(scenario) => own(file, args, scenario, &interruption),
-            None => computed_again(file, &interruption),
+        is_good &= match &scenario {
+            Some(scenario) => judged(own(file, args, scenario, &interruption))?,
+            None if file.is_dir() => folder(file, &interruption)?,
+            None => judged(made_again(file, &interruption))?,
         };
-        match result {
-            Ok(is_good) if is_good => {}
-            Ok(_) => code = ExitCode::FAILURE,
-            Err(Unverified::Stopped) => bail!(Interrupted),
-            Err(Unverified::Refused(problems)) => {
-                tell(printable_lines(&problems.to_string()));
-                code = ExitCode::FAILURE;
-            }
-        }
     }
-    Ok(code)
+    Ok(if is_good {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
 }
 
-/// Computes `file` again and prints what has come out. Returns whether it is the same.
-fn computed_again(file: &Path, interruption: &Interruption) -> Result<bool, Unverified> {
+/// Whether it is good; why it cannot be judged is told.
+fn judged(result: Result<bool, Unverified>) -> anyhow::Result<bool> {
+    match result {
+        Ok(is_good) => Ok(is_good),
+        Err(Unverified::Stopped) => bail!(Interrupted),
+        Err(Unverified::Refused(problems)) => {
+            tell(printable_lines(&problems.to_string()));
+            Ok(false)
+        }
+    }
+}
+
+/// Makes every CSV and figure in `folder` again, and the numbers of a write-up. Returns whether all are the same.
+fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
+    let entries = fs::read_dir(folder).and_then(Iterator::collect::<io::Result<Vec<_>>>);
+    let entries = entries.with_context(|| format!("{}: cannot be read", Shown(folder)))?;
+    let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).collect();
+    files.sort();
+    let data = measured_in(folder);
+    let is_made = |file: &&PathBuf| {
+        let ending = file.extension().and_then(|ending| ending.to_str());
+        let is_made = ending.is_some_and(|ending| ["csv", "svg", "pdf", "png"].contains(&ending));
+        is_made && file.is_file() && data.as_ref() != Some(*file)
+    };
+    let (mut is_good, mut count) = (true, 0);
+    for file in files.iter().filter(is_made) {
+        is_good &= judged(made_again(file, interruption))?;
+        count += 1;
+    }
+    if let Some(data) = data.as_deref().filter(|data| data.is_file()) {
+        print(&format!(
+            "{}: measured data, which nothing computes\n",
+            Shown(data)
+        ))?;
+    }
+    if folder.join(RUN_FILE).is_file() && folder.join(READOUTS_FILE).is_file() {
+        is_good &= judged(numbers(folder, data.as_deref(), interruption))?;
+        count += 1;
+    }
+    if count == 0 {
+        tell(format_args!(
+            "{}: holds no CSV and no figure to make again",
+            Shown(folder)
+        ));
+    }
+    Ok(is_good && count > 0)
+}
+
+/// The measured data in the folder of a write-up.
+fn measured_in(folder: &Path) -> Option<PathBuf> {
+    let readouts = fs::read_to_string(folder.join(READOUTS_FILE)).ok()?;
+    let readouts: serde_json::Value = serde_json::from_str(&readouts).ok()?;
+    let name = Path::new(readouts.get(MEASURED_DATA)?.get("file")?.as_str()?);
+    Some(folder.join(name.file_name()?))
+}
+
+/// Runs a write-up's run file again and compares the numbers of the folder: every readout, and the rows of the page's tables.
+fn numbers(
+    folder: &Path,
+    data: Option<&Path>,
+    interruption: &Interruption,
+) -> Result<bool, Unverified> {
+    let scenario = Document::read(&folder.join(RUN_FILE))?.scenario()?;
+    let data = data.map(|data| data.to_string_lossy());
+    let again = writeup::again(Arc::new(scenario), data.as_deref(), interruption);
+    let again = again.map_err(|error| match error.downcast() {
+        Ok(Interrupted) => Unverified::Stopped,
+        Err(error) => Unverified::from(format!("{error:#}")),
+    })?;
+    let mut is_good = true;
+    for (name, text) in [(READOUTS_FILE, again.readouts_json()), (PAGE, again.page())] {
+        let file = folder.join(name);
+        let Ok(there) = fs::read_to_string(&file) else {
+            continue; // who wants no page needs none
+        };
+        let lines: HashSet<&str> = there.lines().collect();
+        let is_number = |line: &&str| name != PAGE || line.starts_with("| ");
+        let computed: Vec<&str> = text.lines().filter(is_number).collect();
+        let missing = computed.iter().find(|line| !lines.contains(**line));
+        let difference = missing.map(|line| {
+            format!(
+                "it lacks a line, computed again: {}",
+                brief(line.trim(), 200)
+            )
+        });
+        let same = format!(
+            "the same: its {} lines of numbers, computed again",
+            computed.len()
+        );
+        is_good &= say(&file, &same, difference.as_ref(), &[])?;
+    }
+    Ok(is_good)
+}
+
+/// Computes or draws `file` again and prints what has come out. Returns whether it is the same.
+fn made_again(file: &Path, interruption: &Interruption) -> Result<bool, Unverified> {
+    if let Some((difference, notes)) = redraw(file, interruption.meter())? {
+        let same = "the same: drawn again from the run in it";
+        return say(file, same, difference.as_ref(), &notes);
+    }
     let fit = |command: &str| fit::again(command, interruption);
     let result = verified(file, fit, interruption.meter())?;
-    printed(&told(file, &result))?;
-    Ok(result.difference.is_none())
+    let same = match result.rows {
+        1 => "the same: its row, computed again".to_owned(),
+        rows => format!("the same: all {rows} rows, computed again"),
+    };
+    say(file, &same, result.difference.as_ref(), &result.notes)
 }
 
 fn printed(text: &str) -> Result<(), Unverified> {
@@ -126,16 +228,22 @@ fn verdict(
     own_code::compare(&rows, name, scenario, &|| !interruption.has_come())
 }
 
-/// What has come out for `file`: a line for the rows, and a line for each note.
-fn told(file: &Path, result: &Verified) -> String {
-    let (file, rows) = (Shown(file), result.rows);
-    let mut text = match (&result.difference, rows) {
-        (Some(difference), _) => format!("{file}: differs: {difference}\n"),
-        (None, 1) => format!("{file}: the same: its row, computed again\n"),
-        (None, _) => format!("{file}: the same: all {rows} rows, computed again\n"),
+/// Prints what has come out for `file`: a line that says whether it is the `same`, and a line for each note. Returns whether
+/// it is.
+fn say(
+    file: &Path,
+    same: &str,
+    difference: Option<&impl Display>,
+    notes: &[String],
+) -> Result<bool, Unverified> {
+    let file = Shown(file);
+    let mut text = match difference {
+        Some(difference) => format!("{file}: differs: {difference}\n"),
+        None => format!("{file}: {same}\n"),
     };
-    for note in &result.notes {
+    for note in notes {
         text += &format!("    {note}\n");
     }
-    text
+    printed(&text)?;
+    Ok(difference.is_none())
 }

@@ -73,6 +73,7 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             measured: args.measured.clone(),
             size: (80, 24),
             markers: args.look.markers,
+            ..ShowArgs::default()
         };
         return print_picture(&picture, Some(&why), confined);
     }

@@ -3,12 +3,11 @@
 use super::args::scenario_of;
 use super::args::{LengthArgs, ScenarioArgs};
 use super::progress::{self, Interrupted, Interruption};
-use super::run::{Played, played};
+use super::run::played;
 use super::{ended_by, tell};
 use crate::data;
 use crate::export::stream::Ended;
 use crate::export::{CsvWriter, Folder};
-use crate::figure::course::Recorder;
 use crate::journal::changed::Original;
 use crate::run::Step;
 use crate::scenario::{Document, Scenario};
@@ -54,11 +53,7 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let cannot_write = || format!("cannot write {}", Shown(&args.output));
     let csv = File::create(folder.path().join(CSV)).with_context(cannot_write)?;
     let csv = CsvWriter::new(csv, &scenario).with_context(cannot_write)?;
-    let mut recorder = recorder(&scenario, beside.as_ref());
-    let also = |step: &Step| recorder.follow(step);
-    let played = played(&scenario, Some(csv), also, &interruption);
-    let played = played.with_context(cannot_write)?;
-    let writeup = written(scenario, played, recorder, beside, &interruption)?;
+    let writeup = made(scenario, beside, Some(csv), cannot_write, &interruption)?;
     for (name, bytes) in writeup.files()? {
         let written = fs::write(folder.path().join(name), bytes);
         written
@@ -82,14 +77,28 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     Ok(ended_by(broken.map(|error| anyhow!(error).context(name))))
 }
 
-/// The write-up of the run of `scenario` that was `played`, and of which the `recorder` has its figures.
-fn written(
+/// The write-up of the run of `scenario`, and of the measured data of that name, once more.
+pub(super) fn again(
     scenario: Arc<Scenario>,
-    mut played: Played<File>,
-    recorder: Recorder,
-    mut beside: Option<Beside>,
+    measured: Option<&str>,
     interruption: &Interruption,
 ) -> anyhow::Result<Writeup> {
+    let beside = measured.map(beside).transpose()?;
+    made(scenario, beside, None, String::new, interruption)
+}
+
+/// The write-up of the run of `scenario`, which is played, and its rows written to `csv`.
+fn made(
+    scenario: Arc<Scenario>,
+    mut beside: Option<Beside>,
+    csv: Option<CsvWriter<File>>,
+    cannot_write: impl FnOnce() -> String,
+    interruption: &Interruption,
+) -> anyhow::Result<Writeup> {
+    let mut recorder = recorder(&scenario, beside.as_ref());
+    let also = |step: &Step| recorder.follow(step);
+    let played = played(&scenario, csv, also, interruption);
+    let mut played = played.with_context(cannot_write)?;
     ensure!(played.ended != Ended::Stopped, Interrupted);
     let broken = played.ended.not_finite();
     let readouts = played.readouts();
@@ -119,11 +128,10 @@ fn marked(scenario: Scenario, name: &str) -> Arc<Scenario> {
 }
 
 fn beside(name: &str) -> anyhow::Result<Beside> {
-    let text = data::text(name)?.into_owned();
-    let measured = data::read(name, &text)?;
+    let measured = data::open(name)?;
     if let Some(left_out) = measured.left_out_in_words() {
         tell(format_args!("gyrolab: {left_out}"));
     }
     measured.series()?; // a table of runs is refused before anything is run
-    Ok(Beside::new(measured, text))
+    Ok(Beside::new(measured))
 }

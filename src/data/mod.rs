@@ -27,12 +27,17 @@ use crate::analysis::readouts::Readout;
 use crate::scenario::problem::listed;
 use crate::scenario::{Problem, Problems};
 use crate::text::printable::printable;
+use std::sync::Arc;
 use toml::Value;
 
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// The file, as the user named it.
     pub origin: String,
+    /// Its content.
+    pub text: Arc<str>,
+    /// What was measured after this time was taken out, s.
+    pub until_s: Option<f64>,
     /// Its comments before the columns' names, without their marks: where the data come from.
     pub about: String,
     pub lines: Vec<u64>,
@@ -116,6 +121,16 @@ impl Measured {
         let origin = printable(&self.origin);
         let told = || format!("{origin}: columns left out, which gyrolab does not know: {names}");
         (!self.left_out.is_empty()).then(told)
+    }
+
+    /// The same without what was measured after `until_s`, s, where that is given.
+    #[must_use]
+    pub fn until(mut self, until_s: Option<f64>) -> Self {
+        if let (Data::Series(Series { times_s, .. }), Some(until_s)) = (&self.data, until_s) {
+            let times_s = times_s.clone();
+            self.keep_rows(|row| times_s[row] <= until_s);
+        }
+        Self { until_s, ..self }
     }
 
     /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts, and returns how many values that are.

@@ -87,6 +87,8 @@ fn read_with(origin: &str, text: &str, map: &[Renaming]) -> Result<Measured, Pro
     };
     let mut measured = Measured {
         origin: origin.to_owned(),
+        text: text.into(),
+        until_s: None,
         about: cells.header.clone(),
         left_out,
         lines: cells.rows.iter().map(|(line, _)| *line).collect(),

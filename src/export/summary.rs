@@ -17,6 +17,9 @@ pub struct Summary {
     /// How many steps of which time step it had, in words, where it had several.
     #[serde(skip)]
     steps: Option<String>,
+    /// Whether its text says theory, lag and what else is known too.
+    #[serde(skip)]
+    is_full: bool,
 }
 
 /// A line of the summary: what it is about, and what it says.
@@ -31,7 +34,13 @@ impl Summary {
                 ..readouts
             },
             steps: None,
+            is_full: false,
         }
+    }
+
+    /// The same summary, whose text leaves nothing out if `is_full`.
+    pub fn in_full(self, is_full: bool) -> Self {
+        Self { is_full, ..self }
     }
 
     /// The same summary with all time steps that the run of `scenario` has had, not the last one only.
@@ -43,45 +52,45 @@ impl Summary {
         }
     }
 
-    fn state(&self) -> Vec<Line> {
+    fn extent(&self) -> Vec<Line> {
         let Readouts {
-            sample,
-            extremes,
-            health,
-            ..
+            sample, extremes, ..
         } = &self.readouts;
-        let scheme = &self.readouts.scheme;
-        let scheme = match &self.readouts.scheme_kind {
-            Some(kind) => format!("{scheme} ({kind})"),
-            None => (*scheme).to_owned(),
-        };
-        let steps = || {
-            let step = shortest(self.readouts.time_step_s);
-            format!("{} of {step} s", sample.step)
-        };
-        let steps = self.steps.clone().unwrap_or_else(steps);
-        let [now, low, high] = [
+        let tilts = [
             sample.tilt_deg,
             extremes.tilt.lowest_deg,
             extremes.tilt.highest_deg,
-        ]
-        .map(|tilt| fixed(tilt, 6));
+        ];
+        let [now, low, high] = tilts.map(|tilt| fixed(tilt, 6));
         let [lowest, highest] = [extremes.lowest_z_m, extremes.highest_z_m].map(|z| fixed(z, 9));
-        let azimuth = fixed(sample.azimuth_deg, 6);
-        let mut lines = vec![
+        vec![
+            ("tilt", format!("{now} degrees; {low} to {high} in the run")),
+            ("z", format!("{lowest} to {highest} m in the run")),
+        ]
+    }
+
+    fn state(&self) -> Vec<Line> {
+        let readouts = &self.readouts;
+        let sample = &readouts.sample;
+        let scheme = match &readouts.scheme_kind {
+            Some(kind) => format!("{} ({kind})", readouts.scheme),
+            None => readouts.scheme.to_owned(),
+        };
+        let steps = || format!("{} of {} s", sample.step, shortest(readouts.time_step_s));
+        let steps = self.steps.clone().unwrap_or_else(steps);
+        let number =
+            |name, write: fn(f64) -> String| readouts.number(name).map_or(NONE.to_owned(), write);
+        let wall = number("wall_s", |wall| fixed(wall, 3));
+        let rate = number("steps_per_second", |rate| exponent(rate, 3));
+        vec![
             ("scheme", scheme),
             ("steps", steps),
             ("t", format!("{} s", shortest(sample.time_s))),
             ("x, y, z", vector(&sample.position, 9) + " m"),
             ("L", vector(&sample.momentum, 6) + " J s"),
-            ("tilt", format!("{now} degrees; {low} to {high} in the run")),
-            ("z", format!("{lowest} to {highest} m in the run")),
-            ("azimuth", format!("{azimuth} degrees")),
-            ("energy drift", remarks::energy_in_full(health)),
-        ];
-        let slowing = health.slowing.as_ref();
-        lines.extend(slowing.map(|slowing| ("friction", slowing.to_string())));
-        lines
+            ("energy drift", remarks::energy_in_full(&readouts.health)),
+            ("wall time", format!("{wall} s, {rate} steps a second")),
+        ]
     }
 
     fn rates(&self) -> Vec<Line> {
@@ -203,20 +212,19 @@ impl Summary {
     fn health(&self) -> Vec<Line> {
         let readouts = &self.readouts;
         let health = &readouts.health;
+        let azimuth = fixed(readouts.sample.azimuth_deg, 6);
         let mut lines = vec![
+            ("azimuth", format!("{azimuth} degrees")),
             ("a time step", remarks::step_in_full(health)),
             ("lag", remarks::lag_in_full(health)),
         ];
         lines.extend(remarks::constants_in_full(health).map(|constants| ("L", constants)));
+        let slowing = health.slowing.as_ref();
+        lines.extend(slowing.map(|slowing| ("friction", slowing.to_string())));
         let edits = readouts.sample.segment;
         if edits > 0 {
             lines.push(("edits", format!("{edits} of time step, scheme or gravity")));
         }
-        let number =
-            |name, write: fn(f64) -> String| readouts.number(name).map_or(NONE.to_owned(), write);
-        let wall = number("wall_s", |wall| fixed(wall, 3));
-        let rate = number("steps_per_second", |rate| exponent(rate, 3));
-        lines.push(("wall time", format!("{wall} s, {rate} steps a second")));
         lines
     }
 }
@@ -285,12 +293,22 @@ fn on(word: &str, axis: &Axis) -> String {
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let readouts = &self.readouts;
-        writeln!(f, "{}", readouts.title)?;
-        let parts = [self.state(), self.rates(), self.theory(), self.health()];
-        for (name, said) in parts.into_iter().flatten() {
-            writeln!(f, "  {name:<14}{said}")?;
+        let text = |lines: Vec<Line>| -> String {
+            let lines = lines.into_iter();
+            let lines = lines.map(|(name, said)| format!("  {name:<14}{said}\n"));
+            lines.collect()
+        };
+        let first = text([self.extent(), self.rates()].concat());
+        let verdict = readouts.health.sentence(readouts.advice.as_ref());
+        let mut rest = self.state();
+        if self.is_full {
+            rest.extend([self.theory(), self.health()].concat());
         }
-        let sentence = readouts.health.sentence(readouts.advice.as_ref());
-        write!(f, "\n{sentence}")
+        write!(
+            f,
+            "{}\n{first}\n{verdict}\n\n{}",
+            readouts.title,
+            text(rest).trim_end()
+        )
     }
 }

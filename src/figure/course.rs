@@ -41,6 +41,8 @@ pub struct Course {
     pub broke: Option<NotFinite>,
     /// Its health at its last step; `None` where it was not compared with the exact motion.
     pub health: Option<Health>,
+    /// The period of its nutation, s, of the exact motion where it is known: its moments may be too few to count them.
+    pub swing_s: Option<f64>,
 }
 
 /// A column in a part of the time.
@@ -230,6 +232,7 @@ impl Recorder {
             is_empty: self.is_empty,
             broke,
             health: None,
+            swing_s: None,
         }
     }
 }
@@ -272,6 +275,9 @@ pub fn play(
 const A_PERIOD: f64 = 32.0;
 const LEAST: f64 = 3000.0;
 const MOST: f64 = 400_000.0;
+/// The part of a period, beside whole ones, between moments that are farther apart than it: the golden section, which meets
+/// ever other phases. Another part could meet the same ones again, and show a slow swing that the motion does not have.
+const OTHER_PHASE: f64 = 0.381_966;
 
 /// As [`play`], of the exact motion beside the run: between the time steps too, where these are too long to show it.
 pub fn exact(
@@ -292,9 +298,8 @@ pub fn exact(
     truth.state_at(begin_s);
     let closed = truth.motion().closed_form();
     let period_s = closed.and_then(LagrangeTop::nutation_period);
-    let fine_s = period_s.map_or(f64::INFINITY, |period_s| period_s / A_PERIOD);
-    let apart_s = fine_s.min(scenario.motion.time_step_s);
-    let count = ((end_s - begin_s) / apart_s).ceil().clamp(LEAST, MOST) as u64;
+    let apart_s = apart_s(end_s - begin_s, scenario.motion.time_step_s, period_s);
+    let count = ((end_s - begin_s) / apart_s).ceil().max(LEAST) as u64;
     let mut recorder = Recorder::of(scenario, wanted.clone(), true);
     let mut azimuth = Azimuth::start(&scenario.start.axle());
     for number in 0..=count {
@@ -310,7 +315,20 @@ pub fn exact(
             return None;
         }
     }
-    Some(recorder.end(None))
+    Some(Course {
+        swing_s: period_s,
+        ..recorder.end(None)
+    })
+}
+
+/// How far the moments of a stretch of the exact motion are apart, s.
+fn apart_s(length_s: f64, time_step_s: f64, period_s: Option<f64>) -> f64 {
+    let period_s = period_s.unwrap_or(f64::INFINITY);
+    let apart_s = (period_s / A_PERIOD).min(time_step_s).max(length_s / MOST);
+    if apart_s <= OTHER_PHASE * period_s {
+        return apart_s;
+    }
+    ((apart_s / period_s - OTHER_PHASE).floor() + OTHER_PHASE) * period_s
 }
 
 fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, gravity: f64) -> Sample {

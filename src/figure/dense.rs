@@ -98,7 +98,9 @@ pub(super) fn over_time(
         series.filter_map(|(drawn, series)| {
             let columns = Columns::new(&drawn.course.parts(column), placed);
             let is_dense = columns.are_dense(series.style.width_pt, placed);
-            is_dense.then(|| columns.turns())
+            let swing_s = drawn.course.swing_s.unwrap_or(f64::INFINITY);
+            let swings = (drawn.course.end_s - request.from_s) / swing_s;
+            is_dense.then(|| columns.turns().max((2.0 * swings) as u64))
         })
     });
     // What shows the most swings shows those of the other curves too.

@@ -4,8 +4,10 @@ use super::chart::{Axis, Chart};
 use super::page::ink::{self, TITLE_PT, at};
 use super::page::letters;
 use super::page::scene::Scene;
+use serde::{Deserialize, Serialize};
 
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Labels {
     /// Written above the figure.
     pub title: Option<String>,

@@ -8,6 +8,7 @@
 //!   `chords` those whose paths have too few points, [`labels`] gives words and axes that were asked for, `size` tells what of a curve is rounding.
 //!   `request` says what is asked for, and what a figure is once it is drawn.
 //! - [`of_table`]: figures of a comparison, of a sweep or of a fit, read by [`table`].
+//! - `source`: the runs or the table that a figure shows, what of them its file carries, and the way back.
 //! - [`quantity`]: columns and readouts as they stand at an axis.
 
 pub mod chart;
@@ -25,6 +26,7 @@ mod path;
 pub mod quantity;
 mod request;
 mod size;
+mod source;
 mod space;
 pub mod table;
 
@@ -38,5 +40,7 @@ fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let ends = values.map(|value| (value, value));
     ends.reduce(|(low, high), (value, _)| (low.min(value), high.max(value)))
 }
+
+pub use source::{Asked, Source, WIDTHS_MM};
 
 pub use page::{Color, Format, Item, Paint, Path, Pen, Point, Scene, Segment, Unwritable, write};

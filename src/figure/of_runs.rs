@@ -142,10 +142,15 @@ fn play_runs(
     let drawn = named.map(|(index, (run, name))| {
         let recorded = job.known.recorded.as_ref();
         let recorded = recorded.and_then(|all| all.part(&run.scenario, wanted));
+        let is_exact = is_exact(&run.scenario);
         Some(Drawn {
             name,
-            style: Style::curve(index),
-            course: if is_exact(&run.scenario) && !wanted.counts_steps() && is_coarse(run) {
+            style: if is_exact && index > 0 {
+                Style::exact(index)
+            } else {
+                Style::curve(index)
+            },
+            course: if is_exact && !wanted.counts_steps() && is_coarse(run) {
                 // The exact motion is known between its steps too.
                 course::exact(&run.scenario, wanted, &mut watch)?
             } else {

@@ -52,13 +52,10 @@ pub(super) fn scene(job: &Job<'_>, drawn: &[Drawn]) -> (Scene, Option<Dense>) {
     let looks = drawn.iter();
     let looks = looks.map(|drawn| chords::as_drawn(drawn, &drawn.course.path));
     let (names, mut styles): (Vec<_>, Vec<_>) = looks.unzip();
-    let way_pt = |drawn: &Drawn| {
-        let lines = drawn.course.path.lines(|at| space.place(&space.boxed(at)));
-        curve::way_pt(&lines)
-    };
-    let first_pt = drawn.first().map_or(0.0, way_pt);
+    let mut above = curve::Above::default();
     for (drawn, style) in drawn.iter().zip(&mut styles) {
-        style.core = style.core.filter(|_| curve::hides(first_pt, way_pt(drawn)));
+        let lines = drawn.course.path.lines(|at| space.place(&space.boxed(at)));
+        above.add(&lines, style);
     }
     let series = names.iter().map(String::as_str).zip(&styles);
     let legend = Legend::new(series, space.stretched());

@@ -65,6 +65,9 @@ pub struct Table {
     pub subject: Subject,
     /// The title in its header, or empty.
     pub title: String,
+    /// The file, as the user named it, and its content.
+    pub origin: String,
+    pub text: String,
     csv: Csv,
 }
 
@@ -79,23 +82,30 @@ impl Table {
         }
         let head = File::open(path).and_then(|file| Head::read(&mut BufReader::new(file)));
         let head = head.map_err(|error| refused(Problem::at("", unread(&error))))?;
-        let names = String::from_utf8_lossy(head.names()).into_owned();
-        let names = names.split(',').map(|name| name.trim_matches('"'));
-        let names: Vec<&str> = names.collect();
-        let header = head.header().unwrap_or_default();
-        let Some((subject, title)) = subject(&header, &names) else {
+        if subject(&head).is_none() {
             return Ok(None);
-        };
+        }
         if is_part {
             let rule = "holds the rows of a sweep that is not whole yet: the command that began it goes on with it, and the file gets its name";
             return Err(refused(Problem::at("", rule)));
         }
         let text = csv::text(path).map_err(refused)?;
-        let csv = Csv::of(&text, MOST_VALUES);
-        let csv = csv.map_err(|found| found.of(path.display().to_string()))?;
+        Self::of(&path.display().to_string(), text)
+    }
+
+    /// The table in `text`, the content of the file `origin`; `None` where it is none.
+    pub fn of(origin: &str, text: String) -> Result<Option<Self>, Problems> {
+        let head = Head::read(&mut text.as_bytes()).ok();
+        let Some((subject, title)) = head.and_then(|head| subject(&head)) else {
+            return Ok(None);
+        };
+        let csv = Csv::of(&text, MOST_VALUES).map_err(|found| found.of(origin))?;
+        let origin = origin.to_owned();
         Ok(Some(Self {
             subject,
             title,
+            origin,
+            text,
             csv,
         }))
     }
@@ -125,7 +135,14 @@ impl Table {
     }
 }
 
-fn subject(header: &str, names: &[&str]) -> Option<(Subject, String)> {
+/// What the table with this head is, and its title; `None` where it is none.
+fn subject(head: &Head) -> Option<(Subject, String)> {
+    let names = String::from_utf8_lossy(head.names()).into_owned();
+    let names: Vec<&str> = names
+        .split(',')
+        .map(|name| name.trim_matches('"'))
+        .collect();
+    let (header, names) = (head.header().unwrap_or_default(), names.as_slice());
     let table: Option<toml::Table> = header.parse().ok();
     let title = |table: &toml::Table| {
         let title = table.get("title").and_then(toml::Value::as_str);
@@ -140,8 +157,8 @@ fn subject(header: &str, names: &[&str]) -> Option<(Subject, String)> {
     if let Some(settings) = settings_of_fit(names) {
         let fit = Fit {
             settings,
-            run_file: header.to_owned(),
-            found: found(header),
+            found: found(&header),
+            run_file: header,
         };
         return Some((Subject::Fit(fit), title(&table)));
     }

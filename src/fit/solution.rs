@@ -4,6 +4,7 @@
 use super::free::Free;
 use super::levenberg::{Minimum, SINGULAR};
 use super::weights::Weights;
+use crate::text::number::significant;
 use nalgebra::{DMatrix, DVector};
 
 #[derive(Clone, Debug, PartialEq)]
@@ -151,6 +152,15 @@ fn at_least(chi_squared: f64, freedom: u64) -> f64 {
         libm::exp(power * libm::log(half) - half - libm::lgamma(power + 1.0))
     };
     first + (0..freedom / 2).map(term).sum::<f64>()
+}
+
+/// What is said of uncertainties for which chi^2 of `freedom` degrees of freedom is hardly ever so small.
+pub fn too_large(chi_squared: f64, freedom: u64) -> Option<String> {
+    let is_rare = freedom > 0 && chi_squared > 0.0 && at_least(chi_squared, freedom) > 1.0 - RARE;
+    is_rare.then(|| {
+        let times = significant((freedom as f64 / chi_squared).sqrt(), 2);
+        format!("the uncertainties given look too large: by their scatter the data are about {times} times as good as stated")
+    })
 }
 
 impl Quality {

@@ -2,7 +2,7 @@
 
 use super::model::{Measurand, Model};
 use super::search::Fit;
-use super::solution::{LEAST_FREEDOM, Quality, RARE, student};
+use super::solution::{LEAST_FREEDOM, Quality, RARE, student, too_large};
 use crate::data::{Data, Point, Residual, is_counted};
 use crate::text::number::{short, significant};
 use std::collections::BTreeSet;
@@ -58,11 +58,10 @@ impl Fit {
                     self.far()
                 )
             }
-            Some(probability) if probability > 1.0 - RARE => format!(
-                "The model fits, but the uncertainties are too large: {sum}; by their scatter the data are about {} times as good as stated.",
-                significant((freedom as f64 / chi_squared).sqrt(), 2)
-            ),
-            Some(_) => format!("The model fits: {sum}."),
+            Some(_) => match too_large(chi_squared, freedom) {
+                Some(too_large) => format!("The model fits, but {too_large} ({sum})."),
+                None => format!("The model fits: {sum}."),
+            },
         }
     }
 

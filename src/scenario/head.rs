@@ -2,6 +2,7 @@
 
 use super::limits::{self, LONGEST, LONGEST_HEADER};
 use super::problem::{Problem, at_line};
+use crate::origin::{Figure, Holds};
 use crate::text::advice::unread;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -96,7 +97,7 @@ fn without_mark(line: &[u8]) -> &[u8] {
     line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line)
 }
 
-/// The text of a scenario, or the run file in the header of a CSV, of which no more is read.
+/// The text of a scenario, the run file in the header of a CSV, of which no more is read, or the one in a figure.
 pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
     let whole = |rule: String| Problem::at("", rule);
     let cannot = |error: io::Error| whole(unread(&error));
@@ -104,6 +105,9 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
         return Err(whole("is a folder: name a file in it".to_owned()));
     }
     let mut reader = BufReader::new(File::open(path).map_err(cannot)?);
+    if let Some(figure) = Figure::read(&mut reader).map_err(whole)? {
+        return run_of_figure(&figure);
+    }
     let head = Head::read(&mut reader).map_err(cannot)?;
     if head.is_of_csv() {
         return head.run_file();
@@ -115,6 +119,31 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
         )));
     }
     text_of_file(head.bytes.as_slice().chain(reader))
+}
+
+/// The run file in a figure: of several the first, of a table the one in its header.
+fn run_of_figure(figure: &Figure) -> Result<String, Problem> {
+    match figure.origin.files.first() {
+        Some(file) if file.sha256.is_some() => {
+            let rule = format!(
+                "shows a table that did not travel with it: name {}",
+                file.name
+            );
+            Err(Problem::at("", rule))
+        }
+        Some(file) if file.holds == Holds::Table => {
+            let head = Head::read(&mut file.text.as_bytes());
+            head.map_err(|error| Problem::at("", unread(&error)))?
+                .run_file()
+        }
+        file => Ok(file.map(|file| file.text.clone()).unwrap_or_default()),
+    }
+}
+
+/// Whether SCENARIO names a file, and no preset.
+pub fn is_file(name: &str) -> bool {
+    let endings = [".toml", ".csv", ".svg", ".pdf", ".png"];
+    name.contains('/') || endings.iter().any(|ending| name.contains(ending))
 }
 
 pub(super) fn text_of_file(file: impl Read) -> Result<String, Problem> {

@@ -7,9 +7,8 @@ use crate::export::destination::{Destination, DestinationError};
 use crate::export::stream::{self, Ended};
 use crate::export::{COLUMNS, CsvWriter, Layout};
 use crate::figure::kind::Kind;
-use crate::figure::labels::Labels;
-use crate::figure::of_runs::{self, EXACT_BESIDE, Request, Run};
-use crate::figure::{self, Format};
+use crate::figure::of_runs::{EXACT_BESIDE, Run};
+use crate::figure::{Asked, Format, Source};
 use crate::run::{Clock, NotFinite, Sample, Simulation};
 use crate::scenario::Scenario;
 use crate::text::printable::printable;
@@ -225,23 +224,24 @@ fn draw(
     drawn: Drawn,
     shared: &Shared,
 ) -> Result<Written, String> {
-    let request = Request {
-        kind: drawn.kind,
-        from_s: 0.0,
-        to_s: None,
-        exact: drawn.exact,
+    let source = Source {
+        asked: Asked {
+            kind: Some(drawn.kind.name()),
+            exact: drawn.exact,
+            ..Asked::default()
+        },
+        runs: vec![Run {
+            named: scenario.file.title.clone(),
+            scenario,
+        }],
         measured: drawn.measured,
-        width_pt: figure::COLUMN_PT,
-        labels: Labels::default(),
+        table: None,
     };
-    let run = Run {
-        named: scenario.file.title.clone(),
-        scenario,
-    };
-    let figure = of_runs::figure(&[run], &request, |step, _| shared.reach(step))?;
+    let figure = source.draw(|step, _| shared.reach(step))?;
     let figure = figure.filter(|_| shared.reach(shared.steps).is_continue());
     let figure = figure.ok_or("the figure was stopped, and nothing was written")?;
-    let bytes = figure::write(&figure.scene, drawn.format).map_err(|error| error.to_string())?;
+    let bytes = source.write(&figure.scene, drawn.format);
+    let bytes = bytes.map_err(|error| error.to_string())?;
     output
         .write_and_keep(&bytes)
         .map_err(|error| error.fact())?;

@@ -7,6 +7,7 @@ use crate::export::layout::commented;
 use crate::run::{Clock, resampled};
 use crate::scenario::document::Document;
 use crate::scenario::dotted::{find, join, number_of_push};
+use crate::scenario::head::is_file;
 use crate::scenario::rescale::{MOST_STEPS, accumulates};
 use crate::scenario::{Problem, Problems, Scenario};
 use crate::text::number::{decimal, shortest};
@@ -288,11 +289,6 @@ fn measured(
         }
     }
     found
-}
-
-/// Whether SCENARIO names a file, and no preset.
-fn is_file(name: &str) -> bool {
-    name.contains('/') || name.contains(".toml") || name.contains(".csv")
 }
 
 /// The `problems` of the table `[scenario]` of `document`, with their lines there.

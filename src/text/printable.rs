@@ -66,6 +66,22 @@ pub fn brief(text: &str, most: usize) -> String {
     printable(beginning).into_owned() + rest
 }
 
+/// Text for an element or an attribute in double quotes. What XML cannot hold is spelled out or becomes U+FFFD.
+pub fn xml(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in printable(text).chars() {
+        match c {
+            '&' => safe += "&amp;",
+            '<' => safe += "&lt;",
+            '>' => safe += "&gt;",
+            '"' => safe += "&quot;",
+            '\u{fffe}' | '\u{ffff}' => safe.push('\u{fffd}'),
+            c => safe.push(c),
+        }
+    }
+    safe
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,8 +10,8 @@
 //! - [`app`] is the loop, [`pacing`] says how often it draws, [`terminal`] is the only file that talks to the terminal.
 //! - [`keyboard`] takes the terminal's bytes, [`decoder`] makes keys of them; [`mouse`] says what is done where it points.
 //! - [`keymap`] is the one table of keys, [`press`](mod@press) carries out what a key means.
-//! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
-//!   places those are, [`theme`] what colours look like and whether there are any, [`dots`] sets dots and says what they look like,
+//! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`mod@svg`] is the picture for a
+//!   slide; [`layout`] says which places those are, [`theme`] what colours look like and whether there are any, [`dots`] sets dots and says what they look like,
 //!   [`points`] what was measured, [`trail`] a path that fades, [`scene`] lines in space; [`plane`] takes metres to dots and cells,
 //!   [`split`] a part of the screen to two.
 //! - [`board`] shows lines without a lab.
@@ -32,6 +32,7 @@ pub mod press;
 pub mod scene;
 pub mod screen;
 pub mod split;
+pub mod svg;
 pub mod terminal;
 pub mod theme;
 pub mod trail;

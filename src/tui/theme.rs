@@ -10,8 +10,8 @@ use crate::lab::view::theme::{Background, Theme};
 use ratatui::style::{Color, Modifier, Style};
 
 /// #008787 and #008700 of the 256 colours.
-const DARK_CYAN: u8 = 30;
-const DARK_GREEN: u8 = 28;
+pub(super) const DARK_CYAN: u8 = 30;
+pub(super) const DARK_GREEN: u8 = 28;
 
 /// The role of a piece of the screen, which decides its style.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

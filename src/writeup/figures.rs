@@ -8,7 +8,7 @@ use crate::figure::course::{Course, Recorder, Wanted};
 use crate::figure::kind::Kind;
 use crate::figure::labels::Labels;
 use crate::figure::of_runs::{self, Figure, Known, Request, Run};
-use crate::figure::{COLUMN_PT, Scene};
+use crate::figure::{COLUMN_PT, Scene, Source};
 use crate::run::Clock;
 use crate::scenario::Scenario;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
@@ -16,7 +16,7 @@ use crate::text::number::{rounded, significant};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Drawing {
     /// The name of its files, without their endings.
     pub name: &'static str,
@@ -24,6 +24,7 @@ pub struct Drawing {
     /// What its reader must know of it besides, as a sentence.
     pub remark: Option<String>,
     pub scene: Scene,
+    pub source: Source,
 }
 
 /// The figures of what was measured, and of measured less run.
@@ -110,6 +111,7 @@ pub fn figures(
         }),
         caption: planned.caption,
         scene: figure.scene,
+        source: Source::new(&runs, &planned.request),
     }
     };
     Ok(drawn.map(|drawn| planned.into_iter().zip(drawn).map(drawing).collect()))

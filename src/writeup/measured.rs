@@ -2,7 +2,8 @@
 
 use super::{AGAIN, CSV, PAGE, READOUTS_FILE, RUN_FILE};
 use crate::data::compared::{Compared, Sum};
-use crate::data::{Measured, Quantity, Series, at_times};
+use crate::data::{Measured, Quantity, at_times};
+use crate::fit::solution::too_large;
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, counted, shortest, significant};
 use serde_json::{Value, json};
@@ -14,8 +15,6 @@ use std::sync::Arc;
 pub struct Beside {
     /// The data; their origin is the name of their copy in the folder.
     pub measured: Arc<Measured>,
-    /// The text of the file; the folder has a copy.
-    pub text: String,
     /// What the run says of those that it reached: of each column a value for every point.
     pub said: Vec<Vec<f64>>,
     pub compared: Compared,
@@ -23,14 +22,13 @@ pub struct Beside {
 }
 
 impl Beside {
-    /// `measured`, read from `text`, before the comparison with a run.
-    pub fn new(measured: Measured, text: String) -> Self {
+    /// `measured` before the comparison with a run.
+    pub fn new(measured: Measured) -> Self {
         Self {
             measured: Arc::new(Measured {
                 origin: name_of_copy(&measured.origin),
                 ..measured
             }),
-            text,
             said: Vec::new(),
             compared: Compared::default(),
             end_s: 0.0,
@@ -68,11 +66,7 @@ impl Beside {
 
     /// The data that were measured before the end of the run.
     pub(super) fn reached(&self) -> Arc<Measured> {
-        let mut reached = Measured::clone(&self.measured);
-        if let Ok(Series { times_s, .. }) = self.measured.series() {
-            reached.keep_rows(|row| times_s[row] <= self.end_s);
-        }
-        Arc::new(reached)
+        Arc::new(Measured::clone(&self.measured).until(Some(self.end_s)))
     }
 
     /// What was measured, with how far the run is from it, one row a column.
@@ -112,6 +106,9 @@ impl Beside {
                 significant(sum.chi_squared, 4),
                 points(sum.weighed)
             )?;
+            if let Some(too_large) = too_large(sum.chi_squared, sum.weighed as u64) {
+                writeln!(page, "\nBut {too_large}.")?;
+            }
         }
         Ok(())
     }

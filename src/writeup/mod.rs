@@ -11,7 +11,7 @@ mod quantities;
 
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Source};
-use crate::figure::{self, Format, Unwritable};
+use crate::figure::{Format, Unwritable};
 use crate::run::NotFinite;
 use crate::scenario::Scenario;
 pub use figures::Drawing;
@@ -28,7 +28,7 @@ pub const READOUTS_FILE: &str = "readouts.json";
 const AGAIN: &str = "again.csv";
 
 /// The name, among the readouts, of what was measured.
-const MEASURED_DATA: &str = "measured_data";
+pub const MEASURED_DATA: &str = "measured_data";
 
 #[derive(Clone, Debug)]
 pub struct Writeup {
@@ -47,28 +47,31 @@ impl Writeup {
     /// # Errors
     /// When a figure is too large for its form.
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Unwritable> {
-        let page = page::page(self).unwrap_or_default(); // a String takes what is written to it
         let texts = [
             (RUN_FILE, self.scenario.to_toml()),
             (READOUTS_FILE, self.readouts_json()),
-            (PAGE, page),
+            (PAGE, self.page()),
         ];
         let beside = self.beside.iter();
-        let beside = beside.map(|beside| (beside.name(), beside.text.clone()));
+        let beside = beside.map(|beside| (beside.name(), beside.measured.text.to_string()));
         let texts = texts.into_iter().chain(beside);
         let texts = texts.map(|(name, text)| (name.to_owned(), text.into_bytes()));
         let mut files: Vec<_> = texts.collect();
         for drawing in &self.drawings {
             for (ending, format) in [("svg", Format::Svg), ("pdf", Format::Pdf)] {
-                let bytes = figure::write(&drawing.scene, format)?;
+                let bytes = drawing.source.write(&drawing.scene, format)?;
                 files.push((format!("{}.{ending}", drawing.name), bytes));
             }
         }
         Ok(files)
     }
 
+    pub fn page(&self) -> String {
+        page::page(self).unwrap_or_default() // a String takes what is written to it
+    }
+
     /// The readouts without the times by the clock, one object.
-    fn readouts_json(&self) -> String {
+    pub fn readouts_json(&self) -> String {
         let lasting = READOUTS.iter();
         let lasting = lasting.filter(|readout| readout.source != Source::Clock);
         let named = lasting.map(|readout| {

@@ -31,7 +31,7 @@ fn page(title: &str, words: &str) -> Scene {
 }
 
 fn svg(scene: &Scene) -> String {
-    String::from_utf8(write(scene, Format::Svg).unwrap()).unwrap()
+    String::from_utf8(write(scene, Format::Svg, None).unwrap()).unwrap()
 }
 
 /// The words of a PDF's drawing, not compressed.
@@ -195,7 +195,7 @@ fn the_places_in_svg_are_those_of_the_page() {
 
 #[test]
 fn pdf_strokes_and_cuts_off_and_has_its_own_font() {
-    let pdf = write(&page("A title", "ab"), Format::Pdf).unwrap();
+    let pdf = write(&page("A title", "ab"), Format::Pdf, None).unwrap();
     let text = String::from_utf8_lossy(&pdf);
     assert!(text.starts_with("%PDF-1.4"));
     assert!(text.contains("/MediaBox [0 0 100 60]"));
@@ -226,7 +226,7 @@ fn pdf_strokes_and_cuts_off_and_has_its_own_font() {
 
 #[test]
 fn png_has_the_dots_of_the_page() {
-    let picture = Picture::of(&write(&page("A title", "ab"), Format::Png).unwrap());
+    let picture = Picture::of(&write(&page("A title", "ab"), Format::Png, None).unwrap());
     // 100 pt x 60 pt at 600 dots an inch.
     assert_eq!((picture.width, picture.height), (834, 500));
     assert_eq!(picture.dots_per_metre, 23622);
@@ -251,7 +251,7 @@ fn png_has_the_dots_of_the_page() {
     let is_black = |(x, y): &(f64, f64)| picture.at(*x, *y) == black;
     assert!(in_label.filter(is_black).count() > 100);
     let grey = Scene::new(10.0, 10.0, "");
-    let bytes = write(&grey, Format::Png).unwrap();
+    let bytes = write(&grey, Format::Png, None).unwrap();
     assert_eq!(bytes[25], 0, "a page without colour is in grey");
     assert!(Picture::of(&bytes).dots.iter().all(|dot| *dot == white));
 }
@@ -271,11 +271,11 @@ fn words_cannot_break_a_file() {
             let shown = "</title><script>x</script> & \"q\" 'a' ]]> \\u{0}\\u{1b}[2J\\u{202e}\u{fffd} 速い \\) (";
             assert_eq!(title.text(), Some(shown));
         }
-        let pdf = write(&scene, Format::Pdf).unwrap();
+        let pdf = write(&scene, Format::Pdf, None).unwrap();
         let drawing = content(&pdf);
         let is_whole = hostile.is_empty() || drawing.ends_with("EMC\nQ");
         assert!(is_whole, "{}", &drawing[drawing.len() - 40..]);
-        let picture = Picture::of(&write(&scene, Format::Png).unwrap());
+        let picture = Picture::of(&write(&scene, Format::Png, None).unwrap());
         assert_eq!(picture.at(75.0, 15.0), [0; 3]);
     }
 }
@@ -286,8 +286,11 @@ fn words_cannot_break_a_file() {
 fn a_file_is_the_same_each_time_and_everywhere() {
     let known = [(Format::Svg, 2_219_561_319), (Format::Pdf, 1_146_029_640)];
     for (format, crc) in known {
-        let bytes = write(&page("A title", "Äß Ω"), format).unwrap();
-        assert_eq!(bytes, write(&page("A title", "Äß Ω"), format).unwrap());
+        let bytes = write(&page("A title", "Äß Ω"), format, None).unwrap();
+        assert_eq!(
+            bytes,
+            write(&page("A title", "Äß Ω"), format, None).unwrap()
+        );
         let stable = if format == Format::Pdf {
             content(&bytes).into_bytes()
         } else {
@@ -295,7 +298,7 @@ fn a_file_is_the_same_each_time_and_everywhere() {
         };
         assert_eq!(crc32fast::hash(&stable), crc, "{format:?}");
     }
-    let picture = Picture::of(&write(&page("A title", "Äß Ω"), Format::Png).unwrap());
+    let picture = Picture::of(&write(&page("A title", "Äß Ω"), Format::Png, None).unwrap());
     let pixels = crc32fast::hash(picture.dots.as_flattened());
     assert_eq!(pixels, 2_315_199_443);
 }
@@ -310,7 +313,7 @@ fn dashes_of_an_odd_number_and_of_no_length_are_drawn() {
         };
         let line = Path::polyline([at(0.0, 10.0), at(100.0, 10.0)]);
         scene.stroke(line, dashed, None);
-        let picture = Picture::of(&write(&scene, Format::Png).unwrap());
+        let picture = Picture::of(&write(&scene, Format::Png, None).unwrap());
         assert_eq!(picture.at(2.0, 10.0), [0; 3], "{dash_pt:?}");
         let is_gap = dash_pt == [5.0];
         assert_eq!(picture.at(7.0, 10.0) == [255; 3], is_gap, "{dash_pt:?}");
@@ -326,8 +329,8 @@ fn empty_paths_and_points_alone_break_nothing() {
         scene.stroke(path, pen(1.0, BLACK), None);
     }
     for format in [Format::Svg, Format::Pdf, Format::Png] {
-        write(&scene, format).unwrap();
+        write(&scene, format, None).unwrap();
     }
     roxmltree::Document::parse(&svg(&scene)).unwrap();
-    assert!(!content(&write(&scene, Format::Pdf).unwrap()).contains("\nf\nf\n"));
+    assert!(!content(&write(&scene, Format::Pdf, None).unwrap()).contains("\nf\nf\n"));
 }

@@ -176,7 +176,7 @@ fn theory_names_its_axis() {
     let upright = readouts(&preset("cusps", &[]));
     assert_eq!(json(&upright)["theory_axis"], "+z");
     assert!((upright.number("predicted_lowest_tilt_deg").unwrap() - 30.0).abs() < 1e-9);
-    let text = summary(upright).to_string();
+    let text = summary(upright).in_full(true).to_string();
     assert!(text.contains("tilt 30.0000 to 36.6891 degrees\n"), "{text}");
 
     let free = readouts(&preset("cusps", &["motion.gravity_m_per_s2=0"]));
@@ -195,7 +195,7 @@ fn theory_names_its_axis() {
         for name in ABOUT_THE_AXIS {
             assert!(object[*name].is_null(), "{axis}: {name}: {object}");
         }
-        let text = summary(readouts.clone()).to_string();
+        let text = summary(readouts.clone()).in_full(true).to_string();
         assert!(text.contains(words), "{text}");
         assert!(text.contains("in this run about +z"), "{text}");
         assert!(!text.contains("to 0.0000 degrees\n"), "{text}");
@@ -316,7 +316,7 @@ fn theory_of_a_top_that_is_pulled_up_is_about_z_as_what_is_measured() {
             let off = (predicted / measured - 1.0).abs();
             assert!(off < 1e-5, "{name}: {predicted}, {measured}");
         }
-        let text = summary(readouts).to_string();
+        let text = summary(readouts).in_full(true).to_string();
         has(&text, "stands without spin too");
         has_no(&text, "about");
     }

@@ -14,7 +14,7 @@ fn it_says_the_value_with_its_uncertainty_and_whether_the_model_fits() {
     has(told, "body.part.0.moments_kg_m2.2  0.003751(27)  0.00375");
     has(
         told,
-        "\nThe model fits, but the uncertainties are too large: chi^2 0.718 at 9 degrees of freedom",
+        "\nThe model fits, but the uncertainties given look too large: by their scatter the data are about 3.5 times as good as stated (chi^2 0.718 at 9 degrees of freedom).",
     );
 }
 

@@ -31,5 +31,6 @@ mod sessions;
 mod settings;
 mod sweep;
 mod terminal;
+mod travel;
 mod verify;
 mod writeups;

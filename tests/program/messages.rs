@@ -223,7 +223,7 @@ fn the_manual_has_the_keys_of_the_lab_and_the_values_of_options() {
     let ground = Ground::new();
     let manual = ground.stdout("man");
     let keys = manual.find("KEYS IN THE LAB").unwrap();
-    has_all(&manual[keys..], ["\n  space\n", "\n  d\n", "\n  f\n"]);
+    has_all(&manual[keys..], ["\n  space ", "\n  d ", "\n  f "]);
     has_all(
         &manual,
         ["--at <STEP>", "--resume [<NAME>]", "-o, --output <FILE>"],

@@ -75,15 +75,30 @@ fn the_scenario_is_good_and_its_mistakes_are_told_as_shown() {
     assert_eq!(shown, format!("$ gyrolab check with-mistakes.toml\n{told}"));
 }
 
-#[test]
-fn the_picture_of_the_lab_begins_as_shown() {
-    let shown = block("text", "gyrolab show ");
-    let (command, picture) = shown.split_once('\n').unwrap();
+/// What the command in the first line of the only block with `command` prints, and what the block shows of it.
+fn printed_and_shown(command: &str) -> [String; 2] {
+    let block = block("text", command);
+    let (command, shown) = block.split_once('\n').unwrap();
     let args: Vec<_> = command.split_whitespace().skip(2).collect();
-    let ground = Ground::new();
-    let lab = said(&ground.run(&args).stdout);
-    let (picture, _) = picture.split_once("  ...").unwrap();
-    assert!(lab.starts_with(picture), "{lab}");
+    let output = Ground::new().run(&args);
+    assert!(output.status.success(), "{}", said(&output.stderr));
+    [said(&output.stdout), shown.to_owned()]
+}
+
+#[test]
+fn the_picture_of_the_lab_is_shown() {
+    let [printed, shown] = printed_and_shown("gyrolab show ");
+    assert_eq!(printed, shown);
+}
+
+#[test]
+fn the_summary_is_shown() {
+    let texts = printed_and_shown("gyrolab run wobble-push");
+    let [printed, shown] = texts.map(|text| {
+        let lines = text.lines().filter(|line| !line.starts_with("  wall time"));
+        lines.map(|line| format!("{line}\n")).collect::<String>()
+    });
+    assert_eq!(printed, shown);
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! The line of a series on the page, without the points that nobody could see.
 
 use super::layout::Placed;
-use super::{Panel, Series};
+use super::{Panel, Series, Style};
 use crate::figure::page::cover;
 use crate::figure::page::ink::{Frame, at, paler};
 use crate::figure::page::line::{clipped, simplified};
 use crate::figure::page::scene::{Path, Pen, Point, Scene};
+use std::collections::{HashMap, HashSet};
 
 /// How far a line may leave its points, of its width: a tenth of a dot at 600 an inch for a line of 0.7 pt.
 const TOLERANCE: f64 = 0.02;
@@ -121,16 +122,83 @@ pub fn draw_curve(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene:
 }
 
 /// The length of a line that consists of `pieces` without swings that are too low to be seen, pt.
-pub fn way_pt(pieces: &[Vec<Point>]) -> f64 {
+fn way_pt(pieces: &[Vec<Point>]) -> f64 {
     const FLAT_PT: f64 = 0.4;
     let lines = pieces.iter().map(|piece| simplified(piece, FLAT_PT));
     lines.map(|line| length(&line)).sum()
 }
 
-/// Whether a line of that length hides a wide one beneath it: it swings where that does not.
-pub fn hides(way_pt: f64, beneath_pt: f64) -> bool {
+/// Whether a line of that length hides one beneath it: it swings where that does not.
+fn hides(way_pt: f64, beneath_pt: f64) -> bool {
     const LONGER: f64 = 3.0;
     way_pt > LONGER * beneath_pt
+}
+
+/// The lines of a panel that have been looked at, the first of which is on top of all others.
+#[derive(Default)]
+pub struct Above {
+    first_pt: Option<f64>,
+    /// The squares of the page on which they lie, and the width of the widest line there, pt.
+    squares: HashMap<[i32; 2], f64>,
+}
+
+impl Above {
+    /// Side of a square, pt.
+    const SIDE_PT: f64 = 0.5;
+    /// How much wider a line is than one that lies on it, pt.
+    const WIDER_PT: f64 = 0.9;
+
+    /// Takes note of a line that consists of `pieces`, and makes its `style` one in which it is seen: wide where other lines
+    /// cover it for most of its length, thin where they do not, with its core on top where the first line hides it.
+    pub fn add(&mut self, pieces: &[Vec<Point>], style: &mut Style) {
+        let way_pt = way_pt(pieces);
+        let is_hidden = self
+            .first_pt
+            .is_some_and(|first_pt| hides(first_pt, way_pt));
+        let squares: HashSet<_> = squares(pieces).collect();
+        if let Some(color) = style.core {
+            match self.width_over(&squares) {
+                Some(width_pt) => style.width_pt = width_pt + Self::WIDER_PT,
+                None => style.color = color,
+            }
+        }
+        style.core = style.core.filter(|_| is_hidden);
+        self.first_pt.get_or_insert(way_pt);
+        for square in squares {
+            let width_pt = self.squares.entry(square).or_default();
+            *width_pt = width_pt.max(style.width_pt);
+        }
+    }
+
+    /// The width of the lines that cover most of `squares`, pt; `None` where none do.
+    fn width_over(&self, squares: &HashSet<[i32; 2]>) -> Option<f64> {
+        let over = |[x, y]: &[i32; 2]| {
+            let near = [[*x, *y], [x + 1, *y], [x - 1, *y], [*x, y + 1], [*x, y - 1]];
+            let widths = near.iter().filter_map(|square| self.squares.get(square));
+            widths.copied().reduce(f64::max)
+        };
+        let mut widths: Vec<f64> = squares.iter().filter_map(over).collect();
+        widths.sort_by(f64::total_cmp);
+        (2 * widths.len() > squares.len()).then(|| widths[widths.len() / 2])
+    }
+}
+
+/// The squares of the page on which a line lies that consists of `pieces`.
+fn squares(pieces: &[Vec<Point>]) -> impl Iterator<Item = [i32; 2]> {
+    let lines = pieces.iter().map(|piece| simplified(piece, UNSEEN_PT));
+    let segments = lines.flat_map(|line| {
+        let ends = line.windows(2).map(|pair| (pair[0], pair[1]));
+        ends.collect::<Vec<_>>()
+    });
+    segments.flat_map(|(from, to)| {
+        let (dx, dy) = (to.x - from.x, to.y - from.y);
+        let count = (2.0 * libm::hypot(dx, dy) / Above::SIDE_PT).ceil().max(1.0);
+        (0..=count as u32).map(move |number| {
+            let part = f64::from(number) / count;
+            let place = [from.x + part * dx, from.y + part * dy];
+            place.map(|at| libm::floor(at / Above::SIDE_PT) as i32)
+        })
+    })
 }
 
 pub fn length(line: &[Point]) -> f64 {
@@ -143,16 +211,35 @@ pub fn length(line: &[Point]) -> f64 {
 mod tests {
     use super::*;
 
+    /// A line of 400 points, each so far from the next, every second one so far from a level one at that height, pt.
+    fn zigzag(apart: f64, high: f64, from: f64) -> Vec<Vec<Point>> {
+        let place = |i: i32| at(f64::from(i) * apart, from + f64::from(i % 2) * high);
+        vec![(0..400).map(place).collect()]
+    }
+
     #[test]
     fn a_line_hides_what_it_swings_about() {
-        let zigzag = |apart: f64, high: f64| {
-            let place = |i: i32| at(f64::from(i) * apart, f64::from(i % 2) * high);
-            way_pt(&[(0..400).map(place).collect()])
-        };
-        let level = zigzag(0.5, 0.0);
-        assert!(hides(zigzag(0.5, 40.0), level));
+        let way_pt = |apart, high| way_pt(&zigzag(apart, high, 0.0));
+        let level = way_pt(0.5, 0.0);
+        assert!(hides(way_pt(0.5, 40.0), level));
         assert!(!hides(level, level));
         // Ripples that nobody sees are no swings.
-        assert!(!hides(zigzag(0.1, 0.3), zigzag(0.1, 0.0)));
+        assert!(!hides(way_pt(0.1, 0.3), way_pt(0.1, 0.0)));
+    }
+
+    #[test]
+    fn a_line_is_wide_where_it_lies_on_another() {
+        let mut above = Above::default();
+        above.add(&zigzag(0.5, 0.0, 0.0), &mut Style::curve(0));
+        let mut width_at = |height: f64| {
+            let mut style = Style::exact(1);
+            above.add(&zigzag(0.5, 0.0, height), &mut style);
+            style.width_pt
+        };
+        let thin = Style::curve(0).width_pt;
+        assert_eq!(width_at(0.2), thin + Above::WIDER_PT);
+        assert_eq!(width_at(5.0), thin);
+        // It lies on the line before it, which is not the first.
+        assert_eq!(width_at(5.0), thin + Above::WIDER_PT);
     }
 }

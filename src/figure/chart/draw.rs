@@ -27,7 +27,7 @@ impl Chart {
         self.as_seen(&bare).placed(bare)
     }
 
-    /// The chart in the places of `layout`, without points that stand upon each other and cores of lines that are seen.
+    /// The chart in the places of `layout`, without points that stand upon each other, and with lines that are seen beside each other.
     fn as_seen(&self, layout: &Layout) -> Self {
         let mut seen = self.clone();
         seen.x.range = layout.panels.first().map(|placed| placed.x.range);
@@ -36,12 +36,12 @@ impl Chart {
         let places = layout.panels.iter().chain(&layout.magnified);
         for (panel, placed) in seen.panels.iter_mut().chain(magnified).zip(places) {
             panel.y.range = Some(placed.y.range);
-            let way_pt = |series: &Series| curve::way_pt(&placed.pieces(series));
-            let first_pt = panel.series.first().map_or(0.0, way_pt);
+            let mut above = curve::Above::default();
             for series in &mut panel.series {
                 placed.thin_marks(series);
-                let core = series.style.core;
-                series.style.core = core.filter(|_| curve::hides(first_pt, way_pt(series)));
+                if series.style.width_pt > 0.0 {
+                    above.add(&placed.pieces(series), &mut series.style);
+                }
             }
         }
         seen

@@ -187,27 +187,23 @@ const MARKS: [Mark; KINDS_OF_LINE] = [
 const DOT_PT: f64 = 1.1;
 
 impl Style {
-    /// The line of the curve `index` of several: the first is thin and on top, each other one wider and beneath those before
-    /// it, so that where two have one place both are seen.
+    /// The line of the curve `index` of several: the first is on top, each other one beneath those before it, and made wide
+    /// where they cover it (`curve::Above`).
     pub fn curve(index: usize) -> Self {
-        /// How much wider each is than the one on top of it, pt.
-        const WIDER_PT: f64 = 0.6;
-        let kind = index % KINDS_OF_LINE;
+        let color = COLORS[index % KINDS_OF_LINE];
         Self {
-            color: COLORS[kind],
-            width_pt: Self::default().width_pt + WIDER_PT * kind as f64,
+            color,
             is_behind: index > 0,
-            core: (index > 0).then_some(COLORS[kind]),
+            core: (index > 0).then_some(color),
             ..Self::default()
         }
     }
 
-    /// The exact motion, as the curve `index`: pale and wide, so that a run on top of it is seen wherever it goes.
+    /// The exact motion, as the curve `index`: pale where it is wide, so that a run on top of it is seen wherever it goes.
     pub fn exact(index: usize) -> Self {
         let curve = Self::curve(index);
         Self {
             color: paler(curve.color, 0.4),
-            width_pt: curve.width_pt + 0.6,
             ..curve
         }
     }
@@ -296,9 +292,8 @@ impl Style {
 
     /// The pen of its core.
     pub fn core_pen(&self) -> Option<Pen> {
-        const CORE_PT: f64 = 0.7;
         Some(Pen {
-            width_pt: CORE_PT,
+            width_pt: Self::default().width_pt,
             color: self.core?,
             ..self.pen()
         })

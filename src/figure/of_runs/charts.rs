@@ -59,8 +59,8 @@ pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) ->
     dense::of_paths(drawn, request, |course| &course.above, place)
 }
 
-/// The circles between which the exact motion of the traced point stays, from above; none where pushes or edits change the
-/// motion, or it has no closed form. A metre is `pt_per_m` long on the page.
+/// The circles between which the exact motion of the traced point stays, from above; none where it is one circle, pushes or
+/// edits change it, or it has no closed form. A metre is `pt_per_m` long on the page.
 fn limits(run: &Run, pt_per_m: f64) -> Vec<Series> {
     const SAME: f64 = 0.01;
     let scenario = &run.scenario;
@@ -76,17 +76,14 @@ fn limits(run: &Run, pt_per_m: f64) -> Vec<Series> {
     let (low, high) = motion.tilt_range();
     let radius = |tilt: f64| at.norm() * libm::sin(tilt);
     let (inner, outer) = (radius(low), radius(high));
-    let (name, radii) = if (outer - inner).abs() <= SAME * outer.max(inner) {
-        ("radius of exact motion", vec![0.5 * (inner + outer)])
-    } else {
-        ("limits of exact motion", vec![inner, outer])
+    if (outer - inner).abs() <= SAME * outer.max(inner) {
+        return Vec::new(); // the exact motion itself is the circle
+    }
+    let circle = |radius| {
+        let points = circle(radius, pt_per_m);
+        Series::new("limits of exact motion", points, Style::limit())
     };
-    let style = Style {
-        is_behind: radii.len() > 1, // the one circle lies in the middle of the exact motion's wide line
-        ..Style::limit()
-    };
-    let circle = |radius| Series::new(name, circle(radius, pt_per_m), style.clone());
-    radii.into_iter().map(circle).collect()
+    [inner, outer].map(circle).into()
 }
 
 /// A circle about the origin, as straight lines: it may be far larger than the page.

@@ -5,6 +5,7 @@ use std::path::Path as FilePath;
 use super::scene::{LARGEST_PT, Unwritable, at, hundredths};
 use super::{Item, Paint, Point, Scene};
 use super::{pdf, png, svg};
+use crate::origin::{self, Origin};
 use crate::text::printable::Shown;
 
 /// Dots per inch of a PNG: what journals ask of drawings with lines and letters.
@@ -35,20 +36,29 @@ impl Format {
     }
 }
 
-/// The bytes of a file that shows a page.
+/// The bytes of a file that shows a page, and carries its `origin` where one is given.
 ///
 /// The bytes of SVG and PDF, and the pixels of PNG, are the same on every machine. Places and widths are rounded to
 /// hundredths of a point first, the same for all forms.
 ///
 /// # Errors
-/// When the page has no size, is too large for the form, or holds a place that is no number.
-pub fn write(scene: &Scene, format: Format) -> Result<Vec<u8>, Unwritable> {
+/// When the page has no size, is too large for the form, or holds a place that is no number; when the origin is too long.
+pub fn write(
+    scene: &Scene,
+    format: Format,
+    origin: Option<&Origin>,
+) -> Result<Vec<u8>, Unwritable> {
     let scene = rounded(scene)?;
-    match format {
-        Format::Svg => Ok(svg::written(&scene, false).into_bytes()),
-        Format::SvgText => Ok(svg::written(&scene, true).into_bytes()),
-        Format::Pdf => Ok(pdf::written(&scene)),
-        Format::Png => png::written(&scene, DOTS_PER_INCH),
+    let version = origin.map_or(env!("CARGO_PKG_VERSION"), |origin| &origin.gyrolab);
+    let picture = match format {
+        Format::Svg => svg::written(&scene, false).into_bytes(),
+        Format::SvgText => svg::written(&scene, true).into_bytes(),
+        Format::Pdf => pdf::written(&scene, version),
+        Format::Png => png::written(&scene, DOTS_PER_INCH)?,
+    };
+    match origin {
+        Some(origin) => origin::carry(&picture, origin).ok_or(Unwritable::Origin),
+        None => Ok(picture),
     }
 }
 
@@ -156,7 +166,7 @@ mod tests {
             let lines = [1.0, bad].map(|x| line(x, 1.0, pen(1.0, &[])));
             let scene = page(lines.to_vec());
             for format in [Format::Svg, Format::Pdf, Format::Png] {
-                assert_eq!(write(&scene, format), Err(Unwritable::Place(1)));
+                assert_eq!(write(&scene, format, None), Err(Unwritable::Place(1)));
             }
             for pen in [pen(bad, &[]), pen(1.0, &[1.0, bad])] {
                 let scene = page(vec![line(1.0, 1.0, pen)]);

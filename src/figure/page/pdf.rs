@@ -18,8 +18,8 @@ const CONTENT: Ref = Ref::new(4);
 const INFORMATION: Ref = Ref::new(5);
 const COMPRESSION: u8 = 9;
 
-/// A page whose places are whole hundredths of a point.
-pub fn written(scene: &Scene) -> Vec<u8> {
+/// A page whose places are whole hundredths of a point, written by this `version` of the program.
+pub fn written(scene: &Scene, version: &str) -> Vec<u8> {
     let fonts = Fonts::of(scene);
     let packed = |bytes: &[u8]| miniz_oxide::deflate::compress_to_vec_zlib(bytes, COMPRESSION);
     let content = packed(&content(scene, &fonts));
@@ -37,7 +37,7 @@ pub fn written(scene: &Scene) -> Vec<u8> {
     fonts.write(&mut pdf, packed);
     let mut information = pdf.document_info(INFORMATION);
     information.title(TextStr(&printable(&scene.title)));
-    information.producer(TextStr(concat!("gyrolab ", env!("CARGO_PKG_VERSION"))));
+    information.producer(TextStr(&format!("gyrolab {}", printable(version))));
     information.finish();
     pdf.finish()
 }

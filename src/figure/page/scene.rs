@@ -34,6 +34,10 @@ pub enum Unwritable {
         height: u32,
         reason: String,
     },
+    #[error(
+        "the runs and the words of this figure are too long to travel with it: draw fewer runs, or give shorter words"
+    )]
+    Origin,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use std::fmt::Write; // which cannot fail on a `String`
 use super::scene::{Placed, Words};
 use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
 use crate::figure::PT_PER_MM;
-use crate::text::printable::printable;
+use crate::text::printable::xml;
 
 /// How much farther a sharp corner may reach than half the line's width: what SVG takes if nothing is said.
 pub const MITER_LIMIT: f64 = 4.0;
@@ -21,7 +21,7 @@ pub fn written(scene: &Scene, has_text: bool) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {width} {height}\" role=\"img\">",
         sides_mm[0], sides_mm[1]
     );
-    let _ = writeln!(out, "<title>{}</title>", escaped(&scene.title));
+    let _ = writeln!(out, "<title>{}</title>", xml(&scene.title));
     let _ = writeln!(out, "<path fill=\"#fff\" d=\"M0 0h{width}v{height}H0z\"/>");
     for clip in clips(scene) {
         let name = name(&clip);
@@ -76,7 +76,7 @@ fn put_group(out: &mut String, items: &[Item], has_text: bool) {
         }
         *out += "<path";
         if let Some(words) = &item.words {
-            let words = escaped(&words.text);
+            let words = xml(&words.text);
             let _ = write!(out, " role=\"img\" aria-label=\"{words}\"");
         }
         let _ = writeln!(out, " d=\"{}\"/>", data(&item.path));
@@ -117,7 +117,7 @@ fn put_text(out: &mut String, words: &Words) {
             ""
         };
         let text: String = part.iter().map(|placed| placed.letter).collect();
-        let (x, y, text) = (number(x), number(y), escaped(&text));
+        let (x, y, text) = (number(x), number(y), xml(&text));
         let _ = write!(
             out,
             "<tspan x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{style}>{text}</tspan>"
@@ -223,20 +223,4 @@ fn hex(Color([red, green, blue]): Color) -> String {
     } else {
         format!("#{red:02x}{green:02x}{blue:02x}")
     }
-}
-
-/// Text for an element or an attribute in double quotes. What XML cannot hold is spelled out or becomes U+FFFD.
-fn escaped(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for c in printable(text).chars() {
-        match c {
-            '&' => safe += "&amp;",
-            '<' => safe += "&lt;",
-            '>' => safe += "&gt;",
-            '"' => safe += "&quot;",
-            '\u{fffe}' | '\u{ffff}' => safe.push('\u{fffd}'),
-            c => safe.push(c),
-        }
-    }
-    safe
 }

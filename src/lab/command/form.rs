@@ -8,6 +8,7 @@ use crate::journal::expression::Expression;
 use crate::journal::next_push::Toward;
 use crate::lab::numbers;
 use crate::scenario::dotted::join;
+use crate::scenario::head::is_file;
 use crate::scenario::keys::{self, Kind, Range};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, presets};
@@ -287,8 +288,7 @@ fn not_zero(value: &Value, most: i64) -> Result<(), String> {
 }
 
 fn is_scenario(name: &str) -> Result<(), String> {
-    let is_file = name.contains('/') || name.contains(".toml") || name.contains(".csv");
-    if is_file || presets::find(name).is_some() {
+    if is_file(name) || presets::find(name).is_some() {
         return Ok(());
     }
     let near = nearest(name, presets::PRESETS.iter().map(|preset| preset.name));

@@ -1,0 +1,33 @@
+//! What the forms of file share: a file without the text that it carries, how that is packed, and why it is not found.
+
+/// The longest text that a figure carries, bytes.
+pub const LONGEST_TEXT: usize = 64 << 20;
+
+pub const NONE: &str =
+    "holds no run: another program drew or rewrote it, or its metadata was stripped";
+pub const TWO: &str = "holds the metadata of two figures: nothing says which one is its own";
+pub const BROKEN: &str = "its metadata is damaged";
+
+/// A file without the text that it carries, and that text.
+pub struct Parted {
+    pub picture: Vec<u8>,
+    pub text: Vec<u8>,
+}
+
+pub fn packed(bytes: &[u8]) -> Vec<u8> {
+    const COMPRESSION: u8 = 9;
+    miniz_oxide::deflate::compress_to_vec_zlib(bytes, COMPRESSION)
+}
+
+pub fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, &'static str> {
+    let unpacked = miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(bytes, LONGEST_TEXT);
+    unpacked.map_err(|_| BROKEN)
+}
+
+/// Where `mark` stands in `file`, once.
+pub fn place(file: &[u8], mark: &[u8]) -> Result<usize, &'static str> {
+    let places = file.windows(mark.len()).enumerate();
+    let mut places = places.filter(|(_, window)| *window == mark);
+    let (place, _) = places.next().ok_or(NONE)?;
+    places.next().map_or(Ok(place), |_| Err(TWO))
+}

@@ -1,0 +1,44 @@
+//! PNG: the text is the last chunk before the end, a compressed iTXt with the keyword `gyrolab`.
+
+use super::parted::{NONE, Parted, TWO, packed, unpacked};
+
+pub const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+const KEYWORD: &[u8] = b"iTXtgyrolab\0";
+/// Compressed, by zlib; of no language, and its keyword not translated.
+const COMPRESSED: &[u8] = b"\x01\0\0\0";
+/// The chunk IEND.
+const END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
+
+pub fn carry(picture: &[u8], text: &str) -> Option<Vec<u8>> {
+    let before = picture.strip_suffix(END)?;
+    let chunk = [KEYWORD, COMPRESSED, &packed(text.as_bytes())].concat();
+    let length = u32::try_from(chunk.len() - 4).ok()?.to_be_bytes();
+    let sum = crc32fast::hash(&chunk).to_be_bytes();
+    Some([before, &length, &chunk, &sum, END].concat())
+}
+
+pub fn part(file: &[u8]) -> Result<Parted, &'static str> {
+    let (mut at, mut found) = (SIGNATURE.len(), None);
+    while let Some((chunk, end)) = chunk(file, at) {
+        if let Some(content) = chunk.strip_prefix(KEYWORD)
+            && found.replace((content, at, end)).is_some()
+        {
+            return Err(TWO);
+        }
+        at = end;
+    }
+    let (content, begin, end) = found.ok_or(NONE)?;
+    Ok(Parted {
+        picture: [&file[..begin], &file[end..]].concat(),
+        text: unpacked(content.strip_prefix(COMPRESSED).ok_or(NONE)?)?,
+    })
+}
+
+/// The kind and the content of the chunk at this place, and where the next one begins.
+fn chunk(file: &[u8], at: usize) -> Option<(&[u8], usize)> {
+    let length = file.get(at..)?.first_chunk().copied();
+    let end = at
+        .checked_add(12)?
+        .checked_add(u32::from_be_bytes(length?) as usize)?;
+    Some((file.get(at + 4..end)?.split_last_chunk::<4>()?.0, end))
+}

@@ -1,0 +1,64 @@
+//! SVG: the text is the last element, `<metadata>`. What XML does not take as it is, and `%`, is written as `%` and two
+//! hexadecimal digits for each byte, so that no other program has a reason to write it otherwise.
+
+use super::parted::{BROKEN, Parted, place};
+
+const BEGIN: &str = "<metadata>\n";
+/// The begin, with the first letters of the text.
+const BEGIN_OF_TEXT: &[u8] = b"<metadata>\n# gyrolab figure, ";
+const END: &str = "\n</metadata>\n";
+const END_OF_FILE: &[u8] = b"</svg>\n";
+
+pub fn carry(picture: &[u8], text: &str) -> Option<Vec<u8>> {
+    let before = picture.strip_suffix(END_OF_FILE)?;
+    let text = escaped(text);
+    Some(
+        [
+            before,
+            BEGIN.as_bytes(),
+            text.as_bytes(),
+            END.as_bytes(),
+            END_OF_FILE,
+        ]
+        .concat(),
+    )
+}
+
+pub fn part(file: &[u8]) -> Result<Parted, &'static str> {
+    let begin = place(file, BEGIN_OF_TEXT)?;
+    let (before, rest) = file.split_at(begin);
+    let rest = &rest[BEGIN.len()..];
+    let end = rest.iter().position(|byte| *byte == b'<').ok_or(BROKEN)?;
+    let (text, after) = rest.split_at(end.saturating_sub(1));
+    let after = after.strip_prefix(END.as_bytes()).ok_or(BROKEN)?;
+    Ok(Parted {
+        picture: [before, after].concat(),
+        text: unescaped(text).ok_or(BROKEN)?,
+    })
+}
+
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        let is_plain = c == '\n' || c == '\t' || !c.is_control();
+        if is_plain && !"%<>&\u{fffe}\u{ffff}".contains(c) {
+            escaped.push(c);
+        } else {
+            let mut bytes = [0; 4];
+            let bytes = c.encode_utf8(&mut bytes).bytes();
+            escaped.extend(bytes.map(|byte| format!("%{byte:02x}")));
+        }
+    }
+    escaped
+}
+
+fn unescaped(text: &[u8]) -> Option<Vec<u8>> {
+    let mut parts = text.split(|byte| *byte == b'%');
+    let mut plain = parts.next()?.to_vec();
+    for part in parts {
+        let (digits, rest) = part.split_at_checked(2)?;
+        plain.push(u8::from_str_radix(str::from_utf8(digits).ok()?, 16).ok()?);
+        plain.extend_from_slice(rest);
+    }
+    Some(plain)
+}

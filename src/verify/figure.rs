@@ -1,0 +1,78 @@
+//! A figure, drawn again from what its file carries.
+
+use super::unverified::{Unverified, other_version};
+use crate::figure::{Format, Source, write};
+use crate::origin::{Figure, Form, Holds, SCREEN};
+use crate::scenario::{Problem, Problems};
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// What differs in a figure, and what else there is to say, a line each.
+type Redrawn = (Option<String>, Vec<String>);
+
+/// Draws the figure in the file `path` again: what differs, where something does, and what else there is to say, a line each.
+/// `None` where the file is no figure. `watch` is as for a CSV.
+pub fn redraw(
+    path: &Path,
+    watch: impl Fn(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Redrawn>, Unverified> {
+    let of_file = |rule: String| Problems::one(path.display().to_string(), Problem::at("", rule));
+    let Some(figure) = Figure::open(path).map_err(of_file)? else {
+        return Ok(None);
+    };
+    let mut notes = Vec::from_iter(other_version(&figure.origin.gyrolab));
+    if let Some(changed) = figure.changed {
+        return Ok(Some((Some(changed.to_owned()), notes)));
+    }
+    if figure.origin.figure.contains_key(SCREEN) {
+        let rule = "is a picture of the lab's screen, which is not drawn again; picture and run are as they were written, and gyrolab run takes the run";
+        return Err(of_file(rule.to_owned()).into());
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let source = Source::of(&figure.origin, folder);
+    let source = source.map_err(|problems| {
+        let versions = notes.first().map(|note| format!(" ({note})"));
+        of_file(problems.in_one_line() + &versions.unwrap_or_default())
+    })?;
+    let drawn = source.draw(watch).map_err(of_file)?;
+    let drawn = drawn.ok_or(Unverified::Stopped)?;
+    let again = write(&drawn.scene, format(&figure, &source), Some(&figure.origin));
+    let again = again.map_err(|error| of_file(error.to_string()))?;
+    let again = Figure::of(&again).map_err(of_file)?;
+    if figure.origin.all(Holds::Table).next().is_some() {
+        notes.push("drawn from the table in it; gyrolab verify computes that where it has a file of its own".to_owned());
+    }
+    let (there, drawn) = (&figure.picture, &again.picture);
+    let mut difference = None;
+    if there != drawn {
+        if figure.form == Form::Png && pixels(drawn).is_some() && pixels(there) == pixels(drawn) {
+            notes.push("its pixels are the same, compressed otherwise".to_owned());
+        } else {
+            difference = Some("its run, drawn again, gives another picture".to_owned());
+        }
+    }
+    Ok(Some((difference, notes)))
+}
+
+fn format(figure: &Figure, source: &Source) -> Format {
+    match figure.form {
+        Form::Svg if source.asked.text => Format::SvgText,
+        Form::Svg => Format::Svg,
+        Form::Pdf => Format::Pdf,
+        Form::Png => Format::Png,
+    }
+}
+
+/// The size and the pixels of a PNG no larger than those that are drawn.
+fn pixels(file: &[u8]) -> Option<(png::OutputInfo, Vec<u8>)> {
+    const MOST: usize = 300_000_000;
+    let mut reader = png::Decoder::new(std::io::Cursor::new(file))
+        .read_info()
+        .ok()?;
+    let length = reader
+        .output_buffer_size()
+        .filter(|length| *length <= MOST)?;
+    let mut pixels = vec![0; length];
+    let info = reader.next_frame(&mut pixels).ok()?;
+    Some((info, pixels))
+}
