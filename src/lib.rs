@@ -27,6 +27,7 @@
 //! - [`storage`]: what the lab keeps on the disk: sessions, exports in the background, the folder it is confined to.
 //! - [`lab`]: the lab without a terminal: its state, and the commands that change it.
 //! - [`lessons`]: Markdown files that say what the lab does, read, checked and played without a terminal.
+//! - [`class`]: a teacher's lab and the seats of the students, which know of each other through files in a folder.
 //! - [`tui`]: the terminal: keys that lead to commands, the panes that draw the lab, and the loop.
 //! - [`cli`]: the commands of the command line.
 //!
@@ -40,6 +41,7 @@
 compile_error!("on Windows gyrolab runs in WSL, or over SSH on another machine: build it there");
 
 pub mod analysis;
+pub mod class;
 pub mod cli;
 pub mod cores;
 pub mod data;

@@ -68,6 +68,11 @@ pub(super) struct WorkbenchArgs {
     #[arg(long, value_name = "DIR")]
     pub(super) folder: Option<PathBuf>,
 
+    /// Ask for a seat of the class in DIR, and open its lab: what ForceCommand runs for a student
+    #[arg(long, requires = "folder",
+          conflicts_with_all = ["scenario", "set", "time_step", "scheme", "at", "resume", "measured", "commands"])]
+    pub(super) seat: bool,
+
     #[command(flatten)]
     pub(super) beside: MeasuredArgs,
 
@@ -172,6 +177,44 @@ impl LengthArgs {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct ClassArgs {
+    /// A shipped lesson's name, or a file (.md) in the folder
+    #[arg(required_unless_present = "instead", conflicts_with = "instead")]
+    pub(super) lesson: Option<String>,
+
+    /// The folder of the class
+    #[arg(long, value_name = "DIR")]
+    pub(super) folder: PathBuf,
+
+    /// Go on where the class was left: page, rounds and votes
+    #[arg(long, group = "instead")]
+    pub(super) resume: bool,
+
+    /// Show the class on a second terminal: seats, votes, notes, the clock
+    #[arg(long, group = "instead")]
+    pub(super) board: bool,
+
+    /// Print all votes as CSV
+    #[arg(long, group = "instead")]
+    pub(super) votes: bool,
+
+    /// Write what each seat has predicted beside what came out, a Markdown file a seat
+    #[arg(long, group = "instead", requires = "output")]
+    pub(super) answers: bool,
+
+    /// The folder for the answers
+    #[arg(short, long, requires = "answers", value_name = "FOLDER")]
+    pub(super) output: Option<PathBuf>,
+
+    /// Replace existing files
+    #[arg(long, requires = "output")]
+    pub(super) force: bool,
+
+    #[command(flatten)]
+    pub(super) look: Look,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct LessonArgs {
     /// A shipped lesson's name, or a file (.md) [without it: the list of the lessons]
     pub(super) name: Option<String>,
@@ -199,6 +242,10 @@ pub(super) struct LessonArgs {
     /// Follow a lab of this login on a second terminal: the notes of its page, what comes next, a clock
     #[arg(long, value_name = "SESSION", num_args = 0..=1, default_missing_value = "", conflicts_with_all = ["name", "page", "printed"])]
     pub(super) notes: Option<String>,
+
+    /// Read and write in this folder and nowhere else; its own lessons come first in the list
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["handout", "template", "notes"])]
+    pub(super) folder: Option<PathBuf>,
 
     /// Print a small lesson to begin from, with a comment on each part
     #[arg(long, group = "printed", conflicts_with = "name")]
@@ -273,6 +320,7 @@ impl LayoutArgs {
             columns: (!self.columns.is_empty()).then(|| self.columns.clone()),
             points: self.points,
             excel: self.excel,
+            note: None,
         };
         file.check().unwrap_or_else(|error| {
             let option = error.key.trim_end_matches("_s");

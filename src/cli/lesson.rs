@@ -2,14 +2,16 @@
 
 use super::args::{LessonArgs, Look};
 use super::new_lab::{new_lab, refused, write};
-use super::{notes, print, progress, tell, workbench};
+use super::{notes, print, progress, sessions, tell, workbench};
 use crate::lab::Lab;
+use crate::lessons::class::files_in;
 use crate::lessons::handout::{self, Paper};
 use crate::lessons::play::{self, Walk};
 use crate::lessons::{Lesson, Page, reading, shipped};
 use crate::scenario::Problems;
+use crate::storage::confined::Confined;
 use crate::text::number::counted;
-use crate::text::printable::printable_lines;
+use crate::text::printable::{Shown, printable_lines};
 use anyhow::Context;
 use std::io::{self, IsTerminal};
 use std::path::Path;
@@ -25,11 +27,16 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     if args.template {
         return write(args, |_| Ok(shipped::TEMPLATE.to_owned()));
     }
+    let enter = |folder| Confined::enter(folder).with_context(|| sessions::named(folder));
+    let confined = args.folder.as_deref().map(enter).transpose()?;
     let Some(name) = &args.name else {
-        return print(&list()?);
+        return print(&list(confined.as_ref())?);
     };
+    if let Some(folder) = &confined {
+        admit(name, folder)?;
+    }
     if args.answers {
-        return notes::answers(args, name);
+        return notes::answers(args, name, confined.as_ref());
     }
     if let Some(language) = &args.frame {
         return print_frame(args, name, language);
@@ -48,14 +55,19 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     }
     let page = page_of(&lesson, args)?;
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
-        return workbench::open_lesson(&lesson, page, args.look);
+        return workbench::open_lesson(&lesson, page, args, confined);
     }
-    tell(format_args!(
-        "gyrolab: there is no terminal to open the lesson on, so page {} of {} is printed",
-        page.number,
-        lesson.pages.len()
-    ));
     print_page(&lesson, page, args.look)
+}
+
+/// Checks that the lesson that NAME names comes with the program, or lies in `folder`.
+pub(super) fn admit(name: &str, folder: &Confined) -> anyhow::Result<()> {
+    if reading::is_file_name(name) {
+        let name = reading::full_name(name);
+        let inside = folder.check_reading(Path::new(&name));
+        inside.map_err(anyhow::Error::msg)?;
+    }
+    Ok(())
 }
 
 fn print_frame(args: &LessonArgs, name: &str, language: &str) -> anyhow::Result<ExitCode> {
@@ -65,6 +77,11 @@ fn print_frame(args: &LessonArgs, name: &str, language: &str) -> anyhow::Result<
 }
 
 fn print_page(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCode> {
+    tell(format_args!(
+        "gyrolab: there is no terminal to open the lesson on, so page {} of {} is printed",
+        page.number,
+        lesson.pages.len()
+    ));
     let interruption = progress::interruption()?;
     let mut walk = Walk::new(lesson, new_lab(look)?);
     let walked = walk.jump(page, &mut interruption.meter());
@@ -74,9 +91,17 @@ fn print_page(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCo
     print(&text)
 }
 
-/// A line for each shipped lesson: its name and its title.
-fn list() -> anyhow::Result<String> {
+/// A line for each lesson of the folder, and for each shipped one: its name and its title.
+fn list(folder: Option<&Confined>) -> anyhow::Result<String> {
     let mut text = String::new();
+    for path in folder
+        .map(|folder| files_in(folder.lessons()))
+        .unwrap_or_default()
+    {
+        let lesson = reading::open(&path)?;
+        let name = Path::new(&path).file_name().unwrap_or_default();
+        text += &format!("{}: {}\n", Shown(Path::new(name)), lesson.title);
+    }
     for shipped in shipped::LESSONS {
         let lesson = reading::open(shipped.name)?;
         text += &format!("{}: {}\n", shipped.name, lesson.title);

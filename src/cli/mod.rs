@@ -4,6 +4,7 @@
 
 mod args;
 mod cast;
+mod class;
 mod compare;
 mod complete;
 mod figure;
@@ -28,7 +29,7 @@ use crate::scenario::presets;
 use crate::text::number::counted;
 use crate::text::printable::{Shown, is_steering, printable, printable_lines};
 use anyhow::Context;
-use args::{LessonArgs, WorkbenchArgs};
+use args::{ClassArgs, LessonArgs, WorkbenchArgs};
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -92,6 +93,8 @@ enum Command {
     Schemes,
     /// List the lessons, open the lab with one, or print it for paper
     Lesson(LessonArgs),
+    /// Teach a class: a lesson that the students' labs follow, with their votes
+    Class(ClassArgs),
     /// Validate scenario files, run files, sweep files, the headers of CSVs, files of commands, and lessons (.md), which are played
     Check {
         /// Files to look at; a preset is none
@@ -165,6 +168,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Keys => print(&info::key_list()?),
         Command::Readouts => print(&info::readout_list()?),
         Command::Writeup(args) => writeup::writeup(&args),
+        Command::Class(args) => class::class(&args),
         Command::Lesson(args) => lesson::lesson(&args),
         Command::Check { files } => info::check(&files),
         Command::Completions { shell } => complete::completions(shell),
@@ -179,7 +183,10 @@ fn open_lab(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         Cli::command().find_subcommand(name).is_none(),
         "{name} is a command, and commands come before their options: gyrolab {name} ..."
     );
-    workbench::open(args)
+    match &args.folder {
+        Some(folder) if args.seat => class::seat(args, folder),
+        _ => workbench::open(args),
+    }
 }
 
 const MISUSED: u8 = 2;

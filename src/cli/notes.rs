@@ -8,8 +8,10 @@ use super::sessions;
 use crate::lab::lessons_in;
 use crate::lessons::class::KeptLessons;
 use crate::lessons::clock::{self, Clock};
+use crate::lessons::page::told;
 use crate::lessons::predictions::Place;
-use crate::lessons::{Asked, Lesson, handout, reading};
+use crate::lessons::{Lesson, handout, reading};
+use crate::storage::confined::Confined;
 use crate::storage::session::{self, Listed};
 use crate::text::printable::{printable, printable_lines};
 use crate::text::wrap::wrapped;
@@ -26,10 +28,14 @@ const WIDTH: usize = 78;
 const EVERY: Duration = Duration::from_millis(500);
 
 /// Prints or writes what was predicted in the lesson `args.name` beside what came out.
-pub(super) fn answers(args: &LessonArgs, name: &str) -> anyhow::Result<ExitCode> {
+pub(super) fn answers(
+    args: &LessonArgs,
+    name: &str,
+    confined: Option<&Confined>,
+) -> anyhow::Result<ExitCode> {
     let lesson = reading::open(name)?;
     let full_name = reading::full_name(name);
-    let folder = folder()?;
+    let folder = sessions::folder_of(confined).map_err(anyhow::Error::msg)?;
     let found = session::list(&folder)?.into_iter().filter_map(|session| {
         let mut lessons = lessons_of(&session)?.lessons;
         let place = lessons.remove(&full_name)?;
@@ -121,7 +127,7 @@ fn follow(
             if let Some((lesson, place)) = &now
                 && now.as_ref().map(page) != open.as_ref().map(page)
             {
-                tell(line, &told(lesson, place.page))?;
+                tell(line, &told(lesson, place.page, |_| String::new()))?;
             }
             open = now;
         }
@@ -152,30 +158,6 @@ fn tell(line: Option<&LiveLine<Stdout>>, text: &str) -> io::Result<()> {
     let mut stdout = io::stdout();
     writeln!(stdout, "{text}")?;
     stdout.flush()
-}
-
-fn told(lesson: &Lesson, number: usize) -> String {
-    let mut text = format!("\n== {number} of {} · {}", lesson.pages.len(), lesson.title);
-    let page = lesson.page(number);
-    if let Some(page) = page {
-        text += &format!("\n{}\n", page.heading);
-        for predict in page.predicts() {
-            let ask = predict.ask.filled(|_, _| "…".to_owned());
-            text += &format!("\nasked: {ask}\n");
-            if let Asked::Choice(choices) = &predict.asked {
-                for choice in choices {
-                    text += &format!("  - {choice}\n");
-                }
-            }
-        }
-        for notes in page.notes() {
-            text += &format!("\n{}\n", notes.filled(|_, _| "…".to_owned()).trim());
-        }
-    }
-    text + &match lesson.page(number + 1) {
-        Some(next) => format!("\nnext: {}", next.heading),
-        None => "\nthis is the last page".to_owned(),
-    }
 }
 
 fn times(lesson: &Lesson, place: &Place) -> String {

@@ -1,14 +1,16 @@
 //! `gyrolab` and `gyrolab show`: the lab, live or as one picture.
 
-use super::args::{Look, MeasuredArgs, WorkbenchArgs};
+use super::args::{LessonArgs, MeasuredArgs, WorkbenchArgs};
 use super::new_lab::{DEFAULT, of_workbench, variable};
 use super::sessions::{self, begun, come_back, come_back_to, tell_of_session};
 use super::settings;
 use super::show::{ShowArgs, print_picture};
+use crate::class::{Alone, Role};
 use crate::lab::Lab;
 use crate::lab::command;
 use crate::lab::view::FPS;
-use crate::lessons::{Class, Lesson, Page};
+use crate::lessons::taken::Taken;
+use crate::lessons::{Class as Lessons, Lesson, Page};
 use crate::storage::confined::Confined;
 use crate::storage::exporting;
 use crate::text::printable::{Shown, printable};
@@ -22,13 +24,20 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 /// Opens the lab on the terminal, at a page of a lesson.
-pub(super) fn open_lesson(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCode> {
+pub(super) fn open_lesson(
+    lesson: &Lesson,
+    page: &Page,
+    args: &LessonArgs,
+    confined: Option<Confined>,
+) -> anyhow::Result<ExitCode> {
     let args = WorkbenchArgs {
         paused: true,
-        look,
+        look: args.look,
+        folder: args.folder.clone(),
         ..WorkbenchArgs::default()
     };
-    open_at(&args, DEFAULT, None, Some((lesson, page)))
+    let page = Some((lesson, page.number));
+    open_at(&args, DEFAULT, confined, page, None)
 }
 
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
@@ -68,16 +77,19 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         };
         return print_picture(&picture, Some(&why), confined);
     }
-    open_at(args, name, confined, None)
+    open_at(args, name, confined, None, None)
 }
 
-/// Opens the lab on the terminal with the scenario `name`, at a page of a lesson where one is given.
-fn open_at(
+/// Opens the lab on the terminal with the scenario `name`, at the page of this number of a lesson, in a role of a class.
+pub(super) fn open_at(
     args: &WorkbenchArgs,
     name: &str,
     confined: Option<Confined>,
-    lesson: Option<(&Lesson, &Page)>,
+    lesson: Option<(&Lesson, usize)>,
+    role: Option<Box<dyn Role>>,
 ) -> anyhow::Result<ExitCode> {
+    let is_alone = role.is_none();
+    let mut role = role.unwrap_or(Box::new(Alone));
     // A write past `ulimit -f` fails then, like one to a full disk, and does not end the process.
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     let commands = args.commands.as_deref().map(command::open).transpose()?;
@@ -91,11 +103,10 @@ fn open_at(
         None => (of_workbench(args, name)?, begun(folder.clone())),
     };
     chosen.tell(&mut lab);
-    if let Ok(folder) = folder {
-        lab.settings.folder = Some(folder);
-    }
+    lab.settings.folder = folder.ok();
     furnish(&mut lab, args, confined)?;
-    if lesson.is_none() && commands.is_none() && args.scenario.is_none() && args.resume.is_none() {
+    let is_new = is_alone && lesson.is_none() && commands.is_none();
+    if is_new && args.scenario.is_none() && args.resume.is_none() {
         lab.play_on();
     }
     lab.set_trouble(session.as_ref().err().cloned());
@@ -103,11 +114,17 @@ fn open_at(
     if let Some(commands) = commands {
         lab.take_commands(commands);
     }
-    let mut class = class(&mut lab, lesson)?;
-    app::run(&mut lab, &mut class, session.as_ref().ok()).context("the terminal cannot be used")?;
+    role.begin(&mut lab);
+    let mut lessons = lessons(&mut lab, lesson)?;
+    let ran = app::run(&mut lab, &mut lessons, &mut *role, session.as_ref().ok());
+    ran.context("the terminal cannot be used")?;
     tell_of_exports(&lab)?;
-    tell_of_session(session, args.folder.as_deref())?;
-    Ok(ExitCode::SUCCESS)
+    if is_alone {
+        tell_of_session(session, args.folder.as_deref())?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    drop(session);
+    super::print(&(role.leave().map_err(anyhow::Error::msg)? + "\n"))
 }
 
 /// Gives `lab` its folder, its measured data, and what the terminal can do.
@@ -126,16 +143,20 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
 }
 
 /// The lesson that the session of `lab` holds, or the page of one that is asked for.
-fn class(lab: &mut Lab, lesson: Option<(&Lesson, &Page)>) -> anyhow::Result<Class> {
-    let (mut class, taken) = Class::resumed(lab);
+fn lessons(lab: &mut Lab, lesson: Option<(&Lesson, usize)>) -> anyhow::Result<Lessons> {
+    let (mut lessons, taken) = Lessons::resumed(lab);
     if let Err(reason) = taken {
         lab.tell(format!("the lesson cannot be taken again: {reason}"));
     }
-    if let Some((lesson, page)) = lesson {
-        let opened = class.open(&lesson.name, Some(page.number), lab);
+    let stands = |taken: &Taken| (taken.lesson.name.clone(), taken.place.page);
+    let stands = lessons.taken().map(stands);
+    if let Some((lesson, page)) = lesson
+        && stands != Some((lesson.name.clone(), page))
+    {
+        let opened = lessons.open(&lesson.name, Some(page), lab);
         opened.map_err(anyhow::Error::msg)?;
     }
-    Ok(class)
+    Ok(lessons)
 }
 
 fn moment(args: &WorkbenchArgs) -> String {
@@ -154,7 +175,8 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
         let path = Shown(&written.path);
         let rows = written.rows.map(|rows| format!(": {rows} rows"));
         let rows = rows.unwrap_or_default();
-        match exporting::scp_line(&written.path) {
+        let scp = exporting::scp_line(&written.path);
+        match scp.filter(|_| !lab.files().confined().is_some_and(Confined::is_seat)) {
             Some(line) => writeln!(
                 stdout,
                 "{path}{rows}; to fetch it, on your own computer:\n  {line}"

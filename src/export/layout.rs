@@ -30,6 +30,8 @@ pub struct LayoutFile {
     #[serde(skip_serializing_if = "is_false")]
     #[serde(default)]
     pub excel: bool,
+    /// Where it comes from, in words: the seat of a class, and the page.
+    pub note: Option<String>,
 }
 
 /// Which rows and columns a CSV has, and how its numbers are written. The default is every row and every column.

@@ -52,6 +52,8 @@ pub enum Action {
     /// Closes a popup, or stops what is in progress.
     Close,
     Lesson(LessonKey),
+    /// The class: the teacher's acts, or stepping aside and coming back.
+    Class,
     Redraw,
     /// Suspends the program until the shell resumes it.
     Suspend,
@@ -72,6 +74,8 @@ pub enum Request {
     Lesson(LessonKey),
     /// Take this number as the answer to the question of the lesson that was asked last.
     Answer(f64),
+    /// Do in the class what its key stands for.
+    Class,
     Redraw,
     /// Suspend the program until the shell resumes it.
     Suspend,

@@ -29,6 +29,8 @@ pub struct Browser {
     folder: PathBuf,
     first: PathBuf,
     passed: Vec<PathBuf>,
+    /// Another folder, whose files are listed before those of the first.
+    pub also: Option<PathBuf>,
     /// How many files of the folder are left out because they hold no run.
     pub others: usize,
     /// The search for files that hold no run, while it is in progress.
@@ -94,7 +96,10 @@ impl Browser {
         let presets = PRESETS.iter();
         let presets = presets.map(|preset| entry(preset.name.to_owned(), false, false));
         let may_hold_one = |name: &str| name.ends_with(".toml") || name.ends_with(".csv");
-        let mut names = names_in(folder, Path::is_file, may_hold_one);
+        let also = self.also.as_deref().filter(|_| folder == self.first);
+        let also = also.map(|also| names_in(also, Path::is_file, may_hold_one));
+        let mut names = also.unwrap_or_default();
+        names.extend(names_in(folder, Path::is_file, may_hold_one));
         names.retain(|name| may_be_read(Path::new(name)));
         self.others = 0;
         let searched = names.clone();

@@ -30,6 +30,8 @@ pub struct Files {
     /// Why the last export failed, until it has been read.
     failure: Option<String>,
     pub written: Vec<Written>,
+    /// What the header of an export says of where it comes from.
+    pub note: Option<String>,
 }
 
 impl Files {
@@ -48,13 +50,24 @@ impl Files {
     }
 
     /// The folder outside of which nothing is read or written, if there is one.
-    pub(super) fn confined(&self) -> Option<&Confined> {
+    pub fn confined(&self) -> Option<&Confined> {
         self.confined.as_ref()
     }
 
     /// Whether the file `path` may be read and written.
     pub fn admit(&self, path: &Path) -> Result<(), String> {
         self.confined().map_or(Ok(()), |folder| folder.check(path))
+    }
+
+    /// Whether the file `path` may be read; in the lab of a seat also one of the class's folder.
+    pub fn admit_reading(&self, path: &Path) -> Result<(), String> {
+        let check = |folder: &Confined| folder.check_reading(path);
+        self.confined().map_or(Ok(()), check)
+    }
+
+    fn admit_writing(&self, path: &Path) -> Result<(), String> {
+        let check = |folder: &Confined| folder.check_writing(path);
+        self.confined().map_or(Ok(()), check)
     }
 
     /// Whether the file may be read in the background.
@@ -64,7 +77,7 @@ impl Files {
 
     /// Reads the preset or the file called `name`.
     pub(super) fn open_scenario(&self, name: &str) -> Result<Scenario, String> {
-        self.admit(Path::new(name))?;
+        self.admit_reading(Path::new(name))?;
         let opened = if presets::find(name).is_none() {
             refuse_waiting(name, "it can be opened at the command line only")
         } else {
@@ -118,8 +131,9 @@ impl Files {
 
     /// Begins to write the rows of the run.
     fn export(&mut self, export: &Export, runs: &Runs, player: &Player) -> Answer {
-        let layout = export.layout.clone().check();
-        let layout = layout.map_err(|error| error.to_string())?;
+        let mut layout = export.layout.clone();
+        layout.note.clone_from(&self.note);
+        let layout = layout.check().map_err(|error| error.to_string())?;
         let scenario = run_up_to(export.to_step, "export", runs, player)?;
         let scenario = runs.marked(&scenario);
         let path = self.path_of(&export.path);
@@ -172,7 +186,7 @@ impl Files {
             return Err("one export at a time: wait until the one under way is done".into());
         }
         is_named(path)?;
-        Ok(self.admit(path)?)
+        Ok(self.admit_writing(path)?)
     }
 
     pub(super) fn stop_export(&mut self) {
@@ -187,7 +201,8 @@ impl Files {
         self.exporting = None;
         Some(match outcome {
             Ok(written) => {
-                let text = in_words(&written);
+                let is_seat = self.confined().is_some_and(Confined::is_seat);
+                let text = in_words(&written, is_seat);
                 self.written.push(written);
                 text
             }
@@ -227,15 +242,20 @@ impl Files {
             return Err(format!("{what} {TOO_LONG}").into());
         }
         few_enough(content, 1).map_err(|problem| format!("{what} {}", problem.rule))?;
-        self.admit(path)?;
+        self.admit_writing(path)?;
         let mut destination = Destination::open_file(path, force).map_err(refusal)?;
         let written = destination.write_all(content.as_bytes());
         written.map_err(|error| format!("cannot write {}: {error}", Shown(path)))?;
         destination.keep().map_err(refusal)?;
         let whole = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let place = if self.confined().is_some_and(Confined::is_seat) {
+            format!("{}: your teacher has it", Shown(path))
+        } else {
+            Shown(&whole).to_string()
+        };
         Ok(Done {
             stays: true,
-            ..Done::saying(format!("{what} is in {}", Shown(&whole)))
+            ..Done::saying(format!("{what} is in {place}"))
         })
     }
 
@@ -290,8 +310,8 @@ fn is_named(path: &Path) -> Result<(), Refusal> {
     is_named.then_some(()).ok_or("the file needs a name".into())
 }
 
-/// The message about a complete export, and how to copy the file.
-fn in_words(written: &Written) -> String {
+/// The message about a complete export, and how to copy the file. From the login of a seat no file can be copied.
+fn in_words(written: &Written, is_seat: bool) -> String {
     let rows = written.rows;
     let rows = rows.map(|rows| format!("{} rows, ", HumanCount(rows)));
     let warnings = written.warnings.iter();
@@ -300,6 +320,11 @@ fn in_words(written: &Written) -> String {
         Some(end) => format!(", as far as the numbers are finite (step {})", end.step - 1),
         None => String::new(),
     };
+    if is_seat {
+        let name = written.path.file_name().unwrap_or_default();
+        let (rows, name) = (rows.unwrap_or_default(), Shown(Path::new(name)));
+        return format!("wrote {rows}{name}{end}{warnings}: your teacher has it");
+    }
     let fetched = exporting::scp_line(&written.path).map(|line| format!(" · {line}"));
     format!(
         "wrote {}{}{end}: {}{warnings}{}",

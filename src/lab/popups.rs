@@ -7,6 +7,7 @@ use super::dialog::Dialog;
 use super::files::Files;
 use super::form::{MOST_IN_LINE, edit_line, type_into};
 use super::preview::Preview;
+use crate::storage::confined::Confined;
 use std::path::Path;
 
 pub const MOST_COUNTED: u64 = 999_999_999;
@@ -81,7 +82,8 @@ impl Popups {
 
     /// Opens the browser in the folder of `files`, with `name` selected.
     pub(super) fn browse(&mut self, name: &str, files: &Files) {
-        let may_be_read = |path: &Path| files.admit(path).is_ok();
+        let may_be_read = |path: &Path| files.admit_reading(path).is_ok();
+        self.browser.also = files.confined().and_then(Confined::class);
         self.browser.begin(files.folder(), name, may_be_read);
         self.mode = Mode::Browser;
     }
@@ -97,7 +99,7 @@ impl Popups {
         };
         if entry.is_folder {
             self.mode = Mode::Browser;
-            let is_listed = self.browser.enter(|path| files.admit(path).is_ok());
+            let is_listed = self.browser.enter(|path| files.admit_reading(path).is_ok());
             return is_listed
                 .then_some(None)
                 .ok_or_else(|| format!("{} cannot be opened any more", entry.name));

@@ -14,6 +14,7 @@ use super::view::Pane;
 use super::{Cleared, Lab, Script};
 use crate::playback::Halt;
 use crate::run::NotFinite;
+use crate::scenario::Scenario;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::thread;
@@ -100,6 +101,7 @@ impl Lab {
             Action::Accept => return Ok(self.accept()),
             Action::Help => self.popups.toggle_help(),
             Action::Close => return Ok(self.close(&cleared)),
+            Action::Class => return Ok(Some(Request::Class)),
             Action::Lesson(key) => return Ok(Some(Request::Lesson(key))),
             Action::Redraw => return Ok(Some(Request::Redraw)),
             Action::Suspend if self.files.confined().is_some() => {
@@ -309,6 +311,19 @@ impl Lab {
             Err(reason) => Err(reason.lines().next().unwrap_or_default().into()),
         };
         self.play_opened(answer);
+    }
+
+    /// Changes to the run of `scenario`, which another lab shows as `name`, and which ends there at `end_s`. It is paused at
+    /// step 0.
+    pub fn show_run(&mut self, name: &str, scenario: Arc<Scenario>, end_s: f64) {
+        self.take_commands(Commands::default());
+        self.edits.values.forget_nudge();
+        let mut edit = self.edits.open(name, scenario, &self.player);
+        edit.end_s = Some(end_s);
+        self.edits.runs.set_end(end_s);
+        self.follow(edit);
+        self.view.keep_focus();
+        self.read_now();
     }
 
     /// Closes the browser and plays what has been opened, or says why nothing was.

@@ -150,6 +150,11 @@ impl Runs {
         self.change().set_left_at(step, next_push);
     }
 
+    /// Lets the present run end at `end_s`, s.
+    pub(super) fn set_end(&mut self, end_s: f64) {
+        self.change().set_end(end_s);
+    }
+
     /// Leaves the present run and begins that of `scenario`, opened as `name`.
     pub(super) fn open(&mut self, name: &str, scenario: &Arc<Scenario>) {
         self.change().begin(name, scenario);

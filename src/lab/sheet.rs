@@ -16,6 +16,10 @@ pub struct Sheet {
     /// What Enter does here, in one word; empty where it does nothing.
     pub enter: &'static str,
     pub has_next: bool,
+    /// What stands in its frame instead of the title, where that is not empty: it may change while the page stays.
+    pub framed: String,
+    /// What stands in the lower line of its frame.
+    pub border: String,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]

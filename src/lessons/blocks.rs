@@ -2,7 +2,7 @@
 
 mod content;
 
-use super::lesson::{Asked, Block, Check, Compare, Keep, Predict, Setup};
+use super::lesson::{Asked, Block, Check, Compare, Keep, Predict, Right, Setup};
 use super::names::Names;
 use crate::journal::expression::Expression;
 use crate::lab::command::{COMMANDS, Command, Placed};
@@ -169,7 +169,7 @@ pub(super) fn block(
 }
 
 fn predict(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Found<Predict> {
-    let mut content = reader.content(&["name", "ask", "choices", "unit", "right"])?;
+    let mut content = reader.content(&["name", "ask", "choices", "unit", "right", "within"])?;
     let name = content.needed("name", false, "compare calls the prediction by it");
     let ask = content.text("ask", "the question", find);
     let asked = match (content.get("choices"), content.get("unit")) {
@@ -200,22 +200,38 @@ fn predict(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Fo
     })
 }
 
-/// The number of the choice that comes out.
-fn right(content: &mut Content, asked: &Asked) -> Option<usize> {
-    let value = content.get("right")?;
-    let choices = match asked {
-        Asked::Choice(choices) => choices.len(),
-        Asked::Number { .. } => 0,
+/// The number of the right choice; or the right number, and how far off an answer may be.
+fn right(content: &mut Content, asked: &Asked) -> Option<Right> {
+    let (right, within) = (content.get("right"), content.get("within"));
+    let key = if right.is_some() { "right" } else { "within" };
+    let value = right.as_ref().or(within.as_ref())?;
+    let number = |value: &Option<Value>| {
+        let value = value.as_ref()?;
+        let whole = value.as_integer().map(|whole| whole as f64);
+        value.as_float().or(whole).filter(|it| it.is_finite())
     };
-    let right = value
-        .as_integer()
-        .and_then(|right| usize::try_from(right).ok());
-    let right = right.filter(|right| (1..=choices).contains(right));
-    if right.is_none() {
-        let rule = "must be the number of a choice, counted from 1";
-        content.refuse(Problem::with_value("right", &value, rule));
+    let (read, rule) = match asked {
+        Asked::Choice(choices) => {
+            let choice = (1..=choices.len()).find(|it| number(&right) == Some(*it as f64));
+            let rule =
+                "must be the number of a choice, counted from 1, and within has no place there";
+            (choice.filter(|_| within.is_none()).map(Right::Choice), rule)
+        }
+        Asked::Number { .. } => {
+            let within = number(&within).filter(|within| *within > 0.0);
+            let number = number(&right).zip(within);
+            let rule = "must come together: right is the number that comes out, within (above 0) how far off is right too";
+            (
+                number.map(|(value, within)| Right::Number { value, within }),
+                rule,
+            )
+        }
+    };
+    if read.is_none() {
+        let problem = Problem::with_value(key, value, rule);
+        content.refuse(problem);
     }
-    right
+    read
 }
 
 fn choices(content: &mut Content, value: &Value) -> Vec<String> {

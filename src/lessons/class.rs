@@ -1,11 +1,13 @@
 //! The lessons of a lab: the list of them, the one that is taken, and where the others were left.
 
+use super::page::Dress;
 use super::predictions::Place;
-use super::taken::Taken;
+use super::taken::{Followed, Taken, Voted};
 use super::{page, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::sheet::Sheet;
+use crate::storage::confined::Confined;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -23,6 +25,9 @@ pub struct Class {
     now: Duration,
     /// Whether the page is to be written again.
     has_changed: bool,
+    /// The lessons of the folder that the lab is confined to, by the full paths of their files.
+    own: Vec<String>,
+    dress: Dress,
 }
 
 #[derive(Debug, Default)]
@@ -52,6 +57,18 @@ impl KeptLessons {
     pub fn read(kept: &Table) -> Result<Self, toml::de::Error> {
         kept.clone().try_into()
     }
+}
+
+/// The full paths of the lessons in `folder`, sorted; hidden files and what cannot be read as a lesson are left out.
+pub fn files_in(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let is_meant = |name: &String| name.ends_with(".md") && !name.starts_with('.');
+    let paths = names.filter(is_meant).map(|name| folder.join(name));
+    let paths = paths.filter(|path| reading::read_again(path).is_ok());
+    let mut paths: Vec<_> = paths.map(|path| path.display().to_string()).collect();
+    paths.sort_unstable();
+    paths
 }
 
 /// Says the first line of why a lesson could not be opened.
@@ -105,7 +122,7 @@ impl Class {
             Some(_) => reading::open(&name),
             None if !reading::is_file_name(&name) => reading::open(&name), // says which there are
             None => {
-                lab.files().admit(Path::new(&name))?;
+                lab.files().admit_reading(Path::new(&name))?;
                 reading::read_again(Path::new(&name))
             }
         };
@@ -176,6 +193,8 @@ impl Class {
     fn open_list(&mut self, lab: &mut Lab) {
         let here = self.taken().map(|taken| taken.lesson.name.clone());
         self.leave(lab);
+        let folder = lab.files().confined().map(Confined::lessons);
+        self.own = folder.map(files_in).unwrap_or_default();
         let names = self.names();
         let selected = here
             .as_ref()
@@ -186,12 +205,54 @@ impl Class {
         };
     }
 
-    /// The names of the list: the lessons that come with the program, then the files that were opened.
+    /// The names of the list: the lessons of the lab's folder, those that come with the program, then the files that were
+    /// opened.
     fn names(&self) -> Vec<String> {
+        let own = self.own.iter().cloned();
         let shipped = shipped::LESSONS.iter().map(|lesson| lesson.name.to_owned());
         let files = self.left.keys();
-        let files = files.filter(|name| shipped::find(name).is_none()).cloned();
-        shipped.chain(files).collect()
+        let is_other = |name: &&String| shipped::find(name).is_none() && !self.own.contains(name);
+        let files = files.filter(is_other).cloned();
+        own.chain(shipped).chain(files).collect()
+    }
+
+    pub fn set_dress(&mut self, dress: Dress, lab: &mut Lab) {
+        if let Shown::Lesson(taken) = &mut self.shown {
+            taken.was_asked |= dress.is_of_teacher;
+            taken.again.clone_from(&dress.again);
+            if !dress.is_followed {
+                taken.unfollow();
+            }
+        }
+        if self.dress != dress {
+            self.dress = dress;
+            self.show(lab);
+        }
+    }
+
+    /// Shows the page of `class`: the run is not touched, and the page's numbers are stated once the class has arrived.
+    pub fn follow(&mut self, class: &Followed<'_>, lab: &mut Lab) -> Result<(), String> {
+        if self
+            .taken()
+            .is_none_or(|taken| taken.lesson.name != class.lesson)
+        {
+            self.take(class.lesson, lab)?;
+        }
+        if let Shown::Lesson(taken) = &mut self.shown
+            && taken.follow(class)
+        {
+            self.show(lab);
+            lab.view_mut().turn_to_sheet();
+        }
+        Ok(())
+    }
+
+    /// The answers that were locked since this was last called.
+    pub fn take_votes(&mut self) -> Vec<Voted> {
+        match &mut self.shown {
+            Shown::Lesson(taken) => std::mem::take(&mut taken.votes),
+            _ => Vec::new(),
+        }
     }
 
     /// Takes `number` as the answer to the question that was asked last.
@@ -237,7 +298,7 @@ impl Class {
         match &mut self.shown {
             Shown::Nothing => None,
             Shown::List { selected, .. } => Some(page::list(&names, *selected, &self.left)),
-            Shown::Lesson(taken) => Some(page::sheet(taken, self.now, lab)),
+            Shown::Lesson(taken) => Some(page::sheet(taken, &self.dress, self.now, lab)),
         }
     }
 

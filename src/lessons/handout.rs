@@ -5,7 +5,7 @@
 //! from the screen, and the pages that show what came out have room in the place of their words. Notes are left out, and
 //! so is how a task is done.
 
-use super::lesson::{Asked, Block, Compare, Lesson, PREDICTION, Page, Predict, Shown, WITH};
+use super::lesson::{Asked, Block, Compare, Lesson, PREDICTION, Page, Predict, Right, Shown, WITH};
 use super::names::{self, Kept};
 use super::play::{GoOn, Walk};
 use super::predictions::{Place, Tried};
@@ -270,8 +270,8 @@ fn came_out(lesson: &Lesson, compare: &Compare, place: &Place, walk: &Walk<'_>) 
     place.predictions.answer(&compare.prediction)?;
     let text = compare.filled(lesson, &place.predictions, &walk.lab, &walk.kept);
     let predict = lesson.predict(&compare.prediction)?;
-    let choice = match (&predict.asked, predict.right) {
-        (Asked::Choice(choices), Some(right)) => choices.get(right - 1),
+    let choice = match (&predict.asked, &predict.right) {
+        (Asked::Choice(choices), Some(Right::Choice(right))) => choices.get(right - 1),
         _ => None,
     };
     let choice = choice.map_or(String::new(), |choice| format!("{choice}. "));

@@ -11,8 +11,9 @@ use serde::{Deserialize, Serialize};
 pub struct Lesson {
     /// The name of a shipped lesson, or the file as the user named it.
     pub name: String,
-    /// The file that messages name.
+    /// The file that messages name, and the checksum of its text.
     pub origin: String,
+    pub sum: u32,
     /// Its level-1 heading.
     pub title: String,
     /// What it is about, one line; empty where the file does not say it.
@@ -77,8 +78,26 @@ pub struct Predict {
     pub name: String,
     pub ask: Text,
     pub asked: Asked,
-    /// The number of the choice that comes out, from 1; where the file says it.
-    pub right: Option<usize>,
+    /// What comes out, for the teacher; where the file says it.
+    pub right: Option<Right>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Right {
+    /// The number of the choice, from 1.
+    Choice(usize),
+    /// A number, and how far off an answer may be.
+    Number { value: f64, within: f64 },
+}
+
+impl Right {
+    /// Whether `answer` is right: a number, or the number of a choice.
+    pub fn takes(&self, answer: f64) -> bool {
+        match self {
+            Self::Choice(number) => answer == *number as f64,
+            Self::Number { value, within } => (answer - value).abs() <= *within,
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -184,6 +203,11 @@ impl Page {
             Block::Check(check) => Some(check),
             _ => None,
         })
+    }
+
+    /// Whether it asks for the prediction called `name`.
+    pub fn asks(&self, name: &str) -> bool {
+        self.predicts().any(|predict| predict.name == name)
     }
 
     pub fn compares(&self) -> impl Iterator<Item = &Compare> {

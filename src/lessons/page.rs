@@ -1,9 +1,10 @@
 //! The page of a lesson, and the list of lessons, as a sheet beside the panes.
 
-use super::lesson::{Asked, Block, Check, Compare, Page, Predict};
+use super::lesson::{Asked, Block, Check, Compare, Lesson, Page, Predict};
 use super::markdown::paragraphs;
 use super::predictions::Place;
 use super::taken::Taken;
+use super::text::Text;
 use super::{names, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::sheet::{Kind, Paragraph, Sheet};
@@ -13,6 +14,26 @@ use std::time::Duration;
 
 /// What stands for a number that is not there yet, because the lab is still on its way.
 const SOON: &str = "…";
+
+/// What the room of the class adds to the page.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Dress {
+    /// What stands in the frame instead of the title; empty: the title. It has a form a line, the longest first.
+    pub framed: String,
+    /// What stands in the lower line of the frame, also a form a line.
+    pub border: String,
+    /// Whether the page may be turned though its question is open, and whether a digit is the class's.
+    pub is_of_teacher: bool,
+    pub asks_digit: bool,
+    /// Whether the class is followed.
+    pub is_followed: bool,
+    /// The question that is asked once more, though its prediction is locked.
+    pub again: Option<String>,
+    /// What stands below the question of this name.
+    pub votes: Option<(String, Vec<Paragraph>)>,
+    /// What stands there instead of the page.
+    pub instead: Option<Vec<Paragraph>>,
+}
 
 /// The list of the lessons called `names`, of which one is `selected`; `left` tells where some of them were left.
 pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Place>) -> Sheet {
@@ -57,26 +78,61 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
 }
 
 /// The page that is open in `taken`; `now` is the time since the lab was opened.
-pub(super) fn sheet(taken: &Taken, now: Duration, lab: &Lab) -> Sheet {
+pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> Sheet {
     let lesson = &taken.lesson;
     let (page, pages) = (taken.place.page, lesson.pages.len());
     let mut writer = Writer {
         taken,
+        dress,
         lab,
         sheet: Sheet {
+            framed: dress.framed.clone(),
+            border: dress.border.clone(),
             title: format!("{page} of {pages} · {}", lesson.title),
             has_next: page < pages,
             plays: taken.plays(),
             ..Sheet::default()
         },
     };
+    if let Some(paragraphs) = &dress.instead {
+        writer.extend(paragraphs.clone());
+        return writer.sheet;
+    }
     writer.notes(now);
     writer.page();
+    writer.sheet.asks_number |= dress.asks_digit;
     writer.sheet
+}
+
+/// The page `number` in words for the one who teaches: its questions, each with what `after` says of it, its notes, and
+/// the next page.
+pub fn told(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> String) -> String {
+    let blank = |text: &Text| text.filled(|_, _| SOON.to_owned());
+    let mut text = format!("\n== {number} of {} · {}", lesson.pages.len(), lesson.title);
+    if let Some(page) = lesson.page(number) {
+        text += &format!("\n{}\n", page.heading);
+        for predict in page.predicts() {
+            text += &format!("\nasked: {}\n", blank(&predict.ask));
+            if let Asked::Choice(choices) = &predict.asked {
+                for (number, choice) in (1..).zip(choices) {
+                    text += &format!("  {number} {choice}\n");
+                }
+            }
+            text += &after(predict);
+        }
+        for notes in page.notes() {
+            text += &format!("\n{}\n", blank(notes).trim());
+        }
+    }
+    text + &match lesson.page(number + 1) {
+        Some(next) => format!("\nnext: {}", next.heading),
+        None => "\nthis is the last page".to_owned(),
+    }
 }
 
 struct Writer<'a> {
     taken: &'a Taken,
+    dress: &'a Dress,
     lab: &'a Lab,
     sheet: Sheet,
 }
@@ -124,8 +180,16 @@ impl Writer<'_> {
                     self.extend(paragraphs(&source, &Kind::Text));
                 }
                 Block::Predict(predict) => {
+                    let first = self.sheet.paragraphs.len();
                     self.question(predict);
-                    if !self.taken.place.predictions.is_locked(predict) {
+                    if let Some((name, votes)) = &self.dress.votes
+                        && *name == predict.name
+                    {
+                        self.extend(votes.clone());
+                        self.sheet.seen = None;
+                        self.is_seen_from(first);
+                    }
+                    if self.taken.is_open(predict) {
                         return true;
                     }
                 }
@@ -181,11 +245,7 @@ impl Writer<'_> {
         self.extend(paragraphs(&source, &Kind::Result));
         if place.predictions.answer(&compare.prediction).is_none() {
             let pages = &mut lesson.pages.iter();
-            let asks = |page: &&Page| {
-                let mut predicts = page.predicts();
-                predicts.any(|predict| predict.name == compare.prediction)
-            };
-            if let Some(page) = pages.find(asks) {
+            if let Some(page) = pages.find(|page| page.asks(&compare.prediction)) {
                 let text = format!("You predicted nothing: page {} asks for it.", page.number);
                 self.add(Paragraph::new(Kind::Hint, text));
             }
@@ -199,7 +259,7 @@ impl Writer<'_> {
         let first = self.sheet.paragraphs.len();
         let ask = predict.ask.with_numbers(self.lab, kept);
         self.extend(paragraphs(&ask, &Kind::Question));
-        let is_open = !place.predictions.is_locked(predict);
+        let is_open = self.taken.is_open(predict);
         let given = place.predictions.answer(&predict.name);
         let given = given.map(|answer| answer.in_words(predict));
         match &predict.asked {

@@ -2,8 +2,9 @@
 
 mod keys;
 
+use super::Kept;
 use super::clock::{self, Clock};
-use super::lesson::{Block, Compare, Lesson, Page, Predict};
+use super::lesson::{Answer, Block, Compare, Lesson, Page, Predict};
 use super::names::value;
 use super::predictions::{Place, Tried};
 use super::stage::Stage;
@@ -40,14 +41,39 @@ pub struct Taken {
     /// Whether the hints of the page's checks are shown.
     pub shows_hints: bool,
     under_way: Option<UnderWay>,
+    /// In a class that is followed: whether its run has arrived where the page wants it, and the checksum of its lesson.
+    pub(super) follows: Option<(bool, u32)>,
+    /// The question that is asked once more, though it is answered.
+    pub(super) again: Option<String>,
+    /// The answers that were locked, until they are read.
+    pub(super) votes: Vec<Voted>,
     /// Whether turning the page was refused once, because a prediction is open.
-    was_asked: bool,
+    pub(super) was_asked: bool,
     /// The clock, where the teacher's notes are shown.
     pub clock: Option<Clock>,
     /// When the lesson was opened in this lab, on the clock of the lab.
     since: Duration,
     /// How long before that it was opened first.
     gone_before: Duration,
+}
+
+/// What a class that is followed shows of a lesson: its name and checksum, the page, the numbers that were kept, and
+/// whether its run has arrived where the page wants it.
+#[derive(Clone, Copy, Debug)]
+pub struct Followed<'a> {
+    pub lesson: &'a str,
+    pub sum: u32,
+    pub page: usize,
+    pub kept: &'a Kept,
+    pub has_arrived: bool,
+}
+
+/// An answer that was locked to the question of this name, and whether its outcome had been seen.
+#[derive(Clone, Debug)]
+pub struct Voted {
+    pub question: String,
+    pub answer: Answer,
+    pub is_late: bool,
 }
 
 /// A block of a page that the lab carries out.
@@ -81,6 +107,9 @@ impl Taken {
             stands: None,
             shows_hints: false,
             under_way: None,
+            follows: None,
+            again: None,
+            votes: Vec::new(),
             was_asked: false,
             clock: None,
             since: now,
@@ -98,7 +127,37 @@ impl Taken {
 
     /// The question of the page that is not answered yet; the first of them.
     pub fn asked(&self) -> Option<&Predict> {
-        self.place.predictions.open_on(self.page()?).next()
+        self.page()?
+            .predicts()
+            .find(|predict| self.is_open(predict))
+    }
+
+    /// Whether an answer to `predict` is wanted: it is not locked, or it is asked once more.
+    pub fn is_open(&self, predict: &Predict) -> bool {
+        !self.place.predictions.is_locked(predict) || self.again.as_ref() == Some(&predict.name)
+    }
+
+    /// Shows the page of `class` without touching the run. Returns whether that is new.
+    pub(super) fn follow(&mut self, class: &Followed<'_>) -> bool {
+        let page = class.page.clamp(1, self.lesson.pages.len().max(1));
+        let before = self.follows.replace((class.has_arrived, class.sum));
+        let is_new = self.place.page != page || before.is_none();
+        if is_new {
+            self.turn_to(page);
+        }
+        // The teacher has read the file anew: so does this lab, once.
+        let is_edited = class.sum != self.lesson.sum && before.map(|it| it.1) != Some(class.sum);
+        if let Some(watch) = self.watch.as_mut().filter(|_| is_edited) {
+            watch.look_again();
+        }
+        self.place.kept.extend(class.kept.clone());
+        is_new
+    }
+
+    /// Goes on without the class. Where its run had not arrived, the page is left as if its own run had been.
+    pub(super) fn unfollow(&mut self) {
+        let is_left = matches!(self.follows.take(), Some((false, _))) && self.is_under_way();
+        self.under_way = is_left.then_some(UnderWay::Left).or(self.under_way);
     }
 
     /// Whether the check at this line of the file has held since the page was opened.
@@ -121,10 +180,12 @@ impl Taken {
         self.under_way == Some(UnderWay::Left)
     }
 
-    /// Goes on with a page whose run was on its way when the page was left.
+    /// Goes on with a page whose run was on its way when the page was left, or had been left before it arrived.
     pub(super) fn go_on(&mut self, lab: &Lab) {
         if self.is_under_way() && !lab.script().is_done() {
             self.under_way = Some(UnderWay::Lab(self.place.page));
+        } else if self.plays() {
+            self.under_way = Some(UnderWay::Left);
         }
     }
 
@@ -272,7 +333,8 @@ impl Taken {
 
     /// States the page's numbers once the run has arrived.
     fn state(&mut self, lab: &Lab) -> bool {
-        let has_arrived = self.under_way.is_none()
+        let has_arrived = self.follows.is_none_or(|(has_arrived, _)| has_arrived)
+            && self.under_way.is_none()
             && lab.script().is_done()
             && lab.player().playback.steps_to_go().is_none();
         if !self.is_under_way() || !has_arrived {
@@ -280,12 +342,12 @@ impl Taken {
         }
         self.place.stated = Some(stated(&self.lesson, &self.place, lab));
         let lesson = Arc::clone(&self.lesson);
-        let compares = lesson
-            .page(self.place.page)
-            .into_iter()
-            .flat_map(Page::compares);
+        let page = lesson.page(self.place.page);
+        let compares = page.into_iter().flat_map(Page::compares);
+        // What the page itself asks for comes out once it is answered.
         let names = compares.map(|compare| compare.prediction.clone());
-        self.place.seen.extend(names);
+        let told = names.filter(|name| !page.is_some_and(|page| page.asks(name)));
+        self.place.seen.extend(told);
         true
     }
 

@@ -24,6 +24,11 @@ impl Watch {
         }
     }
 
+    /// Lets the file count as changed.
+    pub fn look_again(&mut self) {
+        (self.seen, self.next) = (None, Duration::ZERO);
+    }
+
     /// Whether the file has changed since it was last looked at; `now` is the time since the lab was opened. A file that
     /// is gone for a moment, as it is replaced, has not changed.
     pub fn has_changed(&mut self, now: Duration) -> bool {

@@ -6,13 +6,18 @@ use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-/// Subfolder for the sessions of a confined lab.
-const SESSIONS: &str = ".gyrolab";
+/// Subfolder for the sessions of a confined lab, and for its class.
+pub const SESSIONS: &str = ".gyrolab";
+/// The most that the files of a seat take together, bytes.
+pub const MOST_OF_SEAT: u64 = 20_000_000;
 
 /// A folder that the lab's reads and writes never leave.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Confined {
     root: PathBuf,
+    sessions: PathBuf,
+    /// The folder of the class whose seat this is: its lessons and scenarios are read too, and nothing is written there.
+    class: Option<PathBuf>,
 }
 
 impl Confined {
@@ -29,19 +34,73 @@ impl Confined {
         if !root.is_dir() {
             return Err(io::Error::from(io::ErrorKind::NotADirectory));
         }
-        Ok(Self { root })
+        Ok(Self {
+            sessions: root.join(SESSIONS),
+            class: None,
+            root,
+        })
+    }
+
+    /// Keeps the sessions in `folder`, such as that of the teacher.
+    pub fn keeping_in(self, sessions: PathBuf) -> Self {
+        Self { sessions, ..self }
+    }
+
+    /// Makes it the folder of a seat of the class in `folder`.
+    pub fn as_seat_of(self, folder: &Path) -> Self {
+        let class = Some(folder.to_owned());
+        Self { class, ..self }
+    }
+
+    pub fn class(&self) -> Option<PathBuf> {
+        self.class.clone()
+    }
+
+    pub fn is_seat(&self) -> bool {
+        self.class.is_some()
+    }
+
+    /// The folder whose lessons are listed: that of the class, or its own.
+    pub fn lessons(&self) -> &Path {
+        self.class.as_deref().unwrap_or(&self.root)
     }
 
     /// The folder for sessions; it may not exist yet.
     pub fn sessions(&self) -> Result<PathBuf, String> {
-        let folder = self.root.join(SESSIONS);
-        match fs::symlink_metadata(&folder) {
+        match fs::symlink_metadata(&self.sessions) {
             Ok(there) if !there.is_dir() => Err(format!(
                 "sessions cannot be kept in {}: it is not a folder",
-                Shown(&folder)
+                Shown(&self.sessions)
             )),
-            _ => Ok(folder),
+            _ => Ok(self.sessions.clone()),
         }
+    }
+
+    /// Checks that the file `path` may be read: it lies in the folder, or in that of the class. Its full path is allowed.
+    pub fn check_reading(&self, path: &Path) -> Result<(), String> {
+        for root in [&self.root, self.class.as_ref().unwrap_or(&self.root)] {
+            if let Ok(rest) = path.strip_prefix(root) {
+                let root = root.clone();
+                return Self {
+                    root,
+                    ..self.clone()
+                }
+                .check(rest);
+            }
+        }
+        self.check(path)
+    }
+
+    /// Checks that the file `path` may be written: as [`check`](Self::check), and a seat has room for it.
+    pub fn check_writing(&self, path: &Path) -> Result<(), String> {
+        self.check(path)?;
+        if self.is_seat() && size_of(&self.root) >= MOST_OF_SEAT {
+            let most = MOST_OF_SEAT / 1_000_000;
+            return Err(format!(
+                "the files of this seat take {most} MB, the most of a seat: ask your teacher to remove some"
+            ));
+        }
+        Ok(())
     }
 
     /// Checks that the file `path`, existing or not, lies in the folder: the path is relative, has no `..`, and no symbolic
@@ -92,6 +151,20 @@ impl Confined {
             Ok(())
         }
     }
+}
+
+/// What the files in `folder` take together, bytes.
+fn size_of(folder: &Path) -> u64 {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let there = entries.filter_map(|entry| Some((entry.path(), entry.metadata().ok()?)));
+    let size = |(path, there): (PathBuf, fs::Metadata)| {
+        if there.is_dir() {
+            size_of(&path)
+        } else {
+            there.len()
+        }
+    };
+    there.map(size).sum()
 }
 
 fn leads_out(path: &Path) -> String {

@@ -11,6 +11,15 @@ use std::path::Path;
 
 /// Opens the file at `path`. It is refused if it belongs to another user or is not a regular file.
 pub(super) fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
+    let file = open_regular(path, options)?;
+    if file.metadata()?.uid() != rustix::process::geteuid().as_raw() {
+        return Err(refused("it belongs to another user"));
+    }
+    Ok(file)
+}
+
+/// Opens the file at `path`, whoever owns it. It is refused if it is not a regular file.
+pub(super) fn open_regular(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
     let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK;
     let opened = options.custom_flags(flags.bits() as i32).open(path);
     let file =
@@ -21,17 +30,13 @@ pub(super) fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
                 _ => error,
             },
         )?;
-    let there = file.metadata()?;
-    if !there.is_file() {
+    if !file.metadata()?.is_file() {
         return Err(refused("it is not a file"));
-    }
-    if there.uid() != rustix::process::geteuid().as_raw() {
-        return Err(refused("it belongs to another user"));
     }
     Ok(file)
 }
 
-fn refused(reason: &str) -> io::Error {
+pub(super) fn refused(reason: &str) -> io::Error {
     io::Error::new(io::ErrorKind::PermissionDenied, reason)
 }
 
@@ -44,8 +49,15 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
 /// Replaces the file at `path` by one that contains `text` and that is the user's alone. The file is complete at any
 /// moment; where the new one cannot be written, the old one stays.
 pub(super) fn replace(path: &Path, text: &str) -> io::Result<()> {
+    replace_with_mode(path, text, 0o600)
+}
+
+/// The same with this mode, whatever the umask is.
+pub(super) fn replace_with_mode(path: &Path, text: &str, mode: u32) -> io::Result<()> {
+    let mode = Permissions::from_mode(mode);
     let folder = path.parent().unwrap_or(Path::new("."));
-    let mut file = temporary::file_in(folder, &Permissions::from_mode(0o600))?;
+    let mut file = temporary::file_in(folder, &mode)?;
+    file.as_file().set_permissions(mode)?;
     file.as_file_mut().write_all(text.as_bytes())?; // whose errors do not speak of the temporary name
     file.persist(path)?;
     Ok(())

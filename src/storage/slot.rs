@@ -16,6 +16,7 @@
 //! The number in the first line is raised when the format or the meaning of the texts changes. Nothing is synced to the
 //! disk: sessions must survive the death of the process, not of the machine.
 
+use super::confined::SESSIONS;
 use super::own;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
@@ -26,7 +27,9 @@ use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 const FORMAT: &str = "gyrolab session 4";
+/// The most sessions that are kept, of a user and of a login that several share.
 const MOST_KEPT: usize = 20;
+const MOST_SHARED: usize = 200;
 /// A lock that is held for a shorter time belongs to a process that only looks at the session.
 const GLANCE: Duration = Duration::from_millis(10);
 
@@ -140,7 +143,9 @@ pub(super) fn prune(folder: &Path) {
         let path = file(folder, name, "session");
         own::open(&path, OpenOptions::new().read(true)).is_ok()
     });
-    free.filter_map(take).skip(MOST_KEPT).for_each(Slot::remove);
+    let is_shared = folder.ends_with(SESSIONS);
+    let most = if is_shared { MOST_SHARED } else { MOST_KEPT };
+    free.filter_map(take).skip(most).for_each(Slot::remove);
     let locks = names(folder, "lock").unwrap_or_default();
     let alone = locks
         .iter()

@@ -1,8 +1,9 @@
 //! The main loop: it carries out what keys mean, advances the run with time, and draws a frame when something has changed.
 
+use crate::class::Role;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::{Lab, Request};
-use crate::lessons::Class;
+use crate::lessons::Class as Lessons;
 use crate::storage::session::Session;
 use crate::tui::decoder::Typed;
 use crate::tui::mouse::Pointer;
@@ -20,37 +21,43 @@ const IDLE: Duration = Duration::from_millis(500);
 /// The same while something is done in the background: an export, a file read for the browser, a search for advice.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
-/// Runs `lab` and the lessons of its `class` on the terminal until the user leaves. It saves the lab in `session`, if
-/// given.
-pub fn run(lab: &mut Lab, class: &mut Class, session: Option<&Session>) -> io::Result<()> {
-    let mut screen = Screen::enter()?;
+/// Runs `lab` with its `lessons`, in its role in a class, on the terminal until the user leaves. It saves the lab in
+/// `session`, if given.
+pub fn run(
+    lab: &mut Lab,
+    lessons: &mut Lessons,
+    role: &mut dyn Role,
+    session: Option<&Session>,
+) -> io::Result<()> {
+    let (mut screen, mut pointer) = (Screen::enter()?, Pointer::default());
     let mut pacing = Pacing::new(lab.view().fps);
     let begin = Instant::now();
     screen::fit(lab, screen.size()?);
-    let mut pointer = Pointer::default();
     loop {
         screen.set_mouse(lab.view().mouse)?;
         pacing.set_rate(lab.view().fps);
-        let wait = wait(lab, class, pacing.wait(begin.elapsed()));
-        let events = screen.events(wait)?;
+        let wait = wait(lab, lessons, pacing.wait(begin.elapsed()));
+        let events = screen.events(wait.min(role.wait(begin.elapsed())))?;
         let acted = !events.is_empty();
         for event in events {
-            if handle(event, lab, class, &mut screen, &mut pointer, session)?.is_break() {
+            let (screen, pointer) = (&mut screen, &mut pointer);
+            if handle(event, lab, lessons, role, screen, pointer, session)?.is_break() {
                 return Ok(());
             }
+            role.acted(lab, lessons);
         }
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
-        let was_on_its_way = lab.player().playback.steps_to_go().is_some();
-        lab.advance(&mut || begin.elapsed());
-        let has_arrived = was_on_its_way && lab.player().playback.steps_to_go().is_none();
-        class.advance(begin.elapsed(), lab);
+        let (has_arrived, is_over) = advance(lab, lessons, role, begin);
         if lab.has_changed() {
             screen::refit(lab, screen.size()?);
         }
-        keep(lab, session);
-        let now = begin.elapsed();
+        keep(lab, role, session);
+        if is_over {
+            return Ok(());
+        }
         // The answer to a key is drawn at once, without waiting for the next frame; so is the step that was asked for.
+        let now = begin.elapsed();
         if (acted || has_arrived || pacing.is_due(now)) && lab.take_changed() {
             let bytes = screen.draw(|area, buf| screen::draw(lab, true, area, buf))?;
             pacing.drawn(now, bytes, screen.size()?.area());
@@ -58,13 +65,28 @@ pub fn run(lab: &mut Lab, class: &mut Class, session: Option<&Session>) -> io::R
     }
 }
 
+/// Advances run, class and lessons. Returns whether the run has arrived where it was to go, and whether the lab is to end.
+fn advance(
+    lab: &mut Lab,
+    lessons: &mut Lessons,
+    role: &mut dyn Role,
+    begin: Instant,
+) -> (bool, bool) {
+    let was_on_its_way = lab.player().playback.steps_to_go().is_some();
+    lab.advance(&mut || begin.elapsed());
+    let has_arrived = was_on_its_way && lab.player().playback.steps_to_go().is_none();
+    let is_over = role.advance(begin.elapsed(), lab, lessons).is_break();
+    lessons.advance(begin.elapsed(), lab);
+    (has_arrived, is_over)
+}
+
 /// Saves the state of `lab` in `session`, and shows a message as long as saving fails.
-fn keep(lab: &mut Lab, session: Option<&Session>) {
+fn keep(lab: &mut Lab, role: &dyn Role, session: Option<&Session>) {
     let Some(session) = session else {
         return;
     };
     session.note(lab.content());
-    lab.set_trouble(session.trouble());
+    lab.set_trouble(role.trouble().or_else(|| session.trouble()));
 }
 
 /// Panics for tests of how the program ends; it is compiled with debug assertions only. `GYROLAB_PANIC_AFTER_MS=1000` makes
@@ -86,7 +108,7 @@ fn panic_if_asked(elapsed: Duration) {
 }
 
 /// How long to wait for events, if the next frame is due in `to_frame`.
-fn wait(lab: &Lab, class: &Class, to_frame: Duration) -> Duration {
+fn wait(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
     if lab.player().playback.is_flat_out() {
         Duration::ZERO
     } else if lab.player().playback.is_busy() || lab.has_changed() {
@@ -98,7 +120,7 @@ fn wait(lab: &Lab, class: &Class, to_frame: Duration) -> Duration {
             || lab.adviser().is_seeking()
             || !lab.script().is_done();
         let rest = if is_attentive { ATTENTIVE } else { IDLE };
-        let rest = class.wait().unwrap_or(rest).min(rest);
+        let rest = lessons.wait().unwrap_or(rest).min(rest);
         lab.notice_ends_in().unwrap_or(rest).min(rest)
     }
 }
@@ -106,12 +128,45 @@ fn wait(lab: &Lab, class: &Class, to_frame: Duration) -> Duration {
 fn handle(
     event: Event,
     lab: &mut Lab,
-    class: &mut Class,
+    lessons: &mut Lessons,
+    role: &mut dyn Role,
     screen: &mut Screen,
     pointer: &mut Pointer,
     session: Option<&Session>,
 ) -> io::Result<ControlFlow<()>> {
-    let request = match event {
+    let request = request_of(event, lab, screen, pointer)?;
+    if matches!(request, Some(Request::Quit | Request::Suspend)) {
+        keep(lab, role, session); // what was pressed just before it came with it
+    }
+    let size = screen.size()?;
+    let request = match request {
+        Some(Request::Lesson(key)) if role.takes(key, lab, lessons) => None,
+        request => request.and_then(|request| do_in_class(request, lab, lessons, size)),
+    };
+    match request {
+        None | Some(Request::Lesson(_) | Request::Answer(_)) => {
+            return Ok(ControlFlow::Continue(()));
+        }
+        Some(Request::Class) => {
+            role.act(lab, lessons);
+            return Ok(ControlFlow::Continue(()));
+        }
+        Some(Request::Quit) => return Ok(ControlFlow::Break(())),
+        Some(Request::Redraw) => screen.forget()?,
+        Some(Request::Suspend) => screen.suspend()?,
+    }
+    screen::fit(lab, screen.size()?); // all of it is to be drawn, at the size there is now
+    Ok(ControlFlow::Continue(()))
+}
+
+/// Does in the lab what `event` means. Returns what only the main loop can do.
+fn request_of(
+    event: Event,
+    lab: &mut Lab,
+    screen: &mut Screen,
+    pointer: &mut Pointer,
+) -> io::Result<Option<Request>> {
+    Ok(match event {
         Event::Typed(Typed::Key(key)) => press(key, lab),
         Event::Typed(Typed::Paste(text)) => {
             lab.paste(&text);
@@ -125,28 +180,14 @@ fn handle(
             screen.resume()?;
             Some(Request::Redraw)
         }
-    };
-    if matches!(request, Some(Request::Quit | Request::Suspend)) {
-        keep(lab, session); // what was pressed just before it came with it
-    }
-    let size = screen.size()?;
-    match request.and_then(|request| do_in_class(request, lab, class, size)) {
-        None | Some(Request::Lesson(_) | Request::Answer(_)) => {
-            return Ok(ControlFlow::Continue(()));
-        }
-        Some(Request::Quit) => return Ok(ControlFlow::Break(())),
-        Some(Request::Redraw) => screen.forget()?,
-        Some(Request::Suspend) => screen.suspend()?,
-    }
-    screen::fit(lab, screen.size()?); // all of it is to be drawn, at the size there is now
-    Ok(ControlFlow::Continue(()))
+    })
 }
 
 /// Does what `request` asks of the lessons, on a screen of this `size`; gives back any other request.
 pub fn do_in_class(
     request: Request,
     lab: &mut Lab,
-    class: &mut Class,
+    lessons: &mut Lessons,
     size: Rect,
 ) -> Option<Request> {
     match request {
@@ -154,11 +195,11 @@ pub fn do_in_class(
             screen::scroll_page(lab, Direction::PageDown, size);
         }
         Request::Lesson(key) => {
-            if let Some(direction) = class.act(key, lab) {
+            if let Some(direction) = lessons.act(key, lab) {
                 screen::scroll_page(lab, direction, size);
             }
         }
-        Request::Answer(number) => class.answer(number, lab),
+        Request::Answer(number) => lessons.answer(number, lab),
         other => return Some(other),
     }
     None

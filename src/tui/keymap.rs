@@ -215,6 +215,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('s')], Action::Ask(Ask::RunFile), "", "save the run file: scenario and all that was done").to(KEEP),
     row(&[Lab], &[Char('S')], Action::Ask(Ask::Present), "", "save the present state as a scenario").to(KEEP),
     row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the list of lessons; again: back to where one was"),
+    row(&[Lab], &[Char('k')], Action::Class, "", "in a class: the teacher's acts; for a student: step aside, and back"),
     row(&[Lab], &[Tab], Action::NextPane, "pane", "the next pane"),
     row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
     row(&[Lab], &[Char('d')], Action::ThreeD, "3-D", "fill the screen with the 3-D view, or show all panes again"),

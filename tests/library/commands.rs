@@ -130,6 +130,7 @@ fn a_command() -> impl Strategy<Value = Command> {
                 columns: chosen.then_some(names),
                 points,
                 excel,
+                note: None,
             };
             file.clone().check().unwrap();
             file

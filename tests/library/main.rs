@@ -11,6 +11,7 @@ mod support;
 
 mod beside;
 mod chosen;
+mod class;
 mod commands;
 mod coverage;
 mod every_key;

@@ -4,10 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms from the lowest to the highest: each may import those before it.
-const ORDER: [&str; 22] = [
+const ORDER: [&str; 23] = [
     "text", "cores", "origin", "physics", "scenario", "run", "journal", "analysis", "playback",
     "export", "data", "figure", "fit", "sweep", "verify", "own_code", "writeup", "storage", "lab",
-    "lessons", "tui", "cli",
+    "lessons", "class", "tui", "cli",
 ];
 /// The room of the terminal, and the libraries that only it may use.
 const TERMINAL: &str = "tui";

@@ -126,7 +126,7 @@ fn the_manual_has_a_page_for_the_class() {
         [
             "MaxStartups 60:30:120",
             "PerSourcePenaltyExemptList",
-            "tmux attach -r",
+            "server-access -a -r",
         ],
     );
     failed(

@@ -11,6 +11,7 @@
 mod support;
 
 mod cast;
+mod class;
 mod classes;
 mod cli;
 mod commands;

@@ -1,6 +1,6 @@
 //! The keys of a lesson: turning its pages, predicting, and asking for help.
 
-use super::{Taken, UnderWay, before_task, compared, holds};
+use super::{Taken, UnderWay, Voted, before_task, compared, holds};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::command::Command;
@@ -176,13 +176,26 @@ impl Taken {
 
     /// Locks `answer`. Once nothing on the page is open, what it hides is shown.
     fn lock(&mut self, predict: &Predict, answer: Answer, lab: &mut Lab) {
-        if let Err(reason) = self.place.predictions.lock(predict, answer) {
-            lab.refuse(reason);
-            return;
+        let is_late = self.place.seen.contains(&predict.name);
+        let locked = self.place.predictions.is_locked(predict);
+        let is_again = locked && self.again.take_if(|it| *it == predict.name).is_some();
+        if !is_again {
+            if let Err(reason) = self.place.predictions.lock(predict, answer.clone()) {
+                lab.refuse(reason);
+                return;
+            }
+            let late = is_late.then(|| predict.name.clone());
+            self.place.late.extend(late);
         }
         (self.selected, self.is_marked, self.has_answered) = (None, false, true);
-        if self.place.seen.contains(&predict.name) {
-            self.place.late.insert(predict.name.clone());
+        self.votes.push(Voted {
+            question: predict.name.clone(),
+            answer,
+            is_late,
+        });
+        if is_again {
+            lab.refuse("your vote of this round is in; your first answer stays beside it");
+            return;
         }
         self.state_again(&predict.name, lab);
         let Some(page) = self.page() else {
@@ -211,6 +224,8 @@ impl Taken {
         });
         let texts: Vec<_> = texts.collect();
         if let Some(stated) = &mut self.place.stated {
+            let told = (!texts.is_empty()).then(|| name.to_owned());
+            self.place.seen.extend(told);
             stated.extend(texts);
         }
     }

@@ -1,6 +1,6 @@
 //! The page of a lesson beside the run: its text, the question with its answers, what is to be reached, and the keys.
 
-use super::{PaneRow, Width, frame, write};
+use super::{PaneRow, Width, frame, longest, write};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::sheet::{Emphasis, Kind, Paragraph, Sheet};
@@ -55,7 +55,14 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let Some(sheet) = &view.sheet else {
         return;
     };
-    let inside = frame(&sheet.title, area, view.focus == ROW.id, &view.theme, buf);
+    let room = area.width.saturating_sub(4).into();
+    let framed = longest(sheet.framed.lines().map(str::to_owned), room);
+    let title = if framed.is_empty() {
+        &sheet.title
+    } else {
+        &framed
+    };
+    let inside = frame(title, area, view.focus == ROW.id, &view.theme, buf);
     if inside.is_empty() {
         return;
     }
@@ -74,15 +81,24 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         (_, true, true) => " PgDn: more ",
         (true, false, true) => " PgUp: back ",
         (_, true, false) => " Tab, PgDn: more ",
-        (_, false, _) => return,
+        (_, false, _) => "",
     };
     let border = Rect {
         y: area.bottom() - 1,
         height: 1,
         ..inside
     };
-    let x = border.width.saturating_sub(columns(more) as u16 + 1);
-    write(border, (x, 0), more, quiet, buf);
+    write_border(&sheet.border, more, border, quiet, buf);
+}
+
+/// Writes what the border says of the class, and `more` where it fits beside that.
+fn write_border(said: &str, more: &str, border: Rect, style: Style, buf: &mut Buffer) {
+    let room = border.width.saturating_sub(columns(more) as u16 + 1);
+    let said = longest(said.lines().map(|form| format!(" {form} ")), room.into());
+    write(border, (0, 0), &said, style, buf);
+    if columns(&said) <= room.into() && !more.is_empty() {
+        write(border, (room, 0), more, style, buf);
+    }
 }
 
 /// Scrolls the sheet of `lab`, whose pane has the area `place`, as a key does.

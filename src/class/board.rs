@@ -1,0 +1,91 @@
+//! The board: the class on a second terminal, for the teacher. Seats, votes, notes, and the clock.
+
+use super::folder::{Folder, Stage, State};
+use super::votes::{self, Sitting, Tally, present, sittings};
+use super::{login, unix_ms};
+use crate::lessons::page::told;
+use crate::lessons::{Predict, reading};
+use crate::text::number::counted;
+use crate::text::wrap::{columns, wrapped};
+use chrono::Local;
+
+/// The lines of the board, at most `width` columns wide.
+pub fn lines(folder: &Folder, width: usize) -> Vec<String> {
+    let seats = sittings(folder);
+    let [here, lost, aside] = present(&seats);
+    let time = Local::now().format("%H:%M");
+    let mut board = vec![format!("{time} · {here} here, {lost} lost, {aside} aside")];
+    if folder.is_full() {
+        board.push("the disk is full: what is answered now cannot be kept".to_owned());
+    }
+    match folder.state() {
+        Err(reason) => board.push(reason),
+        Ok(None) => {
+            let begins = "no class has begun here: gyrolab class LESSON --folder DIR";
+            board.push(begins.to_owned());
+        }
+        Ok(Some(state)) => {
+            if !state.is_on {
+                board.push("the class is over".to_owned());
+            } else if !folder.is_teacher_alive() {
+                let resumes = "the teacher's lab is gone: gyrolab class --resume --folder DIR";
+                board.push(resumes.to_owned());
+            }
+            board.extend(of_page(&state, &seats));
+            board.push(String::new());
+            board.extend(of_seats(folder, &state, &seats, width));
+        }
+    }
+    let fitted = |line: &String| match columns(line) {
+        fits if fits <= width => vec![line.clone()], // with its blanks
+        _ => wrapped(line, width),
+    };
+    board.iter().flat_map(fitted).collect()
+}
+
+/// The page in words, with the votes on its questions.
+fn of_page(state: &State, seats: &[Sitting]) -> Vec<String> {
+    let told = match reading::open(&state.lesson) {
+        Ok(lesson) => told(&lesson, state.page, |predict| {
+            of_rounds(predict, state, seats)
+        }),
+        Err(problems) => problems.to_string(),
+    };
+    told.lines().map(str::to_owned).collect()
+}
+
+/// The votes on `predict`, a round after the other. While a round goes on nobody's choice is shown.
+fn of_rounds(predict: &Predict, state: &State, seats: &[Sitting]) -> String {
+    let question = state.question(&predict.name);
+    let round_of = |round| {
+        let tally = Tally::of(seats, &state.lesson, predict, round);
+        let (votes, late) = (counted(tally.votes as u64, "vote"), tally.late);
+        let counts = format!("  round {round}: {votes}, {late} late\n");
+        if round == question.round() && question.stage == Stage::Counted {
+            return counts;
+        }
+        let advice = tally.advice.map(|advice| advice + "\n");
+        counts + &votes::drawn(&tally.bars).text() + &advice.unwrap_or_default()
+    };
+    (1..=question.round()).map(round_of).collect()
+}
+
+/// The seats in columns, and the names that are locked.
+fn of_seats(folder: &Folder, state: &State, seats: &[Sitting], width: usize) -> Vec<String> {
+    let locked = login::locked(folder, unix_ms() / 1000).into_iter();
+    let locked = locked.map(|name| format!("{name}: locked by wrong codes"));
+    let cell = |sitting: &Sitting| {
+        let votes = sitting.record.votes.iter();
+        let votes = votes.filter(|vote| vote.lesson == state.lesson).count();
+        let votes = counted(votes as u64, "vote");
+        format!("{}, {votes}", sitting.in_words(state))
+    };
+    let cells: Vec<_> = seats.iter().map(cell).collect();
+    let widest = cells.iter().map(|cell| columns(cell)).max().unwrap_or(0) + 2;
+    let row = |row: &[String]| {
+        let row: String = row.iter().map(|cell| format!("{cell:<widest$}")).collect();
+        row.trim_end().to_owned()
+    };
+    let rows = cells.chunks((width / widest).max(1)).map(row);
+    locked.chain(rows).collect()
+}

@@ -1,0 +1,246 @@
+//! The folder of a class, and the state that the teacher's lab publishes in it.
+
+use super::{ago, unix_ms};
+use crate::lessons::Kept;
+use crate::lessons::taken::Followed;
+use crate::playback::pace::Speed;
+use crate::storage::confined::SESSIONS;
+use crate::storage::shared;
+use crate::text::printable::Shown;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// The longest run file that a class can follow, bytes; and the longest state with it.
+pub const LONGEST_RUN: usize = 64 * 1024;
+const LONGEST_STATE: usize = 2 * LONGEST_RUN;
+/// The teacher's lab is gone when its state was not touched for longer than this.
+const GONE: Duration = Duration::from_secs(4);
+/// The modes of folders in which both accounts write, and of the teacher's.
+pub(super) const OF_ALL: u32 = 0o2770;
+const OF_TEACHER: u32 = 0o2750;
+
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+#[derive(Clone, Debug, Default)]
+pub struct Folder {
+    /// The folder that the command line names, as a full path.
+    pub root: PathBuf,
+}
+
+/// What the teacher's lab publishes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct State {
+    /// The version that wrote it.
+    pub gyrolab: String,
+    pub is_on: bool,
+    /// The full name of the lesson, and the checksum of its text.
+    pub lesson: String,
+    pub sum: u32,
+    /// The number of its open page, from 1.
+    pub page: usize,
+    /// How many seats are here, and how many of them have answered the question of the page.
+    pub here: usize,
+    pub answered: usize,
+    /// Whether the run has arrived where the page wants it.
+    pub has_arrived: bool,
+    /// The seats that the teacher has closed.
+    pub closed: BTreeSet<String>,
+    /// By LESSON and then by the question's name.
+    pub questions: BTreeMap<String, BTreeMap<String, Question>>,
+    /// The numbers that the lesson has kept.
+    pub kept: Kept,
+    /// What is shown; `None` where the class does not follow.
+    pub shown: Option<Run>,
+}
+
+/// How the class stands with a question.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Question {
+    /// The present round, less 1.
+    pub earlier_rounds: u32,
+    pub stage: Stage,
+    /// When the round began, ms since 1970.
+    pub since_ms: u64,
+    /// The bars, where all may see them.
+    pub bars: Vec<(String, usize)>,
+}
+
+/// Who sees the votes of a round. The order is that of the key that shows more.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stage {
+    /// Nobody sees more than their number.
+    #[default]
+    Counted,
+    /// The teacher sees bars.
+    Teacher,
+    All,
+    /// Votes that come now are late.
+    Closed,
+}
+
+/// The run that the class follows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// The name under which it was opened.
+    pub name: String,
+    pub step: u64,
+    /// When it ends, s of the run: an edit of the time step holds it, and the run file does not say it.
+    pub end_s: f64,
+    /// When it stood there, ms since 1970.
+    pub at_ms: u64,
+    pub is_running: bool,
+    pub speed: Speed,
+    pub exact: bool,
+    /// How it is shown, as `[view]` says it.
+    pub look: toml::Table,
+    /// The run file.
+    pub run: String,
+}
+
+impl Folder {
+    /// The class in the folder DIR.
+    pub fn at(dir: &Path) -> Result<Self, String> {
+        let root = fs::canonicalize(dir).map_err(|error| format!("{}: {error}", Shown(dir)))?;
+        Ok(Self { root })
+    }
+
+    /// The same; its own folders are made where they do not exist.
+    pub fn open(dir: &Path) -> Result<Self, String> {
+        let folder = Self::at(dir)?;
+        for path in [folder.own(), folder.seats(), folder.wrong()] {
+            make(&path, OF_ALL)?;
+        }
+        Ok(folder)
+    }
+
+    /// Makes the teacher's folder.
+    pub fn make_teacher(&self) -> Result<(), String> {
+        make(&self.teacher(), OF_TEACHER)
+    }
+
+    fn own(&self) -> PathBuf {
+        self.root.join(SESSIONS)
+    }
+
+    pub fn seats(&self) -> PathBuf {
+        self.own().join("seats")
+    }
+
+    pub(super) fn wrong(&self) -> PathBuf {
+        self.own().join("wrong")
+    }
+
+    /// Forgets the wrong codes that were typed for `name`.
+    pub(super) fn unlock(&self, name: &str) {
+        let _ = fs::remove_file(self.wrong().join(name)); // where it stays, it counts on
+    }
+
+    /// The folder of the teacher, for the state and the sessions.
+    pub fn teacher(&self) -> PathBuf {
+        self.own().join("teacher")
+    }
+
+    pub(super) fn state_file(&self) -> PathBuf {
+        self.teacher().join("state")
+    }
+
+    /// The teacher's state; `None` before any class.
+    ///
+    /// # Errors
+    /// When it cannot be read, or another version has written it.
+    pub fn state(&self) -> Result<Option<State>, String> {
+        let path = self.state_file();
+        let unread = |error: &dyn std::fmt::Display| format!("{}: {error}", Shown(&path));
+        let read = shared::read(&path, LONGEST_STATE).map_err(|error| unread(&error))?;
+        let Some(text) = read else { return Ok(None) };
+        let table: toml::Table = toml::from_str(&text).map_err(|_| unread(&"is damaged"))?;
+        let version = table.get("gyrolab").and_then(toml::Value::as_str);
+        if version != Some(VERSION) {
+            let version = version.unwrap_or("unknown");
+            return Err(format!(
+                "the teacher's gyrolab is {version}, this one is {VERSION}: both must be the same"
+            ));
+        }
+        let state = table.try_into().map_err(|_| unread(&"is damaged"))?;
+        Ok(Some(state))
+    }
+
+    /// Publishes `state`.
+    ///
+    /// # Errors
+    /// When it is too long, or cannot be written; the one before stays.
+    pub fn publish(&self, state: &State) -> Result<(), String> {
+        let text = toml::to_string(state).map_err(|error| error.to_string())?;
+        if text.len() > LONGEST_STATE {
+            return Err("the class's state is above 128 kB".to_owned());
+        }
+        shared::replace(&self.state_file(), &text)
+            .map_err(|error| format!("the class cannot be told: {error}"))
+    }
+
+    pub fn touch_state(&self) {
+        let _ = shared::touch(&self.state_file()); // what is wrong is said where it is written
+    }
+
+    /// Whether the teacher's lab has touched its state a moment ago.
+    pub fn is_teacher_alive(&self) -> bool {
+        shared::modified(&self.state_file()).is_some_and(|time| ago(time) < GONE)
+    }
+
+    /// Whether nothing more can be written.
+    pub fn is_full(&self) -> bool {
+        rustix::fs::statvfs(self.own()).is_ok_and(|there| there.f_bavail == 0)
+    }
+
+    /// `lesson` without the folder's path.
+    pub fn short<'a>(&self, lesson: &'a str) -> &'a str {
+        let inside = Path::new(lesson).strip_prefix(&self.root).ok();
+        inside.and_then(Path::to_str).unwrap_or(lesson)
+    }
+}
+
+fn make(path: &Path, mode: u32) -> Result<(), String> {
+    let made = shared::make_folder(path, mode).map(drop);
+    made.map_err(|error| format!("{}: {error}", Shown(path)))
+}
+
+impl Question {
+    /// The present round, from 1.
+    pub fn round(&self) -> u32 {
+        self.earlier_rounds + 1
+    }
+}
+
+impl State {
+    /// What its lesson shows; `is_there` says whether the run has come where the teacher's is.
+    pub(super) fn followed(&self, is_there: bool) -> Followed<'_> {
+        Followed {
+            lesson: &self.lesson,
+            sum: self.sum,
+            page: self.page,
+            kept: &self.kept,
+            has_arrived: self.has_arrived && is_there,
+        }
+    }
+
+    pub fn question(&self, name: &str) -> Question {
+        let questions = self.questions.get(&self.lesson);
+        let question = questions.and_then(|all| all.get(name));
+        question.cloned().unwrap_or_default()
+    }
+
+    pub(super) fn question_mut(&mut self, name: &str) -> &mut Question {
+        let questions = self.questions.entry(self.lesson.clone()).or_default();
+        let new = || Question {
+            since_ms: unix_ms(),
+            ..Question::default()
+        };
+        questions.entry(name.to_owned()).or_insert_with(new)
+    }
+}

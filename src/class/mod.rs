@@ -1,0 +1,99 @@
+//! A class: a teacher's lab and the seats of the students, which know of each other through files in a folder.
+//!
+//! ```text
+//! DIR/.gyrolab/teacher/state              what the teacher's lab shows, and the rounds of votes
+//! DIR/.gyrolab/seats/anna-4711/           a seat: its exports
+//! DIR/.gyrolab/seats/anna-4711/.gyrolab/  seat (place and votes), open (who has it open, heartbeat), its session
+//! DIR/.gyrolab/wrong/anna                 wrong codes typed for that name
+//! ```
+//!
+//! Each file is written whole by one account and read by the other, three times a second. A run is deterministic: a student's
+//! lab computes what the teacher's shows.
+//!
+//! - [`folder`]: the folders, and the teacher's [`State`]; [`seat`]: the files of a seat; [`login`]: taking a seat.
+//! - [`votes`]: the votes of a question, counted; as CSV and as bars.
+//! - [`teacher`] and [`student`]: the [`Role`] of a lab in a class; [`board`]: the class on a second terminal.
+
+pub mod board;
+pub mod folder;
+pub mod login;
+pub mod seat;
+pub mod student;
+pub mod teacher;
+pub mod votes;
+
+pub use folder::{Folder, State};
+pub use seat::Seat;
+
+use crate::lab::Lab;
+use crate::lab::action::LessonKey;
+use crate::lessons::Class as Lessons;
+use std::ops::ControlFlow;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// How often the files are looked at.
+const EVERY: Duration = Duration::from_millis(300);
+const LEAST_WAIT: Duration = Duration::from_millis(10);
+
+/// What a class adds to a lab.
+pub trait Role {
+    /// Takes note of the lab before it is shown.
+    fn begin(&mut self, _lab: &mut Lab) {}
+
+    /// Brings lab and files up to date; `now` is the time since the lab was opened. Breaks where the lab is to end.
+    fn advance(
+        &mut self,
+        _now: Duration,
+        _lab: &mut Lab,
+        _lessons: &mut Lessons,
+    ) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    /// Does what the key of the class stands for.
+    fn act(&mut self, lab: &mut Lab, lessons: &mut Lessons);
+
+    /// Does what `key` means to the class. Returns whether that is all of it.
+    fn takes(&mut self, _key: LessonKey, _lab: &mut Lab, _lessons: &Lessons) -> bool {
+        false
+    }
+
+    /// Takes note of what keys have done.
+    fn acted(&mut self, _lab: &mut Lab, _lessons: &Lessons) {}
+
+    /// How long the loop may wait until the files are looked at again.
+    fn wait(&self, _now: Duration) -> Duration {
+        Duration::MAX
+    }
+
+    /// Why the files cannot be written, if they cannot.
+    fn trouble(&self) -> Option<String> {
+        None
+    }
+
+    /// Takes note that the lab was left. Returns what is said of that, and of how to come back.
+    fn leave(&mut self) -> Result<String, String> {
+        Ok(String::new())
+    }
+}
+
+/// The role of a lab without a class.
+#[derive(Debug)]
+pub struct Alone;
+
+impl Role for Alone {
+    fn act(&mut self, lab: &mut Lab, _lessons: &mut Lessons) {
+        lab.refuse("this is no lab of a class: gyrolab man class says how one begins");
+    }
+}
+
+/// Milliseconds since 1970 (UTC).
+fn unix_ms() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    since.unwrap_or_default().as_millis() as u64
+}
+
+/// How long ago `time` was; nothing for one to come.
+fn ago(time: SystemTime) -> Duration {
+    SystemTime::now().duration_since(time).unwrap_or_default()
+}

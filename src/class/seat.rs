@@ -1,0 +1,186 @@
+//! The files of a seat: where it stands in its lessons, its votes, and who has it open.
+
+use super::folder::{Folder, OF_ALL, VERSION};
+use super::{ago, unix_ms};
+use crate::storage::confined::SESSIONS;
+use crate::storage::shared;
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// It is raised when the form or the meaning of a seat's file changes.
+const FORMAT: u32 = 1;
+/// The most characters of a name.
+pub(super) const LONGEST_NAME: usize = 24;
+/// The digits of a code.
+const DIGITS: usize = 4;
+/// The longest file of a seat, bytes.
+const LONGEST: usize = 1 << 20;
+/// A seat is lost when its lab has given no sign for longer than this, and away after an hour.
+const LOST: Duration = Duration::from_secs(10);
+const AWAY: Duration = Duration::from_secs(3600);
+
+/// A seat of a class.
+#[derive(Clone, Debug, Default)]
+pub struct Seat {
+    /// Its word, such as `anna-4711`.
+    pub word: String,
+    pub folder: PathBuf,
+}
+
+/// What the file of a seat holds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Record {
+    /// The number of its format.
+    pub format: u32,
+    /// Whether it has stepped aside from a class that follows.
+    pub is_aside: bool,
+    pub votes: Vec<Vote>,
+    /// The lessons, as a session keeps them.
+    pub lessons: toml::Table,
+}
+
+/// A vote: an answer that was locked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Vote {
+    pub lesson: String,
+    pub question: String,
+    /// From 1.
+    pub round: u32,
+    /// The number of the choice, from 1, or the number that was predicted.
+    pub choice: f64,
+    /// Whether the outcome had been seen, or the question was closed.
+    pub late: bool,
+    /// The page that was open, from 1.
+    pub page: usize,
+    /// Seconds since 1970 (UTC).
+    pub time_unix_s: u64,
+}
+
+/// Whether somebody sits there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    Here,
+    /// Its lab gives no sign.
+    Lost,
+    /// Its lab was left, or has given no sign for long.
+    Away,
+}
+
+pub(super) fn is_name(name: &str) -> bool {
+    let is_allowed = |c: char| c.is_alphanumeric() || c == '-';
+    let length = name.chars().count();
+    (1..=LONGEST_NAME).contains(&length) && name.chars().all(is_allowed) && !name.starts_with('-')
+}
+
+/// The name of a seat, if `word` is that of one.
+pub(super) fn name_of(word: &str) -> Option<&str> {
+    let (name, code) = word.rsplit_once('-')?;
+    let is_code = code.len() == DIGITS && code.bytes().all(|digit| digit.is_ascii_digit());
+    (is_code && is_name(name)).then_some(name)
+}
+
+/// The seats of the class, in the order of their names.
+pub fn all_seats(folder: &Folder) -> Vec<Seat> {
+    let entries = fs::read_dir(folder.seats()).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut names: Vec<_> = names.filter(|name| name_of(name).is_some()).collect();
+    names.sort_unstable();
+    names.iter().map(|name| Seat::of(folder, name)).collect()
+}
+
+impl Record {
+    /// The last round in which it has voted on the question; 0 where in none.
+    pub fn rounds_of(&self, lesson: &str, question: &str) -> u32 {
+        let votes = self.votes.iter();
+        let of_it = votes.filter(|vote| vote.lesson == lesson && vote.question == question);
+        of_it.map(|vote| vote.round).max().unwrap_or(0)
+    }
+}
+
+impl Seat {
+    pub(super) fn of(folder: &Folder, word: &str) -> Self {
+        Self {
+            word: word.to_owned(),
+            folder: folder.seats().join(word),
+        }
+    }
+
+    /// Makes the folders of a seat; returns whether it is new.
+    pub(super) fn make(&self) -> std::io::Result<bool> {
+        let is_new = shared::make_folder(&self.folder, OF_ALL)?;
+        shared::make_folder(&self.folder.join(SESSIONS), OF_ALL)?;
+        Ok(is_new)
+    }
+
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.folder.join(SESSIONS).join(name)
+    }
+
+    /// What its file holds.
+    ///
+    /// # Errors
+    /// When it cannot be read, or another version has written it.
+    pub fn record(&self) -> Result<Record, String> {
+        let text = shared::read(&self.file("seat"), LONGEST).map_err(|error| error.to_string())?;
+        let Some(text) = text else {
+            return Ok(Record::default());
+        };
+        let record: Record = toml::from_str(&text).map_err(|_| "is damaged".to_owned())?;
+        let is_own = record.format == FORMAT;
+        is_own
+            .then_some(record)
+            .ok_or_else(|| format!("another version of gyrolab wrote it, this is {VERSION}"))
+    }
+
+    pub fn save(&self, record: &Record) -> Result<(), String> {
+        let record = Record {
+            format: FORMAT,
+            ..record.clone()
+        };
+        let text = toml::to_string(&record).map_err(|error| error.to_string())?;
+        if text.len() > LONGEST {
+            return Err("the file of this seat is above 1 MB".to_owned());
+        }
+        shared::replace(&self.file("seat"), &text)
+            .map_err(|error| format!("your answers cannot be kept: {error}"))
+    }
+
+    /// Opens the seat in this process; a lab that has it open elsewhere sees that. Returns the word by which it is this
+    /// process's.
+    pub fn hold(&self) -> Result<String, String> {
+        let word = format!("{} {}", std::process::id(), unix_ms());
+        let held = shared::replace(&self.file("open"), &word);
+        held.map_err(|error| format!("the seat cannot be opened: {error}"))?;
+        Ok(word)
+    }
+
+    /// Whether the seat is still open under `word`. Gives a sign then.
+    pub(super) fn is_held(&self, word: &str) -> bool {
+        let path = self.file("open");
+        match shared::read(&path, 100) {
+            Ok(Some(held)) if held == word => {
+                let _ = shared::touch(&path); // without a sign the board says that the seat is lost
+                true
+            }
+            Ok(_) => false,
+            Err(_) => true, // nobody has said that it is another's
+        }
+    }
+
+    pub(super) fn leave(&self, word: &str) {
+        if self.is_held(word) {
+            let _ = fs::remove_file(self.file("open")); // where it stays, the seat is lost
+        }
+    }
+
+    pub fn presence(&self) -> Presence {
+        match shared::modified(&self.file("open")) {
+            Some(sign) if ago(sign) <= LOST => Presence::Here,
+            Some(sign) if ago(sign) <= AWAY => Presence::Lost,
+            _ => Presence::Away,
+        }
+    }
+}

@@ -1,0 +1,470 @@
+//! A student's lab: it follows the teacher's, and keeps in the files of its seat where it stands and what was voted.
+
+use super::folder::{Folder, Run, Stage, State};
+use super::seat::{Record, Seat, Vote};
+use super::{EVERY, LEAST_WAIT, Role, unix_ms, votes};
+use crate::lab::Lab;
+use crate::lab::action::LessonKey;
+use crate::lab::command::{Command, Place};
+use crate::lab::view::Part;
+use crate::lessons::page::Dress;
+use crate::lessons::predictions::Predictions;
+use crate::lessons::taken::{Taken, Voted};
+use crate::lessons::{Answer, Asked, Class as Lessons, Setup};
+use crate::playback::Playback;
+use crate::playback::pace::Speed;
+use crate::scenario::{Document, Scenario};
+use crate::storage::shared;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::{Duration, SystemTime};
+use toml::Table;
+
+/// A run that plays is put right where it is more than this off, s of wall time.
+const OFF_S: f64 = 0.6;
+
+#[derive(Debug, Default)]
+pub struct Student {
+    folder: Folder,
+    seat: Seat,
+    /// The word under which this process has the seat open.
+    holds: String,
+    record: Record,
+    /// Whether the record is to be written.
+    is_new: bool,
+    state: Option<State>,
+    seen: Option<SystemTime>,
+    /// Whether the teacher's lab was open at the last look.
+    is_on: bool,
+    /// What of the teacher's run is shown.
+    shown: Shown,
+    stood: Option<Stand>,
+    /// Whether a run that was played aside is pinned.
+    has_pinned: bool,
+    /// Why the lab ends, where it does.
+    ended: Option<&'static str>,
+    next_look: Duration,
+    trouble: Option<String>,
+}
+
+#[derive(Debug, Default)]
+struct Shown {
+    /// The run file, and the scenario as the lab has it.
+    run: Option<(String, Arc<Scenario>)>,
+    look: Table,
+    hidden: Vec<Part>,
+    exact: Option<bool>,
+    page: usize,
+}
+
+/// What a key changes that leads away from the class's run or page: run, step, goal, whether it plays, speed, page.
+type Stand = (
+    (usize, usize),
+    u64,
+    Option<u64>,
+    bool,
+    Speed,
+    Option<(String, usize)>,
+);
+
+fn stand(lab: &Lab, lessons: &Lessons) -> Stand {
+    let playback = &lab.player().playback;
+    let page = |taken: &Taken| (taken.lesson.name.clone(), taken.place.page);
+    (
+        lab.runs().depth(),
+        playback.step_number(),
+        playback.steps_to_go(),
+        playback.is_running() || !lab.script().is_done(),
+        playback.speed(),
+        lessons.taken().map(page),
+    )
+}
+
+impl Student {
+    /// The lab of `seat`, which this process has open under the word `holds`; `record` is what its file holds.
+    pub fn new(folder: Folder, seat: Seat, holds: String, record: Record) -> Self {
+        Self {
+            folder,
+            seat,
+            holds,
+            record,
+            is_new: true,
+            ..Self::default()
+        }
+    }
+
+    /// Whether the lab shows what the teacher's shows.
+    fn follows(&self) -> bool {
+        let state = self.state.as_ref();
+        let is_followed = state.is_some_and(|state| state.shown.is_some());
+        self.is_on && is_followed && !self.record.is_aside
+    }
+
+    /// The state of the class, while it is on.
+    fn class(&self) -> Option<&State> {
+        self.state.as_ref().filter(|_| self.is_on)
+    }
+
+    /// Takes note of what was answered, and of the place in the lessons.
+    fn note(&mut self, lab: &Lab, lessons: &mut Lessons) {
+        for voted in lessons.take_votes() {
+            let vote = lessons.taken().and_then(|taken| self.vote(taken, voted));
+            self.record.votes.extend(vote);
+            self.is_new = true;
+        }
+        if let Some(kept) = &lab.lessons
+            && *kept != self.record.lessons
+        {
+            self.record.lessons.clone_from(kept);
+            self.is_new = true;
+        }
+    }
+
+    fn vote(&self, taken: &Taken, voted: Voted) -> Option<Vote> {
+        let (lesson, question) = (taken.lesson.name.clone(), voted.question);
+        let choice = match (voted.answer, &taken.lesson.predict(&question)?.asked) {
+            (Answer::Number(number), _) => number,
+            (Answer::Choice(words), Asked::Choice(choices)) => {
+                choices.iter().position(|choice| *choice == words)? as f64 + 1.0
+            }
+            (Answer::Choice(_), Asked::Number { .. }) => return None,
+        };
+        let state = self.class().filter(|state| state.lesson == lesson);
+        let asked = state.map(|state| state.question(&question));
+        let asked = asked.unwrap_or_default();
+        Some(Vote {
+            lesson,
+            question,
+            round: asked.round(),
+            choice,
+            late: voted.is_late || asked.stage == Stage::Closed,
+            page: taken.place.page,
+            time_unix_s: unix_ms() / 1000,
+        })
+    }
+
+    /// Looks at the files: whether the seat is still this lab's, and what the teacher shows.
+    fn look(&mut self, lab: &mut Lab) {
+        if !self.seat.is_held(&self.holds) {
+            self.ended = Some("this seat was opened in another lab, which goes on from here");
+        }
+        let seen = shared::modified(&self.folder.state_file());
+        if seen != self.seen {
+            let read = self.folder.state();
+            self.state = read.unwrap_or_else(|reason| {
+                lab.tell(reason);
+                None
+            });
+            self.seen = seen;
+        }
+        let state = self.state.as_ref();
+        if state.is_some_and(|state| state.closed.contains(&self.seat.word)) {
+            self.ended = Some("your teacher has closed this seat");
+        }
+        let was_on = self.is_on;
+        let is_over = state.is_some_and(|state| !state.is_on);
+        self.is_on = state.is_some() && !is_over && self.folder.is_teacher_alive();
+        if self.is_on && !was_on {
+            lab.refuse("the class is on");
+        } else if was_on && !self.is_on {
+            let what = if is_over {
+                "the class is over"
+            } else {
+                "the teacher's lab is gone"
+            };
+            lab.tell(format!("{what}: n and N turn pages"));
+            self.shown = Shown::default();
+        }
+    }
+
+    /// Shows what the teacher shows.
+    fn follow(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+        let Some(state) = self.state.clone() else {
+            return;
+        };
+        let Some(run) = &state.shown else { return };
+        let scenario = lab.player().run().scenario();
+        let is_own = |(_, shown): &(_, _)| !Arc::ptr_eq(shown, scenario);
+        if self.shown.run.as_ref().is_some_and(is_own) {
+            return self.step_aside(lab); // the run was changed here
+        }
+        if self
+            .shown
+            .run
+            .as_ref()
+            .is_none_or(|(file, _)| *file != run.run)
+            && let Err(reason) = self.open(run, lab)
+        {
+            return lab.tell(reason);
+        }
+        if self.shown.page != state.page {
+            let is_turned = std::mem::replace(&mut self.shown.page, state.page) != 0;
+            if is_turned && std::mem::take(&mut self.has_pinned) {
+                let _ = lab.carry_out(&Command::Pin(false)); // it belongs to the page before
+            }
+        }
+        let is_there = go_with(run, lab);
+        if let Err(reason) = lessons.follow(&state.followed(is_there), lab) {
+            lab.tell(reason.lines().next().unwrap_or_default());
+        }
+        self.show_as(run, lab, lessons);
+    }
+
+    /// Opens the run of the teacher.
+    fn open(&mut self, run: &Run, lab: &mut Lab) -> Result<(), &'static str> {
+        let read = Document::parse(&run.name, &run.run);
+        let scenario = read.and_then(|document| document.scenario());
+        let unread = "the teacher's run cannot be read: n and N turn pages";
+        let scenario = scenario.map_err(|_| unread)?;
+        lab.show_run(&run.name, Arc::new(scenario), run.end_s);
+        let shown = Arc::clone(lab.player().run().scenario());
+        self.shown = Shown {
+            run: Some((run.run.clone(), shown)),
+            page: self.shown.page,
+            ..Shown::default()
+        };
+        Ok(())
+    }
+
+    /// Shows the run as the teacher does, where that has changed.
+    fn show_as(&mut self, run: &Run, lab: &mut Lab, lessons: &Lessons) {
+        // What stands so already is left out: a key may be refused where it has no use.
+        let own = Table::try_from(&lab.view().look).unwrap_or_default();
+        let mut patch = run.look.clone();
+        patch.retain(|key, value| {
+            let is_known = |look: &Table| look.get(key) == Some(value);
+            key != "hide" && !is_known(&self.shown.look) && !is_known(&own)
+        });
+        if !patch.is_empty() {
+            let _ = lab.carry_out(&Command::Look(patch)); // what suits another screen may not suit this one
+        }
+        self.shown.look.clone_from(&run.look);
+        if self.shown.exact != Some(run.exact) {
+            self.shown.exact = Some(run.exact);
+            let _ = lab.carry_out(&Command::Exact(run.exact));
+        }
+        let hidden = hidden(run, lessons.taken());
+        if hidden != self.shown.hidden {
+            let _ = lab.carry_out(&Command::look("hide", &hidden));
+            self.shown.hidden = hidden;
+        }
+    }
+
+    /// What the class adds to the page.
+    fn dress(&self, lessons: &Lessons) -> Dress {
+        let Some((state, taken)) = self.class().zip(lessons.taken()) else {
+            return Dress::default();
+        };
+        let asked = taken.page().filter(|_| taken.lesson.name == state.lesson);
+        let asked = asked.and_then(|page| votes::question(page, state));
+        let border = match (state.shown.is_some(), self.record.is_aside) {
+            (true, true) => "k: back to the class",
+            (true, false) => "k: step aside",
+            (false, _) => "",
+        };
+        let again = asked.as_ref().filter(|(predict, question)| {
+            let voted = self.record.rounds_of(&state.lesson, &predict.name);
+            question.stage != Stage::Closed && voted < question.round()
+        });
+        let shown = asked
+            .as_ref()
+            .filter(|(_, question)| !question.bars.is_empty());
+        Dress {
+            framed: self.title(state, taken, asked.is_some()),
+            border: border.to_owned(),
+            is_followed: self.follows(),
+            again: again.map(|(predict, _)| predict.name.clone()),
+            votes: shown.map(|(predict, question)| {
+                (predict.name.clone(), vec![votes::drawn(&question.bars)])
+            }),
+            ..Dress::default()
+        }
+    }
+
+    /// The title of the page, a form a line; `asks` says whether the page has a question.
+    fn title(&self, state: &State, taken: &Taken, asks: bool) -> String {
+        let page = taken.place.page;
+        let of = format!("{page} of {}", taken.lesson.pages.len());
+        let on = format!("the class is on {}", state.page);
+        if self.record.is_aside {
+            format!("aside · {of} · {on}\naside on {page} · {on}")
+        } else if !self.follows() {
+            format!("{of} · {on}")
+        } else if state.page == page && asks {
+            let answered = format!("following · {of} · {} of {}", state.answered, state.here);
+            format!("{answered} answered\n{answered}")
+        } else {
+            format!("following · {of}")
+        }
+    }
+
+    fn step_aside(&mut self, lab: &mut Lab) {
+        (self.record.is_aside, self.is_new) = (true, true);
+        self.shown = Shown::default();
+        self.next_look = Duration::ZERO;
+        lab.tell("you have stepped aside: k leads back to the class");
+    }
+
+    /// Follows again. A run that was played meanwhile stays, pinned.
+    fn come_back(&mut self, lab: &mut Lab) {
+        (self.record.is_aside, self.is_new) = (false, true);
+        if lab.player().playback.step_number() > 0 && !lab.comparison().is_pinned() {
+            self.has_pinned = lab.carry_out(&Command::Pin(true)).is_ok();
+        }
+        lab.refuse("back in the class");
+    }
+
+    /// What the header of an export says: the seat, and the page beside which it was made.
+    fn note_for_exports(&self, lessons: &Lessons) -> Option<String> {
+        let taken = lessons.taken().filter(|_| self.record.is_aside)?;
+        let (page, lesson) = (taken.place.page, &taken.lesson.name);
+        let (seat, lesson) = (&self.seat.word, self.folder.short(lesson));
+        Some(format!("seat {seat}, beside page {page} of {lesson}"))
+    }
+}
+
+impl Role for Student {
+    fn begin(&mut self, lab: &mut Lab) {
+        if !self.record.lessons.is_empty() {
+            lab.lessons = Some(self.record.lessons.clone()); // never older than the session
+        }
+    }
+
+    fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) -> ControlFlow<()> {
+        let was_new = self.is_new;
+        self.note(lab, lessons);
+        if now >= self.next_look || self.is_new && !was_new {
+            self.next_look = now + EVERY;
+            self.look(lab);
+            if self.follows() {
+                self.follow(lab, lessons);
+            }
+            lab.files_mut().note = self.note_for_exports(lessons);
+            lessons.set_dress(self.dress(lessons), lab);
+            if self.is_new && self.ended.is_none() {
+                self.trouble = self.seat.save(&self.record).err();
+                self.is_new = self.trouble.is_some();
+            }
+        }
+        self.stood = Some(stand(lab, lessons));
+        if self.ended.is_some() {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn act(&mut self, lab: &mut Lab, _lessons: &mut Lessons) {
+        if self.class().is_none() {
+            lab.refuse("no class is on");
+        } else if self.record.is_aside {
+            self.come_back(lab);
+        } else if self.follows() {
+            self.step_aside(lab);
+        } else {
+            lab.refuse("the class is not followed now: n and N turn pages");
+        }
+        self.next_look = Duration::ZERO;
+    }
+
+    fn takes(&mut self, key: LessonKey, lab: &mut Lab, _lessons: &Lessons) -> bool {
+        let is_of_teacher = key == LessonKey::Notes && self.is_on;
+        if is_of_teacher {
+            lab.refuse("the notes are the teacher's");
+        }
+        is_of_teacher
+    }
+
+    fn acted(&mut self, lab: &mut Lab, lessons: &Lessons) {
+        if self.follows()
+            && self
+                .stood
+                .as_ref()
+                .is_some_and(|it| *it != stand(lab, lessons))
+        {
+            self.step_aside(lab);
+        }
+    }
+
+    fn wait(&self, now: Duration) -> Duration {
+        self.next_look.saturating_sub(now).max(LEAST_WAIT)
+    }
+
+    fn trouble(&self) -> Option<String> {
+        self.trouble.clone()
+    }
+
+    fn leave(&mut self) -> Result<String, String> {
+        self.seat.leave(&self.holds);
+        let back = || {
+            format!(
+                "Your seat is {}: type that when you come back.",
+                self.seat.word
+            )
+        };
+        Ok(self.ended.map_or_else(back, str::to_owned))
+    }
+}
+
+/// What is hidden: what the page hides stays so until the predictions here are locked, whatever the teacher sees.
+fn hidden(run: &Run, taken: Option<&Taken>) -> Vec<Part> {
+    let shown = run.look.get("hide").cloned();
+    let shown: Vec<Part> = shown
+        .and_then(|hidden| hidden.try_into().ok())
+        .unwrap_or_default();
+    let page = taken.and_then(|taken| Some((taken.page()?, &taken.place.predictions)));
+    let Some((page, predictions)) = page.filter(|(page, _)| page.predicts().next().is_some())
+    else {
+        return shown;
+    };
+    let mut hidden = Predictions::hidden_after_lock(page, &shown);
+    if !predictions.are_locked_on(page) {
+        hidden.extend(page.lab().map(Setup::hides).unwrap_or_default());
+    }
+    hidden
+}
+
+/// The step at which `run` is by now, and how many steps it may be off.
+fn wanted(run: &Run, playback: &Playback, time_step_s: f64) -> (u64, f64) {
+    let since_s = unix_ms().saturating_sub(run.at_ms) as f64 / 1000.0;
+    let (ahead, off) = match run.speed {
+        _ if !run.is_running => (0.0, 0.0),
+        Speed::Top => (0.0, f64::INFINITY),
+        Speed::Times(speed) => (
+            speed * since_s / time_step_s,
+            speed * OFF_S / time_step_s + 1.0,
+        ),
+    };
+    let step = run.step.saturating_add(ahead as u64);
+    (step.min(playback.end_step()), off)
+}
+
+/// Brings the run of `lab` to where `run` is by now. Returns whether it stands or plays there. A command that is refused
+/// leaves it where it is.
+fn go_with(run: &Run, lab: &mut Lab) -> bool {
+    let playback = &lab.player().playback;
+    if playback.steps_to_go().is_some() {
+        return false;
+    }
+    let (wanted, off) = wanted(run, playback, lab.player().motion().time_step_s);
+    let is_off = wanted.abs_diff(playback.step_number()) as f64 > off;
+    if playback.speed() != run.speed {
+        let _ = lab.carry_out(&Command::Speed(run.speed));
+    }
+    if is_off {
+        let _ = lab.carry_out(&Command::GoTo(Place::Step(wanted)));
+    }
+    let playback = &lab.player().playback;
+    if playback.steps_to_go().is_some() {
+        return false;
+    }
+    let is_running = run.is_running && playback.step_number() < playback.end_step();
+    if is_running != playback.is_running() {
+        let command = if is_running {
+            Command::Run
+        } else {
+            Command::Pause
+        };
+        let _ = lab.carry_out(&command);
+    }
+    true
+}

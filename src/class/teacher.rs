@@ -1,0 +1,318 @@
+//! The teacher's lab: what it shows goes to the class, and the votes of the class come to its pages.
+
+use super::folder::{Folder, LONGEST_RUN, Run, Stage, State, VERSION};
+use super::seat::name_of;
+use super::votes::{self, FEWEST, Sitting, Tally, present, sittings};
+use super::{EVERY, LEAST_WAIT, Role, login, unix_ms};
+use crate::lab::Lab;
+use crate::lab::action::LessonKey;
+use crate::lab::sheet::{Kind, Paragraph};
+use crate::lessons::page::Dress;
+use crate::lessons::{Class as Lessons, Page};
+use crate::scenario::Scenario;
+use crate::text::printable::Shown;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Duration;
+use toml::Table;
+
+#[derive(Debug, Default)]
+pub struct Teacher {
+    folder: Folder,
+    state: State,
+    /// The state that the class knows.
+    published: Option<State>,
+    is_followed: bool,
+    menu: Menu,
+    seats: Vec<Sitting>,
+    /// The run that was shown last, and its file.
+    run: Option<(Arc<Scenario>, String)>,
+    next_look: Duration,
+    trouble: Option<String>,
+}
+
+/// What the class's key has opened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Menu {
+    #[default]
+    Closed,
+    Open,
+    /// The list of the seats, of which one is selected.
+    Seats(usize),
+}
+
+impl Teacher {
+    /// The class in `folder`, with the rounds of an earlier lab.
+    pub fn new(folder: Folder, before: State) -> Self {
+        let state = State {
+            gyrolab: VERSION.to_owned(),
+            is_on: true,
+            ..before
+        };
+        Self {
+            folder,
+            state,
+            is_followed: true,
+            ..Self::default()
+        }
+    }
+
+    fn publish(&mut self) {
+        if self.published.as_ref() == Some(&self.state) {
+            return self.folder.touch_state();
+        }
+        match self.folder.publish(&self.state) {
+            Ok(()) => self.published = Some(self.state.clone()),
+            Err(trouble) => {
+                self.trouble = Some(trouble);
+                self.folder.touch_state(); // the lab is there
+            }
+        }
+    }
+
+    /// Makes the state that of the lab and of the votes.
+    fn look(&mut self, lab: &Lab, lessons: &Lessons) {
+        self.seats = sittings(&self.folder);
+        if let Some(taken) = lessons.taken() {
+            self.state.lesson.clone_from(&taken.lesson.name);
+            self.state.sum = taken.lesson.sum;
+            self.state.page = taken.place.page;
+            self.state.kept.clone_from(&taken.place.kept);
+            self.state.has_arrived = !taken.is_under_way();
+        }
+        self.state.shown = self.is_followed.then(|| self.shown(lab)).flatten();
+        self.state.here = present(&self.seats)[0];
+        self.state.answered = 0;
+        let page = lessons.taken().and_then(|taken| taken.page());
+        if let Some((predict, question)) = page.and_then(|page| votes::question(page, &self.state))
+        {
+            let (lesson, round) = (&self.state.lesson, question.round());
+            let has_answered = |it: &&Sitting| it.record.rounds_of(lesson, &predict.name) >= round;
+            let here = self.seats.iter().filter(|sitting| sitting.is_here());
+            self.state.answered = here.filter(has_answered).count();
+            let tally = Tally::of(&self.seats, lesson, predict, round);
+            let is_shown = question.stage == Stage::All && tally.votes >= FEWEST;
+            let bars = if is_shown { tally.bars } else { Vec::new() };
+            self.state.question_mut(&predict.name).bars = bars;
+        }
+    }
+
+    /// The run in `lab`, as the class follows it.
+    fn shown(&mut self, lab: &Lab) -> Option<Run> {
+        let playback = &lab.player().playback;
+        let scenario = playback.run().scenario();
+        let known = self.run.take();
+        let known = known.filter(|(run, _)| Arc::ptr_eq(run, scenario));
+        let (_, run) = self
+            .run
+            .insert(known.unwrap_or_else(|| (Arc::clone(scenario), scenario.to_toml())));
+        if run.len() > LONGEST_RUN {
+            let rule = "the run's file is above 64 kB: the class cannot follow it";
+            self.trouble = Some(rule.to_owned());
+            return None;
+        }
+        let (step, is_running) = (playback.step_number(), playback.is_running());
+        let before = self.state.shown.as_ref();
+        let still = before.filter(|before| !is_running && before.step == step);
+        Some(Run {
+            name: lab.runs().name().to_owned(),
+            step,
+            end_s: lab.runs().present().end_s,
+            at_ms: still.map_or_else(unix_ms, |before| before.at_ms),
+            is_running,
+            speed: playback.speed(),
+            exact: playback.run().shows_exact(),
+            look: Table::try_from(&lab.view().look).unwrap_or_default(),
+            run: run.clone(),
+        })
+    }
+
+    /// What the class adds to the page.
+    fn dress(&self, lessons: &Lessons) -> Dress {
+        let [here, lost, aside] = present(&self.seats);
+        let framed = lessons.taken().map(|taken| {
+            let (page, pages) = (taken.place.page, taken.lesson.pages.len());
+            let counts = format!("{page} of {pages} · {here} here, {lost} lost, {aside} aside");
+            let short = format!("{page} of {pages} · {here}, {lost} lost, {aside} aside");
+            format!("{counts} · {}\n{counts}\n{short}", taken.lesson.title)
+        });
+        let page = lessons.taken().and_then(|taken| taken.page());
+        let border = match (self.menu, self.is_followed) {
+            (Menu::Closed, _) => "k: show, again, follow, seats\nk: class",
+            (Menu::Open, true) => "1 show 2 again 3 unfollow 4 seats",
+            (Menu::Open, false) => "1 show 2 again 3 follow 4 seats",
+            (Menu::Seats(_), _) => "Enter closes, opens; Esc: back",
+        };
+        Dress {
+            framed: framed.unwrap_or_default(),
+            border: border.to_owned(),
+            is_of_teacher: true,
+            asks_digit: self.menu == Menu::Open,
+            votes: page.and_then(|page| self.votes(page)),
+            instead: match self.menu {
+                Menu::Seats(selected) => Some(self.list(selected)),
+                _ => None,
+            },
+            ..Dress::default()
+        }
+    }
+
+    /// The name of the question that the class is at, and the votes as far as they are shown.
+    fn votes(&self, page: &Page) -> Option<(String, Vec<Paragraph>)> {
+        let (predict, question) = votes::question(page, &self.state)?;
+        let (round, answered, here) = (question.round(), self.state.answered, self.state.here);
+        let since_s = unix_ms().saturating_sub(question.since_ms) / 1000;
+        let (minutes, seconds) = (since_s / 60, since_s % 60);
+        let seen = match question.stage {
+            Stage::Counted | Stage::Teacher => "",
+            Stage::All => " · shown",
+            Stage::Closed => " · closed",
+        };
+        let line = format!("round {round} · {answered} of {here} · {minutes}:{seconds:02}{seen}");
+        let mut lines = vec![Paragraph::new(Kind::Note, line)];
+        if question.stage != Stage::Counted {
+            let tally = Tally::of(&self.seats, &self.state.lesson, predict, round);
+            let late = (tally.late > 0).then(|| format!("late: {}", tally.late));
+            let is_withheld = question.stage == Stage::All && tally.votes < FEWEST;
+            let few = is_withheld.then(|| "under 5 votes the class sees no bars".to_owned());
+            lines.push(votes::drawn(&tally.bars));
+            let words = [tally.advice, late, few].into_iter().flatten();
+            lines.extend(words.map(|words| Paragraph::new(Kind::Note, words)));
+        }
+        Some((predict.name.clone(), lines))
+    }
+
+    /// The names that are locked by wrong codes, then the words of the seats.
+    fn entries(&self) -> Vec<String> {
+        let mut entries = login::locked(&self.folder, unix_ms() / 1000);
+        entries.extend(self.seats.iter().map(|it| it.seat.word.clone()));
+        entries
+    }
+
+    fn list(&self, selected: usize) -> Vec<Paragraph> {
+        let line = |(index, entry): (usize, String)| {
+            let sitting = self.seats.iter().find(|it| it.seat.word == entry);
+            let kind = Kind::Choice {
+                is_selected: index == selected,
+                is_given: sitting.is_none() || self.state.closed.contains(&entry),
+            };
+            let text = sitting.map(|sitting| sitting.in_words(&self.state));
+            let text = text.unwrap_or_else(|| format!("{entry}: locked by wrong codes"));
+            Paragraph::new(kind, text)
+        };
+        let lines = self.entries().into_iter().enumerate().map(line);
+        let title = Paragraph::new(Kind::Heading, "The seats");
+        [title].into_iter().chain(lines).collect()
+    }
+
+    /// Does what the menu has under `digit`.
+    fn choose(&mut self, digit: u8, lab: &mut Lab, page: Option<&Page>) {
+        self.menu = Menu::Closed;
+        match digit {
+            1 | 2 => {
+                let asked = page.and_then(|page| votes::question(page, &self.state));
+                let Some((predict, _)) = asked else {
+                    return lab.refuse("this page asks nothing");
+                };
+                let question = self.state.question_mut(&predict.name);
+                if digit == 2 {
+                    question.earlier_rounds += 1;
+                    (question.stage, question.since_ms) = (Stage::Counted, unix_ms());
+                    return lab
+                        .refuse(format!("round {}: the class votes again", question.round()));
+                }
+                question.stage = match question.stage {
+                    Stage::Counted => Stage::Teacher,
+                    Stage::Teacher => Stage::All,
+                    Stage::All => Stage::Closed,
+                    Stage::Closed => return lab.refuse("closed: k 2 asks it again"),
+                };
+            }
+            3 => self.is_followed = !self.is_followed,
+            4 => self.menu = Menu::Seats(0),
+            _ => lab.refuse("1 shows the votes, 2 asks again, 3 lets the class follow, 4: seats"),
+        }
+    }
+
+    /// Closes the selected seat, or opens it; lets a name that is locked try again.
+    fn close_or_open(&mut self, selected: usize, lab: &mut Lab) {
+        let Some(entry) = self.entries().into_iter().nth(selected) else {
+            return;
+        };
+        if name_of(&entry).is_none() {
+            self.folder.unlock(&entry);
+        } else if !self.state.closed.remove(&entry) {
+            lab.refuse(format!("{entry} is closed: Enter opens it again"));
+            self.state.closed.insert(entry);
+        }
+    }
+}
+
+impl Role for Teacher {
+    fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) -> ControlFlow<()> {
+        let is_new = lessons.taken().is_some_and(|taken| {
+            (&taken.lesson.name, taken.place.page) != (&self.state.lesson, self.state.page)
+        });
+        if now >= self.next_look || is_new {
+            self.next_look = now + EVERY;
+            self.trouble = None;
+            self.look(lab, lessons);
+            self.publish();
+            if self.folder.is_full() {
+                let full = "the disk of the class is full: votes cannot be kept";
+                self.trouble = Some(full.to_owned());
+            }
+            lessons.set_dress(self.dress(lessons), lab);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn act(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+        self.menu = match self.menu {
+            Menu::Closed => Menu::Open,
+            _ => Menu::Closed,
+        };
+        lessons.set_dress(self.dress(lessons), lab);
+        lab.view_mut().turn_to_sheet();
+    }
+
+    fn takes(&mut self, key: LessonKey, lab: &mut Lab, lessons: &Lessons) -> bool {
+        match (self.menu, key) {
+            (Menu::Closed, _) => return false,
+            (Menu::Open, LessonKey::Digit(digit)) => {
+                let page = lessons.taken().and_then(|taken| taken.page());
+                self.choose(digit, lab, page);
+            }
+            (Menu::Seats(selected), LessonKey::Move(direction)) => {
+                let last = self.entries().len().saturating_sub(1);
+                let selected = selected.saturating_add_signed(direction.rows(10)).min(last);
+                self.menu = Menu::Seats(selected);
+            }
+            (Menu::Seats(selected), LessonKey::Take) => self.close_or_open(selected, lab),
+            (_, key) => {
+                self.menu = Menu::Closed;
+                return key == LessonKey::Leave;
+            }
+        }
+        true
+    }
+
+    fn acted(&mut self, _lab: &mut Lab, _lessons: &Lessons) {
+        self.next_look = Duration::ZERO;
+    }
+
+    fn wait(&self, now: Duration) -> Duration {
+        self.next_look.saturating_sub(now).max(LEAST_WAIT)
+    }
+
+    fn trouble(&self) -> Option<String> {
+        self.trouble.clone()
+    }
+
+    fn leave(&mut self) -> Result<String, String> {
+        self.state.is_on = false;
+        self.folder.publish(&self.state)?;
+        let root = Shown(&self.folder.root);
+        Ok(format!("gyrolab class --resume --folder {root} goes on"))
+    }
+}

@@ -1,0 +1,200 @@
+//! The votes of a question, counted: as bars, as advice to the teacher, and as CSV.
+
+use super::Folder;
+use super::folder::{Question, Stage, State};
+use super::seat::{Presence, Record, Seat, Vote, all_seats};
+use crate::lab::sheet::{Kind, Paragraph};
+use crate::lessons::lesson::Right;
+use crate::lessons::{Asked, Page, Predict};
+use crate::text::number::{shortest, significant};
+use chrono::{DateTime, Utc};
+
+/// With fewer votes no bars go to the students: who has voted what could be guessed.
+pub const FEWEST: usize = 5;
+/// The most bars of predicted numbers.
+const MOST_BARS: usize = 9;
+/// The columns of the longest bar.
+const BAR: usize = 20;
+
+/// A seat with its record and whether somebody sits there.
+#[derive(Clone, Debug)]
+pub struct Sitting {
+    pub seat: Seat,
+    pub record: Record,
+    pub presence: Presence,
+}
+
+/// Every seat of the class. What cannot be read counts as a seat without votes.
+pub fn sittings(folder: &Folder) -> Vec<Sitting> {
+    let sitting = |seat: Seat| Sitting {
+        record: seat.record().unwrap_or_default(),
+        presence: seat.presence(),
+        seat,
+    };
+    all_seats(folder).into_iter().map(sitting).collect()
+}
+
+/// How many of `seats` are here, lost, and stepped aside.
+pub fn present(seats: &[Sitting]) -> [usize; 3] {
+    let count = |is_so: &dyn Fn(&Sitting) -> bool| seats.iter().filter(|it| is_so(it)).count();
+    [
+        count(&Sitting::is_here),
+        count(&|it| it.presence == Presence::Lost),
+        count(&|it| it.is_here() && it.record.is_aside),
+    ]
+}
+
+impl Sitting {
+    pub fn is_here(&self) -> bool {
+        self.presence == Presence::Here
+    }
+
+    /// Its word, and how it is there, as the lists of the teacher have it.
+    pub fn in_words(&self, state: &State) -> String {
+        let word = &self.seat.word;
+        let is_there = match self.presence {
+            _ if state.closed.contains(word) => "closed",
+            Presence::Away => "away",
+            Presence::Lost => "lost",
+            Presence::Here if self.record.is_aside => "aside",
+            Presence::Here => "here",
+        };
+        format!("{word}: {is_there}")
+    }
+}
+
+/// The votes of one round of a question.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// A name for each answer, and how many gave it.
+    pub bars: Vec<(String, usize)>,
+    /// Votes in time.
+    pub votes: usize,
+    pub late: usize,
+    /// What is right, how many said it, and what to do next; where the lesson says what is.
+    pub advice: Option<String>,
+}
+
+impl Tally {
+    pub fn of(seats: &[Sitting], lesson: &str, predict: &Predict, round: u32) -> Self {
+        let is_of_it = |vote: &&Vote| {
+            (vote.lesson.as_str(), vote.question.as_str(), vote.round)
+                == (lesson, &predict.name, round)
+        };
+        let votes = seats
+            .iter()
+            .filter_map(|sitting| sitting.record.votes.iter().find(is_of_it));
+        let (late, in_time): (Vec<_>, Vec<_>) = votes.partition(|vote| vote.late);
+        let choices: Vec<f64> = in_time.iter().map(|vote| vote.choice).collect();
+        Self {
+            votes: choices.len(),
+            late: late.len(),
+            advice: predict
+                .right
+                .as_ref()
+                .and_then(|right| advice(right, &choices)),
+            bars: match &predict.asked {
+                Asked::Choice(all) => of_choices(all.len(), &choices),
+                Asked::Number { .. } => of_numbers(choices),
+            },
+        }
+    }
+}
+
+fn advice(right: &Right, choices: &[f64]) -> Option<String> {
+    let hits = choices.iter().filter(|choice| right.takes(**choice));
+    let percent = 100 * hits.count() / Some(choices.len()).filter(|all| *all > 0)?;
+    let next = match percent {
+        ..30 => "explain, then again",
+        30..=70 => "let them talk, then again",
+        _ => "go on",
+    };
+    let right = match right {
+        Right::Choice(number) => number.to_string(),
+        Right::Number { value, within } => format!("{} ± {}", shortest(*value), shortest(*within)),
+    };
+    Some(format!("right: {right}, {percent} %: {next}"))
+}
+
+fn of_choices(count: usize, choices: &[f64]) -> Vec<(String, usize)> {
+    let given = |number: usize| choices.iter().filter(|it| **it == number as f64).count();
+    (1..=count)
+        .map(|number| (number.to_string(), given(number)))
+        .collect()
+}
+
+/// The numbers to two digits, the most frequent of them, in their order.
+fn of_numbers(mut numbers: Vec<f64>) -> Vec<(String, usize)> {
+    numbers.sort_by(f64::total_cmp);
+    let mut bars: Vec<(String, usize)> = Vec::new();
+    for number in numbers {
+        let name = significant(number, 2);
+        match bars.last_mut() {
+            Some((last, count)) if *last == name => *count += 1,
+            _ => bars.push((name, 1)),
+        }
+    }
+    let mut counts: Vec<_> = bars.iter().map(|(_, count)| *count).collect();
+    counts.sort_unstable_by(|a, b| b.cmp(a));
+    let least = counts.get(MOST_BARS - 1).copied().unwrap_or(1);
+    bars.retain(|(_, count)| *count >= least);
+    bars.truncate(MOST_BARS);
+    bars
+}
+
+/// `bars` as a part of a page, a line each.
+pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
+    let most = bars.iter().map(|bar| bar.1).max().unwrap_or(0).max(1);
+    let width = bars.iter().map(|bar| bar.0.len()).max().unwrap_or(0);
+    let line = |(name, count): &(String, usize)| {
+        let bar = "█".repeat((count * BAR).div_ceil(most));
+        format!("{name:<width$} {bar} {count}\n")
+    };
+    Paragraph::new(Kind::Code, bars.iter().map(line).collect::<String>())
+}
+
+/// The question of `page` that the class is at: the first that is not closed, or else the first.
+pub fn question<'a>(page: &'a Page, state: &State) -> Option<(&'a Predict, Question)> {
+    let asked = |predict: &'a Predict| (predict, state.question(&predict.name));
+    let mut all = page.predicts().map(asked);
+    let first = all.next()?;
+    if first.1.stage != Stage::Closed {
+        return Some(first);
+    }
+    let open = all.find(|(_, question)| question.stage != Stage::Closed);
+    Some(open.unwrap_or(first))
+}
+
+const COLUMNS: [&str; 8] = [
+    "lesson", "question", "round", "seat", "choice", "late", "page", "time",
+];
+
+/// All votes of the class as CSV, in the order of seats, and of each seat in the order of their time.
+pub fn csv(folder: &Folder) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(COLUMNS)?;
+    for sitting in sittings(folder) {
+        for vote in &sitting.record.votes {
+            writer.write_record([
+                folder.short(&vote.lesson),
+                &vote.question,
+                &vote.round.to_string(),
+                &sitting.seat.word,
+                &shortest(vote.choice),
+                &vote.late.to_string(),
+                &vote.page.to_string(),
+                &time(vote),
+            ])?;
+        }
+    }
+    let bytes = writer
+        .into_inner()
+        .map_err(csv::IntoInnerError::into_error)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// The time of `vote`, as RFC 3339 writes it.
+fn time(vote: &Vote) -> String {
+    let time = DateTime::<Utc>::from_timestamp(vote.time_unix_s as i64, 0).unwrap_or_default();
+    time.format("%Y-%m-%dT%H:%M:%SZ").to_string()
+}

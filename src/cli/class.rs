@@ -1,0 +1,227 @@
+//! `gyrolab class` and `gyrolab --seat`: a class in a folder.
+
+use super::args::{ClassArgs, Look, WorkbenchArgs};
+use super::lesson::admit;
+use super::new_lab::{DEFAULT, new_lab, refused};
+use super::workbench::open_at;
+use super::{print, progress, sessions, tell};
+use crate::class::folder::Folder;
+use crate::class::seat::all_seats;
+use crate::class::student::Student;
+use crate::class::teacher::Teacher;
+use crate::class::{Seat, board, login, votes};
+use crate::export::Destination;
+use crate::lessons::class::KeptLessons;
+use crate::lessons::clock::unix_s;
+use crate::lessons::{handout, reading};
+use crate::storage::confined::{Confined, MOST_OF_SEAT};
+use crate::storage::session;
+use crate::text::printable::Shown;
+use crate::tui;
+use anyhow::{Context, bail, ensure};
+use rustix::process::{Pid, Resource, Signal};
+use std::io::{self, BufRead, IsTerminal, Read, Write};
+use std::path::Path;
+use std::process::ExitCode;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// The columns of a board that is printed.
+const WIDTH: usize = 80;
+/// The longest line that is read for a seat, bytes.
+const LONGEST_LINE: u64 = 200;
+/// How long a wrong word keeps waiting.
+const PENALTY: Duration = Duration::from_secs(1);
+
+pub(super) fn class(args: &ClassArgs) -> anyhow::Result<ExitCode> {
+    let at = || Folder::at(&args.folder).map_err(anyhow::Error::msg);
+    if args.votes {
+        return print(&votes::csv(&at()?)?);
+    }
+    if args.board {
+        return show_board(&at()?);
+    }
+    if let (true, Some(output)) = (args.answers, &args.output) {
+        return answers(&at()?, output, args.force, args.look);
+    }
+    ensure!(
+        io::stdin().is_terminal() && io::stdout().is_terminal(),
+        "a class needs a terminal for the teacher's lab; --board, --votes and --answers do not"
+    );
+    teach(args)
+}
+
+/// Opens the teacher's lab.
+fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
+    let folder = Folder::open(&args.folder).map_err(anyhow::Error::msg)?;
+    folder.make_teacher().map_err(anyhow::Error::msg)?;
+    let confined = Confined::enter(&args.folder).with_context(|| sessions::named(&args.folder))?;
+    let confined = confined.keeping_in(folder.teacher());
+    let sessions = session::list(&folder.teacher())?;
+    ensure!(
+        !sessions.iter().any(|session| session.is_in_use),
+        "a class is on in {}: its board is gyrolab class --board --folder DIR",
+        Shown(&folder.root)
+    );
+    let before = match folder.state() {
+        Err(reason) if args.resume => bail!(reason),
+        state => state.ok().flatten().unwrap_or_default(),
+    };
+    let (name, page) = match &args.lesson {
+        Some(name) => (reading::full_name(name), 1),
+        None if before.lesson.is_empty() => {
+            bail!("no class has begun here: gyrolab class LESSON --folder DIR")
+        }
+        None => (before.lesson.clone(), before.page.max(1)),
+    };
+    admit(&name, &confined).context("the lesson of a class lies in its folder")?;
+    let lesson = reading::open(&name)?;
+    let workbench = WorkbenchArgs {
+        paused: true,
+        look: args.look,
+        resume: (args.resume && !sessions.is_empty()).then(String::new),
+        ..WorkbenchArgs::default()
+    };
+    let page = Some((&lesson, page.min(lesson.pages.len())));
+    let teacher = Box::new(Teacher::new(folder, before));
+    open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher))
+}
+
+fn show_board(folder: &Folder) -> anyhow::Result<ExitCode> {
+    if io::stdin().is_terminal() && io::stdout().is_terminal() {
+        tui::board::run(|width| board::lines(folder, width))
+            .context("the terminal cannot be used")?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    print(&(board::lines(folder, WIDTH).join("\n") + "\n"))
+}
+
+/// Writes what each seat has predicted beside what came out: a file for each in the folder `output`.
+fn answers(folder: &Folder, output: &Path, force: bool, look: Look) -> anyhow::Result<ExitCode> {
+    std::fs::create_dir_all(output).with_context(|| Shown(output).to_string())?;
+    let interruption = progress::interruption()?;
+    let mut files = 0;
+    for seat in all_seats(folder) {
+        let record = seat.record().unwrap_or_default();
+        let kept = KeptLessons::read(&record.lessons).unwrap_or_default();
+        let mut text = String::new();
+        for (name, place) in kept.lessons {
+            if place.predictions.is_empty() {
+                continue;
+            }
+            let Ok(lesson) = reading::open(&name) else {
+                continue; // its file is gone
+            };
+            let mut meter = interruption.meter();
+            text += &handout::answers(&lesson, &place, new_lab(look)?, &mut meter)
+                .map_err(|problem| refused(&lesson, problem))?;
+            interruption.may_act_at_once()?;
+        }
+        if !text.is_empty() {
+            let path = output.join(format!("{}.md", seat.word));
+            let file = Destination::open_file(&path, force)?;
+            file.write_and_keep(format!("<!-- seat {} -->\n{text}", seat.word).as_bytes())?;
+            files += 1;
+        }
+    }
+    tell(format_args!(
+        "gyrolab: the answers of {files} seats are in {}",
+        Shown(output)
+    ));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Asks for a seat of the class in `dir`, and opens its lab.
+pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode> {
+    ensure!(
+        io::stdin().is_terminal() && io::stdout().is_terminal(),
+        "--seat needs a terminal: it asks for a name"
+    );
+    // The teacher reads what the seat writes, and nobody else does; no file takes more than a seat may.
+    rustix::process::umask(rustix::fs::Mode::from_raw_mode(0o027));
+    let mut limit = rustix::process::getrlimit(Resource::Fsize);
+    let now = limit.current.unwrap_or(MOST_OF_SEAT);
+    limit.current = Some(now.min(MOST_OF_SEAT));
+    rustix::process::setrlimit(Resource::Fsize, limit)?;
+    let folder = Folder::open(dir).map_err(anyhow::Error::msg)?;
+    let Some(seat) = asked(&folder)? else {
+        return Ok(ExitCode::SUCCESS);
+    };
+    let holds = seat.hold().map_err(anyhow::Error::msg)?;
+    let confined = Confined::enter(&seat.folder)?.as_seat_of(&folder.root);
+    let sessions = confined.sessions().map_err(anyhow::Error::msg)?;
+    take_over(&sessions);
+    // A file that this version cannot read is left as it is.
+    let record = seat.record().map_err(anyhow::Error::msg);
+    let record = record.with_context(|| format!("the file of the seat {}", seat.word))?;
+    let has_session = session::list(&sessions).is_ok_and(|sessions| !sessions.is_empty());
+    let is_on = folder.is_teacher_alive();
+    let args = WorkbenchArgs {
+        resume: has_session.then(String::new),
+        paused: is_on || args.paused,
+        ..args.clone()
+    };
+    let student = Box::new(Student::new(folder, seat, holds, record));
+    open_at(&args, DEFAULT, Some(confined), None, Some(student))
+}
+
+/// Asks for a name or the word of a seat until there is one; `None` where nothing more is typed.
+fn asked(folder: &Folder) -> anyhow::Result<Option<Seat>> {
+    loop {
+        let mut stdout = io::stdout();
+        write!(stdout, "{}", login::ASKS)?;
+        stdout.flush()?;
+        let Some(line) = line()? else {
+            writeln!(stdout)?;
+            return Ok(None);
+        };
+        match login::take(folder, &line, unix_s()) {
+            Ok((seat, false)) => return Ok(Some(seat)),
+            Ok((seat, true)) => {
+                let word = &seat.word;
+                writeln!(
+                    stdout,
+                    "Your seat is {word}: type that when you come back. Enter goes on."
+                )?;
+                return Ok(self::line()?.map(|_| seat));
+            }
+            Err(reason) => {
+                sleep(PENALTY);
+                writeln!(stdout, "{reason}")?;
+            }
+        }
+    }
+}
+
+/// A line that was typed, cut off where it is too long; `None` at the end.
+fn line() -> io::Result<Option<String>> {
+    let mut stdin = io::stdin().lock();
+    let mut bytes = Vec::new();
+    if (&mut stdin)
+        .take(LONGEST_LINE)
+        .read_until(b'\n', &mut bytes)?
+        == 0
+    {
+        return Ok(None);
+    }
+    Ok(Some(String::from_utf8_lossy(&bytes).into_owned()))
+}
+
+/// Waits until no other lab has a session in the folder `sessions`. One that does not end by itself is ended: its line may
+/// be dead, and it waits for somebody to take what it draws.
+fn take_over(sessions: &Path) {
+    let holder = || {
+        let sessions = session::list(sessions).unwrap_or_default();
+        let held = sessions.into_iter().find(|session| session.is_in_use)?;
+        Pid::from_raw(i32::try_from(held.owner?).ok()?)
+    };
+    for signal in [None, Some(Signal::TERM), Some(Signal::KILL)] {
+        if let (Some(signal), Some(process)) = (signal, holder()) {
+            let _ = rustix::process::kill_process(process, signal); // it may have ended meanwhile
+        }
+        let begin = Instant::now();
+        while holder().is_some() && begin.elapsed() < Duration::from_secs(2) {
+            sleep(Duration::from_millis(50));
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Files and folders that two accounts share through a group, such as the teacher's and the class's. Their modes are set
+//! explicitly, whatever the umask is. A file is read only if it belongs to the user or to the owner of its folder: others
+//! may be able to write in that folder too.
+
+use super::own::{self, refused};
+use std::fs::{self, OpenOptions, Permissions};
+use std::io::{self, ErrorKind, Read};
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::path::Path;
+use std::time::SystemTime;
+
+/// Creates the folder with this mode if it does not exist; returns whether it did. One that exists keeps its mode.
+pub fn make_folder(path: &Path, mode: u32) -> io::Result<bool> {
+    match fs::create_dir(path) {
+        Ok(()) => fs::set_permissions(path, Permissions::from_mode(mode)).map(|()| true),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+            let is_folder = fs::symlink_metadata(path)?.is_dir();
+            is_folder
+                .then_some(false)
+                .ok_or(refused("it is not a folder"))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// The text of the file at `path`; `None` where there is none. One of more than `most` bytes is refused.
+pub fn read(path: &Path, most: usize) -> io::Result<Option<String>> {
+    let file = match own::open_regular(path, OpenOptions::new().read(true)) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        file => file?,
+    };
+    let folder = fs::metadata(path.parent().unwrap_or(Path::new(".")))?;
+    let owners = [rustix::process::geteuid().as_raw(), folder.uid()];
+    if !owners.contains(&file.metadata()?.uid()) {
+        return Err(refused("it belongs to another user"));
+    }
+    let mut text = String::new();
+    file.take(most as u64 + 1).read_to_string(&mut text)?;
+    if text.len() > most {
+        return Err(io::Error::other(format!("it is longer than {most} bytes")));
+    }
+    Ok(Some(text))
+}
+
+/// Replaces the file at `path` by one that contains `text`. The file is complete at any moment; where the new one cannot be
+/// written, the old one stays.
+pub fn replace(path: &Path, text: &str) -> io::Result<()> {
+    own::replace_with_mode(path, text, 0o640)
+}
+
+/// Sets the time of the user's own file at `path` to now. It needs no room on the disk.
+pub fn touch(path: &Path) -> io::Result<()> {
+    own::open(path, OpenOptions::new().write(true))?.set_modified(SystemTime::now())
+}
+
+/// When the file was written or touched last; `None` where it is not there.
+pub fn modified(path: &Path) -> Option<SystemTime> {
+    fs::symlink_metadata(path).ok()?.modified().ok()
+}

@@ -1,0 +1,42 @@
+//! Lines that are drawn again and again, without a lab: the board of a class.
+
+use super::decoder::Typed;
+use super::keymap::Key;
+use super::terminal::{Event, Screen};
+use crate::text::printable::printable;
+use ratatui::style::Style;
+use std::io;
+use std::time::Duration;
+
+/// How often the lines are written anew.
+const EVERY: Duration = Duration::from_millis(500);
+
+/// Shows `lines`, which are given the width of the screen, until q, Esc or Ctrl-C.
+pub fn run(lines: impl Fn(usize) -> Vec<String>) -> io::Result<()> {
+    let mut screen = Screen::enter()?;
+    loop {
+        let lines = lines(screen.size()?.width.into());
+        screen.draw(|area, buf| {
+            for (line, y) in lines.iter().zip(area.top()..area.bottom()) {
+                buf.set_stringn(
+                    area.left(),
+                    y,
+                    printable(line),
+                    area.width.into(),
+                    Style::new(),
+                );
+            }
+        })?;
+        for event in screen.events(EVERY)? {
+            match event {
+                Event::Typed(Typed::Key(Key::Char('q') | Key::Esc | Key::Ctrl('c'))) => {
+                    return Ok(());
+                }
+                Event::Suspend => screen.suspend()?,
+                Event::Resumed => screen.resume()?,
+                Event::Resized => screen.forget()?,
+                Event::Typed(_) => {}
+            }
+        }
+    }
+}

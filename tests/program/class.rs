@@ -1,0 +1,165 @@
+//! A class in ptys: following, voting, and what is left when labs are killed.
+
+use crate::support::dice::Dice;
+use crate::support::ground::Ground;
+use crate::support::pty::Terminal;
+use crate::support::words::has_all;
+
+const LESSON: &str = "is-the-wobble-real";
+const DOWN: &str = "\x1b[B";
+
+fn teach(ground: &Ground, args: &str) -> Terminal {
+    ground.open(&format!("class {args} --folder ."))
+}
+
+/// A student's lab in a new seat, and the seat's word.
+fn sit(ground: &Ground, name: &str) -> (Terminal, String) {
+    let mut lab = ground.open("--folder . --seat");
+    lab.wait_for("A name for your seat");
+    lab.ask(&format!("{name}\r"), "Enter goes on.");
+    let words = lab.words();
+    let (_, word) = words.split_once("Your seat is ").unwrap();
+    let word = word.split(':').next().unwrap().to_owned();
+    lab.press("\r");
+    lab.wait_for("following · 1 of 10");
+    (lab, word)
+}
+
+/// Votes for the second choice.
+fn vote(lab: &mut Terminal) {
+    lab.wait_for("[ ] is about ten times smaller");
+    lab.ask(DOWN, "> [ ] stays as it is");
+    lab.ask(DOWN, "> [ ] is about ten times smaller");
+    lab.ask("\r", "> [x] is about ten times smaller");
+    lab.press("\r");
+    lab.wait_until("a locked vote", |lab| !lab.words().contains("> [x]"));
+}
+
+#[test]
+fn a_class_follows_votes_and_loses_nothing() {
+    let ground = Ground::new();
+    let header = "lesson,question,round,seat,choice,late,page,time\n";
+    assert_eq!(ground.stdout("class --votes --folder ."), header);
+    let mut teacher = teach(&ground, LESSON);
+    teacher.wait_for("1 of 10");
+    let (mut anna, word) = sit(&ground, "anna");
+    let (mut ben, _) = sit(&ground, "ben");
+    teacher.wait_for("2 here");
+    teacher.press("n");
+    for lab in [&mut anna, &mut ben] {
+        lab.wait_for("following · 2 of 10");
+    }
+    vote(&mut anna);
+    anna.kill();
+    teacher.wait_for("round 1 · 1 of 2");
+    let votes = ground.stdout("class --votes --folder .");
+    has_all(&votes, &[&format!("{LESSON},finer,1,{word},2,false,2,")]);
+    // Stepping aside, and the class goes on meanwhile.
+    ben.ask("n", "predict first");
+    ben.ask("n", "aside on 3 · the class is on 2");
+    teacher.press("n");
+    ben.wait_for("the class is on 3");
+    teacher.press("N");
+    ben.wait_for("the class is on 2");
+    ben.ask("k", "following · 2 of 10");
+    // Back by the seat's word, with page and prediction.
+    let mut anna = ground.open("--folder . --seat");
+    anna.ask(&format!("{word}\r"), "following · 2 of 10");
+    anna.wait_for("[x] is about ten times smaller");
+    // The seat is opened elsewhere: the lab before ends by itself.
+    let mut again = ground.open("--folder . --seat");
+    again.ask(&format!("{word}\r"), "following · 2 of 10");
+    anna.wait_for_end();
+    assert!(anna.sent_text().contains("opened in another lab"));
+    // A second round, and a teacher's lab that is killed.
+    teacher.ask("k", "1 show 2 again");
+    teacher.press("2");
+    vote(&mut again);
+    teacher.wait_for("round 2 · 1 of 2");
+    teacher.kill();
+    ben.wait_for("the teacher's lab is gone: n and N turn pages");
+    let mut teacher = teach(&ground, "--resume");
+    teacher.wait_for("2 of 10");
+    teacher.wait_for("round 2 · 1 of 2");
+    ben.wait_for("following · 2 of 10");
+    teacher.press("n");
+    again.wait_for("following · 3 of 10");
+    let board = ground.stdout("class --board --folder .");
+    has_all(&board, &["2 here", &word, "3 of 10"]);
+    teacher.quit();
+    ben.wait_for("the class is over");
+    ground.stdout("class --answers --folder . -o answers");
+    let answers = ground.read(&format!("answers/{word}.md"));
+    has_all(&answers, &["**Predicted.** is about ten times smaller"]);
+}
+
+#[test]
+fn a_seat_reaches_nothing_of_another() {
+    let ground = Ground::new();
+    ground.write("secret.csv", "t_s,x_m\n0,1\n");
+    let mut teacher = teach(&ground, LESSON);
+    teacher.wait_for("1 of 10");
+    let (mut anna, word) = sit(&ground, "anna");
+    anna.press("x");
+    for name in ["../ben-0001/run.csv", "/tmp/run.csv", ".gyrolab/seat"] {
+        anna.press(&format!("\x15{name}\r"));
+        anna.wait_until("a refusal", |lab| {
+            let words = lab.words();
+            words.contains("stays in its folder") || words.contains("lab's own")
+        });
+    }
+    anna.press("\x15mine.csv\r");
+    anna.wait_for("mine.csv: your teacher has it");
+    let seat = ground.file(&format!(".gyrolab/seats/{word}/mine.csv"));
+    assert!(seat.exists());
+    // The teacher closes it.
+    teacher.ask("k", "4 seats");
+    teacher.ask("4", &format!("{word}: here"));
+    teacher.press("\r");
+    anna.wait_for_end();
+    assert!(anna.sent_text().contains("closed this seat"));
+    let mut anna = ground.open("--folder . --seat");
+    anna.ask(&format!("{word}\r"), "this seat is closed");
+}
+
+#[test]
+#[ignore = "thirty labs and two hundred kills take minutes"]
+fn thirty_seats_and_two_hundred_kills_lose_no_vote_and_no_page() {
+    let ground = Ground::new();
+    let mut teacher = teach(&ground, LESSON);
+    teacher.wait_for("1 of 10");
+    let mut seats: Vec<_> = (0..30)
+        .map(|number| sit(&ground, &format!("seat{number}")))
+        .collect();
+    teacher.press("n");
+    for (lab, _) in &mut seats {
+        vote(lab);
+    }
+    let mut dice = Dice(7);
+    let mut page = 2;
+    for kill in 0..200 {
+        if kill % 20 == 19 {
+            teacher.kill();
+            teacher = teach(&ground, "--resume");
+            teacher.wait_for(&format!("{page} of 10"));
+        } else {
+            let (lab, word) = &mut seats[dice.whole(0, 29) as usize];
+            lab.kill();
+            *lab = ground.open("--folder . --seat");
+            lab.ask(&format!("{word}\r"), &format!("following · {page} of 10"));
+        }
+        if kill % 50 == 25 {
+            page = 5 - page;
+            teacher.press(if page == 3 { "n" } else { "N" });
+            for (lab, _) in &seats {
+                lab.wait_for(&format!("following · {page} of 10"));
+            }
+        }
+    }
+    let votes = ground.stdout("class --votes --folder .");
+    assert_eq!(
+        votes.matches(&format!("{LESSON},finer,1,")).count(),
+        30,
+        "{votes}"
+    );
+}
