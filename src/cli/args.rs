@@ -30,11 +30,15 @@ pub(super) struct ScenarioArgs {
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct Changes {
-    /// Change a value first, such as start.tilt_deg=30 or push.0.force_N=[0,0,-50]; may be repeated
+    /// Change a value first: start.tilt_deg=30; may be repeated
+    ///
+    /// KEY is one that gyrolab keys lists, VALUE is TOML: push.0.force_N=[0,0,-50].
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub(super) set: Vec<String>,
 
-    /// The time step, s, with the run's length and its pushes held in seconds (--set motion.time_step_s holds their steps)
+    /// The time step, s; length and pushes keep their seconds
+    ///
+    /// With --set motion.time_step_s they keep their numbers of steps.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = positive)]
     pub(super) time_step: Option<f64>,
 
@@ -57,14 +61,16 @@ pub(super) struct WorkbenchArgs {
     #[command(flatten)]
     pub(super) changes: Changes,
 
-    /// Come back to a session, to the step where it was left: the newest that is not in use, or the one that
-    /// gyrolab sessions calls NAME
+    /// Come back to a session: the newest, or NAME
+    ///
+    /// To the step where it was left; the newest that is not in use, or the one that gyrolab sessions calls NAME.
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "",
           conflicts_with_all = ["scenario", "set", "time_step", "scheme", "at"])]
     pub(super) resume: Option<String>,
 
-    /// Read and write in this folder and nowhere else, whatever is typed: SCENARIO is a preset or a file in it, and
-    /// sessions are kept in its folder .gyrolab
+    /// Read and write in this folder and nowhere else
+    ///
+    /// Whatever is typed: SCENARIO is a preset or a file in it, and sessions are kept in its folder .gyrolab.
     #[arg(long, value_name = "DIR")]
     pub(super) folder: Option<PathBuf>,
 
@@ -84,7 +90,9 @@ pub(super) struct WorkbenchArgs {
     #[arg(long, value_name = "STEP", allow_negative_numbers = true, value_parser = steps)]
     pub(super) at: Option<u64>,
 
-    /// Carry out the commands in this file, [[do]] tables, or of stdin for -; gyrolab man lists them
+    /// Carry out the commands in this file, or of stdin for -
+    ///
+    /// The file holds [[do]] tables, which gyrolab man lists.
     #[arg(long = "do", value_name = "FILE")]
     pub(super) commands: Option<PathBuf>,
 
@@ -99,8 +107,10 @@ pub(super) struct WorkbenchArgs {
 /// Measured data beside a run.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct MeasuredArgs {
-    /// Put measured data beside the run: a CSV with a column t_s, data that come with gyrolab (heidelberg-spin-decay), or
-    /// rows that your own program of the report's scheme wrote
+    /// Put measured data beside the run
+    ///
+    /// FILE is a CSV with a column t_s, data that come with gyrolab (heidelberg-spin-decay), or rows that your own program
+    /// of the report's scheme wrote.
     #[arg(long, value_name = "FILE")]
     pub(super) measured: Option<String>,
 
@@ -110,7 +120,9 @@ pub(super) struct MeasuredArgs {
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct MapArgs {
-    /// What the columns of measured data are: the file's name or number (from 1) of each, and gyrolab's
+    /// What the columns of measured data are
+    ///
+    /// COLUMN is the name in the file, or the number from 1; NAME is gyrolab's.
     #[arg(long, value_name = "COLUMN=NAME,...", value_delimiter = ',', value_parser = renaming)]
     pub(super) map: Vec<Renaming>,
 }

@@ -24,9 +24,10 @@ use std::sync::Arc;
 
 #[derive(Debug, Args)]
 pub(super) struct FigureArgs {
-    /// Presets' names, or files: what gyrolab run takes, the CSV of compare, of a sweep or of a fit, or a figure, whose own
-    /// options hold where none is given.
-    /// Of compare the slope is told where the error falls evenly over three time steps or more
+    /// Presets' names, or files: what gyrolab run takes, or the CSV of compare, of a sweep or of a fit
+    ///
+    /// Of a figure its own options hold where none is given. Of compare the slope is told where the error falls evenly over
+    /// three time steps or more.
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<String>,
 
@@ -34,8 +35,10 @@ pub(super) struct FigureArgs {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
-    /// What to draw: traces (x, y, z over time), above, 3d, columns of the CSV over time with commas between them, or
-    /// residuals (measured less run) [default: traces, or with --measured what was measured]
+    /// What to draw: traces, above, 3d, residuals, or columns with commas between them
+    ///
+    /// Traces are x, y, z over time, residuals are measured less run, columns are those of the CSV, over time
+    /// [default: traces, or with --measured what was measured].
     #[arg(long, value_name = "KIND")]
     kind: Option<String>,
 

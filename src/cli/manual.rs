@@ -230,7 +230,8 @@ fn two_columns<T>(rows: &[T], row: fn(&T) -> (&'static str, &'static str)) -> St
 type Section = (&'static str, String);
 
 fn of_program() -> Result<Vec<Section>, fmt::Error> {
-    let topics = topic_names().map(|name| format!("  gyrolab man {name}\n"));
+    let topics: Vec<_> = topic_names().collect();
+    let topics = paragraph(&format!("gyrolab man TOPIC, of {}.", topics.join(", ")));
     Ok(vec![
         ("KEYS IN THE LAB", keys()),
         ("FILES OF COMMANDS", files_of_commands()),
@@ -238,7 +239,7 @@ fn of_program() -> Result<Vec<Section>, fmt::Error> {
         fixed("ENVIRONMENT"),
         fixed("FILES"),
         fixed("EXIT STATUS"),
-        ("SEE ALSO", topics.collect()),
+        ("SEE ALSO", topics),
     ])
 }
 

@@ -17,7 +17,7 @@ use std::process::ExitCode;
 
 #[derive(Debug, Default, Args)]
 pub(super) struct ShowArgs {
-    /// A preset's name, or a file: a scenario, a run file (.toml), a CSV or a figure that gyrolab wrote [with --do by default: method-2]
+    /// What gyrolab run takes [with --do by default: method-2]
     #[arg(required_unless_present = "commands")]
     pub(super) scenario: Option<String>,
 
@@ -28,8 +28,10 @@ pub(super) struct ShowArgs {
     #[arg(long, value_name = "STEP", allow_negative_numbers = true, value_parser = steps)]
     pub(super) at: Option<u64>,
 
-    /// Show what the commands in this file, [[do]] tables, or of stdin for -, lead to from step 0; gyrolab man lists them.
-    /// Nobody waits here: wait_s is over at once, and only step, go_to and run_until let the run go on
+    /// Show what the commands in this file, or of stdin for -, lead to
+    ///
+    /// The file holds [[do]] tables, which gyrolab man lists. Nobody waits here: wait_s is over at once, and only step, go_to
+    /// and run_until let the run go on.
     #[arg(long = "do", value_name = "FILE")]
     pub(super) commands: Option<PathBuf>,
 

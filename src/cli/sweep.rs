@@ -29,8 +29,9 @@ pub(super) struct SweepArgs {
     #[command(flatten)]
     pub(super) changes: Changes,
 
-    /// Vary a key over N values from A to B, both among them, or over the values V1, V2 and so on; may be repeated, the
-    /// last runs fastest
+    /// Vary a key over N values from A to B, or over these values; may be repeated
+    ///
+    /// A and B are among the N values. The last key that varies runs fastest.
     #[arg(long, value_name = "KEY=A..B:N|V1,V2", requires = "scenario")]
     pub(super) vary: Vec<String>,
 

@@ -2,7 +2,7 @@
 //! of the figure itself.
 //!
 //! They are one text: a line with the SHA-256 of the rest, a head in TOML, then the files that the head lists, as they are.
-//! [`svg`], [`pdf`] and [`png`] put this text into the file of a picture and find it there; taken out, it leaves that file
+//! `svg`, `pdf` and `png` put this text into the file of a picture and find it there; taken out, it leaves that file
 //! as it was.
 
 mod parted;
