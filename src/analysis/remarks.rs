@@ -403,7 +403,7 @@ fn cause(health: &Health) -> String {
     let (turns, name) = (short(health.turns_per_step), health.scheme.name);
     match health.nutation {
         _ if !health.is_a_rotation => {
-            format!("the scheme {name} breaks down, {NO_ROTATION}")
+            format!("the scheme {name} breaks down, its orientation is no rotation")
         }
         Some(_) if psi >= PI => format!("the body turns {turns} times a step, strobing the swing"),
         Some(nutation) if health.nutation_is_the_cause() => changes(&nutation),
@@ -421,8 +421,8 @@ fn cause(health: &Health) -> String {
 fn how_to_mend(health: &Health, advice: &Advice) -> String {
     match advice {
         Advice::Holds => String::new(),
-        Advice::Nothing => "; nothing tried in reasonable time mends it".to_owned(),
-        Advice::BoundToItsTimeStep => "; nothing mends it at this time step".to_owned(),
+        Advice::Nothing => "; nothing that was tried mends it".to_owned(),
+        Advice::BoundToItsTimeStep => "; no other scheme mends it".to_owned(),
         _ => remedy(health, advice).map_or(String::new(), |it| format!("; {it} mends it")),
     }
 }

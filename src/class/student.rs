@@ -41,6 +41,8 @@ pub struct Student {
     stood: Option<Stand>,
     /// Whether a run that was played aside is pinned.
     has_pinned: bool,
+    /// Whether a key has changed run, step or page since it stepped aside.
+    has_played: bool,
     /// Why the lab ends, where it does.
     ended: Option<&'static str>,
     next_look: Duration,
@@ -186,7 +188,9 @@ impl Student {
         let scenario = lab.player().run().scenario();
         let is_own = |(_, shown): &(_, _)| !Arc::ptr_eq(shown, scenario);
         if self.shown.run.as_ref().is_some_and(is_own) {
-            return self.step_aside(lab); // the run was changed here
+            self.step_aside(lab); // the run was changed here
+            self.has_played = true;
+            return;
         }
         if self
             .shown
@@ -299,7 +303,7 @@ impl Student {
     }
 
     fn step_aside(&mut self, lab: &mut Lab) {
-        (self.record.is_aside, self.is_new) = (true, true);
+        (self.record.is_aside, self.is_new, self.has_played) = (true, true, false);
         self.shown = Shown::default();
         self.next_look = Duration::ZERO;
         lab.tell("you have stepped aside: k leads back to the class");
@@ -308,7 +312,8 @@ impl Student {
     /// Follows again. A run that was played meanwhile stays, pinned.
     fn come_back(&mut self, lab: &mut Lab) {
         (self.record.is_aside, self.is_new) = (false, true);
-        if lab.player().playback.step_number() > 0 && !lab.comparison().is_pinned() {
+        let has_played = self.has_played && lab.player().playback.step_number() > 0;
+        if has_played && !lab.comparison().is_pinned() {
             self.has_pinned = lab.carry_out(&Command::Pin(true)).is_ok();
         }
         lab.refuse("back in the class");
@@ -375,14 +380,12 @@ impl Role for Student {
     }
 
     fn acted(&mut self, lab: &mut Lab, lessons: &Lessons) {
-        if self.follows()
-            && self
-                .stood
-                .as_ref()
-                .is_some_and(|it| *it != stand(lab, lessons))
-        {
+        let stood = self.stood.as_ref();
+        let is_other = stood.is_some_and(|stood| *stood != stand(lab, lessons));
+        if is_other && self.follows() {
             self.step_aside(lab);
         }
+        self.has_played |= is_other && self.record.is_aside;
     }
 
     fn wait(&self, now: Duration) -> Duration {

@@ -163,21 +163,24 @@ impl Teacher {
         let (round, answered, here) = (question.round(), self.state.answered, self.state.here);
         let since_s = unix_ms().saturating_sub(question.since_ms) / 1000;
         let (minutes, seconds) = (since_s / 60, since_s % 60);
+        let tally = Tally::of(&self.seats, &self.state.lesson, predict, round);
         let seen = match question.stage {
             Stage::Counted | Stage::Teacher => "",
+            Stage::All if tally.votes < FEWEST => " · under 5 votes: not shown",
             Stage::All => " · shown",
             Stage::Closed => " · closed",
         };
-        let line = format!("round {round} · {answered} of {here} · {minutes}:{seconds:02}{seen}");
+        let late = match tally.late {
+            0 => String::new(),
+            late => format!(" · {late} late"),
+        };
+        let counted = format!("round {round} · {answered} of {here}");
+        let line = format!("{counted} · {minutes}:{seconds:02}{late}{seen}");
         let mut lines = vec![Paragraph::new(Kind::Note, line)];
         if question.stage != Stage::Counted {
-            let tally = Tally::of(&self.seats, &self.state.lesson, predict, round);
-            let late = (tally.late > 0).then(|| format!("late: {}", tally.late));
-            let is_withheld = question.stage == Stage::All && tally.votes < FEWEST;
-            let few = is_withheld.then(|| "under 5 votes the class sees no bars".to_owned());
             lines.push(votes::drawn(&tally.bars));
-            let words = [tally.advice, late, few].into_iter().flatten();
-            lines.extend(words.map(|words| Paragraph::new(Kind::Note, words)));
+            let advice = tally.advice.into_iter();
+            lines.extend(advice.map(|words| Paragraph::new(Kind::Note, words)));
         }
         Some((predict.name.clone(), lines))
     }

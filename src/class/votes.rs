@@ -103,7 +103,8 @@ impl Tally {
 
 fn advice(right: &Right, choices: &[f64]) -> Option<String> {
     let hits = choices.iter().filter(|choice| right.takes(**choice));
-    let percent = 100 * hits.count() / Some(choices.len()).filter(|all| *all > 0)?;
+    let all = Some(choices.len()).filter(|all| *all > 0)?;
+    let percent = (100 * hits.count() + all / 2) / all;
     let next = match percent {
         ..30 => "explain, then again",
         30..=70 => "let them talk, then again",

@@ -70,7 +70,7 @@ enum Command {
     Figure(figure::FigureArgs),
     /// Make a folder for a write-up of a run: CSV, figures, measured numbers beside theory, and how to make it again
     Writeup(writeup::WriteupArgs),
-    /// Compute a CSV again from its header: the same, or the first row that differs
+    /// Make CSVs, figures and write-ups again from what they carry: the same, or what differs
     Verify(verify::VerifyArgs),
     /// Record the lab while it carries out a file of commands, as asciinema 3 plays it
     Cast(cast::CastArgs),

@@ -8,7 +8,7 @@ use crate::scenario::csv::{self, Renaming, renaming};
 use crate::scenario::{Document, Problems, Scenario};
 use crate::text::printable::{Shown, brief, printable_lines};
 use crate::verify::{Unverified, redraw, verify as verified};
-use crate::writeup::{MEASURED_DATA, PAGE, READOUTS_FILE, RUN_FILE};
+use crate::writeup::{BELIEVED, CSV, MEASURED_DATA, PAGE, READOUTS_FILE, RUN_FILE};
 use anyhow::{Context, bail};
 use clap::Args;
 use std::collections::HashSet;
@@ -104,7 +104,7 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
             Shown(data)
         ))?;
     }
-    if folder.join(RUN_FILE).is_file() && folder.join(READOUTS_FILE).is_file() {
+    if folder.join(RUN_FILE).is_file() {
         is_good &= judged(numbers(folder, data.as_deref(), interruption))?;
         count += 1;
     }
@@ -125,28 +125,48 @@ fn measured_in(folder: &Path) -> Option<PathBuf> {
     Some(folder.join(name.file_name()?))
 }
 
-/// Runs a write-up's run file again and compares the numbers of the folder: every readout, and the rows of the page's tables.
+/// Runs a write-up's run file again and compares the numbers of the folder: every readout, and of the page the verdict and
+/// the rows of its tables. A file of the write-up that is not there differs; only the page may be left out.
 fn numbers(
     folder: &Path,
     data: Option<&Path>,
     interruption: &Interruption,
 ) -> Result<bool, Unverified> {
-    let scenario = Document::read(&folder.join(RUN_FILE))?.scenario()?;
+    let run_file = folder.join(RUN_FILE);
+    let scenario = Document::read(&run_file)?.scenario()?;
+    let csv = folder.join(CSV);
+    let is_other = csv.is_file() && {
+        let of_csv = Document::read(&csv)?.scenario()?;
+        of_csv.to_toml() != scenario.to_toml()
+    };
     let data = data.map(|data| data.to_string_lossy());
     let again = writeup::again(Arc::new(scenario), data.as_deref(), interruption);
     let again = again.map_err(|error| match error.downcast() {
         Ok(Interrupted) => Unverified::Stopped,
         Err(error) => Unverified::from(format!("{error:#}")),
     })?;
-    let mut is_good = true;
+    let other = is_other.then(|| format!("it is not the run of {CSV}"));
+    let mut is_good = say(&run_file, "the run of the write-up", other.as_ref(), &[])?;
+    let files = again.files().map_err(|error| error.to_string())?;
+    let names = files.iter().map(|(name, _)| name.as_str()).chain([CSV]);
+    for name in names.filter(|name| *name != PAGE && !folder.join(name).exists()) {
+        let missing = "it is missing".to_owned();
+        is_good &= say(&folder.join(name), "", Some(&missing), &[])?;
+    }
     for (name, text) in [(READOUTS_FILE, again.readouts_json()), (PAGE, again.page())] {
         let file = folder.join(name);
         let Ok(there) = fs::read_to_string(&file) else {
-            continue; // who wants no page needs none
+            continue;
         };
         let lines: HashSet<&str> = there.lines().collect();
-        let is_number = |line: &&str| name != PAGE || line.starts_with("| ");
-        let computed: Vec<&str> = text.lines().filter(is_number).collect();
+        let mut is_verdict = false;
+        let is_checked = |line: &&str| {
+            if line.starts_with("## ") {
+                is_verdict = *line == BELIEVED;
+            }
+            name != PAGE || line.starts_with("| ") || is_verdict
+        };
+        let computed: Vec<&str> = text.lines().filter(is_checked).collect();
         let missing = computed.iter().find(|line| !lines.contains(**line));
         let difference = missing.map(|line| {
             format!(
@@ -154,11 +174,8 @@ fn numbers(
                 brief(line.trim(), 200)
             )
         });
-        let same = format!(
-            "the same: its {} lines of numbers, computed again",
-            computed.len()
-        );
-        is_good &= say(&file, &same, difference.as_ref(), &[])?;
+        let same = "the same: its numbers and its verdict, computed again";
+        is_good &= say(&file, same, difference.as_ref(), &[])?;
     }
     Ok(is_good)
 }
@@ -166,7 +183,7 @@ fn numbers(
 /// Computes or draws `file` again and prints what has come out. Returns whether it is the same.
 fn made_again(file: &Path, interruption: &Interruption) -> Result<bool, Unverified> {
     if let Some((difference, notes)) = redraw(file, interruption.meter())? {
-        let same = "the same: drawn again from the run in it";
+        let same = "the same: drawn again from what it carries";
         return say(file, same, difference.as_ref(), &notes);
     }
     let fit = |command: &str| fit::again(command, interruption);

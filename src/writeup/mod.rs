@@ -16,6 +16,7 @@ use crate::run::NotFinite;
 use crate::scenario::Scenario;
 pub use figures::Drawing;
 pub use measured::Beside;
+pub use page::BELIEVED;
 use serde_json::{Map, Value};
 use std::sync::Arc;
 

@@ -21,6 +21,9 @@ const MOST_LINES: usize = 120;
 /// A part of L that is smaller than this part of |L| is zero.
 const ROUNDING: f64 = 1e-14;
 
+/// The heading above the verdict.
+pub const BELIEVED: &str = "## Are the numbers to be believed?";
+
 pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     let mut page = String::new();
     let readouts = &writeup.readouts;
@@ -36,7 +39,7 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     }
     writeln!(page, "## What was run\n")?;
     write_setup(&mut page, writeup)?;
-    writeln!(page, "\n## Are the numbers to be believed?\n")?;
+    writeln!(page, "\n{BELIEVED}\n")?;
     if let Some(broken) = &writeup.broken {
         writeln!(page, "{}.\n", escaped(&sentence(&broken.to_string())))?;
     }

@@ -81,7 +81,7 @@ fn it_warns_of_the_runs_that_the_time_step_has_made() {
         has(&sentence, words);
         let advised = match name {
             // At another time step, which --time-step refuses, its push would be another.
-            "wobble-push-accumulating" => "; nothing mends it at this time step",
+            "wobble-push-accumulating" => "; no other scheme mends it",
             _ => "; --time-step 0.0",
         };
         has(&sentence, advised);

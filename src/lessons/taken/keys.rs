@@ -7,6 +7,7 @@ use crate::lab::command::Command;
 use crate::lessons::clock::Clock;
 use crate::lessons::lesson::{Answer, Asked, Block, Predict};
 use crate::lessons::predictions::{Predictions, Tried};
+use crate::text::number::shortest;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -188,13 +189,18 @@ impl Taken {
             self.place.late.extend(late);
         }
         (self.selected, self.is_marked, self.has_answered) = (None, false, true);
+        let said = match &answer {
+            Answer::Number(number) => shortest(*number),
+            Answer::Choice(words) => words.clone(),
+        };
+        let again = format!("your vote of this round: {said}; the page keeps your first answer");
         self.votes.push(Voted {
             question: predict.name.clone(),
             answer,
             is_late,
         });
         if is_again {
-            lab.refuse("your vote of this round is in; your first answer stays beside it");
+            lab.refuse(again);
             return;
         }
         self.state_again(&predict.name, lab);
