@@ -7,7 +7,6 @@ use crate::lab::command::Command;
 use crate::lessons::clock::Clock;
 use crate::lessons::lesson::{Answer, Asked, Block, Predict};
 use crate::lessons::predictions::{Predictions, Tried};
-use crate::text::number::shortest;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -189,10 +188,7 @@ impl Taken {
             self.place.late.extend(late);
         }
         (self.selected, self.is_marked, self.has_answered) = (None, false, true);
-        let said = match &answer {
-            Answer::Number(number) => shortest(*number),
-            Answer::Choice(words) => words.clone(),
-        };
+        let said = answer.in_words(predict);
         let again = format!("your vote of this round: {said}; the page keeps your first answer");
         self.votes.push(Voted {
             question: predict.name.clone(),
