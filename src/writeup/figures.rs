@@ -120,7 +120,7 @@ pub fn figures(
 /// What captions say of the exact motion and of the lines that join the steps.
 fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -> String {
     let beneath = match (exact, is_exact) {
-        (true, _) => ", the exact motion as a wide pale line beneath",
+        (true, _) => ", the exact motion in another colour",
         (_, true) => "; the run is the exact motion itself",
         _ => "",
     };

@@ -171,8 +171,8 @@ fn write_again(page: &mut String, beside: Option<&Beside>) -> fmt::Result {
     let same = format!("the same bytes as {CSV}");
     let commands = [
         (
-            format!("verify {CSV}"),
-            "computes the rows anew and says whether they are the same",
+            "verify .".to_owned(),
+            "makes rows, figures and numbers anew and says whether they are the same",
         ),
         (format!("run {RUN_FILE} -o {AGAIN}"), same.as_str()),
         (
