@@ -18,6 +18,8 @@
 
 use super::confined::SESSIONS;
 use super::own;
+use rustix::io::Errno;
+use rustix::process::{Pid, test_kill_process};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
@@ -32,6 +34,8 @@ const MOST_KEPT: usize = 20;
 const MOST_SHARED: usize = 200;
 /// A lock that is held for a shorter time belongs to a process that only looks at the session.
 const GLANCE: Duration = Duration::from_millis(10);
+/// How long the system may take to unlock what a process held that has ended. On a busy machine it is more than a glance.
+const UNLOCKING: Duration = Duration::from_secs(1);
 
 /// A text that is written once, when it is first read; a clone shares it.
 pub type Text = Arc<LazyLock<String, Box<dyn FnOnce() -> String + Send>>>;
@@ -101,6 +105,11 @@ pub(super) fn is_in_use(folder: &Path, name: &str) -> bool {
 pub(super) fn owner(folder: &Path, name: &str) -> Option<u32> {
     let bytes = own::read(&file(folder, name, "lock")).ok()?;
     str::from_utf8(&bytes).ok()?.parse().ok()
+}
+
+fn is_running(process: u32) -> bool {
+    let id = i32::try_from(process).ok().and_then(Pid::from_raw);
+    id.is_some_and(|id| test_kill_process(id) != Err(Errno::SRCH))
 }
 
 /// Reads the session, whether or not a process holds it.
@@ -184,7 +193,8 @@ impl Slot {
         let mut lock = own::open(&path, &mut options)?;
         let begin = Instant::now();
         while let Err(TryLockError::WouldBlock) = lock.try_lock() {
-            if begin.elapsed() > GLANCE {
+            let has_ended = owner(folder, name).is_some_and(|process| !is_running(process));
+            if begin.elapsed() > if has_ended { UNLOCKING } else { GLANCE } {
                 return Ok(None);
             }
             sleep(Duration::from_millis(1));
