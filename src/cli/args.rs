@@ -263,7 +263,7 @@ pub(super) struct LessonArgs {
     #[arg(long, group = "printed", conflicts_with = "name")]
     pub(super) template: bool,
 
-    /// Write the handout, the frame, the answers or the template to this file, or to stdout for -
+    /// Write the handout, the frame, the answers or the template to this file, or to stdout for -; a handout or answers to a .pdf: sheets to print
     #[arg(short, long, requires = "printed", value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 

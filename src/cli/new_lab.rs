@@ -9,11 +9,12 @@ use crate::lab::Lab;
 use crate::lab::view::View;
 use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
-use crate::lessons::{Lesson, play};
+use crate::lessons::{Lesson, paper, play};
 use crate::scenario::{Document, Problem, Problems};
 use crate::tui::{panes, theme};
 use anyhow::{Context, bail};
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -86,7 +87,8 @@ pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
     Problems::one(lesson.origin.clone(), problem).into()
 }
 
-/// Writes what `make` makes to the file that is asked for, or prints it. `make` asks now and then whether to go on.
+/// Writes what `make` makes to the file that is asked for, or prints it: a handout or answers as PDF where the file's name
+/// says so. `make` asks now and then whether to go on.
 pub(super) fn write(
     args: &LessonArgs,
     make: impl FnOnce(play::GoOn<'_>) -> anyhow::Result<String>,
@@ -99,7 +101,14 @@ pub(super) fn write(
     match output {
         None | Some(Destination::Stdout(_)) => print(&text?),
         Some(output) => {
-            output.write_and_keep(text?.as_bytes())?;
+            let name = args.output.as_deref().and_then(Path::extension);
+            let is_pdf = name.is_some_and(|name| name.eq_ignore_ascii_case("pdf"));
+            let bytes = if is_pdf && (args.handout || args.answers) {
+                paper::pdf(&text?)?
+            } else {
+                text?.into_bytes()
+            };
+            output.write_and_keep(&bytes)?;
             Ok(ExitCode::SUCCESS)
         }
     }

@@ -8,7 +8,7 @@
 //! - [`predictions`]: what a student has predicted.
 //! - [`stage`]: what to carry out to stand on a page.
 //! - [`play`]: a lesson played to its end without a screen, and whether its checks do what they should.
-//! - [`handout`]: a lesson on paper, and what was predicted beside what came out.
+//! - [`handout`]: a lesson on paper, and what was predicted beside what came out; [`paper`]: its sheets as PDF.
 //! - [`class`]: the lessons of a lab; [`taken`]: the one that is open, with what its page has stated; [`page`]: what stands
 //!   beside the panes, of [`markdown`]; [`clock`] and [`watch`]: the time, and a file that changes.
 //! - [`shipped`]: the lessons that come with the program.
@@ -22,6 +22,7 @@ pub mod markdown;
 pub mod names;
 mod opening;
 pub mod page;
+pub mod paper;
 pub mod play;
 pub mod predictions;
 pub mod reading;

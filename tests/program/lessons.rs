@@ -112,6 +112,12 @@ fn a_handout_obeys_the_rules_for_files() {
     assert_eq!(ground.stdout("lesson my.md --handout -o -"), paper);
     done(ground.run("lesson my.md --handout -o paper.md"));
     assert_eq!(ground.read("paper.md"), paper);
+    done(ground.run("lesson my.md --handout -o paper.pdf"));
+    assert!(
+        fs::read(ground.file("paper.pdf"))
+            .unwrap()
+            .starts_with(b"%PDF-1.4")
+    );
     ground.write("paper.md", "mine");
     let words = "paper.md exists; --force replaces it";
     ground.refused("lesson my.md --handout -o paper.md", 1, &[words]);
@@ -128,7 +134,10 @@ fn a_handout_obeys_the_rules_for_files() {
     let line = line_of("open = \"fast-top\"");
     let told = format!("wrong.md:{line}: open: ./nowhere.toml: there is no such file");
     ground.refused("lesson wrong.md --handout -o wrong-paper.md", 1, &[&told]);
-    assert_eq!(ground.files(), ["my.md", "paper.md", "wrong.md"]);
+    assert_eq!(
+        ground.files(),
+        ["my.md", "paper.md", "paper.pdf", "wrong.md"]
+    );
 }
 
 #[test]

@@ -53,13 +53,22 @@ pub fn write(
     let picture = match format {
         Format::Svg => svg::written(&scene, false).into_bytes(),
         Format::SvgText => svg::written(&scene, true).into_bytes(),
-        Format::Pdf => pdf::written(&scene, version),
+        Format::Pdf => pdf::written(&[scene], version),
         Format::Png => png::written(&scene, DOTS_PER_INCH)?,
     };
     match origin {
         Some(origin) => origin::carry(&picture, origin).ok_or(Unwritable::Origin),
         None => Ok(picture),
     }
+}
+
+/// The PDF of pages in their order, which carries no origin.
+///
+/// # Errors
+/// When a place on one of them is no number, or too far away.
+pub fn write_sheets(scenes: &[Scene]) -> Result<Vec<u8>, Unwritable> {
+    let scenes: Vec<Scene> = scenes.iter().map(rounded).collect::<Result<_, _>>()?;
+    Ok(pdf::written(&scenes, env!("CARGO_PKG_VERSION")))
 }
 
 /// The page in whole hundredths of a point, all of them numbers that a file can hold, without empty paths.

@@ -14,6 +14,8 @@ use std::collections::BTreeSet;
 /// The objects of the first font; each takes this many.
 const FIRST: i32 = 6;
 const OBJECTS: i32 = 5;
+/// The first number that no object of the two fonts has.
+pub const FREE: i32 = FIRST + 2 * OBJECTS;
 /// Lengths in an outline and in a line of letters that differ by less than this count as the same, thousandths of the size.
 const SAME: f64 = 0.5;
 /// Angle of the slanted letters, degrees, as the font they are from has it.
@@ -30,8 +32,9 @@ struct OfPage {
 }
 
 impl Fonts {
-    pub fn of(scene: &Scene) -> Self {
-        let words = || scene.items.iter().filter_map(|item| item.words.as_ref());
+    pub fn of(scenes: &[Scene]) -> Self {
+        let items = || scenes.iter().flat_map(|scene| &scene.items);
+        let words = || items().filter_map(|item| item.words.as_ref());
         Self([false, true].map(|is_italic| {
             let letters = words().flat_map(|words| &words.letters);
             let letters = letters.filter(|letter| letter.is_italic == is_italic);
