@@ -1,6 +1,8 @@
 //! What a key does that stands for no command: it moves the focus or a selection, opens or closes, types, or leaves. The
 //! table of keys in `tui` says which key stands for which action, and which for commands.
 
+use super::view::Pane;
+
 /// Rows that a page key moves by.
 pub(super) const PAGE: isize = 10;
 /// The most times that a key is repeated; more repetitions would make no difference on the screen.
@@ -25,8 +27,8 @@ pub enum Action {
     PreviousPane,
     /// Fills the screen with the 3-D view, or shows all panes again.
     ThreeD,
-    /// Shows the step pane beside another one and moves the focus there, or takes it away.
-    ToggleStep,
+    /// Shows this pane, one that is shown on request, beside another one and moves the focus there, or takes it away.
+    Toggle(Pane),
     /// Goes to the first step at which rows of the user's own program differ from the run, with the step pane.
     ToDifference,
     /// Moves a selection, nudges the selected value, or turns the camera.

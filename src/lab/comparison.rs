@@ -8,7 +8,7 @@ use super::command::{Command, Place};
 use super::files::Files;
 use super::player::{Change, Player, furthest_s};
 use super::runs::Reference;
-use super::view::View;
+use super::view::{Pane, View};
 use crate::analysis::cost;
 use crate::data::{Measured, find_shipped};
 use crate::playback::ghost::{Ghost, GhostToBe};
@@ -246,8 +246,8 @@ impl Comparison {
         let first = first.ok_or_else(|| own.told(&data.name))?;
         let step = u64::try_from(first).unwrap_or(0);
         let mut commands = vec![Command::GoTo(Place::Step(step))];
-        if !view.shows_step() {
-            commands.extend(view.step_toggled());
+        if !view.shows(Pane::STEP) {
+            commands.extend(view.toggled(Pane::STEP));
         }
         Ok(commands)
     }

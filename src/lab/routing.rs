@@ -78,11 +78,11 @@ impl Lab {
                 self.carry_out_all(&commands);
                 self.view.turn_to(Pane::STEP);
             }
-            Action::ToggleStep => {
-                let is_shown = self.view.shows_step();
-                self.carry_out_all(&self.view.step_toggled());
+            Action::Toggle(pane) => {
+                let is_shown = self.view.shows(pane);
+                self.carry_out_all(&self.view.toggled(pane));
                 if !is_shown {
-                    self.view.turn_to(Pane::STEP);
+                    self.view.turn_to(pane);
                 }
             }
             Action::Move(direction) => self.move_by(direction, times)?,
@@ -270,8 +270,8 @@ impl Lab {
             // The key has done something already.
         } else if self.files.is_exporting() {
             self.files.stop_export();
-        } else if self.view.focus == Pane::STEP && self.view.shows_step() {
-            self.carry_out_all(&self.view.step_toggled());
+        } else if self.view.focus.is_on_request && self.view.shows(self.view.focus) {
+            self.carry_out_all(&self.view.toggled(self.view.focus));
         } else if self.view.sheet.is_some() {
             return Some(Request::Lesson(LessonKey::Leave));
         } else {

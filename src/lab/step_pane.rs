@@ -103,7 +103,7 @@ impl StepPane {
 
     /// Takes the present step apart where the pane is shown.
     pub(super) fn read(&mut self, player: &mut Player, view: &View) {
-        player.keeps_workings = view.shows_step();
+        player.keeps_workings = view.shows(Pane::STEP);
         let now = player.run().simulation().now();
         let (number, scenario) = (now.number(), Arc::clone(now.scenario()));
         let is_large = scenario.body.mechanics.points().len() > MOST_POINTS_MOVING;
@@ -218,25 +218,5 @@ impl View {
             _ => Page::Why,
         };
         Command::look("phase", page)
-    }
-
-    /// The commands that show the step pane beside another one, or take it away.
-    pub(super) fn step_toggled(&self) -> Vec<Command> {
-        const BESIDE: [Pane; 2] = [Pane::THREE_D, Pane::STEP];
-        let mut commands = Vec::new();
-        if self.filled {
-            commands.push(Command::Fill(None));
-        }
-        if self.shown.contains(&Pane::STEP) == self.shows_step() {
-            let mut panes = self.shown.clone();
-            panes.retain(|pane| *pane != Pane::STEP && self.shown != BESIDE);
-            if self.shown.is_empty() {
-                panes = BESIDE.to_vec();
-            } else if !self.shown.contains(&Pane::STEP) {
-                panes.push(Pane::STEP);
-            }
-            commands.push(Command::look("show", panes));
-        }
-        commands
     }
 }

@@ -171,11 +171,11 @@ fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) -> Option<Reque
         Pane::TRACES => Does::Commands(wider),
         Pane::FROM_ABOVE | Pane::THREE_D if up => Does::Commands(zoomed_in),
         Pane::FROM_ABOVE | Pane::THREE_D => Does::Commands(zoomed_out),
-        Pane::PARAMETERS | Pane::STEP if lab.view().focus == pane => lines,
         Pane::LESSON => {
             let page = choose(Direction::PageUp, Direction::PageDown);
             Does::Action(Action::Lesson(LessonKey::Move(page)))
         }
+        _ if lab.view().focus == pane => lines,
         _ => return None,
     };
     lab.turn_to(pane);

@@ -1,8 +1,29 @@
 //! Which pane has the focus, and whether it fills the screen.
 
 use super::{Pane, View};
+use crate::lab::command::Command;
 
 impl View {
+    /// The commands that show `pane`, one that is shown on request, beside another one, or take it away.
+    pub(in crate::lab) fn toggled(&self, pane: Pane) -> Vec<Command> {
+        let with_it = [Pane::THREE_D, pane];
+        let mut commands = Vec::new();
+        if self.filled {
+            commands.push(Command::Fill(None));
+        }
+        if self.shown.contains(&pane) == self.shows(pane) {
+            let mut panes = self.shown.clone();
+            panes.retain(|other| *other != pane && self.shown != with_it);
+            if self.shown.is_empty() {
+                panes = with_it.to_vec();
+            } else if !self.shown.contains(&pane) {
+                panes.push(pane);
+            }
+            commands.push(Command::look("show", panes));
+        }
+        commands
+    }
+
     /// Fills the screen with `pane` and moves the focus there; with `None` shows all panes again.
     pub fn fill(&mut self, pane: Option<Pane>) {
         self.filled = pane.is_some();

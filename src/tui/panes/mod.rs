@@ -1,7 +1,7 @@
 //! The panes. Each borrows what it shows and draws it on its area; none of them changes anything.
 //!
-//! [`PANES`] is the one table of panes. A new pane is a file with its `ROW`, that row's name in the table, and its id in
-//! [`screen`](crate::scenario::screen), by which files and commands name it.
+//! [`PANES`] is the one table of panes: a new pane is a file with its `ROW`, and that row's name in the table. The program
+//! gives the [`IDS`] to [`screen`](crate::scenario::screen), by which files and commands name panes.
 
 pub mod browser;
 pub mod chrome;
@@ -307,8 +307,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pane_has_a_rank_of_its_own_and_the_name_that_files_know() {
-        assert_eq!(IDS.map(Pane::id), crate::scenario::screen::PANES);
+    fn every_pane_has_a_rank_of_its_own_and_those_that_the_lab_names_are_among_them() {
+        assert_eq!(IDS, crate::scenario::screen::panes());
         for (index, row) in PANES.iter().enumerate() {
             assert!(PANES[..index].iter().all(|other| other.rank != row.rank));
         }
