@@ -70,11 +70,6 @@ impl Files {
         self.confined().map_or(Ok(()), check)
     }
 
-    /// Whether the file may be read in the background.
-    pub(super) fn may_be_read_aside(&self, path: &Path) -> bool {
-        !Destination::may_wait(path) && self.admit(path).is_ok()
-    }
-
     /// Reads the preset or the file called `name`.
     pub(super) fn open_scenario(&self, name: &str) -> Result<Scenario, String> {
         self.admit_reading(Path::new(name))?;

@@ -38,7 +38,6 @@ mod messages;
 pub mod numbers;
 mod player;
 mod popups;
-pub mod preview;
 mod routing;
 mod runs;
 mod script;

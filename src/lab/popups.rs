@@ -6,7 +6,6 @@ use super::browser::Browser;
 use super::dialog::Dialog;
 use super::files::Files;
 use super::form::{MOST_IN_LINE, edit_line, type_into};
-use super::preview::Preview;
 use crate::storage::confined::Confined;
 use std::path::Path;
 
@@ -71,15 +70,6 @@ impl Popups {
         Some(dialog)
     }
 
-    /// The file that was chosen to be opened and what it holds, once it has been read. Where the browser no longer has
-    /// the keys, the choice is forgotten.
-    pub(super) fn take_chosen(&mut self) -> Option<(String, Preview)> {
-        if !matches!(self.mode, Mode::Browser | Mode::Filter) {
-            self.browser.forget_chosen();
-        }
-        self.browser.take_chosen()
-    }
-
     /// Opens the browser in the folder of `files`, with `name` selected.
     pub(super) fn browse(&mut self, name: &str, files: &Files) {
         let may_be_read = |path: &Path| files.admit_reading(path).is_ok();
@@ -88,8 +78,7 @@ impl Popups {
         self.mode = Mode::Browser;
     }
 
-    /// Lists the folder that is selected in the browser, or begins to read the file; returns the name of an entry that can
-    /// be opened at once.
+    /// Lists the folder that is selected in the browser, or returns the name of the entry to be opened.
     ///
     /// # Errors
     /// Why there is nothing to open.
@@ -104,11 +93,7 @@ impl Popups {
                 .then_some(None)
                 .ok_or_else(|| format!("{} cannot be opened any more", entry.name));
         }
-        if !entry.is_file || !files.may_be_read_aside(Path::new(&entry.name)) {
-            return Ok(Some(entry.name));
-        }
-        self.browser.choose();
-        Ok(None)
+        Ok(Some(entry.name))
     }
 
     pub fn shows_settings(&self) -> bool {
@@ -138,7 +123,6 @@ impl Popups {
                 self.browser.filter_by(String::clear);
                 self.mode = Mode::Browser;
             }
-            Mode::Browser if self.browser.forget_chosen() => {}
             Mode::Browser => self.mode = Mode::Lab,
             Mode::Dialog => drop(self.take_dialog()),
         }

@@ -3,13 +3,12 @@
 use super::action::{
     Action, Ask, Direction, FieldEdit, LessonKey, PAGE, Request, repeated, signed,
 };
-use super::answer::{Answer, Done};
+use super::answer::Done;
 use super::command::{Command, Commands, CursorTo, Place};
 use super::dialog::{Dialog, Question};
 use super::form::{edit_line, type_into};
 use super::messages::{self, halt_in_words};
 use super::popups::Mode;
-use super::preview::Preview;
 use super::view::Pane;
 use super::{Cleared, Lab, Script};
 use crate::playback::Halt;
@@ -238,37 +237,19 @@ impl Lab {
     }
 
     /// Closes or stops the first of these that there is: a popup, the script, the steps asked for, the cursor, the pane that
-    /// fills the screen, the focus on the parameters, the export, the step pane in focus. If there is none of these, it says
-    /// how to leave, unless the key has already removed a message or a count.
+    /// fills the screen, the focus on the parameters, the export, the pane in focus that was asked for. If there is none of
+    /// these, it says how to leave, unless the key has already removed a message or a count.
     fn close(&mut self, cleared: &Cleared) -> Option<Request> {
-        let is_found = self.popups.mode == Mode::Find;
-        let is_filtered = self.popups.mode == Mode::Lab && self.view.focus == Pane::PARAMETERS;
-        // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
-        let is_left = is_filtered && self.view.sheet.is_some();
-        let forget = |line: &mut String| !std::mem::take(line).is_empty();
-        let list = &mut self.edits.values.list;
-        if (is_found || is_filtered) && list.filter_by(forget) && !is_left {
-            self.popups.close();
-        } else if self.popups.close() {
-            // The popup was all that the key closes.
-        } else if !self.script.is_done() {
-            self.stop_script();
-        } else if self.player.playback.steps_to_go().is_some() {
-            self.one(Command::Pause);
-        } else if self.view.cursor.is_some() {
-            self.one(Command::Cursor(CursorTo::Nowhere));
-        } else if self.view.filled {
-            self.one(Command::Fill(None));
-            self.view.turn_to_sheet();
-            // On a screen that has no place for the values beside the run, they fill it: leaving them shows the run again.
-            if !self.view.side_by_side.contains(&Pane::PARAMETERS) {
-                self.view.leave_parameters();
-            }
-        } else if cleared.count.is_none() && self.view.leave_parameters() {
-            // The focus returns to the run even if the key has removed a message too.
-        } else if cleared.anything {
-            // The key has done something already.
-        } else if self.files.is_exporting() {
+        // The focus returns from the values to the run even if the key has removed a message too.
+        let is_done = self.close_popup()
+            || self.stop()
+            || self.unfill()
+            || (cleared.count.is_none() && self.view.leave_parameters())
+            || cleared.anything;
+        if is_done {
+            return None;
+        }
+        if self.files.is_exporting() {
             self.files.stop_export();
         } else if self.view.focus.is_on_request && self.view.shows(self.view.focus) {
             self.carry_out_all(&self.view.toggled(self.view.focus));
@@ -280,37 +261,60 @@ impl Lab {
         None
     }
 
+    /// Closes the topmost popup, or shows all values again; returns whether there was one, or some were left out.
+    fn close_popup(&mut self) -> bool {
+        let is_found = self.popups.mode == Mode::Find;
+        let is_filtered = self.popups.mode == Mode::Lab && self.view.focus == Pane::PARAMETERS;
+        // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
+        let is_left = is_filtered && self.view.sheet.is_some();
+        let forget = |line: &mut String| !std::mem::take(line).is_empty();
+        let list = &mut self.edits.values.list;
+        let is_shown = (is_found || is_filtered) && list.filter_by(forget) && !is_left;
+        self.popups.close() || is_shown
+    }
+
+    /// Stops the script, or the steps asked for.
+    fn stop(&mut self) -> bool {
+        if !self.script.is_done() {
+            let left_out = self.script.drop_all();
+            self.one(Command::Pause);
+            self.say(left_out);
+        } else if self.player.playback.steps_to_go().is_some() {
+            self.one(Command::Pause);
+        } else {
+            return false;
+        }
+        true
+    }
+
+    /// Takes the cursor away, or shows all panes again.
+    fn unfill(&mut self) -> bool {
+        if self.view.cursor.is_some() {
+            self.one(Command::Cursor(CursorTo::Nowhere));
+        } else if self.view.filled {
+            self.one(Command::Fill(None));
+            self.view.turn_to_sheet();
+            // On a screen that has no place for the values beside the run, they fill it: leaving them shows the run again.
+            if !self.view.side_by_side.contains(&Pane::PARAMETERS) {
+                self.view.leave_parameters();
+            }
+        } else {
+            return false;
+        }
+        true
+    }
+
     /// Opens the entry that is selected in the browser: plays its run, or lists what is in the folder.
     fn open_chosen(&mut self) -> Result<(), String> {
         if let Some(name) = self.popups.choose(&self.files)? {
             let answer = self.carry_out(&Command::Open(name));
-            self.play_opened(answer);
-        }
-        self.open_what_was_read();
-        if self.popups.browser.is_choice_loading() {
-            self.say("reading it: it opens when it has been read, Esc stays here");
+            if answer.is_ok() {
+                self.popups.mode = Mode::Lab;
+                self.one(Command::Run);
+            }
+            self.tell_answer(answer);
         }
         Ok(())
-    }
-
-    /// Opens the file that was chosen in the browser, once it has been read in the background.
-    fn open_what_was_read(&mut self) {
-        let Some((name, Preview::Known(known))) = self.popups.take_chosen() else {
-            return;
-        };
-        let answer = match known.as_ref() {
-            Ok(scenario) => {
-                self.edits.values.forget_nudge();
-                let scenario = Arc::new(scenario.clone());
-                let edit = self.edits.open(&name, scenario, &self.player);
-                let done = self.follow(edit);
-                self.view.keep_focus();
-                self.read_now();
-                Ok(done)
-            }
-            Err(reason) => Err(reason.lines().next().unwrap_or_default().into()),
-        };
-        self.play_opened(answer);
     }
 
     /// Changes to the run of `scenario`, which another lab shows as `name`, and which ends there at `end_s`. It is paused at
@@ -324,15 +328,6 @@ impl Lab {
         self.follow(edit);
         self.view.keep_focus();
         self.read_now();
-    }
-
-    /// Closes the browser and plays what has been opened, or says why nothing was.
-    fn play_opened(&mut self, answer: Answer) {
-        if answer.is_ok() {
-            self.popups.mode = Mode::Lab;
-            self.one(Command::Run);
-        }
-        self.tell_answer(answer);
     }
 }
 
@@ -358,8 +353,6 @@ impl Lab {
             self.tell(verdict);
         }
         self.tell_what_was_found();
-        self.changed |= self.popups.browser.take_what_was_read();
-        self.open_what_was_read();
         self.follow_export();
         self.go_on_with_script(halt);
         if self.changed && self.player.is_due(now, self.view.window_s) {
@@ -444,12 +437,6 @@ impl Lab {
             (true, _) if self.player.is_moving() => self.one(Command::Pause),
             (true, _) => self.one(Command::Run),
         }
-    }
-
-    fn stop_script(&mut self) {
-        let left_out = self.script.drop_all();
-        self.one(Command::Pause);
-        self.say(left_out);
     }
 
     fn release_script(&mut self) {

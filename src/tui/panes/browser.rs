@@ -3,7 +3,6 @@
 use super::{longest, popup_frame, write};
 use crate::lab::Lab;
 use crate::lab::browser::Browser;
-use crate::lab::preview::Preview;
 use crate::lab::view::theme::Theme;
 use crate::scenario::Scenario;
 use crate::text::printable::printable;
@@ -122,11 +121,8 @@ fn preview(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
         return;
     }
     let lines = match browser.preview() {
-        Some(Preview::Known(known)) => match known.as_ref() {
-            Ok(scenario) => described(scenario, width),
-            Err(problem) => refused(problem, width),
-        },
-        Some(Preview::Loading) => vec![("reading ...".to_owned(), Role::Quiet)],
+        Some(Ok(scenario)) => described(scenario, width),
+        Some(Err(problem)) => refused(problem, width),
         None if browser.choice().is_some_and(|entry| entry.is_folder) => {
             vec![("a folder: Enter lists its files".to_owned(), Role::Quiet)]
         }
