@@ -7,7 +7,7 @@
 mod file;
 mod form;
 
-pub use file::{Commands, Placed, is_file_of_commands, open, read, to_toml};
+pub use file::{Commands, Placed, is_file_of_commands, open, read};
 pub use form::MOST_MAGNIFIED;
 
 use crate::export::layout::LayoutFile;

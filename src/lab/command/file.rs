@@ -21,14 +21,6 @@ pub struct Commands {
     pub list: Vec<Placed>,
 }
 
-pub fn to_toml(commands: &[Command]) -> String {
-    let tables = commands
-        .iter()
-        .map(|command| Value::Table(command.to_table()));
-    let file = Table::from_iter([("do".to_owned(), Value::Array(tables.collect()))]);
-    toml::to_string(&file).unwrap_or_default() // a command holds nothing that TOML cannot write
-}
-
 /// Whether `document` is a file of commands, by its `[[do]]`.
 pub fn is_file_of_commands(document: &Document) -> bool {
     document.table().contains_key("do")
