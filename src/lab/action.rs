@@ -3,6 +3,8 @@
 
 use super::view::Pane;
 
+/// The factor of the arrows with Shift.
+const FAR: i32 = 10;
 /// Rows that a page key moves by.
 pub(super) const PAGE: isize = 10;
 /// The most times that a key is repeated; more repetitions would make no difference on the screen.
@@ -25,13 +27,11 @@ pub enum Action {
     Digit(u8),
     NextPane,
     PreviousPane,
-    /// Fills the screen with the 3-D view, or shows all panes again.
-    ThreeD,
     /// Shows this pane, one that is shown on request, beside another one and moves the focus there, or takes it away.
     Toggle(Pane),
     /// Goes to the first step at which rows of the user's own program differ from the run, with the step pane.
     ToDifference,
-    /// Moves a selection, nudges the selected value, or turns the camera.
+    /// Moves a selection, or nudges the selected value. Where arrows mean a command in a pane, its row in `tui` says which.
     Move(Direction),
     /// As `Move`, ten times.
     MoveFar(Direction),
@@ -63,9 +63,18 @@ pub enum Action {
 }
 
 impl Action {
+    /// Where it moves to, and how often.
+    pub fn moves(self) -> Option<(Direction, i32)> {
+        match self {
+            Self::Move(direction) => Some((direction, 1)),
+            Self::MoveFar(direction) => Some((direction, FAR)),
+            _ => None,
+        }
+    }
+
     /// Whether the nudges of a value before and after it are one act: one undo takes back both.
     pub(super) fn keeps_nudge(self) -> bool {
-        matches!(self, Self::Move(_) | Self::MoveFar(_) | Self::Digit(_))
+        self.moves().is_some() || matches!(self, Self::Digit(_))
     }
 }
 
@@ -148,6 +157,10 @@ pub enum Direction {
 }
 
 impl Direction {
+    pub fn is_sideways(self) -> bool {
+        matches!(self, Self::Left | Self::Right)
+    }
+
     /// Rows by which a key moves in a list; a page key moves by `page`.
     pub fn rows(self, page: isize) -> isize {
         match self {

@@ -152,10 +152,9 @@ impl Browser {
     }
 
     /// Changes the filter, and selects the first entry that is then shown.
-    pub fn filter_by<T>(&mut self, change: impl FnOnce(&mut String) -> T) -> T {
-        let changed = change(&mut self.filter);
+    pub fn filter_by(&mut self, change: impl FnOnce(&mut String)) {
+        change(&mut self.filter);
         self.refilter();
-        changed
     }
 
     /// Selects the first entry that is shown; without a filter, the one that is open.

@@ -367,17 +367,4 @@ mod tests {
         let nameless = files.save("the run", "", &files.path_of(""), false);
         assert!(nameless.unwrap_err().to_string().contains("needs a name"));
     }
-
-    #[test]
-    fn nothing_is_under_way_at_first() {
-        let mut files = Files::default();
-        assert_eq!(files.folder(), Path::new("."));
-        assert!(!files.is_exporting() && files.written.is_empty());
-        assert_eq!(
-            (files.follow_export(), files.export_in_words()),
-            (None, None)
-        );
-        files.stop_export();
-        assert_eq!(files.admit(Path::new("/anywhere")), Ok(()));
-    }
 }

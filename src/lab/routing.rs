@@ -19,8 +19,6 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// The factor of the arrows with Shift.
-const FAR: i32 = 10;
 /// How often to look whether an export is complete while there is nothing else to do.
 const LOOK: Duration = Duration::from_millis(2);
 /// How long steps are taken before the caller decides whether to go on.
@@ -71,7 +69,6 @@ impl Lab {
             Action::Digit(digit) => self.popups.add_digit(count, digit),
             Action::NextPane => self.view.shift_focus(true),
             Action::PreviousPane => self.view.shift_focus(false),
-            Action::ThreeD => self.view.toggle_three_d(),
             Action::ToDifference => {
                 let commands = self.comparison.to_difference(&self.view)?;
                 self.carry_out_all(&commands);
@@ -84,8 +81,10 @@ impl Lab {
                     self.view.turn_to(pane);
                 }
             }
-            Action::Move(direction) => self.move_by(direction, times)?,
-            Action::MoveFar(direction) => self.move_by(direction, times.saturating_mul(FAR))?,
+            Action::Move(direction) | Action::MoveFar(direction) => {
+                let far = action.moves().map_or(1, |(_, far)| far);
+                self.move_by(direction, times.saturating_mul(far))?;
+            }
             Action::Browse => self.popups.browse(self.edits.runs.name(), &self.files),
             Action::FindValue => {
                 self.view.turn_to(Pane::PARAMETERS);
@@ -122,40 +121,27 @@ impl Lab {
         Ok(())
     }
 
-    /// Does what an arrow or page key does that is pressed `times` times.
+    /// Does what an arrow or page key does that is pressed `times` times, where that is no command of the pane in focus.
     fn move_by(&mut self, direction: Direction, times: i32) -> Result<(), String> {
-        let is_sideways = matches!(direction, Direction::Left | Direction::Right);
-        let (player, view) = (&self.player, &self.view);
-        let command = match (self.popups.mode, view.focus) {
-            (Mode::Lab, Pane::THREE_D) => view.turned(direction, times),
-            (Mode::Lab | Mode::Find, Pane::PARAMETERS) if is_sideways => {
-                let (times, scenario) = (signed(direction, times), player.run().scenario());
-                match self.edits.values.selected_nudged(times, scenario)? {
-                    Some(nudge) => nudge,
-                    None => return Ok(()),
+        let rows = direction.rows(PAGE) * times as isize;
+        let of_values = self.view.focus == Pane::PARAMETERS;
+        match self.popups.mode {
+            Mode::Lab | Mode::Find if of_values && direction.is_sideways() => {
+                let (times, scenario) = (signed(direction, times), self.player.run().scenario());
+                if let Some(nudge) = self.edits.values.selected_nudged(times, scenario)? {
+                    self.one(nudge);
                 }
             }
-            (Mode::Lab | Mode::Find, Pane::PARAMETERS) => {
-                let rows = direction.rows(PAGE) * times as isize;
+            Mode::Lab | Mode::Find if of_values => {
                 let list = &mut self.edits.values.list;
                 list.shift(rows.signum() * times as isize);
-                return Ok(());
             }
-            (Mode::Lab, Pane::STEP) => self.step_pane.other_sum(direction, times, view)?,
-            (Mode::Lab, Pane::TRACES) if is_sideways => {
-                view.moved_cursor(signed(direction, times), player)
-            }
-            (Mode::Lab, Pane::TRACES) => view.other_detail(direction, times, player),
-            (Mode::Lab, _) => {
+            Mode::Lab => {
                 let rule = "z and Z zoom here; arrows turn the 3-D view (d) and choose values (e)";
                 return Err(rule.to_owned());
             }
-            _ => {
-                self.popups.shift(direction.rows(PAGE) * times as isize);
-                return Ok(());
-            }
-        };
-        self.one(command);
+            _ => self.popups.shift(rows),
+        }
         Ok(())
     }
 
@@ -352,7 +338,6 @@ impl Lab {
         if let Some(verdict) = verdict {
             self.tell(verdict);
         }
-        self.tell_what_was_found();
         self.follow_export();
         self.go_on_with_script(halt);
         if self.changed && self.player.is_due(now, self.view.window_s) {
@@ -406,17 +391,13 @@ impl Lab {
         if let Halt::NotFinite(_) = halt {
             let edits = self.edits.runs.journal();
             let is_edited = edits.count_by(self.player.playback.step_number()) > 0;
-            self.messages.tell_of_break(&text, is_edited);
+            let offer = self.adviser.offer(&self.player).map(|[_, short]| short);
+            let mends = offer.as_deref();
+            self.messages.tell_of_break(&text, mends, is_edited);
             self.changed = true;
-            self.tell_what_was_found();
         } else {
             self.tell(text);
         }
-    }
-
-    fn tell_what_was_found(&mut self) {
-        let (adviser, player) = (&self.adviser, &self.player);
-        self.changed |= self.messages.tell_what_was_found(adviser, player);
     }
 
     fn follow_export(&mut self) {

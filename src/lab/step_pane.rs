@@ -181,7 +181,7 @@ impl StepPane {
     }
 
     /// The command that adds up more rows of the table, or fewer. Beyond either end all rows are added up.
-    pub(super) fn other_sum(
+    pub fn other_sum(
         &self,
         direction: Direction,
         times: i32,
@@ -192,7 +192,7 @@ impl StepPane {
             return Err("no table here: . and , go through the phases".to_owned());
         };
         let all = table.points.len() as i64;
-        if matches!(direction, Direction::Left | Direction::Right) {
+        if direction.is_sideways() {
             return Err("Up and Down add up the table; . and , go by phase".to_owned());
         }
         let rows = direction.rows(PAGE) as i64 * i64::from(times);

@@ -6,6 +6,7 @@ use crate::lab::action::{Action, Ask, Direction, FieldEdit, LessonKey, repeated}
 use crate::lab::command::{Command, Place, PushChoice};
 use crate::lab::view::Pane;
 use crate::lab::{Lab as TheLab, Meant, Request};
+use crate::tui::panes::{self, Arrows};
 use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
     Right, ShiftDown, ShiftLeft, ShiftRight, ShiftUp, Tab, Up,
@@ -64,13 +65,22 @@ pub enum Does {
 impl Does {
     pub fn carry_out(self, lab: &mut TheLab) -> Option<Request> {
         match self {
-            Self::Commands(meant) => {
-                lab.press(meant);
-                None
-            }
-            Self::Action(action) => lab.update(action),
+            Self::Commands(meant) => lab.press(meant),
+            Self::Action(action) => match (action.moves(), arrows(lab)) {
+                (Some((direction, times)), Some(arrows)) => lab.press(|lab, count| {
+                    arrows(lab, direction, times.saturating_mul(repeated(count)))
+                }),
+                _ => return lab.update(action),
+            },
         }
+        None
     }
+}
+
+/// What arrows mean in the pane that has the focus.
+fn arrows(lab: &TheLab) -> Option<Arrows> {
+    let is_lab = lab.popups().mode == Mode::Lab;
+    panes::row(lab.view().focus).filter(|_| is_lab)?.arrows
 }
 
 /// How long the footer names a key where there is not room for all: the least go first.
@@ -199,7 +209,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change").to(CHANGE).worth(Worth::Useful),
     row(&[Lab], &[Enter], Action::Edit, "", "type the value that is selected").to(CHANGE),
     row(&[Lab], &[Char('x')], Action::Ask(Ask::Export), "export", "write the run up to here as CSV").to(KEEP).worth(Worth::Useful),
-    does(&[Lab], &[Char('f')], |lab, _| one(lab.view().fill_toggled()), "fill", "fill the screen with the pane, or show all panes again").worth(Worth::Useful),
+    does(&[Lab], &[Char('f')], |lab, _| one(lab.view().fill_toggled(lab.view().focus)), "fill", "fill the screen with the pane, or show all panes again").worth(Worth::Useful),
     row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file").to(OPEN).worth(Worth::Useful),
     does(&[Lab], &[Char(',')], |_, count| stepped(count, -1), "back", "one time step back; 10, goes ten").to(PLAY),
     does(&[Lab], &[Char('+'), Char('='), PageUp], |lab, count| one(lab.player().other_speed(repeated(count))?), "faster", "play faster").found_by("speed").to(PLAY),
@@ -219,7 +229,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('k')], Action::Class, "", "in a class: the teacher's acts; for a student: step aside, and back"),
     row(&[Lab], &[Tab], Action::NextPane, "pane", "the next pane"),
     row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
-    row(&[Lab], &[Char('d')], Action::ThreeD, "3-D", "fill the screen with the 3-D view, or show all panes again"),
+    does(&[Lab], &[Char('d')], |lab, _| one(lab.view().fill_toggled(Pane::THREE_D)), "3-D", "fill the screen with the 3-D view, or show all panes again"),
     row(&[Lab], &[Char('v')], Action::Toggle(Pane::STEP), "", "one time step, phase by phase, with its numbers; v takes it away again"),
     row(&[Lab], &[Char('M')], Action::ToDifference, "", "to the first step at which the rows of your own program differ, with its numbers (--measured mine.csv)").found_by("own code verify slip mistake"),
     row(&[Lab], &[Char('c')], Action::Ask(Ask::Settings), "settings", "settings: colours, dots, frames a second, the mouse, a bare screen, what is hidden").found_by("colors theme light dark background markers braille ascii fps health"),

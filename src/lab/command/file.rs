@@ -5,7 +5,7 @@ use super::{COMMANDS, Command, CommandRow};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
 use std::path::Path;
-use toml::{Table, Value};
+use toml::Value;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {

@@ -14,7 +14,7 @@ use ratatui::layout::Rect;
 /// Column of keys and words, and the columns between them and their texts.
 const NAMES: usize = 2;
 const GAP: usize = 2;
-/// A text that would have fewer columns than this begins right after its key, not in a column of its own.
+/// A text that would have fewer columns than this stands below its key, not in a column of its own.
 const LEAST_TEXT: usize = 40;
 const SELECTED: &str = "►";
 
@@ -123,7 +123,7 @@ fn lines(entries: &[Entry], grouped: bool, width: usize) -> Vec<Line> {
         }
         let of_entry = match column {
             Some(column) => beside(entry, &text_of(entry, grouped), column, width),
-            None => after(entry, &text_of(entry, grouped), width),
+            None => below(entry, &text_of(entry, grouped), width),
         };
         lines.extend(of_entry.into_iter().enumerate().map(|(at, pieces)| Line {
             entry: Some(index),
@@ -169,31 +169,13 @@ fn beside(entry: &Entry, text: &str, column: usize, width: usize) -> Vec<Pieces>
     lines
 }
 
-/// The name of `entry` and its `text` right after it, where there is room for a few words; else below it.
-fn after(entry: &Entry, text: &str, width: usize) -> Vec<Pieces> {
+/// The name of `entry`, and its `text` below it.
+fn below(entry: &Entry, text: &str, width: usize) -> Vec<Pieces> {
     const INDENT: usize = NAMES + GAP - 1;
-    const FEW_WORDS: usize = 12;
-    let name = entry.name();
-    let taken = columns(&name);
-    let room = width.saturating_sub(INDENT);
-    if taken + GAP + FEW_WORDS > room {
-        let text = wrapped(text, room).into_iter();
-        let text = text.map(|text| vec![(INDENT, text, Role::Text)]);
-        let name = vec![(NAMES, name, Role::Focus)];
-        return std::iter::once(name).chain(text).collect();
-    }
-    // A word as long as the name keeps the name's columns free on the first line.
-    let held = "x".repeat(taken);
-    let text = wrapped(&format!("{held} {text}"), room);
-    let first = text.first().and_then(|first| first.strip_prefix(&held));
-    let first = first.unwrap_or_default().trim_start().to_owned();
-    let mut lines = vec![vec![
-        (NAMES + taken + GAP, first, Role::Text),
-        (NAMES, name, Role::Focus),
-    ]];
-    let rest = text.into_iter().skip(1);
-    lines.extend(rest.map(|text| vec![(INDENT, text, Role::Text)]));
-    lines
+    let text = wrapped(text, width.saturating_sub(INDENT)).into_iter();
+    let text = text.map(|text| vec![(INDENT, text, Role::Text)]);
+    let name = vec![(NAMES, entry.name(), Role::Focus)];
+    std::iter::once(name).chain(text).collect()
 }
 
 /// The words that the lab uses, each in one sentence: those of the motion first, then those of the numbers and of the screen.

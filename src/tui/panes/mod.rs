@@ -17,11 +17,12 @@ pub mod three_d;
 pub mod timeline;
 pub mod traces;
 
-use crate::lab::Lab;
+use crate::lab::action::Direction;
 use crate::lab::comparison::DataComparison;
 use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
+use crate::lab::{Lab, Meant};
 use crate::playback::detail::Detail;
 use crate::playback::ghost::Ghost;
 use crate::playback::live::LiveRun;
@@ -52,7 +53,11 @@ pub struct PaneRow {
     pub draw: fn(&Lab, Rect, &mut Buffer),
     /// The keys that are its own while it has the focus; they go before the keys of the lab.
     pub keys: &'static [Binding],
+    /// What an arrow or page key means while it has the focus, pressed so many times, if there is something it means.
+    pub arrows: Option<Arrows>,
 }
+
+pub type Arrows = fn(&Lab, Direction, i32) -> Meant;
 
 /// How wide a pane is where panes stand side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -40,6 +40,9 @@ pub const ROW: PaneRow = PaneRow {
     least: (44, 0),
     draw,
     keys: KEYS,
+    arrows: Some(|lab, direction, times| {
+        one(lab.step_pane().other_sum(direction, times, lab.view())?)
+    }),
 };
 
 /// The first of the keys go through the phases.

@@ -7,7 +7,7 @@ mod groups;
 mod plot;
 
 use super::{PaneRow, Seen, Width, frame, longest, write};
-use crate::lab::action::{Action, Direction, repeated};
+use crate::lab::action::{Action, Direction, repeated, signed};
 use crate::lab::command::{Command, CursorTo};
 use crate::lab::view::Pane;
 use crate::playback::marks::Marks;
@@ -51,6 +51,15 @@ pub const ROW: PaneRow = PaneRow {
         Traces(Seen::of(lab)).render(area, buf);
     },
     keys: KEYS,
+    arrows: Some(|lab, direction, times| {
+        let (view, player) = (lab.view(), lab.player());
+        one(match direction {
+            Direction::Left | Direction::Right => {
+                view.moved_cursor(signed(direction, times), player)
+            }
+            _ => view.other_detail(direction, times, player),
+        })
+    }),
 };
 
 /// The keys that mean something here while the pane has the focus.
