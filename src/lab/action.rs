@@ -4,7 +4,7 @@
 use super::view::Pane;
 
 /// The factor of the arrows with Shift.
-const FAR: i32 = 10;
+pub const FAR: i32 = 10;
 /// Rows that a page key moves by.
 pub(super) const PAGE: isize = 10;
 /// The most times that a key is repeated; more repetitions would make no difference on the screen.
@@ -31,10 +31,8 @@ pub enum Action {
     Toggle(Pane),
     /// Goes to the first step at which rows of the user's own program differ from the run, with the step pane.
     ToDifference,
-    /// Moves a selection, or nudges the selected value. Where arrows mean a command in a pane, its row in `tui` says which.
-    Move(Direction),
-    /// As `Move`, ten times.
-    MoveFar(Direction),
+    /// Moves a selection, or nudges the selected value. Where arrows mean a command in a pane, its row in `tui` says which. So many times as far as one press.
+    Move(Direction, i32),
     /// Goes to the step at the cursor; without one, moves the focus to the values.
     GoToCursor,
     Browse,
@@ -63,18 +61,9 @@ pub enum Action {
 }
 
 impl Action {
-    /// Where it moves to, and how often.
-    pub fn moves(self) -> Option<(Direction, i32)> {
-        match self {
-            Self::Move(direction) => Some((direction, 1)),
-            Self::MoveFar(direction) => Some((direction, FAR)),
-            _ => None,
-        }
-    }
-
     /// Whether the nudges of a value before and after it are one act: one undo takes back both.
     pub(super) fn keeps_nudge(self) -> bool {
-        self.moves().is_some() || matches!(self, Self::Digit(_))
+        matches!(self, Self::Move(..) | Self::Digit(_))
     }
 }
 

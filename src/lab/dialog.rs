@@ -356,13 +356,9 @@ mod tests {
     use super::*;
     use crate::lab::for_tests::scenario;
 
-    fn export() -> Dialog {
-        Dialog::export(scenario(), "method-2.csv".to_owned())
-    }
-
     #[test]
     fn a_file_is_replaced_only_after_the_user_was_asked_about_it() {
-        let dialog = export();
+        let dialog = Dialog::export(scenario(), "method-2.csv".to_owned());
         let (path, other) = (Path::new("method-2.csv"), Path::new("other.csv"));
         assert!(!dialog.may_replace(path));
         let dialog = dialog.refused(Refusal::Exists(path.to_owned()));

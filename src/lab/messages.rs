@@ -134,8 +134,9 @@ impl Messages {
 
     /// Says `text`, that the numbers have stopped being finite, and what helps: a key that mends the run, if that is known,
     /// and, of a run with edits, what takes back the last.
-    pub(super) fn tell_of_break(&mut self, text: &str, mends: Option<&str>, is_edited: bool) {
-        let mends = mends.unwrap_or("a shorter time step or another scheme may mend it (e)");
+    pub(super) fn tell_of_break(&mut self, text: &str, mends: Option<String>, is_edited: bool) {
+        let unknown = "a shorter time step or another scheme may mend it (e)";
+        let mends = mends.unwrap_or_else(|| unknown.to_owned());
         let undo = if is_edited {
             ", u takes the last edit back"
         } else {
@@ -225,15 +226,5 @@ mod tests {
         let cleared = messages.clear(Some(4));
         assert!(cleared.anything && !cleared.was_warned);
         assert!(!messages.clear(None).anything);
-    }
-
-    #[test]
-    fn trouble_stays_until_it_is_over() {
-        let mut messages = Messages::default();
-        let full = || Some("the disk is full".to_owned());
-        assert!(messages.set_trouble(full()) && !messages.set_trouble(full()));
-        messages.take_back();
-        assert_eq!(messages.trouble(), Some("the disk is full"));
-        assert!(messages.set_trouble(None));
     }
 }

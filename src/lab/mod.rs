@@ -72,7 +72,7 @@ use crate::text::printable::printable;
 use command::Command;
 use edits::{Edit, Outcome};
 use player::Change;
-use session::{Kept, KeptPlace};
+use session::KeptPlace;
 use sheet::Sheet;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -435,13 +435,9 @@ impl Lab {
         confined: Option<&Confined>,
         view: impl FnOnce(&Scenario) -> View,
     ) -> Result<Self, Unreadable> {
-        let Kept {
-            history,
-            scenario,
-            place,
-        } = Kept::read(content)?;
+        let (history, scenario, place) = session::kept(content)?;
         let mut view = view(&scenario);
-        place.restore(&mut view, scenario.motion.time_step_s)?;
+        place.restore(&mut view)?;
         let (name, end_s) = (history.present().name.clone(), history.present().end_s);
         let mut lab = Self::new(&name, Arc::clone(&scenario), view, false);
         if let Some(folder) = confined {

@@ -81,10 +81,7 @@ impl Lab {
                     self.view.turn_to(pane);
                 }
             }
-            Action::Move(direction) | Action::MoveFar(direction) => {
-                let far = action.moves().map_or(1, |(_, far)| far);
-                self.move_by(direction, times.saturating_mul(far))?;
-            }
+            Action::Move(direction, far) => self.move_by(direction, times * far)?,
             Action::Browse => self.popups.browse(self.edits.runs.name(), &self.files),
             Action::FindValue => {
                 self.view.turn_to(Pane::PARAMETERS);
@@ -159,8 +156,10 @@ impl Lab {
     fn edit_field(&mut self, edit: FieldEdit) {
         match edit {
             edit if self.popups.mode == Mode::Find => {
-                let list = &mut self.edits.values.list;
-                list.filter_by(|line| edit_line(line, edit));
+                self.edits
+                    .values
+                    .list
+                    .filter_by(|line| edit_line(line, edit));
             }
             FieldEdit::Left | FieldEdit::Right if self.popups.shows_settings() => {
                 self.change_setting(edit == FieldEdit::Right);
@@ -191,8 +190,8 @@ impl Lab {
             Ok(command) => self.carry_out_all(command.as_slice()),
             Err(trouble) => self.tell(trouble),
         }
-        let dialog = Dialog::settings(&self.view, selected);
-        self.popups.open_dialog(dialog);
+        self.popups
+            .open_dialog(Dialog::settings(&self.view, selected));
     }
 
     /// Carries out the command that the open dialog asked for. If it is refused, the dialog stays and shows the reason.
@@ -356,13 +355,8 @@ impl Lab {
     ) -> Result<(), NotFinite> {
         let mut part = 1_u64;
         loop {
-            let next = self
-                .player
-                .playback
-                .step_number()
-                .saturating_add(part)
-                .min(step);
             let playback = &mut self.player.playback;
+            let next = playback.step_number().saturating_add(part).min(step);
             let arrived = playback.begin_at_while(next, |reached, _| go_on(reached, step));
             self.arrive();
             let reached = self.player.playback.step_number();
@@ -381,7 +375,7 @@ impl Lab {
     }
 
     fn halted(&mut self, halt: Halt) {
-        let Self { player, .. } = self;
+        let player = &mut self.player;
         player.destination.has_halted(halt, &mut player.playback);
         self.read_now();
         let next = messages::next(&self.view, &self.edits.runs, &self.player);
@@ -391,8 +385,7 @@ impl Lab {
         if let Halt::NotFinite(_) = halt {
             let edits = self.edits.runs.journal();
             let is_edited = edits.count_by(self.player.playback.step_number()) > 0;
-            let offer = self.adviser.offer(&self.player).map(|[_, short]| short);
-            let mends = offer.as_deref();
+            let mends = self.adviser.offer(&self.player).map(|[_, short]| short);
             self.messages.tell_of_break(&text, mends, is_edited);
             self.changed = true;
         } else {

@@ -94,25 +94,13 @@ fn read<'a, T: Deserialize<'a>>(what: &str, text: &'a str) -> Result<T, Unreadab
     })
 }
 
-/// The content of a session as it was read.
-pub(super) struct Kept {
-    pub(super) history: History,
-    /// The scenario of the present run.
-    pub(super) scenario: Arc<Scenario>,
-    pub(super) place: KeptPlace,
-}
-
-impl Kept {
-    pub(super) fn read(content: &Content) -> Result<Self, Unreadable> {
-        let KeptRuns { history } = read("the run", &content.work)?;
-        let place = read("the place in it", &content.place)?;
-        let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
-        Ok(Self {
-            scenario: history.scenario().map_err(unreadable)?,
-            history,
-            place,
-        })
-    }
+/// The history and its present scenario in the content of a session, and the place.
+pub(super) fn kept(content: &Content) -> Result<(History, Arc<Scenario>, KeptPlace), Unreadable> {
+    let KeptRuns { history } = read("the run", &content.work)?;
+    let place = read("the place in it", &content.place)?;
+    let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
+    let scenario = history.scenario().map_err(unreadable)?;
+    Ok((history, scenario, place))
 }
 
 impl KeptPlace {
@@ -142,18 +130,13 @@ impl KeptPlace {
         }
     }
 
-    /// Shows in `view` what the session showed. A window of less than two time steps of the run, `time_step_s`, is passed
-    /// over.
-    pub(super) fn restore(&self, view: &mut View, time_step_s: f64) -> Result<(), Unreadable> {
+    /// Shows in `view` what the session showed.
+    pub(super) fn restore(&self, view: &mut View) -> Result<(), Unreadable> {
         let look = Value::try_from(&self.look).map_err(|error| Unreadable(error.to_string()))?;
         if let Some(problem) = keys::check_part(&look, "view").list.first() {
             return Err(Unreadable(problem.to_string()));
         }
-        let mut look = self.look.clone();
-        if look.window_s < 2.0 * time_step_s {
-            look.window_s = view.window_s;
-        }
-        view.take(look);
+        view.take(self.look.clone());
         let focus = view.panes.iter().find(|pane| pane.id() == self.focus);
         let unknown = || Unreadable(format!("there is no pane {}", self.focus));
         view.focus = *focus.ok_or_else(unknown)?;

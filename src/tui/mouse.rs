@@ -158,7 +158,7 @@ fn press_in_browser(layout: &Layout, at: Position, lab: &mut Lab) -> Option<Requ
 fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) -> Option<Request> {
     let choose = |if_up, if_down| if up { if_up } else { if_down };
     let lines = choose(Direction::Up, Direction::Down);
-    let lines = Does::Action(Action::Move(lines));
+    let lines = Does::Action(Action::Move(lines, 1));
     if lab.popups().mode != Mode::Lab {
         for _ in 0..LINES {
             lines.carry_out(lab);

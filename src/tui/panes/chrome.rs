@@ -243,7 +243,7 @@ fn word(lab: &Lab, row: &Binding) -> Option<&'static str> {
         ("pause" | "step", _) => !lab.player().run().simulation().has_ended(),
         (_, Some(Action::Lesson(LessonKey::Take))) => !enter.is_empty(),
         (_, Some(Action::Lesson(LessonKey::Next))) => sheet.is_some_and(|sheet| sheet.has_next),
-        (_, Some(Action::Move(_))) => !is_why,
+        (_, Some(Action::Move(..))) => !is_why,
         _ => true,
     };
     let word = match (row.footer, action) {

@@ -3,6 +3,7 @@
 
 use super::{PANES, popup_frame, write};
 use crate::lab::action::Action;
+use crate::lab::values::list::Match;
 use crate::lab::view::Pane;
 use crate::lab::{Lab, Mode, Request};
 use crate::text::wrap::{columns, wrapped};
@@ -231,21 +232,12 @@ impl Entry {
             return Some(2);
         }
         let further = self.binding.map_or("", |binding| binding.search);
-        let all = format!("{} {short} {} {further}", self.name(), self.text).to_lowercase();
-        let is_word = |wanted: &str| {
-            let mut words = all.split(|c: char| !c.is_alphanumeric());
-            words.any(|word| word.starts_with(wanted))
-        };
-        let mut wanted = lower.split_whitespace();
-        if wanted.clone().all(is_word) {
-            return Some(3);
+        let all = format!("{} {short} {} {further}", self.name(), self.text);
+        match Match::of(&all, lower) {
+            Some(Match::Word) => Some(3),
+            Some(Match::Part) => Some(4),
+            None => Match::of(&format!("{all} {}", self.group), lower).map(|_| 5),
         }
-        if wanted.clone().all(|word| all.contains(word)) {
-            return Some(4);
-        }
-        let group = self.group.to_lowercase();
-        let is_there = |word: &str| all.contains(word) || group.contains(word);
-        wanted.all(is_there).then_some(5)
     }
 }
 
