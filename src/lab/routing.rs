@@ -1,10 +1,8 @@
 //! Leads actions and time to the parts of the lab.
 
-use super::action::{
-    Action, Ask, Direction, FieldEdit, LessonKey, PAGE, Request, repeated, signed,
-};
+use super::action::{Action, Ask, Direction, FieldEdit, PAGE, Request, repeated, signed};
 use super::answer::Done;
-use super::command::{Command, Commands, CursorTo, Place};
+use super::command::{Command, Commands, Place};
 use super::dialog::{Dialog, Question};
 use super::form::{edit_line, type_into};
 use super::messages::{self, halt_in_words};
@@ -65,8 +63,6 @@ impl Lab {
             Action::Parameters => self.turn_to_parameters(),
             Action::Edit if self.view.focus != Pane::PARAMETERS => self.turn_to_parameters(),
             Action::Edit => self.ask(Ask::Value)?,
-            Action::Ask(ask) => self.ask(ask)?,
-            Action::Digit(digit) => self.popups.add_digit(count, digit),
             Action::NextPane => self.view.shift_focus(true),
             Action::PreviousPane => self.view.shift_focus(false),
             Action::ToDifference => {
@@ -82,20 +78,29 @@ impl Lab {
                 }
             }
             Action::Move(direction, far) => self.move_by(direction, times * far)?,
+            other => return self.act_on_top(other, &cleared),
+        }
+        Ok(None)
+    }
+
+    /// Does what concerns popups, or what only the main loop can do.
+    fn act_on_top(&mut self, action: Action, cleared: &Cleared) -> Result<Option<Request>, String> {
+        match action {
+            Action::Ask(ask) => self.ask(ask)?,
+            Action::Digit(digit) => self.popups.add_digit(cleared.count, digit),
             Action::Browse => self.popups.browse(self.edits.runs.name(), &self.files),
             Action::FindValue => {
                 self.view.turn_to(Pane::PARAMETERS);
                 self.edits.values.list.filter_by(String::clear);
                 self.popups.mode = Mode::Find;
             }
-            Action::DoEntry => {} // tui has the entries, and carries it out
             Action::Choose => self.open_chosen()?,
             Action::Filter => self.popups.mode = Mode::Filter,
             Action::InField(edit) => self.edit_field(edit),
             Action::Accept if self.popups.shows_settings() => self.change_setting(true),
             Action::Accept => return Ok(self.accept()),
             Action::Help => self.popups.toggle_help(),
-            Action::Close => return Ok(self.close(&cleared)),
+            Action::Close => return Ok(self.close(cleared)),
             Action::Class => return Ok(Some(Request::Class)),
             Action::Lesson(key) => return Ok(Some(Request::Lesson(key))),
             Action::Redraw => return Ok(Some(Request::Redraw)),
@@ -107,6 +112,7 @@ impl Lab {
                 self.messages.warn_of_export(self.now);
             }
             Action::Quit => return Ok(Some(Request::Quit)),
+            _ => {} // tui has the entries of the help, and carries them out
         }
         Ok(None)
     }
@@ -221,74 +227,6 @@ impl Lab {
         None
     }
 
-    /// Closes or stops the first of these that there is: a popup, the script, the steps asked for, the cursor, the pane that
-    /// fills the screen, the focus on the parameters, the export, the pane in focus that was asked for. If there is none of
-    /// these, it says how to leave, unless the key has already removed a message or a count.
-    fn close(&mut self, cleared: &Cleared) -> Option<Request> {
-        // The focus returns from the values to the run even if the key has removed a message too.
-        let is_done = self.close_popup()
-            || self.stop()
-            || self.unfill()
-            || (cleared.count.is_none() && self.view.leave_parameters())
-            || cleared.anything;
-        if is_done {
-            return None;
-        }
-        if self.files.is_exporting() {
-            self.files.stop_export();
-        } else if self.view.focus.is_on_request && self.view.shows(self.view.focus) {
-            self.carry_out_all(&self.view.toggled(self.view.focus));
-        } else if self.view.sheet.is_some() {
-            return Some(Request::Lesson(LessonKey::Leave));
-        } else {
-            self.say("nothing to close; q leaves");
-        }
-        None
-    }
-
-    /// Closes the topmost popup, or shows all values again; returns whether there was one, or some were left out.
-    fn close_popup(&mut self) -> bool {
-        let is_found = self.popups.mode == Mode::Find;
-        let is_filtered = self.popups.mode == Mode::Lab && self.view.focus == Pane::PARAMETERS;
-        // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
-        let is_left = is_filtered && self.view.sheet.is_some();
-        let forget = |line: &mut String| !std::mem::take(line).is_empty();
-        let list = &mut self.edits.values.list;
-        let is_shown = (is_found || is_filtered) && list.filter_by(forget) && !is_left;
-        self.popups.close() || is_shown
-    }
-
-    /// Stops the script, or the steps asked for.
-    fn stop(&mut self) -> bool {
-        if !self.script.is_done() {
-            let left_out = self.script.drop_all();
-            self.one(Command::Pause);
-            self.say(left_out);
-        } else if self.player.playback.steps_to_go().is_some() {
-            self.one(Command::Pause);
-        } else {
-            return false;
-        }
-        true
-    }
-
-    /// Takes the cursor away, or shows all panes again.
-    fn unfill(&mut self) -> bool {
-        if self.view.cursor.is_some() {
-            self.one(Command::Cursor(CursorTo::Nowhere));
-        } else if self.view.filled {
-            self.one(Command::Fill(None));
-            self.view.turn_to_sheet();
-            // On a screen that has no place for the values beside the run, they fill it: leaving them shows the run again.
-            if !self.view.side_by_side.contains(&Pane::PARAMETERS) {
-                self.view.leave_parameters();
-            }
-        } else {
-            return false;
-        }
-        true
-    }
-
     /// Opens the entry that is selected in the browser: plays its run, or lists what is in the folder.
     fn open_chosen(&mut self) -> Result<(), String> {
         if let Some(name) = self.popups.choose(&self.files)? {
@@ -401,7 +339,7 @@ impl Lab {
     }
 
     fn toggle_pause(&mut self) {
-        match (self.script.is_done(), self.script.is_waiting()) {
+        match (self.script.is_done(), self.script.waits) {
             (false, true) => self.release_script(),
             (false, false) => {
                 self.script.pause(&self.player, self.now);

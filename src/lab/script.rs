@@ -27,7 +27,7 @@ pub struct Script {
     /// Titles of the chapters that were begun and not taken yet.
     chapters: Vec<String>,
     /// Whether the script was paused, and waits until the user lets it go on.
-    waits: bool,
+    pub(super) waits: bool,
     /// Whether the run played when the script was paused, and plays again when it goes on.
     plays_again: bool,
 }
@@ -122,16 +122,15 @@ impl Script {
         }
     }
 
-    pub(super) fn is_waiting(&self) -> bool {
-        self.waits
-    }
-
     /// The command under way as it is carried out again: a run goes to the same step or until the same condition holds, a
     /// wait lasts for what is left of it at `now`.
     fn under_way_again(&self, player: &Player, now: Duration) -> Option<Placed> {
-        let (placed, under_way) = self.under_way.as_ref()?;
+        let (playback, (placed, under_way)) = (&player.playback, self.under_way.as_ref()?);
         let command = match under_way {
-            UnderWay::Going => Command::GoTo(Place::Step(player.bound_for()?)),
+            UnderWay::Going => {
+                let (here, to_go) = (playback.step_number(), playback.steps_to_go()?);
+                Command::GoTo(Place::Step(here.saturating_add(to_go)))
+            }
             UnderWay::Waiting(until) => Command::Wait(until.saturating_sub(now).as_secs_f64()),
             _ => placed.command.clone(),
         };

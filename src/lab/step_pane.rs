@@ -26,8 +26,8 @@ pub struct StepWorkings {
     pub scenario: Arc<Scenario>,
     /// The sums of the table on the page, if some of its rows are added up.
     sums: Option<(usize, Sums)>,
-    /// The first dip of the run, where the page shows it.
-    dip: Option<Dip>,
+    /// The first dip of the run up to this step; `None` where the page does not show it, and where the axle was upright.
+    pub dip: Option<Dip>,
 }
 
 impl StepWorkings {
@@ -44,11 +44,6 @@ impl StepWorkings {
             sums: None,
             dip: None,
         })
-    }
-
-    /// The first dip of the run up to this step; `None` where the page does not show it, and where the axle was upright.
-    pub fn dip(&self) -> Option<&Dip> {
-        self.dip.as_ref()
     }
 
     /// The phase on `page` with its number, from 1, and how many there are; `None` for a page that shows none.
