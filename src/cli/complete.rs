@@ -173,12 +173,8 @@ fn settings(typed: &str, begin: &str) -> Vec<(String, &'static str)> {
         return keys(begin, |_| true, "=");
     };
     let row = KEYS.iter().find(|row| instance(row.path, key) == key);
-    let words: &[&'static str] = match row.map(|row| row.kind) {
-        Some(Kind::OneOf(words) | Kind::WholeOr(_, words)) => words,
-        Some(Kind::Flag) => &["true", "false"],
-        _ => &[],
-    };
-    named(words, |word| (word, ""))
+    let words = row.map_or_else(Vec::new, |row| row.kind.words());
+    named(&words, |word| (word, ""))
 }
 
 /// The dotted keys that are `wanted`, each with `end`; of a vector that is typed its three numbers.

@@ -25,9 +25,10 @@ mod workbench;
 mod writeup;
 
 use crate::export::destination::{Destination, DestinationError};
-use crate::scenario::presets;
+use crate::scenario::{presets, screen};
 use crate::text::number::counted;
 use crate::text::printable::{Shown, is_steering, printable, printable_lines};
+use crate::tui::panes;
 use anyhow::Context;
 use args::{ClassArgs, LessonArgs, WorkbenchArgs};
 use clap::builder::StyledStr;
@@ -118,6 +119,7 @@ enum Command {
 const INTERRUPTED: u8 = 130;
 
 pub fn main() -> ExitCode {
+    screen::set_panes(&panes::IDS);
     match complete::answered() {
         Ok(false) => {}
         Ok(true) => return ExitCode::SUCCESS,

@@ -282,13 +282,13 @@ impl Parameter {
             Kind::Number(_) => Value::Float(nudge::typed(text, self.unit())?),
             Kind::Whole(..) => Value::Integer(typed_whole(text)?),
             Kind::Flag => Value::Boolean(typed_flag(text)?),
-            Kind::OneOf(_) => Value::String(text.trim().to_owned()),
+            Kind::OneOf(_) | Kind::Pane(_) => Value::String(text.trim().to_owned()),
             Kind::Paragraph => Value::String(unescaped(text)),
             Kind::WholeOr(..) => match typed_whole(text) {
                 Ok(whole) => Value::Integer(whole),
                 Err(_) => Value::String(text.trim().to_owned()),
             },
-            Kind::Line | Kind::Vector | Kind::Words(_) | Kind::Settings => {
+            Kind::Line | Kind::Vector | Kind::Panes(_) | Kind::Settings => {
                 Value::String(text.to_owned())
             }
         };

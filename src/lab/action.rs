@@ -1,6 +1,10 @@
 //! What a key does that stands for no command: it moves the focus or a selection, opens or closes, types, or leaves. The
 //! table of keys in `tui` says which key stands for which action, and which for commands.
 
+use super::view::Pane;
+
+/// The factor of the arrows with Shift.
+pub const FAR: i32 = 10;
 /// Rows that a page key moves by.
 pub(super) const PAGE: isize = 10;
 /// The most times that a key is repeated; more repetitions would make no difference on the screen.
@@ -23,16 +27,12 @@ pub enum Action {
     Digit(u8),
     NextPane,
     PreviousPane,
-    /// Fills the screen with the 3-D view, or shows all panes again.
-    ThreeD,
-    /// Shows the step pane beside another one and moves the focus there, or takes it away.
-    ToggleStep,
+    /// Shows this pane, one that is shown on request, beside another one and moves the focus there, or takes it away.
+    Toggle(Pane),
     /// Goes to the first step at which rows of the user's own program differ from the run, with the step pane.
     ToDifference,
-    /// Moves a selection, nudges the selected value, or turns the camera.
-    Move(Direction),
-    /// As `Move`, ten times.
-    MoveFar(Direction),
+    /// Moves a selection, or nudges the selected value. Where arrows mean a command in a pane, its row in `tui` says which. So many times as far as one press.
+    Move(Direction, i32),
     /// Goes to the step at the cursor; without one, moves the focus to the values.
     GoToCursor,
     Browse,
@@ -63,7 +63,7 @@ pub enum Action {
 impl Action {
     /// Whether the nudges of a value before and after it are one act: one undo takes back both.
     pub(super) fn keeps_nudge(self) -> bool {
-        matches!(self, Self::Move(_) | Self::MoveFar(_) | Self::Digit(_))
+        matches!(self, Self::Move(..) | Self::Digit(_))
     }
 }
 
@@ -146,6 +146,10 @@ pub enum Direction {
 }
 
 impl Direction {
+    pub fn is_sideways(self) -> bool {
+        matches!(self, Self::Left | Self::Right)
+    }
+
     /// Rows by which a key moves in a list; a page key moves by `page`.
     pub fn rows(self, page: isize) -> isize {
         match self {

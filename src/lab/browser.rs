@@ -1,14 +1,10 @@
 //! The browser: the list of presets and files, the filter, the selected entry and its preview.
 
-use super::preview::{AT_ONCE, Loader, Preview, in_background, read};
 use crate::scenario::presets::PRESETS;
-use std::collections::HashSet;
+use crate::scenario::{Document, Scenario};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvTimeoutError};
-use std::time::Duration;
 
 /// The name of the entry that leads to the folder above.
 const ABOVE: &str = "../";
@@ -33,17 +29,15 @@ pub struct Browser {
     pub also: Option<PathBuf>,
     /// How many files of the folder are left out because they hold no run.
     pub others: usize,
-    /// The search for files that hold no run, while it is in progress.
-    sorting: Option<Receiver<HashSet<String>>>,
     /// The name of the entry that is open in the lab.
     open: String,
     pub filter: String,
     pub selected: usize,
     preview: Option<(Entry, Preview)>,
-    /// Whether the selected entry is to be opened as soon as it has been read.
-    is_chosen: bool,
-    loader: Loader,
 }
+
+/// The scenario of an entry, or why it cannot be opened.
+pub type Preview = Result<Scenario, String>;
 
 impl Browser {
     /// Lists presets, and the scenario, run and CSV files in `folder` for which `may_be_read` is true, with `name` selected.
@@ -101,12 +95,9 @@ impl Browser {
         let mut names = also.unwrap_or_default();
         names.extend(names_in(folder, Path::is_file, may_hold_one));
         names.retain(|name| may_be_read(Path::new(name)));
-        self.others = 0;
-        let searched = names.clone();
-        let is_other = |name: &String| !may_hold_run(name);
-        self.sorting = Some(in_background(move || {
-            searched.into_iter().filter(is_other).collect()
-        }));
+        let all = names.len();
+        names.retain(|name| may_hold_run(name));
+        self.others = all - names.len();
         let leads_up =
             !self.passed.is_empty() || above(folder).is_some_and(|above| may_be_read(&above));
         let mut folders = names_in(folder, Path::is_dir, |name| !name.starts_with('.'));
@@ -119,56 +110,6 @@ impl Browser {
         self.entries = presets.chain(folders).chain(files).collect();
         self.folder = folder.to_owned();
         self.preview = None;
-        self.is_chosen = false;
-        self.leave_out_others(AT_ONCE);
-    }
-
-    /// Removes the files that hold no run from the list, if the search has found them or finds them within `wait`.
-    /// Returns whether it removed any. The selection stays on its entry.
-    fn leave_out_others(&mut self, wait: Duration) -> bool {
-        let others = match self.sorting.as_ref().map(|found| found.recv_timeout(wait)) {
-            Some(Ok(others)) => others,
-            Some(Err(RecvTimeoutError::Disconnected)) => HashSet::new(), // there was no thread: every file is listed
-            Some(Err(RecvTimeoutError::Timeout)) | None => return false,
-        };
-        self.sorting = None;
-        self.others = others.len();
-        let choice = self.choice().cloned();
-        self.entries
-            .retain(|entry| !entry.is_file || !others.contains(&entry.name));
-        let kept = self
-            .shown()
-            .into_iter()
-            .position(|entry| Some(entry) == choice.as_ref());
-        let last = self.shown().len().saturating_sub(1);
-        self.selected = kept.unwrap_or(self.selected.min(last));
-        !others.is_empty()
-    }
-
-    /// Requests the selected file once more and chooses it to be opened: [`take_chosen`](Self::take_chosen) returns its
-    /// scenario.
-    pub(super) fn choose(&mut self) {
-        self.is_chosen = true;
-        if let Some((entry, preview)) = &mut self.preview
-            && !matches!(preview, Preview::Loading)
-        {
-            *preview = self.loader.ask(&entry.name);
-        }
-    }
-
-    /// Withdraws the choice of the file to be opened. Returns whether one was chosen.
-    pub(super) fn forget_chosen(&mut self) -> bool {
-        std::mem::take(&mut self.is_chosen)
-    }
-
-    /// The file that was chosen to be opened and what it holds, once it has been read.
-    pub(super) fn take_chosen(&mut self) -> Option<(String, Preview)> {
-        let (entry, preview) = self.preview.as_ref()?;
-        if !self.is_chosen || matches!(preview, Preview::Loading) {
-            return None;
-        }
-        self.is_chosen = false;
-        Some((entry.name.clone(), preview.clone()))
     }
 
     /// The entries whose names contain the filter.
@@ -198,32 +139,6 @@ impl Browser {
         self.preview.as_ref().map(|(_, preview)| preview)
     }
 
-    /// Whether a file was chosen to be opened and is still being read.
-    pub(super) fn is_choice_loading(&self) -> bool {
-        self.is_chosen && self.is_loading()
-    }
-
-    /// Whether the selected entry is still being read.
-    pub fn is_loading(&self) -> bool {
-        matches!(self.preview(), Some(Preview::Loading)) || self.sorting.is_some()
-    }
-
-    /// Takes over what has been read in the background: the preview, and which files hold no run; returns whether there was
-    /// anything.
-    pub fn take_what_was_read(&mut self) -> bool {
-        let is_shorter = self.leave_out_others(Duration::ZERO);
-        if is_shorter {
-            self.load_preview();
-        }
-        if let Some(news) = self.loader.take_answer()
-            && let Some((_, preview @ Preview::Loading)) = &mut self.preview
-        {
-            *preview = news;
-            return true;
-        }
-        is_shorter
-    }
-
     /// Selects the entry of this number among those that are shown.
     pub fn select(&mut self, row: usize) {
         self.shift(row as isize - self.selected as isize);
@@ -237,10 +152,9 @@ impl Browser {
     }
 
     /// Changes the filter, and selects the first entry that is then shown.
-    pub fn filter_by<T>(&mut self, change: impl FnOnce(&mut String) -> T) -> T {
-        let changed = change(&mut self.filter);
+    pub fn filter_by(&mut self, change: impl FnOnce(&mut String)) {
+        change(&mut self.filter);
         self.refilter();
-        changed
     }
 
     /// Selects the first entry that is shown; without a filter, the one that is open.
@@ -255,22 +169,17 @@ impl Browser {
         if self.preview.as_ref().map(|(of, _)| of) == choice.as_ref() {
             return;
         }
-        self.is_chosen = false;
         self.preview = choice.filter(|entry| !entry.is_folder).map(|entry| {
-            let preview = if entry.is_file {
-                self.loader.ask(&entry.name)
-            } else {
-                Preview::Known(Arc::new(read(&entry.name)))
-            };
-            (entry, preview)
+            let read = Document::open(&entry.name).and_then(|document| document.scenario());
+            (entry, read.map_err(|problems| problems.to_string()))
         });
     }
 }
 
 /// Files beyond this many are not listed, nor are folders.
 const MOST_FILES: usize = 1000;
-/// How many bytes of a file are searched for its `[motion]`; a body of many points may stand before it.
-const HEAD: u64 = 1 << 20;
+/// How many bytes of a file are searched for its `[motion]`.
+const HEAD: u64 = 1 << 16;
 
 /// The paths of what is in `folder`, is of a kind and has a name that is wanted, in the order of their names.
 fn names_in(
@@ -304,12 +213,13 @@ fn above(folder: &Path) -> Option<PathBuf> {
     folder.parent().map(Path::to_owned)
 }
 
-/// Whether the file `name` may hold a run: its first mebibyte names `motion`, as a table or key of a scenario or in the
-/// header of an exported CSV. A file that cannot be read counts too: the preview then says why.
+/// Whether the file `name` may hold a run: its beginning names `motion`, as a table or key of a scenario or in the header of
+/// an exported CSV. A file that cannot be read counts too, the preview says why; and so does a long scenario, in which a
+/// body of many points may stand before it.
 fn may_hold_run(name: &str) -> bool {
     let mut head = Vec::new();
     let read = File::open(name).and_then(|file| file.take(HEAD).read_to_end(&mut head));
-    if read.is_err() {
+    if read.is_err() || (head.len() as u64 == HEAD && name.ends_with(".toml")) {
         return true;
     }
     let text = String::from_utf8_lossy(&head);

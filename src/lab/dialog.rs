@@ -356,30 +356,9 @@ mod tests {
     use super::*;
     use crate::lab::for_tests::scenario;
 
-    fn export() -> Dialog {
-        Dialog::export(scenario(), "method-2.csv".to_owned())
-    }
-
-    #[test]
-    fn an_export_shows_its_size_as_it_is_typed() {
-        let mut dialog = export();
-        assert!(dialog.form.info[0].starts_with("2,301 rows"));
-        dialog.edit_field(FieldEdit::Next);
-        dialog.edit_field(FieldEdit::Type('1'));
-        dialog.edit_field(FieldEdit::Type('0'));
-        assert_eq!(dialog.every().unwrap().get(), 10);
-        assert!(dialog.form.info[0].starts_with("231 rows"));
-        dialog.edit_field(FieldEdit::Clear);
-        assert!(dialog.form.info[0].starts_with("every must be"));
-        dialog.paste("5");
-        assert_eq!(dialog.every().unwrap().get(), 5);
-        dialog.edit_field(FieldEdit::Erase);
-        assert!(dialog.every().is_err());
-    }
-
     #[test]
     fn a_file_is_replaced_only_after_the_user_was_asked_about_it() {
-        let dialog = export();
+        let dialog = Dialog::export(scenario(), "method-2.csv".to_owned());
         let (path, other) = (Path::new("method-2.csv"), Path::new("other.csv"));
         assert!(!dialog.may_replace(path));
         let dialog = dialog.refused(Refusal::Exists(path.to_owned()));

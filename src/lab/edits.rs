@@ -65,18 +65,6 @@ pub(super) enum Outcome {
     Edit(Edit),
 }
 
-impl From<Done> for Outcome {
-    fn from(done: Done) -> Self {
-        Self::Done(done)
-    }
-}
-
-impl From<Edit> for Outcome {
-    fn from(edit: Edit) -> Self {
-        Self::Edit(edit)
-    }
-}
-
 impl Said {
     fn text(text: &str) -> Self {
         Self::Text(text.to_owned())
@@ -118,7 +106,8 @@ impl Edits {
         Some(match command {
             Command::Open(name) => files
                 .open_scenario(name)
-                .map(|scenario| self.open(name, Arc::new(scenario), player).into())
+                .map(|scenario| self.open(name, Arc::new(scenario), player))
+                .map(Outcome::Edit)
                 .map_err(Refusal::from),
             Command::Set(table) => self.set(table, false, player),
             Command::Nudge { key, times } => self.nudge(key, *times, player, now),
@@ -128,7 +117,7 @@ impl Edits {
             Command::Redo(_) => self.turn(Way::Redo, player),
             Command::TakeAdvice => adviser
                 .take_offer(player)
-                .map(|offer| self.take_offer(offer, player).into())
+                .map(|offer| Outcome::Edit(self.take_offer(offer, player)))
                 .map_err(Refusal::from),
             _ => return None,
         })
@@ -171,7 +160,9 @@ impl Edits {
             };
             self.act(acts, is_again, said, player)
         } else {
-            Ok(self.begin_with(&new, acts, is_again, player)?.into())
+            Ok(Outcome::Edit(
+                self.begin_with(&new, acts, is_again, player)?,
+            ))
         }
     }
 
@@ -226,7 +217,7 @@ impl Edits {
     fn choose_next_push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
         self.values.next_push = self.chosen(choice, player)?;
         self.list_values(player);
-        Ok(Done::SILENT.into())
+        Ok(Outcome::Done(Done::SILENT))
     }
 
     fn chosen(&self, choice: &PushChoice, player: &Player) -> Result<NextPush, String> {
@@ -302,7 +293,7 @@ impl Edits {
         let is_described = acts.iter().all(|act| matches!(act, Act::Describe(_)));
         let later = self.runs.journal().later_than(step);
         let Some(scenario) = self.runs.act(step, acts, is_again, steps)? else {
-            return Ok(Done::SILENT.into());
+            return Ok(Outcome::Done(Done::SILENT));
         };
         Ok(Outcome::Edit(Edit {
             change: if is_described {

@@ -70,11 +70,6 @@ impl Files {
         self.confined().map_or(Ok(()), check)
     }
 
-    /// Whether the file may be read in the background.
-    pub(super) fn may_be_read_aside(&self, path: &Path) -> bool {
-        !Destination::may_wait(path) && self.admit(path).is_ok()
-    }
-
     /// Reads the preset or the file called `name`.
     pub(super) fn open_scenario(&self, name: &str) -> Result<Scenario, String> {
         self.admit_reading(Path::new(name))?;
@@ -339,16 +334,11 @@ fn in_words(written: &Written, is_seat: bool) -> String {
 mod tests {
     use super::*;
 
-    fn here() -> (tempfile::TempDir, Files) {
+    #[test]
+    fn a_free_name_is_that_of_no_file() {
         let folder = tempfile::tempdir().unwrap();
         let mut files = Files::default();
         files.work_in(folder.path());
-        (folder, files)
-    }
-
-    #[test]
-    fn a_free_name_is_that_of_no_file() {
-        let (folder, files) = here();
         assert_eq!(
             files.free_name("presets/cusps.toml", "", "csv"),
             "cusps.csv"
@@ -357,32 +347,5 @@ mod tests {
         let again = files.free_name("cusps-run.toml", "-run", "toml");
         assert_eq!(again, "cusps-run-2.toml");
         assert_eq!(files.free_name("a\u{1b}b", "", "csv"), "a_b.csv");
-    }
-
-    #[test]
-    fn a_file_is_replaced_only_where_that_is_asked_for() {
-        let (_folder, files) = here();
-        let path = files.path_of("run.toml");
-        let done = files.save("the run", "one", &path, false).unwrap();
-        assert!(done.stays && done.said.unwrap().starts_with("the run is in "));
-        let refused = files.save("the run", "two", &path, false);
-        assert_eq!(refused, Err(Refusal::Exists(path.clone())));
-        files.save("the run", "two", &path, true).unwrap();
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
-        let nameless = files.save("the run", "", &files.path_of(""), false);
-        assert!(nameless.unwrap_err().to_string().contains("needs a name"));
-    }
-
-    #[test]
-    fn nothing_is_under_way_at_first() {
-        let mut files = Files::default();
-        assert_eq!(files.folder(), Path::new("."));
-        assert!(!files.is_exporting() && files.written.is_empty());
-        assert_eq!(
-            (files.follow_export(), files.export_in_words()),
-            (None, None)
-        );
-        files.stop_export();
-        assert_eq!(files.admit(Path::new("/anywhere")), Ok(()));
     }
 }

@@ -1,7 +1,6 @@
 //! What the lab says: the message at the bottom of the screen, which goes away after a few seconds or at the next key; the
 //! line about what there is to see; and what to try next.
 
-use super::advice::Adviser;
 use super::answer::{Answer, Done};
 use super::player::Player;
 use super::runs::Runs;
@@ -18,9 +17,6 @@ const STANDS: Duration = Duration::from_secs(5);
 
 /// What is said at the end of the scenario's run, before what to try next.
 const END_OF_RUN: &str = "end of the run: space goes on, r begins again";
-
-/// What is said of what would mend a run that has broken down, until the search for it has ended.
-const IS_SOUGHT: &str = "a time step or scheme that mends it is looked for";
 
 /// What a line about what to try says of the exact motion, and what it says where that is drawn.
 const ASKS_FOR_EXACT: &str = "t draws the exact motion";
@@ -51,19 +47,17 @@ struct Said {
     text: String,
     /// The time at which it goes away; `None` where only a key removes it.
     until: Option<Duration>,
-    /// The part of the text that stands there until something has been found, and is then replaced by that.
-    unfound: Option<&'static str>,
 }
 
 impl Messages {
     /// Shows `text` for five seconds from `now` on.
     pub fn say(&mut self, text: impl Into<String>, now: Duration) {
-        self.show(text.into(), Some(now + STANDS), None);
+        self.show(text.into(), Some(now + STANDS));
     }
 
     /// Shows `text` until the next key: for messages that must not be missed.
     pub fn keep_saying(&mut self, text: impl Into<String>) {
-        self.show(text.into(), None, None);
+        self.show(text.into(), None);
     }
 
     /// Shows what a command says that was carried out, or why it was refused. Returns whether there is something to show.
@@ -77,32 +71,8 @@ impl Messages {
         true
     }
 
-    /// Shows `text` until the next key; its part `unfound` is replaced once [something is found](Self::find).
-    fn keep_seeking(&mut self, text: String, unfound: &'static str) {
-        self.show(text, None, Some(unfound));
-    }
-
-    fn show(&mut self, text: String, until: Option<Duration>, unfound: Option<&'static str>) {
-        self.said = Some(Said {
-            text,
-            until,
-            unfound,
-        });
-    }
-
-    /// Whether a part of the message stands until something is found.
-    fn is_seeking(&self) -> bool {
-        let said = self.said.as_ref();
-        said.is_some_and(|said| said.unfound.is_some())
-    }
-
-    /// Shows what has been `found` in the place of the part that stood until then.
-    fn find(&mut self, found: &str) {
-        if let Some(said) = &mut self.said
-            && let Some(unfound) = said.unfound.take()
-        {
-            said.text = said.text.replacen(unfound, found, 1);
-        }
+    fn show(&mut self, text: String, until: Option<Duration>) {
+        self.said = Some(Said { text, until });
     }
 
     /// Shows `text` before the message, until the next key; alone it does without the "; " at its end.
@@ -162,28 +132,17 @@ impl Messages {
         self.say(text, now);
     }
 
-    /// Says `text`, that the numbers have stopped being finite, and what helps: a key that mends the run, which may still be
-    /// looked for, and, of a run with edits, what takes back the last.
-    pub(super) fn tell_of_break(&mut self, text: &str, is_edited: bool) {
+    /// Says `text`, that the numbers have stopped being finite, and what helps: a key that mends the run, if that is known,
+    /// and, of a run with edits, what takes back the last.
+    pub(super) fn tell_of_break(&mut self, text: &str, mends: Option<String>, is_edited: bool) {
+        let unknown = "a shorter time step or another scheme may mend it (e)";
+        let mends = mends.unwrap_or_else(|| unknown.to_owned());
         let undo = if is_edited {
             ", u takes the last edit back"
         } else {
             ""
         };
-        let text = format!("{text}: {IS_SOUGHT}{undo}");
-        self.keep_seeking(text, IS_SOUGHT);
-    }
-
-    /// Where the message says that advice is looked for, and the search has ended: says what was found instead. Returns
-    /// whether it does.
-    pub(super) fn tell_what_was_found(&mut self, adviser: &Adviser, player: &Player) -> bool {
-        let has_ended = self.is_seeking() && !adviser.is_seeking();
-        if has_ended {
-            let offer = adviser.offer(player).map(|[_, short]| short);
-            let unknown = "a shorter time step or another scheme may mend it (e)";
-            self.find(&offer.unwrap_or_else(|| unknown.to_owned()));
-        }
-        has_ended
+        self.keep_saying(format!("{text}: {mends}{undo}"));
     }
 }
 
@@ -267,38 +226,5 @@ mod tests {
         let cleared = messages.clear(Some(4));
         assert!(cleared.anything && !cleared.was_warned);
         assert!(!messages.clear(None).anything);
-    }
-
-    #[test]
-    fn what_is_found_takes_the_place_of_what_stood_until_then() {
-        let mut messages = Messages::default();
-        let text = "the end: a cure is looked for, u goes back".to_owned();
-        messages.keep_seeking(text, "a cure is looked for");
-        assert!(messages.is_seeking());
-        messages.keep_saying_first("opened; ");
-        assert_eq!(
-            messages.text(),
-            Some("opened; the end: a cure is looked for, u goes back")
-        );
-        messages.find("a shorter step");
-        let found = "opened; the end: a shorter step, u goes back";
-        assert_eq!(messages.text(), Some(found));
-        assert!(!messages.is_seeking());
-        // Nothing is left to be replaced; and another message is not changed either.
-        messages.find("again");
-        assert_eq!(messages.text(), Some(found));
-        messages.keep_saying("a cure is looked for");
-        messages.find("again");
-        assert_eq!(messages.text(), Some("a cure is looked for"));
-    }
-
-    #[test]
-    fn trouble_stays_until_it_is_over() {
-        let mut messages = Messages::default();
-        let full = || Some("the disk is full".to_owned());
-        assert!(messages.set_trouble(full()) && !messages.set_trouble(full()));
-        messages.take_back();
-        assert_eq!(messages.trouble(), Some("the disk is full"));
-        assert!(messages.set_trouble(None));
     }
 }

@@ -26,6 +26,7 @@ pub mod action;
 mod advice;
 mod answer;
 pub mod browser;
+mod closing;
 pub mod command;
 pub mod comparison;
 mod dialog;
@@ -38,7 +39,6 @@ mod messages;
 pub mod numbers;
 mod player;
 mod popups;
-pub mod preview;
 mod routing;
 mod runs;
 mod script;
@@ -73,7 +73,7 @@ use crate::text::printable::printable;
 use command::Command;
 use edits::{Edit, Outcome};
 use player::Change;
-use session::{Kept, KeptPinned, KeptPlace};
+use session::KeptPlace;
 use sheet::Sheet;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -216,15 +216,14 @@ impl Lab {
     /// What a session keeps.
     pub fn content(&mut self) -> Content {
         let (player, comparison, edits) = (&self.player, &self.comparison, &self.edits);
-        let (files, view, script) = (&self.files, &self.view, &self.script);
+        let (files, view) = (&self.files, &self.view);
         let place = KeptPlace {
             lessons: self.lessons.clone(),
-            ..KeptPlace::of(player, comparison, edits, files, view, script)
+            ..KeptPlace::of(player, comparison, edits, files, view)
         };
         let place = toml::to_string(&place).unwrap_or_default();
-        let reference = self.comparison.reference();
         Content {
-            work: self.edits.runs.kept(reference, session::written),
+            work: self.edits.runs.kept(),
             place,
         }
     }
@@ -437,14 +436,9 @@ impl Lab {
         confined: Option<&Confined>,
         view: impl FnOnce(&Scenario) -> View,
     ) -> Result<Self, Unreadable> {
-        let Kept {
-            history,
-            scenario,
-            pinned,
-            place,
-        } = Kept::read(content)?;
+        let (history, scenario, place) = session::kept(content)?;
         let mut view = view(&scenario);
-        place.restore(&mut view, scenario.motion.time_step_s)?;
+        place.restore(&mut view)?;
         let (name, end_s) = (history.present().name.clone(), history.present().end_s);
         let mut lab = Self::new(&name, Arc::clone(&scenario), view, false);
         if let Some(folder) = confined {
@@ -456,23 +450,16 @@ impl Lab {
         lab.player
             .resume(place.step, place.speed, place.shows_exact, end_s);
         lab.edits.follow(&lab.player);
-        lab.take_up(place, pinned);
+        lab.take_up(place);
         lab.read_now();
         Ok(lab)
     }
 
-    /// Takes up what may be lost without the run: the script, the pinned run, the measured data and the lesson. Says what
-    /// is there again, and what is lost.
-    fn take_up(&mut self, place: KeptPlace, pinned: Option<KeptPinned>) {
-        let (script, mut text) = place.script_in_words();
-        self.script = script.unwrap_or_default();
-        match pinned.map(KeptPinned::reference) {
-            None => {}
-            Some(Ok(reference)) => self.comparison.pin_again(reference),
-            Some(Err(problems)) => {
-                text += &format!("; the pinned run is lost: {}", problems.in_one_line());
-            }
-        }
+    /// Takes up what may be lost without the run: the measured data and the lesson. Says what is there again, and what is
+    /// lost.
+    fn take_up(&mut self, place: KeptPlace) {
+        let mut text = place.in_words();
+        self.comparison.pin(place.pinned);
         if let Some(name) = &place.measured
             && let Err(problems) =
                 self.comparison

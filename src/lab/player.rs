@@ -282,12 +282,6 @@ impl Player {
         self.playback.is_running() || self.playback.steps_to_go().is_some()
     }
 
-    /// The step to which the run is on its way.
-    pub(super) fn bound_for(&self) -> Option<u64> {
-        let to_go = self.playback.steps_to_go()?;
-        Some(self.playback.step_number().saturating_add(to_go))
-    }
-
     /// The present step, or the step to which the run is on its way by itself.
     pub(super) fn step_to_keep(&self) -> u64 {
         let heading = self.destination.heading(&self.playback);

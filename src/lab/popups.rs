@@ -5,8 +5,7 @@ use super::action::FieldEdit;
 use super::browser::Browser;
 use super::dialog::Dialog;
 use super::files::Files;
-use super::form::{MOST_IN_LINE, edit_line, type_into};
-use super::preview::Preview;
+use super::form::{edit_line, type_into};
 use crate::storage::confined::Confined;
 use std::path::Path;
 
@@ -71,15 +70,6 @@ impl Popups {
         Some(dialog)
     }
 
-    /// The file that was chosen to be opened and what it holds, once it has been read. Where the browser no longer has
-    /// the keys, the choice is forgotten.
-    pub(super) fn take_chosen(&mut self) -> Option<(String, Preview)> {
-        if !matches!(self.mode, Mode::Browser | Mode::Filter) {
-            self.browser.forget_chosen();
-        }
-        self.browser.take_chosen()
-    }
-
     /// Opens the browser in the folder of `files`, with `name` selected.
     pub(super) fn browse(&mut self, name: &str, files: &Files) {
         let may_be_read = |path: &Path| files.admit_reading(path).is_ok();
@@ -88,8 +78,7 @@ impl Popups {
         self.mode = Mode::Browser;
     }
 
-    /// Lists the folder that is selected in the browser, or begins to read the file; returns the name of an entry that can
-    /// be opened at once.
+    /// Lists the folder that is selected in the browser, or returns the name of the entry to be opened.
     ///
     /// # Errors
     /// Why there is nothing to open.
@@ -104,11 +93,7 @@ impl Popups {
                 .then_some(None)
                 .ok_or_else(|| format!("{} cannot be opened any more", entry.name));
         }
-        if !entry.is_file || !files.may_be_read_aside(Path::new(&entry.name)) {
-            return Ok(Some(entry.name));
-        }
-        self.browser.choose();
-        Ok(None)
+        Ok(Some(entry.name))
     }
 
     pub fn shows_settings(&self) -> bool {
@@ -138,7 +123,6 @@ impl Popups {
                 self.browser.filter_by(String::clear);
                 self.mode = Mode::Browser;
             }
-            Mode::Browser if self.browser.forget_chosen() => {}
             Mode::Browser => self.mode = Mode::Lab,
             Mode::Dialog => drop(self.take_dialog()),
         }
@@ -162,23 +146,13 @@ impl Popups {
         }
     }
 
-    /// Puts the pasted `text` into the dialog or the filter. Returns a message if it does not fit. In other modes pasting
-    /// does nothing: the letters of a pasted text are not meant as keys.
+    /// Puts the pasted `text` into the dialog or the filter. In other modes pasting does nothing but return a message: the
+    /// letters of a pasted text are not meant as keys.
     pub(super) fn paste(&mut self, text: &str) -> Option<String> {
         match (&mut self.dialog, self.mode) {
             (Some(dialog), _) => dialog.paste(text),
-            (None, Mode::Help) => {
-                self.help.search(|line| type_into(line, text));
-            }
-            (None, Mode::Filter) => {
-                let fits = self.browser.filter_by(|line| type_into(line, text));
-                let cut = || {
-                    format!(
-                        "the filter takes at most {MOST_IN_LINE} characters: what was pasted is cut"
-                    )
-                };
-                return (!fits).then(cut);
-            }
+            (None, Mode::Help) => self.help.search(|line| type_into(line, text)),
+            (None, Mode::Filter) => self.browser.filter_by(|line| type_into(line, text)),
             _ => {
                 let text = "what is pasted goes into fields and filters; here it does nothing";
                 return Some(text.to_owned());
@@ -198,11 +172,10 @@ pub struct HelpSearch {
 impl HelpSearch {
     /// Changes the text that is searched for; the first entry found is selected. `/` begins a search in other panes: at
     /// the beginning it means nothing here.
-    fn search<T>(&mut self, change: impl FnOnce(&mut String) -> T) -> T {
-        let changed = change(&mut self.text);
+    fn search(&mut self, change: impl FnOnce(&mut String)) {
+        change(&mut self.text);
         self.text = self.text.trim_start_matches('/').to_owned();
         self.selected = 0;
-        changed
     }
 
     pub(super) fn shift(&mut self, rows: isize) {
@@ -220,37 +193,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_opened_last_is_closed_first() {
-        let mut popups = Popups::default();
-        assert!(!popups.close());
-        popups.mode = Mode::Browser;
-        popups.toggle_help();
-        assert_eq!(popups.mode, Mode::Help);
-        assert!(popups.close());
-        popups.mode = Mode::Filter;
-        popups.edit_field(FieldEdit::Type('x'));
-        let filter = |popups: &Popups| (popups.mode, popups.browser.filter.clone());
-        assert_eq!(filter(&popups), (Mode::Filter, "x".to_owned()));
-        assert!(popups.close());
-        assert_eq!(filter(&popups), (Mode::Browser, String::new()));
-        assert!(popups.close());
-        popups.open_dialog(Dialog::go_to());
-        assert_eq!(popups.mode, Mode::Dialog);
-        assert!(popups.close() && popups.dialog().is_none());
-        assert_eq!(popups.mode, Mode::Lab);
-    }
-
-    #[test]
-    fn digits_make_a_count() {
-        let mut popups = Popups::default();
-        popups.add_digit(None, 4);
-        popups.add_digit(Some(4), 2);
-        assert_eq!(popups.count, Some(42));
-        popups.add_digit(Some(MOST_COUNTED), 9);
-        assert_eq!(popups.count, Some(MOST_COUNTED));
-    }
-
-    #[test]
     fn pasted_text_goes_where_text_is_typed() {
         let mut popups = Popups::default();
         assert!(popups.paste("q").unwrap().contains("does nothing"));
@@ -258,7 +200,7 @@ mod tests {
         assert_eq!(popups.paste("400"), None);
         assert_eq!(popups.take_dialog().unwrap().form.text(0), "400");
         popups.mode = Mode::Filter;
-        let cut = popups.paste(&"x".repeat(MOST_IN_LINE + 1)).unwrap();
-        assert!(cut.contains("is cut"));
+        assert_eq!(popups.paste("x"), None);
+        assert_eq!(popups.browser.filter, "x");
     }
 }

@@ -1,15 +1,12 @@
 //! Leads actions and time to the parts of the lab.
 
-use super::action::{
-    Action, Ask, Direction, FieldEdit, LessonKey, PAGE, Request, repeated, signed,
-};
-use super::answer::{Answer, Done};
-use super::command::{Command, Commands, CursorTo, Place};
+use super::action::{Action, Ask, Direction, FieldEdit, PAGE, Request, repeated, signed};
+use super::answer::Done;
+use super::command::{Command, Commands, Place};
 use super::dialog::{Dialog, Question};
 use super::form::{edit_line, type_into};
 use super::messages::{self, halt_in_words};
 use super::popups::Mode;
-use super::preview::Preview;
 use super::view::Pane;
 use super::{Cleared, Lab, Script};
 use crate::playback::Halt;
@@ -20,8 +17,6 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// The factor of the arrows with Shift.
-const FAR: i32 = 10;
 /// How often to look whether an export is complete while there is nothing else to do.
 const LOOK: Duration = Duration::from_millis(2);
 /// How long steps are taken before the caller decides whether to go on.
@@ -68,39 +63,44 @@ impl Lab {
             Action::Parameters => self.turn_to_parameters(),
             Action::Edit if self.view.focus != Pane::PARAMETERS => self.turn_to_parameters(),
             Action::Edit => self.ask(Ask::Value)?,
-            Action::Ask(ask) => self.ask(ask)?,
-            Action::Digit(digit) => self.popups.add_digit(count, digit),
             Action::NextPane => self.view.shift_focus(true),
             Action::PreviousPane => self.view.shift_focus(false),
-            Action::ThreeD => self.view.toggle_three_d(),
             Action::ToDifference => {
                 let commands = self.comparison.to_difference(&self.view)?;
                 self.carry_out_all(&commands);
                 self.view.turn_to(Pane::STEP);
             }
-            Action::ToggleStep => {
-                let is_shown = self.view.shows_step();
-                self.carry_out_all(&self.view.step_toggled());
+            Action::Toggle(pane) => {
+                let is_shown = self.view.shows(pane);
+                self.carry_out_all(&self.view.toggled(pane));
                 if !is_shown {
-                    self.view.turn_to(Pane::STEP);
+                    self.view.turn_to(pane);
                 }
             }
-            Action::Move(direction) => self.move_by(direction, times)?,
-            Action::MoveFar(direction) => self.move_by(direction, times.saturating_mul(FAR))?,
+            Action::Move(direction, far) => self.move_by(direction, times * far)?,
+            other => return self.act_on_top(other, &cleared),
+        }
+        Ok(None)
+    }
+
+    /// Does what concerns popups, or what only the main loop can do.
+    fn act_on_top(&mut self, action: Action, cleared: &Cleared) -> Result<Option<Request>, String> {
+        match action {
+            Action::Ask(ask) => self.ask(ask)?,
+            Action::Digit(digit) => self.popups.add_digit(cleared.count, digit),
             Action::Browse => self.popups.browse(self.edits.runs.name(), &self.files),
             Action::FindValue => {
                 self.view.turn_to(Pane::PARAMETERS);
                 self.edits.values.list.filter_by(String::clear);
                 self.popups.mode = Mode::Find;
             }
-            Action::DoEntry => {} // tui has the entries, and carries it out
             Action::Choose => self.open_chosen()?,
             Action::Filter => self.popups.mode = Mode::Filter,
             Action::InField(edit) => self.edit_field(edit),
             Action::Accept if self.popups.shows_settings() => self.change_setting(true),
             Action::Accept => return Ok(self.accept()),
             Action::Help => self.popups.toggle_help(),
-            Action::Close => return Ok(self.close(&cleared)),
+            Action::Close => return Ok(self.close(cleared)),
             Action::Class => return Ok(Some(Request::Class)),
             Action::Lesson(key) => return Ok(Some(Request::Lesson(key))),
             Action::Redraw => return Ok(Some(Request::Redraw)),
@@ -112,6 +112,7 @@ impl Lab {
                 self.messages.warn_of_export(self.now);
             }
             Action::Quit => return Ok(Some(Request::Quit)),
+            _ => {} // tui has the entries of the help, and carries them out
         }
         Ok(None)
     }
@@ -123,40 +124,27 @@ impl Lab {
         Ok(())
     }
 
-    /// Does what an arrow or page key does that is pressed `times` times.
+    /// Does what an arrow or page key does that is pressed `times` times, where that is no command of the pane in focus.
     fn move_by(&mut self, direction: Direction, times: i32) -> Result<(), String> {
-        let is_sideways = matches!(direction, Direction::Left | Direction::Right);
-        let (player, view) = (&self.player, &self.view);
-        let command = match (self.popups.mode, view.focus) {
-            (Mode::Lab, Pane::THREE_D) => view.turned(direction, times),
-            (Mode::Lab | Mode::Find, Pane::PARAMETERS) if is_sideways => {
-                let (times, scenario) = (signed(direction, times), player.run().scenario());
-                match self.edits.values.selected_nudged(times, scenario)? {
-                    Some(nudge) => nudge,
-                    None => return Ok(()),
+        let rows = direction.rows(PAGE) * times as isize;
+        let of_values = self.view.focus == Pane::PARAMETERS;
+        match self.popups.mode {
+            Mode::Lab | Mode::Find if of_values && direction.is_sideways() => {
+                let (times, scenario) = (signed(direction, times), self.player.run().scenario());
+                if let Some(nudge) = self.edits.values.selected_nudged(times, scenario)? {
+                    self.one(nudge);
                 }
             }
-            (Mode::Lab | Mode::Find, Pane::PARAMETERS) => {
-                let rows = direction.rows(PAGE) * times as isize;
+            Mode::Lab | Mode::Find if of_values => {
                 let list = &mut self.edits.values.list;
                 list.shift(rows.signum() * times as isize);
-                return Ok(());
             }
-            (Mode::Lab, Pane::STEP) => self.step_pane.other_sum(direction, times, view)?,
-            (Mode::Lab, Pane::TRACES) if is_sideways => {
-                view.moved_cursor(signed(direction, times), player)
-            }
-            (Mode::Lab, Pane::TRACES) => view.other_detail(direction, times, player),
-            (Mode::Lab, _) => {
+            Mode::Lab => {
                 let rule = "z and Z zoom here; arrows turn the 3-D view (d) and choose values (e)";
                 return Err(rule.to_owned());
             }
-            _ => {
-                self.popups.shift(direction.rows(PAGE) * times as isize);
-                return Ok(());
-            }
-        };
-        self.one(command);
+            _ => self.popups.shift(rows),
+        }
         Ok(())
     }
 
@@ -174,8 +162,10 @@ impl Lab {
     fn edit_field(&mut self, edit: FieldEdit) {
         match edit {
             edit if self.popups.mode == Mode::Find => {
-                let list = &mut self.edits.values.list;
-                list.filter_by(|line| edit_line(line, edit));
+                self.edits
+                    .values
+                    .list
+                    .filter_by(|line| edit_line(line, edit));
             }
             FieldEdit::Left | FieldEdit::Right if self.popups.shows_settings() => {
                 self.change_setting(edit == FieldEdit::Right);
@@ -206,8 +196,8 @@ impl Lab {
             Ok(command) => self.carry_out_all(command.as_slice()),
             Err(trouble) => self.tell(trouble),
         }
-        let dialog = Dialog::settings(&self.view, selected);
-        self.popups.open_dialog(dialog);
+        self.popups
+            .open_dialog(Dialog::settings(&self.view, selected));
     }
 
     /// Carries out the command that the open dialog asked for. If it is refused, the dialog stays and shows the reason.
@@ -237,80 +227,17 @@ impl Lab {
         None
     }
 
-    /// Closes or stops the first of these that there is: a popup, the script, the steps asked for, the cursor, the pane that
-    /// fills the screen, the focus on the parameters, the export, the step pane in focus. If there is none of these, it says
-    /// how to leave, unless the key has already removed a message or a count.
-    fn close(&mut self, cleared: &Cleared) -> Option<Request> {
-        let is_found = self.popups.mode == Mode::Find;
-        let is_filtered = self.popups.mode == Mode::Lab && self.view.focus == Pane::PARAMETERS;
-        // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
-        let is_left = is_filtered && self.view.sheet.is_some();
-        let forget = |line: &mut String| !std::mem::take(line).is_empty();
-        let list = &mut self.edits.values.list;
-        if (is_found || is_filtered) && list.filter_by(forget) && !is_left {
-            self.popups.close();
-        } else if self.popups.close() {
-            // The popup was all that the key closes.
-        } else if !self.script.is_done() {
-            self.stop_script();
-        } else if self.player.playback.steps_to_go().is_some() {
-            self.one(Command::Pause);
-        } else if self.view.cursor.is_some() {
-            self.one(Command::Cursor(CursorTo::Nowhere));
-        } else if self.view.filled {
-            self.one(Command::Fill(None));
-            self.view.turn_to_sheet();
-            // On a screen that has no place for the values beside the run, they fill it: leaving them shows the run again.
-            if !self.view.side_by_side.contains(&Pane::PARAMETERS) {
-                self.view.leave_parameters();
-            }
-        } else if cleared.count.is_none() && self.view.leave_parameters() {
-            // The focus returns to the run even if the key has removed a message too.
-        } else if cleared.anything {
-            // The key has done something already.
-        } else if self.files.is_exporting() {
-            self.files.stop_export();
-        } else if self.view.focus == Pane::STEP && self.view.shows_step() {
-            self.carry_out_all(&self.view.step_toggled());
-        } else if self.view.sheet.is_some() {
-            return Some(Request::Lesson(LessonKey::Leave));
-        } else {
-            self.say("nothing to close; q leaves");
-        }
-        None
-    }
-
     /// Opens the entry that is selected in the browser: plays its run, or lists what is in the folder.
     fn open_chosen(&mut self) -> Result<(), String> {
         if let Some(name) = self.popups.choose(&self.files)? {
             let answer = self.carry_out(&Command::Open(name));
-            self.play_opened(answer);
-        }
-        self.open_what_was_read();
-        if self.popups.browser.is_choice_loading() {
-            self.say("reading it: it opens when it has been read, Esc stays here");
+            if answer.is_ok() {
+                self.popups.mode = Mode::Lab;
+                self.one(Command::Run);
+            }
+            self.tell_answer(answer);
         }
         Ok(())
-    }
-
-    /// Opens the file that was chosen in the browser, once it has been read in the background.
-    fn open_what_was_read(&mut self) {
-        let Some((name, Preview::Known(known))) = self.popups.take_chosen() else {
-            return;
-        };
-        let answer = match known.as_ref() {
-            Ok(scenario) => {
-                self.edits.values.forget_nudge();
-                let scenario = Arc::new(scenario.clone());
-                let edit = self.edits.open(&name, scenario, &self.player);
-                let done = self.follow(edit);
-                self.view.keep_focus();
-                self.read_now();
-                Ok(done)
-            }
-            Err(reason) => Err(reason.lines().next().unwrap_or_default().into()),
-        };
-        self.play_opened(answer);
     }
 
     /// Changes to the run of `scenario`, which another lab shows as `name`, and which ends there at `end_s`. It is paused at
@@ -324,15 +251,6 @@ impl Lab {
         self.follow(edit);
         self.view.keep_focus();
         self.read_now();
-    }
-
-    /// Closes the browser and plays what has been opened, or says why nothing was.
-    fn play_opened(&mut self, answer: Answer) {
-        if answer.is_ok() {
-            self.popups.mode = Mode::Lab;
-            self.one(Command::Run);
-        }
-        self.tell_answer(answer);
     }
 }
 
@@ -357,9 +275,6 @@ impl Lab {
         if let Some(verdict) = verdict {
             self.tell(verdict);
         }
-        self.tell_what_was_found();
-        self.changed |= self.popups.browser.take_what_was_read();
-        self.open_what_was_read();
         self.follow_export();
         self.go_on_with_script(halt);
         if self.changed && self.player.is_due(now, self.view.window_s) {
@@ -378,13 +293,8 @@ impl Lab {
     ) -> Result<(), NotFinite> {
         let mut part = 1_u64;
         loop {
-            let next = self
-                .player
-                .playback
-                .step_number()
-                .saturating_add(part)
-                .min(step);
             let playback = &mut self.player.playback;
+            let next = playback.step_number().saturating_add(part).min(step);
             let arrived = playback.begin_at_while(next, |reached, _| go_on(reached, step));
             self.arrive();
             let reached = self.player.playback.step_number();
@@ -403,7 +313,7 @@ impl Lab {
     }
 
     fn halted(&mut self, halt: Halt) {
-        let Self { player, .. } = self;
+        let player = &mut self.player;
         player.destination.has_halted(halt, &mut player.playback);
         self.read_now();
         let next = messages::next(&self.view, &self.edits.runs, &self.player);
@@ -413,17 +323,12 @@ impl Lab {
         if let Halt::NotFinite(_) = halt {
             let edits = self.edits.runs.journal();
             let is_edited = edits.count_by(self.player.playback.step_number()) > 0;
-            self.messages.tell_of_break(&text, is_edited);
+            let mends = self.adviser.offer(&self.player).map(|[_, short]| short);
+            self.messages.tell_of_break(&text, mends, is_edited);
             self.changed = true;
-            self.tell_what_was_found();
         } else {
             self.tell(text);
         }
-    }
-
-    fn tell_what_was_found(&mut self) {
-        let (adviser, player) = (&self.adviser, &self.player);
-        self.changed |= self.messages.tell_what_was_found(adviser, player);
     }
 
     fn follow_export(&mut self) {
@@ -434,7 +339,7 @@ impl Lab {
     }
 
     fn toggle_pause(&mut self) {
-        match (self.script.is_done(), self.script.is_waiting()) {
+        match (self.script.is_done(), self.script.waits) {
             (false, true) => self.release_script(),
             (false, false) => {
                 self.script.pause(&self.player, self.now);
@@ -444,12 +349,6 @@ impl Lab {
             (true, _) if self.player.is_moving() => self.one(Command::Pause),
             (true, _) => self.one(Command::Run),
         }
-    }
-
-    fn stop_script(&mut self) {
-        let left_out = self.script.drop_all();
-        self.one(Command::Pause);
-        self.say(left_out);
     }
 
     fn release_script(&mut self) {

@@ -2,7 +2,7 @@
 //! started is complete.
 
 use super::answer::{Answer, Done, UnderWay};
-use super::command::{Command, Commands, Place, Placed, to_toml};
+use super::command::{Command, Commands, Place, Placed};
 use super::files::Files;
 use super::player::Player;
 use crate::playback::{Halt, MOST_UNTIL};
@@ -26,8 +26,8 @@ pub struct Script {
     is_dropped: bool,
     /// Titles of the chapters that were begun and not taken yet.
     chapters: Vec<String>,
-    /// Whether the script waits until the user lets it go on: it comes from a session, or was paused.
-    waits: bool,
+    /// Whether the script was paused, and waits until the user lets it go on.
+    pub(super) waits: bool,
     /// Whether the run played when the script was paused, and plays again when it goes on.
     plays_again: bool,
 }
@@ -38,14 +38,6 @@ impl Script {
             origin: commands.origin,
             left: commands.list.into(),
             ..Self::default()
-        }
-    }
-
-    /// The script of `commands` from a session. It waits until the user lets it go on.
-    pub(super) fn waiting(commands: Commands) -> Self {
-        Self {
-            waits: true,
-            ..Self::new(commands)
         }
     }
 
@@ -130,67 +122,42 @@ impl Script {
         }
     }
 
-    pub(super) fn is_waiting(&self) -> bool {
-        self.waits
-    }
-
     /// The command under way as it is carried out again: a run goes to the same step or until the same condition holds, a
-    /// wait lasts anew, or, with the time `now`, for what is left of it.
-    fn under_way_again(&self, player: &Player, now: Option<Duration>) -> Option<Placed> {
-        let (placed, under_way) = self.under_way.as_ref()?;
-        let command = match (under_way, now) {
-            (UnderWay::Going, _) => Command::GoTo(Place::Step(player.bound_for()?)),
-            (UnderWay::Waiting(until), Some(now)) => {
-                Command::Wait(until.saturating_sub(now).as_secs_f64())
+    /// wait lasts for what is left of it at `now`.
+    fn under_way_again(&self, player: &Player, now: Duration) -> Option<Placed> {
+        let (playback, (placed, under_way)) = (&player.playback, self.under_way.as_ref()?);
+        let command = match under_way {
+            UnderWay::Going => {
+                let (here, to_go) = (playback.step_number(), playback.steps_to_go()?);
+                Command::GoTo(Place::Step(here.saturating_add(to_go)))
             }
+            UnderWay::Waiting(until) => Command::Wait(until.saturating_sub(now).as_secs_f64()),
             _ => placed.command.clone(),
         };
         let line = placed.line;
         Some(Placed { command, line })
     }
 
-    /// The commands that are not complete, as a file of commands. The first lead back to the command under way: it is
-    /// carried out again, but steps that were under way are only taken to their end.
-    pub(super) fn left_as_toml(&self, player: &Player) -> String {
-        let plays = plays_again(player) || self.waits && self.plays_again;
-        let run = plays.then_some(Command::Run);
-        let again = self.under_way_again(player, None);
-        let left = again.iter().chain(&self.left);
-        let left = left.map(|placed| placed.command.clone());
-        let commands: Vec<_> = run.into_iter().chain(left).collect();
-        to_toml(&commands)
-    }
-
     /// Pauses the script at `now`. When it goes on, the command under way is carried out again. An export goes on meanwhile.
     pub(super) fn pause(&mut self, player: &Player, now: Duration) {
         self.waits = true;
-        self.plays_again = plays_again(player);
+        let playback = &player.playback;
+        self.plays_again = playback.is_running() && !playback.is_running_until();
         if let Some((_, UnderWay::Exporting)) = self.under_way {
             return;
         }
-        if let Some(again) = self.under_way_again(player, Some(now)) {
+        if let Some(again) = self.under_way_again(player, now) {
             self.under_way = None;
             self.left.push_front(again);
         }
     }
 
-    /// Lets a waiting script go on, as soon as the run is back at the step where a session left it. Returns whether it
-    /// waited.
+    /// Lets a waiting script go on. Returns whether it waited.
     pub(super) fn release(&mut self, player: &mut Player) -> bool {
-        if !std::mem::take(&mut self.waits) {
-            return false;
-        }
         if std::mem::take(&mut self.plays_again) {
             player.play();
         }
-        if let (Some(step), None) = (player.bound_for(), &self.under_way) {
-            let arrive = Placed {
-                command: Command::GoTo(Place::Step(step)),
-                line: None,
-            };
-            self.under_way = Some((arrive, UnderWay::Going));
-        }
-        true
+        std::mem::take(&mut self.waits)
     }
 
     /// The next command to be carried out; `None` where there is none, or where it must wait. `halt` tells why the run has
@@ -280,11 +247,6 @@ impl Script {
         self.failed = Some(text.clone());
         text
     }
-}
-
-/// Whether the run plays when the script goes on.
-fn plays_again(player: &Player) -> bool {
-    player.playback.is_running() && !player.playback.is_running_until()
 }
 
 /// Whether the action `under_way` is complete.

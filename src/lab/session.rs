@@ -1,20 +1,15 @@
 //! The content of a session: the history of runs, and the place of the lab in it, each as TOML.
 
-use super::command::{self, Commands};
 use super::comparison::Comparison;
 use super::edits::Edits;
 use super::files::Files;
 use super::player::Player;
-use super::runs::Reference;
-use super::script::Script;
 use super::view::{Look, View};
-use crate::journal::Journal;
 use crate::journal::history::History;
 use crate::journal::next_push::NextPush;
 use crate::playback::pace::Speed;
 use crate::scenario::csv::Renaming;
-use crate::scenario::file::ScenarioFile;
-use crate::scenario::{Document, Problems, Scenario, keys};
+use crate::scenario::{Problems, Scenario, keys};
 use crate::storage::session::{Content, Text, later};
 use crate::text::printable::Shown;
 use serde::{Deserialize, Serialize};
@@ -25,36 +20,6 @@ use toml::Value;
 #[serde(deny_unknown_fields)]
 struct KeptRuns {
     history: History,
-    pinned: Option<KeptPinned>,
-}
-
-/// The pinned run: its pictures are made again from its scenario.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct KeptPinned {
-    /// The step up to which it was played; of no meaning for the present run.
-    step: u64,
-    /// The run file with all that was done to the run; `None` where the present run is pinned.
-    run: Option<ScenarioFile>,
-}
-
-impl KeptPinned {
-    fn of(reference: &Reference) -> Self {
-        let run = reference.run.as_ref();
-        Self {
-            step: reference.step,
-            run: run.map(|scenario| scenario.file.clone()),
-        }
-    }
-
-    /// What is to be pinned again.
-    pub(super) fn reference(self) -> Result<Reference, Problems> {
-        let run = self.run.map(|file| Journal::of(file).scenario());
-        Ok(Reference {
-            step: self.step,
-            run: run.transpose()?,
-        })
-    }
 }
 
 /// The text of the place: the step, how the run is shown, and the push to come.
@@ -68,24 +33,16 @@ pub(super) struct KeptPlace {
     pub(super) filled: bool,
     pub(super) look: Look,
     pub(super) exporting: Option<String>,
+    /// Whether the present run is pinned.
+    pub(super) pinned: bool,
     /// The measured data beside the run.
     pub(super) measured: Option<String>,
     /// What its columns are called instead.
     #[serde(default)]
     pub(super) map: Vec<Renaming>,
     pub(super) next_push: NextPush,
-    pub(super) script: Option<KeptScript>,
     /// What the room of the lessons keeps.
     pub(super) lessons: Option<toml::Table>,
-}
-
-/// The commands of the script that were not complete.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct KeptScript {
-    /// The file from which they were read, as the user named it.
-    origin: String,
-    commands: String,
 }
 
 /// What a list of sessions shows of a session.
@@ -124,16 +81,10 @@ pub fn lessons_in(content: &Content) -> Option<toml::Table> {
         .lessons
 }
 
-/// `history` as a session keeps it, with the pinned run. The text is written by the thread that first reads it.
-pub(super) fn written(history: &History, reference: Option<&Reference>) -> Text {
-    let (history, reference) = (history.clone(), reference.cloned());
-    later(move || {
-        let runs = KeptRuns {
-            history,
-            pinned: reference.as_ref().map(KeptPinned::of),
-        };
-        toml::to_string(&runs).unwrap_or_default()
-    })
+/// `history` as a session keeps it. The text is written by the thread that first reads it.
+pub(super) fn written(history: &History) -> Text {
+    let history = history.clone();
+    later(move || toml::to_string(&KeptRuns { history }).unwrap_or_default())
 }
 
 fn read<'a, T: Deserialize<'a>>(what: &str, text: &'a str) -> Result<T, Unreadable> {
@@ -143,27 +94,13 @@ fn read<'a, T: Deserialize<'a>>(what: &str, text: &'a str) -> Result<T, Unreadab
     })
 }
 
-/// The content of a session as it was read.
-pub(super) struct Kept {
-    pub(super) history: History,
-    /// The scenario of the present run.
-    pub(super) scenario: Arc<Scenario>,
-    pub(super) pinned: Option<KeptPinned>,
-    pub(super) place: KeptPlace,
-}
-
-impl Kept {
-    pub(super) fn read(content: &Content) -> Result<Self, Unreadable> {
-        let KeptRuns { history, pinned } = read("the run", &content.work)?;
-        let place = read("the place in it", &content.place)?;
-        let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
-        Ok(Self {
-            scenario: history.scenario().map_err(unreadable)?,
-            history,
-            pinned,
-            place,
-        })
-    }
+/// The history and its present scenario in the content of a session, and the place.
+pub(super) fn kept(content: &Content) -> Result<(History, Arc<Scenario>, KeptPlace), Unreadable> {
+    let KeptRuns { history } = read("the run", &content.work)?;
+    let place = read("the place in it", &content.place)?;
+    let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
+    let scenario = history.scenario().map_err(unreadable)?;
+    Ok((history, scenario, place))
 }
 
 impl KeptPlace {
@@ -173,7 +110,6 @@ impl KeptPlace {
         edits: &Edits,
         files: &Files,
         view: &View,
-        script: &Script,
     ) -> Self {
         let exported_to = files.exported_to();
         Self {
@@ -184,31 +120,23 @@ impl KeptPlace {
             filled: view.filled,
             look: view.look.clone(),
             exporting: exported_to.map(|path| Shown(path).to_string()),
+            pinned: comparison.is_present_pinned(),
             measured: comparison.data_to_keep(files),
             map: comparison
                 .data()
                 .map_or_else(Vec::new, |data| data.map.clone()),
             next_push: edits.values.next_push.clone(),
-            script: (!script.is_done()).then(|| KeptScript {
-                origin: script.origin.clone(),
-                commands: script.left_as_toml(player),
-            }),
             lessons: None,
         }
     }
 
-    /// Shows in `view` what the session showed. A window of less than two time steps of the run, `time_step_s`, is passed
-    /// over.
-    pub(super) fn restore(&self, view: &mut View, time_step_s: f64) -> Result<(), Unreadable> {
+    /// Shows in `view` what the session showed.
+    pub(super) fn restore(&self, view: &mut View) -> Result<(), Unreadable> {
         let look = Value::try_from(&self.look).map_err(|error| Unreadable(error.to_string()))?;
         if let Some(problem) = keys::check_part(&look, "view").list.first() {
             return Err(Unreadable(problem.to_string()));
         }
-        let mut look = self.look.clone();
-        if look.window_s < 2.0 * time_step_s {
-            look.window_s = view.window_s;
-        }
-        view.take(look);
+        view.take(self.look.clone());
         let focus = view.panes.iter().find(|pane| pane.id() == self.focus);
         let unknown = || Unreadable(format!("there is no pane {}", self.focus));
         view.focus = *focus.ok_or_else(unknown)?;
@@ -216,38 +144,13 @@ impl KeptPlace {
         Ok(())
     }
 
-    /// The script that was not complete, and what is there again besides the run, in words.
-    pub(super) fn script_in_words(&self) -> (Option<Script>, String) {
-        let text = match &self.exporting {
+    /// What is there again, in words.
+    pub(super) fn in_words(&self) -> String {
+        match &self.exporting {
             Some(path) => {
                 format!("as it was left; the export to {path} was cut off, x begins another")
             }
             None => "as it was left; space goes on".to_owned(),
-        };
-        match self.script.as_ref().map(KeptScript::commands) {
-            None => (None, text),
-            Some(Ok(commands)) => {
-                let script = Script::waiting(commands);
-                let text = script.left_in_words();
-                (Some(script), text)
-            }
-            Some(Err(problems)) => {
-                let reason = problems.in_one_line();
-                let lost = format!("; the rest of its script is lost: {reason}");
-                (None, text + &lost)
-            }
         }
-    }
-}
-
-impl KeptScript {
-    /// The commands to be carried out.
-    fn commands(&self) -> Result<Commands, Problems> {
-        let document = Document::parse(&self.origin, &self.commands)?;
-        let mut commands = command::read(&document)?;
-        for placed in &mut commands.list {
-            placed.line = None; // the line in the user's file is not kept
-        }
-        Ok(commands)
     }
 }

@@ -26,8 +26,8 @@ pub struct StepWorkings {
     pub scenario: Arc<Scenario>,
     /// The sums of the table on the page, if some of its rows are added up.
     sums: Option<(usize, Sums)>,
-    /// The first dip of the run, where the page shows it.
-    dip: Option<Dip>,
+    /// The first dip of the run up to this step; `None` where the page does not show it, and where the axle was upright.
+    pub dip: Option<Dip>,
 }
 
 impl StepWorkings {
@@ -44,11 +44,6 @@ impl StepWorkings {
             sums: None,
             dip: None,
         })
-    }
-
-    /// The first dip of the run up to this step; `None` where the page does not show it, and where the axle was upright.
-    pub fn dip(&self) -> Option<&Dip> {
-        self.dip.as_ref()
     }
 
     /// The phase on `page` with its number, from 1, and how many there are; `None` for a page that shows none.
@@ -103,7 +98,7 @@ impl StepPane {
 
     /// Takes the present step apart where the pane is shown.
     pub(super) fn read(&mut self, player: &mut Player, view: &View) {
-        player.keeps_workings = view.shows_step();
+        player.keeps_workings = view.shows(Pane::STEP);
         let now = player.run().simulation().now();
         let (number, scenario) = (now.number(), Arc::clone(now.scenario()));
         let is_large = scenario.body.mechanics.points().len() > MOST_POINTS_MOVING;
@@ -181,7 +176,7 @@ impl StepPane {
     }
 
     /// The command that adds up more rows of the table, or fewer. Beyond either end all rows are added up.
-    pub(super) fn other_sum(
+    pub fn other_sum(
         &self,
         direction: Direction,
         times: i32,
@@ -192,7 +187,7 @@ impl StepPane {
             return Err("no table here: . and , go through the phases".to_owned());
         };
         let all = table.points.len() as i64;
-        if matches!(direction, Direction::Left | Direction::Right) {
+        if direction.is_sideways() {
             return Err("Up and Down add up the table; . and , go by phase".to_owned());
         }
         let rows = direction.rows(PAGE) as i64 * i64::from(times);
@@ -218,25 +213,5 @@ impl View {
             _ => Page::Why,
         };
         Command::look("phase", page)
-    }
-
-    /// The commands that show the step pane beside another one, or take it away.
-    pub(super) fn step_toggled(&self) -> Vec<Command> {
-        const BESIDE: [Pane; 2] = [Pane::THREE_D, Pane::STEP];
-        let mut commands = Vec::new();
-        if self.filled {
-            commands.push(Command::Fill(None));
-        }
-        if self.shown.contains(&Pane::STEP) == self.shows_step() {
-            let mut panes = self.shown.clone();
-            panes.retain(|pane| *pane != Pane::STEP && self.shown != BESIDE);
-            if self.shown.is_empty() {
-                panes = BESIDE.to_vec();
-            } else if !self.shown.contains(&Pane::STEP) {
-                panes.push(Pane::STEP);
-            }
-            commands.push(Command::look("show", panes));
-        }
-        commands
     }
 }

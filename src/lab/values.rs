@@ -226,24 +226,6 @@ mod tests {
     }
 
     #[test]
-    fn groups_stand_in_their_order() {
-        let (values, _) = listed();
-        let listed = values.list.values.iter();
-        let ranks: Vec<_> = listed.map(|value| rank(&value.group)).collect();
-        assert!(ranks.is_sorted() && !ranks.is_empty());
-    }
-
-    #[test]
-    fn a_value_is_found_by_its_key() {
-        let (values, _) = listed();
-        let step = values.parameter("motion.time_step_s").unwrap();
-        assert_eq!(step.value.as_float(), Some(0.1));
-        assert!(values.in_words("motion.time_step_s").contains("0.1 s"));
-        assert!(values.parameter("motion.nothing").is_none());
-        assert_eq!(values.in_words("motion.nothing"), "motion.nothing");
-    }
-
-    #[test]
     fn a_push_has_its_own_and_the_rest_of_the_push_to_come() {
         let (values, scenario) = listed();
         let choice = PushChoice {

@@ -7,7 +7,7 @@ use super::dotted::{is_in, join};
 pub use super::kind::{Kind, PITCH_DEG, Range, ZOOM};
 use super::limits::MOST_POINTS;
 use super::problem::{Problem, Problems, nearest};
-use super::screen::{ALL_ROWS, DETAILS, FILLING, HIDEABLE, PANES, PHASES};
+use super::screen::{ALL_ROWS, DETAILS, HIDEABLE, PHASES};
 use super::solids;
 use crate::physics::scheme;
 use toml::Value;
@@ -70,7 +70,7 @@ pub const GRAVITY: f64 = 9.8;
 /// Playback speed where a scenario gives none, simulated seconds a second.
 pub const SPEED: f64 = 1.0;
 
-use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, WholeOr, Words};
+use Kind::{Flag, Line, Number, OneOf, Pane, Panes, Paragraph, Settings, Vector, Whole, WholeOr};
 use Nudge::{By, Hundredth, Ladder, Turn, Typed, WholeHundredth};
 use Range::{Any, NotNegative, Positive};
 
@@ -182,9 +182,9 @@ pub static KEYS: &[Key] = &[
     may("view.detail_s", Number(Positive), "length of time that the strip of the fast motion shows, s (default: about ten swings of the axle)"),
     may("view.detail_of", OneOf(&DETAILS), "what that strip shows (default: auto, the tilt, or x where the tilt does not swing)"),
     may("view.exact", Flag, "whether the exact motion is drawn beside the run (default: false)"),
-    may("view.show", Words(&PANES), "the panes that share the screen, where it has room for them; empty: as many as there is room for, without step (default)"),
-    may("view.hide", Words(&HIDEABLE), "what is not shown: panes, the line about the numbers' health, theory's predicted numbers, the line look_at (default: empty)"),
-    may("view.fill", OneOf(&FILLING), "the pane that fills the screen (default: none)"),
+    may("view.show", Panes(&[]), "the panes that share the screen, where it has room for them; empty: as many as there is room for, without those that are shown on request only (default)"),
+    may("view.hide", Panes(&HIDEABLE), "what is not shown: panes, the line about the numbers' health, theory's predicted numbers, the line look_at (default: empty)"),
+    may("view.fill", Pane(&["none"]), "the pane that fills the screen (default: none)"),
     may("view.phase", WholeOr(MOST_PHASES, &PHASES), "the phase that the pane step shows: its number or name, last, or why: why sideways, not down? (default: 1)"),
     may("view.sum_to", WholeOr(MOST_POINTS, &[ALL_ROWS]), "how many rows of a phase's table the pane step adds up (default: all)"),
     may("view.bare", Flag, "whether the screen is bare: two panes, or one, and nothing around them but title and time (default: false)"),

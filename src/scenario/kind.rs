@@ -1,8 +1,9 @@
 //! What a key may hold, and the rules by which a value is refused.
 
 use super::problem::nearest;
+use super::screen;
 use crate::text::printable::is_steering;
-use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, WholeOr, Words};
+use Kind::{Flag, Line, Number, OneOf, Pane, Panes, Paragraph, Settings, Vector, Whole, WholeOr};
 use Range::{NotNegative, Positive, Within};
 use nalgebra::Vector3;
 use toml::Value;
@@ -26,7 +27,10 @@ pub enum Kind {
     Vector,
     Flag,
     OneOf(&'static [&'static str]),
-    Words(&'static [&'static str]),
+    /// The id of a pane, or one of these words.
+    Pane(&'static [&'static str]),
+    /// A list of such.
+    Panes(&'static [&'static str]),
     /// A table of dotted keys and their new values (run files).
     Settings,
 }
@@ -58,9 +62,24 @@ impl Kind {
             },
             Vector => check_vector(value),
             Flag => is(value.is_bool(), "true or false", value),
-            OneOf(words) => text(value).and_then(|text| check_word(text, words)),
-            Words(words) => check_words(value, words),
+            OneOf(_) | Pane(_) => text(value).and_then(|text| check_word(text, &self.words())),
+            Panes(_) => check_words(value, &self.words()),
             Settings => is(value.is_table(), "a table of keys and values", value),
+        }
+    }
+}
+
+impl Kind {
+    /// The words that are of this kind.
+    pub fn words(self) -> Vec<&'static str> {
+        match self {
+            OneOf(words) | WholeOr(_, words) => words.to_vec(),
+            Pane(others) | Panes(others) => {
+                let panes = screen::panes().iter().map(|pane| pane.id());
+                panes.chain(others.iter().copied()).collect()
+            }
+            Flag => vec!["true", "false"],
+            _ => Vec::new(),
         }
     }
 }

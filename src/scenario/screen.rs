@@ -1,6 +1,9 @@
 //! The names of what the lab's screen shows, as `[view]` of a scenario and commands have them.
 
 use crate::physics::workings::NAMES;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::sync::OnceLock;
 
 /// The pane of the traces over time, and the figure of the same name.
 pub const TRACES: &str = "traces";
@@ -9,14 +12,89 @@ pub const ABOVE: &str = "above";
 /// The pane of the scene in space, and its figure.
 pub const THREE_D: &str = "3d";
 
-/// The panes of the lab. The table of panes in `tui` has a row for each, in this order: a test compares the two.
-pub const PANES: [&str; 6] = ["lesson", TRACES, ABOVE, THREE_D, "parameters", "step"];
+/// A pane. Its id is the word for it in commands, in `[view]` and in sessions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pane {
+    id: &'static str,
+    /// Whether it is shown only where it is asked for; the others are shown where there is room.
+    pub is_on_request: bool,
+}
 
-/// What of the lab's screen can be hidden: the panes, the line about the numbers' health, the numbers that theory
-/// predicts, the line that says what there is to see.
-pub const HIDEABLE: [&str; PANES.len() + 3] = joined(&PANES, &["health", "predicted", "look_at"]);
+/// The panes that the rooms below `tui` name themselves.
+const NAMED: [Pane; 6] = [
+    Pane::LESSON,
+    Pane::TRACES,
+    Pane::FROM_ABOVE,
+    Pane::THREE_D,
+    Pane::PARAMETERS,
+    Pane::STEP,
+];
 
-pub const FILLING: [&str; PANES.len() + 1] = joined(&PANES, &["none"]);
+/// All panes of the screen: `tui` has their table.
+static PANES: OnceLock<&'static [Pane]> = OnceLock::new();
+
+/// Says which panes the screen has. The program calls it before it reads a file.
+pub fn set_panes(panes: &'static [Pane]) {
+    let _ = PANES.set(panes); // they are the same each time
+}
+
+pub fn panes() -> &'static [Pane] {
+    PANES.get().copied().unwrap_or(&NAMED)
+}
+
+impl Pane {
+    /// x, y, z and tilt over time.
+    pub const TRACES: Self = Self::called(TRACES);
+    pub const FROM_ABOVE: Self = Self::called(ABOVE);
+    /// The scene in space.
+    pub const THREE_D: Self = Self::called(THREE_D);
+    /// The scenario's values and the readouts.
+    pub const PARAMETERS: Self = Self::called("parameters");
+    /// One time step, phase by phase.
+    pub const STEP: Self = Self::called("step").on_request();
+    /// The page of a lesson. It is shown as long as there is one.
+    pub const LESSON: Self = Self::called("lesson");
+
+    pub const fn called(id: &'static str) -> Self {
+        Self {
+            id,
+            is_on_request: false,
+        }
+    }
+
+    pub const fn on_request(self) -> Self {
+        Self {
+            is_on_request: true,
+            ..self
+        }
+    }
+
+    pub const fn id(self) -> &'static str {
+        self.id
+    }
+
+    /// The pane of that name in files and commands.
+    pub fn named(id: &str) -> Option<Self> {
+        panes().iter().copied().find(|pane| pane.id == id)
+    }
+}
+
+impl Serialize for Pane {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.id.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Pane {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let id = String::deserialize(deserializer)?;
+        Self::named(&id).ok_or_else(|| D::Error::custom(format!("there is no pane {id}")))
+    }
+}
+
+/// What of the screen can be hidden besides panes: the line about the numbers' health, the numbers that theory predicts,
+/// the line that says what there is to see.
+pub const HIDEABLE: [&str; 3] = ["health", "predicted", "look_at"];
 
 /// What the strip of the fast motion can show; auto: the tilt, or x where the tilt does not swing.
 pub const DETAILS: [&str; 5] = [AUTO, "x", "y", "z", "tilt"];
@@ -29,22 +107,13 @@ pub const LAST: &str = "last";
 pub const ALL_ROWS: &str = "all";
 
 /// What the step pane can show besides a phase by its number.
-pub const PHASES: [&str; NAMES.len() + 2] = joined(&NAMES, &[LAST, WHY]);
-
-/// The names in `first`, and then those in `others`; `ALL` is how many that makes.
-const fn joined<const ALL: usize>(
-    first: &[&'static str],
-    others: &[&'static str],
-) -> [&'static str; ALL] {
-    let mut all = [""; ALL];
+pub const PHASES: [&str; NAMES.len() + 2] = {
+    let mut all = [LAST; NAMES.len() + 2];
     let mut at = 0;
-    while at < ALL {
-        all[at] = if at < first.len() {
-            first[at]
-        } else {
-            others[at - first.len()]
-        };
+    while at < NAMES.len() {
+        all[at] = NAMES[at];
         at += 1;
     }
+    all[NAMES.len() + 1] = WHY;
     all
-}
+};

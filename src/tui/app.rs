@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 
 /// Longest wait for events while nothing changes.
 const IDLE: Duration = Duration::from_millis(500);
-/// The same while something is done in the background: an export, a file read for the browser, a search for advice.
+/// The same while something is done in the background: an export, a search for advice.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
 /// Runs `lab` with its `lessons`, in its role in a class, on the terminal until the user leaves. It saves the lab in
@@ -115,10 +115,8 @@ fn wait(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
         // Wait at least a little: a run too slow to change anything by the next frame must not keep the processor busy.
         to_frame.max(Duration::from_millis(1))
     } else {
-        let is_attentive = lab.files().is_exporting()
-            || lab.popups().browser.is_loading()
-            || lab.adviser().is_seeking()
-            || !lab.script().is_done();
+        let is_attentive =
+            lab.files().is_exporting() || lab.adviser().is_seeking() || !lab.script().is_done();
         let rest = if is_attentive { ATTENTIVE } else { IDLE };
         let rest = lessons.wait().unwrap_or(rest).min(rest);
         lab.notice_ends_in().unwrap_or(rest).min(rest)

@@ -2,9 +2,11 @@
 //! the help say of it.
 
 pub use crate::lab::Mode;
-use crate::lab::action::{Action, Ask, Direction, FieldEdit, LessonKey, repeated};
+use crate::lab::action::{Action, Ask, Direction, FAR, FieldEdit, LessonKey, repeated};
 use crate::lab::command::{Command, Place, PushChoice};
+use crate::lab::view::Pane;
 use crate::lab::{Lab as TheLab, Meant, Request};
+use crate::tui::panes::{self, Arrows};
 use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
     Right, ShiftDown, ShiftLeft, ShiftRight, ShiftUp, Tab, Up,
@@ -62,14 +64,21 @@ pub enum Does {
 
 impl Does {
     pub fn carry_out(self, lab: &mut TheLab) -> Option<Request> {
-        match self {
-            Self::Commands(meant) => {
-                lab.press(meant);
-                None
+        match (self, arrows(lab)) {
+            (Self::Commands(meant), _) => lab.press(meant),
+            (Self::Action(Action::Move(direction, times)), Some(arrows)) => {
+                lab.press(|lab, count| arrows(lab, direction, times * repeated(count)));
             }
-            Self::Action(action) => lab.update(action),
+            (Self::Action(action), _) => return lab.update(action),
         }
+        None
     }
+}
+
+/// What arrows mean in the pane that has the focus.
+fn arrows(lab: &TheLab) -> Option<Arrows> {
+    let is_lab = lab.popups().mode == Mode::Lab;
+    panes::row(lab.view().focus).filter(|_| is_lab)?.arrows
 }
 
 /// How long the footer names a key where there is not room for all: the least go first.
@@ -198,7 +207,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change").to(CHANGE).worth(Worth::Useful),
     row(&[Lab], &[Enter], Action::Edit, "", "type the value that is selected").to(CHANGE),
     row(&[Lab], &[Char('x')], Action::Ask(Ask::Export), "export", "write the run up to here as CSV").to(KEEP).worth(Worth::Useful),
-    does(&[Lab], &[Char('f')], |lab, _| one(lab.view().fill_toggled()), "fill", "fill the screen with the pane, or show all panes again").worth(Worth::Useful),
+    does(&[Lab], &[Char('f')], |lab, _| one(lab.view().fill_toggled(lab.view().focus)), "fill", "fill the screen with the pane, or show all panes again").worth(Worth::Useful),
     row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file").to(OPEN).worth(Worth::Useful),
     does(&[Lab], &[Char(',')], |_, count| stepped(count, -1), "back", "one time step back; 10, goes ten").to(PLAY),
     does(&[Lab], &[Char('+'), Char('='), PageUp], |lab, count| one(lab.player().other_speed(repeated(count))?), "faster", "play faster").found_by("speed").to(PLAY),
@@ -218,27 +227,27 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('k')], Action::Class, "", "in a class: the teacher's acts; for a student: step aside, and back"),
     row(&[Lab], &[Tab], Action::NextPane, "pane", "the next pane"),
     row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
-    row(&[Lab], &[Char('d')], Action::ThreeD, "3-D", "fill the screen with the 3-D view, or show all panes again"),
-    row(&[Lab], &[Char('v')], Action::ToggleStep, "", "one time step, phase by phase, with its numbers; v takes it away again"),
+    does(&[Lab], &[Char('d')], |lab, _| one(lab.view().fill_toggled(Pane::THREE_D)), "3-D", "fill the screen with the 3-D view, or show all panes again"),
+    row(&[Lab], &[Char('v')], Action::Toggle(Pane::STEP), "", "one time step, phase by phase, with its numbers; v takes it away again"),
     row(&[Lab], &[Char('M')], Action::ToDifference, "", "to the first step at which the rows of your own program differ, with its numbers (--measured mine.csv)").found_by("own code verify slip mistake"),
     row(&[Lab], &[Char('c')], Action::Ask(Ask::Settings), "settings", "settings: colours, dots, frames a second, the mouse, a bare screen, what is hidden").found_by("colors theme light dark background markers braille ascii fps health"),
     row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name").to(CHANGE),
-    row(&[Lab, Browser, Filter, Find, Help], &[Up], Action::Move(Direction::Up), "", "up: in lists and values; in 3-D the camera").to(CHANGE),
-    row(&[Lab, Browser, Filter, Find, Help], &[Down], Action::Move(Direction::Down), "", "down").to(CHANGE),
-    row(&[Lab], &[Left], Action::Move(Direction::Left), "", "values: nudge down; 3-D: turn the camera left").to(CHANGE),
-    row(&[Lab], &[Right], Action::Move(Direction::Right), "", "values: nudge up; 3-D: turn the camera right").to(CHANGE),
-    row(&[Lab], &[ShiftLeft], Action::MoveFar(Direction::Left), "", "the same ten times; a count does it too: 10 Left").to(CHANGE),
-    row(&[Lab], &[ShiftRight], Action::MoveFar(Direction::Right), "", "the same ten times").to(CHANGE),
-    row(&[Lab, Browser, Find, Help], &[ShiftUp], Action::MoveFar(Direction::Up), "", "ten lines up").to(CHANGE),
-    row(&[Lab, Browser, Find, Help], &[ShiftDown], Action::MoveFar(Direction::Down), "", "ten lines down").to(CHANGE),
-    row(&[Browser, Filter, Help], &[PageUp], Action::Move(Direction::PageUp), "", "a page up"),
-    row(&[Browser, Filter, Help], &[PageDown], Action::Move(Direction::PageDown), "", "a page down"),
+    row(&[Lab, Browser, Filter, Find, Help], &[Up], Action::Move(Direction::Up, 1), "", "up: in lists and values; in 3-D the camera").to(CHANGE),
+    row(&[Lab, Browser, Filter, Find, Help], &[Down], Action::Move(Direction::Down, 1), "", "down").to(CHANGE),
+    row(&[Lab], &[Left], Action::Move(Direction::Left, 1), "", "values: nudge down; 3-D: turn the camera left").to(CHANGE),
+    row(&[Lab], &[Right], Action::Move(Direction::Right, 1), "", "values: nudge up; 3-D: turn the camera right").to(CHANGE),
+    row(&[Lab], &[ShiftLeft], Action::Move(Direction::Left, FAR), "", "the same ten times; a count does it too: 10 Left").to(CHANGE),
+    row(&[Lab], &[ShiftRight], Action::Move(Direction::Right, FAR), "", "the same ten times").to(CHANGE),
+    row(&[Lab, Browser, Find, Help], &[ShiftUp], Action::Move(Direction::Up, FAR), "", "ten lines up").to(CHANGE),
+    row(&[Lab, Browser, Find, Help], &[ShiftDown], Action::Move(Direction::Down, FAR), "", "ten lines down").to(CHANGE),
+    row(&[Browser, Filter, Help], &[PageUp], Action::Move(Direction::PageUp, 1), "", "a page up"),
+    row(&[Browser, Filter, Help], &[PageDown], Action::Move(Direction::PageDown, 1), "", "a page down"),
     does(&[Lab], &[Char('w')], wider, "", "traces: show twice the time"),
     does(&[Lab], &[Char('W')], narrower, "", "traces: show half the time"),
     row(&[Browser, Filter], &[Enter], Action::Choose, "open", "open what is selected").worth(Worth::Kept),
     row(&[Browser], &[Char('/')], Action::Filter, "filter", "type a part of a name"),
-    row(&[Find], &[Left], Action::Move(Direction::Left), "nudge", "nudge the value down"),
-    row(&[Find], &[Right], Action::Move(Direction::Right), "", "nudge the value up"),
+    row(&[Find], &[Left], Action::Move(Direction::Left, 1), "nudge", "nudge the value down"),
+    row(&[Find], &[Right], Action::Move(Direction::Right, 1), "", "nudge the value up"),
     row(&[Find], &[Enter], Action::Edit, "type it", "type the value that is found"),
     row(&[Help], &[Enter], Action::DoEntry, "do it", "do the entry that is selected"),
     row(&[Filter, Find, Help, Dialog], &[Backspace, Ctrl('h')], Action::InField(FieldEdit::Erase), "", "take the last character away"),

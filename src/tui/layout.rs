@@ -15,8 +15,8 @@ const WIDTH: u16 = 80;
 const TWO_FROM: u16 = 52;
 /// From this width on a hint fits on one line.
 const ONE_LINE_FROM: u16 = 140;
-/// The fewest columns of a pane beside the step pane.
-const BESIDE_STEP: u16 = 24;
+/// The fewest columns of a pane beside one that is shown on request.
+const BESIDE_ASKED: u16 = 24;
 /// From this width on a page of a lesson stands beside a pane.
 const BESIDE_PAGE_FROM: u16 = 72;
 /// The fewest and the most columns of a page, and its share of the screen, %.
@@ -174,8 +174,8 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let joined = joined(area.width);
     if view.filled || area.width < TWO_FROM {
         vec![(view.focus, area)]
-    } else if view.may_show(Pane::STEP) {
-        with_step(area, view)
+    } else if let Some(asked) = asked(view) {
+        with_asked(asked, area, view)
     } else if !usual().all(|row| view.may_show(row.id)) {
         chosen(area, view)
     } else if joined.len() > 2 {
@@ -198,10 +198,17 @@ fn beside_page(view: &View) -> View {
     view
 }
 
-/// The panes that are shown without being asked for: all but the page of a lesson and the step pane.
+/// The panes that are shown without being asked for, but for the page of a lesson.
 fn usual() -> impl Iterator<Item = &'static PaneRow> {
-    let extra = [Pane::LESSON, Pane::STEP];
-    PANES.iter().filter(move |row| !extra.contains(&row.id))
+    let usual = |row: &&PaneRow| row.id != Pane::LESSON && !row.id.is_on_request;
+    PANES.iter().filter(usual)
+}
+
+/// The pane that was asked for; of several the one in focus, or else the first.
+fn asked(view: &View) -> Option<&'static PaneRow> {
+    let asked = PANES.iter();
+    let asked = asked.filter(|row| row.id.is_on_request && view.may_show(row.id));
+    asked.min_by_key(|row| row.id != view.focus)
 }
 
 /// The panes that have room beside each other on `width` columns, in the table's order: by their ranks, up to the first
@@ -244,24 +251,21 @@ fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     side_by_side(area, &panes, share, 0)
 }
 
-/// The step pane at the right, as wide as its numbers are, and beside it as many of the other panes that were chosen as
+/// The pane `asked` at the right, as wide as its numbers are, and beside it as many of the other panes that were chosen as
 /// have room; where none has, the one in focus.
-fn with_step(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
-    let is_chosen = |row: &&PaneRow| row.id != Pane::LESSON && view.may_show(row.id);
-    let mut panes: Vec<_> = PANES.iter().filter(is_chosen).collect();
-    let Some(step) = panes.iter().position(|row| row.id == Pane::STEP) else {
-        return Vec::new();
-    };
-    let least = panes.remove(step).least.0;
-    let room = area.width.saturating_sub(least) / BESIDE_STEP;
-    if room == 0 && view.focus != Pane::STEP {
+fn with_asked(asked: &'static PaneRow, area: Rect, view: &View) -> Vec<(Pane, Rect)> {
+    let is_other = |row: &&PaneRow| ![Pane::LESSON, asked.id].contains(&row.id);
+    let others = PANES.iter().filter(is_other);
+    let mut panes: Vec<_> = others.filter(|row| view.may_show(row.id)).collect();
+    let least = asked.least.0;
+    let room = area.width.saturating_sub(least) / BESIDE_ASKED;
+    if room == 0 && view.focus != asked.id {
         return vec![(view.focus, area)];
     }
     panes.sort_by_key(|row| row.id != view.focus);
     panes.truncate(room.into());
-    let is_kept =
-        |row: &&PaneRow| row.id == Pane::STEP || panes.iter().any(|other| other.id == row.id);
-    let panes: Vec<_> = PANES.iter().filter(is_kept).collect();
+    panes.sort_by_key(|row| PANES.iter().position(|other| other.id == row.id));
+    panes.push(asked);
     let count = panes.len() as u16;
     let share = (area.width / count).max(least.min(area.width));
     let each = (area.width - share) / (count - 1).max(1);

@@ -158,7 +158,7 @@ fn press_in_browser(layout: &Layout, at: Position, lab: &mut Lab) -> Option<Requ
 fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) -> Option<Request> {
     let choose = |if_up, if_down| if up { if_up } else { if_down };
     let lines = choose(Direction::Up, Direction::Down);
-    let lines = Does::Action(Action::Move(lines));
+    let lines = Does::Action(Action::Move(lines, 1));
     if lab.popups().mode != Mode::Lab {
         for _ in 0..LINES {
             lines.carry_out(lab);
@@ -171,11 +171,11 @@ fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) -> Option<Reque
         Pane::TRACES => Does::Commands(wider),
         Pane::FROM_ABOVE | Pane::THREE_D if up => Does::Commands(zoomed_in),
         Pane::FROM_ABOVE | Pane::THREE_D => Does::Commands(zoomed_out),
-        Pane::PARAMETERS | Pane::STEP if lab.view().focus == pane => lines,
         Pane::LESSON => {
             let page = choose(Direction::PageUp, Direction::PageDown);
             Does::Action(Action::Lesson(LessonKey::Move(page)))
         }
+        _ if lab.view().focus == pane => lines,
         _ => return None,
     };
     lab.turn_to(pane);

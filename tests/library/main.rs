@@ -10,7 +10,6 @@
 mod support;
 
 mod beside;
-mod chosen;
 mod class;
 mod commands;
 mod coverage;

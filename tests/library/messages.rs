@@ -1,7 +1,7 @@
 //! What the lab and the summary say: sentences that a newcomer took for wrong or could not make sense of.
 
 use crate::support::desk::Desk;
-use crate::support::scenarios::{preset, resumed};
+use crate::support::scenarios::preset;
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::{has, has_all};
 use gyrolab::analysis::Monitor;
@@ -126,17 +126,17 @@ fn numbers_that_are_no_longer_finite_are_told_with_what_helps() {
     assert_eq!(end(edit, false), format!("{begin}{may}{back}"));
 }
 
-/// The search begins where the run has broken down, and its answer takes the place of the message that it is under way.
+/// The search begins where the run has broken down, and its answer stands in the line about the numbers.
 #[test]
 fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
     let mut stage = Stage::open("wobble-push", &["motion.scheme=rk4"], LARGE);
     stage.lab.take_advice();
     stage.commands("pause = true");
     stage.commands("go_to = 2000").wait(0.1);
-    stage.shows("no longer finite at step 3: a time step or scheme that mends it is looked for");
+    stage
+        .shows("no longer finite at step 3: a shorter time step or another scheme may mend it (e)");
     await_advice(&stage);
-    stage.wait(0.1);
-    stage.shows("no longer finite at step 3: a: srkn11b, dt 0.01 s mends it");
+    stage.wait(0.1).shows("srkn11b, dt 0.01 s mends it");
 }
 
 /// A run that stands still is not read again by itself: the search has to begin as soon as it may.
@@ -213,10 +213,6 @@ fn space_pauses_commands_and_lets_them_go_on() {
     );
     desk.pass(Duration::from_secs(1));
     assert_eq!((desk.step(), desk.lab.script().count()), (paused, 2));
-    // A session that is kept meanwhile has all of them.
-    let content = desk.lab.content();
-    let back = resumed(&content);
-    assert_eq!(back.script().count(), 2);
     desk.press(&[Key::Char(' ')]);
     (0..40).for_each(|_| desk.pass(Duration::from_secs(1)));
     assert_eq!((desk.step(), desk.lab.script().is_done()), (507, true));

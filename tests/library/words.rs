@@ -6,11 +6,7 @@ use crate::support::words::{has, has_no};
 use gyrolab::lab::browser::Browser;
 use gyrolab::tui::keymap::Key;
 use ratatui::layout::Rect;
-use rustix::fs::{CWD, FileType, Mode, mknodat};
 use std::path::Path;
-use std::sync::mpsc;
-use std::thread;
-use std::time::Duration;
 
 #[test]
 fn esc_turns_from_the_values_back_to_the_run() {
@@ -88,27 +84,6 @@ fn words_of_a_preset_are_known_in_a_file_of_another_motion() {
         .shows_no("5.6 degrees");
     std::fs::write(&path, preset("fast-top", &["motion.steps=9"]).to_toml()).unwrap();
     Stage::open(path.to_str().unwrap(), &[], SMALL).shows("5.6 degrees");
-}
-
-/// A FIFO that nobody writes to does for a file that takes for ever to read.
-#[test]
-fn a_file_that_takes_long_to_read_does_not_hold_up_the_browser() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("tardy.toml");
-    std::fs::write(&path, "[motion]\n").unwrap();
-    let (done, result) = mpsc::channel();
-    thread::spawn(move || {
-        let mut stage = Stage::open("method-2", &[], SMALL);
-        stage.lab.files_mut().work_in(folder.path());
-        stage.press("o");
-        std::fs::remove_file(&path).unwrap();
-        mknodat(CWD, &path, FileType::Fifo, Mode::from_raw_mode(0o600), 0).unwrap();
-        stage.press("/tardy").shows("reading ...");
-        done.send(()).unwrap();
-    });
-    let patience = Duration::from_secs(60);
-    let in_time = result.recv_timeout(patience);
-    in_time.expect("it waits for the file");
 }
 
 #[test]
@@ -205,10 +180,6 @@ fn the_list_of_files_has_those_that_hold_a_run() {
     write("table.csv", "a,b\n1,2\n");
     let mut browser = gyrolab::lab::browser::Browser::default();
     browser.begin(folder.path(), "method-2", |_| true);
-    while browser.others == 0 {
-        browser.take_what_was_read();
-        thread::sleep(Duration::from_millis(5));
-    }
     let files = browser.shown().into_iter().filter(|entry| entry.is_file);
     let names = files.map(|entry| entry.name.rsplit('/').next().unwrap());
     let all = ["broken.toml", "dotted.toml", "mine.toml", "run.csv"];
@@ -281,12 +252,12 @@ fn a_file_in_a_folder_is_opened_with_enter() {
     stage.press("\n");
     stage.shows("file of").shows("mine.toml").shows("../");
     for _ in 0..200 {
-        thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(std::time::Duration::from_millis(5));
         stage.wait(0.1);
     }
     stage.press("\n").wait(0.2);
     for _ in 0..200 {
-        thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(std::time::Duration::from_millis(5));
         stage.wait(0.0);
     }
     stage.shows("Cusps of June");

@@ -96,7 +96,7 @@ fn check_takes_files_of_commands() {
 #[test]
 fn the_manual_lists_every_command() {
     let manual = Ground::new().stdout("man");
-    for row in gyrolab::lab::command::COMMANDS {
+    for row in gyrolab::lab::command::COMMANDS.iter() {
         has(&manual, format!("{} = ", row.name));
     }
 }

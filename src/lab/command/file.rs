@@ -5,7 +5,7 @@ use super::{COMMANDS, Command, CommandRow};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
 use std::path::Path;
-use toml::{Table, Value};
+use toml::Value;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
@@ -19,14 +19,6 @@ pub struct Commands {
     /// The file, as the user named it.
     pub origin: String,
     pub list: Vec<Placed>,
-}
-
-pub fn to_toml(commands: &[Command]) -> String {
-    let tables = commands
-        .iter()
-        .map(|command| Value::Table(command.to_table()));
-    let file = Table::from_iter([("do".to_owned(), Value::Array(tables.collect()))]);
-    toml::to_string(&file).unwrap_or_default() // a command holds nothing that TOML cannot write
 }
 
 /// Whether `document` is a file of commands, by its `[[do]]`.

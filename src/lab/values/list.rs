@@ -237,29 +237,4 @@ mod tests {
         assert_eq!(selected(&list), "a 1");
         ValueList::default().shift(3);
     }
-
-    #[test]
-    fn only_values_with_the_name_are_shown_and_selected() {
-        let mut list = list(&[("start", "tilt"), ("motion", "dt"), ("push 0", "steps")]);
-        list.values[1].key = Some("motion.time_step_s".to_owned());
-        for (name, shown) in [
-            ("", 3),
-            ("ti", 2),
-            ("TIME step", 1),
-            ("push st", 1),
-            ("nothing", 0),
-        ] {
-            list.filter_by(|line| *line = name.to_owned());
-            assert_eq!(list.shown().len(), shown, "{name}");
-            assert_eq!(list.selected().is_some(), shown > 0, "{name}");
-            list.shift(5);
-            let last = list.shown().last().map(|(index, _)| *index);
-            assert_eq!(last.unwrap_or(list.selected_index()), list.selected_index());
-        }
-        list.filter_by(|line| *line = "tilt".to_owned());
-        assert_eq!(selected(&list), "start tilt");
-        // Found again among other values.
-        list.set([("a", "b"), ("start", "tilt")].map(of).into());
-        assert_eq!(selected(&list), "start tilt");
-    }
 }

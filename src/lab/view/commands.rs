@@ -190,12 +190,7 @@ impl View {
     }
 
     /// The command that shows another curve in the strip of the fast motion than it shows now.
-    pub(in crate::lab) fn other_detail(
-        &self,
-        direction: Direction,
-        times: i32,
-        player: &Player,
-    ) -> Command {
+    pub fn other_detail(&self, direction: Direction, times: i32, player: &Player) -> Command {
         let shown = self.detail_of.unwrap_or(player.detail().curve);
         let curves = [Curve::X, Curve::Y, Curve::Z, Curve::Tilt];
         let now = curves.iter().position(|curve| *curve == shown).unwrap_or(0) as i32;
@@ -207,7 +202,7 @@ impl View {
         Command::look("detail_of", curves[next])
     }
 
-    pub(in crate::lab) fn moved_cursor(&self, fiftieths: i32, player: &Player) -> Command {
+    pub fn moved_cursor(&self, fiftieths: i32, player: &Player) -> Command {
         let steps = CURSOR_SHARE * self.window_s / player.motion().time_step_s;
         self.stepped_cursor(steps.round().max(1.0) as i64 * i64::from(fiftieths), player)
     }
@@ -266,7 +261,7 @@ impl View {
     }
 
     /// The command that turns the camera as an arrow key does that is pressed `times` times.
-    pub(in crate::lab) fn turned(&self, direction: Direction, times: i32) -> Command {
+    pub fn turned(&self, direction: Direction, times: i32) -> Command {
         let degrees = f64::from(signed(direction, times)) * TURN_DEG;
         let mut camera = self.camera;
         match direction {
@@ -277,8 +272,8 @@ impl View {
         Command::look("camera", camera)
     }
 
-    /// The command that fills the screen with the pane in focus, or shows all panes again.
-    pub fn fill_toggled(&self) -> Command {
-        Command::Fill((!self.filled).then_some(self.focus))
+    /// The command that fills the screen with `pane`, or shows all panes again where it does.
+    pub fn fill_toggled(&self, pane: Pane) -> Command {
+        Command::Fill((!self.is_filled_by(pane)).then_some(pane))
     }
 }

@@ -1,8 +1,29 @@
 //! Which pane has the focus, and whether it fills the screen.
 
 use super::{Pane, View};
+use crate::lab::command::Command;
 
 impl View {
+    /// The commands that show `pane`, one that is shown on request, beside another one, or take it away.
+    pub(in crate::lab) fn toggled(&self, pane: Pane) -> Vec<Command> {
+        let with_it = [Pane::THREE_D, pane];
+        let mut commands = Vec::new();
+        if self.filled {
+            commands.push(Command::Fill(None));
+        }
+        if self.shown.contains(&pane) == self.shows(pane) {
+            let mut panes = self.shown.clone();
+            panes.retain(|other| *other != pane && self.shown != with_it);
+            if self.shown.is_empty() {
+                panes = with_it.to_vec();
+            } else if !self.shown.contains(&pane) {
+                panes.push(pane);
+            }
+            commands.push(Command::look("show", panes));
+        }
+        commands
+    }
+
     /// Fills the screen with `pane` and moves the focus there; with `None` shows all panes again.
     pub fn fill(&mut self, pane: Option<Pane>) {
         self.filled = pane.is_some();
@@ -78,65 +99,5 @@ impl View {
             self.focus = panes.first().copied().unwrap_or(Pane::TRACES);
             self.is_touched = false;
         }
-    }
-
-    /// Fills the screen with the 3-D view, or shows all panes again if it fills the screen already.
-    pub fn toggle_three_d(&mut self) {
-        self.filled = !self.is_filled_by(Pane::THREE_D);
-        self.is_touched = self.filled;
-        self.focus = if self.filled {
-            Pane::THREE_D
-        } else if self.may_show(Pane::LESSON) {
-            Pane::LESSON
-        } else {
-            Pane::TRACES
-        };
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::lab::for_tests;
-    use crate::lab::view::Part;
-
-    /// A view of four panes, three of them side by side.
-    fn view() -> View {
-        const TRACES: Pane = Pane::TRACES;
-        static ALL: [Pane; 4] = [TRACES, Pane::FROM_ABOVE, Pane::THREE_D, Pane::PARAMETERS];
-        let mut view = for_tests::view(&ALL);
-        view.side_by_side = vec![TRACES, Pane::FROM_ABOVE, Pane::PARAMETERS];
-        view
-    }
-
-    #[test]
-    fn the_focus_goes_through_the_panes_on_the_screen_and_no_others() {
-        let mut view = view();
-        let mut seen = Vec::new();
-        for _ in 0..4 {
-            seen.push(view.focus.id());
-            view.shift_focus(true);
-        }
-        assert_eq!(seen, ["traces", "above", "parameters", "traces"]);
-        view.look.hidden = vec![Part::Pane(Pane::FROM_ABOVE)];
-        view.keep_focus();
-        assert_eq!(view.focus, Pane::TRACES, "the one in focus is hidden");
-        view.shift_focus(false);
-        assert_eq!(view.focus, Pane::PARAMETERS);
-        // On a screen for one or two panes the focus reaches all of them.
-        view.side_by_side = vec![Pane::TRACES];
-        view.shift_focus(false);
-        assert_eq!(view.focus, Pane::THREE_D);
-    }
-
-    #[test]
-    fn a_pane_that_is_not_on_the_screen_fills_it_when_it_gets_the_focus() {
-        let mut view = view();
-        view.turn_to(Pane::PARAMETERS);
-        assert!(!view.filled);
-        view.turn_to(Pane::THREE_D);
-        assert!(view.is_filled_by(Pane::THREE_D));
-        view.toggle_three_d();
-        assert_eq!((view.focus, view.filled), (Pane::TRACES, false));
     }
 }

@@ -252,16 +252,22 @@ impl View {
         }
     }
 
-    /// Shows the run as `look` says. The step pane has the focus when it comes.
+    /// Shows the run as `look` says. A pane that is shown on request has the focus when it comes.
     pub fn take(&mut self, look: Look) {
         let before = std::mem::replace(&mut self.look, look);
         if before.shown != self.shown {
             self.beside = self.shown.first().copied();
             self.side_by_side = self.to_show(); // until the lab is fitted to its screen again
         }
-        let comes = self.shown.contains(&Pane::STEP) && !before.shown.contains(&Pane::STEP);
-        if comes && !self.filled {
-            self.focus = Pane::STEP;
+        let comes = |pane: &Pane| pane.is_on_request && !before.shown.contains(pane);
+        if let Some(pane) = self
+            .shown
+            .iter()
+            .copied()
+            .find(comes)
+            .filter(|_| !self.filled)
+        {
+            self.focus = pane;
         }
         if before.page != Page::Why {
             self.page_before = before.page;
@@ -295,10 +301,15 @@ impl View {
         }
         let is_shown = match (self.shown.is_empty(), self.bare) {
             (true, true) => BARE.contains(&pane),
-            (true, false) => pane != Pane::STEP,
+            (true, false) => !pane.is_on_request,
             (false, _) => self.shown.contains(&pane),
         };
         is_shown && !self.hides(Part::Pane(pane))
+    }
+
+    /// Whether `pane` is on the screen, if that has room for it.
+    pub fn shows(&self, pane: Pane) -> bool {
+        self.is_filled_by(pane) || (!self.filled && self.may_show(pane))
     }
 
     pub fn to_show(&self) -> Vec<Pane> {

@@ -1,6 +1,5 @@
 //! What the step pane shows of the time step taken last: one of its phases, or why the axle goes sideways.
 
-use super::{Pane, View};
 use crate::physics::Workings;
 use crate::physics::workings::NAMES;
 use crate::scenario::file::Choice;
@@ -65,12 +64,5 @@ impl Page {
             Self::Last => Some(last),
             Self::Why => None,
         }
-    }
-}
-
-impl View {
-    /// Whether the step pane is on the screen, if that has room for it.
-    pub fn shows_step(&self) -> bool {
-        self.is_filled_by(Pane::STEP) || (!self.filled && self.may_show(Pane::STEP))
     }
 }

@@ -3,7 +3,6 @@
 use super::{longest, popup_frame, write};
 use crate::lab::Lab;
 use crate::lab::browser::Browser;
-use crate::lab::preview::Preview;
 use crate::lab::view::theme::Theme;
 use crate::scenario::Scenario;
 use crate::text::printable::printable;
@@ -58,26 +57,11 @@ pub fn row_at(browser: &Browser, area: Rect, at: Position) -> Option<usize> {
     (is_in_list && row < browser.shown().len()).then_some(row)
 }
 
-/// The keys of the list, and what it contains beside the presets, in as many words as fit in `width` columns.
+/// The keys of the list, and how many files of the folder it contains, as much as fits in `width` columns.
 fn keys(files: usize, others: usize, width: usize) -> String {
     const KEYS: &str = "/ filters by name, Enter opens";
-    let files = match files {
-        0 => "no file of this folder holds a run".to_owned(),
-        1 => "below: a file of this folder".to_owned(),
-        _ => format!("below: {files} files of this folder"),
-    };
-    let others = match others {
-        0 => String::new(),
-        _ => format!(", {others} more hold no run"),
-    };
-    let forms = [
-        format!("{KEYS}; {files}{others}"),
-        format!("/ filters, Enter opens; {files}{others}"),
-        format!("{KEYS}; {files}"),
-        format!("/ filters, Enter opens; {files}"),
-        KEYS.to_owned(),
-    ];
-    longest(forms, width)
+    let with_files = format!("{KEYS}; files here: {files} with a run, {others} without");
+    longest([with_files, KEYS.to_owned()], width)
 }
 
 fn filter_line(browser: &Browser, is_typed: bool, theme: &Theme, area: Rect, buf: &mut Buffer) {
@@ -122,11 +106,8 @@ fn preview(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
         return;
     }
     let lines = match browser.preview() {
-        Some(Preview::Known(known)) => match known.as_ref() {
-            Ok(scenario) => described(scenario, width),
-            Err(problem) => refused(problem, width),
-        },
-        Some(Preview::Loading) => vec![("reading ...".to_owned(), Role::Quiet)],
+        Some(Ok(scenario)) => described(scenario, width),
+        Some(Err(problem)) => refused(problem, width),
         None if browser.choice().is_some_and(|entry| entry.is_folder) => {
             vec![("a folder: Enter lists its files".to_owned(), Role::Quiet)]
         }

@@ -200,8 +200,9 @@ fn footer(lab: &Lab) -> Vec<Item> {
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
     let is_new = |row: &&Binding| of_mode.clone().all(|other| other.keys[0] != row.keys[0]);
-    // The keys of a page and of a step differ in meaning from the keys of the run, touched or not.
-    let always = [Pane::LESSON, Pane::STEP].contains(&lab.view().focus);
+    // The keys of a page and of a pane that was asked for differ in meaning from those of the run, touched or not.
+    let focus = lab.view().focus;
+    let always = focus == Pane::LESSON || focus.is_on_request;
     let of_touched = of_pane.filter(|_| lab.view().is_touched || always);
     let of_lab = BINDINGS.iter().filter(is_new);
     let of_lab = of_lab.map(|row| (row, row.worth));
@@ -242,7 +243,7 @@ fn word(lab: &Lab, row: &Binding) -> Option<&'static str> {
         ("pause" | "step", _) => !lab.player().run().simulation().has_ended(),
         (_, Some(Action::Lesson(LessonKey::Take))) => !enter.is_empty(),
         (_, Some(Action::Lesson(LessonKey::Next))) => sheet.is_some_and(|sheet| sheet.has_next),
-        (_, Some(Action::Move(_))) => !is_why,
+        (_, Some(Action::Move(..))) => !is_why,
         _ => true,
     };
     let word = match (row.footer, action) {

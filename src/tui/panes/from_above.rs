@@ -62,6 +62,7 @@ pub const ROW: PaneRow = PaneRow {
         FromAbove(Seen::of(lab)).render(area, buf);
     },
     keys: ZOOM_KEYS,
+    arrows: None,
 };
 
 pub struct FromAbove<'a>(pub Seen<'a>);

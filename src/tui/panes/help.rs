@@ -3,6 +3,7 @@
 
 use super::{PANES, popup_frame, write};
 use crate::lab::action::Action;
+use crate::lab::values::list::Match;
 use crate::lab::view::Pane;
 use crate::lab::{Lab, Mode, Request};
 use crate::text::wrap::{columns, wrapped};
@@ -14,7 +15,7 @@ use ratatui::layout::Rect;
 /// Column of keys and words, and the columns between them and their texts.
 const NAMES: usize = 2;
 const GAP: usize = 2;
-/// A text that would have fewer columns than this begins right after its key, not in a column of its own.
+/// A text that would have fewer columns than this stands below its key, not in a column of its own.
 const LEAST_TEXT: usize = 40;
 const SELECTED: &str = "►";
 
@@ -123,7 +124,7 @@ fn lines(entries: &[Entry], grouped: bool, width: usize) -> Vec<Line> {
         }
         let of_entry = match column {
             Some(column) => beside(entry, &text_of(entry, grouped), column, width),
-            None => after(entry, &text_of(entry, grouped), width),
+            None => below(entry, &text_of(entry, grouped), width),
         };
         lines.extend(of_entry.into_iter().enumerate().map(|(at, pieces)| Line {
             entry: Some(index),
@@ -169,31 +170,13 @@ fn beside(entry: &Entry, text: &str, column: usize, width: usize) -> Vec<Pieces>
     lines
 }
 
-/// The name of `entry` and its `text` right after it, where there is room for a few words; else below it.
-fn after(entry: &Entry, text: &str, width: usize) -> Vec<Pieces> {
+/// The name of `entry`, and its `text` below it.
+fn below(entry: &Entry, text: &str, width: usize) -> Vec<Pieces> {
     const INDENT: usize = NAMES + GAP - 1;
-    const FEW_WORDS: usize = 12;
-    let name = entry.name();
-    let taken = columns(&name);
-    let room = width.saturating_sub(INDENT);
-    if taken + GAP + FEW_WORDS > room {
-        let text = wrapped(text, room).into_iter();
-        let text = text.map(|text| vec![(INDENT, text, Role::Text)]);
-        let name = vec![(NAMES, name, Role::Focus)];
-        return std::iter::once(name).chain(text).collect();
-    }
-    // A word as long as the name keeps the name's columns free on the first line.
-    let held = "x".repeat(taken);
-    let text = wrapped(&format!("{held} {text}"), room);
-    let first = text.first().and_then(|first| first.strip_prefix(&held));
-    let first = first.unwrap_or_default().trim_start().to_owned();
-    let mut lines = vec![vec![
-        (NAMES + taken + GAP, first, Role::Text),
-        (NAMES, name, Role::Focus),
-    ]];
-    let rest = text.into_iter().skip(1);
-    lines.extend(rest.map(|text| vec![(INDENT, text, Role::Text)]));
-    lines
+    let text = wrapped(text, width.saturating_sub(INDENT)).into_iter();
+    let text = text.map(|text| vec![(INDENT, text, Role::Text)]);
+    let name = vec![(NAMES, entry.name(), Role::Focus)];
+    std::iter::once(name).chain(text).collect()
 }
 
 /// The words that the lab uses, each in one sentence: those of the motion first, then those of the numbers and of the screen.
@@ -249,21 +232,12 @@ impl Entry {
             return Some(2);
         }
         let further = self.binding.map_or("", |binding| binding.search);
-        let all = format!("{} {short} {} {further}", self.name(), self.text).to_lowercase();
-        let is_word = |wanted: &str| {
-            let mut words = all.split(|c: char| !c.is_alphanumeric());
-            words.any(|word| word.starts_with(wanted))
-        };
-        let mut wanted = lower.split_whitespace();
-        if wanted.clone().all(is_word) {
-            return Some(3);
+        let all = format!("{} {short} {} {further}", self.name(), self.text);
+        match Match::of(&all, lower) {
+            Some(Match::Word) => Some(3),
+            Some(Match::Part) => Some(4),
+            None => Match::of(&format!("{all} {}", self.group), lower).map(|_| 5),
         }
-        if wanted.clone().all(|word| all.contains(word)) {
-            return Some(4);
-        }
-        let group = self.group.to_lowercase();
-        let is_there = |word: &str| all.contains(word) || group.contains(word);
-        wanted.all(is_there).then_some(5)
     }
 }
 

@@ -23,6 +23,7 @@ pub const ROW: PaneRow = PaneRow {
     least: (36, 0),
     draw,
     keys: KEYS,
+    arrows: None,
 };
 
 /// The keys that mean something while there is a lesson, whichever pane has the focus.

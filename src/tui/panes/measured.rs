@@ -50,21 +50,17 @@ fn fitting(beside: &DataComparison, end_s: f64, room: usize) -> (String, String,
     let name = file_name(&beside.name);
     let [long, short] = reached(beside, sum, end_s);
     let parts = verdict(beside).into_iter().chain(parts(sum));
-    let (all, mut in_short): (Vec<_>, Vec<_>) = parts.map(<_>::from).unzip();
+    let (all, in_short): (Vec<_>, Vec<_>) = parts.map(<_>::from).unzip();
     let mut forms = vec![(long.clone(), all), (long, in_short.clone())];
-    forms.push((short.clone(), in_short.clone()));
-    while in_short.pop().is_some() {
-        forms.push((short.clone(), in_short.clone()));
-    }
+    let fewer = (0..=in_short.len()).rev();
+    forms.extend(fewer.map(|count| (short.clone(), in_short[..count].to_vec())));
     let length = |(counts, parts): &(String, Vec<String>)| {
         let parts = parts.iter().map(|part| columns(SEPARATOR) + columns(part));
         columns(counts) + parts.sum::<usize>()
     };
     let (whole, least) = (columns(&name), columns(&name).min(LEAST_NAME));
-    let found = forms
-        .iter()
-        .take(3)
-        .position(|form| length(form) + whole <= room);
+    let mut first = forms.iter().take(3);
+    let found = first.position(|form| length(form) + whole <= room);
     let found = found.or_else(|| forms.iter().position(|form| length(form) + least <= room));
     let form = forms.swap_remove(found.unwrap_or(forms.len() - 1));
     let rest = room.saturating_sub(length(&form)).max(least);

@@ -1,7 +1,7 @@
 //! The panes. Each borrows what it shows and draws it on its area; none of them changes anything.
 //!
-//! [`PANES`] is the one table of panes. A new pane is a file with its `ROW`, that row's name in the table, and its id in
-//! [`screen`](crate::scenario::screen), by which files and commands name it.
+//! [`PANES`] is the one table of panes: a new pane is a file with its `ROW`, and that row's name in the table. The program
+//! gives the [`IDS`] to [`screen`](crate::scenario::screen), by which files and commands name panes.
 
 pub mod browser;
 pub mod chrome;
@@ -17,11 +17,12 @@ pub mod three_d;
 pub mod timeline;
 pub mod traces;
 
-use crate::lab::Lab;
+use crate::lab::action::Direction;
 use crate::lab::comparison::DataComparison;
 use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
+use crate::lab::{Lab, Meant};
 use crate::playback::detail::Detail;
 use crate::playback::ghost::Ghost;
 use crate::playback::live::LiveRun;
@@ -52,7 +53,11 @@ pub struct PaneRow {
     pub draw: fn(&Lab, Rect, &mut Buffer),
     /// The keys that are its own while it has the focus; they go before the keys of the lab.
     pub keys: &'static [Binding],
+    /// What an arrow or page key means while it has the focus, pressed so many times, if there is something it means.
+    pub arrows: Option<Arrows>,
 }
+
+pub type Arrows = fn(&Lab, Direction, i32) -> Meant;
 
 /// How wide a pane is where panes stand side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -307,8 +312,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pane_has_a_rank_of_its_own_and_the_name_that_files_know() {
-        assert_eq!(IDS.map(Pane::id), crate::scenario::screen::PANES);
+    fn every_pane_has_a_rank_of_its_own_and_those_that_the_lab_names_are_among_them() {
+        assert_eq!(IDS, crate::scenario::screen::panes());
         for (index, row) in PANES.iter().enumerate() {
             assert!(PANES[..index].iter().all(|other| other.rank != row.rank));
         }

@@ -53,6 +53,7 @@ pub const ROW: PaneRow = PaneRow {
         .render(area, buf);
     },
     keys: KEYS,
+    arrows: None,
 };
 
 /// The keys that the footer names while the pane has the focus.

@@ -40,6 +40,9 @@ pub const ROW: PaneRow = PaneRow {
     least: (44, 0),
     draw,
     keys: KEYS,
+    arrows: Some(|lab, direction, times| {
+        one(lab.step_pane().other_sum(direction, times, lab.view())?)
+    }),
 };
 
 /// The first of the keys go through the phases.
@@ -50,12 +53,12 @@ pub const PHASE_KEYS: usize = 2;
 const KEYS: &[Binding] = &[
     does(&[Mode::Lab], &[Key::Char('.')], |lab, count| lab.step_pane().other_phase(repeated(count), lab.view(), lab.player()), "next phase", "the next phase of the time step; after the last, the next time step"),
     does(&[Mode::Lab], &[Key::Char(',')], |lab, count| lab.step_pane().other_phase(-repeated(count), lab.view(), lab.player()), "back", "the phase before; before the first, the time step before"),
-    row(&[Mode::Lab], &[Key::Char('v')], Action::ToggleStep, "close", "the panes without the time step again"),
+    row(&[Mode::Lab], &[Key::Char('v')], Action::Toggle(Pane::STEP), "close", "the panes without the time step again"),
     does(&[Mode::Lab], &[Key::Char('y')], |lab, _| one(lab.view().why_toggled()), "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
-    row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down), "add up", "add up the table point by point: one more"),
-    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up), "", "one point fewer"),
-    row(&[Mode::Lab], &[Key::PageDown], Action::Move(Direction::PageDown), "", "ten points more"),
-    row(&[Mode::Lab], &[Key::PageUp], Action::Move(Direction::PageUp), "", "ten points fewer"),
+    row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down, 1), "add up", "add up the table point by point: one more"),
+    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up, 1), "", "one point fewer"),
+    row(&[Mode::Lab], &[Key::PageDown], Action::Move(Direction::PageDown, 1), "", "ten points more"),
+    row(&[Mode::Lab], &[Key::PageUp], Action::Move(Direction::PageUp, 1), "", "ten points fewer"),
 ];
 
 fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {

@@ -16,7 +16,7 @@ use crate::playback::live::LiveRun;
 use crate::playback::recording::Curve;
 use crate::text::wrap::columns;
 use crate::tui::dots::{self, Dots, Ink};
-use crate::tui::keymap::ZOOM_KEYS;
+use crate::tui::keymap::{ZOOM_KEYS, one};
 use crate::tui::plane::Labels;
 use crate::tui::scene::{self, Scene, Stroke};
 use crate::tui::split::split_rows;
@@ -60,6 +60,7 @@ pub const ROW: PaneRow = PaneRow {
         ThreeD(Seen::of(lab)).render(area, buf);
     },
     keys: ZOOM_KEYS,
+    arrows: Some(|lab, direction, times| one(lab.view().turned(direction, times))),
 };
 
 pub struct ThreeD<'a>(pub Seen<'a>);

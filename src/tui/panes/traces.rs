@@ -7,7 +7,7 @@ mod groups;
 mod plot;
 
 use super::{PaneRow, Seen, Width, frame, longest, write};
-use crate::lab::action::{Action, Direction, repeated};
+use crate::lab::action::{Action, Direction, repeated, signed};
 use crate::lab::command::{Command, CursorTo};
 use crate::lab::view::Pane;
 use crate::playback::marks::Marks;
@@ -51,13 +51,22 @@ pub const ROW: PaneRow = PaneRow {
         Traces(Seen::of(lab)).render(area, buf);
     },
     keys: KEYS,
+    arrows: Some(|lab, direction, times| {
+        let (view, player) = (lab.view(), lab.player());
+        one(match direction {
+            Direction::Left | Direction::Right => {
+                view.moved_cursor(signed(direction, times), player)
+            }
+            _ => view.other_detail(direction, times, player),
+        })
+    }),
 };
 
 /// The keys that mean something here while the pane has the focus.
 #[rustfmt::skip]
 const KEYS: &[Binding] = &[
-    row(&[Mode::Lab], &[Key::Left], Action::Move(Direction::Left), "cursor", "the cursor to the left: its values are shown; Esc takes it away"),
-    row(&[Mode::Lab], &[Key::Right], Action::Move(Direction::Right), "", "the cursor to the right"),
+    row(&[Mode::Lab], &[Key::Left], Action::Move(Direction::Left, 1), "cursor", "the cursor to the left: its values are shown; Esc takes it away"),
+    row(&[Mode::Lab], &[Key::Right], Action::Move(Direction::Right, 1), "", "the cursor to the right"),
     does(&[Mode::Lab], &[Key::Char('<')], |lab, count| one(lab.view().stepped_cursor(-i64::from(repeated(count)), lab.player())), "", "the cursor one step to the left; 10< ten"),
     does(&[Mode::Lab], &[Key::Char('>')], |lab, count| one(lab.view().stepped_cursor(repeated(count).into(), lab.player())), "", "the cursor one step to the right"),
     does(&[Mode::Lab], &[Key::Char('(')], |_, _| one(Command::Cursor(CursorTo::TurnBefore)), "", "the cursor to the last turn of the tilt before it"),
@@ -70,8 +79,8 @@ const KEYS: &[Binding] = &[
     does(&[Mode::Lab], &[Key::Char(']')], |lab, count| one(lab.view().panned(repeated(count), lab.player())), "", "show later times"),
     does(&[Mode::Lab], &[Key::Char('z')], |lab, count| one(lab.view().other_magnification(repeated(count))), "values", "magnify the values"),
     does(&[Mode::Lab], &[Key::Char('Z')], |lab, count| one(lab.view().other_magnification(-repeated(count))), "", "magnify them less"),
-    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up), "", "another curve in the strip zoom: tilt, z, y, x; Home: what swings"),
-    row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down), "", "the same, the other way round"),
+    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up, 1), "", "another curve in the strip zoom: tilt, z, y, x; Home: what swings"),
+    row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down, 1), "", "the same, the other way round"),
     does(&[Mode::Lab], &[Key::Home], |lab, _| Ok(lab.view().whole(lab.player())), "whole", "show the run again as at first: no cursor, no zoom"),
 ];
 

@@ -243,7 +243,7 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
 /// The path of the axle's tip in its first dip, magnified to fill the picture.
 fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &mut Buffer) {
     let area = headed("first dip, magnified", view, area, buf);
-    let Some(dip) = explained.dip() else {
+    let Some(dip) = &explained.dip else {
         let upright = "the axle is upright at first: no side of it is down";
         return text(upright, Role::Text, view, area, buf);
     };

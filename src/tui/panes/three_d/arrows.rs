@@ -5,7 +5,7 @@ use super::super::{MOST_PUSHES, in_lines};
 use super::body::Sign;
 use super::{CHANGE, Label, MOMENTUM, Subject, write};
 use crate::lab::step_pane::{StepWorkings, table_of};
-use crate::lab::view::View;
+use crate::lab::view::{Pane, View};
 use crate::physics::workings::{Phase, Value};
 use crate::physics::{State, observables};
 use crate::tui::dots::Ink;
@@ -210,7 +210,7 @@ pub struct Shown<'a> {
 impl<'a> Shown<'a> {
     /// The phase on the page of the step pane of `view`, if that is on the screen.
     pub fn of(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
-        let explained = explained.filter(|_| view.shows_step())?;
+        let explained = explained.filter(|_| view.shows(Pane::STEP))?;
         let (phase, ..) = explained.phase(view.page)?;
         let row = view.sum_to.and_then(|rows| rows.checked_sub(1));
         let points = table_of(phase).map(|table| &table.points);
