@@ -7,10 +7,11 @@ use super::answer::{Answer, Done};
 use super::command::{Command, Place};
 use super::files::Files;
 use super::player::{Change, Player, furthest_s};
+use super::runs::Reference;
 use super::view::{Pane, View};
 use crate::analysis::cost;
 use crate::data::{Measured, find_shipped};
-use crate::playback::ghost::Ghost;
+use crate::playback::ghost::{Ghost, GhostToBe};
 use crate::playback::live::LiveRun;
 use crate::scenario::csv::Renaming;
 use crate::scenario::{Problems, Scenario};
@@ -31,6 +32,8 @@ enum Pinned {
     Present,
     /// An earlier run, or the present one before an edit.
     Before(Box<Ghost>),
+    /// An earlier run that a session has kept: its pictures are being made again.
+    Returning(GhostToBe),
 }
 
 #[derive(Default)]
@@ -93,7 +96,7 @@ impl Comparison {
     /// Keeps `run` as the ghost if it was played far enough, unless `keeps_ghost`. A pinned run does not become the ghost,
     /// since it is drawn as the pinned run.
     fn leave_ghost(&mut self, run: &LiveRun, keeps_ghost: bool) {
-        let is_pinned = self.is_present_pinned();
+        let is_pinned = matches!(self.pinned, Some(Pinned::Present));
         self.keep_pinned(run);
         if keeps_ghost {
             return;
@@ -111,12 +114,12 @@ impl Comparison {
 
     /// Keeps the pictures of `run`, which is about to change, if it is pinned.
     fn keep_pinned(&mut self, run: &LiveRun) {
-        if self.is_present_pinned() {
+        if matches!(self.pinned, Some(Pinned::Present)) {
             self.pinned = Some(Pinned::Before(Box::new(Ghost::of(run))));
         }
     }
 
-    pub(super) fn pin(&mut self, pinned: bool) -> Done {
+    fn pin(&mut self, pinned: bool) -> Done {
         let was_pinned = self.is_pinned();
         self.pinned = pinned.then_some(Pinned::Present);
         Done::saying(match (pinned, was_pinned) {
@@ -186,9 +189,13 @@ impl Comparison {
         self.put_beside(&name, &[], player, files, false).map(drop)
     }
 
-    /// Compares the data with the run as it goes on, for at most its share of the computing time. Returns whether there was
-    /// something to do.
+    /// Compares the data with the run as it goes on, for at most its share of the computing time, and takes the pictures
+    /// of a pinned run once they are made again. Returns whether there was something to do.
     pub(super) fn advance(&mut self, player: &Player, clock: &mut dyn FnMut() -> Duration) -> bool {
+        self.follow(player, clock) | self.take_pinned()
+    }
+
+    fn follow(&mut self, player: &Player, clock: &mut dyn FnMut() -> Duration) -> bool {
         let (step, is_moving) = (player.playback.step_number(), player.is_moving());
         let share = if is_moving { FOLLOWING } else { CATCHING_UP };
         let data = self.data.as_mut();
@@ -202,6 +209,16 @@ impl Comparison {
             self.compare(player);
         }
         true
+    }
+
+    fn take_pinned(&mut self) -> bool {
+        if let Some(Pinned::Returning(run)) = &self.pinned
+            && let Some(ghost) = run.made()
+        {
+            self.pinned = Some(Pinned::Before(Box::new(ghost)));
+            return true;
+        }
+        false
     }
 
     /// Holds rows of an own program against the run of `player`, which is called `name`. Returns whether a verdict has just
@@ -274,21 +291,38 @@ impl Comparison {
     pub fn pinned(&self) -> Option<&Ghost> {
         match &self.pinned {
             Some(Pinned::Before(run)) => Some(run),
-            Some(Pinned::Present) | None => None,
+            Some(Pinned::Present | Pinned::Returning(_)) | None => None,
         }
     }
 
-    /// The time that the pinned run had reached, s, where `run` is the present one; `None` where none is pinned.
+    /// The time that the pinned run had reached, s, where `run` is the present one; `None` where none is pinned, or its
+    /// pictures are not made yet.
     pub fn pinned_end_s(&self, run: &LiveRun) -> Option<f64> {
         match &self.pinned {
             Some(Pinned::Present) => Some(furthest_s(run)),
             Some(Pinned::Before(run)) => Some(run.end_s()),
-            None => None,
+            Some(Pinned::Returning(_)) | None => None,
         }
     }
 
-    pub(super) fn is_present_pinned(&self) -> bool {
-        matches!(self.pinned, Some(Pinned::Present))
+    /// What a session keeps of the pinned run.
+    pub(super) fn reference(&self) -> Option<Reference> {
+        let (scenario, step) = match self.pinned.as_ref()? {
+            Pinned::Present => return Some(Reference::default()),
+            Pinned::Before(run) => (&run.scenario, run.furthest),
+            Pinned::Returning(run) => (&run.scenario, run.furthest),
+        };
+        let run = Some(Arc::clone(scenario));
+        Some(Reference { step, run })
+    }
+
+    /// Pins `reference` again, if there is one: its pictures come a little later.
+    pub(super) fn pin_again(&mut self, reference: Option<Reference>) {
+        self.pinned = reference.map(|Reference { step, run }| {
+            run.map_or(Pinned::Present, |run| {
+                Pinned::Returning(GhostToBe::begin(run, step))
+            })
+        });
     }
 
     /// The name of the measured data beside the run, for a session. A file has its full path, unless the lab is

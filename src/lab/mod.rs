@@ -73,7 +73,7 @@ use crate::text::printable::printable;
 use command::Command;
 use edits::{Edit, Outcome};
 use player::Change;
-use session::KeptPlace;
+use session::{KeptPinned, KeptPlace};
 use sheet::Sheet;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -222,8 +222,9 @@ impl Lab {
             ..KeptPlace::of(player, comparison, edits, files, view)
         };
         let place = toml::to_string(&place).unwrap_or_default();
+        let reference = self.comparison.reference();
         Content {
-            work: self.edits.runs.kept(),
+            work: self.edits.runs.kept(reference, session::written),
             place,
         }
     }
@@ -436,7 +437,7 @@ impl Lab {
         confined: Option<&Confined>,
         view: impl FnOnce(&Scenario) -> View,
     ) -> Result<Self, Unreadable> {
-        let (history, scenario, place) = session::kept(content)?;
+        let (history, scenario, pinned, place) = session::kept(content)?;
         let mut view = view(&scenario);
         place.restore(&mut view)?;
         let (name, end_s) = (history.present().name.clone(), history.present().end_s);
@@ -445,21 +446,26 @@ impl Lab {
             lab.files.confine(folder.clone());
         }
         let file = lab.files.open_scenario(&name).map_or(scenario, Arc::new);
-        let next_push = place.next_push.clone();
-        lab.edits.resume(history, &file, next_push, &lab.player);
+        lab.edits
+            .resume(history, &file, place.next_push.clone(), &lab.player);
         lab.player
             .resume(place.step, place.speed, place.shows_exact, end_s);
         lab.edits.follow(&lab.player);
-        lab.take_up(place);
+        lab.take_up(place, pinned);
         lab.read_now();
         Ok(lab)
     }
 
-    /// Takes up what may be lost without the run: the measured data and the lesson. Says what is there again, and what is
-    /// lost.
-    fn take_up(&mut self, place: KeptPlace) {
+    /// Takes up what may be lost without the run: the pinned run, the measured data and the lesson. Says what is there
+    /// again, and what is lost.
+    fn take_up(&mut self, place: KeptPlace, pinned: Option<KeptPinned>) {
         let mut text = place.in_words();
-        self.comparison.pin(place.pinned);
+        match pinned.map(KeptPinned::reference).transpose() {
+            Ok(reference) => self.comparison.pin_again(reference),
+            Err(problems) => {
+                text += &format!("; the pinned run is lost: {}", problems.in_one_line())
+            }
+        }
         if let Some(name) = &place.measured
             && let Err(problems) =
                 self.comparison

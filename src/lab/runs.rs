@@ -1,7 +1,6 @@
 //! The runs of a session with their journals, for undo and redo; the scenario as the user opened it, and how the present
 //! run differs from it.
 
-use super::session::written;
 use crate::journal::changed::Original;
 use crate::journal::history::{History, Reversal, RunRecord};
 use crate::journal::next_push::NextPush;
@@ -22,8 +21,26 @@ pub struct Runs {
     changed_from_file: Option<String>,
     /// The history as the session keeps it; `None` where the history has changed since it was written.
     kept: Option<Text>,
+    /// The pinned run that is kept with it.
+    kept_reference: Option<Reference>,
     /// The depth of the history that undo does not go below: where the page of a lesson began.
     floor: Option<(usize, usize)>,
+}
+
+/// What a session keeps of a pinned run, to pin it again.
+#[derive(Clone, Default)]
+pub(super) struct Reference {
+    /// The step up to which it was played; of no meaning for the present run.
+    pub(super) step: u64,
+    /// Its scenario; `None` where the present run is pinned.
+    pub(super) run: Option<Arc<Scenario>>,
+}
+
+impl PartialEq for Reference {
+    fn eq(&self, other: &Self) -> bool {
+        let run = |of: &Self| of.run.as_ref().map(Arc::as_ptr);
+        (self.step, run(self)) == (other.step, run(other))
+    }
 }
 
 /// The direction in the history.
@@ -54,6 +71,7 @@ impl Runs {
             history,
             changed_from_file: None,
             kept: None,
+            kept_reference: None,
             floor: None,
         }
     }
@@ -106,9 +124,18 @@ impl Runs {
         self.changed_from_file = self.original.difference(scenario);
     }
 
-    /// The history as the session keeps it.
-    pub(super) fn kept(&mut self) -> Text {
-        let written = || written(&self.history);
+    /// The history as the session keeps it, with the pinned run; `written` writes them.
+    pub(super) fn kept(
+        &mut self,
+        reference: Option<Reference>,
+        written: fn(&History, Option<&Reference>) -> Text,
+    ) -> Text {
+        if self.kept_reference != reference {
+            self.kept = None;
+            self.kept_reference = reference;
+        }
+        let (history, reference) = (&self.history, self.kept_reference.as_ref());
+        let written = || written(history, reference);
         self.kept.get_or_insert_with(written).clone()
     }
 
@@ -285,16 +312,20 @@ mod tests {
         assert!(runs.act(40, Vec::new(), false, 2300).unwrap().is_none());
     }
 
+    fn kept(runs: &mut Runs) -> Text {
+        runs.kept(None, crate::lab::session::written)
+    }
+
     #[test]
     fn the_kept_text_follows_every_change() {
         let mut runs = runs();
-        let first = runs.kept();
-        assert_eq!(**first, **runs.kept());
+        let first = kept(&mut runs);
+        assert_eq!(**first, **kept(&mut runs));
         runs.act(40, vec![time_step(0.05)], false, 2300).unwrap();
-        let second = runs.kept();
+        let second = kept(&mut runs);
         assert_ne!(**first, **second);
         runs.turn(Way::Undo, 2300).unwrap();
-        assert_ne!(**second, **runs.kept());
+        assert_ne!(**second, **kept(&mut runs));
     }
 
     #[test]

@@ -4,11 +4,14 @@ use super::comparison::Comparison;
 use super::edits::Edits;
 use super::files::Files;
 use super::player::Player;
+use super::runs::Reference;
 use super::view::{Look, View};
+use crate::journal::Journal;
 use crate::journal::history::History;
 use crate::journal::next_push::NextPush;
 use crate::playback::pace::Speed;
 use crate::scenario::csv::Renaming;
+use crate::scenario::file::ScenarioFile;
 use crate::scenario::{Problems, Scenario, keys};
 use crate::storage::session::{Content, Text, later};
 use crate::text::printable::Shown;
@@ -20,6 +23,36 @@ use toml::Value;
 #[serde(deny_unknown_fields)]
 struct KeptRuns {
     history: History,
+    pinned: Option<KeptPinned>,
+}
+
+/// The pinned run: its pictures are made again from its scenario.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KeptPinned {
+    /// The step up to which it was played; of no meaning for the present run.
+    step: u64,
+    /// The run file with all that was done to the run; `None` where the present run is pinned.
+    run: Option<ScenarioFile>,
+}
+
+impl KeptPinned {
+    fn of(reference: &Reference) -> Self {
+        let run = reference.run.as_ref();
+        Self {
+            step: reference.step,
+            run: run.map(|scenario| scenario.file.clone()),
+        }
+    }
+
+    /// What is to be pinned again.
+    pub(super) fn reference(self) -> Result<Reference, Problems> {
+        let run = self.run.map(|file| Journal::of(file).scenario());
+        Ok(Reference {
+            step: self.step,
+            run: run.transpose()?,
+        })
+    }
 }
 
 /// The text of the place: the step, how the run is shown, and the push to come.
@@ -33,8 +66,6 @@ pub(super) struct KeptPlace {
     pub(super) filled: bool,
     pub(super) look: Look,
     pub(super) exporting: Option<String>,
-    /// Whether the present run is pinned.
-    pub(super) pinned: bool,
     /// The measured data beside the run.
     pub(super) measured: Option<String>,
     /// What its columns are called instead.
@@ -81,10 +112,16 @@ pub fn lessons_in(content: &Content) -> Option<toml::Table> {
         .lessons
 }
 
-/// `history` as a session keeps it. The text is written by the thread that first reads it.
-pub(super) fn written(history: &History) -> Text {
-    let history = history.clone();
-    later(move || toml::to_string(&KeptRuns { history }).unwrap_or_default())
+/// `history` as a session keeps it, with the pinned run. The text is written by the thread that first reads it.
+pub(super) fn written(history: &History, reference: Option<&Reference>) -> Text {
+    let (history, reference) = (history.clone(), reference.cloned());
+    later(move || {
+        let runs = KeptRuns {
+            history,
+            pinned: reference.as_ref().map(KeptPinned::of),
+        };
+        toml::to_string(&runs).unwrap_or_default()
+    })
 }
 
 fn read<'a, T: Deserialize<'a>>(what: &str, text: &'a str) -> Result<T, Unreadable> {
@@ -94,13 +131,15 @@ fn read<'a, T: Deserialize<'a>>(what: &str, text: &'a str) -> Result<T, Unreadab
     })
 }
 
-/// The history and its present scenario in the content of a session, and the place.
-pub(super) fn kept(content: &Content) -> Result<(History, Arc<Scenario>, KeptPlace), Unreadable> {
-    let KeptRuns { history } = read("the run", &content.work)?;
+/// What the content of a session holds: the history and its present scenario, the pinned run, the place.
+pub(super) type Kept = (History, Arc<Scenario>, Option<KeptPinned>, KeptPlace);
+
+pub(super) fn kept(content: &Content) -> Result<Kept, Unreadable> {
+    let KeptRuns { history, pinned } = read("the run", &content.work)?;
     let place = read("the place in it", &content.place)?;
     let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
     let scenario = history.scenario().map_err(unreadable)?;
-    Ok((history, scenario, place))
+    Ok((history, scenario, pinned, place))
 }
 
 impl KeptPlace {
@@ -120,7 +159,6 @@ impl KeptPlace {
             filled: view.filled,
             look: view.look.clone(),
             exporting: exported_to.map(|path| Shown(path).to_string()),
-            pinned: comparison.is_present_pinned(),
             measured: comparison.data_to_keep(files),
             map: comparison
                 .data()

@@ -1,5 +1,7 @@
-//! The pictures of the previous run, kept when an edit restarts the run, so that both can be compared.
+//! The pictures of the previous run, kept when an edit restarts the run, so that both can be compared, and the making of
+//! such pictures anew, in the background.
 
+use super::background::Job;
 use super::live::LiveRun;
 use super::marks::Marks;
 use super::path::Path;
@@ -31,5 +33,33 @@ impl Ghost {
 
     pub fn end_s(&self) -> f64 {
         self.recording.whole().map_or(0.0, |whole| whole.end_s)
+    }
+}
+
+/// The pictures of a run that is played again in the background. Dropping it ends that.
+pub struct GhostToBe {
+    pub scenario: Arc<Scenario>,
+    pub furthest: u64,
+    job: Job<Ghost>,
+}
+
+impl GhostToBe {
+    /// Begins to play `scenario` up to the step `furthest`, or up to where its numbers stop being finite.
+    pub fn begin(scenario: Arc<Scenario>, furthest: u64) -> Self {
+        let played = Arc::clone(&scenario);
+        let job = Job::begin("pinned", move |is_wanted| {
+            let mut run = LiveRun::new(played);
+            run.play(f64::INFINITY, furthest, || !is_wanted(), |_| false);
+            Some(Ghost::of(&run))
+        });
+        Self {
+            scenario,
+            furthest,
+            job,
+        }
+    }
+
+    pub fn made(&self) -> Option<Ghost> {
+        self.job.answer().cloned()
     }
 }

@@ -75,6 +75,45 @@ fn what_is_shown_and_hidden_comes_back() {
     assert_eq!(resumed(&desk.lab.content()).lab.view().hidden, []);
 }
 
+/// Waits until the pictures of the pinned run are there.
+#[track_caller]
+fn await_pinned(desk: &mut Desk) {
+    for _ in 0..4000 {
+        if desk.lab.comparison().pinned().is_some() {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        desk.wait(1);
+    }
+    panic!("the pinned run has not come back");
+}
+
+#[test]
+fn the_pinned_run_comes_back_with_what_was_done_to_it() {
+    let mut desk = Desk::open("method-2");
+    desk.commands("go_to = '20 s'\npush = true\ngo_to = '40 s'\npin = true");
+    desk.commands("set = { 'start.tilt_deg' = 30 }\ngo_to = '10 s'");
+    let before = desk.lab.comparison().pinned().unwrap().clone();
+    let content = desk.lab.content();
+    let mut back = resumed(&content);
+    assert!(back.lab.comparison().is_pinned());
+    let is_same = |now: Content| now.place == content.place && **now.work == **content.work;
+    let made_again = back.lab.content();
+    assert!(is_same(made_again), "it is kept while it is made again");
+    await_pinned(&mut back);
+    assert!(is_same(back.lab.content()));
+    let again = back.lab.comparison().pinned().unwrap();
+    assert_eq!(again.furthest, before.furthest);
+    assert_eq!(again.end_s(), before.end_s());
+    assert_eq!(again.marks, before.marks);
+    assert_eq!(again.scenario.file.push.len(), 1);
+    let dots = |ghost: &gyrolab::playback::ghost::Ghost| ghost.path.dots().collect::<Vec<_>>();
+    assert_eq!(dots(again), dots(&before), "the same numbers");
+    back.press(&[Key::Char('i')]);
+    let none = resumed(&back.lab.content());
+    assert!(!none.lab.comparison().is_pinned());
+}
+
 #[test]
 fn the_present_run_comes_back_pinned() {
     let mut desk = Desk::open("method-2");
