@@ -54,34 +54,6 @@ fn named(scheme: &str, slope: Option<f64>, width_pt: f64) -> String {
     letters::shortened(scheme, LABEL_PT, room) + &slope
 }
 
-/// What is said of time steps that have no point: a run that breaks down has no error, and a logarithmic axis shows no 0.
-pub(super) fn missing(table: &Table, columns: &[&str]) -> Vec<String> {
-    let mut told = Vec::new();
-    for (scheme, rows) in grouped(&table.texts("scheme").unwrap_or_default()) {
-        for name in or_error(columns) {
-            let values = table.numbers(name).unwrap_or_default();
-            let mut tell = |is: fn(f64) -> bool, why: &str| {
-                let values = rows.iter().filter_map(|&row| values.get(row));
-                let (count, all) = (values.filter(|value| is(**value)).count(), rows.len());
-                told.extend((count > 0).then(|| {
-                    format!(
-                        "{count} of {all} time steps of {scheme} have no point of {name}: {why}"
-                    )
-                }));
-            };
-            tell(
-                |value| value == 0.0,
-                "it is 0, which a logarithmic axis does not show",
-            );
-            tell(
-                |value| !value.is_finite(),
-                "there is no number for them, as where a run breaks down",
-            );
-        }
-    }
-    told
-}
-
 /// The columns that are drawn where `columns` were asked for.
 fn or_error<'a>(columns: &'a [&'a str]) -> &'a [&'a str] {
     if columns.is_empty() {
