@@ -19,8 +19,7 @@ use crate::scenario::rescale::MOST_STEPS;
 use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::sweep::Sweep;
 use crate::sweep::in_order::in_order;
-use against::Against;
-pub use against::Difference;
+pub use against::{Against, Difference, first_difference};
 pub use figure::redraw;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -30,8 +29,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-pub use unverified::Unverified;
-use unverified::other_version;
+pub use unverified::{Unverified, other_version};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verified {
@@ -50,8 +48,6 @@ const OF_FIT: &[u8] = b",residual,residual_sigmas";
 const BY_THE_CLOCK: [&str; 2] = ["ns_per_step", "wall_s"];
 const OF_THE_CLOCK: &str =
     "a comparison: ns_per_step and wall_s are times by the clock, which nothing can compute again";
-/// A run that differs and has more steps left than this is not played on for its verdict.
-const MOST_FOR_VERDICT: u64 = 2_000_000;
 /// The most values of a table that is taken as a comparison.
 const MOST_VALUES: usize = 1_000_000;
 
@@ -62,22 +58,8 @@ pub fn verify(
     fit: impl FnOnce(&str) -> Result<Vec<u8>, Unverified>,
     watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,
 ) -> Result<Verified, Unverified> {
-    verified(path, fit, watch).map_err(|mut error| {
-        if let Unverified::Refused(problems) = &mut error
-            && problems.origin.is_empty()
-        {
-            problems.origin = path.display().to_string();
-        }
-        error
-    })
-}
-
-fn verified(
-    path: &Path,
-    fit: impl FnOnce(&str) -> Result<Vec<u8>, Unverified>,
-    watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,
-) -> Result<Verified, Unverified> {
-    let (head, file) = opened(path)?;
+    let mut file = BufReader::new(File::open(path)?);
+    let head = Head::read(&mut file)?;
     let text = run_file(&head)?;
     let document = Document::parse_header(&path.display().to_string(), &text)?;
     let (mut against, mut notes) = (Against::new(&head, file), Vec::new());
@@ -95,12 +77,10 @@ fn verified(
     } else {
         let layout = Layout::read(&text).map_err(|error| format!("{error} (in its header)"))?;
         let scenario = Arc::new(document.scenario()?);
-        let played = play_run(&scenario, layout, &mut against, watch, &mut notes);
-        verdict = Some(played?);
+        verdict = play_run(&scenario, layout, &mut against, watch, &mut notes)?;
     }
     let (rows, difference) = against.end()?;
-    let of_header = difference.as_ref().map(|_| "of the run in its header: ");
-    notes.extend(verdict.map(|verdict| of_header.unwrap_or_default().to_owned() + &verdict));
+    notes.extend(verdict);
     let version = document
         .table()
         .get("gyrolab")
@@ -111,14 +91,6 @@ fn verified(
         difference,
         notes,
     })
-}
-
-fn opened(path: &Path) -> Result<(Head, BufReader<File>), Unverified> {
-    if path.is_dir() {
-        return Err("is a folder: name a CSV in it".to_owned().into());
-    }
-    let mut file = BufReader::new(File::open(path)?);
-    Ok((Head::read(&mut file)?, file))
 }
 
 /// The run file in the head of a CSV that gyrolab wrote.
@@ -134,48 +106,45 @@ fn run_file(head: &Head) -> Result<String, Problems> {
     } else if bytes.starts_with(b"# ") && bytes.ends_with(b"\n") && head.names().is_empty() {
         "ends in its header: there are no rows to verify"
     } else {
-        "is no CSV that gyrolab wrote: those begin with the run file in \"# \" lines, and name their columns below it"
+        "is no CSV that gyrolab wrote: those begin with the run file in \"# \" lines, and name their columns below it (a write-up is verified by its folder)"
     };
     Err(Problems::one("", Problem::at("", rule)))
 }
 
-/// Plays `scenario`, and compares its rows. Gives the verdict on the run.
+/// Plays `scenario`, and compares its rows. Gives the verdict on the run, where they are the same.
 fn play_run(
     scenario: &Arc<Scenario>,
     layout: Layout,
     against: &mut Against,
     watch: impl Fn(u64, u64) -> ControlFlow<()>,
     notes: &mut Vec<String>,
-) -> Result<String, Unverified> {
+) -> Result<Option<String>, Unverified> {
     against.delimiter = if layout.file().excel { b';' } else { b',' };
     against.keys = 1;
-    let (difference, mut left) = (against.difference(), 0);
+    let difference = against.difference();
+    let differs = || difference.get().is_some();
     let mut csv = CsvWriter::with_layout(against, scenario, layout)?;
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let monitor = RefCell::new(Monitor::new(simulation.now()));
     let each = |step: &Step| monitor.borrow_mut().follow_ahead(step);
     let go_on = |step, steps: u64| {
         monitor.borrow_mut().catch_up();
-        watch(step, steps)?;
-        if difference.get().is_some() && steps.saturating_sub(step) > MOST_FOR_VERDICT {
-            left = steps - step;
+        if differs() {
             return ControlFlow::Break(());
         }
-        ControlFlow::Continue(())
+        watch(step, steps)
     };
     let steps = scenario.steps;
     let (ended, _) = stream::play(&mut simulation, steps, Some(&mut csv), each, go_on)?;
-    if ended == Ended::Stopped && left == 0 {
+    if ended == Ended::Stopped && !differs() {
         return Err(Unverified::Stopped);
     }
     csv.finish()?;
     if let Ended::NotFinite(end) = ended {
         notes.push(format!("its run ends early: {end}"));
     }
-    Ok(match left {
-        0 => monitor.into_inner().health(simulation.now()).sentence(None),
-        left => format!("not judged: {left} of its steps were left to compute"),
-    })
+    let verdict = || monitor.into_inner().health(simulation.now()).sentence(None);
+    Ok((!differs()).then(verdict))
 }
 
 /// Computes the rows of `sweep` on all cores, and compares them.

@@ -27,17 +27,6 @@ impl fmt::Display for Picture {
     }
 }
 
-/// Whether the scheme damps a nutation or feeds it, and by how many per cent a step.
-fn change(nutation: &Nutation) -> (&'static str, String) {
-    let verb = if nutation.multiplier < 1.0 {
-        "damps"
-    } else {
-        "feeds"
-    };
-    let percent = 100.0 * (nutation.multiplier - 1.0).abs();
-    (verb, short(percent))
-}
-
 /// One thing to say on the screen, at length where there is room, and in short.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
@@ -387,15 +376,9 @@ fn cause_of_swing(health: &Health) -> Option<String> {
 
 /// What becomes of a nutation: "damped by 0.1 % a step".
 fn changed(nutation: &Nutation) -> String {
-    let (verb, percent) = change(nutation);
-    let verb = if verb == "damps" { "damped" } else { "fed" };
-    format!("{verb} by {percent} % a step")
-}
-
-/// What the scheme does to the nutation.
-fn changes(nutation: &Nutation) -> String {
-    let (verb, percent) = change(nutation);
-    format!("the scheme {verb} the nutation by {percent} % a step")
+    let change = nutation.multiplier - 1.0;
+    let verb = if change < 0.0 { "damped" } else { "fed" };
+    format!("{verb} by {} % a step", short(100.0 * change.abs()))
 }
 
 fn cause(health: &Health) -> String {
@@ -406,7 +389,9 @@ fn cause(health: &Health) -> String {
             format!("the scheme {name} breaks down, its orientation is no rotation")
         }
         Some(_) if psi >= PI => format!("the body turns {turns} times a step, strobing the swing"),
-        Some(nutation) if health.nutation_is_the_cause() => changes(&nutation),
+        Some(nutation) if health.nutation_is_the_cause() => {
+            format!("the nutation is {}", changed(&nutation))
+        }
         _ if !psi.is_finite() => "the body turns further in a step than numbers reach".to_owned(),
         _ if psi >= TOO_FAR_RAD => {
             format!("at {turns} turns a step the scheme {name} cannot follow")

@@ -1,10 +1,10 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{Changes, LengthArgs, changed, positive, time};
+use super::args::{Changes, LengthArgs, MapArgs, changed, positive, time};
 use super::progress::{self, Interrupted};
+use super::writeup::measured;
 use super::{ended_by, refuse, tell};
 use crate::analysis::cost;
-use crate::data;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::Run;
 use crate::figure::table::Table;
@@ -57,6 +57,9 @@ pub(super) struct FigureArgs {
     /// Draw measured data with it: a CSV with a column t_s, or data that come with gyrolab (heidelberg-spin-decay)
     #[arg(long, value_name = "FILE")]
     measured: Option<String>,
+
+    #[command(flatten)]
+    columns: MapArgs,
 
     /// Width of the page: 86mm for a column, 178mm for a page [default: 86mm]
     #[arg(long, value_name = "MM", value_parser = width)]
@@ -206,11 +209,7 @@ fn source(args: &FigureArgs) -> anyhow::Result<Source> {
         Kind::named(kind).unwrap_or_else(|refusal| no_kind(args, &refusal));
     }
     if let Some(name) = &args.measured {
-        let measured = data::open(name)?;
-        if let Some(left_out) = measured.left_out_in_words() {
-            tell(format_args!("gyrolab: {left_out}"));
-        }
-        measured.series()?; // a table of runs is refused before anything is run
+        let measured = measured(name, &args.columns.map)?;
         source.measured = Some(Arc::new(measured));
         (source.asked.measured_until_s, source.asked.kind) = (None, None);
     }

@@ -3,26 +3,30 @@
 use super::args::{one_or_more, setting};
 use super::progress::{self, Interrupted, Interruption};
 use super::{fit, print, tell, writeup};
+use crate::export::Folder;
 use crate::own_code::{self, Uncompared, Verdict};
 use crate::scenario::csv::{self, Renaming, renaming};
 use crate::scenario::{Document, Problems, Scenario};
+use crate::text::advice::unread;
+use crate::text::number::counted;
 use crate::text::printable::{Shown, brief, printable_lines};
-use crate::verify::{Unverified, redraw, verify as verified};
-use crate::writeup::{BELIEVED, CSV, MEASURED_DATA, PAGE, READOUTS_FILE, RUN_FILE};
+use crate::verify::verify as verified;
+use crate::verify::{Against, Unverified, first_difference, other_version, redraw};
+use crate::writeup::{CSV, MEASURED_DATA, READOUTS_FILE, RUN_FILE};
 use anyhow::{Context, bail};
 use clap::Args;
-use std::collections::HashSet;
 use std::fmt::Display;
-use std::fs;
-use std::io;
+use std::fs::File;
+use std::io::Read;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
+use toml::Value;
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
-    /// CSVs and figures that gyrolab wrote, or folders of them such as a write-up; with --against what your own program wrote
+    /// CSVs, figures and folders of write-ups that gyrolab wrote; with --against what your own program wrote
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 
@@ -48,6 +52,12 @@ pub(super) struct VerifyArgs {
     json: bool,
 }
 
+/// The version that computes again.
+const OWN: &str = env!("CARGO_PKG_VERSION");
+const MISSING: &str = "it is missing, or no regular file";
+/// The most bytes that are read of a file beyond what it should hold.
+const MOST_BEYOND: u64 = 1 << 20;
+
 const OWN_CODE: &str = "Your own code";
 
 pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
@@ -56,11 +66,12 @@ pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenario.transpose()?;
     let mut is_good = true;
     for file in &args.files {
-        is_good &= match &scenario {
-            Some(scenario) => judged(own(file, args, scenario, &interruption))?,
-            None if file.is_dir() => folder(file, &interruption)?,
-            None => judged(made_again(file, &interruption))?,
+        let result = match &scenario {
+            Some(scenario) => own(file, args, scenario, &interruption),
+            None if file.is_dir() => folder(file, &interruption),
+            None => made_again(file, &interruption),
         };
+        is_good &= judged(file, result)?;
     }
     Ok(if is_good {
         ExitCode::SUCCESS
@@ -70,134 +81,123 @@ pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// Whether it is good; why it cannot be judged is told.
-fn judged(result: Result<bool, Unverified>) -> anyhow::Result<bool> {
-    match result {
-        Ok(is_good) => Ok(is_good),
-        Err(Unverified::Stopped) => bail!(Interrupted),
-        Err(Unverified::Refused(problems)) => {
+fn judged(file: &Path, result: anyhow::Result<bool>) -> anyhow::Result<bool> {
+    result.or_else(|error| match error.downcast()? {
+        Unverified::Stopped => bail!(Interrupted),
+        Unverified::Refused(mut problems) => {
+            if problems.origin.is_empty() {
+                problems.origin = file.display().to_string();
+            }
             tell(printable_lines(&problems.to_string()));
             Ok(false)
         }
-    }
+    })
 }
 
-/// Makes every CSV and figure in `folder` again, and the numbers of a write-up. Returns whether all are the same.
+/// Makes the write-up in `folder` again and compares every file of it. Returns whether all are the same.
 fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
-    let entries = fs::read_dir(folder).and_then(Iterator::collect::<io::Result<Vec<_>>>);
-    let entries = entries.with_context(|| format!("{}: cannot be read", Shown(folder)))?;
-    let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).collect();
-    files.sort();
+    let [run_file, csv] = [RUN_FILE, CSV].map(|name| folder.join(name));
+    if !run_file.is_file() {
+        let rule = format!("is no write-up, it holds no {RUN_FILE}: name the files in it");
+        bail!(Unverified::from(rule));
+    }
+    let document = Document::read(&run_file).map_err(Unverified::from)?;
+    let scenario = Arc::new(document.scenario().map_err(Unverified::from)?);
+    let version = document.table().get("gyrolab").and_then(Value::as_str);
+    let version = version.unwrap_or(OWN);
     let data = measured_in(folder);
-    let is_made = |file: &&PathBuf| {
-        let ending = file.extension().and_then(|ending| ending.to_str());
-        let is_made = ending.is_some_and(|ending| ["csv", "svg", "pdf", "png"].contains(&ending));
-        is_made && file.is_file() && data.as_ref() != Some(*file)
+    let against = csv.is_file().then(|| Against::open(&csv)).transpose();
+    let against = against.with_context(|| Shown(&csv).to_string())?;
+    let again = writeup::again(scenario, data.as_deref(), against, &csv, interruption);
+    let (again, against) = again?;
+    let notes = other_version(version).into_iter();
+    let notes: Vec<_> = notes.chain([again.verdict()]).collect();
+    let mut is_good = match against.map(Against::end).transpose()? {
+        Some((rows, difference)) => say_of_rows(&csv, rows, difference.as_ref(), &notes)?,
+        None => say(&csv, "", Some(&MISSING), &notes)?,
     };
-    let (mut is_good, mut count) = (true, 0);
-    for file in files.iter().filter(is_made) {
-        is_good &= judged(made_again(file, interruption))?;
-        count += 1;
-    }
-    if let Some(data) = data.as_deref().filter(|data| data.is_file()) {
-        print(&format!(
-            "{}: measured data, which nothing computes\n",
-            Shown(data)
-        ))?;
-    }
-    if folder.join(RUN_FILE).is_file() {
-        is_good &= judged(numbers(folder, data.as_deref(), interruption))?;
-        count += 1;
-    }
-    if count == 0 {
-        tell(format_args!(
-            "{}: holds no CSV and no figure to make again",
-            Shown(folder)
-        ));
-    }
-    Ok(is_good && count > 0)
-}
-
-/// The measured data in the folder of a write-up.
-fn measured_in(folder: &Path) -> Option<PathBuf> {
-    let readouts = fs::read_to_string(folder.join(READOUTS_FILE)).ok()?;
-    let readouts: serde_json::Value = serde_json::from_str(&readouts).ok()?;
-    let name = Path::new(readouts.get(MEASURED_DATA)?.get("file")?.as_str()?);
-    Some(folder.join(name.file_name()?))
-}
-
-/// Runs a write-up's run file again and compares the numbers of the folder: every readout, and of the page the verdict and
-/// the rows of its tables. A file of the write-up that is not there differs; only the page may be left out.
-fn numbers(
-    folder: &Path,
-    data: Option<&Path>,
-    interruption: &Interruption,
-) -> Result<bool, Unverified> {
-    let run_file = folder.join(RUN_FILE);
-    let scenario = Document::read(&run_file)?.scenario()?;
-    let csv = folder.join(CSV);
-    let is_other = csv.is_file() && {
-        let of_csv = Document::read(&csv)?.scenario()?;
-        of_csv.to_toml() != scenario.to_toml()
-    };
-    let data = data.map(|data| data.to_string_lossy());
-    let again = writeup::again(Arc::new(scenario), data.as_deref(), interruption);
-    let again = again.map_err(|error| match error.downcast() {
-        Ok(Interrupted) => Unverified::Stopped,
-        Err(error) => Unverified::from(format!("{error:#}")),
-    })?;
-    let other = is_other.then(|| format!("it is not the run of {CSV}"));
-    let mut is_good = say(&run_file, "the run of the write-up", other.as_ref(), &[])?;
-    let files = again.files().map_err(|error| error.to_string())?;
-    let names = files.iter().map(|(name, _)| name.as_str()).chain([CSV]);
-    for name in names.filter(|name| *name != PAGE && !folder.join(name).exists()) {
-        let missing = "it is missing".to_owned();
-        is_good &= say(&folder.join(name), "", Some(&missing), &[])?;
-    }
-    for (name, text) in [(READOUTS_FILE, again.readouts_json()), (PAGE, again.page())] {
+    let files = again.files()?;
+    for (name, made) in &files {
         let file = folder.join(name);
-        let Ok(there) = fs::read_to_string(&file) else {
-            continue;
+        let same = if data.as_ref().is_some_and(|data| Path::new(data) == file) {
+            "measured data, which nothing computes"
+        } else {
+            "the same, made again"
         };
-        let lines: HashSet<&str> = there.lines().collect();
-        let mut is_verdict = false;
-        let is_checked = |line: &&str| {
-            if line.starts_with("## ") {
-                is_verdict = *line == BELIEVED;
-            }
-            name != PAGE || line.starts_with("| ") || is_verdict
-        };
-        let computed: Vec<&str> = text.lines().filter(is_checked).collect();
-        let missing = computed.iter().find(|line| !lines.contains(**line));
-        let difference = missing.map(|line| {
-            format!(
-                "it lacks a line, computed again: {}",
-                brief(line.trim(), 200)
-            )
-        });
-        let same = "the same: its numbers and its verdict, computed again";
+        let difference = differs(&file, made, version, interruption)?;
         is_good &= say(&file, same, difference.as_ref(), &[])?;
+    }
+    let own = files.iter().map(|(name, _)| name.into());
+    let own: Vec<_> = own.chain([CSV.into()]).collect();
+    let others = Folder::others(folder, &own)?;
+    if !others.is_empty() {
+        let (count, others) = (others.len() as u64, brief(&others.join(", "), 200));
+        let count = counted(count, "file");
+        print(&format!(
+            "{}: {count} not of the write-up: {others}\n",
+            Shown(folder)
+        ))?;
     }
     Ok(is_good)
 }
 
+/// What differs between the file of a write-up and what was `made` again. Of another version the pixels of a figure count, and
+/// texts name that version.
+fn differs(
+    file: &Path,
+    made: &[u8],
+    version: &str,
+    interruption: &Interruption,
+) -> anyhow::Result<Option<String>> {
+    if !file.is_file() {
+        return Ok(Some(MISSING.to_owned()));
+    }
+    let (mut there, most) = (Vec::new(), made.len() as u64 + MOST_BEYOND);
+    let read = File::open(file).and_then(|file| file.take(most).read_to_end(&mut there));
+    if let Err(error) = read {
+        return Ok(Some(unread(&error)));
+    }
+    if there == made {
+        return Ok(None);
+    }
+    if file
+        .extension()
+        .is_some_and(|it| it == "svg" || it == "pdf")
+    {
+        return Ok(match redraw(file, interruption.meter()) {
+            Err(Unverified::Stopped) => bail!(Interrupted),
+            Err(Unverified::Refused(problems)) => Some(problems.in_one_line()),
+            Ok(Some((Some(difference), _))) => Some(difference),
+            Ok(_) => (version == OWN).then(|| "it is a figure of another run or part".to_owned()),
+        });
+    }
+    let [there, made] = [&there, made].map(String::from_utf8_lossy);
+    Ok(first_difference(&there, &made.replace(OWN, version)))
+}
+
+/// The measured data in the folder of a write-up.
+fn measured_in(folder: &Path) -> Option<String> {
+    let readouts = folder.join(READOUTS_FILE);
+    let readouts = readouts.is_file().then(|| csv::text(&readouts))?.ok()?;
+    let readouts: serde_json::Value = serde_json::from_str(&readouts).ok()?;
+    let name = Path::new(readouts.get(MEASURED_DATA)?.get("file")?.as_str()?);
+    Some(
+        folder
+            .join(name.file_name()?)
+            .to_string_lossy()
+            .into_owned(),
+    )
+}
+
 /// Computes or draws `file` again and prints what has come out. Returns whether it is the same.
-fn made_again(file: &Path, interruption: &Interruption) -> Result<bool, Unverified> {
+fn made_again(file: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
     if let Some((difference, notes)) = redraw(file, interruption.meter())? {
         let same = "the same: drawn again from what it carries";
         return say(file, same, difference.as_ref(), &notes);
     }
     let fit = |command: &str| fit::again(command, interruption);
     let result = verified(file, fit, interruption.meter())?;
-    let same = match result.rows {
-        1 => "the same: its row, computed again".to_owned(),
-        rows => format!("the same: all {rows} rows, computed again"),
-    };
-    say(file, &same, result.difference.as_ref(), &result.notes)
-}
-
-fn printed(text: &str) -> Result<(), Unverified> {
-    print(text).map_err(|error| Unverified::from(error.to_string()))?;
-    Ok(())
+    say_of_rows(file, result.rows, result.difference.as_ref(), &result.notes)
 }
 
 fn scenario(name: &str, set: &[String]) -> Result<Arc<Scenario>, Problems> {
@@ -214,19 +214,17 @@ fn own(
     args: &VerifyArgs,
     scenario: &Arc<Scenario>,
     interruption: &Interruption,
-) -> Result<bool, Unverified> {
+) -> anyhow::Result<bool> {
     let verdict = verdict(file, args, scenario, interruption).map_err(|error| match error {
-        Uncompared::Refused(problems) => {
-            Unverified::Refused(problems.of(file.display().to_string()))
-        }
+        Uncompared::Refused(problems) => Unverified::Refused(problems),
         Uncompared::Stopped => Unverified::Stopped,
     })?;
     if args.json {
         let json = serde_json::to_string(&verdict).unwrap_or_default();
-        printed(&format!("{json}\n"))?;
+        print(&format!("{json}\n"))?;
     } else {
         let lines = printable_lines(&verdict.lines.join("\n")).into_owned();
-        printed(&format!("{}: {lines}\n", Shown(file)))?;
+        print(&format!("{}: {lines}\n", Shown(file)))?;
     }
     Ok(verdict.agrees)
 }
@@ -245,6 +243,20 @@ fn verdict(
     own_code::compare(&rows, name, scenario, &|| !interruption.has_come())
 }
 
+/// As [`say`], of a file whose rows were computed again.
+fn say_of_rows(
+    file: &Path,
+    rows: u64,
+    difference: Option<&impl Display>,
+    notes: &[String],
+) -> anyhow::Result<bool> {
+    let same = match rows {
+        1 => "the same: its row, computed again".to_owned(),
+        rows => format!("the same: all {rows} rows, computed again"),
+    };
+    say(file, &same, difference, notes)
+}
+
 /// Prints what has come out for `file`: a line that says whether it is the `same`, and a line for each note. Returns whether
 /// it is.
 fn say(
@@ -252,7 +264,7 @@ fn say(
     same: &str,
     difference: Option<&impl Display>,
     notes: &[String],
-) -> Result<bool, Unverified> {
+) -> anyhow::Result<bool> {
     let file = Shown(file);
     let mut text = match difference {
         Some(difference) => format!("{file}: differs: {difference}\n"),
@@ -261,6 +273,6 @@ fn say(
     for note in notes {
         text += &format!("    {note}\n");
     }
-    printed(&text)?;
+    print(&text)?;
     Ok(difference.is_none())
 }

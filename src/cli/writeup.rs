@@ -1,24 +1,27 @@
 //! `gyrolab writeup`: a run as a folder of files for a write-up.
 
 use super::args::scenario_of;
-use super::args::{LengthArgs, ScenarioArgs};
+use super::args::{LengthArgs, MapArgs, ScenarioArgs};
 use super::progress::{self, Interrupted, Interruption};
 use super::run::played;
 use super::{ended_by, tell};
-use crate::data;
+use crate::data::{self, Measured};
 use crate::export::stream::Ended;
 use crate::export::{CsvWriter, Folder};
 use crate::journal::changed::Original;
 use crate::run::Step;
+use crate::scenario::csv::Renaming;
 use crate::scenario::{Document, Scenario};
 use crate::text::advice::advised;
 use crate::text::printable::{Shown, printable};
+use crate::verify::Against;
 use crate::writeup::figures::{figures, recorder};
 use crate::writeup::{Beside, CSV, Writeup};
 use anyhow::{Context, anyhow, ensure};
 use clap::Args;
 use std::fs::{self, File};
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -39,6 +42,9 @@ pub(super) struct WriteupArgs {
     #[arg(long, value_name = "FILE")]
     pub(super) measured: Option<String>,
 
+    #[command(flatten)]
+    pub(super) columns: MapArgs,
+
     /// Write into a folder that holds files, and replace those of the same names
     #[arg(long)]
     pub(super) force: bool,
@@ -47,13 +53,15 @@ pub(super) struct WriteupArgs {
 pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenario_of(&args.scenario, &args.length)?;
     let scenario = marked(scenario, &args.scenario.scenario);
-    let beside = args.measured.as_deref().map(beside).transpose()?;
+    let data = args.measured.as_deref();
+    let data = data.map(|name| measured(name, &args.columns.map));
+    let beside = data.transpose()?.map(Beside::new);
     let interruption = progress::interruption()?;
     let folder = Folder::begin(&args.output, args.force)?;
     let cannot_write = || format!("cannot write {}", Shown(&args.output));
     let csv = File::create(folder.path().join(CSV)).with_context(cannot_write)?;
     let csv = CsvWriter::new(csv, &scenario).with_context(cannot_write)?;
-    let writeup = made(scenario, beside, Some(csv), cannot_write, &interruption)?;
+    let (writeup, _) = made(scenario, beside, Some(csv), cannot_write, &interruption)?;
     for (name, bytes) in writeup.files()? {
         let written = fs::write(folder.path().join(name), bytes);
         written
@@ -77,28 +85,40 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     Ok(ended_by(broken.map(|error| anyhow!(error).context(name))))
 }
 
-/// The write-up of the run of `scenario`, and of the measured data of that name, once more.
+/// The write-up of the run of `scenario`, and of the measured data of that name, once more, with its rows held `against` those
+/// of the file `csv`.
 pub(super) fn again(
     scenario: Arc<Scenario>,
-    measured: Option<&str>,
+    data: Option<&str>,
+    against: Option<Against>,
+    csv: &Path,
     interruption: &Interruption,
-) -> anyhow::Result<Writeup> {
-    let beside = measured.map(beside).transpose()?;
-    made(scenario, beside, None, String::new, interruption)
+) -> anyhow::Result<(Writeup, Option<Against>)> {
+    let data = data.map(|name| measured(name, &[])).transpose()?;
+    let cannot_read = || format!("{}: cannot be read", Shown(csv));
+    let against = against.map(|against| CsvWriter::new(against, &scenario));
+    let against = against.transpose().with_context(cannot_read)?;
+    made(
+        scenario,
+        data.map(Beside::new),
+        against,
+        cannot_read,
+        interruption,
+    )
 }
 
 /// The write-up of the run of `scenario`, which is played, and its rows written to `csv`.
-fn made(
+fn made<W: Write>(
     scenario: Arc<Scenario>,
     mut beside: Option<Beside>,
-    csv: Option<CsvWriter<File>>,
-    cannot_write: impl FnOnce() -> String,
+    csv: Option<CsvWriter<W>>,
+    cannot: impl FnOnce() -> String,
     interruption: &Interruption,
-) -> anyhow::Result<Writeup> {
+) -> anyhow::Result<(Writeup, Option<W>)> {
     let mut recorder = recorder(&scenario, beside.as_ref());
     let also = |step: &Step| recorder.follow(step);
     let played = played(&scenario, csv, also, interruption);
-    let mut played = played.with_context(cannot_write)?;
+    let mut played = played.with_context(cannot)?;
     ensure!(played.ended != Ended::Stopped, Interrupted);
     let broken = played.ended.not_finite();
     let readouts = played.readouts();
@@ -110,13 +130,14 @@ fn made(
     let (recorded, meter) = (recorder.end(broken), interruption.meter());
     let drawings = figures(&scenario, &readouts, recorded, beside.as_ref(), meter);
     let drawings = drawings.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?;
-    Ok(Writeup {
+    let writeup = Writeup {
         scenario,
         readouts,
         broken,
         beside,
         drawings,
-    })
+    };
+    Ok((writeup, played.output))
 }
 
 /// `scenario`; where the command line has changed its motion, its words say so, as in the lab.
@@ -127,11 +148,12 @@ fn marked(scenario: Scenario, name: &str) -> Arc<Scenario> {
     Original::of(name, &opened).marked(&scenario)
 }
 
-fn beside(name: &str) -> anyhow::Result<Beside> {
-    let measured = data::open(name)?;
+/// Measured data that stand beside a run.
+pub(super) fn measured(name: &str, map: &[Renaming]) -> anyhow::Result<Measured> {
+    let measured = data::open_with(name, map)?;
     if let Some(left_out) = measured.left_out_in_words() {
         tell(format_args!("gyrolab: {left_out}"));
     }
     measured.series()?; // a table of runs is refused before anything is run
-    Ok(Beside::new(measured))
+    Ok(measured)
 }

@@ -3,6 +3,7 @@
 use super::temporary;
 use crate::text::advice::unwritten;
 use crate::text::printable::Shown;
+use std::borrow::Cow;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -292,23 +293,27 @@ impl Folder {
         }
         // There are files: each new one replaces the file of its name.
         fs::create_dir_all(&self.path).map_err(refused)?;
-        let names = |folder: &Path| -> io::Result<Vec<OsString>> {
-            let files = fs::read_dir(folder)?;
-            files.map(|file| Ok(file?.file_name())).collect()
-        };
         let new = names(self.temporary.path()).map_err(refused)?;
         for name in &new {
             let (from, to) = (self.temporary.path().join(name), self.path.join(name));
             fs::rename(from, to).map_err(refused)?;
         }
-        let mut others = names(&self.path).map_err(refused)?;
-        others.retain(|name| !new.contains(name));
-        others.sort();
-        let others = others
-            .iter()
-            .map(|name| name.to_string_lossy().into_owned());
-        Ok(others.collect())
+        Self::others(&self.path, &new).map_err(refused)
     }
+
+    /// The names in `folder` that are none of `own`, in their order.
+    pub fn others(folder: &Path, own: &[OsString]) -> io::Result<Vec<String>> {
+        let mut others = names(folder)?;
+        others.retain(|name| !own.contains(name));
+        others.sort();
+        let others = others.iter().map(|name| name.to_string_lossy());
+        Ok(others.map(Cow::into_owned).collect())
+    }
+}
+
+fn names(folder: &Path) -> io::Result<Vec<OsString>> {
+    let files = fs::read_dir(folder)?;
+    files.map(|file| Ok(file?.file_name())).collect()
 }
 
 fn may_be_written(path: &Path, replace: bool) -> Result<(), DestinationError> {

@@ -16,6 +16,8 @@ pub enum Kind {
     ThreeD,
 }
 
+const MOST_COLUMNS: usize = 30;
+
 pub const RESIDUALS: &str = "residuals";
 
 /// The names that stand alone; a list of columns is the other way to name a figure.
@@ -69,6 +71,12 @@ impl Kind {
             _ => {}
         }
         let is_list = name.contains(',');
+        let count = name.split(',').count();
+        if count > MOST_COLUMNS {
+            return Err(format!(
+                "names {count} columns: a figure shows at most {MOST_COLUMNS}"
+            ));
+        }
         let columns = name.split(',').map(str::trim).map(|name| {
             // Whoever shows the refusal names the whole list.
             column(name).map_err(|rule| {

@@ -39,13 +39,21 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
     })
 }
 
-/// What the reader of that chart should know of it, each a sentence without its end.
-pub fn warnings(table: &Table, columns: &[&str]) -> Vec<String> {
-    match &table.subject {
-        Subject::Sweep(swept) => sweep::gaps(table, columns, &swept.varied),
-        Subject::Comparison => comparison::missing(table, columns),
-        Subject::Fit(_) => Vec::new(),
-    }
+/// How many values of the `chart` of `table` have no point, where some have none.
+pub fn warning(table: &Table, chart: &Chart) -> Option<String> {
+    let values = chart.panels.iter().flat_map(|panel| {
+        let points = panel.series.iter().flat_map(|series| &series.points);
+        points.map(|point| point[1].is_finite() && (point[1] > 0.0 || !panel.y.is_log))
+    });
+    let (shown, hidden): (Vec<bool>, Vec<bool>) = values.partition(|is_shown| *is_shown);
+    let is_fit = matches!(table.subject, Subject::Fit(_)); // its model is a line between its points
+    (!is_fit && !hidden.is_empty()).then(|| {
+        format!(
+            "{} of {} values have no point: there is no number (the run failed, or theory states none: gyrolab man numbers), or it is 0 on a logarithmic axis",
+            hidden.len(),
+            shown.len() + hidden.len()
+        )
+    })
 }
 
 fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, String> {

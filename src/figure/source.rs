@@ -179,11 +179,13 @@ fn of_table(table: &Table, asked: &Asked) -> Result<Figure, String> {
     let columns = asked.kind.iter().flat_map(|kind| kind.split(','));
     let columns: Vec<_> = columns.map(str::trim).collect();
     let mut chart = of_table::chart(table, &columns, asked.width_pt.unwrap_or(COLUMN_PT))?;
+    let without_point = of_table::warning(table, &chart);
     let hidden = asked.labels.apply(&mut chart)?;
     let mut figure = Figure::of(chart.scene());
     asked.labels.write_title(&mut figure.scene);
-    figure.warnings = of_table::warnings(table, &columns);
-    figure.warnings.extend(hidden);
+    figure
+        .warnings
+        .extend(without_point.into_iter().chain(hidden));
     Ok(figure)
 }
 
@@ -197,7 +199,8 @@ fn content(file: &File, folder: &Path) -> Result<String, Problems> {
         return Ok(file.text.clone());
     };
     let name = Path::new(&file.name).file_name().unwrap_or_default();
-    let text = csv::text(&folder.join(name)).ok();
+    let path = folder.join(name);
+    let text = path.is_file().then(|| csv::text(&path).ok()).flatten();
     let text = text.filter(|text| sha256(text.as_bytes()) == *sum);
     text.ok_or_else(|| {
         let name = &file.name;

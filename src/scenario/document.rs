@@ -92,6 +92,9 @@ impl Document {
     /// The same for the header of a CSV, which may be twice as long.
     pub fn parse_header(origin: &str, text: &str) -> Result<Self, Problems> {
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+        if text.len() as u64 > limits::LONGEST_HEADER {
+            return Err(Problems::one(origin, Problem::at("", limits::TOO_LONG)));
+        }
         limits::few_enough(&text, 2).map_err(|problem| Problems::one(origin, problem))?;
         let table = text.parse();
         let table = table.map_err(|error| Problems::one(origin, syntax_problem(&text, &error)))?;

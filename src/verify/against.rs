@@ -4,7 +4,9 @@ use crate::scenario::head::Head;
 use crate::text::printable::brief;
 use std::cell::OnceCell;
 use std::fmt;
+use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
+use std::path::Path;
 use std::rc::Rc;
 
 /// The most bytes of a line that are read beyond its computed length.
@@ -28,7 +30,7 @@ impl fmt::Display for Difference {
 }
 
 /// Takes what is computed, and compares it with a file line by line up to the first difference.
-pub(super) struct Against {
+pub struct Against {
     file: Box<dyn BufRead>,
     pub delimiter: u8,
     /// How many of the first columns say which row it is.
@@ -46,8 +48,18 @@ pub(super) struct Against {
 }
 
 impl Against {
+    /// The CSV of a run with all its rows and columns.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        let mut file = BufReader::new(File::open(path)?);
+        let head = Head::read(&mut file)?;
+        Ok(Self {
+            keys: 1,
+            ..Self::new(&head, file)
+        })
+    }
+
     /// A file of which `head` has been read, and `rest` not.
-    pub(super) fn new(head: &Head, rest: impl Read + 'static) -> Self {
+    pub fn new(head: &Head, rest: impl Read + 'static) -> Self {
         let head = Cursor::new(head.bytes().to_vec());
         Self {
             file: Box::new(BufReader::new(head.chain(rest))),
@@ -64,12 +76,12 @@ impl Against {
     }
 
     /// The first difference, which is there as soon as it is found.
-    pub(super) fn difference(&self) -> Rc<OnceCell<Difference>> {
+    pub fn difference(&self) -> Rc<OnceCell<Difference>> {
         Rc::clone(&self.difference)
     }
 
     /// How many rows are the same, and what differs first.
-    pub(super) fn end(mut self) -> io::Result<(u64, Option<Difference>)> {
+    pub fn end(mut self) -> io::Result<(u64, Option<Difference>)> {
         if self.difference.get().is_none() {
             let more = self.next(MOST_BEYOND)?;
             if !more.is_empty() {
@@ -205,6 +217,40 @@ impl Write for Against {
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
+}
+
+/// The first line of `there` that is not as in the text that was `made`, and how many lines differ.
+pub fn first_difference(there: &str, made: &str) -> Option<String> {
+    if there == made {
+        return None;
+    }
+    let [mut there, mut made] = [there, made].map(|text| text.lines().collect::<Vec<_>>());
+    let are_same = there.iter().zip(&made).take_while(|(a, b)| a == b);
+    let first = are_same.count();
+    while there.len().min(made.len()) > first && there.last() == made.last() {
+        (there.pop(), made.pop());
+    }
+    let lines = [&there, &made].map(|lines| lines.get(first).copied());
+    if lines == [None, None] {
+        return Some("its line ends: another program has rewritten it".to_owned());
+    }
+    let [a, b] = lines.map(Option::unwrap_or_default);
+    let same = a.chars().zip(b.chars()).take_while(|(a, b)| a == b).count();
+    let [there_is, made_is] = lines.map(|line| match (line, same.saturating_sub(MOST_SHOWN / 2)) {
+        (None, _) => "nothing".to_owned(),
+        (Some(line), 0) => format!("\"{}\"", brief(line, 2 * MOST_SHOWN)),
+        (Some(line), from) => {
+            let rest: String = line.chars().skip(from).collect();
+            format!("\"...{}\"", brief(&rest, 2 * MOST_SHOWN))
+        }
+    });
+    let (line, last) = (first + 1, there.len());
+    let lines = if last > line {
+        format!("lines {line} to {last}, of which line {line}")
+    } else {
+        format!("line {line}")
+    };
+    Some(format!("{lines} is {there_is}, made again {made_is}"))
 }
 
 /// The fields of a line; none where it is not text.

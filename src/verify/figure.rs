@@ -3,7 +3,6 @@
 use super::unverified::{Unverified, other_version};
 use crate::figure::{Format, Source, write};
 use crate::origin::{Figure, Form, Holds, SCREEN};
-use crate::scenario::{Problem, Problems};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -16,8 +15,7 @@ pub fn redraw(
     path: &Path,
     watch: impl Fn(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Redrawn>, Unverified> {
-    let of_file = |rule: String| Problems::one(path.display().to_string(), Problem::at("", rule));
-    let Some(figure) = Figure::open(path).map_err(of_file)? else {
+    let Some(figure) = Figure::open(path)? else {
         return Ok(None);
     };
     let mut notes = Vec::from_iter(other_version(&figure.origin.gyrolab));
@@ -26,19 +24,17 @@ pub fn redraw(
     }
     if figure.origin.figure.contains_key(SCREEN) {
         let rule = "is a picture of the lab's screen, which is not drawn again; picture and run are as they were written, and gyrolab run takes the run";
-        return Err(of_file(rule.to_owned()).into());
+        return Err(rule.to_owned().into());
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let source = Source::of(&figure.origin, folder);
     let source = source.map_err(|problems| {
         let versions = notes.first().map(|note| format!(" ({note})"));
-        of_file(problems.in_one_line() + &versions.unwrap_or_default())
+        problems.in_one_line() + &versions.unwrap_or_default()
     })?;
-    let drawn = source.draw(watch).map_err(of_file)?;
-    let drawn = drawn.ok_or(Unverified::Stopped)?;
+    let drawn = source.draw(watch)?.ok_or(Unverified::Stopped)?;
     let again = write(&drawn.scene, format(&figure, &source), Some(&figure.origin));
-    let again = again.map_err(|error| of_file(error.to_string()))?;
-    let again = Figure::of(&again).map_err(of_file)?;
+    let again = Figure::of(&again.map_err(|error| error.to_string())?)?;
     if figure.origin.all(Holds::Table).next().is_some() {
         notes.push("drawn from the table in it; gyrolab verify computes that where it has a file of its own".to_owned());
     }

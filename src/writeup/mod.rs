@@ -3,7 +3,6 @@
 //!
 //! The same run gives the same bytes each time: what the machine's clock says is left out.
 
-mod exact_range;
 pub mod figures;
 pub mod measured;
 mod page;
@@ -12,11 +11,10 @@ mod quantities;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Source};
 use crate::figure::{Format, Unwritable};
-use crate::run::NotFinite;
+use crate::run::{Clock, NotFinite};
 use crate::scenario::Scenario;
 pub use figures::Drawing;
 pub use measured::Beside;
-pub use page::BELIEVED;
 use serde_json::{Map, Value};
 use std::sync::Arc;
 
@@ -30,6 +28,9 @@ const AGAIN: &str = "again.csv";
 
 /// The name, among the readouts, of what was measured.
 pub const MEASURED_DATA: &str = "measured_data";
+
+/// The name, among them, of the time from which theory speaks of the motion, s.
+const PREDICTED_SINCE: &str = "predicted_since_s";
 
 #[derive(Clone, Debug)]
 pub struct Writeup {
@@ -67,6 +68,20 @@ impl Writeup {
         Ok(files)
     }
 
+    /// Whether to believe the run, and what would mend it.
+    pub fn verdict(&self) -> String {
+        let readouts = &self.readouts;
+        readouts.health.sentence(readouts.advice.as_ref())
+    }
+
+    /// When the forces last changed, s, where that is not the start.
+    fn forces_changed_s(&self) -> Option<f64> {
+        // The first step under other forces: they changed where it began.
+        let step = self.readouts.since.checked_sub(1);
+        let step = step.filter(|step| *step > 0)?;
+        Some(Clock::at(&self.scenario, step).time_s(step))
+    }
+
     pub fn page(&self) -> String {
         page::page(self).unwrap_or_default() // a String takes what is written to it
     }
@@ -80,6 +95,8 @@ impl Writeup {
             (readout.name.to_owned(), value.unwrap_or(Value::Null))
         });
         let mut object: Map<_, _> = named.collect();
+        let since_s = self.forces_changed_s().unwrap_or(0.0);
+        object.insert(PREDICTED_SINCE.to_owned(), since_s.into());
         if let Some(beside) = &self.beside {
             object.insert(MEASURED_DATA.to_owned(), beside.json());
         }

@@ -1,28 +1,29 @@
 //! The first page of a write-up, `README.md`: what was run, what came out, whether to believe it, how to make it again.
 
-use super::exact_range::ExactRange;
-use super::quantities::{Row, rows};
-use super::{AGAIN, Beside, CSV, Drawing, READOUTS_FILE, RUN_FILE, Writeup};
+use super::quantities::rows;
+use super::{AGAIN, Beside, CSV, Drawing, PREDICTED_SINCE, READOUTS_FILE, RUN_FILE, Writeup};
 use crate::export::summary::steps_in_words;
 use crate::physics::{SchemeInfo, SymmetricTop};
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, fixed, shortest, significant};
 use std::fmt::{self, Write};
 
-const HOW_TO_READ_QUANTITIES: &str = "The numbers of this run are read off its steps; theory is that of the exact motion \
-    under the forces at the end of the run. Digits in parentheses are one standard error of reading the number off the \
-    steps, in units of the last digits: 0.886033(24) is 0.886033 ± 0.000024. \"In errors\" is the difference in standard \
-    errors. Up to about 3 of them, reading alone explains it (exactly ±1.00: the reading's own known error, stated and not \
-    taken away). What is more is the doing of the scheme and its time step, which the standard error does not hold: where \
-    the numbers hold, it may be many errors and still be tiny. The least and the greatest values are those of the whole \
-    run, in theory too.";
+const HOW_TO_READ_QUANTITIES: &str = "The numbers of this run are simulated: read off its steps, and no data. Theory is that \
+    of the exact motion under the forces at the end of the run. Digits in parentheses are one standard error of reading \
+    the number off the steps, in units of the last digits: 0.886033(24) is 0.886033 ± 0.000024. \"In errors\" is the \
+    difference in standard errors. Up to about 3 of them, reading alone explains it (exactly ±1.00: the reading's own known \
+    error, stated and not taken away). What is more is the doing of the scheme and its time step, which the standard error \
+    does not hold: it may be many errors and still be tiny.";
+/// What the verdict is of.
+const OF_THE_TIME_STEP: &str = "This is of the scheme and its time step alone: the run is held against the exact motion of \
+    the same body under the same forces.";
+const NOT_OF_DATA: &str = " Whether the run agrees with the measured data is told below.";
+const IS_THEORY: &str = "The scheme exact computes the exact motion, which theory speaks of too: no time step can show here, \
+    and where the two differ it is by rounding.";
 /// A longer run file is not printed on the page.
 const MOST_LINES: usize = 120;
 /// A part of L that is smaller than this part of |L| is zero.
 const ROUNDING: f64 = 1e-14;
-
-/// The heading above the verdict.
-pub const BELIEVED: &str = "## Are the numbers to be believed?";
 
 pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     let mut page = String::new();
@@ -39,15 +40,18 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     }
     writeln!(page, "## What was run\n")?;
     write_setup(&mut page, writeup)?;
-    writeln!(page, "\n{BELIEVED}\n")?;
+    writeln!(page, "\n## Is the time step short enough?\n")?;
     if let Some(broken) = &writeup.broken {
         writeln!(page, "{}.\n", escaped(&sentence(&broken.to_string())))?;
     }
-    let believed = readouts.health.sentence(readouts.advice.as_ref());
-    writeln!(page, "{}\n", escaped(&believed))?;
+    let of_data = writeup.beside.as_ref().map_or("", |_| NOT_OF_DATA);
+    let verdict = escaped(&writeup.verdict());
+    writeln!(page, "{verdict}\n\n{OF_THE_TIME_STEP}{of_data}\n")?;
     writeln!(page, "## This run beside theory\n")?;
-    let range = ExactRange::new(&writeup.scenario, readouts.sample.time_s);
-    write_quantities(&mut page, &rows(&writeup.scenario, readouts, range))?;
+    if writeup.scenario.motion.scheme.order.is_none() {
+        writeln!(page, "{IS_THEORY}\n")?;
+    }
+    write_quantities(&mut page, writeup)?;
     if let Some(beside) = &writeup.beside {
         writeln!(page, "\n## Measured data beside the run\n")?;
         beside.write(&mut page)?;
@@ -122,7 +126,9 @@ fn start(scenario: &Scenario) -> String {
     )
 }
 
-fn write_quantities(page: &mut String, rows: &[Row]) -> fmt::Result {
+fn write_quantities(page: &mut String, writeup: &Writeup) -> fmt::Result {
+    let since_s = writeup.forces_changed_s();
+    let rows = rows(&writeup.readouts, since_s);
     if rows.is_empty() {
         return writeln!(
             page,
@@ -134,17 +140,21 @@ fn write_quantities(page: &mut String, rows: &[Row]) -> fmt::Result {
         "| what | this run | theory | difference | in errors | unit |"
     )?;
     writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
-    for row in rows {
+    for row in &rows {
         writeln!(page, "| {} |", row.cells.join(" | "))?;
     }
     writeln!(page)?;
-    for row in rows {
+    for row in &rows {
         writeln!(page, "- {}", escaped(&row.meaning))?;
     }
+    let theirs = since_s.map_or(String::new(), |since_s| {
+        let since_s = significant(since_s, 9);
+        format!(" The least and the greatest values are those of the whole run; theory, here and there, is of the motion since t = {since_s} s (`{PREDICTED_SINCE}`), when the forces last changed.")
+    });
     writeln!(
         page,
         "\n{HOW_TO_READ_QUANTITIES} {NONE}: there is no such number, or none that can be stated. Every readout is in \
-         `{READOUTS_FILE}`."
+         `{READOUTS_FILE}`, also those of this run under names that begin with `measured_`.{theirs}"
     )
 }
 

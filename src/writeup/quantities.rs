@@ -1,10 +1,7 @@
 //! The numbers that were read off a run beside the numbers of theory.
 
-use super::exact_range::ExactRange;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Readout, Source, find};
-use crate::run::Clock;
-use crate::scenario::Scenario;
 use crate::text::number::{NONE, fixed, short, significant, uncertain};
 use crate::text::unit::Unit;
 
@@ -27,16 +24,14 @@ const SWING: &str = "measured_tilt_swing_deg";
 /// Digits after the point of a number that has no uncertainty.
 const DECIMALS: usize = 6;
 
-/// Every measured number of the table of readouts that `readouts`, of the run of `scenario`, has a value of, or theory.
-pub fn rows(scenario: &Scenario, readouts: &Readouts, range: Option<ExactRange>) -> Vec<Row> {
-    // The first step under other forces: they changed where it began.
-    let changed = readouts.since.checked_sub(1).filter(|step| *step > 0);
-    let since_s = changed.map(|step| Clock::at(scenario, step).time_s(step));
+/// Every number of the table that was read off the run and has a value in `readouts`, or theory.
+/// `since_s` is when the forces last changed, where that is not the start.
+pub fn rows(readouts: &Readouts, since_s: Option<f64>) -> Vec<Row> {
     let measured = READOUTS
         .iter()
         .filter(|readout| readout.name.starts_with(MEASURED) && !readout.is_uncertainty());
     let rows = measured.filter_map(|readout| {
-        let predicted = predicted(readout, readouts, since_s, range);
+        let predicted = predicted(readout, readouts, since_s);
         let since_s = since_s.filter(|_| readout.source == Source::Measured);
         row(readout, readouts, predicted, since_s)
     });
@@ -53,32 +48,15 @@ fn theory(readout: &Readout) -> Option<&'static Readout> {
     readout.predicted().filter(|it| it.source == Source::Theory)
 }
 
-/// What theory says of `readout`; `range` is the one of the exact motion, `since_s` when the forces last changed.
-fn predicted(
-    readout: &Readout,
-    readouts: &Readouts,
-    since_s: Option<f64>,
-    range: Option<ExactRange>,
-) -> Option<f64> {
-    let by_formula = number(theory(readout), readouts);
-    match readout.name {
-        SWING => {
-            let of = |name| number(find(name), readouts);
-            Some(of("predicted_highest_tilt_deg")? - of("predicted_lowest_tilt_deg")?)
-        }
-        name if readout.source == Source::EveryStep => {
-            // What theory says of the motion since the forces last changed says nothing of the run before.
-            let by_formula = by_formula.filter(|_| since_s.is_none());
-            by_formula.or(range.and_then(|range| match name {
-                "measured_lowest_tilt_deg" => Some(range.tilt_deg.0),
-                "measured_highest_tilt_deg" => Some(range.tilt_deg.1),
-                "measured_lowest_z_m" => Some(range.z_m.0),
-                "measured_highest_z_m" => Some(range.z_m.1),
-                _ => None,
-            }))
-        }
-        _ => by_formula,
+/// What theory says of `readout`; `since_s` is when the forces last changed.
+fn predicted(readout: &Readout, readouts: &Readouts, since_s: Option<f64>) -> Option<f64> {
+    if readout.name == SWING {
+        let of = |name| number(find(name), readouts);
+        return Some(of("predicted_highest_tilt_deg")? - of("predicted_lowest_tilt_deg")?);
     }
+    // What theory says of the motion since the forces last changed says nothing of the run before.
+    let is_of_it = readout.source != Source::EveryStep || since_s.is_none();
+    number(theory(readout), readouts).filter(|_| is_of_it)
 }
 
 /// The row of `readout`, which counts since `since_s` where that is not the start; `None` where nothing can be said.
@@ -106,7 +84,7 @@ fn row(
     let to_its_digit = stated.as_ref().zip(predicted);
     Some(Row {
         cells: [
-            format!("{label} (`{}`)", readout.name),
+            label,
             stated
                 .as_ref()
                 .map_or_else(|| plain(measured), ToString::to_string),
@@ -125,7 +103,7 @@ fn row(
 /// The label of the row of `readout`, and the line that says what it is.
 fn words(readout: &Readout, is_strobed: bool, since_s: Option<f64>) -> (String, String) {
     let mut label = bare(readout.name);
-    let mut meaning = format!("{label}: {}", readout.meaning);
+    let mut meaning = format!("{label} (`{}`): {}", readout.name, readout.meaning);
     let since_s = since_s.map(|since_s| significant(since_s, 9));
     if is_strobed {
         label += " (strobed)";

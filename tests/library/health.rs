@@ -71,7 +71,7 @@ fn it_warns_of_the_runs_that_the_time_step_has_made() {
         ),
         ("wobble-push", &[], "times a step"),
         ("wobble-push-accumulating", &[], "times a step"),
-        ("cusps", &COARSE, "damps the nutation"),
+        ("cusps", &COARSE, "nutation is damped"),
     ] {
         let scenario = preset(name, set);
         let health = health(scenario.clone());
@@ -574,7 +574,7 @@ fn the_sentence_names_the_right_cause() {
     // One that is a hair off steady has a nutation, too small to put the traced point off.
     let hair_off = [&COARSE[..], &["start.tilt_deg=30.01"]].concat();
     has(told("steady-slow", &hair_off), added_up);
-    let damps = "the scheme damps the nutation by";
+    let damps = "the nutation is damped by";
     has(told("cusps", &COARSE), damps);
     // The traced point holds, the nutation does not.
     let report = "motion.scheme=report";

@@ -9,24 +9,15 @@ use gyrolab::figure::page::ink::Mark;
 #[test]
 fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
     let gappy = SWEEP.replace("0.000001,0.84,", "0.000001,,");
-    let told = of_table::warnings(&table(&gappy), &[]);
-    assert_eq!(
-        told,
-        [
-            "the line of predicted_precession_rad_per_s has gaps: in 1 of 4 rows theory states no value, for a reason that gyrolab man numbers gives",
-            "there is no measured_precession_rad_per_s in 1 of 4 rows: no point is drawn for them",
-        ]
-    );
-    let measured = ["measured_precession_rad_per_s"];
-    assert_eq!(of_table::warnings(&table(&gappy), &measured), told[1..]);
+    let told = |text: &str| of_table::warning(&table(text), &chart(text));
+    let said = |text: &str| told(text).unwrap_or_default();
+    assert!(said(&gappy).starts_with("2 of 8 values have no point: "));
     let whole = SWEEP.replace("30,,,0.87,\n", "");
-    assert!(of_table::warnings(&table(&whole), &[]).is_empty());
+    assert_eq!(told(&whole), None);
     // A logarithmic axis does not show 0.
     let zero = whole.replace("0.90,0.01", "0,0.01");
     let zero = zero.replace("0.88,0.02", "900,0.02");
-    let told = of_table::warnings(&table(&zero), &measured);
-    let is_told = told.len() == 1 && told[0].starts_with("in 1 of 3 rows");
-    assert!(is_told, "{told:?}");
+    assert!(said(&zero).starts_with("1 of 6 values"));
     let names = |text: &str| chart(text).panels[0].series[0].name.clone();
     assert_eq!(names(&gappy), "theory (gaps: no prediction)");
     assert_eq!(names(SWEEP), "theory");
@@ -165,9 +156,6 @@ fn a_curve_whose_runs_all_failed_says_so() {
     let failed = "rk4: no run gave a number";
     says(&scene, &["simulated, report", failed]);
     assert!(!words(&scene).contains(&"simulated, rk4"));
-    let told = of_table::warnings(&table(&text), &[]);
-    let words = "the runs of 2 of 4 rows failed: they have no points";
-    assert_eq!(told, [words]);
 }
 
 #[test]

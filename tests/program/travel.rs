@@ -255,18 +255,36 @@ fn a_write_up_is_verified_as_a_whole() {
             "w/readouts.json: the same",
         ],
     );
+    has(told, "w/heidelberg-spin-decay.csv: measured data");
+    // A file of the student's own is named, and is no fault.
+    ground.write("w/notes.txt", "mine");
+    let told = done(ground.run("verify w"));
+    has(stdout(&told), "w: 1 file not of the write-up: notes.txt");
     let page = ground.read("w/README.md");
-    ground.write("w/README.md", &format!("{page}\nA word of mine.\n"));
-    done(ground.run("verify w"));
-    let row = page
-        .lines()
-        .find(|line| line.contains("| ") && line.contains('.'))
-        .unwrap();
-    ground.write("w/README.md", &page.replace(row, &row.replace('.', ".1")));
+    ground.write(
+        "w/README.md",
+        &page
+            .replacen("The run ", "A run ", 1)
+            .replacen("kg", "g", 1),
+    );
+    fs::remove_file(ground.file("w/above.svg")).unwrap();
+    done(ground.run("figure cusps --steps 60 -o w/traces.svg --force"));
     let verified = ground.run("verify w");
     assert_eq!(code(&verified), 1);
-    has(
+    has_all(
         stdout(&verified),
-        "w/README.md: differs: it lacks a line, computed again: | ",
+        [
+            "w/README.md: differs: lines 13 to ",
+            "of which line 13 is \"...",
+            "w/above.svg: differs: it is missing",
+            "w/traces.svg: differs: it is a figure of another run",
+            "w/traces.pdf: the same",
+        ],
     );
+    failed(
+        &ground.run("verify w/README.md"),
+        &["a write-up is verified by its folder"],
+    );
+    fs::remove_file(ground.file("w/run.toml")).unwrap();
+    failed(&ground.run("verify w"), &["is no write-up"]);
 }

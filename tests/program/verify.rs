@@ -101,7 +101,7 @@ fn a_long_run_that_differs_is_not_played_on() {
     let good = ground.read("a.csv");
     let long = good.replace("# steps = 3\n", "# steps = 2000000000\n");
     let told = differs(&ground, &long);
-    has_all(&told, ["it is cut off", "not judged: 19999"]);
+    has(&told, "it is cut off");
 }
 
 #[test]

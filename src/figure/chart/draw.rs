@@ -1,10 +1,10 @@
 //! A chart drawn on its page.
 
+use super::curve;
 use super::layout::{self, EDGE, GAP, Layout, Placed};
 use super::legend::Legend;
 use super::ticks::{Ticks, with_minus};
 use super::{Chart, Panel, Series};
-use super::{curve, slope};
 use crate::figure::page::ink::{self, BLACK, LABEL_PT, MARK_PT, at, pen};
 use crate::figure::page::letters;
 use crate::figure::page::scene::{Point, Scene};
@@ -60,7 +60,6 @@ impl Chart {
         for (panel, placed) in self.panels.iter().zip(&layout.panels) {
             panel.draw(placed, &mut scene);
             panel.write_beside(placed, &layout, &mut scene);
-            slope::draw(panel, placed, corner.as_ref(), &mut scene);
         }
         write_below(self, &layout.panels, &layout, &mut scene);
         if let Some(magnified) = &self.magnified {

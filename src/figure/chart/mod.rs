@@ -1,14 +1,13 @@
 //! What a figure with axes shows, before anything of it has a place: panels one above the other over one axis.
 //!
 //! [`axis`] and [`ticks`] say what stands at an axis, [`layout`] gives the parts their places, and [`draw`] puts them on a
-//! page: [`curve`] the curves, [`legend`] their names, [`slope`] the triangle beside a power law.
+//! page: [`curve`] the curves, [`legend`] their names.
 
 pub mod axis;
 pub mod curve;
 pub mod draw;
 pub mod layout;
 pub mod legend;
-pub mod slope;
 pub mod ticks;
 
 use crate::figure::extent;
@@ -50,14 +49,11 @@ pub struct Axis {
 pub struct Panel {
     pub y: Axis,
     pub series: Vec<Series>,
-    /// The slope of a triangle to be drawn where no curve is: for two logarithmic axes.
-    pub slope: Option<f64>,
 }
 
 impl Panel {
     pub fn new(y: Axis, series: Vec<Series>) -> Self {
-        let slope = None;
-        Self { y, series, slope }
+        Self { y, series }
     }
 }
 

@@ -21,13 +21,9 @@ pub(super) fn drawn(
     let columns = or_error(columns);
     let panel = |name: &&str| -> Result<Panel, String> {
         let values = numbers(table, name)?;
-        let mut best: Option<(usize, f64)> = None;
         let curve = |(index, (scheme, rows)): (usize, &(String, Rows))| {
             let points = points(rows, &steps, &values);
             let slope = slope(&points);
-            best = slope
-                .filter(|it| best.is_none_or(|best| *it > best))
-                .or(best);
             let name = if points.iter().any(|point| point[1] > 0.0) {
                 // Panels beside each other share their names.
                 named(scheme, slope.filter(|_| columns.len() == 1), width_pt)
@@ -37,11 +33,7 @@ pub(super) fn drawn(
             Series::new(name, points, Style::marked_line(index))
         };
         let series = groups.iter().enumerate().map(curve).collect();
-        Ok(Panel {
-            y: logarithmic(of_comparison(name)),
-            series,
-            slope: best.map(|(_, slope)| slope),
-        })
+        Ok(Panel::new(logarithmic(of_comparison(name)), series))
     };
     let panels = columns.iter().map(panel).collect::<Result<Vec<_>, _>>()?;
     Ok((logarithmic(quantity::axis("time_step_s")), panels))
@@ -55,39 +47,11 @@ fn logarithmic(axis: Axis) -> Axis {
 }
 
 /// A scheme and the slope of its errors, as markup.
-fn named(scheme: &str, slope: Option<(usize, f64)>, width_pt: f64) -> String {
-    let slope = slope.map(|(_, slope)| format!(", slope {}", significant(slope, 2)));
+fn named(scheme: &str, slope: Option<f64>, width_pt: f64) -> String {
+    let slope = slope.map(|slope| format!(", slope {}", significant(slope, 2)));
     let slope = ticks::with_minus(&slope.unwrap_or_default());
     let room = longest_name(width_pt) - ink::width(&slope, LABEL_PT);
     letters::shortened(scheme, LABEL_PT, room) + &slope
-}
-
-/// What is said of time steps that have no point: a run that breaks down has no error, and a logarithmic axis shows no 0.
-pub(super) fn missing(table: &Table, columns: &[&str]) -> Vec<String> {
-    let mut told = Vec::new();
-    for (scheme, rows) in grouped(&table.texts("scheme").unwrap_or_default()) {
-        for name in or_error(columns) {
-            let values = table.numbers(name).unwrap_or_default();
-            let mut tell = |is: fn(f64) -> bool, why: &str| {
-                let values = rows.iter().filter_map(|&row| values.get(row));
-                let (count, all) = (values.filter(|value| is(**value)).count(), rows.len());
-                told.extend((count > 0).then(|| {
-                    format!(
-                        "{count} of {all} time steps of {scheme} have no point of {name}: {why}"
-                    )
-                }));
-            };
-            tell(
-                |value| value == 0.0,
-                "it is 0, which a logarithmic axis does not show",
-            );
-            tell(
-                |value| !value.is_finite(),
-                "there is no number for them, as where a run breaks down",
-            );
-        }
-    }
-    told
 }
 
 /// The columns that are drawn where `columns` were asked for.
@@ -110,10 +74,9 @@ fn of_comparison(name: &str) -> Axis {
     }
 }
 
-/// The measured order of a scheme: the slope of its errors on logarithmic axes, with the number of pairs of points that it is
-/// from. It is taken from end to end of the longest stretch of at least three points in which neighbouring slopes differ by a
+/// The measured order of a scheme: the slope of its errors on logarithmic axes. It is taken from end to end of the longest stretch of at least three points in which neighbouring slopes differ by a
 /// sixteenth at most. Coarser steps do not show the order yet; of finer ones the error is rounding.
-fn slope(points: &[[f64; 2]]) -> Option<(usize, f64)> {
+fn slope(points: &[[f64; 2]]) -> Option<f64> {
     const LEAST: f64 = 0.3;
     const EVEN: f64 = 1.0 / 16.0;
     let is_sound = |point: &&[f64; 2]| point[0] > 0.0 && point[1] > 0.0 && point[1].is_finite();
@@ -133,7 +96,7 @@ fn slope(points: &[[f64; 2]]) -> Option<(usize, f64)> {
     let even: Vec<_> = even.collect();
     let longest = even.into_iter().rev().max_by_key(ExactSizeIterator::len)?;
     let whole = slope(&[points[longest.start], points[longest.end]]);
-    Some((longest.len(), (whole * 10.0).round() / 10.0))
+    Some((whole * 10.0).round() / 10.0)
 }
 
 #[cfg(test)]
@@ -153,9 +116,9 @@ mod tests {
     #[test]
     fn a_slope_is_told_where_the_error_falls_evenly_over_three_points_and_not_by_leaps() {
         let told: &[(&[f64], _)] = &[
-            (&[2.0, 2.01, 1.99, 2.4], Some((3, 2.0))),
-            (&[0.02, -0.1, 4.0, 3.9], Some((2, 4.0))),
-            (&[10.9, 11.1], Some((2, 11.0))),
+            (&[2.0, 2.01, 1.99, 2.4], Some(2.0)),
+            (&[0.02, -0.1, 4.0, 3.9], Some(4.0)),
+            (&[10.9, 11.1], Some(11.0)),
             // strang on method-2: between its coarsest steps the error falls by a factor of 280, and rises then.
             (&[0.78, -2.19, 8.16], None),
             (&[1.0, 2.0, 4.0], None),

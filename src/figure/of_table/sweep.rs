@@ -50,7 +50,7 @@ pub(super) fn drawn(
         has_theory: has(Role::Theory),
         has_measured: has(Role::Measured),
         has_points: has(Role::Measured) || has(Role::Value),
-        has_gaps: !lines_with_gaps(table, columns, varied).is_empty(),
+        has_gaps: has_gaps(table, columns, varied),
     };
     let panels = quantities.iter().map(|quantity| drawing.panel(quantity));
     let mut panels = panels.collect::<Result<Vec<_>, _>>()?;
@@ -100,59 +100,14 @@ fn rows_run(table: &Table, varied: &[String]) -> Vec<usize> {
     (0..table.count()).filter(has_run).collect()
 }
 
-/// The columns of theory that have no value in some rows, and in how many.
-fn lines_with_gaps<'a>(
-    table: &'a Table,
-    columns: &'a [&'a str],
-    varied: &[String],
-) -> Vec<(&'a str, usize)> {
+/// Whether a line of theory lacks a value where the run gave numbers.
+fn has_gaps(table: &Table, columns: &[&str], varied: &[String]) -> bool {
     let rows = rows_run(table, varied);
-    let with_gaps = columns::theory(table, columns).filter_map(|name| {
-        let values = table.numbers(name)?;
+    let mut lines = columns::theory(table, columns).filter_map(|name| table.numbers(name));
+    lines.any(|values| {
         let missing = rows.iter().filter(|row| values[**row].is_nan()).count();
-        (1..rows.len())
-            .contains(&missing)
-            .then_some((name, missing))
-    });
-    with_gaps.collect()
-}
-
-/// What is said of lines of theory that have gaps, of runs that gave no number or one that its axis cannot show, and of runs
-/// that failed.
-pub(super) fn gaps(table: &Table, columns: &[&str], varied: &[String]) -> Vec<String> {
-    let rows = rows_run(table, varied);
-    let (run, all) = (rows.len(), table.count());
-    let mut told = Vec::new();
-    for (name, missing) in lines_with_gaps(table, columns, varied) {
-        told.push(format!(
-            "the line of {name} has gaps: in {missing} of {run} rows theory states no value, for a reason that gyrolab man numbers gives"
-        ));
-    }
-    for part in columns::quantities(table, varied, columns).iter().flatten() {
-        let (name, values) = (&part.name, table.numbers(&part.name).unwrap_or_default());
-        if part.role == Role::Theory || values.is_empty() {
-            continue;
-        }
-        let count = |is: fn(f64) -> bool| rows.iter().filter(|row| is(values[**row])).count();
-        let missing = count(|value| !value.is_finite());
-        let zeros = count(|value| value == 0.0);
-        if missing > 0 {
-            told.push(format!(
-                "there is no {name} in {missing} of {run} rows: no point is drawn for them"
-            ));
-        } else if zeros > 0 && spans_decades(values.into_iter(), DECADES) {
-            told.push(format!(
-                "in {zeros} of {run} rows {name} is 0, which a logarithmic axis does not show"
-            ));
-        }
-    }
-    if run < all {
-        let failed = all - run;
-        told.push(format!(
-            "the runs of {failed} of {all} rows failed: they have no points"
-        ));
-    }
-    told
+        (1..rows.len()).contains(&missing)
+    })
 }
 
 /// What is drawn, and over what.

@@ -59,13 +59,6 @@ impl Frame {
         )
     }
 
-    pub fn meets(&self, other: &Self) -> bool {
-        self.left < other.right
-            && other.left < self.right
-            && self.top < other.bottom
-            && other.top < self.bottom
-    }
-
     pub fn corners(&self) -> [Point; 2] {
         [at(self.left, self.top), at(self.right, self.bottom)]
     }
