@@ -75,8 +75,8 @@ fn of_seats(folder: &Folder, state: &State, seats: &[Sitting], width: usize) -> 
     let locked = login::locked(folder, unix_ms() / 1000).into_iter();
     let locked = locked.map(|name| format!("{name}: locked by wrong codes"));
     let cell = |sitting: &Sitting| {
-        let votes = sitting.record.votes.iter();
-        let votes = votes.filter(|vote| vote.lesson == state.lesson).count();
+        let place = sitting.lessons.get(&state.lesson);
+        let votes = place.map_or(0, |place| place.predictions.all().count());
         let votes = counted(votes as u64, "vote");
         format!("{}, {votes}", sitting.in_words(state))
     };

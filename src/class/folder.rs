@@ -213,7 +213,7 @@ fn make(path: &Path, mode: u32) -> Result<(), String> {
 impl Question {
     /// The present round, from 1.
     pub fn round(&self) -> u32 {
-        self.earlier_rounds + 1
+        self.earlier_rounds.saturating_add(1)
     }
 }
 

@@ -1,7 +1,7 @@
 //! A student's lab: it follows the teacher's, and keeps in the files of its seat where it stands and what was voted.
 
-use super::folder::{Folder, Run, Stage, State};
-use super::seat::{Record, Seat, Vote};
+use super::folder::{Folder, Question, Run, Stage, State};
+use super::seat::{Record, Seat};
 use super::{EVERY, LEAST_WAIT, Role, unix_ms, votes};
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
@@ -9,8 +9,8 @@ use crate::lab::command::{Command, Place};
 use crate::lab::view::Part;
 use crate::lessons::page::Dress;
 use crate::lessons::predictions::Predictions;
-use crate::lessons::taken::{Taken, Voted};
-use crate::lessons::{Answer, Asked, Class as Lessons, Setup};
+use crate::lessons::taken::Taken;
+use crate::lessons::{Class as Lessons, Setup};
 use crate::playback::Playback;
 use crate::playback::pace::Speed;
 use crate::scenario::{Document, Scenario};
@@ -107,42 +107,14 @@ impl Student {
         self.state.as_ref().filter(|_| self.is_on)
     }
 
-    /// Takes note of what was answered, and of the place in the lessons.
-    fn note(&mut self, lab: &Lab, lessons: &mut Lessons) {
-        for voted in lessons.take_votes() {
-            let vote = lessons.taken().and_then(|taken| self.vote(taken, voted));
-            self.record.votes.extend(vote);
-            self.is_new = true;
-        }
+    /// Takes note of the place in the lessons, with what was answered.
+    fn note(&mut self, lab: &Lab) {
         if let Some(kept) = &lab.lessons
             && *kept != self.record.lessons
         {
             self.record.lessons.clone_from(kept);
             self.is_new = true;
         }
-    }
-
-    fn vote(&self, taken: &Taken, voted: Voted) -> Option<Vote> {
-        let (lesson, question) = (taken.lesson.name.clone(), voted.question);
-        let choice = match (voted.answer, &taken.lesson.predict(&question)?.asked) {
-            (Answer::Number(number), _) => number,
-            (Answer::Choice(words), Asked::Choice(choices)) => {
-                choices.iter().position(|choice| *choice == words)? as f64 + 1.0
-            }
-            (Answer::Choice(_), Asked::Number { .. }) => return None,
-        };
-        let state = self.class().filter(|state| state.lesson == lesson);
-        let asked = state.map(|state| state.question(&question));
-        let asked = asked.unwrap_or_default();
-        Some(Vote {
-            lesson,
-            question,
-            round: asked.round(),
-            choice,
-            late: voted.is_late || asked.stage == Stage::Closed,
-            page: taken.place.page,
-            time_unix_s: unix_ms() / 1000,
-        })
     }
 
     /// Looks at the files: whether the seat is still this lab's, and what the teacher shows.
@@ -266,10 +238,11 @@ impl Student {
             (true, false) => "k: step aside",
             (false, _) => "",
         };
-        let again = asked.as_ref().filter(|(predict, question)| {
-            let voted = self.record.rounds_of(&state.lesson, &predict.name);
-            question.stage != Stage::Closed && voted < question.round()
-        });
+        let of_lesson = state.questions.get(&taken.lesson.name).into_iter();
+        let round = |(name, question): (&String, &Question)| {
+            let is_closed = question.stage == Stage::Closed;
+            (name.clone(), (question.round(), is_closed))
+        };
         let shown = asked
             .as_ref()
             .filter(|(_, question)| !question.bars.is_empty());
@@ -277,7 +250,7 @@ impl Student {
             framed: self.title(state, taken, asked.is_some()),
             border: border.to_owned(),
             is_followed: self.follows(),
-            again: again.map(|(predict, _)| predict.name.clone()),
+            rounds: of_lesson.flatten().map(round).collect(),
             votes: shown.map(|(predict, question)| {
                 (predict.name.clone(), vec![votes::drawn(&question.bars)])
             }),
@@ -337,7 +310,7 @@ impl Role for Student {
 
     fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) -> ControlFlow<()> {
         let was_new = self.is_new;
-        self.note(lab, lessons);
+        self.note(lab);
         if now >= self.next_look || self.is_new && !was_new {
             self.next_look = now + EVERY;
             self.look(lab);

@@ -87,7 +87,7 @@ impl Teacher {
         if let Some((predict, question)) = page.and_then(|page| votes::question(page, &self.state))
         {
             let (lesson, round) = (&self.state.lesson, question.round());
-            let has_answered = |it: &&Sitting| it.record.rounds_of(lesson, &predict.name) >= round;
+            let has_answered = |it: &&Sitting| it.vote(lesson, predict, round).is_some();
             let here = self.seats.iter().filter(|sitting| sitting.is_here());
             self.state.answered = here.filter(has_answered).count();
             let tally = Tally::of(&self.seats, lesson, predict, round);
@@ -219,7 +219,7 @@ impl Teacher {
                 };
                 let question = self.state.question_mut(&predict.name);
                 if digit == 2 {
-                    question.earlier_rounds += 1;
+                    question.earlier_rounds = question.round();
                     (question.stage, question.since_ms) = (Stage::Counted, unix_ms());
                     return lab
                         .refuse(format!("round {}: the class votes again", question.round()));

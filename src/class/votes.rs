@@ -2,12 +2,15 @@
 
 use super::Folder;
 use super::folder::{Question, Stage, State};
-use super::seat::{Presence, Record, Seat, Vote, all_seats};
+use super::seat::{Presence, Record, Seat, all_seats};
 use crate::lab::sheet::{Kind, Paragraph};
+use crate::lessons::class::KeptLessons;
 use crate::lessons::lesson::Right;
-use crate::lessons::{Asked, Page, Predict};
+use crate::lessons::predictions::{Given, Place};
+use crate::lessons::{Answer, Asked, Page, Predict, reading};
 use crate::text::number::{shortest, significant};
 use chrono::{DateTime, Utc};
+use std::collections::BTreeMap;
 
 /// With fewer votes no bars go to the students: who has voted what could be guessed.
 pub const FEWEST: usize = 5;
@@ -20,16 +23,23 @@ const BAR: usize = 20;
 #[derive(Clone, Debug)]
 pub struct Sitting {
     pub seat: Seat,
-    pub record: Record,
+    pub is_aside: bool,
+    pub lessons: BTreeMap<String, Place>,
     pub presence: Presence,
 }
 
 /// Every seat of the class. What cannot be read counts as a seat without votes.
 pub fn sittings(folder: &Folder) -> Vec<Sitting> {
-    let sitting = |seat: Seat| Sitting {
-        record: seat.record().unwrap_or_default(),
-        presence: seat.presence(),
-        seat,
+    let sitting = |seat: Seat| {
+        let record: Record = seat.record().unwrap_or_default();
+        Sitting {
+            is_aside: record.is_aside,
+            lessons: KeptLessons::read(&record.lessons)
+                .unwrap_or_default()
+                .lessons,
+            presence: seat.presence(),
+            seat,
+        }
     };
     all_seats(folder).into_iter().map(sitting).collect()
 }
@@ -40,13 +50,19 @@ pub fn present(seats: &[Sitting]) -> [usize; 3] {
     [
         count(&Sitting::is_here),
         count(&|it| it.presence == Presence::Lost),
-        count(&|it| it.is_here() && it.record.is_aside),
+        count(&|it| it.is_here() && it.is_aside),
     ]
 }
 
 impl Sitting {
     pub fn is_here(&self) -> bool {
         self.presence == Presence::Here
+    }
+
+    /// What it has answered to `of`, a question of `lesson`, in this round.
+    pub fn vote<'a>(&'a self, lesson: &str, of: &'a Predict, round: u32) -> Option<&'a Given> {
+        let place = self.lessons.get(lesson)?;
+        place.predictions.in_round(of, round)
     }
 
     /// Its word, and how it is there, as the lists of the teacher have it.
@@ -56,7 +72,7 @@ impl Sitting {
             _ if state.closed.contains(word) => "closed",
             Presence::Away => "away",
             Presence::Lost => "lost",
-            Presence::Here if self.record.is_aside => "aside",
+            Presence::Here if self.is_aside => "aside",
             Presence::Here => "here",
         };
         format!("{word}: {is_there}")
@@ -77,15 +93,14 @@ pub struct Tally {
 
 impl Tally {
     pub fn of(seats: &[Sitting], lesson: &str, predict: &Predict, round: u32) -> Self {
-        let is_of_it = |vote: &&Vote| {
-            (vote.lesson.as_str(), vote.question.as_str(), vote.round)
-                == (lesson, &predict.name, round)
-        };
         let votes = seats
             .iter()
-            .filter_map(|sitting| sitting.record.votes.iter().find(is_of_it));
-        let (late, in_time): (Vec<_>, Vec<_>) = votes.partition(|vote| vote.late);
-        let choices: Vec<f64> = in_time.iter().map(|vote| vote.choice).collect();
+            .filter_map(|it| it.vote(lesson, predict, round));
+        let (late, in_time): (Vec<_>, Vec<_>) = votes.partition(|given| given.late);
+        let choices: Vec<f64> = in_time
+            .iter()
+            .filter_map(|given| predict.asked.number(&given.answer))
+            .collect();
         Self {
             votes: choices.len(),
             late: late.len(),
@@ -170,22 +185,35 @@ const COLUMNS: [&str; 8] = [
     "lesson", "question", "round", "seat", "choice", "late", "page", "time",
 ];
 
-/// All votes of the class as CSV, in the order of seats, and of each seat in the order of their time.
+/// All votes of the class as CSV, in the order of seats, lessons and questions. A choice that the lesson no longer has is
+/// told in its words.
 pub fn csv(folder: &Folder) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS)?;
+    let mut read = BTreeMap::new();
     for sitting in sittings(folder) {
-        for vote in &sitting.record.votes {
-            writer.write_record([
-                folder.short(&vote.lesson),
-                &vote.question,
-                &vote.round.to_string(),
-                &sitting.seat.word,
-                &shortest(vote.choice),
-                &vote.late.to_string(),
-                &vote.page.to_string(),
-                &time(vote),
-            ])?;
+        for (name, place) in &sitting.lessons {
+            let lesson = read.entry(name.clone());
+            let lesson = lesson.or_insert_with(|| reading::open(name).ok());
+            for (question, given) in place.predictions.all() {
+                let predict = lesson.as_ref().and_then(|lesson| lesson.predict(question));
+                let number = predict.and_then(|predict| predict.asked.number(&given.answer));
+                let choice = match (&given.answer, number) {
+                    (Answer::Choice(words), None) => words.clone(),
+                    (Answer::Number(number), _) => shortest(*number),
+                    (_, Some(number)) => shortest(number),
+                };
+                writer.write_record([
+                    folder.short(name),
+                    question,
+                    &given.round.to_string(),
+                    &sitting.seat.word,
+                    &choice,
+                    &given.late.to_string(),
+                    &given.page.to_string(),
+                    &time(given),
+                ])?;
+            }
         }
     }
     let bytes = writer
@@ -194,8 +222,8 @@ pub fn csv(folder: &Folder) -> Result<String, csv::Error> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// The time of `vote`, as RFC 3339 writes it.
-fn time(vote: &Vote) -> String {
-    let time = DateTime::<Utc>::from_timestamp(vote.time_unix_s as i64, 0).unwrap_or_default();
+/// The time of `given`, as RFC 3339 writes it.
+fn time(given: &Given) -> String {
+    let time = DateTime::<Utc>::from_timestamp(given.time_unix_s as i64, 0).unwrap_or_default();
     time.format("%Y-%m-%dT%H:%M:%SZ").to_string()
 }

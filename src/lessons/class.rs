@@ -2,7 +2,7 @@
 
 use super::page::Dress;
 use super::predictions::Place;
-use super::taken::{Followed, Taken, Voted};
+use super::taken::{Followed, Taken};
 use super::{page, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
@@ -219,7 +219,7 @@ impl Class {
     pub fn set_dress(&mut self, dress: Dress, lab: &mut Lab) {
         if let Shown::Lesson(taken) = &mut self.shown {
             taken.was_asked |= dress.is_of_teacher;
-            taken.again.clone_from(&dress.again);
+            taken.rounds.clone_from(&dress.rounds);
             if !dress.is_followed {
                 taken.unfollow();
             }
@@ -245,14 +245,6 @@ impl Class {
             lab.view_mut().turn_to_sheet();
         }
         Ok(())
-    }
-
-    /// The answers that were locked since this was last called.
-    pub fn take_votes(&mut self) -> Vec<Voted> {
-        match &mut self.shown {
-            Shown::Lesson(taken) => std::mem::take(&mut taken.votes),
-            _ => Vec::new(),
-        }
     }
 
     /// Takes `number` as the answer to the question that was asked last.

@@ -2,7 +2,7 @@
 
 use super::lesson::{Asked, Block, Check, Compare, Lesson, Page, Predict};
 use super::markdown::paragraphs;
-use super::predictions::Place;
+use super::predictions::{Place, Tried};
 use super::taken::Taken;
 use super::text::Text;
 use super::{names, reading, shipped};
@@ -27,8 +27,8 @@ pub struct Dress {
     pub asks_digit: bool,
     /// Whether the class is followed.
     pub is_followed: bool,
-    /// The question that is asked once more, though its prediction is locked.
-    pub again: Option<String>,
+    /// The present rounds of the class's questions, by their names, and whether they are closed.
+    pub rounds: BTreeMap<String, (u32, bool)>,
     /// What stands below the question of this name.
     pub votes: Option<(String, Vec<Paragraph>)>,
     /// What stands there instead of the page.
@@ -207,9 +207,16 @@ impl Writer<'_> {
     /// What is to be reached, each part with whether it holds now and the number that decides it.
     fn goals(&mut self, check: &Check) {
         let first = self.sheet.paragraphs.len();
-        let is_reached = self.taken.has_reached(check.line);
+        let page = self.taken.page();
+        let tried = page.and_then(|page| self.taken.place.tasks.get(&page.heading));
+        let was_done = matches!(tried, Some(Tried::Done | Tried::DoneAfterHint));
+        let is_reached = was_done || self.taken.has_reached(check.line);
         if is_reached || check.goals.len() < 2 {
-            let state = if is_reached { "done" } else { "not yet" };
+            let state = match (was_done, is_reached) {
+                (true, _) => Tried::words(tried),
+                (false, true) => "done",
+                (false, false) => "not yet",
+            };
             let all = [&[state.to_owned()][..], &[check.goals.join(", ")]];
             let words = all.concat().into_iter().filter(|words| !words.is_empty());
             let text = words.collect::<Vec<_>>().join(": ");
@@ -243,7 +250,8 @@ impl Writer<'_> {
             None => compare.filled(lesson, &place.predictions, self.lab, &place.kept),
         };
         self.extend(paragraphs(&source, &Kind::Result));
-        if place.predictions.answer(&compare.prediction).is_none() {
+        let predict = lesson.predict(&compare.prediction);
+        if predict.is_some_and(|predict| !place.predictions.is_locked(predict)) {
             let pages = &mut lesson.pages.iter();
             if let Some(page) = pages.find(|page| page.asks(&compare.prediction)) {
                 let text = format!("You predicted nothing: page {} asks for it.", page.number);
@@ -260,28 +268,24 @@ impl Writer<'_> {
         let ask = predict.ask.with_numbers(self.lab, kept);
         self.extend(paragraphs(&ask, &Kind::Question));
         let is_open = self.taken.is_open(predict);
-        let given = place.predictions.answer(&predict.name);
-        let given = given.map(|answer| answer.in_words(predict));
-        match &predict.asked {
-            Asked::Choice(choices) => {
-                for (index, choice) in choices.iter().enumerate() {
-                    let is_selected = is_open && self.taken.selected == Some(index);
-                    let kind = Kind::Choice {
-                        is_selected,
-                        is_given: is_selected && self.taken.is_marked
-                            || !is_open && given.as_deref() == Some(choice),
-                    };
-                    self.add(Paragraph::new(kind, choice.clone()));
-                }
-            }
-            Asked::Number { .. } if is_open => {}
-            Asked::Number { .. } => {
-                let text = format!("you said: {}", given.unwrap_or_default());
-                self.add(Paragraph::new(Kind::Text, text));
+        let given = place.predictions.to(predict).next_back();
+        let given = given.filter(|_| !is_open).map(|given| &given.answer);
+        let pointed = self.taken.pointed.get(&predict.name);
+        let (at, is_marked) = pointed.filter(|_| is_open).copied().unzip();
+        if let Asked::Choice(choices) = &predict.asked {
+            for (index, choice) in choices.iter().enumerate() {
+                let is_selected = at == Some(index);
+                let is_locked = given.is_some_and(|given| given.in_words(predict) == *choice);
+                let kind = Kind::Choice {
+                    is_selected,
+                    is_given: is_locked || is_selected && is_marked == Some(true),
+                };
+                self.add(Paragraph::new(kind, choice.clone()));
             }
         }
+        self.rounds_of(predict);
         if is_open {
-            self.keys_of(predict);
+            self.keys_of(predict, is_marked == Some(true));
         }
         // The question that is open now, or the last one where none is.
         if is_open || self.taken.has_answered {
@@ -290,12 +294,31 @@ impl Writer<'_> {
         self.is_seen_from(first);
     }
 
+    /// Says what was locked, and whether a class asks for another answer.
+    fn rounds_of(&mut self, predict: &Predict) {
+        let said = self.taken.place.predictions.in_words(predict);
+        let round = self
+            .taken
+            .rounds
+            .get(&predict.name)
+            .map_or(1, |round| round.0);
+        let text = match (said, self.taken.is_open(predict)) {
+            (said, true) if round > 1 => {
+                let said = said.map_or(String::new(), |said| format!(" You said: {said}."));
+                format!("Round {round}: your teacher asks again.{said}")
+            }
+            (Some(said), false) => format!("Locked: {said}."),
+            _ => return,
+        };
+        self.add(Paragraph::new(Kind::Hint, text));
+    }
+
     /// Says which keys answer `predict`.
-    fn keys_of(&mut self, predict: &Predict) {
+    fn keys_of(&mut self, predict: &Predict, is_marked: bool) {
         self.sheet.enter = "answer";
         self.sheet.asks_number = matches!(predict.asked, Asked::Number { .. });
         let keys = match &predict.asked {
-            Asked::Choice(_) if self.taken.is_marked => "Enter again locks it.",
+            Asked::Choice(_) if is_marked => "Enter again locks it.",
             Asked::Choice(_) => "Up, Down choose; Enter marks.",
             Asked::Number { .. } => "Type your prediction.",
         };

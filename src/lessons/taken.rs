@@ -4,7 +4,7 @@ mod keys;
 
 use super::Kept;
 use super::clock::{self, Clock};
-use super::lesson::{Answer, Block, Compare, Lesson, Page, Predict};
+use super::lesson::{Block, Compare, Lesson, Page, Predict};
 use super::names::value;
 use super::predictions::{Place, Tried};
 use super::stage::Stage;
@@ -28,10 +28,9 @@ pub struct Taken {
     /// Its file, where it does not come with the program.
     watch: Option<Watch>,
     pub place: Place,
-    /// The answer of the open question that the keys point at, from 0; at first none.
-    pub selected: Option<usize>,
-    /// Whether Enter has marked it: another Enter locks it.
-    pub is_marked: bool,
+    /// By the names of open questions: the choice that the keys point at, from 0, and whether it is marked, so that Enter
+    /// locks it.
+    pub pointed: BTreeMap<String, (usize, bool)>,
     /// Whether an answer on this page was given.
     pub has_answered: bool,
     /// The lines of the checks of this page that have held.
@@ -43,10 +42,8 @@ pub struct Taken {
     under_way: Option<UnderWay>,
     /// In a class that is followed: whether its run has arrived where the page wants it, and the checksum of its lesson.
     pub(super) follows: Option<(bool, u32)>,
-    /// The question that is asked once more, though it is answered.
-    pub(super) again: Option<String>,
-    /// The answers that were locked, until they are read.
-    pub(super) votes: Vec<Voted>,
+    /// The present rounds of the class's questions, by their names, and whether they are closed.
+    pub(super) rounds: BTreeMap<String, (u32, bool)>,
     /// Whether turning the page was refused once, because a prediction is open.
     pub(super) was_asked: bool,
     /// The clock, where the teacher's notes are shown.
@@ -66,14 +63,6 @@ pub struct Followed<'a> {
     pub page: usize,
     pub kept: &'a Kept,
     pub has_arrived: bool,
-}
-
-/// An answer that was locked to the question of this name, and whether its outcome had been seen.
-#[derive(Clone, Debug)]
-pub struct Voted {
-    pub question: String,
-    pub answer: Answer,
-    pub is_late: bool,
 }
 
 /// A block of a page that the lab carries out.
@@ -100,16 +89,14 @@ impl Taken {
             lesson: Arc::new(lesson),
             watch,
             place,
-            selected: None,
-            is_marked: false,
+            pointed: BTreeMap::new(),
             has_answered: false,
             reached: BTreeSet::new(),
             stands: None,
             shows_hints: false,
             under_way: None,
             follows: None,
-            again: None,
-            votes: Vec::new(),
+            rounds: BTreeMap::new(),
             was_asked: false,
             clock: None,
             since: now,
@@ -132,9 +119,14 @@ impl Taken {
             .find(|predict| self.is_open(predict))
     }
 
-    /// Whether an answer to `predict` is wanted: it is not locked, or it is asked once more.
+    /// Whether an answer to `predict` is wanted: there is none, or none of the round that a class is at.
     pub fn is_open(&self, predict: &Predict) -> bool {
-        !self.place.predictions.is_locked(predict) || self.again.as_ref() == Some(&predict.name)
+        let predictions = &self.place.predictions;
+        let is_wanted = |(round, is_closed): &(u32, bool)| {
+            !is_closed && predictions.in_round(predict, *round).is_none()
+        };
+        let round = self.rounds.get(&predict.name);
+        !predictions.is_locked(predict) || round.is_some_and(is_wanted)
     }
 
     /// Shows the page of `class` without touching the run. Returns whether that is new.
@@ -301,8 +293,8 @@ impl Taken {
 
     fn turn_to(&mut self, page: usize) {
         self.place.page = page;
-        (self.selected, self.was_asked, self.under_way) = (None, false, None);
-        (self.is_marked, self.has_answered, self.shows_hints) = (false, false, false);
+        (self.was_asked, self.under_way) = (false, None);
+        (self.has_answered, self.shows_hints) = (false, false);
         self.place.stated = None;
         self.place.has_ended |= page == self.lesson.pages.len();
         self.reached.clear();
