@@ -170,9 +170,9 @@ fn room_for(predict: &Predict, lab: &Lab, kept: &Kept) -> String {
 /// The question `ask` with a box for each choice, or room for a number.
 fn asked(predict: &Predict, ask: &str) -> String {
     let room: Vec<_> = match &predict.asked {
-        Asked::Choice(choices) => choices
-            .iter()
-            .map(|choice| format!("- [ ] {choice}"))
+        Asked::Choice(choices) => (1..)
+            .zip(choices)
+            .map(|(number, choice)| format!("- [ ] {number} {choice}"))
             .collect(),
         Asked::Number { unit } => vec![format!("{BLANK} {unit}").trim_end().to_owned()],
     };

@@ -100,7 +100,7 @@ pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> S
     }
     writer.notes(now);
     writer.page();
-    writer.sheet.asks_number |= dress.asks_digit;
+    writer.sheet.takes_digits |= dress.asks_digit;
     writer.sheet
 }
 
@@ -280,7 +280,8 @@ impl Writer<'_> {
                     is_selected,
                     is_given: is_locked || is_selected && is_marked == Some(true),
                 };
-                self.add(Paragraph::new(kind, choice.clone()));
+                let text = format!("{} {choice}", index + 1);
+                self.add(Paragraph::new(kind, text));
             }
         }
         self.rounds_of(predict);
@@ -316,10 +317,10 @@ impl Writer<'_> {
     /// Says which keys answer `predict`.
     fn keys_of(&mut self, predict: &Predict, is_marked: bool) {
         self.sheet.enter = "answer";
-        self.sheet.asks_number = matches!(predict.asked, Asked::Number { .. });
+        self.sheet.takes_digits = true;
         let keys = match &predict.asked {
             Asked::Choice(_) if is_marked => "Enter again locks it.",
-            Asked::Choice(_) => "Up, Down choose; Enter marks.",
+            Asked::Choice(_) => "Up, Down choose, Enter marks; or the number of an answer.",
             Asked::Number { .. } => "Type your prediction.",
         };
         self.add(Paragraph::new(Kind::Hint, keys));

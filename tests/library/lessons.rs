@@ -637,7 +637,7 @@ fn the_handout_has_pictures_and_room_and_no_notes() {
         &paper,
         [
             "# The push\n\nA push, and what the time step has to do with it. About 10 minutes.\n\nBefore the first page.\n\n## Watch\n\n```text\n",
-            "**Prediction.** With a time step ten times shorter, the wobble ...\n\n- [ ] stays as it is\n- [ ] is ten times smaller\n- [ ] is gone\n",
+            "**Prediction.** With a time step ten times shorter, the wobble ...\n\n- [ ] 1 stays as it is\n- [ ] 2 is ten times smaller\n- [ ] 3 is gone\n",
             ". You said: ____________.\n\n```sh\ngyrolab run wobble-push\n```\n\n## Your turn\n",
             "At 60 s the top is at z = **0.",
             "`{ code }` and \\{braces} stay.",

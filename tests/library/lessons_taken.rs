@@ -122,19 +122,21 @@ fn a_page_opens_its_run_and_tells_its_numbers() {
 #[test]
 fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
     let (mut stage, _folder, _) = taken(1);
-    stage.shows("  [ ] stays").shows_no("It goes on here");
+    stage.shows("  [ ] 1 stays").shows_no("It goes on here");
     stage.press("\n").shows("Enter marks it");
     stage.press("n").shows("predict first").shows("1 of 4");
     stage
         .press("↓↓↓↑\n")
-        .shows("> [x] grows")
+        .shows("> [x] 2 grows")
         .shows_no("It goes on");
-    stage.press("↑").shows("> [ ] stays").shows("  [ ] grows");
-    stage.press("↓\n").press("nn").arrive().press("N").arrive();
-    stage.shows("> [x] grows").shows_no("It goes on");
+    stage.press("↑").shows("> [ ] 1 stays").shows("  [ ] 2 grows");
+    stage.press("7").shows("the answers are 1 to 3");
+    stage.press("3").shows("> [x] 3 shrinks").press("↑");
+    stage.press("\n").press("nn").arrive().press("N").arrive();
+    stage.shows("> [x] 2 grows").shows_no("It goes on");
     stage
         .press("\n")
-        .shows("  [x] grows")
+        .shows("  [x] 2 grows")
         .shows("Locked: grows.");
     stage.shows("It goes on here").shows("How large is it?");
     assert!(stage.lab.view().hides(Part::Health), "one is still open");
@@ -147,7 +149,7 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
     stage.shows("It is 5.0. You said: it grows.");
     stage.shows("You said: 3.5 deg.");
     assert_eq!(stage.lab.player().motion().gravity, 5.0);
-    stage.press("N").arrive().shows("1 of 4").shows("[x] grows");
+    stage.press("N").arrive().shows("1 of 4").shows("[x] 2 grows");
     stage.shows("Locked: 3.5 deg");
     assert_eq!(answer_in(&stage.class), Answer::Choice("grows".to_owned()));
     stage.press("\n").shows("your answer is locked");

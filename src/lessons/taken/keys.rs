@@ -10,6 +10,7 @@ use crate::lessons::predictions::{Given, Predictions, Tried};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+const MARKED: &str = "Enter locks it: a prediction is not changed";
 const LOCKED: &str = "your answer is locked: a prediction is not changed";
 
 impl Taken {
@@ -34,7 +35,7 @@ impl Taken {
             }
             LessonKey::Move(direction) => return Some(direction),
             LessonKey::Take => self.take(lab),
-            LessonKey::Digit(digit) => self.ask_number(Some(digit), lab),
+            LessonKey::Digit(digit) => self.digit(digit, lab),
             LessonKey::List | LessonKey::Leave => {}
         }
         None
@@ -165,7 +166,7 @@ impl Taken {
             }
             Some((_, is_marked @ false)) => {
                 *is_marked = true;
-                lab.refuse("Enter again locks it: a prediction is not changed");
+                lab.refuse(MARKED);
             }
             Some((choice, _)) => self.lock(&predict, Answer::Choice(choice.clone()), lab),
         }
