@@ -226,7 +226,7 @@ impl Writer<'_> {
             let parts = check.that.conjuncts(|name| names::number(name, lab, kept));
             for (goal, part) in check.goals.iter().zip(parts) {
                 let now = part.left.filter(|_| !part.holds);
-                let now = now.map(|now| format!(" (now {})", number::significant(now, 2)));
+                let now = now.map(|now| format!(" (now {})", number::significant(now, 4)));
                 let is_reached = part.holds;
                 let text = goal.clone() + &now.unwrap_or_default();
                 self.add(Paragraph::new(Kind::Goal { is_reached }, text));
