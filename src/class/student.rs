@@ -41,8 +41,8 @@ pub struct Student {
     stood: Option<Stand>,
     /// Whether a run that was played aside is pinned.
     has_pinned: bool,
-    /// Whether a key has changed run, step or page since it stepped aside.
-    has_played: bool,
+    /// Whether a class was on in this lab.
+    has_begun: bool,
     /// Why the lab ends, where it does.
     ended: Option<&'static str>,
     next_look: Duration,
@@ -133,13 +133,16 @@ impl Student {
         }
         let state = self.state.as_ref();
         if state.is_some_and(|state| state.closed.contains(&self.seat.word)) {
-            self.ended = Some("your teacher has closed this seat");
+            let closed =
+                "your teacher has closed this seat: once it is open again, its word leads back";
+            self.ended = Some(closed);
         }
         let was_on = self.is_on;
         let is_over = state.is_some_and(|state| !state.is_on);
         self.is_on = state.is_some() && !is_over && self.folder.is_teacher_alive();
         if self.is_on && !was_on {
             lab.refuse("the class is on");
+            self.has_begun = true;
         } else if was_on && !self.is_on {
             let what = if is_over {
                 "the class is over"
@@ -160,9 +163,7 @@ impl Student {
         let scenario = lab.player().run().scenario();
         let is_own = |(_, shown): &(_, _)| !Arc::ptr_eq(shown, scenario);
         if self.shown.run.as_ref().is_some_and(is_own) {
-            self.step_aside(lab); // the run was changed here
-            self.has_played = true;
-            return;
+            return self.step_aside(lab); // the run was changed here
         }
         if self
             .shown
@@ -184,6 +185,7 @@ impl Student {
             lab.tell(reason.lines().next().unwrap_or_default());
         }
         self.show_as(run, lab, lessons);
+        lab.set_undo_floor(true); // undo would lead to a run that was shown before
     }
 
     /// Opens the run of the teacher.
@@ -228,15 +230,21 @@ impl Student {
 
     /// What the class adds to the page.
     fn dress(&self, lessons: &Lessons) -> Dress {
-        let Some((state, taken)) = self.class().zip(lessons.taken()) else {
+        let state = self.state.as_ref().filter(|_| self.has_begun);
+        let Some((state, taken)) = state.zip(lessons.taken()) else {
             return Dress::default();
         };
+        if !self.is_on {
+            return Dress {
+                framed: self.title(state, taken, false),
+                ..Dress::default()
+            };
+        }
         let asked = taken.page().filter(|_| taken.lesson.name == state.lesson);
         let asked = asked.and_then(|page| votes::question(page, state));
-        let border = match (state.shown.is_some(), self.record.is_aside) {
-            (true, true) => "k: back to the class",
-            (true, false) => "k: step aside",
-            (false, _) => "",
+        let border = match self.follows() {
+            true => "k: step aside",
+            false => "", // the title says how to come back
         };
         let of_lesson = state.questions.get(&taken.lesson.name).into_iter();
         let round = |(name, question): (&String, &Question)| {
@@ -263,31 +271,47 @@ impl Student {
         let page = taken.place.page;
         let of = format!("{page} of {}", taken.lesson.pages.len());
         let on = format!("the class is on {}", state.page);
-        if self.record.is_aside {
-            format!("aside · {of} · {on}\naside on {page} · {on}")
+        if !self.is_on {
+            let what = if state.is_on {
+                "teacher's lab gone"
+            } else {
+                "class over"
+            };
+            format!("{what} · {of}")
+        } else if self.record.is_aside && state.shown.is_some() {
+            let short = format!("aside, k: back · {page}, class on {}", state.page);
+            format!("aside, k: back · {of} · {on}\n{short}\naside, k: back · {page}")
         } else if !self.follows() {
-            format!("{of} · {on}")
+            format!("not followed · {of} · {on}\n{of} · {on}")
         } else if state.page == page && asks {
-            let answered = format!("following · {of} · {} of {}", state.answered, state.here);
-            format!("{answered} answered\n{answered}")
+            let counts = format!("following · {of} · {}", state.answered);
+            format!("{counts} of {} answered\n{counts} answered", state.here)
         } else {
             format!("following · {of}")
         }
     }
 
     fn step_aside(&mut self, lab: &mut Lab) {
-        (self.record.is_aside, self.is_new, self.has_played) = (true, true, false);
+        (self.record.is_aside, self.is_new) = (true, true);
         self.shown = Shown::default();
         self.next_look = Duration::ZERO;
         lab.tell("you have stepped aside: k leads back to the class");
     }
 
-    /// Follows again. A run that was played meanwhile stays, pinned.
+    /// Follows again. A run of one's own that was played meanwhile stays, pinned.
     fn come_back(&mut self, lab: &mut Lab) {
         (self.record.is_aside, self.is_new) = (false, true);
-        let has_played = self.has_played && lab.player().playback.step_number() > 0;
-        if has_played && !lab.comparison().is_pinned() {
-            self.has_pinned = lab.carry_out(&Command::Pin(true)).is_ok();
+        let player = lab.player();
+        let own = player.run().scenario().to_toml();
+        let shown = self.state.as_ref().and_then(|state| state.shown.as_ref());
+        let is_own = lab.runs().is_above_floor()
+            && player.playback.step_number() > 0
+            && shown.is_some_and(|shown| shown.run != own);
+        if is_own && lab.carry_out(&Command::Pin(true)).is_ok() {
+            self.has_pinned = true;
+            let pinned =
+                "back in the class; your own run is pinned beside its run: i takes it away";
+            return lab.tell(pinned);
         }
         lab.refuse("back in the class");
     }
@@ -358,7 +382,6 @@ impl Role for Student {
         if is_other && self.follows() {
             self.step_aside(lab);
         }
-        self.has_played |= is_other && self.record.is_aside;
     }
 
     fn wait(&self, now: Duration) -> Duration {

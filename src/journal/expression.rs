@@ -469,7 +469,8 @@ mod tests {
 
     #[test]
     fn a_condition_is_taken_apart() {
-        let that = "t_s >= 5 and (tilt_deg < 0 and 1 < 2) and abs(tilt_deg) < 2 and abs(tilt_deg - 1) < 2";
+        let that =
+            "t_s >= 5 and (tilt_deg < 0 and 1 < 2) and abs(tilt_deg) < 2 and abs(tilt_deg - 1) < 2";
         let parts = Expression::parse(that)
             .unwrap()
             .conjuncts(|name| match name {

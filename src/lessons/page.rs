@@ -2,7 +2,7 @@
 
 use super::lesson::{Asked, Block, Check, Compare, Lesson, Page, Predict};
 use super::markdown::paragraphs;
-use super::predictions::{Place, Tried};
+use super::predictions::{Place, Tried, without};
 use super::taken::Taken;
 use super::text::Text;
 use super::{names, reading, shipped};
@@ -89,7 +89,7 @@ pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> S
             framed: dress.framed.clone(),
             border: dress.border.clone(),
             title: format!("{page} of {pages} · {}", lesson.title),
-            has_next: page < pages,
+            has_next: page < pages && !dress.is_followed,
             plays: taken.plays(),
             ..Sheet::default()
         },
@@ -176,6 +176,11 @@ impl Writer<'_> {
                         Some(source) => source.to_owned(),
                         None if self.taken.is_under_way() => text.filled(|_, _| SOON.to_owned()),
                         None => text.with_numbers(self.lab, &self.taken.place.kept),
+                    };
+                    // Who follows is not told the keys that leave the class.
+                    let source = match self.dress.is_followed {
+                        true => without("`space`", &source),
+                        false => source,
                     };
                     self.extend(paragraphs(&source, &Kind::Text));
                 }
@@ -320,7 +325,7 @@ impl Writer<'_> {
         self.sheet.takes_digits = true;
         let keys = match &predict.asked {
             Asked::Choice(_) if is_marked => "Enter again locks it.",
-            Asked::Choice(_) => "Up, Down choose, Enter marks; or the number of an answer.",
+            Asked::Choice(_) => "A number marks, or Up, Down, Enter.",
             Asked::Number { .. } => "Type your prediction.",
         };
         self.add(Paragraph::new(Kind::Hint, keys));
@@ -330,6 +335,8 @@ impl Writer<'_> {
         let has_task = self.taken.page().is_some_and(|page| page.task().is_some());
         let is_last = page == self.taken.lesson.pages.len();
         let text = match (self.taken.is_under_way(), has_task, is_last) {
+            (_, true, _) if self.dress.is_followed => "k steps aside to try it; h: a hint.",
+            _ if self.dress.is_followed => return,
             _ if self.taken.has_left() => "b: the page again; n goes on.",
             _ if self.taken.plays() => "The run plays: space stops it, n goes to its end.",
             (true, ..) => "The run is on its way; space pauses it.",

@@ -159,13 +159,15 @@ impl Compare {
 }
 
 /// `text` without the sentences that have `part`; all of it where nothing else would be left.
-fn without(part: &str, text: &str) -> String {
+pub(super) fn without(part: &str, text: &str) -> String {
     let mut rest = text;
     let mut kept = String::new();
     while !rest.is_empty() {
         let (sentence, others) = rest.split_at(end_of_sentence(rest));
         if !sentence.contains(part) {
             kept.push_str(sentence);
+        } else if sentence.ends_with("\n\n") {
+            kept.push_str("\n\n");
         }
         rest = others;
     }
@@ -173,15 +175,17 @@ fn without(part: &str, text: &str) -> String {
     if kept.is_empty() { text } else { kept }.to_owned()
 }
 
-/// Where the first sentence of `text` ends, the blanks after it counted in.
+/// Where the first sentence of `text` ends, the blanks after it counted in. An entry of a list counts as one.
 fn end_of_sentence(text: &str) -> usize {
     let stops = text.match_indices(['.', '!', '?']);
     let mut after = stops.map(|(at, stop)| at + stop.len());
     let end = after.find(|&after| text[after..].starts_with(char::is_whitespace));
-    end.map_or(text.len(), |end| {
+    let entry = text.find("\n- ").map(|line_end| line_end + 1);
+    let end = end.map_or(text.len(), |end| {
         let blanks = text[end..].find(|c: char| !c.is_whitespace());
         blanks.map_or(text.len(), |blanks| end + blanks)
-    })
+    });
+    entry.map_or(end, |entry| entry.min(end))
 }
 
 const LATE: &str = "locked after its outcome was seen";

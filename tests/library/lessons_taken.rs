@@ -129,10 +129,13 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
         .press("↓↓↓↑\n")
         .shows("> [x] 2 grows")
         .shows_no("It goes on");
-    stage.press("↑").shows("> [ ] 1 stays").shows("  [ ] 2 grows");
+    stage
+        .press("↑")
+        .shows("> [ ] 1 stays")
+        .shows("  [ ] 2 grows");
     stage.press("7").shows("the answers are 1 to 3");
     stage.press("3").shows("> [x] 3 shrinks").press("↑");
-    stage.press("\n").press("nn").arrive().press("N").arrive();
+    stage.press("\n").press("n").arrive().press("N").arrive();
     stage.shows("> [x] 2 grows").shows_no("It goes on");
     stage
         .press("\n")
@@ -149,7 +152,11 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
     stage.shows("It is 5.0. You said: it grows.");
     stage.shows("You said: 3.5 deg.");
     assert_eq!(stage.lab.player().motion().gravity, 5.0);
-    stage.press("N").arrive().shows("1 of 4").shows("[x] 2 grows");
+    stage
+        .press("N")
+        .arrive()
+        .shows("1 of 4")
+        .shows("[x] 2 grows");
     stage.shows("Locked: 3.5 deg");
     assert_eq!(answer_in(&stage.class), Answer::Choice("grows".to_owned()));
     stage.press("\n").shows("your answer is locked");

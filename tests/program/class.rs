@@ -53,11 +53,11 @@ fn a_class_follows_votes_and_loses_nothing() {
     has_all(&votes, &[&format!("{LESSON},finer,1,{word},2,false,2,")]);
     // Stepping aside, and the class goes on meanwhile.
     ben.ask("n", "predict first");
-    ben.ask("n", "aside on 3 · the class is on 2");
+    ben.ask("n", "aside, k: back · 3, class on 2");
     teacher.press("n");
-    ben.wait_for("the class is on 3");
+    ben.wait_for("class on 3");
     teacher.press("N");
-    ben.wait_for("the class is on 2");
+    ben.wait_for("class on 2");
     ben.ask("k", "following · 2 of 10");
     // Back by the seat's word, with page and prediction.
     let mut anna = ground.open("--folder . --seat");

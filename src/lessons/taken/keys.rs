@@ -172,6 +172,21 @@ impl Taken {
         }
     }
 
+    /// Marks the answer with this number, or begins to type one with this digit.
+    fn digit(&mut self, digit: u8, lab: &mut Lab) {
+        let Some(predict) = self.asked().cloned() else {
+            return;
+        };
+        match (&predict.asked, usize::from(digit)) {
+            (Asked::Number { .. }, _) => self.ask_number(Some(digit), lab),
+            (Asked::Choice(all), number) if (1..=all.len()).contains(&number) => {
+                self.pointed.insert(predict.name, (number - 1, true));
+                lab.refuse(MARKED);
+            }
+            (Asked::Choice(all), _) => lab.refuse(format!("the answers are 1 to {}", all.len())),
+        }
+    }
+
     fn ask_number(&self, typed: Option<u8>, lab: &mut Lab) {
         if let Some(Asked::Number { unit }) = self.asked().map(|predict| &predict.asked) {
             let label = if unit.is_empty() { "number" } else { unit };
