@@ -44,14 +44,20 @@ pub fn sittings(folder: &Folder) -> Vec<Sitting> {
     all_seats(folder).into_iter().map(sitting).collect()
 }
 
-/// How many of `seats` are here, lost, and stepped aside.
-pub fn present(seats: &[Sitting]) -> [usize; 3] {
+/// How many of `seats` are here, and in words with those that are aside, lost or away.
+pub fn present(seats: &[Sitting]) -> (usize, String) {
     let count = |is_so: &dyn Fn(&Sitting) -> bool| seats.iter().filter(|it| is_so(it)).count();
-    [
-        count(&Sitting::is_here),
-        count(&|it| it.presence == Presence::Lost),
-        count(&|it| it.is_here() && it.is_aside),
-    ]
+    let here = count(&Sitting::is_here);
+    let others = [
+        (count(&|it| it.is_here() && it.is_aside), "of them aside"),
+        (count(&|it| it.presence == Presence::Lost), "lost"),
+        (count(&|it| it.presence == Presence::Away), "away"),
+    ];
+    let others = others.into_iter().filter(|(count, _)| *count > 0);
+    let others: String = others
+        .map(|(count, how)| format!(", {count} {how}"))
+        .collect();
+    (here, format!("{here} here{others}"))
 }
 
 impl Sitting {
@@ -87,6 +93,7 @@ pub struct Tally {
     /// Votes in time.
     pub votes: usize,
     pub late: usize,
+    pub late_bars: Vec<(String, usize)>,
     /// What is right, how many said it, and what to do next; where the lesson says what is.
     pub advice: Option<String>,
 }
@@ -97,22 +104,32 @@ impl Tally {
             .iter()
             .filter_map(|it| it.vote(lesson, predict, round));
         let (late, in_time): (Vec<_>, Vec<_>) = votes.partition(|given| given.late);
-        let choices: Vec<f64> = in_time
-            .iter()
-            .filter_map(|given| predict.asked.number(&given.answer))
-            .collect();
+        let numbers = |given: &[&Given]| -> Vec<f64> {
+            let answers = given.iter().map(|given| &given.answer);
+            answers.filter_map(|it| predict.asked.number(it)).collect()
+        };
+        let bars = |numbers: &[f64]| match &predict.asked {
+            Asked::Choice(all) => of_choices(all.len(), numbers),
+            Asked::Number { .. } => of_numbers(numbers.to_vec()),
+        };
+        let choices = numbers(&in_time);
+        let right = predict.right.as_ref();
         Self {
             votes: choices.len(),
             late: late.len(),
-            advice: predict
-                .right
-                .as_ref()
-                .and_then(|right| advice(right, &choices)),
-            bars: match &predict.asked {
-                Asked::Choice(all) => of_choices(all.len(), &choices),
-                Asked::Number { .. } => of_numbers(choices),
-            },
+            advice: right.and_then(|right| advice(right, &choices)),
+            bars: bars(&choices),
+            late_bars: bars(&numbers(&late)),
         }
+    }
+
+    /// The bars for the teacher, those of late votes below them.
+    pub fn drawn(&self) -> Paragraph {
+        let mut text = drawn(&self.bars).text();
+        if self.late > 0 {
+            text += &format!("late:\n{}", drawn(&self.late_bars).text());
+        }
+        Paragraph::new(Kind::Code, text)
     }
 }
 
@@ -121,15 +138,15 @@ fn advice(right: &Right, choices: &[f64]) -> Option<String> {
     let all = Some(choices.len()).filter(|all| *all > 0)?;
     let percent = (100 * hits.count() + all / 2) / all;
     let next = match percent {
-        ..30 => "explain, then again",
-        30..=70 => "let them talk, then again",
+        ..30 => "explain, then ask again",
+        30..=70 => "let them talk, then ask again",
         _ => "go on",
     };
     let right = match right {
         Right::Choice(number) => number.to_string(),
         Right::Number { value, within } => format!("{} ± {}", shortest(*value), shortest(*within)),
     };
-    Some(format!("right: {right}, {percent} %: {next}"))
+    Some(format!("right is {right}, {percent} % chose it: {next}"))
 }
 
 fn of_choices(count: usize, choices: &[f64]) -> Vec<(String, usize)> {

@@ -166,7 +166,7 @@ impl Class {
                 lab.refuse(text);
             }
             (_, LessonKey::Leave) => {
-                lab.refuse("nothing to close: L lists the lessons, Esc there leaves them; q quits");
+                lab.refuse("nothing to close here");
             }
             (Shown::List { selected, .. }, LessonKey::Move(direction)) => {
                 let last = names.len().saturating_sub(1);

@@ -256,7 +256,8 @@ impl Writer<'_> {
         };
         self.extend(paragraphs(&source, &Kind::Result));
         let predict = lesson.predict(&compare.prediction);
-        if predict.is_some_and(|predict| !place.predictions.is_locked(predict)) {
+        let is_missing = predict.is_some_and(|predict| !place.predictions.is_locked(predict));
+        if is_missing && !self.dress.is_of_teacher {
             let pages = &mut lesson.pages.iter();
             if let Some(page) = pages.find(|page| page.asks(&compare.prediction)) {
                 let text = format!("You predicted nothing: page {} asks for it.", page.number);

@@ -158,6 +158,8 @@ fn votes_are_counted_by_round_and_late_ones_apart() {
     };
     assert_eq!(counts(1), (vec![1, 1], 1));
     assert_eq!(counts(2), (vec![1, 2], 0));
+    let drawn = Tally::of(&seats, LESSON, predict, 1).drawn().text();
+    assert!(drawn.contains("late:\n1 █"), "{drawn}");
     let csv = votes::csv(&folder).unwrap();
     assert!(
         csv.starts_with("lesson,question,round,seat,choice,late,page,time\n"),
@@ -173,16 +175,20 @@ fn what_is_right_leads_to_advice() {
     let choice = "choices = [\"one\", \"two\"]\nright = 2\n```\n";
     let number = "unit = \"deg\"\nright = 2.0\nwithin = 0.5\n```\n";
     for (asked, choices, advice) in [
-        (choice, [2.0, 2.0, 1.0, 2.0], "right: 2, 75 %: go on"),
+        (
+            choice,
+            [2.0, 2.0, 1.0, 2.0],
+            "right is 2, 75 % chose it: go on",
+        ),
         (
             choice,
             [2.0, 2.0, 1.0, 1.0],
-            "right: 2, 50 %: let them talk, then again",
+            "right is 2, 50 % chose it: let them talk, then ask again",
         ),
         (
             number,
             [2.5, 1.4, 2.6, 7.0],
-            "right: 2 ± 0.5, 25 %: explain, then again",
+            "right is 2 ± 0.5, 25 % chose it: explain, then ask again",
         ),
     ] {
         let lesson = reading::read("t.md", &format!("{text}{asked}")).unwrap();
