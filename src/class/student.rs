@@ -143,13 +143,15 @@ impl Student {
         if self.is_on && !was_on {
             lab.refuse("the class is on");
             self.has_begun = true;
-        } else if was_on && !self.is_on {
+        } else if was_on && !self.is_on && self.state.is_some() {
             let what = if is_over {
                 "the class is over"
             } else {
                 "the teacher's lab is gone"
             };
             lab.tell(format!("{what}: n and N turn pages"));
+        }
+        if !self.is_on {
             self.shown = Shown::default();
         }
     }
@@ -230,16 +232,15 @@ impl Student {
 
     /// What the class adds to the page.
     fn dress(&self, lessons: &Lessons) -> Dress {
-        let state = self.state.as_ref().filter(|_| self.has_begun);
-        let Some((state, taken)) = state.zip(lessons.taken()) else {
+        let Some(taken) = lessons.taken().filter(|_| self.has_begun) else {
             return Dress::default();
         };
-        if !self.is_on {
+        let Some(state) = self.class() else {
             return Dress {
-                framed: self.title(state, taken, false),
+                framed: self.title(taken, false),
                 ..Dress::default()
             };
-        }
+        };
         let asked = taken.page().filter(|_| taken.lesson.name == state.lesson);
         let asked = asked.and_then(|page| votes::question(page, state));
         let border = match self.follows() {
@@ -255,7 +256,7 @@ impl Student {
             .as_ref()
             .filter(|(_, question)| !question.bars.is_empty());
         Dress {
-            framed: self.title(state, taken, asked.is_some()),
+            framed: self.title(taken, asked.is_some()),
             border: border.to_owned(),
             is_followed: self.follows(),
             rounds: of_lesson.flatten().map(round).collect(),
@@ -267,18 +268,16 @@ impl Student {
     }
 
     /// The title of the page, a form a line; `asks` says whether the page has a question.
-    fn title(&self, state: &State, taken: &Taken, asks: bool) -> String {
+    fn title(&self, taken: &Taken, asks: bool) -> String {
         let page = taken.place.page;
         let of = format!("{page} of {}", taken.lesson.pages.len());
+        let Some(state) = self.class() else {
+            let is_over = self.state.as_ref().is_some_and(|state| !state.is_on);
+            let gone = ["teacher's lab gone", "class over"][usize::from(is_over)];
+            return format!("{gone} · {of}");
+        };
         let on = format!("the class is on {}", state.page);
-        if !self.is_on {
-            let what = if state.is_on {
-                "teacher's lab gone"
-            } else {
-                "class over"
-            };
-            format!("{what} · {of}")
-        } else if self.record.is_aside && state.shown.is_some() {
+        if self.record.is_aside && state.shown.is_some() {
             let short = format!("aside, k: back · {page}, class on {}", state.page);
             format!("aside, k: back · {of} · {on}\n{short}\naside, k: back · {page}")
         } else if !self.follows() {

@@ -8,10 +8,10 @@ use crate::lab::Lab;
 use crate::lab::action::LessonKey;
 use crate::lab::sheet::{Kind, Paragraph};
 use crate::lessons::page::Dress;
+use crate::lessons::taken::Taken;
 use crate::lessons::{Class as Lessons, Page};
 use crate::scenario::Scenario;
 use crate::text::printable::Shown;
-use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
@@ -76,7 +76,6 @@ impl Teacher {
         self.seats = sittings(&self.folder);
         if let Some(taken) = lessons.taken() {
             self.state.lesson.clone_from(&taken.lesson.name);
-            self.state.sum = taken.lesson.sum;
             self.state.page = taken.place.page;
             self.state.kept.clone_from(&taken.place.kept);
             self.state.has_arrived = !taken.is_under_way();
@@ -218,31 +217,23 @@ impl Teacher {
     }
 
     /// Does what the menu has under `digit`.
-    fn choose(
-        &mut self,
-        digit: u8,
-        lab: &mut Lab,
-        page: Option<&Page>,
-        seen: Option<&BTreeSet<String>>,
-    ) {
+    fn choose(&mut self, digit: u8, lab: &mut Lab, taken: Option<&Taken>) {
         self.menu = Menu::Closed;
         match digit {
             1 | 2 => {
+                let page = taken.and_then(Taken::page);
                 let asked = page.and_then(|page| votes::question(page, &self.state));
                 let Some((predict, _)) = asked else {
                     return lab.refuse("this page asks nothing");
                 };
+                let is_seen = taken.is_some_and(|it| it.place.seen.contains(&predict.name));
                 let question = self.state.question_mut(&predict.name);
                 if digit == 2 {
                     question.earlier_rounds = question.round();
                     (question.stage, question.since_ms) = (Stage::Counted, unix_ms());
-                    let is_seen = seen.is_some_and(|seen| seen.contains(&predict.name));
-                    let late = match is_seen {
-                        true => "; its outcome was seen, so votes count apart, as late",
-                        false => "",
-                    };
-                    let round = question.round();
-                    return lab.refuse(format!("round {round}: the class votes again{late}"));
+                    let round = format!("round {}: the class votes again", question.round());
+                    let late = "; its outcome was seen, so votes count apart, as late";
+                    return lab.refuse(round + if is_seen { late } else { "" });
                 }
                 question.stage = match question.stage {
                     Stage::Counted => Stage::Teacher,
@@ -309,9 +300,7 @@ impl Role for Teacher {
         match (self.menu, key) {
             (Menu::Closed, _) => return false,
             (Menu::Open, LessonKey::Digit(digit)) => {
-                let page = lessons.taken().and_then(|taken| taken.page());
-                let seen = lessons.taken().map(|taken| &taken.place.seen);
-                self.choose(digit, lab, page, seen);
+                self.choose(digit, lab, lessons.taken());
             }
             (Menu::Seats(selected), LessonKey::Move(direction)) => {
                 let last = self.entries().len().saturating_sub(1);

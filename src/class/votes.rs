@@ -9,6 +9,7 @@ use crate::lessons::lesson::Right;
 use crate::lessons::predictions::{Given, Place};
 use crate::lessons::{Answer, Asked, Page, Predict, reading};
 use crate::text::number::{shortest, significant};
+use crate::text::printable::printable;
 use chrono::{DateTime, Utc};
 use std::collections::BTreeMap;
 
@@ -216,13 +217,13 @@ pub fn csv(folder: &Folder) -> Result<String, csv::Error> {
                 let predict = lesson.as_ref().and_then(|lesson| lesson.predict(question));
                 let number = predict.and_then(|predict| predict.asked.number(&given.answer));
                 let choice = match (&given.answer, number) {
-                    (Answer::Choice(words), None) => words.clone(),
+                    (Answer::Choice(words), None) => printable(words).into_owned(),
                     (Answer::Number(number), _) => shortest(*number),
                     (_, Some(number)) => shortest(number),
                 };
                 writer.write_record([
-                    folder.short(name),
-                    question,
+                    printable(folder.short(name)).as_ref(),
+                    printable(question).as_ref(),
                     &given.round.to_string(),
                     &sitting.seat.word,
                     &choice,

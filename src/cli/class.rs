@@ -204,6 +204,9 @@ fn line() -> io::Result<Option<String>> {
     {
         return Ok(None);
     }
+    if bytes.len() as u64 == LONGEST_LINE {
+        stdin.skip_until(b'\n')?;
+    }
     Ok(Some(String::from_utf8_lossy(&bytes).into_owned()))
 }
 

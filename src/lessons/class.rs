@@ -266,7 +266,7 @@ impl Class {
             return;
         };
         let is_new = taken.advance(now, lab);
-        if is_new || self.has_changed || lab.has_changed() || (second && taken.clock.is_some()) {
+        if is_new || self.has_changed || lab.has_changed() || (second && taken.shows_notes) {
             self.show(lab);
         }
     }

@@ -11,9 +11,8 @@ use serde::{Deserialize, Serialize};
 pub struct Lesson {
     /// The name of a shipped lesson, or the file as the user named it.
     pub name: String,
-    /// The file that messages name, and the checksum of its text.
+    /// The file that messages name.
     pub origin: String,
-    pub sum: u32,
     /// Its level-1 heading.
     pub title: String,
     /// What it is about, one line; empty where the file does not say it.

@@ -188,7 +188,7 @@ fn end_of_sentence(text: &str) -> usize {
     entry.map_or(end, |entry| entry.min(end))
 }
 
-const LATE: &str = "locked after its outcome was seen";
+const LATE: &str = "after its outcome was seen";
 /// Stands for a prediction that was not made.
 const NOTHING: &str = "…";
 

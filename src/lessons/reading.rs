@@ -36,7 +36,6 @@ pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
     let mut assembly = Assembly::default();
     assembly.lesson.origin = origin.to_owned();
     assembly.lesson.name = origin.to_owned();
-    assembly.lesson.sum = crc32fast::hash(text.as_bytes());
     assembly.read_setups(&elements);
     for element in &elements {
         assembly.add(element);

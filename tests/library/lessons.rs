@@ -576,7 +576,7 @@ fn a_locked_prediction_stays_and_shows_what_the_page_hides() {
     predictions
         .lock(finer, choice(2, "stays as it is"))
         .unwrap();
-    let all = "is gone (round 1), stays as it is (round 2, locked after its outcome was seen)";
+    let all = "is gone (round 1), stays as it is (round 2, after its outcome was seen)";
     assert_eq!(predictions.in_words(finer).as_deref(), Some(all));
 }
 

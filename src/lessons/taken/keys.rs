@@ -4,7 +4,7 @@ use super::{Taken, UnderWay, before_task, compared, holds};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::command::Command;
-use crate::lessons::clock::{self, Clock};
+use crate::lessons::clock;
 use crate::lessons::lesson::{Answer, Asked, Block, Predict};
 use crate::lessons::predictions::{Given, Predictions, Tried};
 use std::collections::BTreeMap;
@@ -24,12 +24,7 @@ impl Taken {
                 told(stood, lab);
             }
             LessonKey::ShowTask => return self.show_task(lab),
-            LessonKey::Notes => {
-                self.clock = match self.clock {
-                    None => Some(Clock::Up),
-                    Some(clock) => clock.next(self.lesson.minutes),
-                };
-            }
+            LessonKey::Notes => self.shows_notes ^= true,
             LessonKey::Move(direction @ (Direction::Up | Direction::Down)) => {
                 return self.select(direction);
             }

@@ -36,7 +36,7 @@ const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Char('N')], Action::Lesson(LessonKey::Before), "", "the page before; its run begins again"),
     row(&[Mode::Lab], &[Key::Char('b')], Action::Lesson(LessonKey::Again), "", "begin the page again: its run from where the page wants it"),
     row(&[Mode::Lab], &[Key::Char('h')], Action::Lesson(LessonKey::ShowTask), "", "a hint for the task of the page; again: show how it is done"),
-    row(&[Mode::Lab], &[Key::Ctrl('n')], Action::Lesson(LessonKey::Notes), "", "for a class: notes, the next page and a clock that counts up, down, or shows the time"),
+    row(&[Mode::Lab], &[Key::Ctrl('n')], Action::Lesson(LessonKey::Notes), "", "for a class: notes, the next page and a clock"),
     row(&[Mode::Lab], &[Key::Enter], Action::Lesson(LessonKey::Take), "answer", "mark the chosen answer (its number does too), again: lock it; in the list: open the lesson"),
     row(&[Mode::Lab], &[Key::Up], Action::Lesson(LessonKey::Move(Direction::Up)), "", "the answer above; without a question: scroll"),
     row(&[Mode::Lab], &[Key::Down], Action::Lesson(LessonKey::Move(Direction::Down)), "", "the answer below; without a question: scroll"),
