@@ -46,7 +46,7 @@ pub fn lines(folder: &Folder, width: usize) -> Vec<String> {
 
 /// The page in words, with the votes on its questions.
 fn of_page(state: &State, seats: &[Sitting]) -> Vec<String> {
-    let told = match reading::open(&state.lesson) {
+    let told = match reading::open_again(&state.lesson) {
         Ok(lesson) => told(&lesson, state.page, |predict| {
             of_rounds(predict, state, seats)
         }),

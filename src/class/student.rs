@@ -120,7 +120,8 @@ impl Student {
     /// Looks at the files: whether the seat is still this lab's, and what the teacher shows.
     fn look(&mut self, lab: &mut Lab) {
         if !self.seat.is_held(&self.holds) {
-            self.ended = Some("this seat was opened in another lab, which goes on from here");
+            self.ended =
+                Some("this seat was opened in another lab, which goes on from here, or it is gone");
         }
         let seen = shared::modified(&self.folder.state_file());
         if seen != self.seen {

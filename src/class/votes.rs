@@ -212,7 +212,7 @@ pub fn csv(folder: &Folder) -> Result<String, csv::Error> {
     for sitting in sittings(folder) {
         for (name, place) in &sitting.lessons {
             let lesson = read.entry(name.clone());
-            let lesson = lesson.or_insert_with(|| reading::open(name).ok());
+            let lesson = lesson.or_insert_with(|| reading::open_again(name).ok());
             for (question, given) in place.predictions.all() {
                 let predict = lesson.as_ref().and_then(|lesson| lesson.predict(question));
                 let number = predict.and_then(|predict| predict.asked.number(&given.answer));

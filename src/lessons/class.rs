@@ -118,14 +118,10 @@ impl Class {
     /// Takes the lesson that NAME names, where it was left.
     fn take(&mut self, name: &str, lab: &mut Lab) -> Result<(), String> {
         let name = reading::full_name(name);
-        let lesson = match shipped::find(&name) {
-            Some(_) => reading::open(&name),
-            None if !reading::is_file_name(&name) => reading::open(&name), // says which there are
-            None => {
-                lab.files().admit_reading(Path::new(&name))?;
-                reading::read_again(Path::new(&name))
-            }
-        };
+        if reading::is_file_name(&name) {
+            lab.files().admit_reading(Path::new(&name))?;
+        }
+        let lesson = reading::open_again(&name);
         let lesson = lesson.map_err(|problems| problems.to_string())?;
         self.leave(lab);
         let place = self.left.remove(&lesson.name).unwrap_or_default();

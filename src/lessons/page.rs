@@ -43,7 +43,7 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
         ..Sheet::default()
     };
     for (index, name) in names.iter().enumerate() {
-        let lesson = reading::open(name).ok();
+        let lesson = reading::open_again(name).ok();
         let title = lesson.as_ref().map_or(name, |lesson| &lesson.title);
         let minutes = lesson.as_ref().and_then(|lesson| lesson.minutes);
         let minutes = minutes.map_or(String::new(), |minutes| format!(", {minutes} min"));
