@@ -1,7 +1,7 @@
 //! The board: the class on a second terminal, for the teacher. Seats, votes, notes, and the clock.
 
 use super::folder::{Folder, Stage, State};
-use super::votes::{self, Sitting, Tally, present, sittings};
+use super::votes::{Sitting, Tally, present, sittings};
 use super::{login, unix_ms};
 use crate::lessons::page::told;
 use crate::lessons::{Predict, reading};
@@ -12,9 +12,8 @@ use chrono::Local;
 /// The lines of the board, at most `width` columns wide.
 pub fn lines(folder: &Folder, width: usize) -> Vec<String> {
     let seats = sittings(folder);
-    let [here, lost, aside] = present(&seats);
     let time = Local::now().format("%H:%M");
-    let mut board = vec![format!("{time} · {here} here, {lost} lost, {aside} aside")];
+    let mut board = vec![format!("{time} · {}", present(&seats).1)];
     if folder.is_full() {
         board.push("the disk is full: what is answered now cannot be kept".to_owned());
     }
@@ -30,6 +29,8 @@ pub fn lines(folder: &Folder, width: usize) -> Vec<String> {
             } else if !folder.is_teacher_alive() {
                 let resumes = "the teacher's lab is gone: gyrolab class --resume --folder DIR";
                 board.push(resumes.to_owned());
+            } else if state.shown.is_none() {
+                board.push("the class does not follow: k 3 in the teacher's lab".to_owned());
             }
             board.extend(of_page(&state, &seats));
             board.push(String::new());
@@ -45,7 +46,7 @@ pub fn lines(folder: &Folder, width: usize) -> Vec<String> {
 
 /// The page in words, with the votes on its questions.
 fn of_page(state: &State, seats: &[Sitting]) -> Vec<String> {
-    let told = match reading::open(&state.lesson) {
+    let told = match reading::open_again(&state.lesson) {
         Ok(lesson) => told(&lesson, state.page, |predict| {
             of_rounds(predict, state, seats)
         }),
@@ -64,8 +65,9 @@ fn of_rounds(predict: &Predict, state: &State, seats: &[Sitting]) -> String {
         if round == question.round() && question.stage == Stage::Counted {
             return counts;
         }
+        let drawn = tally.drawn().text();
         let advice = tally.advice.map(|advice| advice + "\n");
-        counts + &votes::drawn(&tally.bars).text() + &advice.unwrap_or_default()
+        counts + &drawn + &advice.unwrap_or_default()
     };
     (1..=question.round()).map(round_of).collect()
 }
@@ -75,8 +77,8 @@ fn of_seats(folder: &Folder, state: &State, seats: &[Sitting], width: usize) -> 
     let locked = login::locked(folder, unix_ms() / 1000).into_iter();
     let locked = locked.map(|name| format!("{name}: locked by wrong codes"));
     let cell = |sitting: &Sitting| {
-        let votes = sitting.record.votes.iter();
-        let votes = votes.filter(|vote| vote.lesson == state.lesson).count();
+        let place = sitting.lessons.get(&state.lesson);
+        let votes = place.map_or(0, |place| place.predictions.all().count());
         let votes = counted(votes as u64, "vote");
         format!("{}, {votes}", sitting.in_words(state))
     };

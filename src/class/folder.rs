@@ -37,9 +37,8 @@ pub struct State {
     /// The version that wrote it.
     pub gyrolab: String,
     pub is_on: bool,
-    /// The full name of the lesson, and the checksum of its text.
+    /// The full name of the lesson.
     pub lesson: String,
-    pub sum: u32,
     /// The number of its open page, from 1.
     pub page: usize,
     /// How many seats are here, and how many of them have answered the question of the page.
@@ -213,7 +212,7 @@ fn make(path: &Path, mode: u32) -> Result<(), String> {
 impl Question {
     /// The present round, from 1.
     pub fn round(&self) -> u32 {
-        self.earlier_rounds + 1
+        self.earlier_rounds.saturating_add(1)
     }
 }
 
@@ -222,7 +221,6 @@ impl State {
     pub(super) fn followed(&self, is_there: bool) -> Followed<'_> {
         Followed {
             lesson: &self.lesson,
-            sum: self.sum,
             page: self.page,
             kept: &self.kept,
             has_arrived: self.has_arrived && is_there,

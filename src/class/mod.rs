@@ -93,7 +93,8 @@ fn unix_ms() -> u64 {
     since.unwrap_or_default().as_millis() as u64
 }
 
-/// How long ago `time` was; nothing for one to come.
+/// How long ago `time` was. One that is to come, as the clock was set back, counts as long ago as it is ahead.
 fn ago(time: SystemTime) -> Duration {
-    SystemTime::now().duration_since(time).unwrap_or_default()
+    let since = SystemTime::now().duration_since(time);
+    since.unwrap_or_else(|ahead| ahead.duration())
 }

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 /// It is raised when the form or the meaning of a seat's file changes.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// The most characters of a name.
 pub(super) const LONGEST_NAME: usize = 24;
 /// The digits of a code.
@@ -37,26 +37,8 @@ pub struct Record {
     pub format: u32,
     /// Whether it has stepped aside from a class that follows.
     pub is_aside: bool,
-    pub votes: Vec<Vote>,
-    /// The lessons, as a session keeps them.
+    /// The lessons with the answers to their questions, as a session keeps them.
     pub lessons: toml::Table,
-}
-
-/// A vote: an answer that was locked.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Vote {
-    pub lesson: String,
-    pub question: String,
-    /// From 1.
-    pub round: u32,
-    /// The number of the choice, from 1, or the number that was predicted.
-    pub choice: f64,
-    /// Whether the outcome had been seen, or the question was closed.
-    pub late: bool,
-    /// The page that was open, from 1.
-    pub page: usize,
-    /// Seconds since 1970 (UTC).
-    pub time_unix_s: u64,
 }
 
 /// Whether somebody sits there.
@@ -89,15 +71,6 @@ pub fn all_seats(folder: &Folder) -> Vec<Seat> {
     let mut names: Vec<_> = names.filter(|name| name_of(name).is_some()).collect();
     names.sort_unstable();
     names.iter().map(|name| Seat::of(folder, name)).collect()
-}
-
-impl Record {
-    /// The last round in which it has voted on the question; 0 where in none.
-    pub fn rounds_of(&self, lesson: &str, question: &str) -> u32 {
-        let votes = self.votes.iter();
-        let of_it = votes.filter(|vote| vote.lesson == lesson && vote.question == question);
-        of_it.map(|vote| vote.round).max().unwrap_or(0)
-    }
 }
 
 impl Seat {

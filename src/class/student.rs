@@ -1,7 +1,7 @@
 //! A student's lab: it follows the teacher's, and keeps in the files of its seat where it stands and what was voted.
 
-use super::folder::{Folder, Run, Stage, State};
-use super::seat::{Record, Seat, Vote};
+use super::folder::{Folder, Question, Run, Stage, State};
+use super::seat::{Record, Seat};
 use super::{EVERY, LEAST_WAIT, Role, unix_ms, votes};
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
@@ -9,8 +9,8 @@ use crate::lab::command::{Command, Place};
 use crate::lab::view::Part;
 use crate::lessons::page::Dress;
 use crate::lessons::predictions::Predictions;
-use crate::lessons::taken::{Taken, Voted};
-use crate::lessons::{Answer, Asked, Class as Lessons, Setup};
+use crate::lessons::taken::Taken;
+use crate::lessons::{Class as Lessons, Setup};
 use crate::playback::Playback;
 use crate::playback::pace::Speed;
 use crate::scenario::{Document, Scenario};
@@ -41,8 +41,8 @@ pub struct Student {
     stood: Option<Stand>,
     /// Whether a run that was played aside is pinned.
     has_pinned: bool,
-    /// Whether a key has changed run, step or page since it stepped aside.
-    has_played: bool,
+    /// Whether a class was on in this lab.
+    has_begun: bool,
     /// Why the lab ends, where it does.
     ended: Option<&'static str>,
     next_look: Duration,
@@ -107,13 +107,8 @@ impl Student {
         self.state.as_ref().filter(|_| self.is_on)
     }
 
-    /// Takes note of what was answered, and of the place in the lessons.
-    fn note(&mut self, lab: &Lab, lessons: &mut Lessons) {
-        for voted in lessons.take_votes() {
-            let vote = lessons.taken().and_then(|taken| self.vote(taken, voted));
-            self.record.votes.extend(vote);
-            self.is_new = true;
-        }
+    /// Takes note of the place in the lessons, with what was answered.
+    fn note(&mut self, lab: &Lab) {
         if let Some(kept) = &lab.lessons
             && *kept != self.record.lessons
         {
@@ -122,33 +117,11 @@ impl Student {
         }
     }
 
-    fn vote(&self, taken: &Taken, voted: Voted) -> Option<Vote> {
-        let (lesson, question) = (taken.lesson.name.clone(), voted.question);
-        let choice = match (voted.answer, &taken.lesson.predict(&question)?.asked) {
-            (Answer::Number(number), _) => number,
-            (Answer::Choice(words), Asked::Choice(choices)) => {
-                choices.iter().position(|choice| *choice == words)? as f64 + 1.0
-            }
-            (Answer::Choice(_), Asked::Number { .. }) => return None,
-        };
-        let state = self.class().filter(|state| state.lesson == lesson);
-        let asked = state.map(|state| state.question(&question));
-        let asked = asked.unwrap_or_default();
-        Some(Vote {
-            lesson,
-            question,
-            round: asked.round(),
-            choice,
-            late: voted.is_late || asked.stage == Stage::Closed,
-            page: taken.place.page,
-            time_unix_s: unix_ms() / 1000,
-        })
-    }
-
     /// Looks at the files: whether the seat is still this lab's, and what the teacher shows.
     fn look(&mut self, lab: &mut Lab) {
         if !self.seat.is_held(&self.holds) {
-            self.ended = Some("this seat was opened in another lab, which goes on from here");
+            self.ended =
+                Some("this seat was opened in another lab, which goes on from here, or it is gone");
         }
         let seen = shared::modified(&self.folder.state_file());
         if seen != self.seen {
@@ -161,20 +134,25 @@ impl Student {
         }
         let state = self.state.as_ref();
         if state.is_some_and(|state| state.closed.contains(&self.seat.word)) {
-            self.ended = Some("your teacher has closed this seat");
+            let closed =
+                "your teacher has closed this seat: once it is open again, its word leads back";
+            self.ended = Some(closed);
         }
         let was_on = self.is_on;
         let is_over = state.is_some_and(|state| !state.is_on);
         self.is_on = state.is_some() && !is_over && self.folder.is_teacher_alive();
         if self.is_on && !was_on {
             lab.refuse("the class is on");
-        } else if was_on && !self.is_on {
+            self.has_begun = true;
+        } else if was_on && !self.is_on && self.state.is_some() {
             let what = if is_over {
                 "the class is over"
             } else {
                 "the teacher's lab is gone"
             };
             lab.tell(format!("{what}: n and N turn pages"));
+        }
+        if !self.is_on {
             self.shown = Shown::default();
         }
     }
@@ -188,9 +166,7 @@ impl Student {
         let scenario = lab.player().run().scenario();
         let is_own = |(_, shown): &(_, _)| !Arc::ptr_eq(shown, scenario);
         if self.shown.run.as_ref().is_some_and(is_own) {
-            self.step_aside(lab); // the run was changed here
-            self.has_played = true;
-            return;
+            return self.step_aside(lab); // the run was changed here
         }
         if self
             .shown
@@ -212,6 +188,7 @@ impl Student {
             lab.tell(reason.lines().next().unwrap_or_default());
         }
         self.show_as(run, lab, lessons);
+        lab.set_undo_floor(true); // undo would lead to a run that was shown before
     }
 
     /// Opens the run of the teacher.
@@ -256,28 +233,34 @@ impl Student {
 
     /// What the class adds to the page.
     fn dress(&self, lessons: &Lessons) -> Dress {
-        let Some((state, taken)) = self.class().zip(lessons.taken()) else {
+        let Some(taken) = lessons.taken().filter(|_| self.has_begun) else {
             return Dress::default();
+        };
+        let Some(state) = self.class() else {
+            return Dress {
+                framed: self.title(taken, false),
+                ..Dress::default()
+            };
         };
         let asked = taken.page().filter(|_| taken.lesson.name == state.lesson);
         let asked = asked.and_then(|page| votes::question(page, state));
-        let border = match (state.shown.is_some(), self.record.is_aside) {
-            (true, true) => "k: back to the class",
-            (true, false) => "k: step aside",
-            (false, _) => "",
+        let border = match self.follows() {
+            true => "k: step aside",
+            false => "", // the title says how to come back
         };
-        let again = asked.as_ref().filter(|(predict, question)| {
-            let voted = self.record.rounds_of(&state.lesson, &predict.name);
-            question.stage != Stage::Closed && voted < question.round()
-        });
+        let of_lesson = state.questions.get(&taken.lesson.name).into_iter();
+        let round = |(name, question): (&String, &Question)| {
+            let is_closed = question.stage == Stage::Closed;
+            (name.clone(), (question.round(), is_closed))
+        };
         let shown = asked
             .as_ref()
             .filter(|(_, question)| !question.bars.is_empty());
         Dress {
-            framed: self.title(state, taken, asked.is_some()),
+            framed: self.title(taken, asked.is_some()),
             border: border.to_owned(),
             is_followed: self.follows(),
-            again: again.map(|(predict, _)| predict.name.clone()),
+            rounds: of_lesson.flatten().map(round).collect(),
             votes: shown.map(|(predict, question)| {
                 (predict.name.clone(), vec![votes::drawn(&question.bars)])
             }),
@@ -286,35 +269,49 @@ impl Student {
     }
 
     /// The title of the page, a form a line; `asks` says whether the page has a question.
-    fn title(&self, state: &State, taken: &Taken, asks: bool) -> String {
+    fn title(&self, taken: &Taken, asks: bool) -> String {
         let page = taken.place.page;
         let of = format!("{page} of {}", taken.lesson.pages.len());
+        let Some(state) = self.class() else {
+            let is_over = self.state.as_ref().is_some_and(|state| !state.is_on);
+            let gone = ["teacher's lab gone", "class over"][usize::from(is_over)];
+            return format!("{gone} · {of}");
+        };
         let on = format!("the class is on {}", state.page);
-        if self.record.is_aside {
-            format!("aside · {of} · {on}\naside on {page} · {on}")
+        if self.record.is_aside && state.shown.is_some() {
+            let short = format!("aside, k: back · {page}, class on {}", state.page);
+            format!("aside, k: back · {of} · {on}\n{short}\naside, k: back · {page}")
         } else if !self.follows() {
-            format!("{of} · {on}")
+            format!("not followed · {of} · {on}\n{of} · {on}")
         } else if state.page == page && asks {
-            let answered = format!("following · {of} · {} of {}", state.answered, state.here);
-            format!("{answered} answered\n{answered}")
+            let counts = format!("following · {of} · {}", state.answered);
+            format!("{counts} of {} answered\n{counts} answered", state.here)
         } else {
             format!("following · {of}")
         }
     }
 
     fn step_aside(&mut self, lab: &mut Lab) {
-        (self.record.is_aside, self.is_new, self.has_played) = (true, true, false);
+        (self.record.is_aside, self.is_new) = (true, true);
         self.shown = Shown::default();
         self.next_look = Duration::ZERO;
         lab.tell("you have stepped aside: k leads back to the class");
     }
 
-    /// Follows again. A run that was played meanwhile stays, pinned.
+    /// Follows again. A run of one's own that was played meanwhile stays, pinned.
     fn come_back(&mut self, lab: &mut Lab) {
         (self.record.is_aside, self.is_new) = (false, true);
-        let has_played = self.has_played && lab.player().playback.step_number() > 0;
-        if has_played && !lab.comparison().is_pinned() {
-            self.has_pinned = lab.carry_out(&Command::Pin(true)).is_ok();
+        let player = lab.player();
+        let own = player.run().scenario().to_toml();
+        let shown = self.state.as_ref().and_then(|state| state.shown.as_ref());
+        let is_own = lab.runs().is_above_floor()
+            && player.playback.step_number() > 0
+            && shown.is_some_and(|shown| shown.run != own);
+        if is_own && lab.carry_out(&Command::Pin(true)).is_ok() {
+            self.has_pinned = true;
+            let pinned =
+                "back in the class; your own run is pinned beside its run: i takes it away";
+            return lab.tell(pinned);
         }
         lab.refuse("back in the class");
     }
@@ -337,7 +334,7 @@ impl Role for Student {
 
     fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) -> ControlFlow<()> {
         let was_new = self.is_new;
-        self.note(lab, lessons);
+        self.note(lab);
         if now >= self.next_look || self.is_new && !was_new {
             self.next_look = now + EVERY;
             self.look(lab);
@@ -385,7 +382,6 @@ impl Role for Student {
         if is_other && self.follows() {
             self.step_aside(lab);
         }
-        self.has_played |= is_other && self.record.is_aside;
     }
 
     fn wait(&self, now: Duration) -> Duration {

@@ -8,6 +8,7 @@ use crate::lab::Lab;
 use crate::lab::action::LessonKey;
 use crate::lab::sheet::{Kind, Paragraph};
 use crate::lessons::page::Dress;
+use crate::lessons::taken::Taken;
 use crate::lessons::{Class as Lessons, Page};
 use crate::scenario::Scenario;
 use crate::text::printable::Shown;
@@ -75,19 +76,18 @@ impl Teacher {
         self.seats = sittings(&self.folder);
         if let Some(taken) = lessons.taken() {
             self.state.lesson.clone_from(&taken.lesson.name);
-            self.state.sum = taken.lesson.sum;
             self.state.page = taken.place.page;
             self.state.kept.clone_from(&taken.place.kept);
             self.state.has_arrived = !taken.is_under_way();
         }
         self.state.shown = self.is_followed.then(|| self.shown(lab)).flatten();
-        self.state.here = present(&self.seats)[0];
+        self.state.here = present(&self.seats).0;
         self.state.answered = 0;
         let page = lessons.taken().and_then(|taken| taken.page());
         if let Some((predict, question)) = page.and_then(|page| votes::question(page, &self.state))
         {
             let (lesson, round) = (&self.state.lesson, question.round());
-            let has_answered = |it: &&Sitting| it.record.rounds_of(lesson, &predict.name) >= round;
+            let has_answered = |it: &&Sitting| it.vote(lesson, predict, round).is_some();
             let here = self.seats.iter().filter(|sitting| sitting.is_here());
             self.state.answered = here.filter(has_answered).count();
             let tally = Tally::of(&self.seats, lesson, predict, round);
@@ -129,12 +129,15 @@ impl Teacher {
 
     /// What the class adds to the page.
     fn dress(&self, lessons: &Lessons) -> Dress {
-        let [here, lost, aside] = present(&self.seats);
+        let (here, counts) = present(&self.seats);
         let framed = lessons.taken().map(|taken| {
             let (page, pages) = (taken.place.page, taken.lesson.pages.len());
-            let counts = format!("{page} of {pages} · {here} here, {lost} lost, {aside} aside");
-            let short = format!("{page} of {pages} · {here}, {lost} lost, {aside} aside");
-            format!("{counts} · {}\n{counts}\n{short}", taken.lesson.title)
+            let of = match self.is_followed {
+                true => format!("{page} of {pages}"),
+                false => format!("not followed · {page} of {pages}"),
+            };
+            let title = &taken.lesson.title;
+            format!("{of} · {counts} · {title}\n{of} · {counts}\n{of} · {here} here")
         });
         let page = lessons.taken().and_then(|taken| taken.page());
         let border = match (self.menu, self.is_followed) {
@@ -166,7 +169,7 @@ impl Teacher {
         let tally = Tally::of(&self.seats, &self.state.lesson, predict, round);
         let seen = match question.stage {
             Stage::Counted | Stage::Teacher => "",
-            Stage::All if tally.votes < FEWEST => " · under 5 votes: not shown",
+            Stage::All if tally.votes < FEWEST => " · students see no bars: under 5 votes",
             Stage::All => " · shown",
             Stage::Closed => " · closed",
         };
@@ -178,7 +181,7 @@ impl Teacher {
         let line = format!("{counted} · {minutes}:{seconds:02}{late}{seen}");
         let mut lines = vec![Paragraph::new(Kind::Note, line)];
         if question.stage != Stage::Counted {
-            lines.push(votes::drawn(&tally.bars));
+            lines.push(tally.drawn());
             let advice = tally.advice.into_iter();
             lines.extend(advice.map(|words| Paragraph::new(Kind::Note, words)));
         }
@@ -205,24 +208,32 @@ impl Teacher {
         };
         let lines = self.entries().into_iter().enumerate().map(line);
         let title = Paragraph::new(Kind::Heading, "The seats");
-        [title].into_iter().chain(lines).collect()
+        let legend = match self.seats.is_empty() {
+            true => "No seat is taken yet.",
+            false => "[x]: closed, and Enter opens it. lost: no sign for 10 s; away: left.",
+        };
+        let legend = Paragraph::new(Kind::Hint, legend);
+        [title].into_iter().chain(lines).chain([legend]).collect()
     }
 
     /// Does what the menu has under `digit`.
-    fn choose(&mut self, digit: u8, lab: &mut Lab, page: Option<&Page>) {
+    fn choose(&mut self, digit: u8, lab: &mut Lab, taken: Option<&Taken>) {
         self.menu = Menu::Closed;
         match digit {
             1 | 2 => {
+                let page = taken.and_then(Taken::page);
                 let asked = page.and_then(|page| votes::question(page, &self.state));
                 let Some((predict, _)) = asked else {
                     return lab.refuse("this page asks nothing");
                 };
+                let is_seen = taken.is_some_and(|it| it.place.seen.contains(&predict.name));
                 let question = self.state.question_mut(&predict.name);
                 if digit == 2 {
-                    question.earlier_rounds += 1;
+                    question.earlier_rounds = question.round();
                     (question.stage, question.since_ms) = (Stage::Counted, unix_ms());
-                    return lab
-                        .refuse(format!("round {}: the class votes again", question.round()));
+                    let round = format!("round {}: the class votes again", question.round());
+                    let late = "; its outcome was seen, so votes count apart, as late";
+                    return lab.refuse(round + if is_seen { late } else { "" });
                 }
                 question.stage = match question.stage {
                     Stage::Counted => Stage::Teacher,
@@ -231,7 +242,13 @@ impl Teacher {
                     Stage::Closed => return lab.refuse("closed: k 2 asks it again"),
                 };
             }
-            3 => self.is_followed = !self.is_followed,
+            3 => {
+                self.is_followed = !self.is_followed;
+                lab.refuse(match self.is_followed {
+                    true => "the class follows",
+                    false => "the class does not follow: k 3 lets it follow again",
+                });
+            }
             4 => self.menu = Menu::Seats(0),
             _ => lab.refuse("1 shows the votes, 2 asks again, 3 lets the class follow, 4: seats"),
         }
@@ -283,8 +300,7 @@ impl Role for Teacher {
         match (self.menu, key) {
             (Menu::Closed, _) => return false,
             (Menu::Open, LessonKey::Digit(digit)) => {
-                let page = lessons.taken().and_then(|taken| taken.page());
-                self.choose(digit, lab, page);
+                self.choose(digit, lab, lessons.taken());
             }
             (Menu::Seats(selected), LessonKey::Move(direction)) => {
                 let last = self.entries().len().saturating_sub(1);

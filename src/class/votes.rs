@@ -2,12 +2,16 @@
 
 use super::Folder;
 use super::folder::{Question, Stage, State};
-use super::seat::{Presence, Record, Seat, Vote, all_seats};
+use super::seat::{Presence, Record, Seat, all_seats};
 use crate::lab::sheet::{Kind, Paragraph};
+use crate::lessons::class::KeptLessons;
 use crate::lessons::lesson::Right;
-use crate::lessons::{Asked, Page, Predict};
+use crate::lessons::predictions::{Given, Place};
+use crate::lessons::{Answer, Asked, Page, Predict, reading};
 use crate::text::number::{shortest, significant};
+use crate::text::printable::printable;
 use chrono::{DateTime, Utc};
+use std::collections::BTreeMap;
 
 /// With fewer votes no bars go to the students: who has voted what could be guessed.
 pub const FEWEST: usize = 5;
@@ -20,33 +24,52 @@ const BAR: usize = 20;
 #[derive(Clone, Debug)]
 pub struct Sitting {
     pub seat: Seat,
-    pub record: Record,
+    pub is_aside: bool,
+    pub lessons: BTreeMap<String, Place>,
     pub presence: Presence,
 }
 
 /// Every seat of the class. What cannot be read counts as a seat without votes.
 pub fn sittings(folder: &Folder) -> Vec<Sitting> {
-    let sitting = |seat: Seat| Sitting {
-        record: seat.record().unwrap_or_default(),
-        presence: seat.presence(),
-        seat,
+    let sitting = |seat: Seat| {
+        let record: Record = seat.record().unwrap_or_default();
+        Sitting {
+            is_aside: record.is_aside,
+            lessons: KeptLessons::read(&record.lessons)
+                .unwrap_or_default()
+                .lessons,
+            presence: seat.presence(),
+            seat,
+        }
     };
     all_seats(folder).into_iter().map(sitting).collect()
 }
 
-/// How many of `seats` are here, lost, and stepped aside.
-pub fn present(seats: &[Sitting]) -> [usize; 3] {
+/// How many of `seats` are here, and in words with those that are aside, lost or away.
+pub fn present(seats: &[Sitting]) -> (usize, String) {
     let count = |is_so: &dyn Fn(&Sitting) -> bool| seats.iter().filter(|it| is_so(it)).count();
-    [
-        count(&Sitting::is_here),
-        count(&|it| it.presence == Presence::Lost),
-        count(&|it| it.is_here() && it.record.is_aside),
-    ]
+    let here = count(&Sitting::is_here);
+    let others = [
+        (count(&|it| it.is_here() && it.is_aside), "of them aside"),
+        (count(&|it| it.presence == Presence::Lost), "lost"),
+        (count(&|it| it.presence == Presence::Away), "away"),
+    ];
+    let others = others.into_iter().filter(|(count, _)| *count > 0);
+    let others: String = others
+        .map(|(count, how)| format!(", {count} {how}"))
+        .collect();
+    (here, format!("{here} here{others}"))
 }
 
 impl Sitting {
     pub fn is_here(&self) -> bool {
         self.presence == Presence::Here
+    }
+
+    /// What it has answered to `of`, a question of `lesson`, in this round.
+    pub fn vote<'a>(&'a self, lesson: &str, of: &'a Predict, round: u32) -> Option<&'a Given> {
+        let place = self.lessons.get(lesson)?;
+        place.predictions.in_round(of, round)
     }
 
     /// Its word, and how it is there, as the lists of the teacher have it.
@@ -56,7 +79,7 @@ impl Sitting {
             _ if state.closed.contains(word) => "closed",
             Presence::Away => "away",
             Presence::Lost => "lost",
-            Presence::Here if self.record.is_aside => "aside",
+            Presence::Here if self.is_aside => "aside",
             Presence::Here => "here",
         };
         format!("{word}: {is_there}")
@@ -71,33 +94,43 @@ pub struct Tally {
     /// Votes in time.
     pub votes: usize,
     pub late: usize,
+    pub late_bars: Vec<(String, usize)>,
     /// What is right, how many said it, and what to do next; where the lesson says what is.
     pub advice: Option<String>,
 }
 
 impl Tally {
     pub fn of(seats: &[Sitting], lesson: &str, predict: &Predict, round: u32) -> Self {
-        let is_of_it = |vote: &&Vote| {
-            (vote.lesson.as_str(), vote.question.as_str(), vote.round)
-                == (lesson, &predict.name, round)
-        };
         let votes = seats
             .iter()
-            .filter_map(|sitting| sitting.record.votes.iter().find(is_of_it));
-        let (late, in_time): (Vec<_>, Vec<_>) = votes.partition(|vote| vote.late);
-        let choices: Vec<f64> = in_time.iter().map(|vote| vote.choice).collect();
+            .filter_map(|it| it.vote(lesson, predict, round));
+        let (late, in_time): (Vec<_>, Vec<_>) = votes.partition(|given| given.late);
+        let numbers = |given: &[&Given]| -> Vec<f64> {
+            let answers = given.iter().map(|given| &given.answer);
+            answers.filter_map(|it| predict.asked.number(it)).collect()
+        };
+        let bars = |numbers: &[f64]| match &predict.asked {
+            Asked::Choice(all) => of_choices(all.len(), numbers),
+            Asked::Number { .. } => of_numbers(numbers.to_vec()),
+        };
+        let choices = numbers(&in_time);
+        let right = predict.right.as_ref();
         Self {
             votes: choices.len(),
             late: late.len(),
-            advice: predict
-                .right
-                .as_ref()
-                .and_then(|right| advice(right, &choices)),
-            bars: match &predict.asked {
-                Asked::Choice(all) => of_choices(all.len(), &choices),
-                Asked::Number { .. } => of_numbers(choices),
-            },
+            advice: right.and_then(|right| advice(right, &choices)),
+            bars: bars(&choices),
+            late_bars: bars(&numbers(&late)),
         }
+    }
+
+    /// The bars for the teacher, those of late votes below them.
+    pub fn drawn(&self) -> Paragraph {
+        let mut text = drawn(&self.bars).text();
+        if self.late > 0 {
+            text += &format!("late:\n{}", drawn(&self.late_bars).text());
+        }
+        Paragraph::new(Kind::Code, text)
     }
 }
 
@@ -106,15 +139,15 @@ fn advice(right: &Right, choices: &[f64]) -> Option<String> {
     let all = Some(choices.len()).filter(|all| *all > 0)?;
     let percent = (100 * hits.count() + all / 2) / all;
     let next = match percent {
-        ..30 => "explain, then again",
-        30..=70 => "let them talk, then again",
+        ..30 => "explain, then ask again",
+        30..=70 => "let them talk, then ask again",
         _ => "go on",
     };
     let right = match right {
         Right::Choice(number) => number.to_string(),
         Right::Number { value, within } => format!("{} ± {}", shortest(*value), shortest(*within)),
     };
-    Some(format!("right: {right}, {percent} %: {next}"))
+    Some(format!("right is {right}, {percent} % chose it: {next}"))
 }
 
 fn of_choices(count: usize, choices: &[f64]) -> Vec<(String, usize)> {
@@ -170,22 +203,35 @@ const COLUMNS: [&str; 8] = [
     "lesson", "question", "round", "seat", "choice", "late", "page", "time",
 ];
 
-/// All votes of the class as CSV, in the order of seats, and of each seat in the order of their time.
+/// All votes of the class as CSV, in the order of seats, lessons and questions. A choice that the lesson no longer has is
+/// told in its words.
 pub fn csv(folder: &Folder) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS)?;
+    let mut read = BTreeMap::new();
     for sitting in sittings(folder) {
-        for vote in &sitting.record.votes {
-            writer.write_record([
-                folder.short(&vote.lesson),
-                &vote.question,
-                &vote.round.to_string(),
-                &sitting.seat.word,
-                &shortest(vote.choice),
-                &vote.late.to_string(),
-                &vote.page.to_string(),
-                &time(vote),
-            ])?;
+        for (name, place) in &sitting.lessons {
+            let lesson = read.entry(name.clone());
+            let lesson = lesson.or_insert_with(|| reading::open_again(name).ok());
+            for (question, given) in place.predictions.all() {
+                let predict = lesson.as_ref().and_then(|lesson| lesson.predict(question));
+                let number = predict.and_then(|predict| predict.asked.number(&given.answer));
+                let choice = match (&given.answer, number) {
+                    (Answer::Choice(words), None) => printable(words).into_owned(),
+                    (Answer::Number(number), _) => shortest(*number),
+                    (_, Some(number)) => shortest(number),
+                };
+                writer.write_record([
+                    printable(folder.short(name)).as_ref(),
+                    printable(question).as_ref(),
+                    &given.round.to_string(),
+                    &sitting.seat.word,
+                    &choice,
+                    &given.late.to_string(),
+                    &given.page.to_string(),
+                    &time(given),
+                ])?;
+            }
         }
     }
     let bytes = writer
@@ -194,8 +240,8 @@ pub fn csv(folder: &Folder) -> Result<String, csv::Error> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// The time of `vote`, as RFC 3339 writes it.
-fn time(vote: &Vote) -> String {
-    let time = DateTime::<Utc>::from_timestamp(vote.time_unix_s as i64, 0).unwrap_or_default();
+/// The time of `given`, as RFC 3339 writes it.
+fn time(given: &Given) -> String {
+    let time = DateTime::<Utc>::from_timestamp(given.time_unix_s as i64, 0).unwrap_or_default();
     time.format("%Y-%m-%dT%H:%M:%SZ").to_string()
 }

@@ -20,6 +20,7 @@ use crate::text::printable::Shown;
 use crate::tui;
 use anyhow::{Context, bail, ensure};
 use rustix::process::{Pid, Resource, Signal};
+use std::fs::{File, TryLockError};
 use std::io::{self, BufRead, IsTerminal, Read, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -58,8 +59,9 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     let confined = Confined::enter(&args.folder).with_context(|| sessions::named(&args.folder))?;
     let confined = confined.keeping_in(folder.teacher());
     let sessions = session::list(&folder.teacher())?;
+    let turn = File::open(folder.teacher())?; // held until the lab is left
     ensure!(
-        !sessions.iter().any(|session| session.is_in_use),
+        !matches!(turn.try_lock(), Err(TryLockError::WouldBlock)),
         "a class is on in {}: its board is gyrolab class --board --folder DIR",
         Shown(&folder.root)
     );
@@ -84,7 +86,9 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     };
     let page = Some((&lesson, page.min(lesson.pages.len())));
     let teacher = Box::new(Teacher::new(folder, before));
-    open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher))
+    let left = open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher));
+    drop(turn);
+    left
 }
 
 fn show_board(folder: &Folder) -> anyhow::Result<ExitCode> {
@@ -109,7 +113,7 @@ fn answers(folder: &Folder, output: &Path, force: bool, look: Look) -> anyhow::R
             if place.predictions.is_empty() {
                 continue;
             }
-            let Ok(lesson) = reading::open(&name) else {
+            let Ok(lesson) = reading::open_again(&name) else {
                 continue; // its file is gone
             };
             let mut meter = interruption.meter();
@@ -203,6 +207,9 @@ fn line() -> io::Result<Option<String>> {
         == 0
     {
         return Ok(None);
+    }
+    if bytes.len() as u64 == LONGEST_LINE {
+        stdin.skip_until(b'\n')?;
     }
     Ok(Some(String::from_utf8_lossy(&bytes).into_owned()))
 }

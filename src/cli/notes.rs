@@ -7,7 +7,7 @@ use super::progress::{self, Interrupted, Interruption, LiveLine};
 use super::sessions;
 use crate::lab::lessons_in;
 use crate::lessons::class::KeptLessons;
-use crate::lessons::clock::{self, Clock};
+use crate::lessons::clock;
 use crate::lessons::page::told;
 use crate::lessons::predictions::Place;
 use crate::lessons::{Lesson, handout, reading};
@@ -161,15 +161,6 @@ fn tell(line: Option<&LiveLine<Stdout>>, text: &str) -> io::Result<()> {
 }
 
 fn times(lesson: &Lesson, place: &Place) -> String {
-    let since = Duration::from_secs(clock::unix_s().saturating_sub(place.began_unix_s));
-    // A session of an earlier version does not know when the lesson began.
-    let first = match place.began_unix_s {
-        0 => Clock::Day,
-        _ => Clock::Up,
-    };
-    let clocks = std::iter::successors(Some(first), |clock| clock.next(lesson.minutes));
-    let all: Vec<_> = clocks
-        .map(|clock| clock.shown(since, lesson.minutes))
-        .collect();
-    all.join(" · ")
+    let since = clock::unix_s().saturating_sub(place.began_unix_s);
+    clock::shown(Duration::from_secs(since), lesson.minutes)
 }

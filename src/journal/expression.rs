@@ -168,7 +168,7 @@ impl Expression {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conjunct {
     pub holds: bool,
-    /// The left side of the comparison, where it is one that has a value.
+    /// The left side of the comparison, where it is one that has a value; of `abs(EXPRESSION - NUMBER)` the expression.
     pub left: Option<f64>,
 }
 
@@ -188,12 +188,29 @@ impl Expression {
             holds: part.value(&mut name).is_some_and(|value| value != 0.0),
             left: match part {
                 Node::Computed(operator, left, _) if operator.power == COMPARES => {
-                    left.value(&mut name)
+                    left.off_by().unwrap_or(left).value(&mut name)
                 }
                 _ => None,
             },
         };
         parts.into_iter().rev().map(conjunct).collect()
+    }
+}
+
+impl Node {
+    /// The expression in `abs(EXPRESSION - NUMBER)`.
+    fn off_by(&self) -> Option<&Self> {
+        let Self::Absolute(inside) = self else {
+            return None;
+        };
+        match inside.as_ref() {
+            Self::Computed(Operator { name: "-", .. }, left, right)
+                if matches!(**right, Self::Number(_)) =>
+            {
+                Some(left)
+            }
+            _ => None,
+        }
     }
 }
 
@@ -452,7 +469,8 @@ mod tests {
 
     #[test]
     fn a_condition_is_taken_apart() {
-        let that = "t_s >= 5 and (tilt_deg < 0 and 1 < 2) and abs(tilt_deg) < 2";
+        let that =
+            "t_s >= 5 and (tilt_deg < 0 and 1 < 2) and abs(tilt_deg) < 2 and abs(tilt_deg - 1) < 2";
         let parts = Expression::parse(that)
             .unwrap()
             .conjuncts(|name| match name {
@@ -462,7 +480,12 @@ mod tests {
         let parts: Vec<_> = parts.iter().map(|part| (part.holds, part.left)).collect();
         assert_eq!(
             parts,
-            [(false, Some(4.0)), (true, None), (false, Some(3.0))]
+            [
+                (false, Some(4.0)),
+                (true, None),
+                (false, Some(3.0)),
+                (false, Some(-3.0))
+            ]
         );
     }
 

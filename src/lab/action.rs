@@ -115,7 +115,7 @@ pub enum LessonKey {
     Move(Direction),
     /// Gives the selected answer, asks for a number, or opens the selected lesson.
     Take,
-    /// Asks for a number that begins with this digit.
+    /// Marks the answer of this number, or asks for a number that begins with this digit.
     Digit(u8),
 }
 

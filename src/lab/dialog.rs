@@ -304,11 +304,7 @@ impl Dialog {
                 let Estimate { rows, bytes } = exporting::estimate(scenario, every);
                 let rows = format!("{} rows, about {}", HumanCount(rows), DecimalBytes(bytes));
                 let every = "every 10 writes each tenth row, and the last".to_owned();
-                let name = self.form.text(0).trim();
-                let is_plain = !name.is_empty() && !name.contains('/') && !name.contains(".csv");
-                let lacks = "without .csv: gyrolab run takes it as ./NAME only".to_owned();
-                let lines = [rows, every].into_iter();
-                lines.chain(is_plain.then_some(lacks)).collect()
+                vec![rows, every]
             }
             Err(reason) => vec![reason],
         };

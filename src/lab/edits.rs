@@ -323,7 +323,7 @@ impl Edits {
     /// Undoes the last act, or does the last undone one again.
     fn turn(&mut self, way: Way, player: &Player) -> Edited {
         if way == Way::Undo && self.runs.is_at_floor() {
-            return Err("nothing to undo: the page began here; N turns back".into());
+            return Err("nothing to undo: the page began here".into());
         }
         self.leave(player);
         let [nothing, done, run, other_way] = match way {

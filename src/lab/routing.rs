@@ -344,7 +344,11 @@ impl Lab {
             (false, false) => {
                 self.script.pause(&self.player, self.now);
                 self.one(Command::Pause);
-                self.tell(format!("paused: {}", self.script.left_in_words()));
+                let is_of_page = self.view.sheet.as_ref().is_some_and(|sheet| sheet.plays);
+                self.tell(match is_of_page {
+                    true => "paused: space goes on".to_owned(),
+                    false => format!("paused: {}", self.script.left_in_words()),
+                });
             }
             (true, _) if self.player.is_moving() => self.one(Command::Pause),
             (true, _) => self.one(Command::Run),

@@ -104,6 +104,11 @@ impl Runs {
         self.floor == Some(self.depth())
     }
 
+    /// Whether more was done to the runs since undo was kept from taking back what there was.
+    pub fn is_above_floor(&self) -> bool {
+        self.floor.is_some_and(|floor| floor != self.depth())
+    }
+
     /// How the present run differs from the scenario as it was opened, in words; `None` where it does not.
     pub fn changed_from_file(&self) -> Option<&str> {
         self.changed_from_file.as_deref()

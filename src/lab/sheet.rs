@@ -11,8 +11,8 @@ pub struct Sheet {
     pub seen: Option<(usize, usize)>,
     /// Whether a run is played before the rest of the sheet comes: where there is room for one pane, both share it.
     pub plays: bool,
-    /// Whether a number is asked for: a digit begins to type it.
-    pub asks_number: bool,
+    /// Whether a digit is an answer, or begins one, rather than a count.
+    pub takes_digits: bool,
     /// What Enter does here, in one word; empty where it does nothing.
     pub enter: &'static str,
     pub has_next: bool,

@@ -94,11 +94,6 @@ pub(super) fn setup(
             continue;
         };
         match Command::new(name, &value) {
-            Err(_) if name == RUN_UNTIL && names_kept(&value, names) => {
-                let rule =
-                    "names a number that the lesson has kept: here stand numbers of the run alone";
-                content.refuse(Problem::with_value(name, &value, rule));
-            }
             Ok(command) => commands.push(Placed {
                 command,
                 line: Some(content.line_of(name)),
@@ -118,11 +113,6 @@ pub(super) fn setup(
         commands,
         keep,
     })
-}
-
-fn names_kept(value: &Value, names: &Names) -> bool {
-    let read = value.as_str().and_then(|text| Expression::parse(text).ok());
-    read.is_some_and(|expression| expression.names().any(|name| names.is_kept(name)))
 }
 
 fn keep(content: &mut Content, names: &mut Names, page: usize, known_from: usize) -> Vec<Keep> {

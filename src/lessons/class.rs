@@ -2,7 +2,7 @@
 
 use super::page::Dress;
 use super::predictions::Place;
-use super::taken::{Followed, Taken, Voted};
+use super::taken::{Followed, Taken};
 use super::{page, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
@@ -118,14 +118,10 @@ impl Class {
     /// Takes the lesson that NAME names, where it was left.
     fn take(&mut self, name: &str, lab: &mut Lab) -> Result<(), String> {
         let name = reading::full_name(name);
-        let lesson = match shipped::find(&name) {
-            Some(_) => reading::open(&name),
-            None if !reading::is_file_name(&name) => reading::open(&name), // says which there are
-            None => {
-                lab.files().admit_reading(Path::new(&name))?;
-                reading::read_again(Path::new(&name))
-            }
-        };
+        if reading::is_file_name(&name) {
+            lab.files().admit_reading(Path::new(&name))?;
+        }
+        let lesson = reading::open_again(&name);
         let lesson = lesson.map_err(|problems| problems.to_string())?;
         self.leave(lab);
         let place = self.left.remove(&lesson.name).unwrap_or_default();
@@ -166,7 +162,7 @@ impl Class {
                 lab.refuse(text);
             }
             (_, LessonKey::Leave) => {
-                lab.refuse("nothing to close: L lists the lessons, Esc there leaves them; q quits");
+                lab.refuse("nothing to close here");
             }
             (Shown::List { selected, .. }, LessonKey::Move(direction)) => {
                 let last = names.len().saturating_sub(1);
@@ -219,7 +215,7 @@ impl Class {
     pub fn set_dress(&mut self, dress: Dress, lab: &mut Lab) {
         if let Shown::Lesson(taken) = &mut self.shown {
             taken.was_asked |= dress.is_of_teacher;
-            taken.again.clone_from(&dress.again);
+            taken.rounds.clone_from(&dress.rounds);
             if !dress.is_followed {
                 taken.unfollow();
             }
@@ -247,14 +243,6 @@ impl Class {
         Ok(())
     }
 
-    /// The answers that were locked since this was last called.
-    pub fn take_votes(&mut self) -> Vec<Voted> {
-        match &mut self.shown {
-            Shown::Lesson(taken) => std::mem::take(&mut taken.votes),
-            _ => Vec::new(),
-        }
-    }
-
     /// Takes `number` as the answer to the question that was asked last.
     pub fn answer(&mut self, number: f64, lab: &mut Lab) {
         if let Shown::Lesson(taken) = &mut self.shown {
@@ -274,7 +262,7 @@ impl Class {
             return;
         };
         let is_new = taken.advance(now, lab);
-        if is_new || self.has_changed || lab.has_changed() || (second && taken.clock.is_some()) {
+        if is_new || self.has_changed || lab.has_changed() || (second && taken.shows_notes) {
             self.show(lab);
         }
     }

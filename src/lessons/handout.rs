@@ -170,9 +170,9 @@ fn room_for(predict: &Predict, lab: &Lab, kept: &Kept) -> String {
 /// The question `ask` with a box for each choice, or room for a number.
 fn asked(predict: &Predict, ask: &str) -> String {
     let room: Vec<_> = match &predict.asked {
-        Asked::Choice(choices) => choices
-            .iter()
-            .map(|choice| format!("- [ ] {choice}"))
+        Asked::Choice(choices) => (1..)
+            .zip(choices)
+            .map(|(number, choice)| format!("- [ ] {number} {choice}"))
             .collect(),
         Asked::Number { unit } => vec![format!("{BLANK} {unit}").trim_end().to_owned()],
     };
@@ -253,23 +253,15 @@ fn answers_of(lesson: &Lesson, page: &Page, place: &Place, walk: &Walk<'_>) -> V
 /// The question with what was predicted; nothing where nothing was.
 fn predicted(predict: &Predict, place: &Place, walk: &Walk<'_>) -> Option<String> {
     let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
-    let answer = place.predictions.answer(&predict.name)?;
-    let answer = answer.in_words(predict);
-    let late = if place.late.contains(&predict.name) {
-        " (locked after its outcome was seen)"
-    } else {
-        ""
-    };
-    Some(format!(
-        "**Question.** {ask}\n\n**Predicted.** {answer}{late}"
-    ))
+    let answer = place.predictions.in_words(predict)?;
+    Some(format!("**Question.** {ask}\n\n**Predicted.** {answer}"))
 }
 
 /// What came out; nothing where nothing was predicted: it would give the answer away.
 fn came_out(lesson: &Lesson, compare: &Compare, place: &Place, walk: &Walk<'_>) -> Option<String> {
-    place.predictions.answer(&compare.prediction)?;
-    let text = compare.filled(lesson, &place.predictions, &walk.lab, &walk.kept);
     let predict = lesson.predict(&compare.prediction)?;
+    place.predictions.to(predict).next()?;
+    let text = compare.filled(lesson, &place.predictions, &walk.lab, &walk.kept);
     let choice = match (&predict.asked, &predict.right) {
         (Asked::Choice(choices), Some(Right::Choice(right))) => choices.get(right - 1),
         _ => None,

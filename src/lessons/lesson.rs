@@ -11,9 +11,8 @@ use serde::{Deserialize, Serialize};
 pub struct Lesson {
     /// The name of a shipped lesson, or the file as the user named it.
     pub name: String,
-    /// The file that messages name, and the checksum of its text.
+    /// The file that messages name.
     pub origin: String,
-    pub sum: u32,
     /// Its level-1 heading.
     pub title: String,
     /// What it is about, one line; empty where the file does not say it.
@@ -272,11 +271,18 @@ impl Setup {
 }
 
 impl Asked {
-    pub fn takes(&self, answer: &Answer) -> bool {
+    /// `answer` as a number, such as that of its choice from 1; `None` where it is no answer to this.
+    pub fn number(&self, answer: &Answer) -> Option<f64> {
         match (self, answer) {
-            (Self::Choice(choices), Answer::Choice(choice)) => choices.contains(choice),
-            (Self::Number { .. }, Answer::Number(number)) => number.is_finite(),
-            _ => false,
+            (Self::Number { .. }, Answer::Number(number)) => Some(*number),
+            (Self::Choice(all), Answer::Choice(words)) => {
+                Some(all.iter().position(|choice| choice == words)? as f64 + 1.0)
+            }
+            _ => None,
         }
+    }
+
+    pub fn takes(&self, answer: &Answer) -> bool {
+        self.number(answer).is_some_and(f64::is_finite)
     }
 }

@@ -149,11 +149,4 @@ mod tests {
             [plain, Emphasis::Strong, plain, Emphasis::Code, plain]
         );
     }
-
-    #[test]
-    fn questions_stay_questions() {
-        let read = paragraphs("Does it **fall**?", &Kind::Question);
-        assert_eq!(read.len(), 1);
-        assert_eq!(read[0].kind, Kind::Question);
-    }
 }

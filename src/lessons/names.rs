@@ -58,7 +58,7 @@ impl Names {
         self.open_from.get_or_insert(page);
     }
 
-    pub(super) fn is_kept(&self, name: &str) -> bool {
+    fn is_kept(&self, name: &str) -> bool {
         self.kept.iter().any(|(known, _)| known == name)
     }
 

@@ -2,7 +2,7 @@
 
 use super::lesson::{Asked, Block, Check, Compare, Lesson, Page, Predict};
 use super::markdown::paragraphs;
-use super::predictions::Place;
+use super::predictions::{Place, Tried, without};
 use super::taken::Taken;
 use super::text::Text;
 use super::{names, reading, shipped};
@@ -27,8 +27,8 @@ pub struct Dress {
     pub asks_digit: bool,
     /// Whether the class is followed.
     pub is_followed: bool,
-    /// The question that is asked once more, though its prediction is locked.
-    pub again: Option<String>,
+    /// The present rounds of the class's questions, by their names, and whether they are closed.
+    pub rounds: BTreeMap<String, (u32, bool)>,
     /// What stands below the question of this name.
     pub votes: Option<(String, Vec<Paragraph>)>,
     /// What stands there instead of the page.
@@ -43,7 +43,7 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
         ..Sheet::default()
     };
     for (index, name) in names.iter().enumerate() {
-        let lesson = reading::open(name).ok();
+        let lesson = reading::open_again(name).ok();
         let title = lesson.as_ref().map_or(name, |lesson| &lesson.title);
         let minutes = lesson.as_ref().and_then(|lesson| lesson.minutes);
         let minutes = minutes.map_or(String::new(), |minutes| format!(", {minutes} min"));
@@ -89,7 +89,7 @@ pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> S
             framed: dress.framed.clone(),
             border: dress.border.clone(),
             title: format!("{page} of {pages} · {}", lesson.title),
-            has_next: page < pages,
+            has_next: page < pages && !dress.is_followed,
             plays: taken.plays(),
             ..Sheet::default()
         },
@@ -100,7 +100,7 @@ pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> S
     }
     writer.notes(now);
     writer.page();
-    writer.sheet.asks_number |= dress.asks_digit;
+    writer.sheet.takes_digits |= dress.asks_digit;
     writer.sheet
 }
 
@@ -177,6 +177,11 @@ impl Writer<'_> {
                         None if self.taken.is_under_way() => text.filled(|_, _| SOON.to_owned()),
                         None => text.with_numbers(self.lab, &self.taken.place.kept),
                     };
+                    // Who follows is not told the keys that leave the class.
+                    let source = match self.dress.is_followed {
+                        true => without("`space`", &source),
+                        false => source,
+                    };
                     self.extend(paragraphs(&source, &Kind::Text));
                 }
                 Block::Predict(predict) => {
@@ -207,9 +212,16 @@ impl Writer<'_> {
     /// What is to be reached, each part with whether it holds now and the number that decides it.
     fn goals(&mut self, check: &Check) {
         let first = self.sheet.paragraphs.len();
-        let is_reached = self.taken.has_reached(check.line);
+        let page = self.taken.page();
+        let tried = page.and_then(|page| self.taken.place.tasks.get(&page.heading));
+        let was_done = matches!(tried, Some(Tried::Done | Tried::DoneAfterHint));
+        let is_reached = was_done || self.taken.has_reached(check.line);
         if is_reached || check.goals.len() < 2 {
-            let state = if is_reached { "done" } else { "not yet" };
+            let state = match (was_done, is_reached) {
+                (true, _) => Tried::words(tried),
+                (false, true) => "done",
+                (false, false) => "not yet",
+            };
             let all = [&[state.to_owned()][..], &[check.goals.join(", ")]];
             let words = all.concat().into_iter().filter(|words| !words.is_empty());
             let text = words.collect::<Vec<_>>().join(": ");
@@ -219,7 +231,7 @@ impl Writer<'_> {
             let parts = check.that.conjuncts(|name| names::number(name, lab, kept));
             for (goal, part) in check.goals.iter().zip(parts) {
                 let now = part.left.filter(|_| !part.holds);
-                let now = now.map(|now| format!(" (now {})", number::significant(now, 2)));
+                let now = now.map(|now| format!(" (now {})", number::significant(now, 4)));
                 let is_reached = part.holds;
                 let text = goal.clone() + &now.unwrap_or_default();
                 self.add(Paragraph::new(Kind::Goal { is_reached }, text));
@@ -243,7 +255,9 @@ impl Writer<'_> {
             None => compare.filled(lesson, &place.predictions, self.lab, &place.kept),
         };
         self.extend(paragraphs(&source, &Kind::Result));
-        if place.predictions.answer(&compare.prediction).is_none() {
+        let predict = lesson.predict(&compare.prediction);
+        let is_missing = predict.is_some_and(|predict| !place.predictions.is_locked(predict));
+        if is_missing && !self.dress.is_of_teacher {
             let pages = &mut lesson.pages.iter();
             if let Some(page) = pages.find(|page| page.asks(&compare.prediction)) {
                 let text = format!("You predicted nothing: page {} asks for it.", page.number);
@@ -260,28 +274,25 @@ impl Writer<'_> {
         let ask = predict.ask.with_numbers(self.lab, kept);
         self.extend(paragraphs(&ask, &Kind::Question));
         let is_open = self.taken.is_open(predict);
-        let given = place.predictions.answer(&predict.name);
-        let given = given.map(|answer| answer.in_words(predict));
-        match &predict.asked {
-            Asked::Choice(choices) => {
-                for (index, choice) in choices.iter().enumerate() {
-                    let is_selected = is_open && self.taken.selected == Some(index);
-                    let kind = Kind::Choice {
-                        is_selected,
-                        is_given: is_selected && self.taken.is_marked
-                            || !is_open && given.as_deref() == Some(choice),
-                    };
-                    self.add(Paragraph::new(kind, choice.clone()));
-                }
-            }
-            Asked::Number { .. } if is_open => {}
-            Asked::Number { .. } => {
-                let text = format!("you said: {}", given.unwrap_or_default());
-                self.add(Paragraph::new(Kind::Text, text));
+        let given = place.predictions.to(predict).next_back();
+        let given = given.filter(|_| !is_open).map(|given| &given.answer);
+        let pointed = self.taken.pointed.get(&predict.name);
+        let (at, is_marked) = pointed.filter(|_| is_open).copied().unzip();
+        if let Asked::Choice(choices) = &predict.asked {
+            for (index, choice) in choices.iter().enumerate() {
+                let is_selected = at == Some(index);
+                let is_locked = given.is_some_and(|given| given.in_words(predict) == *choice);
+                let kind = Kind::Choice {
+                    is_selected,
+                    is_given: is_locked || is_selected && is_marked == Some(true),
+                };
+                let text = format!("{} {choice}", index + 1);
+                self.add(Paragraph::new(kind, text));
             }
         }
+        self.rounds_of(predict);
         if is_open {
-            self.keys_of(predict);
+            self.keys_of(predict, is_marked == Some(true));
         }
         // The question that is open now, or the last one where none is.
         if is_open || self.taken.has_answered {
@@ -290,13 +301,32 @@ impl Writer<'_> {
         self.is_seen_from(first);
     }
 
+    /// Says what was locked, and whether a class asks for another answer.
+    fn rounds_of(&mut self, predict: &Predict) {
+        let said = self.taken.place.predictions.in_words(predict);
+        let round = self
+            .taken
+            .rounds
+            .get(&predict.name)
+            .map_or(1, |round| round.0);
+        let text = match (said, self.taken.is_open(predict)) {
+            (said, true) if round > 1 => {
+                let said = said.map_or(String::new(), |said| format!(" You said: {said}."));
+                format!("Round {round}: your teacher asks again.{said}")
+            }
+            (Some(said), false) => format!("Locked: {said}."),
+            _ => return,
+        };
+        self.add(Paragraph::new(Kind::Hint, text));
+    }
+
     /// Says which keys answer `predict`.
-    fn keys_of(&mut self, predict: &Predict) {
+    fn keys_of(&mut self, predict: &Predict, is_marked: bool) {
         self.sheet.enter = "answer";
-        self.sheet.asks_number = matches!(predict.asked, Asked::Number { .. });
+        self.sheet.takes_digits = true;
         let keys = match &predict.asked {
-            Asked::Choice(_) if self.taken.is_marked => "Enter again locks it.",
-            Asked::Choice(_) => "Up, Down choose; Enter marks.",
+            Asked::Choice(_) if is_marked => "Enter again locks it.",
+            Asked::Choice(_) => "A number marks, or Up, Down, Enter.",
             Asked::Number { .. } => "Type your prediction.",
         };
         self.add(Paragraph::new(Kind::Hint, keys));
@@ -306,6 +336,8 @@ impl Writer<'_> {
         let has_task = self.taken.page().is_some_and(|page| page.task().is_some());
         let is_last = page == self.taken.lesson.pages.len();
         let text = match (self.taken.is_under_way(), has_task, is_last) {
+            (_, true, _) if self.dress.is_followed => "k steps aside to try it; h: a hint.",
+            _ if self.dress.is_followed => return,
             _ if self.taken.has_left() => "b: the page again; n goes on.",
             _ if self.taken.plays() => "The run plays: space stops it, n goes to its end.",
             (true, ..) => "The run is on its way; space pauses it.",

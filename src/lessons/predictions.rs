@@ -9,26 +9,42 @@ use crate::text::number;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The locked predictions of one lesson, by their names. As TOML it is a table: `finer = "stays as it is"`, `lag = 3.5`.
+/// The locked answers of one lesson, by the names of their questions, in the order in which they were given.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Predictions {
-    locked: BTreeMap<String, Answer>,
+    locked: BTreeMap<String, Vec<Given>>,
+}
+
+/// An answer that was locked: the vote of a round of a class, or the prediction of one who is in none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Given {
+    /// From 1; without a class it is 1.
+    pub round: u32,
+    pub answer: Answer,
+    /// Whether the outcome had been seen, or the question was closed.
+    pub late: bool,
+    /// The page that was open, from 1.
+    pub page: usize,
+    /// Seconds since 1970 (UTC).
+    pub time_unix_s: u64,
 }
 
 impl Predictions {
-    /// Locks `answer` as the answer to `predict`.
+    /// Locks `given` as an answer to `predict`.
     ///
     /// # Errors
-    /// When it is locked already, or is no answer to it; nothing has changed then.
-    pub fn lock(&mut self, predict: &Predict, answer: Answer) -> Result<(), String> {
-        if self.is_locked(predict) {
+    /// When one is locked already in its round, or it is no answer to it; nothing has changed then.
+    pub fn lock(&mut self, predict: &Predict, given: Given) -> Result<(), String> {
+        if self.in_round(predict, given.round).is_some() {
             return Err("is locked already: a prediction is not changed".to_owned());
         }
-        if !predict.asked.takes(&answer) {
+        if !predict.asked.takes(&given.answer) {
             return Err("is no answer to this question".to_owned());
         }
-        self.locked.insert(predict.name.clone(), answer);
+        let all = self.locked.entry(predict.name.clone()).or_default();
+        all.retain(|other| other.round != given.round);
+        all.push(given);
         Ok(())
     }
 
@@ -36,14 +52,42 @@ impl Predictions {
         self.locked.is_empty()
     }
 
-    pub fn answer(&self, name: &str) -> Option<&Answer> {
-        self.locked.get(name)
+    /// All of them, each with the name of its question.
+    pub fn all(&self) -> impl Iterator<Item = (&String, &Given)> {
+        let locked = self.locked.iter();
+        locked.flat_map(|(name, all)| all.iter().map(move |given| (name, given)))
     }
 
-    /// Whether `predict` is answered. An answer that it no longer takes, as the file was changed, does not count.
+    /// The answers to `predict`. One that it no longer takes, as the file was changed, does not count.
+    pub fn to<'a>(&'a self, predict: &'a Predict) -> impl DoubleEndedIterator<Item = &'a Given> {
+        let all = self.locked.get(&predict.name).into_iter().flatten();
+        all.filter(|given| predict.asked.takes(&given.answer))
+    }
+
+    pub fn in_round<'a>(&'a self, predict: &'a Predict, round: u32) -> Option<&'a Given> {
+        self.to(predict).find(|given| given.round == round)
+    }
+
+    /// Whether `predict` is answered, in whatever round.
     pub fn is_locked(&self, predict: &Predict) -> bool {
-        let answer = self.answer(&predict.name);
-        answer.is_some_and(|answer| predict.asked.takes(answer))
+        self.to(predict).next().is_some()
+    }
+
+    /// The answers to `predict` in words, with their rounds where there are several; `None` where there is none.
+    pub fn in_words(&self, predict: &Predict) -> Option<String> {
+        let has_rounds = self.to(predict).any(|given| given.round > 1);
+        let said = |given: &Given| {
+            let late = given.late.then(|| LATE.to_owned());
+            let round = has_rounds.then(|| format!("round {}", given.round));
+            let about: Vec<_> = round.into_iter().chain(late).collect();
+            let words = given.answer.in_words(predict);
+            match about.is_empty() {
+                true => words,
+                false => format!("{words} ({})", about.join(", ")),
+            }
+        };
+        let all: Vec<_> = self.to(predict).map(said).collect();
+        (!all.is_empty()).then(|| all.join(", "))
     }
 
     /// The predictions of `page` that are not locked yet.
@@ -81,12 +125,6 @@ impl Answer {
 }
 
 impl Compare {
-    /// The prediction in words; `None` if there is none.
-    pub fn predicted(&self, lesson: &Lesson, predictions: &Predictions) -> Option<String> {
-        let predict = lesson.predict(&self.prediction)?;
-        Some(predictions.answer(&self.prediction)?.in_words(predict))
-    }
-
     pub fn came_out(&self, lab: &Lab, kept: &Kept) -> Option<f64> {
         value(self.with.as_ref()?, lab, kept)
     }
@@ -101,7 +139,8 @@ impl Compare {
         kept: &Kept,
     ) -> String {
         let with = self.came_out(lab, kept);
-        let predicted = self.predicted(lesson, predictions);
+        let predict = lesson.predict(&self.prediction);
+        let predicted = predict.and_then(|predict| predictions.in_words(predict));
         let text = self.text.filled(|expression, format: Format| {
             if expression.text().trim() == PREDICTION {
                 return predicted.clone().unwrap_or_else(|| NOTHING.to_owned());
@@ -120,13 +159,15 @@ impl Compare {
 }
 
 /// `text` without the sentences that have `part`; all of it where nothing else would be left.
-fn without(part: &str, text: &str) -> String {
+pub(super) fn without(part: &str, text: &str) -> String {
     let mut rest = text;
     let mut kept = String::new();
     while !rest.is_empty() {
         let (sentence, others) = rest.split_at(end_of_sentence(rest));
         if !sentence.contains(part) {
             kept.push_str(sentence);
+        } else if sentence.ends_with("\n\n") {
+            kept.push_str("\n\n");
         }
         rest = others;
     }
@@ -134,17 +175,20 @@ fn without(part: &str, text: &str) -> String {
     if kept.is_empty() { text } else { kept }.to_owned()
 }
 
-/// Where the first sentence of `text` ends, the blanks after it counted in.
+/// Where the first sentence of `text` ends, the blanks after it counted in. An entry of a list counts as one.
 fn end_of_sentence(text: &str) -> usize {
     let stops = text.match_indices(['.', '!', '?']);
     let mut after = stops.map(|(at, stop)| at + stop.len());
     let end = after.find(|&after| text[after..].starts_with(char::is_whitespace));
-    end.map_or(text.len(), |end| {
+    let entry = text.find("\n- ").map(|line_end| line_end + 1);
+    let end = end.map_or(text.len(), |end| {
         let blanks = text[end..].find(|c: char| !c.is_whitespace());
         blanks.map_or(text.len(), |blanks| end + blanks)
-    })
+    });
+    entry.map_or(end, |entry| entry.min(end))
 }
 
+const LATE: &str = "after its outcome was seen";
 /// Stands for a prediction that was not made.
 const NOTHING: &str = "…";
 
@@ -184,11 +228,9 @@ pub struct Place {
     /// What the page states of the run that its lesson stands on, by lines of the file: it stays while the student plays.
     #[serde(default)]
     pub stated: Option<BTreeMap<String, String>>,
-    /// The predictions whose outcome was seen, and those that were locked after that.
+    /// The predictions whose outcome was seen.
     #[serde(default)]
     pub seen: BTreeSet<String>,
-    #[serde(default)]
-    pub late: BTreeSet<String>,
     /// How far the student got with the tasks, by the headings of their pages.
     #[serde(default)]
     pub tasks: BTreeMap<String, Tried>,

@@ -5,7 +5,9 @@
 //! `text`, `sh`, `toml`, `csv`, `python`, `matlab` and no word at all are shown as they are, and another word is refused.
 //! An HTML comment on lines of its own is no part of the lesson.
 
-pub use super::opening::{LONGEST, full_name, is_file_name, open, read_again, read_file};
+pub use super::opening::{
+    LONGEST, full_name, is_file_name, open, open_again, read_again, read_file,
+};
 
 use super::blocks::{self, Reader};
 use super::lesson::{Block, Compare, Lesson, Page, Setup, Shown};
@@ -36,7 +38,6 @@ pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
     let mut assembly = Assembly::default();
     assembly.lesson.origin = origin.to_owned();
     assembly.lesson.name = origin.to_owned();
-    assembly.lesson.sum = crc32fast::hash(text.as_bytes());
     assembly.read_setups(&elements);
     for element in &elements {
         assembly.add(element);

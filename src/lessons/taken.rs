@@ -3,8 +3,8 @@
 mod keys;
 
 use super::Kept;
-use super::clock::{self, Clock};
-use super::lesson::{Answer, Block, Compare, Lesson, Page, Predict};
+use super::clock;
+use super::lesson::{Block, Compare, Lesson, Page, Predict};
 use super::names::value;
 use super::predictions::{Place, Tried};
 use super::stage::Stage;
@@ -28,10 +28,9 @@ pub struct Taken {
     /// Its file, where it does not come with the program.
     watch: Option<Watch>,
     pub place: Place,
-    /// The answer of the open question that the keys point at, from 0; at first none.
-    pub selected: Option<usize>,
-    /// Whether Enter has marked it: another Enter locks it.
-    pub is_marked: bool,
+    /// By the names of open questions: the choice that the keys point at, from 0, and whether it is marked, so that Enter
+    /// locks it.
+    pub pointed: BTreeMap<String, (usize, bool)>,
     /// Whether an answer on this page was given.
     pub has_answered: bool,
     /// The lines of the checks of this page that have held.
@@ -41,39 +40,28 @@ pub struct Taken {
     /// Whether the hints of the page's checks are shown.
     pub shows_hints: bool,
     under_way: Option<UnderWay>,
-    /// In a class that is followed: whether its run has arrived where the page wants it, and the checksum of its lesson.
-    pub(super) follows: Option<(bool, u32)>,
-    /// The question that is asked once more, though it is answered.
-    pub(super) again: Option<String>,
-    /// The answers that were locked, until they are read.
-    pub(super) votes: Vec<Voted>,
+    /// In a class that is followed: whether its run has arrived where the page wants it.
+    pub(super) follows: Option<bool>,
+    /// The present rounds of the class's questions, by their names, and whether they are closed.
+    pub(super) rounds: BTreeMap<String, (u32, bool)>,
     /// Whether turning the page was refused once, because a prediction is open.
     pub(super) was_asked: bool,
-    /// The clock, where the teacher's notes are shown.
-    pub clock: Option<Clock>,
+    /// Whether the teacher's notes and the clock are shown.
+    pub shows_notes: bool,
     /// When the lesson was opened in this lab, on the clock of the lab.
     since: Duration,
     /// How long before that it was opened first.
     gone_before: Duration,
 }
 
-/// What a class that is followed shows of a lesson: its name and checksum, the page, the numbers that were kept, and
-/// whether its run has arrived where the page wants it.
+/// What a class that is followed shows of a lesson: its name, the page, the numbers that were kept, and whether its run
+/// has arrived where the page wants it.
 #[derive(Clone, Copy, Debug)]
 pub struct Followed<'a> {
     pub lesson: &'a str,
-    pub sum: u32,
     pub page: usize,
     pub kept: &'a Kept,
     pub has_arrived: bool,
-}
-
-/// An answer that was locked to the question of this name, and whether its outcome had been seen.
-#[derive(Clone, Debug)]
-pub struct Voted {
-    pub question: String,
-    pub answer: Answer,
-    pub is_late: bool,
 }
 
 /// A block of a page that the lab carries out.
@@ -100,18 +88,16 @@ impl Taken {
             lesson: Arc::new(lesson),
             watch,
             place,
-            selected: None,
-            is_marked: false,
+            pointed: BTreeMap::new(),
             has_answered: false,
             reached: BTreeSet::new(),
             stands: None,
             shows_hints: false,
             under_way: None,
             follows: None,
-            again: None,
-            votes: Vec::new(),
+            rounds: BTreeMap::new(),
             was_asked: false,
-            clock: None,
+            shows_notes: false,
             since: now,
             gone_before,
         }
@@ -132,23 +118,23 @@ impl Taken {
             .find(|predict| self.is_open(predict))
     }
 
-    /// Whether an answer to `predict` is wanted: it is not locked, or it is asked once more.
+    /// Whether an answer to `predict` is wanted: there is none, or none of the round that a class is at.
     pub fn is_open(&self, predict: &Predict) -> bool {
-        !self.place.predictions.is_locked(predict) || self.again.as_ref() == Some(&predict.name)
+        let predictions = &self.place.predictions;
+        let is_wanted = |(round, is_closed): &(u32, bool)| {
+            !is_closed && predictions.in_round(predict, *round).is_none()
+        };
+        let round = self.rounds.get(&predict.name);
+        !predictions.is_locked(predict) || round.is_some_and(is_wanted)
     }
 
     /// Shows the page of `class` without touching the run. Returns whether that is new.
     pub(super) fn follow(&mut self, class: &Followed<'_>) -> bool {
         let page = class.page.clamp(1, self.lesson.pages.len().max(1));
-        let before = self.follows.replace((class.has_arrived, class.sum));
+        let before = self.follows.replace(class.has_arrived);
         let is_new = self.place.page != page || before.is_none();
         if is_new {
             self.turn_to(page);
-        }
-        // The teacher has read the file anew: so does this lab, once.
-        let is_edited = class.sum != self.lesson.sum && before.map(|it| it.1) != Some(class.sum);
-        if let Some(watch) = self.watch.as_mut().filter(|_| is_edited) {
-            watch.look_again();
         }
         self.place.kept.extend(class.kept.clone());
         is_new
@@ -156,7 +142,7 @@ impl Taken {
 
     /// Goes on without the class. Where its run had not arrived, the page is left as if its own run had been.
     pub(super) fn unfollow(&mut self) {
-        let is_left = matches!(self.follows.take(), Some((false, _))) && self.is_under_way();
+        let is_left = self.follows.take() == Some(false) && self.is_under_way();
         self.under_way = is_left.then_some(UnderWay::Left).or(self.under_way);
     }
 
@@ -202,8 +188,8 @@ impl Taken {
 
     pub fn time(&self, now: Duration) -> Option<String> {
         let since = now.saturating_sub(self.since) + self.gone_before;
-        self.clock
-            .map(|clock| clock.shown(since, self.lesson.minutes))
+        self.shows_notes
+            .then(|| clock::shown(since, self.lesson.minutes))
     }
 
     /// Turns to the page `page` (from 1), or stays, and makes the lab stand there.
@@ -301,8 +287,8 @@ impl Taken {
 
     fn turn_to(&mut self, page: usize) {
         self.place.page = page;
-        (self.selected, self.was_asked, self.under_way) = (None, false, None);
-        (self.is_marked, self.has_answered, self.shows_hints) = (false, false, false);
+        (self.was_asked, self.under_way) = (false, None);
+        (self.has_answered, self.shows_hints) = (false, false);
         self.place.stated = None;
         self.place.has_ended |= page == self.lesson.pages.len();
         self.reached.clear();
@@ -333,7 +319,7 @@ impl Taken {
 
     /// States the page's numbers once the run has arrived.
     fn state(&mut self, lab: &Lab) -> bool {
-        let has_arrived = self.follows.is_none_or(|(has_arrived, _)| has_arrived)
+        let has_arrived = self.follows.unwrap_or(true)
             && self.under_way.is_none()
             && lab.script().is_done()
             && lab.player().playback.steps_to_go().is_none();

@@ -24,11 +24,6 @@ impl Watch {
         }
     }
 
-    /// Lets the file count as changed.
-    pub fn look_again(&mut self) {
-        (self.seen, self.next) = (None, Duration::ZERO);
-    }
-
     /// Whether the file has changed since it was last looked at; `now` is the time since the lab was opened. A file that
     /// is gone for a moment, as it is replaced, has not changed.
     pub fn has_changed(&mut self, now: Duration) -> bool {
@@ -48,26 +43,4 @@ impl Watch {
 fn state(path: &Path) -> Option<(SystemTime, u64)> {
     let file = fs::metadata(path).ok()?;
     Some((file.modified().ok()?, file.len()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_change_is_seen_once() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("lesson.md");
-        fs::write(&path, "one").unwrap();
-        let mut watch = Watch::new(&path);
-        assert!(!watch.has_changed(Duration::ZERO));
-        fs::write(&path, "one and two").unwrap();
-        assert!(!watch.has_changed(Duration::from_millis(500)), "too early");
-        assert!(watch.has_changed(Duration::from_secs(2)));
-        assert!(!watch.has_changed(Duration::from_secs(4)));
-        fs::remove_file(&path).unwrap();
-        assert!(!watch.has_changed(Duration::from_secs(6)));
-        fs::write(&path, "back").unwrap();
-        assert!(watch.has_changed(Duration::from_secs(8)));
-    }
 }

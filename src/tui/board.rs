@@ -2,7 +2,10 @@
 
 use super::decoder::Typed;
 use super::keymap::Key;
+use super::screen::to_ascii;
 use super::terminal::{Event, Screen};
+use super::theme::marker;
+use crate::lab::view::theme::Marker;
 use crate::text::printable::printable;
 use ratatui::style::Style;
 use std::io;
@@ -14,6 +17,7 @@ const EVERY: Duration = Duration::from_millis(500);
 /// Shows `lines`, which are given the width of the screen, until q, Esc or Ctrl-C.
 pub fn run(lines: impl Fn(usize) -> Vec<String>) -> io::Result<()> {
     let mut screen = Screen::enter()?;
+    let is_ascii = marker(|name| std::env::var(name).ok()) == Marker::Ascii;
     loop {
         let lines = lines(screen.size()?.width.into());
         screen.draw(|area, buf| {
@@ -25,6 +29,9 @@ pub fn run(lines: impl Fn(usize) -> Vec<String>) -> io::Result<()> {
                     area.width.into(),
                     Style::new(),
                 );
+            }
+            if is_ascii {
+                to_ascii(area, buf);
             }
         })?;
         for event in screen.events(EVERY)? {

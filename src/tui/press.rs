@@ -13,7 +13,7 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     }
     match keymap::meaning(panes::keys_of(lab), mode, key) {
         Some(Does::Action(Action::DoEntry)) => help::do_entry(lab),
-        Some(Does::Action(Action::Digit(digit))) if begins_number(lab) => {
+        Some(Does::Action(Action::Digit(digit))) if is_of_sheet(lab) => {
             lab.update(Action::Lesson(LessonKey::Digit(digit)))
         }
         Some(does) => {
@@ -28,8 +28,7 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     }
 }
 
-/// Whether a digit begins to type the number that the sheet asks for; behind the first digit of a count it goes on with
-/// the count.
-fn begins_number(lab: &Lab) -> bool {
-    lab.view().asks_number() && lab.popups().count.is_none()
+/// Whether a digit is for the sheet; behind the first digit of a count it goes on with the count.
+fn is_of_sheet(lab: &Lab) -> bool {
+    lab.view().sheet_takes_digits() && lab.popups().count.is_none()
 }

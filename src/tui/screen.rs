@@ -134,7 +134,7 @@ pub(super) fn popup_place(lab: &Lab, layout: &Layout) -> Rect {
 }
 
 /// Nothing but ASCII, whatever a scenario's title holds.
-fn to_ascii(area: Rect, buf: &mut Buffer) {
+pub(super) fn to_ascii(area: Rect, buf: &mut Buffer) {
     for position in area.positions() {
         let cell = buf.cell_mut(position);
         if let Some(cell) = cell.filter(|cell| !cell.symbol().is_ascii()) {

@@ -1,10 +1,12 @@
 //! The folder of a class: seats, wrong codes, votes by round, and what the two accounts write in it.
 
 use gyrolab::class::folder::{Stage, State};
-use gyrolab::class::seat::{Presence, Record, Vote, all_seats};
+use gyrolab::class::seat::{Presence, Record, all_seats};
 use gyrolab::class::votes::{self, Tally, sittings};
 use gyrolab::class::{Folder, Seat, login};
-use gyrolab::lessons::reading;
+use gyrolab::lessons::class::KeptLessons;
+use gyrolab::lessons::predictions::{Given, Place};
+use gyrolab::lessons::{Answer, Asked, Lesson, reading};
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
@@ -29,21 +31,30 @@ fn new_seat(folder: &Folder, name: &str) -> Seat {
     seat
 }
 
-fn vote(question: &str, round: u32, choice: f64, late: bool) -> Vote {
-    Vote {
-        lesson: LESSON.to_owned(),
-        question: question.to_owned(),
-        round,
-        choice,
-        late,
-        page: 2,
-        time_unix_s: 1_800_000_000,
+/// Keeps in `seat` these votes on the question `name` of `lesson`: round, number, and whether it is late.
+fn keep(seat: &Seat, lesson: &Lesson, name: &str, votes: &[(u32, f64, bool)]) {
+    let predict = lesson.predict(name).unwrap();
+    let mut place = Place::default();
+    for &(round, number, late) in votes {
+        let answer = match &predict.asked {
+            Asked::Choice(all) => Answer::Choice(all[number as usize - 1].clone()),
+            Asked::Number { .. } => Answer::Number(number),
+        };
+        let given = Given {
+            round,
+            answer,
+            late,
+            page: 2,
+            time_unix_s: 1_800_000_000,
+        };
+        place.predictions.lock(predict, given).unwrap();
     }
-}
-
-fn keep(seat: &Seat, votes: Vec<Vote>) {
+    let kept = KeptLessons {
+        open: None,
+        lessons: [(LESSON.to_owned(), place)].into(),
+    };
     let record = Record {
-        votes,
+        lessons: toml::Table::try_from(kept).unwrap(),
         ..Record::default()
     };
     seat.save(&record).unwrap();
@@ -57,7 +68,7 @@ fn a_seat_is_found_by_its_word_alone_and_its_modes_are_set() {
     assert_ne!(new_seat(&folder, "anna").word, seat.word);
     let (back, is_new) = login::take(&folder, &seat.word, 0).unwrap();
     assert!((&back.word, is_new) == (&seat.word, false));
-    keep(&seat, Vec::new());
+    seat.save(&Record::default()).unwrap();
     seat.hold().unwrap();
     assert_eq!(seat.presence(), Presence::Here);
     folder.publish(&State::default()).unwrap();
@@ -136,13 +147,8 @@ fn votes_are_counted_by_round_and_late_ones_apart() {
     let all = [(1.0, 2.0, false), (2.0, 2.0, false), (1.0, 1.0, true)];
     for (index, (first, second, late)) in all.into_iter().enumerate() {
         let seat = new_seat(&folder, &format!("seat{index}"));
-        keep(
-            &seat,
-            vec![
-                vote("finer", 1, first, late),
-                vote("finer", 2, second, false),
-            ],
-        );
+        let votes = [(1, first, late), (2, second, false)];
+        keep(&seat, &lesson, "finer", &votes);
     }
     let seats = sittings(&folder);
     let counts = |round| {
@@ -152,6 +158,8 @@ fn votes_are_counted_by_round_and_late_ones_apart() {
     };
     assert_eq!(counts(1), (vec![1, 1], 1));
     assert_eq!(counts(2), (vec![1, 2], 0));
+    let drawn = Tally::of(&seats, LESSON, predict, 1).drawn().text();
+    assert!(drawn.contains("late:\n1 █"), "{drawn}");
     let csv = votes::csv(&folder).unwrap();
     assert!(
         csv.starts_with("lesson,question,round,seat,choice,late,page,time\n"),
@@ -167,16 +175,20 @@ fn what_is_right_leads_to_advice() {
     let choice = "choices = [\"one\", \"two\"]\nright = 2\n```\n";
     let number = "unit = \"deg\"\nright = 2.0\nwithin = 0.5\n```\n";
     for (asked, choices, advice) in [
-        (choice, [2.0, 2.0, 1.0, 2.0], "right: 2, 75 %: go on"),
+        (
+            choice,
+            [2.0, 2.0, 1.0, 2.0],
+            "right is 2, 75 % chose it: go on",
+        ),
         (
             choice,
             [2.0, 2.0, 1.0, 1.0],
-            "right: 2, 50 %: let them talk, then again",
+            "right is 2, 50 % chose it: let them talk, then ask again",
         ),
         (
             number,
             [2.5, 1.4, 2.6, 7.0],
-            "right: 2 ± 0.5, 25 %: explain, then again",
+            "right is 2 ± 0.5, 25 % chose it: explain, then ask again",
         ),
     ] {
         let lesson = reading::read("t.md", &format!("{text}{asked}")).unwrap();
@@ -184,7 +196,7 @@ fn what_is_right_leads_to_advice() {
         let (_dir, folder) = class();
         for (index, choice) in choices.into_iter().enumerate() {
             let seat = new_seat(&folder, &format!("seat{index}"));
-            keep(&seat, vec![vote("a", 1, choice, false)]);
+            keep(&seat, &lesson, "a", &[(1, choice, false)]);
         }
         let tally = Tally::of(&sittings(&folder), LESSON, predict, 1);
         assert_eq!(tally.advice.as_deref(), Some(advice));
@@ -214,14 +226,19 @@ fn another_versions_files_are_named_and_left() {
 fn what_cannot_be_written_leaves_the_old_file() {
     let (_dir, folder) = class();
     let seat = new_seat(&folder, "anna");
-    keep(&seat, vec![vote("finer", 1, 2.0, false)]);
-    // A file in the place of the temporary one cannot be made: the folder's place is taken by nothing that can be written.
+    let record = Record {
+        is_aside: true,
+        ..Record::default()
+    };
+    seat.save(&record).unwrap();
     let long = Record {
-        votes: vec![vote(&"x".repeat(2 << 20), 1, 1.0, false)],
+        lessons: [("a".to_owned(), "x".repeat(2 << 20).into())]
+            .into_iter()
+            .collect(),
         ..Record::default()
     };
     assert!(seat.save(&long).unwrap_err().contains("1 MB"));
-    assert_eq!(seat.record().unwrap().votes.len(), 1);
+    assert!(seat.record().unwrap().is_aside);
     if rustix_is_root() {
         return; // whom no mode keeps from writing
     }
@@ -230,7 +247,7 @@ fn what_cannot_be_written_leaves_the_old_file() {
     let refused = seat.save(&Record::default()).unwrap_err();
     assert!(refused.contains("cannot be kept"), "{refused}");
     fs::set_permissions(&inside, Permissions::from_mode(0o700)).unwrap();
-    assert_eq!(seat.record().unwrap().votes.len(), 1);
+    assert!(seat.record().unwrap().is_aside);
 }
 
 fn rustix_is_root() -> bool {

@@ -8,7 +8,7 @@ use gyrolab::lab::view::Part;
 use gyrolab::lab::view::theme::Marker;
 use gyrolab::lessons::handout::{self, Paper};
 use gyrolab::lessons::play::{self, Walk};
-use gyrolab::lessons::predictions::Predictions;
+use gyrolab::lessons::predictions::{Given, Predictions};
 use gyrolab::lessons::{Answer, Block, Kept, Lesson, Page, reading, shipped};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Problem, Problems};
@@ -548,19 +548,36 @@ fn a_locked_prediction_stays_and_shows_what_the_page_hides() {
     let mut predictions = Predictions::default();
     let hidden = [Part::Health, Part::Predicted];
     assert_eq!(page.lab().unwrap().hides(), hidden);
-    let choice = |words: &str| Answer::Choice(words.to_owned());
-    assert!(predictions.lock(finer, Answer::Number(3.0)).is_err());
-    assert!(predictions.lock(finer, choice("whatever")).is_err());
-    predictions.lock(finer, choice("is gone")).unwrap();
-    assert!(predictions.lock(finer, choice("is gone")).is_err());
+    let given = |round, answer| Given {
+        round,
+        answer,
+        late: round == 2,
+        page: 1,
+        time_unix_s: 0,
+    };
+    let choice = |round, words: &str| given(round, Answer::Choice(words.to_owned()));
+    assert!(
+        predictions
+            .lock(finer, given(1, Answer::Number(3.0)))
+            .is_err()
+    );
+    assert!(predictions.lock(finer, choice(1, "whatever")).is_err());
+    predictions.lock(finer, choice(1, "is gone")).unwrap();
+    assert!(predictions.lock(finer, choice(1, "is gone")).is_err());
     assert_eq!(Predictions::hidden_after_lock(page, &hidden), []);
     // The session keeps them as TOML.
     let text = toml::to_string(&predictions).unwrap();
-    assert_eq!(text, "finer = \"is gone\"\n");
     assert_eq!(toml::from_str::<Predictions>(&text).unwrap(), predictions);
     // An answer that the question no longer offers does not count.
     let changed = read(&WHOLE.replace("\"is gone\"", "\"has gone\""));
     assert_eq!(predictions.open_on(&changed.pages[0]).count(), 1);
+    // A round of a class has an answer of its own, and all are told.
+    assert_eq!(predictions.in_words(finer).as_deref(), Some("is gone"));
+    predictions
+        .lock(finer, choice(2, "stays as it is"))
+        .unwrap();
+    let all = "is gone (round 1), stays as it is (round 2, after its outcome was seen)";
+    assert_eq!(predictions.in_words(finer).as_deref(), Some(all));
 }
 
 #[test]
@@ -620,7 +637,7 @@ fn the_handout_has_pictures_and_room_and_no_notes() {
         &paper,
         [
             "# The push\n\nA push, and what the time step has to do with it. About 10 minutes.\n\nBefore the first page.\n\n## Watch\n\n```text\n",
-            "**Prediction.** With a time step ten times shorter, the wobble ...\n\n- [ ] stays as it is\n- [ ] is ten times smaller\n- [ ] is gone\n",
+            "**Prediction.** With a time step ten times shorter, the wobble ...\n\n- [ ] 1 stays as it is\n- [ ] 2 is ten times smaller\n- [ ] 3 is gone\n",
             ". You said: ____________.\n\n```sh\ngyrolab run wobble-push\n```\n\n## Your turn\n",
             "At 60 s the top is at z = **0.",
             "`{ code }` and \\{braces} stay.",

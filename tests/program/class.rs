@@ -6,7 +6,6 @@ use crate::support::pty::Terminal;
 use crate::support::words::has_all;
 
 const LESSON: &str = "is-the-wobble-real";
-const DOWN: &str = "\x1b[B";
 
 fn teach(ground: &Ground, args: &str) -> Terminal {
     ground.open(&format!("class {args} --folder ."))
@@ -27,10 +26,8 @@ fn sit(ground: &Ground, name: &str) -> (Terminal, String) {
 
 /// Votes for the second choice.
 fn vote(lab: &mut Terminal) {
-    lab.wait_for("[ ] is about ten times smaller");
-    lab.ask(DOWN, "> [ ] stays as it is");
-    lab.ask(DOWN, "> [ ] is about ten times smaller");
-    lab.ask("\r", "> [x] is about ten times smaller");
+    lab.wait_for("[ ] 2 is about ten times smaller");
+    lab.ask("2", "> [x] 2 is about ten times smaller");
     lab.press("\r");
     lab.wait_until("a locked vote", |lab| !lab.words().contains("> [x]"));
 }
@@ -56,16 +53,16 @@ fn a_class_follows_votes_and_loses_nothing() {
     has_all(&votes, &[&format!("{LESSON},finer,1,{word},2,false,2,")]);
     // Stepping aside, and the class goes on meanwhile.
     ben.ask("n", "predict first");
-    ben.ask("n", "aside on 3 · the class is on 2");
+    ben.ask("n", "aside, k: back · 3, class on 2");
     teacher.press("n");
-    ben.wait_for("the class is on 3");
+    ben.wait_for("class on 3");
     teacher.press("N");
-    ben.wait_for("the class is on 2");
+    ben.wait_for("class on 2");
     ben.ask("k", "following · 2 of 10");
     // Back by the seat's word, with page and prediction.
     let mut anna = ground.open("--folder . --seat");
     anna.ask(&format!("{word}\r"), "following · 2 of 10");
-    anna.wait_for("[x] is about ten times smaller");
+    anna.wait_for("[x] 2 is about ten times smaller");
     // The seat is opened elsewhere: the lab before ends by itself.
     let mut again = ground.open("--folder . --seat");
     again.ask(&format!("{word}\r"), "following · 2 of 10");

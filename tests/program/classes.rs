@@ -15,9 +15,9 @@ const DOWN: &str = "\x1b[B";
 fn a_prediction_survives_a_kill_and_is_handed_in() {
     let ground = Ground::new();
     let mut lab = ground.open(&["lesson", LESSON, "--page", "2"]);
-    lab.wait_for("[ ] stays as it is");
+    lab.wait_for("[ ] 1 stays as it is");
     lab.press(&format!("{DOWN}{DOWN}{DOWN}\r"));
-    lab.wait_for("> [x] is more than a hundred times");
+    lab.wait_for("> [x] 3 is more than a hundred times");
     lab.press("\r");
     // The session is saved within half a second, or a little later on a busy machine.
     lab.wait_until("the saved prediction", |_| {
@@ -26,7 +26,7 @@ fn a_prediction_survives_a_kill_and_is_handed_in() {
     });
     lab.kill();
     let mut lab = ground.open("--resume");
-    lab.wait_for("[x] is more than a hundred times");
+    lab.wait_for("[x] 3 is more than a hundred times");
     lab.wait_for("2 of 10");
     lab.press("n");
     lab.wait_for("The run plays");

@@ -207,10 +207,10 @@ impl View {
         self.sheet_scrolled = Some(to);
     }
 
-    /// Whether the sheet asks for a number, and has the focus.
-    pub fn asks_number(&self) -> bool {
-        let asks = self.sheet.as_ref().is_some_and(|sheet| sheet.asks_number);
-        asks && self.focus == Pane::LESSON
+    /// Whether a digit is for the sheet, which has the focus.
+    pub fn sheet_takes_digits(&self) -> bool {
+        let takes = self.sheet.as_ref().is_some_and(|sheet| sheet.takes_digits);
+        takes && self.focus == Pane::LESSON
     }
 
     pub fn turn_to_sheet(&mut self) {

@@ -1,14 +1,17 @@
 //! The keys of a lesson: turning its pages, predicting, and asking for help.
 
-use super::{Taken, UnderWay, Voted, before_task, compared, holds};
+use super::{Taken, UnderWay, before_task, compared, holds};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::command::Command;
-use crate::lessons::clock::Clock;
+use crate::lessons::clock;
 use crate::lessons::lesson::{Answer, Asked, Block, Predict};
-use crate::lessons::predictions::{Predictions, Tried};
+use crate::lessons::predictions::{Given, Predictions, Tried};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+const MARKED: &str = "Enter locks it: a prediction is not changed";
+const LOCKED: &str = "your answer is locked: a prediction is not changed";
 
 impl Taken {
     pub(in crate::lessons) fn act(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
@@ -21,18 +24,13 @@ impl Taken {
                 told(stood, lab);
             }
             LessonKey::ShowTask => return self.show_task(lab),
-            LessonKey::Notes => {
-                self.clock = match self.clock {
-                    None => Some(Clock::Up),
-                    Some(clock) => clock.next(self.lesson.minutes),
-                };
-            }
+            LessonKey::Notes => self.shows_notes ^= true,
             LessonKey::Move(direction @ (Direction::Up | Direction::Down)) => {
                 return self.select(direction);
             }
             LessonKey::Move(direction) => return Some(direction),
             LessonKey::Take => self.take(lab),
-            LessonKey::Digit(digit) => self.ask_number(Some(digit), lab),
+            LessonKey::Digit(digit) => self.digit(digit, lab),
             LessonKey::List | LessonKey::Leave => {}
         }
         None
@@ -124,37 +122,63 @@ impl Taken {
 
     /// Points at the answer above or below; scrolls where none is to be chosen.
     fn select(&mut self, direction: Direction) -> Option<Direction> {
-        let Some(Asked::Choice(choices)) = self.asked().map(|predict| &predict.asked) else {
+        let Some(predict) = self.asked().cloned() else {
+            return Some(direction);
+        };
+        let Asked::Choice(choices) = &predict.asked else {
             return Some(direction);
         };
         let last = choices.len().saturating_sub(1);
-        self.is_marked = false;
-        self.selected = Some(match (self.selected, direction) {
+        let at = match (self.pointed.get(&predict.name), direction) {
             (None, Direction::Up) => last,
             (None, _) => 0,
-            (Some(at), Direction::Up) => at.saturating_sub(1),
-            (Some(at), _) => (at + 1).min(last),
-        });
+            (Some((at, _)), Direction::Up) => at.saturating_sub(1),
+            (Some((at, _)), _) => (at + 1).min(last),
+        };
+        self.pointed.insert(predict.name, (at, false));
         None
     }
 
     /// Marks the answer that the keys point at, or locks it where it is marked; or asks for a number.
     fn take(&mut self, lab: &mut Lab) {
         let Some(predict) = self.asked().cloned() else {
-            lab.refuse("nothing is asked here: n turns the page");
-            return;
+            let asks = self
+                .page()
+                .is_some_and(|page| page.predicts().next().is_some());
+            return lab.refuse(if asks {
+                LOCKED
+            } else {
+                "nothing is asked here"
+            });
         };
         let Asked::Choice(choices) = &predict.asked else {
             return self.ask_number(None, lab);
         };
-        match self.selected.and_then(|at| choices.get(at)) {
+        let at = self.pointed.get_mut(&predict.name);
+        match at.and_then(|(at, is_marked)| Some((choices.get(*at)?, is_marked))) {
             None => {
                 lab.refuse("Up and Down choose an answer, Enter marks it, Enter again locks it");
             }
-            Some(_) if !std::mem::replace(&mut self.is_marked, true) => {
-                lab.refuse("Enter again locks it: a prediction is not changed");
+            Some((_, is_marked @ false)) => {
+                *is_marked = true;
+                lab.refuse(MARKED);
             }
-            Some(choice) => self.lock(&predict, Answer::Choice(choice.clone()), lab),
+            Some((choice, _)) => self.lock(&predict, Answer::Choice(choice.clone()), lab),
+        }
+    }
+
+    /// Marks the answer with this number, or begins to type one with this digit.
+    fn digit(&mut self, digit: u8, lab: &mut Lab) {
+        let Some(predict) = self.asked().cloned() else {
+            return;
+        };
+        match (&predict.asked, usize::from(digit)) {
+            (Asked::Number { .. }, _) => self.ask_number(Some(digit), lab),
+            (Asked::Choice(all), number) if (1..=all.len()).contains(&number) => {
+                self.pointed.insert(predict.name, (number - 1, true));
+                lab.refuse(MARKED);
+            }
+            (Asked::Choice(all), _) => lab.refuse(format!("the answers are 1 to {}", all.len())),
         }
     }
 
@@ -176,29 +200,20 @@ impl Taken {
 
     /// Locks `answer`. Once nothing on the page is open, what it hides is shown.
     fn lock(&mut self, predict: &Predict, answer: Answer, lab: &mut Lab) {
-        let is_late = self.place.seen.contains(&predict.name);
-        let locked = self.place.predictions.is_locked(predict);
-        let is_again = locked && self.again.take_if(|it| *it == predict.name).is_some();
-        if !is_again {
-            if let Err(reason) = self.place.predictions.lock(predict, answer.clone()) {
-                lab.refuse(reason);
-                return;
-            }
-            let late = is_late.then(|| predict.name.clone());
-            self.place.late.extend(late);
-        }
-        (self.selected, self.is_marked, self.has_answered) = (None, false, true);
-        let said = answer.in_words(predict);
-        let again = format!("your vote of this round: {said}; the page keeps your first answer");
-        self.votes.push(Voted {
-            question: predict.name.clone(),
+        let round = self.rounds.get(&predict.name);
+        let (round, is_closed) = round.copied().unwrap_or((1, false));
+        let given = Given {
+            round,
             answer,
-            is_late,
-        });
-        if is_again {
-            lab.refuse(again);
-            return;
+            late: is_closed || self.place.seen.contains(&predict.name),
+            page: self.place.page,
+            time_unix_s: clock::unix_s(),
+        };
+        if let Err(reason) = self.place.predictions.lock(predict, given) {
+            return lab.refuse(reason);
         }
+        self.pointed.remove(&predict.name);
+        self.has_answered = true;
         self.state_again(&predict.name, lab);
         let Some(page) = self.page() else {
             return;

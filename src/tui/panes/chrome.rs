@@ -9,6 +9,7 @@ use crate::lab::view::{Pane, Part};
 use crate::playback::reading::Reading;
 use crate::text::number::{fixed, significant};
 use crate::tui::keymap::{BINDINGS, Binding, Does, Key, Mode, Worth};
+use crate::tui::screen::page_goes_on;
 use crate::tui::split::split_columns;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -130,7 +131,7 @@ pub fn warns(lab: &Lab) -> bool {
 /// The keys of the mode, as many as fit; help and quit always.
 pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    for (x, item) in placed(lab, area.width) {
+    for (x, item) in placed(lab, area) {
         let (key, focus) = (item.key.to_string(), theme.style(Role::Focus));
         let x = write(area, (x, 0), &key, focus, buf);
         write(area, (x + 1, 0), item.word, theme.style(Role::Quiet), buf);
@@ -140,7 +141,7 @@ pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
 /// The key that the line of keys on `area` names at the column `x` of the screen.
 pub fn key_at(lab: &Lab, area: Rect, x: u16) -> Option<Key> {
     let x = x.checked_sub(area.x)?;
-    let mut placed = placed(lab, area.width).into_iter();
+    let mut placed = placed(lab, area).into_iter();
     let found = placed.find(|(at, item)| (*at..at + item.length()).contains(&x));
     found.map(|(_, item)| item.key)
 }
@@ -160,8 +161,9 @@ impl Item {
     }
 }
 
-fn placed(lab: &Lab, width: u16) -> Vec<(u16, Item)> {
-    let (items, gap) = fitted(footer(lab), width);
+fn placed(lab: &Lab, area: Rect) -> Vec<(u16, Item)> {
+    let screen = Rect::new(0, 0, area.width, area.bottom());
+    let (items, gap) = fitted(footer(lab, page_goes_on(lab, screen)), area.width);
     let mut x = 1;
     let place = |item: Item| {
         let at = x;
@@ -194,8 +196,8 @@ fn fitted(mut items: Vec<Item>, width: u16) -> (Vec<Item>, u16) {
     }
 }
 
-/// The keys that the footer names where there is room for all.
-fn footer(lab: &Lab) -> Vec<Item> {
+/// The keys that the footer names where there is room for all; `goes_on` says whether the page has more to be scrolled to.
+fn footer(lab: &Lab, goes_on: bool) -> Vec<Item> {
     let mode = lab.popups().mode;
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
@@ -209,7 +211,7 @@ fn footer(lab: &Lab) -> Vec<Item> {
     let rows = of_touched.map(|row| (row, Worth::Own)).chain(of_lab);
     let rows = rows.filter(|(row, _)| row.modes.contains(&mode) && !row.footer.is_empty());
     let items = rows.filter_map(|(row, worth)| {
-        let word = word(lab, row)?;
+        let word = word(lab, goes_on, row)?;
         let key = row.keys[0];
         Some(Item { key, word, worth })
     });
@@ -229,7 +231,7 @@ fn footer(lab: &Lab) -> Vec<Item> {
 }
 
 /// What the footer says of a key now; `None` where the key does nothing.
-fn word(lab: &Lab, row: &Binding) -> Option<&'static str> {
+fn word(lab: &Lab, goes_on: bool, row: &Binding) -> Option<&'static str> {
     let is_why = lab.view().page == Page::Why;
     let sheet = lab.view().sheet.as_ref();
     let enter = sheet.map_or("", |sheet| sheet.enter);
@@ -242,7 +244,9 @@ fn word(lab: &Lab, row: &Binding) -> Option<&'static str> {
         // A run whose numbers are no longer finite cannot go on.
         ("pause" | "step", _) => !lab.player().run().simulation().has_ended(),
         (_, Some(Action::Lesson(LessonKey::Take))) => !enter.is_empty(),
-        (_, Some(Action::Lesson(LessonKey::Next))) => sheet.is_some_and(|sheet| sheet.has_next),
+        (_, Some(Action::Lesson(LessonKey::Next))) => {
+            goes_on || sheet.is_some_and(|sheet| sheet.has_next)
+        }
         (_, Some(Action::Move(..))) => !is_why,
         _ => true,
     };
@@ -251,6 +255,7 @@ fn word(lab: &Lab, row: &Binding) -> Option<&'static str> {
         ("next phase", _) if is_why => "next step",
         ("why sideways", _) if is_why => "phases",
         (_, Some(Action::Lesson(LessonKey::Take))) => enter,
+        (_, Some(Action::Lesson(LessonKey::Next))) if goes_on => "more",
         (_, Some(Action::Accept)) if lab.popups().shows_settings() => "change",
         _ => row.footer,
     };
