@@ -162,8 +162,8 @@ impl Popups {
         }
     }
 
-    /// Puts the pasted `text` into the dialog or the filter. Returns a message if it does not fit. In other modes pasting
-    /// does nothing: the letters of a pasted text are not meant as keys.
+    /// Puts the pasted `text` into the dialog or the filter. Returns a message if it does not fit. Elsewhere the letters of a
+    /// pasted text are not meant as keys.
     pub(super) fn paste(&mut self, text: &str) -> Option<String> {
         match (&mut self.dialog, self.mode) {
             (Some(dialog), _) => dialog.paste(text),
@@ -180,7 +180,8 @@ impl Popups {
                 return (!fits).then(cut);
             }
             _ => {
-                let text = "what is pasted goes into fields and filters; here it does nothing";
+                let text =
+                    "what is pasted goes into fields and filters; rows of your own program go here";
                 return Some(text.to_owned());
             }
         }
