@@ -24,12 +24,14 @@ fprintf(file, 'step,t_s,x_m,y_m,z_m,Lx_Js,Ly_Js,Lz_Js\n');
 for step = 0:steps
   if step > 0
     % Yours, in this order:
-    % 1. I = sum of mass (|r|^2 E - r r'), over the columns r of X
+    % 1. I = sum of mass (|r|^2 E - r r'), over the columns r of X;
+    %    E is the unit matrix, eye(3)
     % 2. Omega, from I Omega = L
-    % 3. u = Omega/|Omega|, P = u u', angle = |Omega| dt, and
-    %    R = P + cos(angle) (E - P) + sin(angle) [0 -u3 u2; u3 0 -u1; -u2 u1 0]
-    % 4. each r becomes R r
-    % 5. torque = sum of r x F, F = (0, 0, -mass g); L = L + dt torque
+    % 3. u = Omega/|Omega|, P = u u', angle = |Omega| dt
+    % 4. R = P + cos(angle) (E - P) + sin(angle) [0 -u3 u2; u3 0 -u1; -u2 u1 0]
+    % 5. each r becomes R r
+    % 6. torque = sum of r x F, F = (0, 0, -mass g)
+    % 7. L = L + dt torque
   end
   fprintf(file, '%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n', ...
           step, step * dt, X(1, 1), X(2, 1), X(3, 1), L(1), L(2), L(3));

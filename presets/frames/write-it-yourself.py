@@ -24,12 +24,14 @@ with open("mine.csv", "w") as file:
     for step in range(steps + 1):
         if step > 0:
             # Yours, in this order:
-            # 1. I = sum of mass (|r|^2 E - r r^T), over the points r of X
+            # 1. I = sum of mass (|r|^2 E - r r^T), over the points r of X;
+            #    E is the unit matrix, numpy.eye(3)
             # 2. Omega, from I Omega = L
-            # 3. u = Omega/|Omega|, P = u u^T, angle = |Omega| dt, and
-            #    R = P + cos(angle) (E - P)
+            # 3. u = Omega/|Omega|, P = u u^T, angle = |Omega| dt
+            # 4. R = P + cos(angle) (E - P)
             #      + sin(angle) [[0, -u3, u2], [u3, 0, -u1], [-u2, u1, 0]]
-            # 4. each r becomes R r
-            # 5. torque = sum of r x F, F = (0, 0, -mass g); L = L + dt torque
+            # 5. each r becomes R r
+            # 6. torque = sum of r x F, F = (0, 0, -mass g)
+            # 7. L = L + dt torque
             pass
         print(step, step * dt, *X[0], *L, sep=",", file=file)

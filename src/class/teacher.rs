@@ -4,6 +4,7 @@ use super::folder::{Folder, LONGEST_RUN, Run, Stage, State, VERSION};
 use super::seat::name_of;
 use super::votes::{self, FEWEST, Sitting, Tally, present, sittings};
 use super::{EVERY, LEAST_WAIT, Role, login, unix_ms};
+use crate::data::find_shipped;
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
 use crate::lab::sheet::{Kind, Paragraph};
@@ -105,7 +106,7 @@ impl Teacher {
         let known = known.filter(|(run, _)| Arc::ptr_eq(run, scenario));
         let (_, run) = self
             .run
-            .insert(known.unwrap_or_else(|| (Arc::clone(scenario), scenario.to_toml())));
+            .insert(known.unwrap_or_else(|| (Arc::clone(scenario), published(scenario))));
         if run.len() > LONGEST_RUN {
             let rule = "the run's file is above 64 kB: the class cannot follow it";
             self.trouble = Some(rule.to_owned());
@@ -334,4 +335,15 @@ impl Role for Teacher {
         let root = Shown(&self.folder.root);
         Ok(format!("gyrolab class --resume --folder {root} goes on"))
     }
+}
+
+/// The run file as the class gets it: without measured data that are a file of the teacher's.
+fn published(scenario: &Scenario) -> String {
+    let mut run = scenario.clone();
+    let named = run.file.viewed_text("measured");
+    let is_own = named.is_some_and(|name| find_shipped(name).is_none());
+    if let Some(view) = run.file.view.as_mut().filter(|_| is_own) {
+        view.remove("measured");
+    }
+    run.to_toml()
 }

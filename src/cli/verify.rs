@@ -4,7 +4,7 @@ use super::args::{one_or_more, setting};
 use super::progress::{self, Interrupted, Interruption};
 use super::{fit, print, tell, writeup};
 use crate::export::Folder;
-use crate::own_code::{self, Uncompared, Verdict};
+use crate::own_code::{self, Verdict};
 use crate::scenario::csv::{self, Renaming, renaming};
 use crate::scenario::{Document, Problems, Scenario};
 use crate::text::advice::unread;
@@ -216,15 +216,22 @@ fn own(
     interruption: &Interruption,
 ) -> anyhow::Result<bool> {
     let verdict = verdict(file, args, scenario, interruption).map_err(|error| match error {
-        Uncompared::Refused(problems) => Unverified::Refused(problems),
-        Uncompared::Stopped => Unverified::Stopped,
+        Unverified::Refused(problems) => {
+            Unverified::Refused(problems.of(file.display().to_string()))
+        }
+        stopped => stopped,
     })?;
     if args.json {
         let json = serde_json::to_string(&verdict).unwrap_or_default();
         print(&format!("{json}\n"))?;
     } else {
         let lines = printable_lines(&verdict.lines.join("\n")).into_owned();
-        print(&format!("{}: {lines}\n", Shown(file)))?;
+        let (file, name) = (Shown(file), args.against.as_deref().unwrap_or_default());
+        print(&format!("{file}: {lines}\n"))?;
+        if verdict.is_unexplained && args.set.is_empty() {
+            let next = format!("gyrolab {name} --measured {file}");
+            print(&format!("Next: {next}, then M, takes that step apart.\n"))?;
+        }
     }
     Ok(verdict.agrees)
 }
@@ -234,7 +241,7 @@ fn verdict(
     args: &VerifyArgs,
     scenario: &Arc<Scenario>,
     interruption: &Interruption,
-) -> Result<Verdict, Uncompared> {
+) -> Result<Verdict, Unverified> {
     let text = csv::text(file).map_err(|problem| Problems::from(vec![problem]))?;
     let every = args.every.map(NonZeroU64::get);
     let time_step_s = scenario.motion.time_step_s;

@@ -168,8 +168,14 @@ impl Comparison {
         Ok(left_out)
     }
 
-    /// To be called after another scenario was opened in place of `before`. Puts the data that its `[view]` names
-    /// beside its run, and removes those that the `[view]` of `before` named. Returns why that is not possible.
+    /// Whether `text`, the file `name`, could stand beside the run.
+    pub(super) fn check(&self, name: &str, text: &str, player: &Player) -> Result<(), Problems> {
+        let (measured, _) = OwnCode::read(name, text, &[], player.run().scenario())?;
+        measured.series().map(drop)
+    }
+
+    /// To be called after the run went over from `before` to another scenario, or another `[view]`. Puts the data that its
+    /// `[view]` names beside its run, and removes those that the `[view]` of `before` named. Returns why that is not possible.
     pub(super) fn measure_as_opened(
         &mut self,
         before: &Scenario,

@@ -303,6 +303,9 @@ impl Lab {
     }
 }
 
+/// The most bytes of rows that can be pasted.
+pub const MOST_PASTED: usize = 1_000_000;
+
 /// The commands that a key means now, or why it means none.
 pub type Meant = Result<Vec<Command>, String>;
 
@@ -371,7 +374,8 @@ impl Lab {
         self.player.follow(change, scenario, edit.end_s);
         self.view.keep_cursor(&self.player);
         self.edits.follow(&self.player);
-        if change == Change::Opens {
+        let named = |of: &Scenario| of.file.viewed_text("measured").map(str::to_owned);
+        if change == Change::Opens || named(&before) != named(self.player.run().scenario()) {
             let (player, files) = (&self.player, &self.files);
             let measured = self.comparison.measure_as_opened(&before, player, files);
             if let Err(problems) = measured {

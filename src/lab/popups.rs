@@ -146,15 +146,16 @@ impl Popups {
         }
     }
 
-    /// Puts the pasted `text` into the dialog or the filter. In other modes pasting does nothing but return a message: the
-    /// letters of a pasted text are not meant as keys.
+    /// Puts the pasted `text` into the dialog or the filter. Elsewhere pasting does nothing but return a message: the letters
+    /// of a pasted text are not meant as keys.
     pub(super) fn paste(&mut self, text: &str) -> Option<String> {
         match (&mut self.dialog, self.mode) {
             (Some(dialog), _) => dialog.paste(text),
             (None, Mode::Help) => self.help.search(|line| type_into(line, text)),
             (None, Mode::Filter) => self.browser.filter_by(|line| type_into(line, text)),
             _ => {
-                let text = "what is pasted goes into fields and filters; here it does nothing";
+                let text =
+                    "what is pasted goes into fields and filters; rows of your own program go here";
                 return Some(text.to_owned());
             }
         }

@@ -65,7 +65,11 @@ pub fn handout(
 fn blank_page(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) -> Vec<String> {
     let mut parts = vec![format!("## {}", page.heading)];
     let asks = page.predicts().next().is_some();
-    let tells = !asks && page.task().is_none() && page.checks().next().is_none();
+    let is_command = |block: &Block| matches!(block, Block::Shown(it) if it.language == "sh");
+    // What is to be typed says what to do, unless the page compares it with a prediction.
+    let is_typed = page.blocks.iter().any(is_command) && page.compares().next().is_none();
+    let is_done = is_typed || page.task().is_some();
+    let tells = !asks && !is_done && page.checks().next().is_none();
     let mut is_before = true;
     for block in &page.blocks {
         match block {
@@ -74,7 +78,7 @@ fn blank_page(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) ->
             Block::Text(text) if is_before && (!tells || page.lab().is_some()) => {
                 parts.push(text.filled(|_, _| BLANK.to_owned()));
             }
-            Block::Text(text) if page.task().is_some() => {
+            Block::Text(text) if is_done => {
                 parts.push(text.filled(|_, _| BLANK.to_owned()));
             }
             Block::Predict(predict) => {
@@ -87,7 +91,9 @@ fn blank_page(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) ->
             Block::Check(check) => {
                 parts.extend(check.goals.iter().map(|goal| format!("- [ ] {goal}")));
             }
-            Block::Shown(Shown { language, text }) if !tells => parts.push(fenced(language, text)),
+            Block::Shown(Shown { language, text }) if !tells || is_command(block) => {
+                parts.push(fenced(language, text));
+            }
             _ => {}
         }
     }

@@ -1,8 +1,7 @@
 //! Rows of a file beside a run: up to which of them they agree.
 
-use super::arithmetic::Real;
 use super::rows::{Rows, within};
-use super::step::Program;
+use super::step::{Program, Real};
 use super::times::Steps;
 use crate::run::Simulation;
 
@@ -13,26 +12,19 @@ const SPREADS: f64 = 10.0;
 /// Rounding of numbers in single precision, in units of the largest: of the start, and of what is written.
 const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 /// The offsets that are tried, in rows.
-pub const OFFSETS: [i64; 3] = [0, 1, -1];
+const OFFSETS: [i64; 3] = [0, 1, -1];
 
 /// What a run is at one of its steps: the six numbers that may be compared, and what is not known of each.
 #[derive(Clone, Copy, Debug)]
-pub struct At {
-    pub values: [f64; 6],
-    pub slack: [f64; 6],
-}
-
-/// A run that rows are compared with. It begins at step 0.
-pub trait Run {
-    /// What it is now; `None` from where rounding has grown so much that nothing can be said.
-    fn now(&mut self) -> Option<At>;
-    fn step(&mut self);
+struct At {
+    values: [f64; 6],
+    slack: [f64; 6],
 }
 
 /// Something that makes rows of six numbers.
 pub trait Stepper {
     fn row(&self) -> [f64; 6];
-    fn take_step(&mut self);
+    fn advance(&mut self);
 }
 
 impl<T: Real> Stepper for Program<T> {
@@ -40,99 +32,69 @@ impl<T: Real> Stepper for Program<T> {
         Self::row(self)
     }
 
-    fn take_step(&mut self) {
+    fn advance(&mut self) {
         self.step();
     }
 }
 
 /// The scenario's own run; NaN once it has ended.
-pub struct Scheme(pub Simulation);
-
-impl Stepper for Scheme {
+impl Stepper for Simulation {
     fn row(&self) -> [f64; 6] {
-        if self.0.has_ended() {
+        if self.has_ended() {
             return [f64::NAN; 6];
         }
-        let (at, momentum) = (self.0.now().position(), self.0.now().after().momentum);
+        let (at, momentum) = (self.now().position(), self.now().after().momentum);
         [at.x, at.y, at.z, momentum.x, momentum.y, momentum.z]
     }
 
-    fn take_step(&mut self) {
+    fn advance(&mut self) {
         // The row says it where the run has ended.
-        let _ = self.0.step();
+        let _ = self.step();
     }
 }
 
-/// A run, and a copy of it that adds up in another order.
-pub struct Twin<A, B>(pub A, pub Option<B>);
-
-impl<A: Stepper, B: Stepper> Run for Twin<A, B> {
-    fn now(&mut self) -> Option<At> {
-        let values = self.0.row();
-        let others = self.1.as_ref().map_or(values, Stepper::row);
-        let has_parted = |place: usize| {
-            let off = (values[place] - others[place]).abs();
-            off.is_nan() || off > PARTED * within(place, values[place])
-        };
-        let slack = [0.0; 6];
-        (!(0..6).any(has_parted)).then_some(At { values, slack })
-    }
-
-    fn step(&mut self) {
-        self.0.take_step();
-        if let Some(other) = &mut self.1 {
-            other.take_step();
-        }
-    }
+/// A run that rows are compared with, from step 0 on, and copies of it that add up in other orders.
+pub struct Run<A, B> {
+    run: A,
+    copies: Vec<B>,
+    /// Of copies in single precision, whose spread is what is not known of the run: the largest spread so far, and the largest
+    /// number, of x, y, z, and of L.
+    single: Option<[[f64; 2]; 2]>,
 }
 
-/// The scheme's run, with the spread of three copies in single precision as what is not known.
-pub struct Single {
-    scheme: Scheme,
-    copies: [Program<f32>; 3],
-    /// The largest spread so far, and the largest number: of x, y, z, and of L.
-    spread: [f64; 2],
-    scale: [f64; 2],
-}
-
-impl Single {
-    pub fn new(scheme: Scheme, copies: [Program<f32>; 3]) -> Self {
-        let (spread, scale) = ([0.0; 2], [0.0; 2]);
+impl<A: Stepper, B: Stepper> Run<A, B> {
+    pub fn of(run: A, copies: Vec<B>, is_single: bool) -> Self {
         Self {
-            scheme,
+            single: is_single.then_some([[0.0; 2]; 2]),
+            run,
             copies,
-            spread,
-            scale,
         }
     }
-}
 
-impl Run for Single {
+    /// What it is now; `None` from where rounding has grown so much that nothing can be said.
     fn now(&mut self) -> Option<At> {
-        let values = self.scheme.row();
-        let rows = self.copies.each_ref().map(Program::row);
+        let (values, mut slack) = (self.run.row(), [0.0; 6]);
+        let rows: Vec<_> = self.copies.iter().map(Stepper::row).collect();
+        let mut is_known = values.iter().all(|value| value.is_finite());
         for place in 0..6 {
-            let all = rows.map(|row| row[place]);
-            let most = all.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            let least = all.into_iter().fold(f64::INFINITY, f64::min);
-            let (spread, scale) = (&mut self.spread[place / 3], &mut self.scale[place / 3]);
-            *spread = spread.max(most - least);
-            *scale = scale.max(values[place].abs());
+            let value = values[place];
+            let all = || rows.iter().map(|row| row[place]);
+            if let Some(so_far) = &mut self.single {
+                let [spread, scale] = &mut so_far[place / 3];
+                let most = all().fold(f64::NEG_INFINITY, f64::max);
+                *spread = spread.max(most - all().fold(f64::INFINITY, f64::min));
+                *scale = scale.max(value.abs());
+                slack[place] = SPREADS * *spread + ROUNDING * *scale;
+            } else {
+                is_known &= all().all(|it| (value - it).abs() <= PARTED * within(place, value));
+            }
         }
-        let slack =
-            |place: usize| SPREADS * self.spread[place / 3] + ROUNDING * self.scale[place / 3];
-        let slack = [0, 1, 2, 3, 4, 5].map(slack);
-        values
-            .iter()
-            .all(|value| value.is_finite())
-            .then_some(At { values, slack })
+        is_known.then_some(At { values, slack })
     }
 
     fn step(&mut self) {
-        self.scheme.take_step();
-        for copy in &mut self.copies {
-            copy.step();
-        }
+        self.run.advance();
+        self.copies.iter_mut().for_each(Stepper::advance);
     }
 }
 
@@ -163,53 +125,48 @@ pub struct Difference {
 #[derive(Clone, Copy, Debug)]
 pub struct Worst {
     pub off: f64,
-    /// The place of the column among those of the file.
-    pub column: usize,
+    pub place: usize,
     pub step: i64,
 }
 
 impl Followed {
     /// Whether every row that could be compared agrees, and row `row` is one of them.
     pub fn explains(&self, row: usize) -> bool {
-        self.differs.is_none() && self.agreeing > 0 && self.next > row
+        self.is_whole() && self.next > row
     }
 
-    /// Whether nothing differs.
     pub fn is_whole(&self) -> bool {
         self.differs.is_none() && self.agreeing > 0
     }
 
     /// Takes in what the run is at `step`.
-    fn take(&mut self, rows: &Rows, steps: &Steps, step: i64, at: &At, to_end: bool) {
-        let (offset, count) = (self.offset * steps.stride, rows.values.len());
+    fn take(&mut self, rows: &Rows, steps: &Steps, step: i64, at: &At) {
+        let (offset, count) = (self.offset * steps.stride, rows.count);
         let of = |row: usize| steps.of_rows[row].saturating_add(offset);
         while self.next < count && of(self.next) < step {
             self.next += 1; // before the start
         }
         if self.next < count && of(self.next) == step {
-            self.next += usize::from(self.compare(rows, self.next, step, at) || to_end);
+            self.next += usize::from(self.compare(rows, self.next, step, at));
         }
     }
 
     /// Compares a row. Returns whether it agrees.
     fn compare(&mut self, rows: &Rows, row: usize, step: i64, at: &At) -> bool {
         let mut agrees = true;
-        for (place, column) in rows.columns.iter().enumerate() {
-            let (yours, scheme) = (rows.values[row][place], at.values[column.place]);
+        for column in &rows.columns {
+            let (yours, scheme) = (column.values[row], at.values[column.place]);
             agrees &= column.agrees(yours, scheme, at.slack[column.place]);
             let off = (yours - scheme).abs();
             let worst = &mut self.worst[column.place / 3];
             if worst.is_none_or(|worst| off > worst.off) {
-                *worst = Some(Worst {
-                    off,
-                    column: place,
-                    step,
-                });
+                let place = column.place;
+                *worst = Some(Worst { off, place, step });
             }
         }
         if agrees {
             self.agreeing += 1;
-        } else if self.differs.is_none() {
+        } else {
             let scheme = at.values;
             self.differs = Some(Difference { row, step, scheme });
         }
@@ -217,22 +174,16 @@ impl Followed {
     }
 }
 
-/// Follows `run` along the rows, which are the `steps` of it, at each of `offsets` at once, and gives the one at which the
-/// most rows agree. Where `to_end`, rows are compared behind the first that differs too.
-pub fn follow(
-    rows: &Rows,
-    steps: &Steps,
-    run: &mut dyn Run,
-    offsets: &[i64],
-    to_end: bool,
-) -> Followed {
-    let lane = |&offset: &i64| Followed {
+/// Follows `run` along the rows, which are the `steps` of it, at each offset at once, and gives the one at which the
+/// most rows agree.
+pub fn follow<A: Stepper, B: Stepper>(rows: &Rows, steps: &Steps, mut run: Run<A, B>) -> Followed {
+    let lane = |offset| Followed {
         offset,
         ..Followed::default()
     };
-    let mut lanes: Vec<_> = offsets.iter().map(lane).collect();
-    let count = rows.values.len();
-    let goes_on = |lane: &Followed| lane.next < count && (to_end || lane.differs.is_none());
+    let mut lanes = OFFSETS.map(lane);
+    let count = rows.count;
+    let goes_on = |lane: &Followed| lane.next < count && lane.differs.is_none();
     let mut step = 0;
     let is_found = |lanes: &[Followed]| lanes[0].is_whole() && !goes_on(&lanes[0]);
     while lanes.iter().any(goes_on) && !is_found(&lanes) {
@@ -242,7 +193,7 @@ pub fn follow(
             break;
         };
         let going = lanes.iter_mut().filter(|lane| goes_on(lane));
-        going.for_each(|lane| lane.take(rows, steps, step, &at, to_end));
+        going.for_each(|lane| lane.take(rows, steps, step, &at));
         run.step();
         step += 1;
     }

@@ -5,7 +5,6 @@
 //! report's step in plain code, `slips` the table of slips, `plan` what it begins with, `explain` the search among them.
 //! `words` says what has come out.
 
-mod arithmetic;
 mod explain;
 mod follow;
 mod plan;
@@ -17,9 +16,11 @@ mod words;
 
 use crate::physics::workings::Quantity;
 use crate::run::Simulation;
-use crate::scenario::{Problem, Problems, Scenario};
-use explain::{Explanation, Search};
-use follow::{Followed, OFFSETS, Scheme, Single, Twin, follow};
+use crate::scenario::presets::PRESETS;
+use crate::scenario::{Document, Problem, Problems, Scenario};
+use crate::verify::Unverified;
+use explain::{Explanation, MOST_FOR_PAIRS, Search};
+use follow::{Followed, Run, follow};
 use plan::Plan;
 pub use rows::Rows;
 use serde::Serialize;
@@ -50,6 +51,9 @@ pub struct Verdict {
     /// The same in words, a line each, the first of which begins behind the file's name.
     #[serde(skip)]
     pub lines: Vec<String>,
+    /// Whether nothing that is known makes the rows.
+    #[serde(skip)]
+    pub is_unexplained: bool,
     #[serde(skip)]
     pub trial: Option<Trial>,
 }
@@ -78,27 +82,16 @@ impl Trial {
     }
 }
 
-/// Why nothing has come out.
-#[derive(Debug)]
-pub enum Uncompared {
-    Refused(Problems),
-    Stopped,
-}
-
-impl From<Problems> for Uncompared {
-    fn from(problems: Problems) -> Self {
-        Self::Refused(problems)
-    }
-}
-
 /// What was found, before it is put into words.
 struct Found<'a> {
     name: &'a str,
     scenario: &'a Arc<Scenario>,
     rows: &'a Rows,
-    /// The rows beside the scheme, to the end of the file.
+    /// The rows beside the scheme.
     beside: Followed,
     is_single: bool,
+    /// The preset whose own rows these are.
+    other: Option<&'static str>,
     explanations: Vec<Explanation>,
     closest: Option<Explanation>,
     unseen: Vec<&'static str>,
@@ -113,19 +106,26 @@ pub fn compare(
     name: &str,
     scenario: &Arc<Scenario>,
     go_on: &(dyn Fn() -> bool + Sync),
-) -> Result<Verdict, Uncompared> {
+) -> Result<Verdict, Unverified> {
     let plan = Plan::of(scenario);
-    let beside = |offsets: &[i64], to_end| beside(rows, scenario, plan.as_ref(), offsets, to_end);
-    let along = beside(&OFFSETS, false);
-    if along.differs.is_none() && along.agreeing == 0 {
-        return Err(nothing_compared(&along).into());
+    let copy = |plan| Program::<f64>::new(plan, &Changes::default(), Order::Forward);
+    let copies = plan.iter().map(copy).collect();
+    let run = Run::of(Simulation::new(Arc::clone(scenario)), copies, false);
+    let beside = follow(rows, &rows.times.steps, run);
+    if beside.differs.is_none() && beside.agreeing == 0 {
+        let mut rule = "has no row of a step that there is: steps count from 0".to_owned();
+        if let Some(step) = beside.parted {
+            rule = format!("has no row before step {step}, from which on rounding decides");
+        }
+        return Err(Problems::one("", Problem::at("", rule)).into());
     }
     let mut found = Found {
         name,
         scenario,
         rows,
-        beside: along,
+        beside,
         is_single: false,
+        other: None,
         explanations: Vec::new(),
         closest: None,
         unseen: Vec::new(),
@@ -134,14 +134,12 @@ pub fn compare(
     };
     if let Some(plan) = &plan {
         found.explain(plan, go_on);
-        let own = of_scheme(rows, plan, found.beside.offset);
-        found.unseen = explain::hidden(plan, &own, found.beside.parted, go_on);
-    }
-    if found.beside.differs.is_some() {
-        found.beside = beside(&[found.beside.offset], true);
+        if found.beside.is_whole() && !found.is_single {
+            found.unseen = explain::hidden(plan, rows, found.beside.parted, go_on);
+        }
     }
     if !go_on() {
-        return Err(Uncompared::Stopped);
+        return Err(Unverified::Stopped);
     }
     Ok(Verdict {
         trial: plan.as_ref().and_then(|plan| found.trial(plan)),
@@ -156,14 +154,18 @@ impl Found<'_> {
         let Some(differs) = self.beside.differs else {
             return; // numbers that are not finite after rows of the scheme's own are no slip's
         };
+        self.other = self.other_preset();
+        if self.other.is_some() {
+            return;
+        }
+        let first = (differs.row, differs.step);
         let search = Search {
             plan,
             rows,
-            first: (differs.row, differs.step),
+            first,
             go_on,
         };
-        let (found, close) = search.alone();
-        (self.explanations, self.closest) = (found, close.into_iter().next());
+        (self.explanations, self.closest) = search.alone();
         if self.explanations.is_empty() && rows.not_finite.is_none() {
             let single = single(rows, self.scenario, plan);
             self.is_single = single.is_whole();
@@ -171,105 +173,65 @@ impl Found<'_> {
                 self.beside = single;
             }
         }
-        self.has_pairs = search.can_try_pairs();
+        // Each pair is computed up to the first row that differs.
+        self.has_pairs = differs.step <= MOST_FOR_PAIRS;
         if self.explanations.is_empty() && !self.is_single && self.has_pairs {
             let (found, close) = search.in_pairs();
             self.explanations = found;
-            let closest = self.closest.take();
-            self.closest = closest.or(close.into_iter().next());
+            self.closest = self.closest.take().or(close);
         }
     }
-}
 
-impl Found<'_> {
+    /// The preset with which all rows agree, where they show a motion.
+    fn other_preset(&self) -> Option<&'static str> {
+        self.rows.columns.iter().find(|column| column.varies())?;
+        let is_its = |scenario: Scenario| {
+            let (times, dt) = (&self.rows.times, scenario.motion.time_step_s);
+            let mut others = times.others.iter();
+            let steps = match dt == self.scenario.motion.time_step_s {
+                true => &times.steps,
+                false => &others.find(|(own, _)| *own == dt)?.1,
+            };
+            let none = Vec::<Program<f64>>::new();
+            let run = Run::of(Simulation::new(scenario.into()), none, false);
+            Some(follow(self.rows, steps, run))
+        };
+        let names = PRESETS.iter().map(|preset| preset.name);
+        names.into_iter().find(|name| {
+            let scenario = Document::open(name).and_then(|it| it.scenario());
+            let followed = scenario.ok().and_then(is_its);
+            followed.is_some_and(|it| it.is_whole() && it.agreeing == self.rows.count)
+        })
+    }
+
     /// The program that makes the rows; `None` where none does, or where its steps are others than the run's.
     fn trial(&self, plan: &Plan) -> Option<Trial> {
         let (explanation, differs) = (self.explanations.first()?, self.beside.differs?);
-        let changes = explanation.changes()?;
+        let mut program = explanation.program(plan)?;
         let first = u64::try_from(differs.step.max(1)).ok()?;
-        let mut program = Program::new(plan, &changes, Order::Forward);
         for _ in 1..first {
             program.step();
         }
         Some(Trial {
             first,
             program,
-            words: self.named(explanation),
+            words: format!(
+                "{}: {}",
+                explanation.names().join(" + "),
+                words::words(explanation)
+            ),
         })
     }
 }
 
-fn nothing_compared(beside: &Followed) -> Problems {
-    let rule = match beside.parted {
-        Some(step) => format!(
-            "has no row that can be compared: from step {step} on rounding decides about the motion"
-        ),
-        None => "has no row of a step that there is: steps count from 0".to_owned(),
-    };
-    Problems::one("", Problem::at("", rule))
-}
-
-/// The rows beside the scheme's run.
-fn beside(
-    rows: &Rows,
-    scenario: &Arc<Scenario>,
-    plan: Option<&Plan>,
-    offsets: &[i64],
-    to_end: bool,
-) -> Followed {
-    let none = Changes::default();
-    let other = plan.map(|plan| Program::<f64>::new(plan, &none, Order::Forward));
-    let mut run = Twin(Scheme(Simulation::new(Arc::clone(scenario))), other);
-    follow(rows, &rows.times.steps, &mut run, offsets, to_end)
-}
-
 /// The rows beside the scheme's run, with as much room as single precision needs. They differ where they cannot be of that
-/// precision: where no column holds numbers of it alone.
+/// precision: where no column holds numbers of it.
 fn single(rows: &Rows, scenario: &Arc<Scenario>, plan: &Plan) -> Followed {
-    let may_be = |(place, column): (usize, &rows::Column)| {
-        rows.values
-            .iter()
-            .all(|row| column.may_be_single(row[place]))
-            && rows
-                .values
-                .iter()
-                .any(|row| row[place] != rows.values[0][place])
-    };
-    let of_single = rows.columns.iter().enumerate().any(may_be);
-    if !of_single && rows.values.len() > 1 {
+    if !rows.columns.iter().any(rows::Column::may_be_single) {
         return Followed::default();
     }
     let copy = |order| Program::<f32>::new(plan, &Changes::default(), order);
     let copies = [Order::Forward, Order::Backward, Order::EvenThenOdd].map(copy);
-    let scheme = Scheme(Simulation::new(Arc::clone(scenario)));
-    let mut run = Single::new(scheme, copies);
-    follow(rows, &rows.times.steps, &mut run, &OFFSETS, false)
-}
-
-/// Rows as the scheme would have written them, in the columns and to the digits of `rows`.
-fn of_scheme(rows: &Rows, plan: &Plan, offset: i64) -> Rows {
-    let mut own = rows.clone();
-    let mut program = Program::<f64>::new(plan, &Changes::default(), Order::Forward);
-    let mut values = Vec::new();
-    let (mut step, stride) = (0, rows.times.steps.stride);
-    let own_steps = &mut own.times.steps.of_rows;
-    own_steps
-        .iter_mut()
-        .for_each(|of_row| *of_row += offset * stride);
-    own_steps.retain(|step| *step >= 0);
-    for of_row in own_steps.iter() {
-        while step < *of_row {
-            program.step();
-            step += 1;
-        }
-        let row = program.row();
-        values.push(
-            rows.columns
-                .iter()
-                .map(|column| row[column.place])
-                .collect(),
-        );
-    }
-    own.values = values;
-    own
+    let run = Simulation::new(Arc::clone(scenario));
+    follow(rows, &rows.times.steps, Run::of(run, copies.into(), true))
 }

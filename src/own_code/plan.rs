@@ -4,6 +4,7 @@ use super::slips::Changes;
 use crate::physics::rotation;
 use crate::scenario::file::Frame;
 use crate::scenario::{Push, Scenario, Window};
+use crate::text::number::{rounded, shortest};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::TAU;
 
@@ -27,9 +28,13 @@ struct Start {
     /// Whether the tilt alone makes the orientation.
     is_tilt: bool,
     orientation: Matrix3<f64>,
+    /// L, in the frame in which it is stated.
     momentum: Vector3<f64>,
     momentum_is_of_body: bool,
 }
+
+/// What of a plan may be left from another preset: push, rim, top, tilt and L.
+pub(super) const PARTS: usize = 5;
 
 impl Plan {
     /// The plan of `scenario`; `None` where it is more than the report's step does: another scheme, friction, a rotor, edits,
@@ -43,6 +48,8 @@ impl Plan {
             && scenario.edits.is_empty()
             && scenario.pushes.iter().all(in_steps);
         let (file, start) = (&scenario.file.body, &scenario.file.start);
+        let of_body = start.momentum_Js.is_none() || start.momentum_frame == Some(Frame::Body);
+        let (orientation, momentum) = (scenario.start.orientation, scenario.start.momentum);
         let is_zero = |deg: Option<f64>| deg.unwrap_or(0.0) == 0.0;
         let points = body.points().iter();
         is_plain.then(|| Self {
@@ -53,15 +60,59 @@ impl Plan {
             start: Start {
                 tilt_deg: start.tilt_deg.unwrap_or(0.0),
                 is_tilt: is_zero(start.turn_deg) && is_zero(start.roll_deg),
-                orientation: scenario.start.orientation,
-                momentum: scenario.start.momentum,
-                momentum_is_of_body: start.momentum_Js.is_none()
-                    || start.momentum_frame == Some(Frame::Body),
+                momentum: if of_body {
+                    orientation.tr_mul(&momentum)
+                } else {
+                    momentum
+                },
+                orientation,
+                momentum_is_of_body: of_body,
             },
             gravity: scenario.motion.gravity,
             time_step_s: scenario.motion.time_step_s,
             pushes: scenario.pushes.to_vec(),
         })
+    }
+
+    /// Part `part` in words.
+    pub(super) fn part(&self, part: usize) -> String {
+        let number = |value: f64| shortest(rounded(value, 4));
+        let vector = |of: &Vector3<f64>| format!("({})", of.map(number).as_slice().join(", "));
+        match part {
+            0 => match self.pushes.first() {
+                None => "no push".to_owned(),
+                Some(push) => {
+                    let Window::Steps { count, .. } = push.window else {
+                        return String::new(); // no plan has it
+                    };
+                    format!("a push of {} N for {count} steps", vector(&push.force))
+                }
+            },
+            1 => format!("the rim at {} m", number(self.points[0].0[2])),
+            2 => format!("the top at {} m", number(self.points[self.traced].0[2])),
+            3 => format!("a tilt of {} degrees", number(self.start.tilt_deg)),
+            _ => format!("L = {} J s", vector(&self.start.momentum)),
+        }
+    }
+
+    /// This plan with those parts of `other` whose bits are set in `parts`; `None` where the bodies are of another kind.
+    pub(super) fn with_parts(&self, other: &Self, parts: u8) -> Option<Self> {
+        let (count, trace) = (self.points.len(), self.traced);
+        let is_alike = self.rim > 0 && (self.rim, count) == (other.rim, other.points.len());
+        let mut plan = self.clone();
+        for part in (0..PARTS).filter(|part| parts & (1 << part) != 0) {
+            match part {
+                0 => plan.pushes.clone_from(&other.pushes),
+                1 => plan.points[..self.rim].clone_from_slice(&other.points[..self.rim]),
+                2 => plan.points[trace] = other.points[other.traced],
+                3 => {
+                    plan.start.tilt_deg = other.start.tilt_deg;
+                    plan.start.orientation = other.start.orientation;
+                }
+                _ => plan.start.momentum = other.start.momentum,
+            }
+        }
+        (is_alike && other.start.is_tilt).then_some(plan)
     }
 
     /// The points of the body with their masses, kg, in the upright pose, m.
@@ -92,7 +143,6 @@ impl Plan {
     /// Orientation and L at the start.
     pub(super) fn start(&self, changes: &Changes) -> (Matrix3<f64>, Vector3<f64>) {
         let start = &self.start;
-        let own = start.orientation.tr_mul(&start.momentum);
         let angle = if changes.tilt_in_radians {
             start.tilt_deg
         } else {
@@ -113,16 +163,14 @@ impl Plan {
         } else {
             turned
         };
-        let momentum = match (start.momentum_is_of_body, changes.other_frame) {
-            (true, false) => of_momentum * own,
-            (true, true) => own,
-            (false, false) => start.momentum,
-            (false, true) => of_momentum * start.momentum,
+        let momentum = if start.momentum_is_of_body == changes.other_frame {
+            start.momentum
+        } else {
+            of_momentum * start.momentum
         };
         (turned, momentum)
     }
 
-    /// The point that is written.
     pub(super) fn traced(&self, changes: &Changes) -> usize {
         let mut others = (self.rim..self.rim + self.axle).filter(|&place| place != self.traced);
         let traced = changes.traced.map(|number| others.nth(number).unwrap_or(0));

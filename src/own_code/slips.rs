@@ -11,18 +11,6 @@ pub enum Sequence {
     LBeforeTurn,
 }
 
-/// What acts at the centre of mass.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Centre {
-    #[default]
-    Nothing,
-    OnePoint,
-    OnePointAndPush,
-    All,
-    AllPoints,
-    Mean,
-}
-
 /// Everything that a slip can change in the report's step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Changes {
@@ -30,6 +18,10 @@ pub struct Changes {
     /// Of the products of inertia: 1 adds them, 2 leaves them out.
     pub(super) products: u8,
     pub(super) without_e: bool,
+    /// What stands in the rotation in the place of every component of E.
+    pub(super) turn_e: Option<f64>,
+    /// The cross product with its middle component reversed: that of the torque, or that with Omega.
+    pub(super) middle_sign: Option<bool>,
     pub(super) about_centre: bool,
     /// The point of the rim that is left out: whether it is the last, and whether its weight is left out too.
     pub(super) left_out: Option<(bool, bool)>,
@@ -49,13 +41,13 @@ pub struct Changes {
     pub(super) dt_missing: bool,
     /// Weights without m: whether the points without mass have one too.
     pub(super) without_mass: Option<bool>,
-    pub(super) no_gravity: bool,
     /// Which of the axle's other points is written; beyond them the first of the rim.
     pub(super) traced: Option<usize>,
     pub(super) swapped: Option<(usize, usize)>,
     pub(super) torque_reversed: bool,
     pub(super) gravity_up: bool,
-    pub(super) centre: Centre,
+    /// The torque at the centre of mass: whether of all forces, or of one point's weight.
+    pub(super) centre: Option<bool>,
     pub(super) sums_up: bool,
     pub(super) gravity: Option<f64>,
     pub(super) kept: bool,
@@ -68,101 +60,86 @@ pub struct Changes {
     /// How many steps later the push acts.
     pub(super) push_shift: i64,
     /// How many steps longer it acts.
-    pub(super) push_longer: u64,
+    pub(super) push_longer: i64,
     pub(super) accumulates: bool,
     pub(super) time_step_s: Option<f64>,
 }
 
-/// What is special about a variant of a slip, and the change that it makes.
-type Variant = (&'static str, fn(&mut Changes));
-
-/// One thing that goes wrong in programs of the report's step.
-#[derive(Debug)]
-pub struct Slip {
-    pub name: &'static str,
-    /// What the program does, and what the report does: two sentences without their ends.
-    pub program: &'static str,
-    pub report: &'static str,
-    pub variants: &'static [Variant],
-}
-
-const fn slip(
-    name: &'static str,
-    program: &'static str,
-    report: &'static str,
-    variants: &'static [Variant],
-) -> Slip {
-    Slip {
-        name,
-        program,
-        report,
-        variants,
-    }
-}
+/// One thing that goes wrong in programs of the report's step: its name; what the program does, and what the report does,
+/// two sentences without their ends; and its variants, each with what is special about it and the change that it makes.
+type Slip = (
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static [(&'static str, fn(&mut Changes))],
+);
 
 const DEGREES: f64 = std::f64::consts::PI / 180.0;
-pub(super) const FOREVER: u64 = u64::MAX / 2;
+pub(super) const FOREVER: i64 = i64::MAX / 4;
 
 /// Every slip that is looked for, but for another time step, which is read off the file.
 #[rustfmt::skip]
 pub const SLIPS: &[Slip] = &[
-    slip("inertia-kept", "the inertia is summed once, at the start", "sums it anew in each step, from the turned points", &[("", |c| c.inertia_kept = true)]),
-    slip("inertia-product-sign", "the products of inertia are added", "subtracts them: I = sum m (|r|^2 E - r r^T)", &[("", |c| c.products = 1)]),
-    slip("inertia-diagonal", "the products of inertia are left out, or L is divided by the diagonal alone", "solves I Omega = L with the whole matrix", &[("", |c| c.products = 2)]),
-    slip("inertia-without-E", "r r^T is subtracted from the number r.r, in each of the nine places", "multiplies r.r by the unit matrix E first", &[("", |c| c.without_e = true)]),
-    slip("inertia-about-centre", "the inertia is about the centre of mass", "measures r from the pivot, about which L is too", &[("", |c| c.about_centre = true)]),
-    slip("point-left-out", "one point of the rim is left out of the sum", "sums over every point", &[
+    ("inertia-kept", "the inertia is summed once, at the start", "sums it anew in each step, from the turned points", &[("", |c| c.inertia_kept = true)]),
+    ("inertia-product-sign", "the products of inertia are added", "subtracts them: I = sum m (|r|^2 E - r r^T)", &[("", |c| c.products = 1)]),
+    ("inertia-diagonal", "the products of inertia are left out, or L is divided by the diagonal alone", "solves I Omega = L with the whole matrix", &[("", |c| c.products = 2)]),
+    ("inertia-without-E", "r r^T is subtracted from the number r.r, in each of the nine places", "multiplies r.r by the unit matrix E first", &[("", |c| c.without_e = true)]),
+    ("inertia-about-centre", "the inertia is about the centre of mass", "measures r from the pivot, about which L is too", &[("", |c| c.about_centre = true)]),
+    ("point-left-out", "one point of the rim is left out of the sum", "sums over every point", &[
         ("the first, in the inertia alone", |c| c.left_out = Some((false, false))),
         ("the last, in the inertia alone", |c| c.left_out = Some((true, false))),
         ("the first, in inertia and weight", |c| c.left_out = Some((false, true))),
         ("the last, in inertia and weight", |c| c.left_out = Some((true, true)))]),
-    slip("top-has-mass", "points of the axle have the mass of a rim point", "gives the axle no mass", &[
+    ("top-has-mass", "points of the axle have the mass of a rim point", "gives the axle no mass", &[
         ("all of them", |c| c.axle_mass = Some(false)), ("the top alone", |c| c.axle_mass = Some(true))]),
-    slip("rim-point-twice", "the first and the last point of the rim are in one place, as linspace(0, 2*pi, n) puts them", "puts n points at n different angles, 2 pi/n apart", &[("", |c| c.rim_point_twice = true)]),
-    slip("rotation-reversed", "the points are turned by minus the angle, as the transposed R does", "turns them by +|Omega| dt about Omega", &[("", |c| c.rotation_reversed = true)]),
-    slip("dt-forgotten", "the points are turned by |Omega|", "turns them by |Omega| dt", &[("", |c| c.dt_forgotten = true)]),
-    slip("axis-not-unit", "P and the cross matrix are made from Omega itself", "makes them from the unit vector Omega/|Omega|", &[("", |c| c.axis_not_unit = true)]),
-    slip("first-order-rotation", "the points move by dt Omega x r", "turns them by the rotation matrix", &[("", |c| c.first_order = true)]),
-    slip("angle-in-degrees", "degrees and radians are mixed up in the angle of the turn", "turns by |Omega| dt radians", &[
+    ("rim-point-twice", "the first and the last point of the rim are in one place, as linspace(0, 2*pi, n) puts them", "puts n points at n different angles, 2 pi/n apart", &[("", |c| c.rim_point_twice = true)]),
+    ("rotation-without-E", "the rotation is made without the unit matrix E", "has R = P + cos(angle) (E - P) + sin(angle) [u]x", &[
+        ("1 - P in each of the nine places", |c| c.turn_e = Some(1.0)), ("-P in the place of E - P", |c| c.turn_e = Some(0.0))]),
+    ("cross-product-sign", "the middle component of a cross product has the wrong sign", "has a3 b1 - a1 b3 there", &[
+        ("of r x F", |c| c.middle_sign = Some(true)), ("of Omega x r, as in the second row of [u]x", |c| c.middle_sign = Some(false))]),
+    ("rotation-reversed", "the points are turned by minus the angle, as the transposed R does", "turns them by +|Omega| dt about Omega", &[("", |c| c.rotation_reversed = true)]),
+    ("dt-forgotten", "the points are turned by |Omega|", "turns them by |Omega| dt", &[("", |c| c.dt_forgotten = true)]),
+    ("axis-not-unit", "P and the cross matrix are made from Omega itself", "makes them from the unit vector Omega/|Omega|", &[("", |c| c.axis_not_unit = true)]),
+    ("first-order-rotation", "the points move by dt Omega x r", "turns them by the rotation matrix", &[("", |c| c.first_order = true)]),
+    ("angle-in-degrees", "degrees and radians are mixed up in the angle of the turn", "turns by |Omega| dt radians", &[
         ("radians in cosd and sind", |c| c.angle = Some(DEGREES)), ("degrees in cos and sin", |c| c.angle = Some(1.0 / DEGREES))]),
-    slip("torque-before-turn", "the torque is taken before the points are turned", "turns them first, then sums r x F", &[("", |c| c.sequence = Sequence::TorqueBeforeTurn)]),
-    slip("L-before-turn", "L gets its torque first, and the points are turned with the new L", "turns the points with the old L, and then adds the torque to L", &[("", |c| c.sequence = Sequence::LBeforeTurn)]),
-    slip("L-a-row-late", "L is written a row late: in each row it is the L before the step", "has in one row the points and the L after the step", &[("", |c| c.row_late = true)]),
-    slip("points-in-place", "x is turned in place, and the new x is used for y and z", "turns all three from the old x, y and z", &[
+    ("torque-before-turn", "the torque is taken before the points are turned", "turns them first, then sums r x F", &[("", |c| c.sequence = Sequence::TorqueBeforeTurn)]),
+    ("L-before-turn", "L gets its torque first, and the points are turned with the new L", "turns the points with the old L, and then adds the torque to L", &[("", |c| c.sequence = Sequence::LBeforeTurn)]),
+    ("L-a-row-late", "L is written a row late: in each row it is the L before the step", "has in one row the points and the L after the step", &[("", |c| c.row_late = true)]),
+    ("points-in-place", "x is turned in place, and the new x is used for y and z", "turns all three from the old x, y and z", &[
         ("and the new y for z", |c| c.in_place = Some(true)), ("", |c| c.in_place = Some(false))]),
-    slip("dt-missing-in-torque", "the torque is added to L without dt", "adds dt times the torque", &[("", |c| c.dt_missing = true)]),
-    slip("force-without-mass", "the weight of a point is g", "makes it m g", &[
+    ("dt-missing-in-torque", "the torque is added to L without dt", "adds dt times the torque", &[("", |c| c.dt_missing = true)]),
+    ("force-without-mass", "the weight of a point is g", "makes it m g", &[
         ("also of the points without mass", |c| c.without_mass = Some(true)), ("of the points with mass", |c| c.without_mass = Some(false))]),
-    slip("no-gravity", "there is no weight", "pulls each point down by m g", &[("", |c| c.no_gravity = true)]),
-    slip("hub-traced", "another point is written", "traces the axle's top", &[
+    ("no-gravity", "there is no weight", "pulls each point down by m g", &[("", |c| c.gravity = Some(0.0))]),
+    ("hub-traced", "another point is written", "traces the axle's top", &[
         ("", |c| c.traced = Some(0)), ("", |c| c.traced = Some(1)), ("", |c| c.traced = Some(2)),
         ("the first of the rim", |c| c.traced = Some(usize::MAX))]),
-    slip("columns-swapped", "two columns have changed places", "has x, y, z in this order", &[
+    ("columns-swapped", "two columns have changed places", "has x, y, z in this order", &[
         ("x and y", |c| c.swapped = Some((0, 1))), ("x and z", |c| c.swapped = Some((0, 2))), ("y and z", |c| c.swapped = Some((1, 2))),
         ("Lx and Ly", |c| c.swapped = Some((3, 4))), ("Lx and Lz", |c| c.swapped = Some((3, 5))), ("Ly and Lz", |c| c.swapped = Some((4, 5)))]),
-    slip("torque-reversed", "the torque is F x r", "takes r x F", &[("", |c| c.torque_reversed = true)]),
-    slip("gravity-up", "the weight points up", "has it along -z", &[("", |c| c.gravity_up = true)]),
-    slip("torque-of-centre", "the torque is taken at one point for all, the centre of mass", "sums r x F over the points, each with its own r and F", &[
-        ("with the mass of one point", |c| c.centre = Centre::OnePoint), ("with the mass of one point, the push there too", |c| c.centre = Centre::OnePointAndPush),
-        ("with the whole mass, the push there too", |c| c.centre = Centre::All), ("with a rim point's mass for every point, massless ones too", |c| c.centre = Centre::AllPoints),
-        ("at the mean of all points, massless ones too", |c| c.centre = Centre::Mean)]),
-    slip("torque-sums-up", "the torque is never set to zero, and adds up over the steps", "sums it anew in each step", &[("", |c| c.sums_up = true)]),
-    slip("gravity-9.81", "g is 9.81", "has g = 9.8", &[("", |c| c.gravity = Some(9.81))]),
-    slip("gravity-10", "g is 10", "has g = 9.8", &[("", |c| c.gravity = Some(10.0))]),
-    slip("L-kept", "L is never updated", "adds dt times the torque to it in each step", &[("", |c| c.kept = true)]),
-    slip("L-turned", "L is turned with the body", "keeps it in the world frame, where the torque alone changes it", &[
+    ("torque-reversed", "the torque is F x r", "takes r x F", &[("", |c| c.torque_reversed = true)]),
+    ("gravity-up", "the weight points up", "has it along -z", &[("", |c| c.gravity_up = true)]),
+    ("torque-of-centre", "the torque is taken at one point for all, the centre of mass", "sums r x F over the points, each with its own r and F", &[
+        ("with the mass of one point", |c| c.centre = Some(false)), ("with the whole mass, the push there too", |c| c.centre = Some(true))]),
+    ("torque-sums-up", "the torque is never set to zero, and adds up over the steps", "sums it anew in each step", &[("", |c| c.sums_up = true)]),
+    ("gravity-9.81", "g is 9.81", "has g = 9.8", &[("", |c| c.gravity = Some(9.81))]),
+    ("gravity-10", "g is 10", "has g = 9.8", &[("", |c| c.gravity = Some(10.0))]),
+    ("L-kept", "L is never updated", "adds dt times the torque to it in each step", &[("", |c| c.kept = true)]),
+    ("L-turned", "L is turned with the body", "keeps it in the world frame, where the torque alone changes it", &[
         ("and the torque is added", |c| c.turned = Some(true)), ("and no torque is added", |c| c.turned = Some(false))]),
-    slip("L-other-frame", "L begins in the other frame: turned where it is the world's, or not turned where it is the body's", "takes it as the scenario states it", &[("", |c| c.other_frame = true)]),
-    slip("tilt-other-axis", "the body is tilted about another axis", "tilts it about +x", &[
+    ("L-other-frame", "L begins in the other frame: turned where it is the world's, or not turned where it is the body's", "takes it as the scenario states it", &[("", |c| c.other_frame = true)]),
+    ("tilt-other-axis", "the body is tilted about another axis", "tilts it about +x", &[
         ("about -x", |c| c.tilt_axis = Some(([-1.0, 0.0, 0.0], false))), ("about +y", |c| c.tilt_axis = Some(([0.0, 1.0, 0.0], false))),
         ("about -y", |c| c.tilt_axis = Some(([0.0, -1.0, 0.0], false))), ("about -x, the points alone", |c| c.tilt_axis = Some(([-1.0, 0.0, 0.0], true))),
         ("about +y, the points alone", |c| c.tilt_axis = Some(([0.0, 1.0, 0.0], true))), ("about -y, the points alone", |c| c.tilt_axis = Some(([0.0, -1.0, 0.0], true)))]),
-    slip("tilt-in-radians", "the tilt in degrees is taken for radians", "converts it", &[("", |c| c.tilt_in_radians = true)]),
-    slip("push-early", "the push acts a step early, and ends a step early", "has it from its first step on", &[("", |c| c.push_shift = -1)]),
-    slip("push-late", "t in it is the time at the step's start, so that the push acts a step later", "gets t = step times dt here", &[("", |c| c.push_shift = 1)]),
-    slip("push-too-long", "the push acts too long", "ends it after its last step", &[
+    ("tilt-in-radians", "the tilt in degrees is taken for radians", "converts it", &[("", |c| c.tilt_in_radians = true)]),
+    ("push-early", "the push ends one step too soon: it acts a step early, or one step less", "has it from its first step to its last", &[
+        ("", |c| c.push_longer = -1), ("a step early", |c| c.push_shift = -1)]),
+    ("push-late", "t in it is the time at the step's start, so that the push acts a step later", "gets t = step times dt here", &[("", |c| c.push_shift = 1)]),
+    ("push-too-long", "the push acts too long", "ends it after its last step", &[
         ("one step more", |c| c.push_longer = 1), ("to the end of the run", |c| c.push_longer = FOREVER)]),
-    slip("push-accumulates", "the push is added to an array of forces that is never built anew, and grows with each step", "builds F anew in each step", &[("", |c| c.accumulates = true)]),
+    ("push-accumulates", "the push is added to an array of forces that is never built anew, and grows with each step", "builds F anew in each step", &[("", |c| c.accumulates = true)]),
 ];
 
 /// Another reading of the report's text is no slip.

@@ -4,12 +4,24 @@
 //! must be able to change any line. Its order of additions can be chosen, and so can its precision: what depends on either is
 //! rounding, and no fault of a program.
 
-use super::arithmetic::{Matrix, Real, Vector, cross, dot, solve};
 use super::plan::Plan;
-use super::slips::{Centre, Changes, FOREVER, Sequence};
+use super::slips::{Changes, FOREVER, Sequence};
 use crate::physics::workings::{Quantity, Value};
 use crate::scenario::{Push, Window};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, RealField, Vector3, convert, convert_unchecked};
+
+/// A floating-point number, f64 or f32.
+pub trait Real: RealField + Copy {
+    fn of(number: f64) -> Self {
+        convert(number)
+    }
+    fn f64(self) -> f64 {
+        convert_unchecked(self)
+    }
+}
+
+impl Real for f64 {}
+impl Real for f32 {}
 
 /// In which order sums are added up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,9 +37,9 @@ pub const TRACED: &str = "new X";
 /// How a step turns the points: about u by an angle, with the matrix R.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<T> {
-    u: Vector<T>,
+    u: Vector3<T>,
     angle: T,
-    rotation: Matrix<T>,
+    rotation: Matrix3<T>,
 }
 
 /// A run of the report's step with changes in it. It stands at step 0 at first.
@@ -36,11 +48,11 @@ pub struct Program<T> {
     changes: Changes,
     order: Order,
     sequence: Vec<usize>,
-    points: Vec<(Vector<T>, T)>,
-    momentum: Vector<T>,
-    earlier: Vector<T>,
-    inertia: Matrix<T>,
-    torques: Vector<T>,
+    points: Vec<(Vector3<T>, T)>,
+    momentum: Vector3<T>,
+    earlier: Vector3<T>,
+    inertia: Matrix3<T>,
+    torques: Vector3<T>,
     traced: usize,
     rim: usize,
     pushes: Vec<Push>,
@@ -52,9 +64,9 @@ pub struct Program<T> {
 impl<T: Real> Program<T> {
     pub fn new(plan: &Plan, changes: &Changes, order: Order) -> Self {
         let (turned, momentum) = plan.start(changes);
-        let vector = |of: Vector3<f64>| [T::of(of.x), T::of(of.y), T::of(of.z)];
         let points = plan.body(changes).into_iter();
-        let points = points.map(|(at, mass)| (vector(turned * Vector3::from(at)), T::of(mass)));
+        let points =
+            points.map(|(at, mass)| ((turned * Vector3::from(at)).map(T::of), T::of(mass)));
         let count = plan.points.len();
         let mut program = Self {
             changes: *changes,
@@ -65,10 +77,10 @@ impl<T: Real> Program<T> {
                 Order::EvenThenOdd => (0..count).step_by(2).chain((1..count).step_by(2)).collect(),
             },
             points: points.collect(),
-            momentum: vector(momentum),
-            earlier: vector(momentum),
-            inertia: [[T::of(0.0); 3]; 3],
-            torques: [T::of(0.0); 3],
+            momentum: momentum.map(T::of),
+            earlier: momentum.map(T::of),
+            inertia: Matrix3::zeros(),
+            torques: Vector3::zeros(),
             traced: plan.traced(changes),
             rim: plan.rim,
             pushes: plan.pushes.clone(),
@@ -82,14 +94,13 @@ impl<T: Real> Program<T> {
 
     /// The traced point, world frame, m, and L, J s, as the program writes them.
     pub fn row(&self) -> [f64; 6] {
-        let [x, y, z] = self.points[self.traced].0.map(T::f64);
         let momentum = if self.changes.row_late {
             self.earlier
         } else {
             self.momentum
         };
-        let [lx, ly, lz] = momentum.map(T::f64);
-        let mut row = [x, y, z, lx, ly, lz];
+        let at = self.points[self.traced].0;
+        let mut row = [at.x, at.y, at.z, momentum.x, momentum.y, momentum.z].map(T::f64);
         if let Some((one, other)) = self.changes.swapped {
             row.swap(one, other);
         }
@@ -97,7 +108,7 @@ impl<T: Real> Program<T> {
     }
 
     /// One step of the report. Returns the angular velocity, the turn and the torque on its way.
-    pub fn step(&mut self) -> (Vector<T>, Option<Turn<T>>, Vector<T>) {
+    pub fn step(&mut self) -> (Vector3<T>, Option<Turn<T>>, Vector3<T>) {
         self.clock += 1;
         self.earlier = self.momentum;
         let mut early = None;
@@ -127,8 +138,8 @@ impl<T: Real> Program<T> {
 
     /// Takes a step, and gives what each phase of it results in, with the phase's name.
     pub fn numbers(&mut self) -> Vec<(&'static str, Quantity)> {
-        let vector = |of: &Vector<T>| Value::from(Vector3::from(of.map(T::f64)));
-        let matrix = |of: &Matrix<T>| Value::from(Matrix3::from_fn(|i, j| of[i][j].f64()));
+        let vector = |of: &Vector3<T>| Value::from(of.map(T::f64));
+        let matrix = |of: &Matrix3<T>| Value::from(of.map(T::f64));
         let (omega, turn, torque) = self.step();
         let mut numbers = vec![
             ("inertia", "I", "kg m²", matrix(&self.inertia)),
@@ -152,43 +163,34 @@ impl<T: Real> Program<T> {
     }
 
     /// Equation (2): I = sum of m (|r|^2 E - r r^T), about the pivot.
-    fn inertia(&self) -> Matrix<T> {
-        let zero = T::of(0.0);
+    fn inertia(&self) -> Matrix3<T> {
         let changes = &self.changes;
         let centre = if changes.about_centre {
             self.centre()
         } else {
-            [zero; 3]
+            Vector3::zeros()
         };
-        let mut sum = [[zero; 3]; 3];
-        for &k in &self.sequence {
-            if self.is_left_out(k, false) {
-                continue;
-            }
+        let e = if changes.without_e {
+            Matrix3::repeat(T::one())
+        } else {
+            Matrix3::identity()
+        };
+        let mut sum = Matrix3::zeros();
+        let counted = self
+            .sequence
+            .iter()
+            .filter(|k| !self.is_left_out(**k, false));
+        for &k in counted {
             let (at, mass) = self.points[k];
-            let r = [0, 1, 2].map(|i| at[i] - centre[i]);
-            let square = self.dot(&r, &r);
-            for i in 0..3 {
-                for j in 0..3 {
-                    let e = if i == j || changes.without_e {
-                        square
-                    } else {
-                        zero
-                    };
-                    sum[i][j] = sum[i][j] + mass * (e - r[i] * r[j]);
-                }
-            }
+            let r = at - centre;
+            sum += (e * self.dot(&r, &r) - r * r.transpose()) * mass;
         }
-        for (i, row) in sum.iter_mut().enumerate() {
-            for (_, place) in row.iter_mut().enumerate().filter(|(j, _)| *j != i) {
-                *place = match changes.products {
-                    0 => *place,
-                    1 => -*place,
-                    _ => zero,
-                };
-            }
+        let diagonal = Matrix3::from_diagonal(&sum.diagonal());
+        match changes.products {
+            0 => sum,
+            1 => diagonal + diagonal - sum,
+            _ => diagonal,
         }
-        sum
     }
 
     /// Whether point `k` is left out of the sum, of the inertia or of the weight.
@@ -203,20 +205,17 @@ impl<T: Real> Program<T> {
         })
     }
 
-    fn centre(&self) -> Vector<T> {
-        let zero = T::of(0.0);
-        let (mut sum, mut total) = ([zero; 3], zero);
-        let is_mean = self.changes.centre == Centre::Mean && !self.changes.about_centre;
+    fn centre(&self) -> Vector3<T> {
+        let (mut sum, mut total) = (Vector3::zeros(), T::zero());
         for (at, mass) in &self.points {
-            let mass = if is_mean { T::of(1.0) } else { *mass };
-            sum = [0, 1, 2].map(|i| sum[i] + mass * at[i]);
-            total = total + mass;
+            sum += at * *mass;
+            total += *mass;
         }
-        sum.map(|part| part / total)
+        sum / total
     }
 
     /// R = P + cos(|Omega| dt)(E - P) + sin(|Omega| dt)[u]x; `None` where there is no Omega.
-    fn rotation(&self, omega: &Vector<T>) -> Option<Turn<T>> {
+    fn rotation(&self, omega: &Vector3<T>) -> Option<Turn<T>> {
         let changes = &self.changes;
         let rate = T::of(self.dot(omega, omega).f64().sqrt());
         if rate.f64() == 0.0 || changes.first_order {
@@ -225,93 +224,73 @@ impl<T: Real> Program<T> {
         let u = if changes.axis_not_unit {
             *omega
         } else {
-            omega.map(|part| part / rate)
+            omega / rate
         };
         let mut angle = rate;
         if !changes.dt_forgotten {
-            angle = angle * self.time_step;
+            angle *= self.time_step;
         }
         if let Some(factor) = changes.angle {
-            angle = angle * T::of(factor);
+            angle *= T::of(factor);
         }
         if changes.rotation_reversed {
             angle = -angle;
         }
         let (sine, cosine) = libm::sincos(angle.f64());
-        let (sine, cosine, zero) = (T::of(sine), T::of(cosine), T::of(0.0));
-        let cross = [
-            [zero, -u[2], u[1]],
-            [u[2], zero, -u[0]],
-            [-u[1], u[0], zero],
-        ];
-        let rotation = [0, 1, 2].map(|i| {
-            [0, 1, 2].map(|j| {
-                let (p, e) = (u[i] * u[j], T::of(f64::from(u8::from(i == j))));
-                p + cosine * (e - p) + sine * cross[i][j]
-            })
-        });
+        let mut cross = u.cross_matrix();
+        if changes.middle_sign == Some(false) {
+            cross.row_mut(1).neg_mut();
+        }
+        let e = changes.turn_e.map(|e| Matrix3::repeat(T::of(e)));
+        let (p, e) = (u * u.transpose(), e.unwrap_or_else(Matrix3::identity));
+        let rotation = p + (e - p) * T::of(cosine) + cross * T::of(sine);
         Some(Turn { u, angle, rotation })
     }
 
-    fn turn(&mut self, omega: &Vector<T>, rotation: Option<&Matrix<T>>) {
+    fn turn(&mut self, omega: &Vector3<T>, rotation: Option<&Matrix3<T>>) {
         for k in 0..self.points.len() {
             let r = self.points[k].0;
             self.points[k].0 = match rotation {
                 Some(rotation) => self.times(rotation, &r),
-                None => {
-                    let velocity = cross(omega, &r);
-                    [0, 1, 2].map(|i| r[i] + self.time_step * velocity[i])
-                }
+                None => r + self.cross(omega, &r, false) * self.time_step,
             };
             if let (Some(rotation), Some(y_too)) = (rotation, self.changes.in_place) {
                 let new = &mut self.points[k].0;
-                new[1] = dot(&rotation[1], &[new[0], r[1], r[2]]);
-                let y = if y_too { new[1] } else { r[1] };
-                new[2] = dot(&rotation[2], &[new[0], y, r[2]]);
+                new.y = (rotation.row(1) * Vector3::new(new.x, r.y, r.z)).x;
+                let y = if y_too { new.y } else { r.y };
+                new.z = (rotation.row(2) * Vector3::new(new.x, y, r.z)).x;
             }
         }
     }
 
     /// Sum of r x F.
-    fn torque(&self) -> Vector<T> {
+    fn torque(&self) -> Vector3<T> {
         let changes = &self.changes;
-        let zero = T::of(0.0);
-        let mut sum = [zero; 3];
-        let mut add = |r: &Vector<T>, force: Vector<T>| {
-            let torque = cross(r, &force);
-            sum = [0, 1, 2].map(|i| sum[i] + torque[i]);
-        };
-        let mut weight = zero;
+        let (mut sum, mut weight) = (Vector3::zeros(), Vector3::zeros());
         for &k in &self.sequence {
             let (at, mass) = &self.points[k];
-            let force = [zero, zero, self.weight(k, *mass)];
-            weight = weight + force[2];
-            if changes.centre == Centre::Nothing {
-                add(at, force);
+            let force = Vector3::new(T::zero(), T::zero(), self.weight(k, *mass));
+            weight += force;
+            if changes.centre.is_none() {
+                sum += self.cross(at, &force, true);
             }
         }
-        let centre = self.centre();
-        let one_mass = self.points.first().map_or(zero, |(_, mass)| *mass);
-        let of_points = |count: usize| self.weight(0, one_mass) * T::of(count as f64);
-        match changes.centre {
-            Centre::Nothing => {}
-            Centre::OnePoint | Centre::OnePointAndPush => add(&centre, [zero, zero, of_points(1)]),
-            Centre::AllPoints => add(&centre, [zero, zero, of_points(self.points.len())]),
-            Centre::All | Centre::Mean => add(&centre, [zero, zero, weight]),
+        let (centre, one) = (self.centre(), self.points.first());
+        if let Some(of_all) = changes.centre {
+            if !of_all {
+                weight.z = one.map_or(T::zero(), |(_, mass)| self.weight(0, *mass));
+            }
+            sum += self.cross(&centre, &weight, true);
         }
         for push in &self.pushes {
-            let factor = T::of(self.push_factor(push));
-            let force: [f64; 3] = push.force.into();
+            let force = push.force.map(T::of) * T::of(self.push_factor(push));
             let at = match changes.centre {
-                Centre::OnePointAndPush | Centre::All => &centre,
+                Some(true) => &centre,
                 _ => &self.points[push.point].0,
             };
-            add(at, force.map(|part| T::of(part) * factor));
+            sum += self.cross(at, &force, true);
         }
-        if changes.torque_reversed {
-            sum = sum.map(|part| -part);
-        }
-        sum
+        if changes.torque_reversed { -sum } else { sum }
     }
 
     /// The force of gravity on point `k`, along z, N.
@@ -322,9 +301,8 @@ impl<T: Real> Program<T> {
             Some(false) if mass.f64() != 0.0 => T::of(1.0),
             _ => mass,
         };
-        let has_none = changes.no_gravity || self.is_left_out(k, true);
-        match (has_none, changes.gravity_up) {
-            (true, _) => T::of(0.0),
+        match (self.is_left_out(k, true), changes.gravity_up) {
+            (true, _) => T::zero(),
             (false, true) => mass * self.gravity,
             (false, false) => -(mass * self.gravity),
         }
@@ -337,7 +315,7 @@ impl<T: Real> Program<T> {
         };
         let changes = &self.changes;
         let nth = self.clock as i64 + 1 - first as i64 - changes.push_shift;
-        let count = (count.saturating_add(changes.push_longer)).min(FOREVER) as i64;
+        let count = (count.min(FOREVER as u64) as i64 + changes.push_longer).clamp(0, FOREVER);
         if push.accumulates || changes.accumulates {
             nth.clamp(0, count) as f64
         } else {
@@ -346,11 +324,11 @@ impl<T: Real> Program<T> {
     }
 
     /// L <- L + dt torque.
-    fn kick(&mut self, torque: Vector<T>) {
+    fn kick(&mut self, torque: Vector3<T>) {
         let changes = &self.changes;
         let mut torque = torque;
         if changes.sums_up {
-            self.torques = [0, 1, 2].map(|i| self.torques[i] + torque[i]);
+            self.torques += torque;
             torque = self.torques;
         }
         if changes.kept || changes.turned == Some(false) {
@@ -361,17 +339,43 @@ impl<T: Real> Program<T> {
         } else {
             self.time_step
         };
-        self.momentum = [0, 1, 2].map(|i| self.momentum[i] + dt * torque[i]);
+        self.momentum += torque * dt;
     }
 
-    fn times(&self, matrix: &Matrix<T>, vector: &Vector<T>) -> Vector<T> {
-        [0, 1, 2].map(|i| self.dot(&matrix[i], vector))
-    }
-
-    fn dot(&self, a: &Vector<T>, b: &Vector<T>) -> T {
-        if self.order == Order::Backward {
-            return a[2] * b[2] + a[1] * b[1] + a[0] * b[0];
+    fn times(&self, matrix: &Matrix3<T>, vector: &Vector3<T>) -> Vector3<T> {
+        match self.order {
+            Order::Backward => {
+                let [x, y, z] = [0, 1, 2].map(|j| matrix.column(j) * vector[j]);
+                z + y + x
+            }
+            _ => matrix * vector,
         }
-        dot(a, b)
     }
+
+    fn cross(&self, a: &Vector3<T>, b: &Vector3<T>, is_torque: bool) -> Vector3<T> {
+        let mut cross = a.cross(b);
+        if self.changes.middle_sign == Some(is_torque) {
+            cross.y = -cross.y;
+        }
+        cross
+    }
+
+    fn dot(&self, a: &Vector3<T>, b: &Vector3<T>) -> T {
+        match self.order {
+            Order::Backward => a.z * b.z + a.y * b.y + a.x * b.x,
+            _ => a.dot(b),
+        }
+    }
+}
+
+/// Omega = I \ L, by Cramer's rule.
+fn solve<T: Real>(matrix: &Matrix3<T>, vector: &Vector3<T>) -> Vector3<T> {
+    let [a, b, c] = [0, 1, 2].map(|j| matrix.column(j).into_owned());
+    let across = b.cross(&c);
+    let parts = [
+        vector.dot(&across),
+        a.dot(&vector.cross(&c)),
+        a.dot(&b.cross(vector)),
+    ];
+    Vector3::from(parts) / a.dot(&across)
 }

@@ -1,75 +1,82 @@
 //! What has come out of the comparison of own code with the scheme, as a verdict and in words.
 
-use super::explain::{COUNT, Explanation, MOST_FOR_PAIRS, Variant};
-use super::follow::Worst;
-use super::rows::COLUMNS;
+use super::explain::{COUNT, Explanation, MOST_FOR_PAIRS};
+use super::follow::{Difference, Worst};
+use super::rows::{COLUMNS, Column};
 use super::slips::ANOTHER_READING;
 use super::{Found, Verdict};
 use crate::run::pushes;
 use crate::text::number::{counted, short, shortest, significant};
 use crate::text::printable::brief;
+use nalgebra::Vector3;
 
 /// The preset whose body and push show every slip.
 const EVERY_SLIP: &str = "every-slip";
-/// The most explanations that are printed.
-const MOST: usize = 4;
 const UNITS: [&str; 2] = ["m", "J s"];
 /// Digits of the values that differ.
 const DIGITS: usize = 12;
 
 impl Found<'_> {
     pub(super) fn verdict(&self) -> Verdict {
-        let differs = self.beside.differs;
-        let agrees = differs.is_none() && self.rows.not_finite.is_none();
+        let (rows, beside) = (self.rows, &self.beside);
+        let agrees = beside.differs.is_none() && rows.not_finite.is_none();
         let differing = self.differing();
+        let named = |(column, ..): &(&Column, f64, f64)| column.name();
         Verdict {
             agrees,
             precision: if self.is_single { "single" } else { "double" },
-            rows: if agrees {
-                self.beside.agreeing
-            } else {
-                self.rows.values.len()
-            },
-            offset: self.beside.offset,
-            first_step: differs.map(|differs| differs.step),
-            columns: differing
-                .iter()
-                .map(|(place, ..)| COLUMNS[*place])
-                .collect(),
+            rows: if agrees { beside.agreeing } else { rows.count },
+            offset: beside.offset,
+            first_step: beside.differs.map(|differs| differs.step),
+            columns: differing.iter().map(named).collect(),
             yours: differing.iter().map(|(_, yours, _)| *yours).collect(),
             scheme: differing.iter().map(|(.., scheme)| *scheme).collect(),
-            worst_m: self.beside.worst[0].map(|worst| worst.off),
+            worst_m: beside.worst[0].map(|worst| worst.off),
             slips: self.explanations.iter().map(Explanation::names).collect(),
             unseen: self.unseen.clone(),
             lines: self.lines(agrees),
+            is_unexplained: beside.differs.is_some() && self.is_unexplained(),
             trial: None,
         }
     }
 
-    /// The places of the columns that differ first, with the values of the file and of the scheme.
-    fn differing(&self) -> Vec<(usize, f64, f64)> {
-        let Some(differs) = self.beside.differs else {
-            return Vec::new();
+    /// The columns that differ first, with the values of the file and of the scheme.
+    fn differing(&self) -> Vec<(&Column, f64, f64)> {
+        let differing = |differs: Difference| {
+            let values = self.rows.columns.iter().map(move |column| {
+                let (yours, scheme) = (column.values[differs.row], differs.scheme[column.place]);
+                (column, yours, scheme)
+            });
+            values.filter(|(column, yours, scheme)| !column.agrees(*yours, *scheme, 0.0))
         };
-        let values = self.rows.columns.iter().zip(&self.rows.values[differs.row]);
-        let differing = values.filter_map(|(column, yours)| {
-            let scheme = differs.scheme[column.place];
-            let agrees = column.agrees(*yours, scheme, 0.0);
-            (!agrees).then_some((column.place, *yours, scheme))
-        });
-        differing.collect()
+        self.beside
+            .differs
+            .into_iter()
+            .flat_map(differing)
+            .collect()
     }
 
     fn lines(&self, agrees: bool) -> Vec<String> {
-        let mut lines: Vec<String> = self.time_step().into_iter().collect();
+        let (rows, name, dt) = (self.rows, self.name, self.scenario.motion.time_step_s);
+        let mut lines = Vec::new();
+        if let Some(own) = rows.times.own_s {
+            let [own, dt] = [own, dt].map(shortest);
+            lines.push(format!(
+                "its time step is {own} s by its times, that of {name} is {dt} s"
+            ));
+        }
         if agrees {
             lines.push(self.agreement());
             lines.extend(self.not_reached());
         } else {
             lines.push(self.difference());
-            lines.extend(self.not_finite());
         }
-        lines.extend(self.offset());
+        if let Some((line, column)) = rows.not_finite {
+            lines.push(format!(
+                "In line {line} {column} is no finite number: the rows are compared up to there."
+            ));
+        }
+        lines.extend(self.offset().map(str::to_owned));
         lines.extend(self.beside.parted.map(|step| format!(
             "From step {step} on rounding decides about the motion of this scenario: the rows there are not compared."
         )));
@@ -82,35 +89,28 @@ impl Found<'_> {
         lines
     }
 
-    /// Says that the file has another time step.
-    fn time_step(&self) -> Option<String> {
-        let [own, scenario] =
-            [self.rows.times.own_s?, self.scenario.motion.time_step_s].map(shortest);
-        let name = self.name;
-        Some(format!(
-            "its time step is {own} s by its times, that of {name} is {scenario} s"
-        ))
+    /// Says at which offset the rows were compared.
+    fn offset(&self) -> Option<&'static str> {
+        match self.beside.offset {
+            0 => None,
+            1.. => Some(
+                "The file begins one row after the start, or numbers its rows one too low: compared so.",
+            ),
+            _ => {
+                Some("The file has the start twice, or numbers its rows one too high: compared so.")
+            }
+        }
     }
 
     fn agreement(&self) -> String {
         let (name, rows) = (self.name, counted(self.beside.agreeing as u64, "row"));
-        let worst = self.worst_of(self.beside.worst);
+        let worst = worst_of(self.beside.worst);
         let single = if self.is_single {
             " as far as single precision can: compute in double"
         } else {
             ""
         };
         format!("agrees with {name} in {rows}{single}; {worst}")
-    }
-
-    /// The largest difference, of x, y, z where there is one of these columns.
-    fn worst_of(&self, worst: [Option<Worst>; 2]) -> String {
-        let Some(worst) = worst.into_iter().flatten().next() else {
-            return String::new();
-        };
-        let (place, step) = (self.rows.columns[worst.column].place, worst.step);
-        let (off, unit, column) = (short(worst.off), UNITS[place / 3], bare(place));
-        format!("worst {off} {unit} in {column} at step {step}")
     }
 
     /// What the rows do not reach.
@@ -121,27 +121,24 @@ impl Found<'_> {
         if last >= all || self.beside.parted.is_some() {
             return None;
         }
-        let ends = self.scenario.pushes.iter().flat_map(|push| {
+        let mut beyond = Vec::new();
+        for push in self.scenario.pushes.iter() {
             let (begin, end) = pushes::acts_s(push, self.scenario);
-            [("begin", begin), ("end", end)]
-        });
-        let step_of = |time_s: f64| (time_s / self.scenario.motion.time_step_s).round() as i64;
-        let beyond = ends.filter(|(_, time_s)| time_s.is_finite() && step_of(*time_s) > last);
-        let beyond = beyond.map(|(what, time_s)| {
-            format!(
-                "the push's {what}, at step {}, is not among them",
-                step_of(time_s)
-            )
-        });
-        let mut rest = brief(&beyond.collect::<Vec<_>>().join("; "), 200);
-        if rest.is_empty() {
-            rest = format!("they end at step {last}");
+            for (what, time_s) in [("begin", begin), ("end", end)] {
+                let step = (time_s / self.scenario.motion.time_step_s).round() as i64;
+                if time_s.is_finite() && step > last {
+                    beyond.push(format!(
+                        "the push's {what}, at step {step}, is not among them"
+                    ));
+                }
+            }
         }
-        Some(format!(
-            "{} of {} rows: {rest}",
-            self.beside.agreeing,
-            all + 1
-        ))
+        let rest = match &beyond[..] {
+            [] => format!("they end at step {last}"),
+            beyond => brief(&beyond.join("; "), 200),
+        };
+        let rows = self.beside.agreeing;
+        Some(format!("{rows} of {} rows: {rest}", all + 1))
     }
 
     fn difference(&self) -> String {
@@ -149,25 +146,21 @@ impl Found<'_> {
             return "its numbers are not finite, the scheme's are".to_owned();
         };
         let differing = self.differing();
-        let whose = match self.scenario.motion.scheme.name {
+        let mut whose = match self.scenario.motion.scheme.name {
             "report" => "the report's scheme gives ".to_owned(),
             other => format!("the scheme {other} gives "),
         };
-        let off = differing
-            .iter()
-            .enumerate()
-            .map(|(number, (place, yours, scheme))| {
-                let whose = if number == 0 { &*whose } else { "" };
-                let [yours, scheme] = [yours, scheme].map(|value| significant(*value, DIGITS));
-                format!(
-                    "{} is {yours} {}, {whose}{scheme}",
-                    bare(*place),
-                    UNITS[place / 3]
-                )
-            });
+        let off = differing.iter().map(|(column, yours, scheme)| {
+            let [yours, scheme] = [yours, scheme].map(|value| significant(*value, DIGITS));
+            let (name, unit) = (bare(column.place), UNITS[column.place / 3]);
+            format!(
+                "{name} is {yours} {unit}, {}{scheme}",
+                std::mem::take(&mut whose)
+            )
+        });
         let off = off.collect::<Vec<_>>().join("; ");
         let places = self.rows.columns.iter().map(|column| column.place);
-        let same = places.filter(|place| differing.iter().all(|(other, ..)| other != place));
+        let same = places.filter(|place| differing.iter().all(|(it, ..)| it.place != *place));
         let same = match &same.map(bare).collect::<Vec<_>>()[..] {
             [] => String::new(),
             [one] => format!("; {one} agrees"),
@@ -176,101 +169,74 @@ impl Found<'_> {
         format!("differs at step {}: {off}{same}", differs.step)
     }
 
-    fn not_finite(&self) -> Option<String> {
-        let (line, column) = self.rows.not_finite.as_ref()?;
-        let column = brief(column, 40);
-        Some(format!(
-            "In line {line} {column} is no finite number: the rows are compared up to there."
-        ))
-    }
-
-    /// Says at which offset the rows were compared.
-    fn offset(&self) -> Option<String> {
-        let words = match self.beside.offset {
-            0 => return None,
-            1.. => "The file begins one row after the start, or numbers its rows one too low",
-            _ => "The file has the start twice, or numbers its rows one too high",
-        };
-        Some(format!("{words}: compared so."))
-    }
-
     /// Which slips explain the rows, or that none does.
     fn explained(&self) -> Vec<String> {
         if !self.has_plan {
             let words = "Slips are looked for in runs of the report's scheme alone (--set motion.scheme=report), without friction, rotor, edits and pushes in seconds.";
             return vec![words.to_owned()];
         }
-        if self.explanations.is_empty() {
+        if let Some(other) = self.other {
+            return vec![format!("These rows are {other}'s: hold them against that.")];
+        }
+        if self.is_unexplained() {
             return vec![self.unexplained()];
         }
-        let all = self.explanations.iter().take(MOST);
-        let mut lines: Vec<_> = all
-            .map(|explanation| self.explanation(explanation))
-            .collect();
+        let mut lines: Vec<_> = self.explanations.iter().map(explained).collect();
         for line in &mut lines[1..] {
             line.insert_str(0, "The same rows come out another way. ");
-        }
-        if self.explanations.len() > MOST {
-            let more = self.explanations.len() - MOST;
-            lines.push(format!("And in {more} more ways (--json names all)."));
         }
         lines
     }
 
-    fn explanation(&self, explanation: &Explanation) -> String {
-        let followed = &explanation.followed;
-        let begin = match &explanation.names()[..] {
-            [name] if *name == ANOTHER_READING => {
-                "This is another reading of the report's push, and no slip"
-            }
-            [_] => "This is the report's scheme with one difference",
-            _ => "This is the report's scheme with two differences",
-        };
-        let (names, sentences) = (explanation.names().join(" + "), self.sentences(explanation));
-        let rows = counted(followed.agreeing as u64, "row");
-        let up_to = followed.parted.map_or(String::new(), |step| {
-            format!(" before step {step}, from which on rounding decides about its motion,")
-        });
-        let worst = self.worst_of(followed.worst);
-        format!("{begin} ({names}): {sentences}\nWith that all {rows}{up_to} agree ({worst}).")
-    }
-
-    /// The slips, and what the program and the report do.
-    pub(super) fn named(&self, explanation: &Explanation) -> String {
-        let names = explanation.names().join(" + ");
-        format!("{names}: {}", self.sentences(explanation))
-    }
-
-    /// What the program does, and what the report does.
-    fn sentences(&self, explanation: &Explanation) -> String {
-        let sentence = |variant: &Variant| {
-            let Some(slip) = variant.slip else {
-                let (own, dt) = (&variant.note, shortest(self.scenario.motion.time_step_s));
-                return format!("its time step is {own}. The scenario's is {dt} s.");
-            };
-            let note = match variant.note.as_str() {
-                "" => String::new(),
-                note => format!(" ({note})"),
-            };
-            format!("{}{note}. The report {}.", slip.program, slip.report)
-        };
-        let sentences: Vec<_> = explanation.variants.iter().map(sentence).collect();
-        sentences.join(" Second: ")
+    fn is_unexplained(&self) -> bool {
+        self.has_plan && self.other.is_none() && self.explanations.is_empty()
     }
 
     fn unexplained(&self) -> String {
-        let mut none = format!("None of {COUNT} slips, nor two together, makes this file.");
+        let mut text = format!("None of {COUNT} slips, nor two together, makes this file.");
         if !self.has_pairs {
-            none = format!(
+            text = format!(
                 "None of {COUNT} slips makes this file. Two together are tried where rows differ from step {MOST_FOR_PAIRS} or sooner: write the first steps too."
             );
         }
-        let Some(closest) = &self.closest else {
-            return none;
+        if let Some(closest) = &self.closest {
+            let step = closest.followed.differs.map_or(0, |differs| differs.step);
+            let (names, words) = (closest.names().join(" + "), words(closest));
+            text += &format!("\n{names} comes closest, up to step {step}: {words}");
+        }
+        if let Some(words) = self.about_top() {
+            text += &format!("\n{words}");
+        }
+        text
+    }
+
+    /// Says where the top begins elsewhere, or does not keep its distance from the foot.
+    fn about_top(&self) -> Option<String> {
+        let [x, y, z, ..] = &self.rows.columns[..] else {
+            return None;
         };
-        let step = closest.followed.differs.map_or(0, |differs| differs.step);
-        let (names, sentences) = (closest.names().join(" + "), self.sentences(closest));
-        format!("{none}\n{names} comes closest, up to step {step}: {sentences}")
+        let differs = self.beside.differs.filter(|_| z.place == 2)?;
+        let at = |row: usize| Vector3::new(x.values[row], y.values[row], z.values[row]);
+        let place = |at: Vector3<f64>| {
+            let tilt = libm::acos(at.z / at.norm()).to_degrees();
+            let [radius, tilt] = [at.norm(), tilt].map(short);
+            format!("{radius} m from the foot, tilted by {tilt} degrees")
+        };
+        let [own, right] = [at(0), Vector3::from_column_slice(&differs.scheme[..3])].map(place);
+        if differs.step == 0 && own != right {
+            return Some(format!("Its top begins {own}, the scenario's {right}."));
+        }
+        let is_lost = |row: &usize| {
+            let [first, now] = [0, *row].map(|row| at(row).norm());
+            let room: f64 = [x, y, z].map(|column| column.room(now)).iter().sum();
+            (now - first).abs() > 2.0 * room
+        };
+        let lost = (1..self.rows.count).find(is_lost)?;
+        let [first, now] = [0, lost].map(|row| significant(at(row).norm(), 7));
+        let step = self.rows.times.steps.of_rows[lost];
+        Some(format!(
+            "Its top is {first} m from the foot at first, and {now} m at step {step}: what turns it is no rotation."
+        ))
     }
 
     fn left_out(&self) -> Option<String> {
@@ -284,17 +250,51 @@ impl Found<'_> {
 
     /// Which slips these rows cannot show.
     fn hidden(&self) -> Option<String> {
-        let (slips, names) = (
-            counted(self.unseen.len() as u64, "slip"),
-            self.unseen.join(", "),
-        );
+        let (count, names) = (self.unseen.len() as u64, self.unseen.join(", "));
         let remedy = if self.name == EVERY_SLIP {
             "Write more rows, columns or digits"
         } else {
             "Try --against every-slip"
         };
-        (!names.is_empty()).then(|| format!("These rows would hide {slips}: {names}. {remedy}."))
+        let slips = counted(count, "slip");
+        (count > 0).then(|| format!("These rows would hide {slips}: {names}. {remedy}."))
     }
+}
+
+/// The largest difference, of x, y, z where there is one of these columns.
+fn worst_of(worst: [Option<Worst>; 2]) -> String {
+    let words = |worst: Worst| {
+        let (off, column, step) = (short(worst.off), bare(worst.place), worst.step);
+        let unit = UNITS[worst.place / 3];
+        format!("worst {off} {unit} in {column} at step {step}")
+    };
+    worst
+        .into_iter()
+        .flatten()
+        .next()
+        .map_or(String::new(), words)
+}
+
+fn explained(explanation: &Explanation) -> String {
+    let followed = &explanation.followed;
+    let begin = match &explanation.names()[..] {
+        [name] if *name == ANOTHER_READING => "another reading of the report's push, and no slip",
+        [_] => "the report's scheme with one difference",
+        _ => "the report's scheme with two differences",
+    };
+    let rows = counted(followed.agreeing as u64, "row");
+    let up_to = followed.parted.map_or(String::new(), |step| {
+        format!(" before step {step}, from which on rounding decides about its motion,")
+    });
+    let (names, words) = (explanation.names().join(" + "), words(explanation));
+    let worst = worst_of(followed.worst);
+    format!("This is {begin} ({names}): {words}\nWith that all {rows}{up_to} agree ({worst}).")
+}
+
+/// What the program does, and what the report does.
+pub(super) fn words(explanation: &Explanation) -> String {
+    let words = explanation.variants.iter().map(|variant| &*variant.words);
+    words.collect::<Vec<_>>().join(" Second: ")
 }
 
 /// The name of a column without its unit.

@@ -14,6 +14,9 @@ use std::path::Path;
 const LONGEST: u64 = 32 << 20;
 const TOO_LONG: &str = "is longer than 32 MiB, the most that is read: leave rows out";
 
+/// The most columns of a file; more would take minutes.
+const MOST_COLUMNS: usize = 10_000;
+
 /// How archives begin: zip's, which spreadsheets are too.
 const ZIP: &[u8] = b"PK\x03\x04";
 
@@ -158,6 +161,11 @@ impl Csv {
                 break;
             }
             let line = self.line_of_names + reader.position().line() - 2;
+            if record.len() > MOST_COLUMNS {
+                return Err(one(format!(
+                    "has more than {MOST_COLUMNS} columns: leave columns out"
+                )));
+            }
             let mut ends = (1..=record.len()).rev();
             let filled = ends.find(|&end| !record[end - 1].is_empty()).unwrap_or(0);
             match self.names.len() {

@@ -4,6 +4,7 @@
 //! a byte that cannot belong to it, the sequence is dropped and decoding starts anew. Ctrl-C ends every sequence. Reports of
 //! the focus and the like, and older ones of the mouse, are recognised and ignored, so that they are not taken for keys.
 
+use crate::lab::MOST_PASTED;
 use crate::tui::keymap::Key;
 use crate::tui::mouse::{Did, Mouse};
 use std::collections::VecDeque;
@@ -13,12 +14,12 @@ use std::time::{Duration, Instant};
 const GAP: Duration = Duration::from_millis(50);
 /// How long a sequence may take as a whole.
 const WHOLE: Duration = Duration::from_millis(500);
-/// How long a paste may wait for its next byte.
-const GAP_IN_PASTE: Duration = Duration::from_secs(1);
+/// How long a paste may wait for its next byte: on a slow line it comes in pieces.
+const GAP_IN_PASTE: Duration = Duration::from_secs(3);
 /// The most bytes of a sequence that are kept; every key has fewer.
 const LONGEST: usize = 64;
-/// The most bytes of a paste that are kept; every field takes fewer.
-const LONGEST_PASTE: usize = 1 << 16;
+/// The most bytes of a paste that are kept: one more than the lab takes.
+const LONGEST_PASTE: usize = MOST_PASTED + 1;
 
 const ESC: u8 = 0x1b;
 const BELL: u8 = 0x07;

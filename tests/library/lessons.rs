@@ -592,6 +592,13 @@ fn a_worksheet_asks_everything_and_answers_nothing() {
                 let ask = predict.ask.filled(|_, _| "@".to_owned());
                 has(own, ask.split('@').next().unwrap());
             }
+            for block in &page.blocks {
+                if let Block::Shown(shown) = block
+                    && shown.language == "sh"
+                {
+                    has(own, &shown.text);
+                }
+            }
             assert!(
                 own.contains("Came out: __") || page.compares().next().is_none(),
                 "{own}"

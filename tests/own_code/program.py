@@ -44,7 +44,16 @@ def about(axis, angle):
 
 def start(scenario, slips):
     h, tilt, L, of_body = SCENARIOS[scenario][:4]
+    # What a program for method-1 still has when it is to be another's.
+    if "start-of-another-preset:tilt" in slips or "start-of-another-preset:nothing-changed" in slips:
+        tilt = 0
+    if "start-of-another-preset:L" in slips or "start-of-another-preset:nothing-changed" in slips:
+        L = (400, 0, 2000)
     X, m = wheel(h, slips)
+    if "start-of-another-preset:top" in slips:
+        X[-3, 2] = 2 * FLAT
+    if "start-of-another-preset:hub" in slips:
+        X[:10, 2] = FLAT
     angle = tilt if "tilt-in-radians" in slips else np.deg2rad(tilt)
     axis = "x"
     if "tilt-other-axis:-x" in slips:
@@ -93,13 +102,20 @@ def turn(X, Omega, dt, slips):
         return X, np.eye(3, dtype=X.dtype)
     u = Omega if "axis-not-unit" in slips else Omega / w
     P = np.outer(u, u)
+    E = np.eye(3, dtype=X.dtype)
+    if "rotation-without-E" in slips:  # 1 - P
+        E = np.ones((3, 3), dtype=X.dtype)
+    if "rotation-without-E:left-out" in slips:
+        E = np.zeros((3, 3), dtype=X.dtype)
     C = np.array([[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]], dtype=X.dtype)
     angle = w * dt
     if "angle-in-degrees" in slips:  # cosd, sind
         angle = angle * one(np.pi / 180)
     if "angle-in-degrees:times" in slips:
         angle = angle * one(180 / np.pi)
-    Rot = P + np.cos(angle) * (np.eye(3, dtype=X.dtype) - P) + np.sin(angle) * C
+    if "cross-product-sign:turn" in slips:
+        C[1] = -C[1]
+    Rot = P + np.cos(angle) * (E - P) + np.sin(angle) * C
     if "rotation-reversed" in slips:
         Rot = Rot.T
     if "points-in-place" in slips:
@@ -119,6 +135,10 @@ def push_factor(clock, steps, slips):
         nth = clock + 1
     if "push-accumulates" in slips:
         return max(min(nth, steps), 0)
+    if "push-early:short" in slips:
+        steps = steps - 1
+    if "start-of-another-preset:push" in slips or "start-of-another-preset:nothing-changed" in slips:
+        return 0
     last = steps + 1 if "push-too-long" in slips else steps
     if "push-too-long:forever" in slips:
         last = 10**9
@@ -149,6 +169,8 @@ def torque(X, m, push, clock, steps, slips):
     else:
         F[top] += P
         tau = np.cross(r, F).sum(axis=0)
+    if "cross-product-sign" in slips:
+        tau = tau * np.array([1, -1, 1], dtype=X.dtype)
     if "point-left-out:first" in slips:  # the weight too
         tau = tau - np.cross(r[0], F[0])
     return -tau if "torque-reversed" in slips else tau

@@ -141,7 +141,7 @@ fn a_sequence_that_never_ends_does_not_swallow_what_follows() {
         let mut terminal = opened("--paused");
         // And after a while any key means what it says.
         terminal.press(begun);
-        thread::sleep(Duration::from_millis(1500));
+        thread::sleep(Duration::from_millis(3500));
         terminal.ask("?", "help: type");
         terminal.kill();
     };
@@ -175,6 +175,36 @@ fn a_paste_into_a_field_is_cut_and_says_so() {
     });
     terminal.ask(&paste("qqq"), "what is pasted goes into");
     terminal.quit();
+}
+
+/// As a terminal pastes them: with Enter at the ends of the lines, and in pieces.
+#[test]
+fn rows_that_are_pasted_are_judged_until_they_are_taken_back() {
+    let ground = Ground::new();
+    let mut terminal = ground.open("method-1 --paused");
+    terminal.wait_for("q quit");
+    let rows = "step,x_m,y_m,z_m\r0,0,0,1.131\r1,0,0,1.131\r";
+    terminal.press(&format!("\u{1b}[200~{rows}"));
+    thread::sleep(Duration::from_millis(1500));
+    terminal.ask("2,0,0,1.131\r\u{1b}[201~", "pasted.csv differs at step 1");
+    assert_eq!(ground.files(), ["pasted.csv", "state"]);
+    terminal.ask("M", "step 1");
+    terminal.quit();
+    // They are there again, and one undo takes them back.
+    let mut again = ground.open("--resume");
+    again.wait_for("q quit");
+    again.ask("M", "step 1");
+    again.ask("u", "undone");
+    again.ask("M", "no rows of a program");
+    for (pasted, told) in [
+        (&*"0,1\r".repeat(250_001), "longer than 1 MB"),
+        ("step,x_m\r0,\u{7f}1\r", "control characters"),
+        ("1,2\r3,4\r", "has no line of names"),
+    ] {
+        again.ask(&format!("\u{1b}[200~{pasted}\u{1b}[201~"), told);
+    }
+    assert_eq!(ground.files(), ["pasted.csv", "state"]);
+    again.quit();
 }
 
 #[test]

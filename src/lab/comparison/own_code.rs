@@ -3,11 +3,12 @@
 
 use crate::data::quantity::TIME;
 use crate::data::{self, Measured};
-use crate::own_code::{self, Trial, Uncompared, Verdict, rows};
+use crate::own_code::{self, Trial, Verdict, rows};
 use crate::playback::background::Job;
 use crate::scenario::csv::Renaming;
 use crate::scenario::{Problems, Scenario};
 use crate::text::printable::printable_lines;
+use crate::verify::Unverified;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -59,7 +60,13 @@ impl OwnCode {
             is_told: false,
         };
         let measured = measured.ok().filter(|_| has_times);
-        let measured = measured.unwrap_or_else(|| rows.as_measured(name, time_step_s));
+        let measured = match measured {
+            Some(measured) => measured,
+            None => Measured {
+                left_out: rows.left_out.clone(),
+                ..data::read(name, &rows.to_csv(time_step_s))?
+            },
+        };
         Ok((measured, Some(own)))
     }
 
@@ -75,11 +82,11 @@ impl OwnCode {
         let (name, against) = (name.to_owned(), Arc::clone(scenario));
         let job = Job::begin("own code", move |is_wanted| {
             let rows = rows::read(&text, &map, None, against.motion.time_step_s);
-            let compared = rows.map_err(Uncompared::from);
+            let compared = rows.map_err(Unverified::from);
             match compared.and_then(|rows| own_code::compare(&rows, &name, &against, is_wanted)) {
                 Ok(verdict) => Some(Ok(verdict)),
-                Err(Uncompared::Refused(problems)) => Some(Err(problems.in_one_line())),
-                Err(Uncompared::Stopped) => None,
+                Err(Unverified::Refused(problems)) => Some(Err(problems.in_one_line())),
+                Err(Unverified::Stopped) => None,
             }
         });
         self.judged = Some((Arc::clone(scenario), job));
@@ -119,7 +126,7 @@ impl OwnCode {
                     let more = verdict.lines[1..].join(" ");
                     format!("{name} differs at step {step}, M goes there. {more}")
                 }
-                (None, _) => format!("{name}: {}", verdict.lines.join(" ")),
+                (None, _) => format!("{name}: {}", verdict.lines.join(" · ")),
             }
             .replace('\n', " "),
         };
