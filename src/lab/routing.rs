@@ -1,7 +1,7 @@
 //! Leads actions and time to the parts of the lab.
 
 use super::action::{Action, Ask, Direction, FieldEdit, PAGE, Request, repeated, signed};
-use super::answer::Done;
+use super::answer::{Answer, Done};
 use super::command::{Command, Commands, Place};
 use super::dialog::{Dialog, Question};
 use super::form::{edit_line, type_into};
