@@ -249,7 +249,6 @@ impl Script {
     }
 }
 
-/// Whether the action `under_way` is complete.
 fn is_complete(
     under_way: UnderWay,
     halt: Option<Halt>,
