@@ -101,9 +101,23 @@ impl Form {
         self.fields.get(index).map_or("", Field::text)
     }
 
-    /// Inserts the pasted `text` before the cursor as if it had been typed, as much of it as the field has room for.
+    /// Inserts the pasted `text` before the cursor as if it had been typed. If the field is too short for it, the end is
+    /// cut and the form says so.
     pub fn paste(&mut self, text: &str) {
-        self.edit(|field| text.chars().for_each(|c| field.type_char(c)));
+        let mut typed = text.chars().filter(|&c| !is_steering(c)).peekable();
+        self.edit(|field| {
+            while field.is_marked || field.text().chars().count() < MOST_TYPED {
+                match typed.next() {
+                    Some(c) => field.type_char(c),
+                    None => break,
+                }
+            }
+        });
+        if typed.peek().is_some() {
+            self.complaint = Some(format!(
+                "a field takes at most {MOST_TYPED} characters: what was pasted is cut"
+            ));
+        }
     }
 
     /// Marks the whole text of the field: typing then replaces it.

@@ -26,7 +26,6 @@ pub mod action;
 mod advice;
 mod answer;
 pub mod browser;
-mod closing;
 pub mod command;
 pub mod comparison;
 mod dialog;

@@ -1,8 +1,10 @@
 //! Leads actions and time to the parts of the lab.
 
-use super::action::{Action, Ask, Direction, FieldEdit, PAGE, Request, repeated, signed};
+use super::action::{
+    Action, Ask, Direction, FieldEdit, LessonKey, PAGE, Request, repeated, signed,
+};
 use super::answer::{Answer, Done};
-use super::command::{Command, Commands, Place};
+use super::command::{Command, Commands, CursorTo, Place};
 use super::dialog::{Dialog, Question};
 use super::form::{edit_line, type_into};
 use super::messages::{self, halt_in_words};
@@ -25,7 +27,7 @@ const LOOK: Duration = Duration::from_millis(2);
 /// How long steps are taken before the caller decides whether to go on.
 const PART: Duration = Duration::from_millis(100);
 
-/// Actions.
+/// Actions, and time.
 impl Lab {
     /// Carries out `action`. Returns what only the main loop can do.
     pub fn update(&mut self, action: Action) -> Option<Request> {
@@ -271,6 +273,70 @@ impl Lab {
         None
     }
 
+    /// Closes or stops the first of these that there is: a popup, the script, the steps asked for, the cursor, the pane that
+    /// fills the screen, the focus on the parameters, the export, the pane in focus that was asked for. If there is none of
+    /// these, it says how to leave, unless the key has already removed a message or a count.
+    fn close(&mut self, cleared: &Cleared) -> Option<Request> {
+        // The focus returns from the values to the run even if the key has removed a message too.
+        let is_done = self.close_popup()
+            || self.stop()
+            || self.unfill()
+            || (cleared.count.is_none() && self.view.leave_parameters())
+            || cleared.anything;
+        if is_done {
+            return None;
+        }
+        if self.files.is_exporting() {
+            self.files.stop_export();
+        } else if self.view.focus.is_on_request && self.view.shows(self.view.focus) {
+            self.carry_out_all(&self.view.toggled(self.view.focus));
+        } else if self.view.sheet.is_some() {
+            return Some(Request::Lesson(LessonKey::Leave));
+        } else {
+            self.say("nothing to close; q leaves");
+        }
+        None
+    }
+
+    /// Closes the topmost popup, or shows all values again; returns whether there was one, or some were left out.
+    fn close_popup(&mut self) -> bool {
+        let is_found = self.popups.mode == Mode::Find;
+        let is_filtered = self.popups.mode == Mode::Lab && self.view.focus == Pane::PARAMETERS;
+        // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
+        let is_left = is_filtered && self.view.sheet.is_some();
+        let forget = |line: &mut String| !std::mem::take(line).is_empty();
+        let list = &mut self.edits.values.list;
+        let is_shown = (is_found || is_filtered) && list.filter_by(forget) && !is_left;
+        self.popups.close() || is_shown
+    }
+
+    /// Stops the script, or the steps asked for.
+    fn stop(&mut self) -> bool {
+        if !self.script.is_done() {
+            let left_out = self.script.drop_all();
+            self.one(Command::Pause);
+            self.say(left_out);
+        } else if self.player.playback.steps_to_go().is_some() {
+            self.one(Command::Pause);
+        } else {
+            return false;
+        }
+        true
+    }
+
+    /// Takes the cursor away, or shows all panes again.
+    fn unfill(&mut self) -> bool {
+        match self.view.cursor {
+            Some(_) => self.one(Command::Cursor(CursorTo::Nowhere)),
+            None if self.view.filled => {
+                self.one(Command::Fill(None));
+                self.view.leave_filled();
+            }
+            None => return false,
+        }
+        true
+    }
+
     /// Opens the entry that is selected in the browser: plays its run, or lists what is in the folder.
     fn open_chosen(&mut self) -> Result<(), String> {
         if let Some(name) = self.popups.choose(&self.files)? {
@@ -296,10 +362,7 @@ impl Lab {
         self.view.keep_focus();
         self.read_now();
     }
-}
 
-/// Time.
-impl Lab {
     /// Advances everything that changes with time up to now. `clock` returns the time since the lab was opened; it is read
     /// several times, so that the steps of a fast run end in time for the next frame.
     pub fn advance(&mut self, clock: &mut dyn FnMut() -> Duration) {
@@ -384,7 +447,10 @@ impl Lab {
 
     fn toggle_pause(&mut self) {
         match (self.script.is_done(), self.script.waits) {
-            (false, true) => self.release_script(),
+            (false, true) => {
+                self.script.release(&mut self.player);
+                self.go_on_with_script(None);
+            }
             (false, false) => {
                 self.script.pause(&self.player, self.now);
                 self.one(Command::Pause);
@@ -396,12 +462,6 @@ impl Lab {
             }
             (true, _) if self.player.is_moving() => self.one(Command::Pause),
             (true, _) => self.one(Command::Run),
-        }
-    }
-
-    fn release_script(&mut self) {
-        if self.script.release(&mut self.player) {
-            self.go_on_with_script(None);
         }
     }
 
@@ -448,7 +508,6 @@ impl Lab {
         &mut self,
         mut go_on: impl FnMut(u64, u64) -> ControlFlow<()>,
     ) -> Result<(), String> {
-        self.release_script();
         let mut steps = 0;
         while !self.script.is_done() {
             let begin = Instant::now();

@@ -152,12 +152,12 @@ impl Script {
         }
     }
 
-    /// Lets a waiting script go on. Returns whether it waited.
-    pub(super) fn release(&mut self, player: &mut Player) -> bool {
+    /// Lets a waiting script go on.
+    pub(super) fn release(&mut self, player: &mut Player) {
         if std::mem::take(&mut self.plays_again) {
             player.play();
         }
-        std::mem::take(&mut self.waits)
+        self.waits = false;
     }
 
     /// The next command to be carried out; `None` where there is none, or where it must wait. `halt` tells why the run has
@@ -249,7 +249,6 @@ impl Script {
     }
 }
 
-/// Whether the action `under_way` is complete.
 fn is_complete(
     under_way: UnderWay,
     halt: Option<Halt>,

@@ -81,9 +81,7 @@ pub(super) struct KeptPlace {
 pub struct Summary {
     /// The name under which the user opened the scenario: a preset or a file.
     pub name: String,
-    /// The title of the run.
     pub title: String,
-    /// The step of the run.
     pub step: u64,
 }
 

@@ -31,7 +31,6 @@ pub struct Paragraph {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
     Heading,
-    /// Plain text.
     Text,
     /// An entry of a list.
     Item {
@@ -55,7 +54,6 @@ pub enum Kind {
         is_reached: bool,
     },
     Hint,
-    /// A note for the teacher.
     Note,
 }
 

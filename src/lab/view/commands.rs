@@ -272,8 +272,19 @@ impl View {
         Command::look("camera", camera)
     }
 
-    /// The command that fills the screen with `pane`, or shows all panes again where it does.
-    pub fn fill_toggled(&self, pane: Pane) -> Command {
-        Command::Fill((!self.is_filled_by(pane)).then_some(pane))
+    /// The command that fills the screen with the pane in focus, or shows all panes again.
+    pub fn fill_toggled(&self) -> Command {
+        Command::Fill((!self.filled).then_some(self.focus))
+    }
+
+    /// The commands that fill the screen with the 3-D view, or show all panes again, with the page or the traces in focus.
+    pub fn three_d_toggled(&self) -> Vec<Command> {
+        let fill = |pane| Command::Fill(Some(pane));
+        if !self.is_filled_by(Pane::THREE_D) {
+            return vec![fill(Pane::THREE_D)];
+        }
+        let has_page = self.may_show(Pane::LESSON);
+        let next = if has_page { Pane::LESSON } else { Pane::TRACES };
+        vec![fill(next), Command::Fill(None)]
     }
 }

@@ -86,6 +86,15 @@ impl View {
         true
     }
 
+    /// Moves the focus to the page, where there is one, once no pane fills the screen any more. On a screen that has no place
+    /// for the values beside the run, they fill it: leaving them shows the run again.
+    pub(in crate::lab) fn leave_filled(&mut self) {
+        self.turn_to_sheet();
+        if !self.side_by_side.contains(&Pane::PARAMETERS) {
+            self.leave_parameters();
+        }
+    }
+
     /// Moves the focus to the first pane that can have it, if the one in focus no longer can.
     pub fn keep_focus(&mut self) {
         self.keep_focus_among(&self.focusable());

@@ -128,7 +128,6 @@ fn nothing_yet(lab: &Lab, area: Rect, buf: &mut Buffer) {
 struct PhasePage<'a> {
     explained: &'a StepWorkings,
     phase: &'a Phase,
-    /// Its number, from 1.
     number: usize,
     /// What the user's program does otherwise, in words, and its numbers of the phase.
     trial: Option<(&'a str, Vec<Quantity>)>,

@@ -195,7 +195,6 @@ impl TableView<'_> {
         self.sum.as_ref().map(|(rows, _)| *rows)
     }
 
-    /// The lines of the rows `shown`.
     fn rows(&self, groups: &[Range<usize>], shown: Range<usize>) -> Vec<Line> {
         let texts: Vec<_> = groups
             .iter()
