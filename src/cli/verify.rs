@@ -15,6 +15,7 @@ use crate::verify::{Against, Unverified, first_difference, other_version, redraw
 use crate::writeup::{CSV, MEASURED_DATA, READOUTS_FILE, RUN_FILE};
 use anyhow::{Context, bail};
 use clap::Args;
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::fs::File;
 use std::io::Read;
@@ -127,18 +128,22 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
         let difference = differs(&file, made, version, interruption)?;
         is_good &= say(&file, same, difference.as_ref(), &[])?;
     }
-    let own = files.iter().map(|(name, _)| name.into());
+    say_of_others(folder, files.iter().map(|(name, _)| name.into()))?;
+    Ok(is_good)
+}
+
+/// Names the files in `folder` that are none of the write-up's `own`.
+fn say_of_others(folder: &Path, own: impl Iterator<Item = OsString>) -> anyhow::Result<()> {
     let own: Vec<_> = own.chain([CSV.into()]).collect();
     let others = Folder::others(folder, &own)?;
     if !others.is_empty() {
-        let (count, others) = (others.len() as u64, brief(&others.join(", "), 200));
-        let count = counted(count, "file");
+        let count = counted(others.len() as u64, "file");
+        let (folder, others) = (Shown(folder), brief(&others.join(", "), 200));
         print(&format!(
-            "{}: {count} not of the write-up: {others}\n",
-            Shown(folder)
+            "{folder}: {count} not of the write-up: {others}\n"
         ))?;
     }
-    Ok(is_good)
+    Ok(())
 }
 
 /// What differs between the file of a write-up and what was `made` again. Of another version the pixels of a figure count, and

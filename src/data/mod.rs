@@ -5,7 +5,7 @@
 //! readouts were measured on it. The uncertainty of a column stands in a column of its own, named as readouts name
 //! theirs: `tilt_uncertainty_deg` of `tilt_deg`.
 //!
-//! [`open_with`] reads a file, or data that come with the program; `names` says what its columns are, `numbers` what stands in
+//! [`open`] reads a file, or data that come with the program; `names` says what its columns are, `numbers` what stands in
 //! them, `instruments` what other programs call theirs. [`of_run`] reads a run at the times of a series, and [`compared`] holds what was measured against it.
 
 pub mod compared;
@@ -21,7 +21,7 @@ pub use compared::{Residual, is_counted, residuals};
 pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
-pub use reading::{SHIPPED, find_shipped, open_with, read, read_with, text};
+pub use reading::{SHIPPED, find_shipped, open, open_with, read, read_with, text};
 
 use crate::analysis::readouts::Readout;
 use crate::scenario::problem::listed;

@@ -28,8 +28,12 @@ pub fn find_shipped(name: &str) -> Option<&'static Shipped> {
     Shipped::find(SHIPPED, name)
 }
 
-/// Opens what `name` names, with columns renamed first: data that come with the program, or else a file. A file's name holds a
-/// `/` or ends in `.csv`.
+/// Opens what `name` names: data that come with the program, or else a file. A file's name holds a `/` or ends in `.csv`.
+pub fn open(name: &str) -> Result<Measured, Problems> {
+    open_with(name, &[])
+}
+
+/// The same, with columns renamed first.
 pub fn open_with(name: &str, map: &[Renaming]) -> Result<Measured, Problems> {
     read_with(name, &text(name)?, map)
 }

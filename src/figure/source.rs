@@ -10,6 +10,7 @@ use super::{COLUMN_PT, PT_PER_MM, of_table};
 use crate::data::{self, Measured};
 use crate::origin::{File, Holds, Origin, sha256};
 use crate::scenario::{Document, Problem, Problems, csv};
+use crate::text::printable::brief;
 use serde::{Deserialize, Serialize};
 use std::ops::{ControlFlow, RangeInclusive};
 use std::path::Path;
@@ -109,7 +110,9 @@ impl Source {
     fn request(&self) -> Result<Request, String> {
         let asked = &self.asked;
         let kind = match (&asked.kind, &self.measured) {
-            (Some(kind), _) => Kind::named(kind).map_err(|rule| format!("{kind} {rule}"))?,
+            (Some(kind), _) => {
+                Kind::named(kind).map_err(|rule| format!("{} {rule}", brief(kind, 60)))?
+            }
             (None, Some(measured)) => Kind::measured(measured.series()?),
             (None, None) => Kind::traces(),
         };

@@ -228,7 +228,8 @@ pub fn first_difference(there: &str, made: &str) -> Option<String> {
     let are_same = there.iter().zip(&made).take_while(|(a, b)| a == b);
     let first = are_same.count();
     while there.len().min(made.len()) > first && there.last() == made.last() {
-        (there.pop(), made.pop());
+        there.pop();
+        made.pop();
     }
     let lines = [&there, &made].map(|lines| lines.get(first).copied());
     if lines == [None, None] {

@@ -145,7 +145,7 @@ fn write_quantities(page: &mut String, writeup: &Writeup) -> fmt::Result {
     }
     writeln!(page)?;
     for row in &rows {
-        writeln!(page, "- {}", escaped(&row.meaning))?;
+        writeln!(page, "- {} (`{}`)", escaped(&row.meaning), row.readout)?;
     }
     let theirs = since_s.map_or(String::new(), |since_s| {
         let since_s = significant(since_s, 9);

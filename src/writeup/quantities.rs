@@ -10,6 +10,7 @@ pub struct Row {
     /// What was measured, measured, theory, difference, the same in errors, unit.
     pub cells: [String; 6],
     pub meaning: String,
+    pub readout: &'static str,
 }
 
 /// The number that a time step can be too long to see.
@@ -97,13 +98,14 @@ fn row(
             readout.unit.to_owned(),
         ],
         meaning,
+        readout: readout.name,
     })
 }
 
 /// The label of the row of `readout`, and the line that says what it is.
 fn words(readout: &Readout, is_strobed: bool, since_s: Option<f64>) -> (String, String) {
     let mut label = bare(readout.name);
-    let mut meaning = format!("{label} (`{}`): {}", readout.name, readout.meaning);
+    let mut meaning = format!("{label}: {}", readout.meaning);
     let since_s = since_s.map(|since_s| significant(since_s, 9));
     if is_strobed {
         label += " (strobed)";

@@ -275,7 +275,7 @@ fn a_write_up_is_verified_as_a_whole() {
         stdout(&verified),
         [
             "w/README.md: differs: lines 13 to ",
-            "of which line 13 is \"...",
+            "of which line 13 is \"| body | 4.2197 g;",
             "w/above.svg: differs: it is missing",
             "w/traces.svg: differs: it is a figure of another run",
             "w/traces.pdf: the same",

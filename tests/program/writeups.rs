@@ -55,7 +55,7 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
             "| nutation period (strobed) since 20 s |",
             "(`measured_nutation_period_s`)",
             "; strobed: the time step is too long to see the nutation, and ",
-            "as the steps show it; since the forces last changed, at t = 20 s\n",
+            "as the steps show it; since the forces last changed, at t = 20 s (`measured_tilt_swing_deg`)\n",
             // The line of the preset speaks of another run.
             "\n\nDiffers from the preset wobble-push: other pushes\n\n",
             "\n\nOf the preset wobble-push as it was: ",
