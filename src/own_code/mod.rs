@@ -182,15 +182,16 @@ impl Found<'_> {
         }
     }
 
-    /// The preset with which all rows agree, where they show a motion.
+    /// The preset with which all rows agree.
     fn other_preset(&self) -> Option<&'static str> {
         self.rows.columns.iter().find(|column| column.varies())?;
         let is_its = |scenario: Scenario| {
             let (times, dt) = (&self.rows.times, scenario.motion.time_step_s);
             let mut others = times.others.iter();
-            let steps = match dt == self.scenario.motion.time_step_s {
-                true => &times.steps,
-                false => &others.find(|(own, _)| *own == dt)?.1,
+            let steps = if dt == self.scenario.motion.time_step_s {
+                &times.steps
+            } else {
+                &others.find(|(own, _)| *own == dt)?.1
             };
             let none = Vec::<Program<f64>>::new();
             let run = Run::of(Simulation::new(scenario.into()), none, false);

@@ -74,7 +74,6 @@ impl Plan {
         })
     }
 
-    /// Part `part` in words.
     pub(super) fn part(&self, part: usize) -> String {
         let number = |value: f64| shortest(rounded(value, 4));
         let vector = |of: &Vector3<f64>| format!("({})", of.map(number).as_slice().join(", "));
