@@ -185,7 +185,7 @@ fn asked(folder: &Folder) -> anyhow::Result<Option<Seat>> {
                 let word = &seat.word;
                 writeln!(
                     stdout,
-                    "Your seat is {word}: type that when you come back. Enter goes on."
+                    "Your seat is {word}: type that when you come back.\nEnter goes on."
                 )?;
                 return Ok(self::line()?.map(|_| seat));
             }

@@ -201,7 +201,7 @@ fn a_task_is_done_by_hand_or_shown() {
         .arrive()
         .shows("[x] done after the hint: be at 4 s");
     let (mut stage, _folder, _) = taken(3);
-    stage.press("hh").arrive().shows("[x] done");
+    stage.press("hh").arrive().shows("[x] shown by the lab");
     stage.press("nn").shows("this is the last page");
     stage.press("NNNN").arrive().shows("this is the first page");
 }
