@@ -86,9 +86,7 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     };
     let page = Some((&lesson, page.min(lesson.pages.len())));
     let teacher = Box::new(Teacher::new(folder, before));
-    let left = open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher));
-    drop(turn);
-    left
+    open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher))
 }
 
 fn show_board(folder: &Folder) -> anyhow::Result<ExitCode> {

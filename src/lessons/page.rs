@@ -321,7 +321,7 @@ impl Writer<'_> {
         self.sheet.enter = "answer";
         self.sheet.takes_digits = true;
         let keys = match &predict.asked {
-            Asked::Choice(_) if is_marked => "Enter again locks it.",
+            Asked::Choice(_) if is_marked => "Enter locks it.",
             Asked::Choice(_) => "A number marks, or Up, Down, Enter.",
             Asked::Number { .. } => "Type your prediction.",
         };

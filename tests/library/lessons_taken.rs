@@ -155,7 +155,6 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
         .arrive()
         .shows("1 of 4")
         .shows("[x] 2 grows");
-    stage.shows("Locked: 3.5 deg");
     assert_eq!(answer_in(&stage.class), Answer::Choice("grows".to_owned()));
     stage.press("\n").shows("your answer is locked");
 }
