@@ -14,10 +14,11 @@ pub const MOST_SEATS: usize = 200;
 const MOST_WRONG: u32 = 5;
 const LOCKED_S: u64 = 60;
 
-pub const ASKS: &str = "A name for your seat (your teacher sees it, the others do not),\n\
-    or to come back the word of your seat, such as anna-4711: ";
-const RULE: &str = "a name has letters, digits and hyphens alone,\n\
-    no blanks, 24 at most; the word of a seat ends in a hyphen and four digits";
+pub const ASKS: &str = "A name for your seat (the teacher sees it, others do not);\n\
+    or, to come back, your seat's word, such as anna-4711: ";
+const RULE: &str = "a name has letters, digits and hyphens,\n\
+    no blanks, 24 at most; the word of a seat ends\n\
+    in a hyphen and four digits";
 
 /// The seat that `typed` asks for, and whether it is new.
 ///

@@ -244,10 +244,7 @@ impl Student {
         };
         let asked = taken.page().filter(|_| taken.lesson.name == state.lesson);
         let asked = asked.and_then(|page| votes::question(page, state));
-        let border = match self.follows() {
-            true => "k: step aside",
-            false => "", // the title says how to come back
-        };
+        let border = if self.follows() { "k: step aside" } else { "" };
         let of_lesson = state.questions.get(&taken.lesson.name).into_iter();
         let round = |(name, question): (&String, &Question)| {
             let is_closed = question.stage == Stage::Closed;

@@ -86,9 +86,7 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     };
     let page = Some((&lesson, page.min(lesson.pages.len())));
     let teacher = Box::new(Teacher::new(folder, before));
-    let left = open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher));
-    drop(turn);
-    left
+    open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher))
 }
 
 fn show_board(folder: &Folder) -> anyhow::Result<ExitCode> {
@@ -185,7 +183,7 @@ fn asked(folder: &Folder) -> anyhow::Result<Option<Seat>> {
                 let word = &seat.word;
                 writeln!(
                     stdout,
-                    "Your seat is {word}: type that when you come back. Enter goes on."
+                    "Your seat is {word}: type that when you come back.\nEnter goes on."
                 )?;
                 return Ok(self::line()?.map(|_| seat));
             }

@@ -29,10 +29,7 @@ pub fn open(name: &str) -> Result<Lesson, Problems> {
             Ok(Lesson { name, ..read })
         }
         None => {
-            let near = match shipped::LESSONS {
-                [] => "there is none".to_owned(),
-                lessons => nearest(name, lessons.iter().map(|lesson| lesson.name)),
-            };
+            let near = nearest(name, shipped::LESSONS.iter().map(|lesson| lesson.name));
             let rule =
                 format!("no lesson of that name: {near} (a file's name holds a / or ends in .md)");
             Err(Problems::one(name, Problem::at("", rule)))

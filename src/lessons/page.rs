@@ -5,7 +5,7 @@ use super::markdown::paragraphs;
 use super::predictions::{Place, Tried, without};
 use super::taken::Taken;
 use super::text::Text;
-use super::{names, reading, shipped};
+use super::{names, reading};
 use crate::lab::Lab;
 use crate::lab::sheet::{Kind, Paragraph, Sheet};
 use crate::text::number;
@@ -39,7 +39,7 @@ pub struct Dress {
 pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Place>) -> Sheet {
     let mut sheet = Sheet {
         title: "lessons".to_owned(),
-        enter: if names.is_empty() { "" } else { "open" },
+        enter: "open",
         ..Sheet::default()
     };
     for (index, name) in names.iter().enumerate() {
@@ -68,11 +68,7 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
             sheet.seen = Some((sheet.paragraphs.len() - 1, sheet.paragraphs.len() - 1));
         }
     }
-    let keys = if shipped::LESSONS.is_empty() && names.is_empty() {
-        "There is no lesson. gyrolab lesson FILE.md opens one of your own."
-    } else {
-        "Up, Down choose; Enter opens; L goes back."
-    };
+    let keys = "Up, Down choose; Enter opens; L goes back.";
     sheet.paragraphs.push(Paragraph::new(Kind::Hint, keys));
     sheet
 }
@@ -216,11 +212,11 @@ impl Writer<'_> {
         let tried = page.and_then(|page| self.taken.place.tasks.get(&page.heading));
         let was_done = matches!(tried, Some(Tried::Done | Tried::DoneAfterHint));
         let is_reached = was_done || self.taken.has_reached(check.line);
+        let how = tried.filter(|tried| **tried != Tried::Hint);
         if is_reached || check.goals.len() < 2 {
-            let state = match (was_done, is_reached) {
-                (true, _) => Tried::words(tried),
-                (false, true) => "done",
-                (false, false) => "not yet",
+            let state = match is_reached {
+                true => how.map_or("done", |how| Tried::words(Some(how))),
+                false => "not yet",
             };
             let all = [&[state.to_owned()][..], &[check.goals.join(", ")]];
             let words = all.concat().into_iter().filter(|words| !words.is_empty());
@@ -257,7 +253,7 @@ impl Writer<'_> {
         self.extend(paragraphs(&source, &Kind::Result));
         let predict = lesson.predict(&compare.prediction);
         let is_missing = predict.is_some_and(|predict| !place.predictions.is_locked(predict));
-        if is_missing && !self.dress.is_of_teacher {
+        if is_missing && !self.dress.is_of_teacher && !self.dress.is_followed {
             let pages = &mut lesson.pages.iter();
             if let Some(page) = pages.find(|page| page.asks(&compare.prediction)) {
                 let text = format!("You predicted nothing: page {} asks for it.", page.number);
@@ -325,7 +321,7 @@ impl Writer<'_> {
         self.sheet.enter = "answer";
         self.sheet.takes_digits = true;
         let keys = match &predict.asked {
-            Asked::Choice(_) if is_marked => "Enter again locks it.",
+            Asked::Choice(_) if is_marked => "Enter locks it.",
             Asked::Choice(_) => "A number marks, or Up, Down, Enter.",
             Asked::Number { .. } => "Type your prediction.",
         };

@@ -179,22 +179,9 @@ impl Assembly {
     }
 
     fn text(&mut self, source: &str, line: usize) -> Option<Text> {
-        self.refuse_lost_headings(source, line);
         let page = self.lesson.pages.len();
         let read = Text::read(source, line, |name| self.names.find(name, page));
         read.map_err(|problems| self.refuse_all(problems)).ok()
-    }
-
-    /// Refuses lines that look like headings but are text: Markdown wants a blank after the signs.
-    fn refuse_lost_headings(&mut self, source: &str, line: usize) {
-        for (at, text) in (line..).zip(source.lines()) {
-            let words = text.trim_start_matches('#');
-            let signs = text.len() - words.len();
-            if (1..=6).contains(&signs) && words.starts_with(char::is_alphabetic) {
-                let rule = "is no heading yet: a blank must stand behind the signs #";
-                self.refuse_all(vec![on_line(at, Problem::at(text, rule))]);
-            }
-        }
     }
 
     fn place(&mut self, block: Block) {

@@ -166,6 +166,14 @@ impl<'a> Walk<'a, '_> {
             let rule = format!("stands alone behind its fence, without {extra}");
             return Err(on_line(line, Problem::at(word, rule)));
         }
+        if let Some(at) = another_fence(inside, fence_of(block), self.words) {
+            let begin = line + 1 + at;
+            let rule = format!(
+                "is not closed before line {begin}, where another block begins: a line {} must end it",
+                fence_of(block)
+            );
+            return Err(on_line(line, Problem::at(named(word), rule)));
+        }
         let word_at = block.find(word).unwrap_or_default();
         let word = &block[word_at..word_at + word.len()];
         self.add(Kind::Fenced(word, inside), range);
@@ -199,4 +207,13 @@ fn between_fences(block: &str) -> Option<&str> {
     let closing = block[last..].trim();
     let closes = closing.len() >= fence.len() && closing.chars().all(|c| c == sign);
     (closes && last >= begin).then(|| &block[begin..last])
+}
+
+/// The line of `inside`, from 0, at which another block of a lesson begins: with a `fence` like the one around it, or longer.
+fn another_fence(inside: &str, fence: &str, words: &[&str]) -> Option<usize> {
+    inside.lines().position(|line| {
+        let rest = line.strip_prefix(fence);
+        let word = rest.map(|rest| rest.trim_start_matches(['`', '~']).trim());
+        word.is_some_and(|word| words.contains(&word))
+    })
 }

@@ -155,7 +155,6 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
         .arrive()
         .shows("1 of 4")
         .shows("[x] 2 grows");
-    stage.shows("Locked: 3.5 deg");
     assert_eq!(answer_in(&stage.class), Answer::Choice("grows".to_owned()));
     stage.press("\n").shows("your answer is locked");
 }
@@ -201,7 +200,7 @@ fn a_task_is_done_by_hand_or_shown() {
         .arrive()
         .shows("[x] done after the hint: be at 4 s");
     let (mut stage, _folder, _) = taken(3);
-    stage.press("hh").arrive().shows("[x] done");
+    stage.press("hh").arrive().shows("[x] shown by the lab");
     stage.press("nn").shows("this is the last page");
     stage.press("NNNN").arrive().shows("this is the first page");
 }

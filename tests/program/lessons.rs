@@ -97,7 +97,7 @@ fn a_handout_obeys_the_rules_for_files() {
             "# Does a faster spin precess faster?\n",
             "## Watch\n\n```text\n",
             "The axle goes round once in 64 s.",
-            "- [ ] twice as fast\n- [ ] as fast as before\n- [ ] half as fast\n",
+            "- [ ] 1 twice as fast\n- [ ] 2 as fast as before\n- [ ] 3 half as fast\n",
             "Twice the spin, for 10 s. Watch the axle.\n\nPredicted: ____________\n\nCame out: ____________",
         ],
     );
