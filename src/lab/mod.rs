@@ -36,6 +36,7 @@ mod for_tests;
 pub mod form;
 mod messages;
 pub mod numbers;
+mod pasted;
 mod player;
 mod popups;
 mod routing;
@@ -55,6 +56,7 @@ pub use comparison::Comparison;
 pub use edits::Edits;
 pub use files::Files;
 pub use messages::{Cleared, Messages};
+pub use pasted::MOST_PASTED;
 pub use player::Player;
 pub use popups::{MOST_COUNTED, Mode, Popups};
 pub use runs::Runs;
@@ -301,9 +303,6 @@ impl Lab {
         &self.script
     }
 }
-
-/// The most bytes of rows that can be pasted.
-pub const MOST_PASTED: usize = 1_000_000;
 
 /// The commands that a key means now, or why it means none.
 pub type Meant = Result<Vec<Command>, String>;

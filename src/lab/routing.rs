@@ -10,17 +10,14 @@ use super::form::{edit_line, type_into};
 use super::messages::{self, halt_in_words};
 use super::popups::Mode;
 use super::view::Pane;
-use super::{Cleared, Lab, MOST_PASTED, Script};
+use super::{Cleared, Lab, Script, pasted};
 use crate::playback::Halt;
 use crate::run::NotFinite;
 use crate::scenario::Scenario;
-use crate::text::number::counted;
-use crate::text::printable::is_steering;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
-use toml::Table;
 
 /// How often to look whether an export is complete while there is nothing else to do.
 const LOOK: Duration = Duration::from_millis(2);
@@ -196,41 +193,12 @@ impl Lab {
         self.changed = true;
     }
 
-    /// Puts rows that were pasted beside the run, as measured data in a file of their own; undo takes them back.
+    /// Puts rows that were pasted beside the run; undo takes them back.
     fn take_rows(&mut self, text: &str) -> Answer {
-        if text.len() > MOST_PASTED {
-            let rule =
-                "what was pasted is longer than 1 MB: print fewer rows, or columns, or digits";
-            return Err(rule.into());
-        }
-        // Terminals paste a line's end as the key Enter.
-        let text = text
-            .trim_start_matches('\u{feff}')
-            .replace("\r\n", "\n")
-            .replace('\r', "\n");
-        let (files, player) = (&self.files, &self.player);
-        if text.contains(|c| is_steering(c) && !"\n\t".contains(c)) {
-            return Err("what was pasted holds control characters: copy the rows alone".into());
-        }
-        let name = files.free_name("pasted", "", "csv");
-        let series = self.comparison.check(&name, &text, player);
-        series.map_err(|problems| {
-            let problems = problems.of("what was pasted").to_string();
-            problems.lines().next().unwrap_or_default().to_owned()
-        })?;
-        let path = files.path_of(&name);
-        files.save("what was pasted", &text, &path, false)?;
-        let whole = std::path::absolute(&path)
-            .ok()
-            .filter(|_| files.confined().is_none());
-        let whole = whole.and_then(|path| path.to_str().map(str::to_owned));
-        let kept = whole.unwrap_or_else(|| name.clone());
-        let key = Table::from_iter([("view.measured".to_owned(), kept.into())]);
-        self.carry_out(&Command::Set(key))?;
-        let rows = counted(text.lines().count() as u64, "line");
-        Ok(Done::saying(format!(
-            "{name} has the {rows} that were pasted; u takes them back"
-        )))
+        let (name, command) = pasted::keep(text, &self.files, &self.comparison, &self.player)?;
+        self.carry_out(&command)?;
+        let words = format!("the rows that were pasted are in {name}; u takes them back");
+        Ok(Done::saying(words))
     }
 
     /// Changes the setting that is selected in the dialog, which then shows its new value.

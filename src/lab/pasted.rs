@@ -1,0 +1,45 @@
+//! Rows of an own program that were pasted: they become measured data in a file of their own.
+
+use super::answer::Refusal;
+use super::command::Command;
+use super::comparison::Comparison;
+use super::files::Files;
+use super::player::Player;
+use crate::text::printable::is_steering;
+use toml::Table;
+
+/// The most bytes of rows that can be pasted.
+pub const MOST_PASTED: usize = 1_000_000;
+
+/// Keeps the rows `text` in a new file. Returns its name, and the command that puts them beside the run.
+pub(super) fn keep(
+    text: &str,
+    files: &Files,
+    comparison: &Comparison,
+    player: &Player,
+) -> Result<(String, Command), Refusal> {
+    if text.len() > MOST_PASTED {
+        let rule = "what was pasted is longer than 1 MB: print fewer rows, or columns, or digits";
+        return Err(rule.into());
+    }
+    // Terminals paste a line's end as the key Enter.
+    let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+    let text = text.replace('\r', "\n");
+    if text.contains(|c| is_steering(c) && !"\n\t".contains(c)) {
+        return Err("what was pasted holds control characters: copy the rows alone".into());
+    }
+    let name = files.free_name("pasted", "", "csv");
+    let checked = comparison.check(&name, &text, player);
+    checked.map_err(|problems| {
+        let problems = problems.of("what was pasted").to_string();
+        problems.lines().next().unwrap_or_default().to_owned()
+    })?;
+    let path = files.path_of(&name);
+    files.save("what was pasted", &text, &path, false)?;
+    let is_confined = files.confined().is_some();
+    let whole = std::path::absolute(&path).ok().filter(|_| !is_confined);
+    let whole = whole.and_then(|path| path.to_str().map(str::to_owned));
+    let kept = whole.unwrap_or_else(|| name.clone());
+    let key = Table::from_iter([("view.measured".to_owned(), kept.into())]);
+    Ok((name, Command::Set(key)))
+}
