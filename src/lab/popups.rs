@@ -196,7 +196,7 @@ mod tests {
     #[test]
     fn pasted_text_goes_where_text_is_typed() {
         let mut popups = Popups::default();
-        assert!(popups.paste("q").unwrap().contains("does nothing"));
+        assert!(popups.paste("q").unwrap().contains("goes into fields"));
         popups.open_dialog(Dialog::go_to());
         assert_eq!(popups.paste("400"), None);
         assert_eq!(popups.take_dialog().unwrap().form.text(0), "400");

@@ -1,6 +1,6 @@
 //! A lesson played to its end without a screen: page after page, with every task done as the lesson shows it.
 
-use super::lesson::{Block, Check, Lesson, Page};
+use super::lesson::{Block, Check, Lesson, Page, Setup};
 use super::names::{self, Kept};
 use super::predictions::Predictions;
 use super::stage::Stage;
@@ -11,10 +11,14 @@ use crate::lab::Lab;
 use crate::lab::command::Command;
 use crate::scenario::{Problem, Problems};
 use crate::text::number::{NONE, significant};
+use indicatif::HumanCount;
 use std::ops::ControlFlow;
 
 /// Asked several times a second, with the step that the run is at and the one at which it stops, whether to go on.
 pub type GoOn<'a> = &'a mut dyn FnMut(u64, u64) -> ControlFlow<()>;
+
+/// The most steps of the run before a page that is played again when the page is turned to.
+const MOST_BEFORE: u64 = 1_000_000;
 
 /// A lab that goes through a lesson.
 pub struct Walk<'a> {
@@ -143,6 +147,21 @@ pub fn check(lesson: &Lesson, lab: Lab, go_on: GoOn<'_>) -> Result<Vec<Problem>,
 }
 
 impl<'a> Walk<'a> {
+    /// Refuses a page that states numbers of a run which it does not open, where that is too long to be played again
+    /// each time somebody turns to the page from elsewhere.
+    fn refuse_far(&self, page: &Page, found: &mut Problems) {
+        let steps = self.lab.player().playback.step_number();
+        let opens = page.lab().is_some_and(Setup::opens);
+        if !opens && steps > MOST_BEFORE && page.states_numbers(&self.kept) {
+            let (steps, most) = (HumanCount(steps), HumanCount(MOST_BEFORE));
+            let rule = format!(
+                "states numbers of a run of {steps} steps that pages before it open: it is set there when it is turned \
+                to, and at most {most} steps are played for that; its lab block should open a run of its own"
+            );
+            found.add(|| on_line(page.line, Problem::at(format!("## {}", page.heading), rule)));
+        }
+    }
+
     fn check_page(
         &mut self,
         page: &'a Page,
@@ -159,6 +178,7 @@ impl<'a> Walk<'a> {
         let mut before = states(self);
         self.enter(page, go_on)?;
         self.unstated_on(page, unstated);
+        self.refuse_far(page, found);
         if has_task {
             before = states(self);
         }

@@ -22,6 +22,9 @@ const STARTS: [&str; 4] = ["method-1", "method-2", "wobble-push", "every-slip"];
 /// The least number of steps for which a slip must last to come closest, and how many times as long as the scheme itself.
 const LASTS: (i64, i64) = (20, 10);
 
+/// How many more rows than the first that differs a pair must explain.
+const ROWS_OF_PAIR: usize = 2;
+
 /// The last step at which rows may begin to differ, where pairs are tried.
 pub const MOST_FOR_PAIRS: i64 = 4000;
 
@@ -192,9 +195,13 @@ impl Search<'_> {
         let mut most = LASTS.0.max(LASTS.1 * self.first.1) - 1;
         for tried in tried.into_iter().flatten() {
             // Where hardly a row can be compared, two slips explain anything.
-            let parts = tried.variants.len() > 1
-                && tried.followed.parted.is_some_and(|step| step < LASTS.0);
-            if tried.followed.explains(self.first.0) && !parts {
+            let more = if tried.variants.len() > 1 {
+                ROWS_OF_PAIR
+            } else {
+                0
+            };
+            let last = (self.first.0 + more).min(self.rows.count - 1);
+            if tried.followed.explains(last) {
                 let is_known = found.iter().any(|known| known.names() == tried.names());
                 if !is_known {
                     found.push(tried);
