@@ -135,6 +135,7 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
             "next phase" => "next step",
             "why sideways" => "phases",
             "take it" => "change",
+            "next page" => "more",
             always => always,
         };
         let key = row.keys[0];
