@@ -65,9 +65,8 @@ fn of_rounds(predict: &Predict, state: &State, seats: &[Sitting]) -> String {
         if round == question.round() && question.stage == Stage::Counted {
             return counts;
         }
-        let drawn = tally.drawn().text();
-        let advice = tally.advice.map(|advice| advice + "\n");
-        counts + &drawn + &advice.unwrap_or_default()
+        let drawn = counts + &tally.drawn().text();
+        drawn + &tally.advice.map_or(String::new(), |advice| advice + "\n")
     };
     (1..=question.round()).map(round_of).collect()
 }

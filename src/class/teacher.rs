@@ -133,10 +133,12 @@ impl Teacher {
         let (here, counts) = present(&self.seats);
         let framed = lessons.taken().map(|taken| {
             let (page, pages) = (taken.place.page, taken.lesson.pages.len());
-            let of = match self.is_followed {
-                true => format!("{page} of {pages}"),
-                false => format!("not followed · {page} of {pages}"),
+            let lead = if self.is_followed {
+                ""
+            } else {
+                "not followed · "
             };
+            let of = format!("{lead}{page} of {pages}");
             let title = &taken.lesson.title;
             format!("{of} · {counts} · {title}\n{of} · {counts}\n{of} · {here} here")
         });
@@ -209,9 +211,10 @@ impl Teacher {
         };
         let lines = self.entries().into_iter().enumerate().map(line);
         let title = Paragraph::new(Kind::Heading, "The seats");
-        let legend = match self.seats.is_empty() {
-            true => "No seat is taken yet.",
-            false => "[x]: closed, and Enter opens it. lost: no sign for 10 s; away: left.",
+        let legend = if self.seats.is_empty() {
+            "No seat is taken yet."
+        } else {
+            "[x]: closed, and Enter opens it. lost: no sign for 10 s; away: left."
         };
         let legend = Paragraph::new(Kind::Hint, legend);
         [title].into_iter().chain(lines).chain([legend]).collect()
@@ -245,9 +248,10 @@ impl Teacher {
             }
             3 => {
                 self.is_followed = !self.is_followed;
-                lab.refuse(match self.is_followed {
-                    true => "the class follows",
-                    false => "the class does not follow: k 3 lets it follow again",
+                lab.refuse(if self.is_followed {
+                    "the class follows"
+                } else {
+                    "the class does not follow: k 3 lets it follow again"
                 });
             }
             4 => self.menu = Menu::Seats(0),
@@ -279,10 +283,6 @@ impl Role for Teacher {
             self.trouble = None;
             self.look(lab, lessons);
             self.publish();
-            if self.folder.is_full() {
-                let full = "the disk of the class is full: votes cannot be kept";
-                self.trouble = Some(full.to_owned());
-            }
             lessons.set_dress(self.dress(lessons), lab);
         }
         ControlFlow::Continue(())

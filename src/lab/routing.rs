@@ -423,9 +423,10 @@ impl Lab {
                 self.script.pause(&self.player, self.now);
                 self.one(Command::Pause);
                 let is_of_page = self.view.sheet.as_ref().is_some_and(|sheet| sheet.plays);
-                self.tell(match is_of_page {
-                    true => "paused: space goes on".to_owned(),
-                    false => format!("paused: {}", self.script.left_in_words()),
+                self.tell(if is_of_page {
+                    "paused: space goes on".to_owned()
+                } else {
+                    format!("paused: {}", self.script.left_in_words())
                 });
             }
             (true, _) if self.player.is_moving() => self.one(Command::Pause),

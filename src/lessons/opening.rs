@@ -39,10 +39,8 @@ pub fn open(name: &str) -> Result<Lesson, Problems> {
 
 /// As [`open`], where nothing may wait for a file.
 pub fn open_again(name: &str) -> Result<Lesson, Problems> {
-    match is_file_name(name) {
-        true => read_again(Path::new(name)),
-        false => open(name),
-    }
+    let read = is_file_name(name).then(|| read_again(Path::new(name)));
+    read.unwrap_or_else(|| open(name))
 }
 
 /// Whether NAME names a file: it holds a `/` or ends in `.md`.

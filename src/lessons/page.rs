@@ -174,9 +174,10 @@ impl Writer<'_> {
                         None => text.with_numbers(self.lab, &self.taken.place.kept),
                     };
                     // Who follows is not told the keys that leave the class.
-                    let source = match self.dress.is_followed {
-                        true => without("`space`", &source),
-                        false => source,
+                    let source = if self.dress.is_followed {
+                        without("`space`", &source)
+                    } else {
+                        source
                     };
                     self.extend(paragraphs(&source, &Kind::Text));
                 }
@@ -214,9 +215,10 @@ impl Writer<'_> {
         let is_reached = was_done || self.taken.has_reached(check.line);
         let how = tried.filter(|tried| **tried != Tried::Hint);
         if is_reached || check.goals.len() < 2 {
-            let state = match is_reached {
-                true => how.map_or("done", |how| Tried::words(Some(how))),
-                false => "not yet",
+            let state = if is_reached {
+                how.map_or("done", |how| Tried::words(Some(how)))
+            } else {
+                "not yet"
             };
             let all = [&[state.to_owned()][..], &[check.goals.join(", ")]];
             let words = all.concat().into_iter().filter(|words| !words.is_empty());

@@ -81,9 +81,10 @@ impl Predictions {
             let round = has_rounds.then(|| format!("round {}", given.round));
             let about: Vec<_> = round.into_iter().chain(late).collect();
             let words = given.answer.in_words(predict);
-            match about.is_empty() {
-                true => words,
-                false => format!("{words} ({})", about.join(", ")),
+            if about.is_empty() {
+                words
+            } else {
+                format!("{words} ({})", about.join(", "))
             }
         };
         let all: Vec<_> = self.to(predict).map(said).collect();
