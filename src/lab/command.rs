@@ -111,7 +111,7 @@ fn row(name: &'static str, value: &'static str, about: &'static str, form: Form)
     }
 }
 
-/// Every command: those of [`own`], and a row for each other key of `[view]`.
+/// Every command: those of `own`, and a row for each other key of `[view]`.
 pub static COMMANDS: LazyLock<Vec<CommandRow>> = LazyLock::new(|| {
     let mut rows = own();
     for key in KEYS {

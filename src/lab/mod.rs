@@ -465,7 +465,7 @@ impl Lab {
         match pinned.map(KeptPinned::reference).transpose() {
             Ok(reference) => self.comparison.pin_again(reference),
             Err(problems) => {
-                text += &format!("; the pinned run is lost: {}", problems.in_one_line())
+                text += &format!("; the pinned run is lost: {}", problems.in_one_line());
             }
         }
         if let Some(name) = &place.measured

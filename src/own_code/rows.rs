@@ -18,7 +18,7 @@ const WITHIN: [f64; 2] = [1e-8, 1e-6];
 
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// Its place among [`NAMES`].
+    /// Its place among `NAMES`.
     pub place: usize,
     pub values: Vec<f64>,
     /// How many digits its values have at most: behind the point, and in all.
