@@ -17,7 +17,7 @@ const INDENT_PT: f64 = 15.0;
 /// A cell of a picture: 80 of them fit between the margins.
 const CELL_PT: (f64, f64) = (6.0, 12.0);
 const CODE_PT: f64 = 9.0;
-/// A heading is followed by this much text on its sheet, or by a whole picture.
+/// A heading is followed by this much text on its sheet, or by a whole picture; so is what stands above a list.
 const BELOW_HEADING_PT: f64 = 90.0;
 
 /// The PDF of a handout's `markdown`; its first heading is the title.
@@ -82,6 +82,10 @@ impl Sheets {
 
     fn put(&mut self, paragraph: &Paragraph, next: Option<&Paragraph>) {
         let is_first = self.y <= MARGIN_PT && self.done.len() == 1;
+        let is_item = |one: &Paragraph| matches!(one.kind, Kind::Item { .. });
+        if !is_item(paragraph) && next.is_some_and(is_item) {
+            self.turn_unless(BELOW_HEADING_PT);
+        }
         match &paragraph.kind {
             Kind::Code => {
                 self.turn_unless(code_height_pt(paragraph));
@@ -98,8 +102,7 @@ impl Sheets {
             }
             _ => self.put_lines(paragraph, TEXT_PT, 0.0, ""),
         }
-        let goes_on = |next: &Paragraph| matches!(next.kind, Kind::Item { .. });
-        if !(goes_on(paragraph) && next.is_some_and(goes_on)) {
+        if !(is_item(paragraph) && next.is_some_and(is_item)) {
             self.y += TEXT_PT * 0.6;
         }
     }
@@ -107,14 +110,7 @@ impl Sheets {
     /// The words of a paragraph in lines; `mark` stands before the first, and a box to be ticked where the words begin with
     /// `[ ]`.
     fn put_lines(&mut self, paragraph: &Paragraph, size: f64, indent: f64, mark: &str) {
-        let words = paragraph.words.iter().flat_map(|part| {
-            let slant = ["", "*"][usize::from(part.emphasis == Emphasis::Strong)];
-            // The letters have no double line.
-            let word =
-                move |word: &str| format!("{slant}{}{slant}", escape(&word.replace('═', "=")));
-            part.text.split_whitespace().map(word)
-        });
-        let mut words: Vec<String> = words.collect();
+        let mut words = words(paragraph);
         let is_box = words.len() > 2 && words[0] == "[" && words[1] == "]";
         words.drain(..if is_box { 2 } else { 0 });
         let left = MARGIN_PT + indent;
@@ -144,6 +140,21 @@ impl Sheets {
             }
         }
     }
+}
+
+/// The words of a paragraph as markup, with the signs that the letters do not have in others.
+fn words(paragraph: &Paragraph) -> Vec<String> {
+    let marked = paragraph.words.iter().map(|part| {
+        let slant = ["", "*"][usize::from(part.emphasis == Emphasis::Strong)];
+        let word = |word: &str| match word {
+            "" => String::new(),
+            word => format!("{slant}{}{slant}", escape(&word.replace('═', "="))),
+        };
+        let words: Vec<_> = part.text.split(' ').map(word).collect();
+        words.join(" ").replace('ᵀ', "^{T}")
+    });
+    let text: String = marked.collect();
+    text.split_whitespace().map(str::to_owned).collect()
 }
 
 /// The room that code takes, at most half a sheet: what is longer goes on on the next; 0 for other paragraphs.
@@ -245,6 +256,13 @@ mod tests {
         pdf.windows(page.len())
             .filter(|bytes| bytes == page)
             .count()
+    }
+
+    #[test]
+    fn words_stand_as_close_as_they_are_written() {
+        let read = paragraphs("`steps = 10`, and **two words**: r rᵀ ═", &Kind::Text);
+        let expected = "steps = 10, and *two* *words*: r r^{T} =";
+        assert_eq!(words(&read[0]).join(" "), expected);
     }
 
     #[test]
