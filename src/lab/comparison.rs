@@ -11,6 +11,7 @@ use super::runs::Reference;
 use super::view::{Pane, View};
 use crate::analysis::cost;
 use crate::data::{Measured, find_shipped};
+use crate::own_code::rows;
 use crate::playback::ghost::{Ghost, GhostToBe};
 use crate::playback::live::LiveRun;
 use crate::scenario::csv::Renaming;
@@ -168,10 +169,19 @@ impl Comparison {
         Ok(left_out)
     }
 
-    /// Whether `text`, the file `name`, could stand beside the run.
-    pub(super) fn check(&self, name: &str, text: &str, player: &Player) -> Result<(), Problems> {
-        let (measured, _) = OwnCode::read(name, text, &[], player.run().scenario())?;
-        measured.series().map(drop)
+    /// Refuses `text`, the file `name`, where it could not stand beside the run. Returns why it cannot be judged as rows of
+    /// an own program, where that is so.
+    pub(super) fn check(
+        &self,
+        name: &str,
+        text: &str,
+        player: &Player,
+    ) -> Result<Option<Problems>, Problems> {
+        let (measured, own) = OwnCode::read(name, text, &[], player.run().scenario())?;
+        measured.series()?;
+        let time_step_s = player.motion().time_step_s;
+        let rows = || rows::read(text, &[], None, time_step_s).err();
+        Ok(own.is_none().then(rows).flatten())
     }
 
     /// To be called after the run went over from `before` to another scenario, or another `[view]`. Puts the data that its

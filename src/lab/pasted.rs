@@ -5,19 +5,24 @@ use super::command::Command;
 use super::comparison::Comparison;
 use super::files::Files;
 use super::player::Player;
+use crate::scenario::Problems;
 use crate::text::printable::is_steering;
 use toml::Table;
 
 /// The most bytes of rows that can be pasted.
 pub const MOST_PASTED: usize = 1_000_000;
 
-/// Keeps the rows `text` in a new file. Returns its name, and the command that puts them beside the run.
+/// Keeps the rows `text` in a new file. Returns what is to be said, and the command that puts them beside the run.
 pub(super) fn keep(
     text: &str,
     files: &Files,
     comparison: &Comparison,
     player: &Player,
 ) -> Result<(String, Command), Refusal> {
+    let reason = |problems: Problems| {
+        let problems = problems.of("what was pasted").to_string();
+        problems.lines().next().unwrap_or_default().to_owned()
+    };
     if text.len() > MOST_PASTED {
         let rule = "what was pasted is longer than 1 MB: print fewer rows, or columns, or digits";
         return Err(rule.into());
@@ -30,10 +35,7 @@ pub(super) fn keep(
     }
     let name = files.free_name("pasted", "", "csv");
     let checked = comparison.check(&name, &text, player);
-    checked.map_err(|problems| {
-        let problems = problems.of("what was pasted").to_string();
-        problems.lines().next().unwrap_or_default().to_owned()
-    })?;
+    let unjudged = checked.map_err(reason)?.map(reason);
     let path = files.path_of(&name);
     files.save("what was pasted", &text, &path, false)?;
     let is_confined = files.confined().is_some();
@@ -41,5 +43,9 @@ pub(super) fn keep(
     let whole = whole.and_then(|path| path.to_str().map(str::to_owned));
     let kept = whole.unwrap_or_else(|| name.clone());
     let key = Table::from_iter([("view.measured".to_owned(), kept.into())]);
-    Ok((name, Command::Set(key)))
+    let mut words = format!("the rows that were pasted are in {name}; u takes them back");
+    if let Some(why) = unjudged {
+        words += &format!("; no verdict: {why}");
+    }
+    Ok((words, Command::Set(key)))
 }

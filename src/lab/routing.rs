@@ -195,9 +195,8 @@ impl Lab {
 
     /// Puts rows that were pasted beside the run; undo takes them back.
     fn take_rows(&mut self, text: &str) -> Answer {
-        let (name, command) = pasted::keep(text, &self.files, &self.comparison, &self.player)?;
+        let (words, command) = pasted::keep(text, &self.files, &self.comparison, &self.player)?;
         self.carry_out(&command)?;
-        let words = format!("the rows that were pasted are in {name}; u takes them back");
         Ok(Done::saying(words))
     }
 

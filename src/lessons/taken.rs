@@ -118,6 +118,12 @@ impl Taken {
             .find(|predict| self.is_open(predict))
     }
 
+    /// Whether an answer to the open question is marked, and not locked.
+    fn has_marked(&self) -> bool {
+        let pointed = |asked: &Predict| self.pointed.get(&asked.name);
+        self.asked().and_then(pointed).is_some_and(|it| it.1)
+    }
+
     /// Whether an answer to `predict` is wanted: there is none, or none of the round that a class is at.
     pub fn is_open(&self, predict: &Predict) -> bool {
         let predictions = &self.place.predictions;

@@ -203,6 +203,9 @@ fn rows_that_are_pasted_are_judged_until_they_are_taken_back() {
         again.ask(&format!("\u{1b}[200~{pasted}\u{1b}[201~"), told);
     }
     assert_eq!(ground.files(), ["pasted.csv", "state"]);
+    let gap = "step,t_s,x_m\r0,0,0\r1,0.001,\r";
+    let told = "no verdict: what was pasted:3: x_m: is missing";
+    again.ask(&format!("\u{1b}[200~{gap}\u{1b}[201~"), told);
     again.quit();
 }
 

@@ -52,7 +52,11 @@ impl Taken {
             return;
         }
         if self.asked().is_some() && !std::mem::replace(&mut self.was_asked, true) {
-            lab.refuse("predict first: what you write down you see better. n again leaves it open");
+            lab.refuse(if self.has_marked() {
+                "Enter locks the answer that you marked. n again leaves it open"
+            } else {
+                "predict first: what you write down you see better. n again leaves it open"
+            });
             return;
         }
         self.keep_own_task(lab);
