@@ -20,9 +20,22 @@ pub struct Damping {
     pub(crate) inverse_inertia: Matrix3<f64>,
     /// The moment against a torque about the axle, kg m²: 1/(e3·I⁻¹e3).
     pub(crate) along: f64,
-    /// Across the axle, two directions square to each other in which a torque along one changes ω along it alone, each
-    /// with the moment against it, kg m².
-    across: [(Vector3<f64>, f64); 2],
+    across: Across,
+    /// The same while dry friction holds the spin at zero.
+    across_held: Across,
+}
+
+/// Two perpendicular directions across the axle in which a torque along one changes ω along it alone, each with its
+/// moment of inertia, kg m².
+type Across = [(Vector3<f64>, f64); 2];
+
+/// How the free motion, which follows or precedes a kick, changes the spin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FreeSpin {
+    /// The torque about the axle that would change it so, N m.
+    pub gyration: f64,
+    /// How long that torque has acted before the kick; negative where the free motion has already applied it, s.
+    pub lead_s: f64,
 }
 
 /// What friction does while the body stands at one orientation.
@@ -44,7 +57,8 @@ impl Damping {
             inertia: body.inertia(),
             inverse_inertia: inverse,
             along,
-            across: across(&inverse),
+            across: across(&inverse).map(|(direction, inverse)| (direction, 1.0 / inverse)),
+            across_held: across(&body.inertia()),
         })
     }
 
@@ -82,27 +96,35 @@ impl Damping {
     /// acts too, a constant one (N m); everything in the body frame. In closed form for a body symmetric about its axle, of any other
     /// to second order in the time: half the time about the axle, the whole across it, half about the axle.
     ///
-    /// Friction about the axle meets the spin that there would be if the torque of `gyration` about the axle (N m) acted
-    /// too, and had acted for the time `lead_s` before.
+    /// With `free_spin`, friction about the axle acts on the spin that there would be if the free motion changed it during
+    /// this time too, and the swing of a body whose spin dry friction holds is slowed with the moments of the held body.
     pub(crate) fn act(
         &self,
         omega: &Vector3<f64>,
         torque: &Vector3<f64>,
         time_s: f64,
-        (gyration, lead_s): (f64, f64),
+        free_spin: Option<FreeSpin>,
     ) -> Action {
         let half = 0.5 * time_s;
-        let about = |spin: f64, since_s: f64| {
-            let met = spin + gyration * (lead_s + since_s) / self.along;
-            self.about(met, torque.z + gyration, half)
-        };
+        let (gyration, lead_s) = free_spin.map_or((0.0, 0.0), |it| (it.gyration, it.lead_s));
+        let met = |spin: f64, since_s: f64| spin + gyration * (lead_s + since_s) / self.along;
+        let about =
+            |spin: f64, since_s: f64| self.about(met(spin, since_s), torque.z + gyration, half);
         let turned = |impulse: &Vector3<f64>| omega + self.inverse_inertia * impulse;
         let mut impulse = Vector3::zeros();
         let mut whole = Vector3::zeros();
         let first = about(omega.z, 0.0);
         impulse.z += first;
         whole.z += first + torque.z * half;
-        let swing = self.swing(&turned(&whole), torque, time_s);
+        let is_held = free_spin.is_some()
+            && self.friction.spin_dry > 0.0
+            && self.spin_after(met(omega.z, 0.0), torque.z + gyration, half) == 0.0;
+        let across = if is_held {
+            &self.across_held
+        } else {
+            &self.across
+        };
+        let swing = self.swing(across, &turned(&whole), torque, time_s);
         impulse += swing;
         whole += swing + Vector3::new(torque.x, torque.y, 0.0) * time_s;
         let second = about(turned(&whole).z, half);
@@ -117,12 +139,23 @@ impl Damping {
         if !self.friction.is_on_spin() {
             return 0.0;
         }
-        let after = spin_after(&self.friction, self.along, omega, torque, time_s);
+        let after = self.spin_after(omega, torque, time_s);
         self.along * (after - omega) - torque * time_s
     }
 
+    /// The spin that was `omega` after `time_s` under friction and a constant torque about the axle (N m), rad/s.
+    fn spin_after(&self, omega: f64, torque: f64, time_s: f64) -> f64 {
+        spin_after(&self.friction, self.along, omega, torque, time_s)
+    }
+
     /// The impulse of friction across the axle, J s, beside a constant torque (N m).
-    fn swing(&self, omega: &Vector3<f64>, torque: &Vector3<f64>, time_s: f64) -> Vector3<f64> {
+    fn swing(
+        &self,
+        across: &Across,
+        omega: &Vector3<f64>,
+        torque: &Vector3<f64>,
+        time_s: f64,
+    ) -> Vector3<f64> {
         let rubbing = self.friction.swing_viscous;
         if rubbing == 0.0 {
             return Vector3::zeros();
@@ -133,7 +166,7 @@ impl Damping {
             let change = libm::expm1(-rubbing * time_s / moment) * (rate - torque / rubbing);
             direction * (moment * change - torque * time_s)
         };
-        self.across.iter().map(along_one).sum()
+        across.iter().map(along_one).sum()
     }
 }
 
@@ -149,13 +182,12 @@ pub(super) fn phase(
     .changing(Changes::Momentum)
 }
 
-/// The two principal directions of the part of `inverse` (inverse inertia, body frame) across the axle, each with its
-/// moment.
-fn across(inverse: &Matrix3<f64>) -> [(Vector3<f64>, f64); 2] {
-    let (xx, yy, xy) = (inverse[(0, 0)], inverse[(1, 1)], inverse[(0, 1)]);
+/// The two principal directions of the part of `matrix` (body frame) across the axle, each with its principal value.
+fn across(matrix: &Matrix3<f64>) -> Across {
+    let (xx, yy, xy) = (matrix[(0, 0)], matrix[(1, 1)], matrix[(0, 1)]);
     let (sin, cos) = libm::sincos(0.5 * libm::atan2(2.0 * xy, xx - yy));
     [Vector3::new(cos, sin, 0.0), Vector3::new(-sin, cos, 0.0)]
-        .map(|direction| (direction, 1.0 / direction.dot(&(inverse * direction))))
+        .map(|direction| (direction, direction.dot(&(matrix * direction))))
 }
 
 /// The rate of a spin after `time_s`, rad/s, that was `spin`, of a body with this `moment` (kg m²) about its axle, under friction and a

@@ -115,7 +115,7 @@ impl Report {
         let torque = self.torque(&Moments::of_all(&self.points[..self.massive]).first());
         let q = &state.orientation;
         let omega = q.tr_mul(&angular_velocity);
-        let action = damping.act(&omega, &q.tr_mul(&torque), dt, (0.0, 0.0));
+        let action = damping.act(&omega, &q.tr_mul(&torque), dt, None);
         let impulse = q * action.impulse;
         state.momentum += impulse;
         self.work = action.work;

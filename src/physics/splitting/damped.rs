@@ -6,10 +6,12 @@
 //!
 //! The free motion of a body that is not symmetric about its axle changes ω3 also where dry friction holds it. Friction
 //! acts in the kicks alone: in each it meets the spin as if half of that change came during the kick, so that the spin is
-//! zero in the mean over the free motion, and at the end of the step.
+//! zero in the mean over the free motion, and at the end of the step. While it is held, friction on the swing slows the
+//! held body, whose moments across the axle are others: with those of the free one the order would fall to 1.
 
 use super::free_body::{FreeBody, orthonormal};
 use super::phases;
+use crate::friction::FreeSpin;
 use crate::loads::torque;
 use crate::workings::Listener;
 use crate::{Body, Damping, Loads, State, friction};
@@ -60,15 +62,13 @@ impl DampedStrang {
         let q = &state.orientation;
         let torque = torque(q, &self.moment);
         let omega = self.damping.inverse_inertia * q.tr_mul(&state.momentum);
-        let gyration = if self.gyrates {
-            self.damping.gyration(&omega)
-        } else {
-            0.0
-        };
-        let lead = (gyration, lead_s);
+        let free_spin = self.gyrates.then(|| FreeSpin {
+            gyration: self.damping.gyration(&omega),
+            lead_s,
+        });
         let action = self
             .damping
-            .act(&omega, &q.tr_mul(&torque), duration_s, lead);
+            .act(&omega, &q.tr_mul(&torque), duration_s, free_spin);
         state.momentum += torque * duration_s;
         listener.hear(|| phases::kick(duration_s, &torque, &state.momentum));
         let impulse = q * action.impulse;
