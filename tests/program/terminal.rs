@@ -342,6 +342,10 @@ fn show_prints_plain_text_of_the_size_asked_for() {
     }
     let text = ground.stdout("show method-2");
     has_all(&text, ["step 2300", "0.8109"]);
+    // Nobody has seen the strip change: the preset's own sentence is shown.
+    let text = ground.stdout("show wing-nut --size 200x50");
+    assert!(!text.contains("the upper strip shows"), "{text}");
+    has_all(&text, ["turns over"]);
 }
 
 #[test]

@@ -74,9 +74,11 @@ impl FastStrip {
         let detail = Detail::new(run, readouts, &wanted, before);
         let is_other = before.is_some_and(|before| before.curve != detail.curve);
         (self.detail, self.chosen_at, self.is_of_run) = (detail, now, true);
-        (is_other && view.detail_of.is_none()).then_some(match self.detail.curve {
-            Curve::Tilt => "the upper strip shows the tilt again: it swings",
-            _ => "the upper strip shows x now: it swings, and the tilt does not",
+        // After a jump in time the strip's label says it; only one who watches the run sees the strip change.
+        let is_watched = playback.is_running() && view.detail_of.is_none();
+        (is_other && is_watched).then_some(match self.detail.curve {
+            Curve::Tilt => "the upper strip shows the tilt again",
+            _ => "the upper strip shows x now: it swings more often than the tilt",
         })
     }
 }
