@@ -230,6 +230,7 @@ impl Equations {
             azimuth_error: libm::hypot(rounding, 0.5 * apart),
             azimuth_rate: swing.azimuth_rate(),
             level,
+            phase: 0.0, // of a symmetric body nothing depends on it
         }
     }
 

@@ -5,11 +5,13 @@
 //!
 //! These rooms follow a run and read it; none of them changes a number of it.
 
+mod beats;
 pub mod compare;
 pub mod cost;
 pub mod deviation;
 mod equations;
 pub mod extremes;
+mod foot_force;
 pub mod health;
 pub mod monitor;
 mod parabolas;
@@ -29,4 +31,4 @@ pub use monitor::{Instruments, Monitor};
 pub use readouts::Readouts;
 pub use slowing::Slowing;
 pub use theory::Theory;
-pub use turns::Measured;
+pub use turns::{Measured, WithoutNutation};

@@ -11,7 +11,9 @@
 //! Of other runs, those of a lopsided body, under a load aside, whose time step is too long, or whose nutation is no larger
 //! than the error of a scheme of the first order, a parabola through three rows gives the highest points, and it takes four
 //! nutations to say how much they differ, of a lopsided body sixteen. Rows so few that a nutation may lie unseen between
-//! them give no period. A run without nutation has its precession from the whole way of the azimuth. Where less was seen
+//! them give no period. The direction in which a lopsided body points as the axle turns back changes its nutations in
+//! length, in beats that may be longer than the run: [`beats`](super::beats). Its numbers are stated once all directions
+//! were seen, its nutation only if all swings are large. A run without nutation has its precession from the whole way of the azimuth. Where less was seen
 //! than that there is no number.
 //!
 //! A turning point is read by interpolation between two rows, and how far that reading is off is known from the equations
@@ -24,14 +26,14 @@
 
 use super::deviation::Beside;
 use super::extremes::{Extremes, TiltSwing};
+use super::foot_force::{FootForce, mean_at_rest};
 use super::health::Health;
 use super::parabolas::Parabolas;
 use super::report_theory::ReportTheory;
 use super::swings::height_in;
 use super::theory::Theory;
 use super::turning_points::TurningPoints;
-use super::turns::Measured;
-use crate::physics::observables::rise;
+use super::turns::{Measured, WithoutNutation};
 use crate::physics::{LagrangeTop, SymmetricTop};
 use crate::run::Step;
 
@@ -59,8 +61,11 @@ impl Instruments {
         }
     }
 
-    /// Nutation period of the run so far, s; `None` where too little of it was seen to say how well it is known.
-    pub fn nutation_period_s(&self) -> Option<Measured> {
+    /// Nutation period of the run so far, s.
+    ///
+    /// # Errors
+    /// Where there is none, or too little of it was seen to say how well it is known.
+    pub fn nutation_period_s(&self) -> Result<Measured, WithoutNutation> {
         match self {
             Self::TurningPoints(points) => points.nutation_period_s(),
             Self::Parabolas(parabolas) => parabolas.nutation_period_s(),
@@ -88,8 +93,7 @@ pub struct Monitor {
     tilt_swing: TiltSwing,
     pub report_theory: Option<ReportTheory>,
     pub beside: Beside,
-    /// The body's vertical momentum at the start, kg m/s.
-    start_rise: f64,
+    foot_force: FootForce,
 }
 
 impl Monitor {
@@ -102,7 +106,7 @@ impl Monitor {
             tilt_swing: TiltSwing::new(step),
             report_theory: ReportTheory::new(step),
             beside: Beside::new(step.scenario()),
-            start_rise: rise(&step.scenario().body.mechanics, step.after()),
+            foot_force: FootForce::new(step),
         }
     }
 
@@ -122,16 +126,15 @@ impl Monitor {
         self.beside.wait(step.after());
     }
 
-    /// The mean over the run of the vertical force of the foot, N: what of the momentum weight and pushes have not made.
-    /// `None` where the forces have changed after the first step, and at the start.
-    pub fn mean_foot_force(&self, step: &Step) -> Option<f64> {
-        let (body, time_s) = (&step.scenario().body.mechanics, step.time_s());
-        if self.since > 1 || time_s <= 0.0 {
-            return None;
-        }
-        let pushes: f64 = step.loads().pushes.iter().map(|push| push.force.z).sum();
-        let gained = rise(body, step.after()) - self.start_rise;
-        Some(gained / time_s + body.mass() * step.loads().gravity - pushes)
+    /// The mean force of the floor on the foot over whole nutations since the forces last changed, N; `None` before one
+    /// was seen.
+    pub fn mean_foot_force(&self) -> Option<Measured> {
+        self.foot_force.mean()
+    }
+
+    /// What that mean is by Newton's second law at `step`, N: the weight, and what pushes press down.
+    pub fn predicted_mean_foot_force(&self, step: &Step) -> f64 {
+        mean_at_rest(step)
     }
 
     /// Compares the steps with the exact motion that have not been.
@@ -148,11 +151,13 @@ impl Monitor {
         if step.changes() == self.changes {
             self.instruments.follow(step);
             self.tilt_swing.follow(step, height);
+            self.foot_force.follow(step);
         } else {
             self.changes = step.changes();
             self.since = step.number();
             self.instruments = Instruments::new(step);
             self.tilt_swing = TiltSwing::new(step);
+            self.foot_force = FootForce::new(step);
             self.report_theory = ReportTheory::new(step);
         }
     }

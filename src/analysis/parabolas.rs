@@ -1,7 +1,8 @@
 //! A run as its rows show it, for a lopsided body, a load aside, or time steps too long for the motion: the highest points
 //! of the axle by parabolas through three rows.
 
-use super::turns::{Measured, ROUNDING, StraightLine, Turn, Turns};
+use super::beats::{Point, slope};
+use super::turns::{Measured, ROUNDING, StraightLine, Turn, Turns, WithoutNutation};
 use crate::physics::SymmetricTop;
 use crate::physics::observables::Azimuth;
 use crate::run::Step;
@@ -10,9 +11,14 @@ use std::f64::consts::TAU;
 /// Fewer nutations than this do not say how much they differ from one another: of a symmetric body, and of a lopsided one,
 /// whose nutations grow longer and shorter over several of them.
 const FEWEST: [u64; 2] = [4, 16];
-/// A swing of a lopsided body's axle that is less than this part of the whole is none: a smaller one may lie unseen between
-/// two rows.
-const LEAST_PART: f64 = 0.05;
+/// Where a swing of a lopsided body's axle is less than this part of all that it rises and sinks, how many there are
+/// depends on which count.
+const LEAST_PART: f64 = 0.1;
+/// The directions about a lopsided body's axle in which the vertical was at a turning point are counted in so many parts
+/// of a turn.
+const DIRECTIONS: u32 = u16::BITS;
+/// More of them in a row than this were not seen: what its nutations are like there is not known.
+const MOST_UNSEEN: u32 = 5;
 /// Between rows that are further apart than this part of a nutation a highest point may be missed.
 const ROWS_TO_SEE_IT: f64 = 8.0;
 /// Nutations of a lopsided body that differ by more than this factor in length: between two of their highest points lay
@@ -35,6 +41,11 @@ pub struct Parabolas {
     count: u64,
     turns: Turns,
     is_lopsided: bool,
+    /// The height of the last highest or lowest row, and the smallest swing between two; the first is seen in part.
+    turned_at: Option<f64>,
+    smallest_swing: f64,
+    /// The directions in which the vertical was at the turning points, a bit each.
+    directions: u16,
     /// The shortest and the longest time between two highest points, s.
     nutations_s: [f64; 2],
     heights: [f64; 2],
@@ -51,6 +62,8 @@ struct Look {
     time_s: f64,
     axle: [f64; 3],
     azimuth: Azimuth,
+    /// The vertical across the axle, seen from the body.
+    vertical: [f64; 2],
 }
 
 impl Look {
@@ -60,6 +73,7 @@ impl Look {
             time_s: state.time_s,
             axle: state.axle().into(),
             azimuth: *step.azimuth(),
+            vertical: [state.orientation[(2, 0)], state.orientation[(2, 1)]],
         }
     }
 
@@ -72,7 +86,7 @@ impl Parabolas {
     /// Instruments for the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
         let look = Look::at(step);
-        let body = &step.scenario().body.mechanics;
+        let is_lopsided = SymmetricTop::of(&step.scenario().body.mechanics).is_none();
         Self {
             looks: [look; 3],
             seen: 1,
@@ -80,8 +94,15 @@ impl Parabolas {
             lowest_since: look.axle[2],
             last: None,
             count: 0,
-            turns: Turns::new(),
-            is_lopsided: SymmetricTop::of(body).is_none(),
+            turns: if is_lopsided {
+                Turns::of_beats()
+            } else {
+                Turns::new()
+            },
+            is_lopsided,
+            turned_at: None,
+            smallest_swing: f64::INFINITY,
+            directions: 0,
             nutations_s: [f64::INFINITY, 0.0],
             heights: [look.axle[2]; 2],
             is_ambiguous: false,
@@ -100,9 +121,12 @@ impl Parabolas {
         self.seen += 1;
         let [a, b, c] = self.looks.map(|look| look.axle[2]);
         self.heights = [self.heights[0].min(c), self.heights[1].max(c)];
-        if self.seen > 2 && b >= a && b > c && self.is_higher(b) {
+        if self.seen > 2 && b >= a && b > c {
             self.candidate = Some((self.turn(), b));
             self.lowest_since = f64::INFINITY;
+        }
+        if self.seen > 2 && ((b >= a && b > c) || (b <= a && b < c)) {
+            self.swing_to(b);
         }
         if c < self.lowest_since {
             self.lowest_since = c;
@@ -135,37 +159,45 @@ impl Parabolas {
             azimuth_error: 0.0,
             azimuth_rate: (way + shift * curve) / step,
             level: libm::hypot(b.axle[0], b.axle[1]),
+            phase: libm::atan2(b.vertical[0], b.vertical[1]),
         }
     }
 
-    /// The least way that the axle rises to a highest point and sinks from it.
-    fn least_way(&self) -> f64 {
+    /// Takes in that the axle turns back at this height.
+    fn swing_to(&mut self, height: f64) {
+        match self.turned_at {
+            Some(last) if (height - last).abs() <= ROUNDING => return,
+            Some(last) => self.smallest_swing = self.smallest_swing.min((height - last).abs()),
+            None => {}
+        }
+        self.turned_at = Some(height);
+    }
+
+    /// Whether a lopsided body has no swing so small that another rule might not count it.
+    fn is_even(&self) -> bool {
         let [lowest, highest] = self.heights;
-        if self.is_lopsided {
-            ROUNDING.max(LEAST_PART * (highest - lowest))
-        } else {
-            ROUNDING
-        }
+        self.smallest_swing >= LEAST_PART * (highest - lowest)
     }
 
-    /// Whether a highest point at `height` is one to count: of a lopsided body, the highest of those between which the axle
-    /// has not sunk far enough.
-    fn is_higher(&self, height: f64) -> bool {
-        let is_beyond = match &self.candidate {
-            Some((_, candidate)) => height > *candidate,
-            None => height - self.lowest_since > self.least_way(),
-        };
-        is_beyond || !self.is_lopsided
+    /// Whether a lopsided body has turned so far about its axle that the lengths of all its nutations were seen.
+    fn has_seen_beat(&self) -> bool {
+        // Each pass leaves those that are unseen together with their neighbor.
+        let mut unseen = !self.directions;
+        for _ in 0..MOST_UNSEEN {
+            unseen &= unseen.rotate_left(1);
+        }
+        unseen == 0
     }
 
     /// Counts the candidate once the axle has truly sunk below it.
     fn confirm(&mut self) {
-        let least = self.least_way();
-        let is_below = |(_, height): &(Turn, f64)| height - self.lowest_since > least;
+        let is_below = |(_, height): &(Turn, f64)| height - self.lowest_since > ROUNDING;
         let Some((turn, _)) = self.candidate.filter(is_below) else {
             return;
         };
         self.candidate = None;
+        let part = (turn.phase / TAU).rem_euclid(1.0) * f64::from(DIRECTIONS);
+        self.directions |= 1 << (part as u32).min(DIRECTIONS - 1);
         if self.turns.wants(self.count) {
             self.turns.keep(self.count, turn);
         }
@@ -208,12 +240,30 @@ impl Parabolas {
         }
     }
 
-    pub fn nutation_period_s(&self) -> Option<Measured> {
-        let line = self.line().filter(|_| self.shows_each())?;
+    pub fn nutation_period_s(&self) -> Result<Measured, WithoutNutation> {
+        let [lowest, highest] = self.heights;
+        if highest - lowest <= ROUNDING {
+            return Err(WithoutNutation::Steady);
+        }
+        let line = self.line().ok_or(WithoutNutation::TooFew)?;
+        if self.is_lopsided && !self.is_even() {
+            return Err(WithoutNutation::Uneven);
+        }
+        if !self.shows_each() {
+            return Err(WithoutNutation::RowsTooFarApart);
+        }
+        if self.is_lopsided && !self.has_seen_beat() {
+            return Err(WithoutNutation::BeatUnseen);
+        }
         let count = line.intervals as f64;
         let value = line.time_s() / count;
-        let uncertainty = line.time_error_s(AT_RANDOM) / count;
-        Some(Measured {
+        let beats = self.beats(value, |(number, turn)| Point {
+            x: number as f64,
+            y: turn.time_s,
+            phase: turn.phase,
+        });
+        let uncertainty = libm::hypot(line.time_error_s(AT_RANDOM) / count, beats);
+        Ok(Measured {
             value,
             uncertainty: uncertainty.max(f64::EPSILON * value),
             nutations: line.intervals,
@@ -227,12 +277,32 @@ impl Parabolas {
         let Some(line) = self.line() else {
             return self.way_of_the_azimuth();
         };
+        if self.is_lopsided && !self.has_seen_beat() {
+            return None;
+        }
         let value = line.rate();
+        let beats = self.beats(value, |(_, turn)| Point {
+            x: turn.time_s,
+            y: turn.azimuth,
+            phase: turn.phase,
+        });
+        let uncertainty = libm::hypot(line.rate_error(AT_RANDOM), beats);
         Some(Measured {
             value,
-            uncertainty: line.rate_error(AT_RANDOM).max(f64::EPSILON * value.abs()),
+            uncertainty: uncertainty.max(f64::EPSILON * value.abs()),
             nutations: line.intervals,
         })
+    }
+
+    /// How far `value`, the slope from the first to the last of the turning points' `points`, is off the slope that allows
+    /// for a lopsided body's beats; 0 of a symmetric one.
+    fn beats(&self, value: f64, point: impl Fn((u64, Turn)) -> Point) -> f64 {
+        let Some(last) = self.last.filter(|_| self.is_lopsided) else {
+            return 0.0;
+        };
+        let turns = self.turns.before(last.0).copied().chain([last]);
+        let points: Vec<Point> = turns.map(point).collect();
+        slope(&points).map_or(0.0, |slope| libm::hypot(slope.value - value, slope.error))
     }
 
     /// The whole way of the azimuth over the time, for an axle that keeps its height.

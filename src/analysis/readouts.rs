@@ -11,7 +11,7 @@ pub use table::{READOUTS, Readout, Source, find, names, nearest};
 use super::health::{Advice, advise};
 use super::report_theory::ReportTheory;
 use super::theory::Axis;
-use super::{Extremes, Health, Measured, Monitor, Theory};
+use super::{Extremes, Health, Measured, Monitor, Theory, WithoutNutation};
 use crate::physics::SymmetricTop;
 use crate::physics::observables::pivot_force_z;
 use crate::run::{Clock, Sample, Simulation};
@@ -45,13 +45,20 @@ pub struct Readouts {
     /// What theory says of the exact motion now, about the axis that it names.
     pub theory: Option<Theory>,
     pub extremes: Extremes,
-    /// Vertical force of the foot on the body: now, and on average over the run, N.
+    /// M g, N.
+    pub weight: f64,
+    /// Vertical force of the floor on the foot, N.
     pub foot_force: Option<f64>,
-    pub mean_foot_force: Option<f64>,
+    /// Its mean over whole nutations since the forces last changed, N.
+    pub mean_foot_force: Option<Measured>,
+    /// That mean by Newton's second law, N.
+    pub predicted_mean_foot_force: Option<f64>,
     /// Precession since the forces last changed, rad/s.
     pub precession: Option<Measured>,
     /// Nutation period since the forces last changed, s.
     pub nutation: Option<Measured>,
+    /// Why there is no such period.
+    pub without_nutation: Option<WithoutNutation>,
     /// Swing of the tilt since the forces last changed, degrees.
     pub tilt_swing: Option<Measured>,
     /// What the linear theory of the report's scheme says of the motion since the forces last changed.
@@ -90,9 +97,12 @@ impl Readouts {
             extremes: monitor.extremes,
             foot_force: is_smooth
                 .then(|| pivot_force_z(&step.scenario().body.mechanics, state, step.loads())),
-            mean_foot_force: monitor.mean_foot_force(step).filter(|_| is_smooth),
+            weight: step.scenario().body.mechanics.mass() * step.loads().gravity,
+            mean_foot_force: None,
+            predicted_mean_foot_force: is_smooth.then(|| monitor.predicted_mean_foot_force(step)),
             precession: None,
             nutation: None,
+            without_nutation: None,
             tilt_swing: None,
             report_theory: monitor.report_theory,
             since: monitor.since,
@@ -106,7 +116,13 @@ impl Readouts {
         // Under friction neither rate lasts: there is no one number that a measurement could come near to.
         if self.health.slowing.is_none() {
             self.precession = monitor.instruments.precession_rad_per_s();
-            self.nutation = monitor.instruments.nutation_period_s();
+            (self.nutation, self.without_nutation) = match monitor.instruments.nutation_period_s() {
+                Ok(measured) => (Some(measured), None),
+                Err(why) => (None, Some(why)),
+            };
+            // The momentum at turning points that the rows do not show is not what is read there.
+            let is_seen = self.nutation_is_resolved() != Some(false);
+            self.mean_foot_force = monitor.mean_foot_force().filter(|_| is_seen);
         }
         self.tilt_swing = monitor.tilt_swing_deg();
     }
@@ -144,6 +160,19 @@ impl Readouts {
     fn lasting_theory(&self) -> Option<&Theory> {
         self.theory_about_z()
             .filter(|theory| !theory.is_of_a_moment)
+    }
+
+    /// Least and greatest tilt of the exact motion that follows under the present forces, degrees; `None` where theory
+    /// does not know it.
+    pub fn predicted_tilt_range_deg(&self) -> Option<(f64, f64)> {
+        self.lasting_theory().map(|theory| theory.tilt_range_deg)
+    }
+
+    /// The same for the whole run so far: `None` too where the forces have changed after the first step, since theory
+    /// does not know the time before.
+    fn predicted_tilts_of_run(&self) -> Option<(f64, f64)> {
+        let is_whole_run = self.since <= 1;
+        self.predicted_tilt_range_deg().filter(|_| is_whole_run)
     }
 
     /// Whether the time step shows the nutation as it is: `Some(false)` where what is measured is strobed,

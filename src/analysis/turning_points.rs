@@ -1,7 +1,7 @@
 //! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
 
 use super::equations::{AT_TURN, Crossing, Equations, Motion, Row};
-use super::turns::{Measured, ROUNDING, StraightLine, Turns};
+use super::turns::{Measured, ROUNDING, StraightLine, Turns, WithoutNutation};
 use crate::physics::{LagrangeTop, SchemeInfo, SymmetricTop};
 use crate::run::Step;
 use nalgebra::Vector3;
@@ -181,12 +181,15 @@ impl TurningPoints {
         of_ends / (self.equations.rates[1] * self.equations.time_step_s)
     }
 
-    pub fn nutation_period_s(&self) -> Option<Measured> {
-        let line = self.line()?;
+    pub fn nutation_period_s(&self) -> Result<Measured, WithoutNutation> {
+        let line = self.line().ok_or(match self.steady_swing {
+            Some(_) => WithoutNutation::Steady,
+            None => WithoutNutation::TooFew,
+        })?;
         let of_one = 2.0 / line.intervals as f64;
         let value = line.time_s() * of_one;
         let error = libm::hypot(line.time_error_s(1.0), self.lag_s(&line)) * of_one;
-        Some(Measured {
+        Ok(Measured {
             value,
             uncertainty: libm::hypot(error, f64::EPSILON * value),
             nutations: line.intervals.div_ceil(2),

@@ -1,7 +1,23 @@
 //! The turning points of the axle's height, and the straight line of time and azimuth through them.
 
-/// So many turning points are kept at most; when there are more every second one goes.
-const MOST: usize = 32;
+/// How many turning points are kept at most, and every how manyth is left when there are more.
+#[derive(Clone, Copy, Debug)]
+struct Thinning {
+    most: usize,
+    keeps_every: u64,
+}
+
+/// Of a symmetric body.
+const OF_ALIKE: Thinning = Thinning {
+    most: 32,
+    keeps_every: 2,
+};
+/// Of a lopsided one, whose beats must be seen. Often they turn the body by nearly half a turn from one nutation to the next:
+/// every second point would show one half of them alone.
+const OF_BEATS: Thinning = Thinning {
+    most: 128,
+    keeps_every: 3,
+};
 
 /// A measured number with its uncertainty, in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +45,33 @@ impl Measured {
     }
 }
 
+/// Why a run has no nutation period to state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WithoutNutation {
+    /// The axle keeps its tilt.
+    Steady,
+    TooFew,
+    /// It has swings so small beside the others that a rule would have to say whether they count.
+    Uneven,
+    /// The body has not turned so far about its axle that all lengths of its nutations were seen.
+    BeatUnseen,
+    /// The rows may miss a turning point.
+    RowsTooFarApart,
+}
+
+impl WithoutNutation {
+    /// The reason in words; empty where there is no nutation.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Steady => "",
+            Self::TooFew => "too few were seen",
+            Self::Uneven => "its swings are too uneven to be counted",
+            Self::BeatUnseen => "they change over more time than this run",
+            Self::RowsTooFarApart => "the steps are too far apart to see each",
+        }
+    }
+}
+
 /// A swing of the axle's height smaller than this is rounding, not nutation.
 pub(super) const ROUNDING: f64 = 1e-9;
 
@@ -50,11 +93,14 @@ pub(super) struct Turn {
     pub azimuth_rate: f64,
     /// Sine of the tilt there.
     pub level: f64,
+    /// In which direction of the body the vertical is there, about the axle, rad.
+    pub phase: f64,
 }
 
 /// Turning points at even distances, in bounded memory, the first always among them.
 #[derive(Clone, Debug)]
 pub(super) struct Turns {
+    thinning: Thinning,
     kept: Vec<(u64, Turn)>,
     stride: u64,
 }
@@ -75,7 +121,17 @@ pub(super) struct StraightLine {
 
 impl Turns {
     pub fn new() -> Self {
+        Self::thinned_as(OF_ALIKE)
+    }
+
+    /// Keeps as many as it takes to see a lopsided body's beats.
+    pub fn of_beats() -> Self {
+        Self::thinned_as(OF_BEATS)
+    }
+
+    fn thinned_as(thinning: Thinning) -> Self {
         Self {
+            thinning,
             kept: Vec::new(),
             stride: 1,
         }
@@ -88,12 +144,17 @@ impl Turns {
 
     pub fn keep(&mut self, number: u64, turn: Turn) {
         self.kept.push((number, turn));
-        if self.kept.len() > MOST {
-            self.stride *= 2;
+        if self.kept.len() > self.thinning.most {
+            self.stride *= self.thinning.keeps_every;
             let stride = self.stride;
             self.kept
                 .retain(|(number, _)| number.is_multiple_of(stride));
         }
+    }
+
+    /// The turning points before that of this number, each with its own.
+    pub fn before(&self, number: u64) -> impl Iterator<Item = &(u64, Turn)> {
+        self.kept.iter().take_while(move |(at, _)| *at < number)
     }
 
     /// The line from the first turning point to `last`, which has this number; `None` if they are the same.

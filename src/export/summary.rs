@@ -1,9 +1,9 @@
 //! The summary of a finished run, as text for a reader and as JSON for a program.
 
 use crate::analysis::theory::{Axis, Path, Theory};
-use crate::analysis::{Measured, Readouts, remarks};
+use crate::analysis::{Measured, Readouts, WithoutNutation, remarks};
 use crate::scenario::Scenario;
-use crate::text::number::{NONE, exponent, fixed, shortest, significant};
+use crate::text::number::{NONE, counted, exponent, fixed, shortest, significant};
 use nalgebra::Vector3;
 use serde::Serialize;
 use std::fmt;
@@ -21,6 +21,9 @@ pub struct Summary {
     #[serde(skip)]
     is_full: bool,
 }
+
+/// Why a run shows no nutation although it has one.
+const FAR_APART: &str = "the steps are too far apart to see it";
 
 /// A line of the summary: what it is about, and what it says.
 type Line = (&'static str, String);
@@ -103,23 +106,63 @@ impl Summary {
             (None, Some(Path::ThroughVertical)) => ": the axle passes through the vertical",
             _ => "",
         };
-        let precession = self.compared("rad/s", predicted, readouts.precession, false) + why;
+        let unmeasured = match why {
+            "" => "too little of it was seen to state it",
+            _ => "",
+        };
+        let precession =
+            self.compared("rad/s", predicted, readouts.precession, false, unmeasured) + why;
         let period = theory.and_then(|theory| theory.nutation_period_s);
         let is_strobed = readouts.nutation_is_resolved() == Some(false);
-        let nutation = self.compared("s", period, readouts.nutation, is_strobed);
-        vec![("precession", precession), ("nutation", nutation)]
+        let unmeasured = readouts.without_nutation.map_or("", WithoutNutation::words);
+        let nutation = self.compared("s", period, readouts.nutation, is_strobed, unmeasured);
+        let mut lines = vec![("precession", precession), ("nutation", nutation)];
+        lines.extend(self.foot_force().map(|force| ("foot force", force)));
+        lines
+    }
+
+    /// The mean force of the floor on the foot beside the weight; `None` under friction, and where nothing presses.
+    fn foot_force(&self) -> Option<String> {
+        let readouts = &self.readouts;
+        let predicted = readouts.predicted_mean_foot_force?;
+        let weight = readouts.weight;
+        if weight == 0.0 && predicted == 0.0 {
+            return None;
+        }
+        let pressed = if predicted == weight {
+            String::new()
+        } else {
+            format!(" and {} N by pushes", fixed(predicted - weight, 3))
+        };
+        let measured = match readouts.mean_foot_force {
+            Some(Measured {
+                value,
+                uncertainty,
+                nutations,
+            }) => {
+                let (value, uncertainty) = (fixed(value, 3), exponent(uncertainty, 1));
+                let nutations = counted(nutations, "whole nutation");
+                format!("{value} +- {uncertainty} N on average over {nutations}")
+            }
+            None if readouts.nutation_is_resolved() == Some(false) => {
+                format!("{NONE}: {FAR_APART}")
+            }
+            None => format!("{NONE}: no whole nutation was seen"),
+        };
+        Some(format!("M g {} N{pressed}, {measured}", fixed(weight, 3)))
     }
 
     /// A value by theory and as it was measured: "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s in this run", with the axis
-    /// where theory refers to another than +z. `is_strobed` says whether the steps are too far apart to see it.
+    /// where theory refers to another than +z. `is_strobed` says whether the steps are too far apart to see it, `unmeasured` why there is no number of the
+    /// run although the motion may have one, or nothing where it has none.
     fn compared(
         &self,
         unit: &str,
         predicted: Option<f64>,
         measured: Option<Measured>,
         is_strobed: bool,
+        unmeasured: &str,
     ) -> String {
-        const FAR_APART: &str = "the steps are too far apart to see it";
         let readouts = &self.readouts;
         let axis = readouts.theory.as_ref().map(|theory| theory.axis);
         let about = on(" about", &axis.unwrap_or(Axis::Z));
@@ -147,7 +190,9 @@ impl Summary {
                 format!("{value} +- {uncertainty} {unit} in this run{about_z}")
             }
             None if is_strobed => format!("none in this run{about_z}: strobed, {FAR_APART}"),
-            None => format!("none in this run{about_z}"),
+            None if readouts.health.slowing.is_some() => "not stated in this run".to_owned(),
+            None if unmeasured.is_empty() => format!("none in this run{about_z}"),
+            None => format!("not stated in this run{about_z}: {unmeasured}"),
         };
         format!("{theory}, {measured}")
     }

@@ -1,7 +1,7 @@
 //! The numbers that were read off a run beside the numbers of theory.
 
 use crate::analysis::Readouts;
-use crate::analysis::readouts::{READOUTS, Readout, Source, find};
+use crate::analysis::readouts::{READOUTS, Readout, Source};
 use crate::text::number::{NONE, fixed, short, significant, uncertain};
 use crate::text::unit::Unit;
 
@@ -52,8 +52,8 @@ fn theory(readout: &Readout) -> Option<&'static Readout> {
 /// What theory says of `readout`; `since_s` is when the forces last changed.
 fn predicted(readout: &Readout, readouts: &Readouts, since_s: Option<f64>) -> Option<f64> {
     if readout.name == SWING {
-        let of = |name| number(find(name), readouts);
-        return Some(of("predicted_highest_tilt_deg")? - of("predicted_lowest_tilt_deg")?);
+        let range_deg = readouts.predicted_tilt_range_deg();
+        return range_deg.map(|(low, high)| high - low);
     }
     // What theory says of the motion since the forces last changed says nothing of the run before.
     let is_of_it = readout.source != Source::EveryStep || since_s.is_none();

@@ -1,5 +1,6 @@
 //! Stated uncertainties hold the truth: measured precession and nutation of random runs, beside theory.
 
+mod foot_force;
 mod others;
 
 use crate::support::dice::Dice;
@@ -23,7 +24,7 @@ fn measured(scenario: &Arc<Scenario>) -> [Option<Measured>; 2] {
     }
     [
         instruments.precession_rad_per_s(),
-        instruments.nutation_period_s(),
+        instruments.nutation_period_s().ok(),
     ]
 }
 

@@ -8,7 +8,7 @@ use gyrolab::export::Summary;
 use gyrolab::physics::SchemeInfo;
 use gyrolab::run::resampled;
 use gyrolab::run::{Simulation, Truth};
-use gyrolab::scenario::Scenario;
+use gyrolab::scenario::{Document, Scenario};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::time::Duration;
@@ -305,6 +305,17 @@ fn where_the_theory_does_not_hold_it_says_nothing_or_lopsided() {
     let text = summary(&off_axle).to_string();
     has(&text, "precession    none by theory, ");
     has_no(&text, "lopsided");
+
+    // A nutation that is there and cannot be stated is not said to be none.
+    let lopsided = |text: &str, steps: u64| {
+        let mut document = Document::parse("lopsided.toml", text).unwrap();
+        document.set(&format!("motion.steps={steps}")).unwrap();
+        summary(&Arc::new(document.scenario().unwrap())).to_string()
+    };
+    let beats = lopsided(include_str!("../reference/lopsided/beats.toml"), 1000);
+    has(&beats, "not stated in this run: too few were seen");
+    let uneven = lopsided(include_str!("../reference/lopsided/uneven.toml"), 3999);
+    has(&uneven, "not stated in this run: its swings are too uneven");
 
     let text = summary(&preset("torque-free", &[])).to_string();
     has(&text, "nutation      none by theory, none in this run");

@@ -225,8 +225,8 @@ readouts! {
     "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle; with start.rotor I3 is of that part alone", |r| r.kappa, "*κ*";
     "theory_axis", "", Theory, "the axis that theory speaks of: +z, or another (against the forces, or along L where there are none), and then what it says about that axis is null", |r| r.theory.map(|theory| theory.axis.to_string());
     "path", "", Theory, "the path of the axle about +z", |r| r.lasting_theory().map(|theory| theory.path.to_string());
-    "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z", |r| r.lasting_theory().map(|theory| theory.tilt_range_deg.0), "*θ*_{min}";
-    "predicted_highest_tilt_deg", "deg", Theory, "greatest tilt of the exact motion from +z", |r| r.lasting_theory().map(|theory| theory.tilt_range_deg.1), "*θ*_{max}";
+    "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z in the whole run; null once the forces have changed", |r| r.predicted_tilts_of_run().map(|range| range.0), "*θ*_{min}";
+    "predicted_highest_tilt_deg", "deg", Theory, "greatest tilt of the exact motion from +z in the whole run; null once the forces have changed", |r| r.predicted_tilts_of_run().map(|range| range.1), "*θ*_{max}";
     "cusp_tilt_deg", "deg", Theory, "tilt at which the axle stands still in azimuth", |r| r.lasting_theory().and_then(|theory| theory.cusp_tilt_deg);
     "predicted_precession_rad_per_s", "rad/s", Theory, "mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(|theory| theory.precession), "*Ω*_{p}";
     "measured_precession_rad_per_s", "rad/s", Measured, "mean precession about +z; none under friction, which changes it all the time", |r| value(r.precession), "*Ω*_{p}";
@@ -248,7 +248,9 @@ readouts! {
     "w2_rad_per_s", "rad/s", State, "angular velocity along the body's own y", |r| r.sample.omega().y, "*ω*_{2}";
     "w3_rad_per_s", "rad/s", State, "angular velocity along the axle", |r| r.sample.omega().z, "*ω*_{3}";
     "foot_force_N", "N", State, "vertical force of the floor on the foot; null under friction", |r| r.foot_force, "*N*";
-    "measured_mean_foot_force_N", "N", State, "its mean since the start; null once the forces have changed", |r| r.mean_foot_force, "*N*";
+    "predicted_mean_foot_force_N", "N", Theory, "its mean over whole nutations: M g, and what pushes press down; of a lopsided body too", |r| r.predicted_mean_foot_force, "*M* *g*";
+    "measured_mean_foot_force_N", "N", Measured, "its mean over whole nutations; null before one was seen, and where the time step is too long to see them", |r| value(r.mean_foot_force), "*N*";
+    "measured_mean_foot_force_uncertainty_N", "N", Measured, "one standard error of reading it off the steps", |r| uncertainty(r.mean_foot_force);
     "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps; null where it stands without spin, its centre of mass below the pivot", |r| r.theory_about_z().and_then(|theory| theory.sleeping_limit);
     "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
     "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());

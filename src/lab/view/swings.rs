@@ -25,9 +25,8 @@ pub(super) fn in_words(
     let mean_sigma_deg = (squares.sum::<f64>() / (parts - 1.0).max(1.0) / parts).sqrt();
     let period = uncertain(length_s / swings, period_sigma_s)?;
     let mean = uncertain(mean_deg, mean_sigma_deg).map(|it| it.to_string());
-    let number = |name| readouts.number(name);
-    let ends = number("predicted_lowest_tilt_deg").zip(number("predicted_highest_tilt_deg"));
-    let theory = match (number("predicted_nutation_period_s"), ends) {
+    let period_of_theory_s = readouts.number("predicted_nutation_period_s");
+    let theory = match (period_of_theory_s, readouts.predicted_tilt_range_deg()) {
         (Some(period_s), Some((low, high))) => {
             let period = period.to_the_same_digit(period_s);
             format!("theory: {period} s, {} deg", short(0.5 * (low + high)))
