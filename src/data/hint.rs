@@ -7,7 +7,7 @@ use crate::analysis::readouts;
 use crate::scenario::csv::{Csv, LEFT_OUT, Naming, Renaming};
 use crate::scenario::keys::KEYS;
 use crate::scenario::problem::near;
-use crate::text::printable::is_steering;
+use crate::text::printable::{brief, is_steering};
 use crate::text::unit::{Kind, Unit, in_known_unit};
 
 /// A name shorter than this is near to too many others.
@@ -33,7 +33,7 @@ pub(super) fn hint(cells: &Csv, map: &[Renaming], origin: &str) -> String {
     }
     let of_track = |title: &&str| {
         let map = completed(cells, map, origin, Some(title))?;
-        Some(format!("{map} reads the track \"{title}\""))
+        Some(format!("{map} reads the track \"{}\"", brief(title, 40)))
     };
     let all: Vec<String> = tracks.iter().filter_map(of_track).collect();
     match all.is_empty() {
@@ -57,13 +57,18 @@ fn completed(cells: &Csv, map: &[Renaming], origin: &str, only: Option<&str>) ->
             named_cells.name_column(*place, &known, 1.0);
             named_cells.own[*place].is_mapped = true;
         }
-        name_columns(&mut named_cells, origin).is_ok() && named(&named_cells).is_ok()
+        name_columns(&mut named_cells, origin, |_| true).is_ok() && named(&named_cells).is_ok()
     };
     if !reads(&guess.added) {
         return None;
     }
+    map_option(cells, map, &guess.added)
+}
+
+/// The option that maps what `map` does, and the columns at these places.
+pub fn map_option(cells: &Csv, map: &[Renaming], added: &[(usize, String)]) -> Option<String> {
     let given = map.iter().map(|(column, name)| format!("{column}={name}"));
-    let added = guess.added.iter();
+    let added = added.iter();
     let added = added.map(|(place, name)| format!("{}={name}", label(cells, *place)));
     let all = given.chain(added).collect::<Vec<_>>().join(",");
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_=,.:/+-@".contains(c);
@@ -121,9 +126,8 @@ impl Guess<'_> {
             let unit = self.time_unit(place);
             self.added.push((place, unit.to_owned()));
         }
-        let mut columns = self.cells.own.iter().zip(&self.cells.names);
-        let has_quantity =
-            columns.any(|(own, name)| own.is_mapped && Quantity::find(name).is_some());
+        let mut names = self.cells.names.iter();
+        let has_quantity = names.any(|name| Quantity::find(name).is_some());
         let is_gyroscope = self.is_gyroscope(origin);
         for &place in &places {
             if self.is_added(place) {
@@ -146,7 +150,8 @@ impl Guess<'_> {
             && !self.added.iter().any(is_quantity)
             && let Some(&place) = places
                 .iter()
-                .find(|&&it| !self.is_added(it) && !self.numbers(it).is_empty())
+                .filter(|&&place| self.cells.names[place] != TIME)
+                .find(|&&place| !self.is_added(place) && !self.numbers(place).is_empty())
         {
             self.added.push((place, self.tilt(place).to_owned()));
         }

@@ -24,11 +24,13 @@ mod spellings;
 
 pub use compared::{Residual, is_counted, residuals};
 pub use doubts::doubts;
+pub use hint::map_option;
 pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
 pub use reading::{SHIPPED, find_shipped, open, open_with, read, read_with, text};
 pub use sigma::{ColumnOptions, ColumnSigma};
+pub use spellings::{name_columns, time_like};
 
 use crate::analysis::readouts::Readout;
 use crate::scenario::problem::listed;

@@ -135,7 +135,7 @@ fn taken_apart(
 ) -> Result<(Csv, Columns), Problems> {
     let mut cells = Csv::of(text, MOST_VALUES)?;
     cells.rename(&options.map, may_be)?;
-    let known = name_columns(&mut cells, origin).and_then(|()| named(&cells));
+    let known = name_columns(&mut cells, origin, |_| true).and_then(|()| named(&cells));
     let mut problems = match known {
         Ok(columns) => return Ok((cells, columns)),
         Err(problems) => problems,

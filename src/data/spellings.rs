@@ -9,6 +9,7 @@ use super::quantity::{QUANTITIES, TIME};
 use crate::scenario::Problem;
 use crate::scenario::csv::Csv;
 use crate::text::number::significant;
+use crate::text::printable::brief;
 use crate::text::unit::{Kind, Unit, in_known_unit, with_word};
 use std::path::Path;
 
@@ -50,6 +51,9 @@ const RATES: [&str; 17] = [
 /// What stands before an axis in the name of a coordinate.
 const PLACES: [&str; 3] = ["", "pos", "position"];
 
+/// The most columns that are named with what they are read as.
+const MOST_TOLD: usize = 12;
+
 /// The time of Sensor Logger, which names its files after the sensors.
 const SENSOR_LOGGER: &str = "seconds_elapsed";
 
@@ -88,17 +92,22 @@ struct Company {
     is_gyroscope: bool,
 }
 
-/// Gives the columns that `--map` does not name the names that gyrolab has for them, and converts their numbers.
+/// Gives the columns that `--map` does not name the names that gyrolab has for them, of those that are wanted, and converts
+/// their numbers. `origin` is the file.
 ///
 /// # Errors
 /// If several columns have the same meaning and no `--map` chooses one.
-pub(super) fn name_columns(cells: &mut Csv, origin: &str) -> Result<(), Vec<Problem>> {
+pub fn name_columns(
+    cells: &mut Csv,
+    origin: &str,
+    is_wanted: impl Fn(&str) -> bool,
+) -> Result<(), Vec<Problem>> {
     let company = Company::of(cells, origin);
     let is_mapped = cells.own.iter().any(|own| own.is_mapped);
     let meanings: Vec<Option<Meaning>> = (0..cells.names.len())
         .map(|place| match cells.own[place].is_mapped {
             true => None,
-            false => meaning(&cells.names[place], &company),
+            false => meaning(&cells.names[place], &company).filter(|it| is_wanted(&it.name)),
         })
         .collect();
     let mut problems = Vec::new();
@@ -141,14 +150,14 @@ fn several(cells: &Csv, name: &str, places: &[usize]) -> Problem {
     let tracks: Vec<String> = places
         .iter()
         .filter_map(|&place| track(cells, place))
-        .map(|title| format!("\"{title}\""))
+        .map(|title| format!("\"{}\"", brief(title, 40)))
         .collect();
     let of_tracks = match tracks.is_empty() {
         true => String::new(),
         false => format!(", of the tracks {}", tracks.join(" and ")),
     };
     let rule = format!(
-        "names columns {numbers}{of_tracks}, which would both be {name}: choose one by its number"
+        "names columns {numbers}{of_tracks}, which would both be {name}: leave one of them out, or choose one by its number"
     );
     Problem::at(cells.own[places[0]].shown(), rule)
 }
@@ -274,7 +283,7 @@ fn axis_after(letters: &str, fronts: &[&str]) -> Option<usize> {
 }
 
 /// Whether `name` is one that programs give to the time, in whatever unit.
-pub(super) fn time_like(name: &str) -> bool {
+pub fn time_like(name: &str) -> bool {
     let stem = Unit::split(name).map_or(name, |(stem, _)| stem);
     TIMES.contains(&&*letters(stem))
 }
@@ -294,15 +303,16 @@ pub(super) fn read_as(cells: &Csv) -> Option<String> {
         let is_read = is_known(&of) && **name != own.name;
         is_read && (!own.is_mapped || own.factor != 1.0)
     });
-    let words: Vec<String> = renamed
-        .map(|(own, name)| match own.factor {
-            1.0 => format!("{} as {name}", own.shown()),
-            factor => format!(
-                "{} as {name} (times {})",
-                own.shown(),
-                significant(factor, 7)
-            ),
-        })
-        .collect();
+    let words = renamed.map(|(own, name)| {
+        let own_name = brief(&own.shown(), 40);
+        match own.factor {
+            1.0 => format!("{own_name} as {name}"),
+            factor => format!("{own_name} as {name} (times {})", significant(factor, 7)),
+        }
+    });
+    let mut words: Vec<String> = words.collect();
+    let more = words.len().saturating_sub(MOST_TOLD);
+    words.truncate(MOST_TOLD);
+    words.extend((more > 0).then(|| format!("and {more} more")));
     (!words.is_empty()).then(|| format!("columns read: {}", words.join(", ")))
 }

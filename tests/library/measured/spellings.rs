@@ -3,6 +3,7 @@
 use gyrolab::data::{ColumnOptions, ColumnSigma, Measured, doubts, read, read_with};
 use gyrolab::scenario::Document;
 use gyrolab::scenario::csv::renaming;
+use gyrolab::text::printable::is_steering;
 use std::sync::Arc;
 
 fn options(map: &str, sigma: &str) -> ColumnOptions {
@@ -365,4 +366,39 @@ fn text_in_other_encodings_is_read_or_told_what_to_do() {
         told.contains("UTF-16") && told.contains("CSV UTF-8"),
         "{told}"
     );
+}
+
+#[test]
+fn names_in_a_note_steer_no_terminal() {
+    let notes = mapped("t_s,\u{1b}x (cm)\n0,1\n", "").notes().concat();
+    assert!(notes.contains("as x_m (times 0.01)"), "{notes}");
+    assert!(!notes.chars().any(is_steering), "{notes}");
+}
+
+/// The reader of rows that somebody's own program wrote is the same.
+#[test]
+fn rows_of_a_program_have_units_too() {
+    use gyrolab::own_code::rows;
+    let read = |text: &str, map: &str| rows::read(text, &options(map, "").map, None, 0.1);
+    for (text, map) in [
+        ("t;x;y;z\n0;0,1;0,2;0,3\n0,1;0,1;0,2;0,3\n", ""),
+        ("t_ms,x (cm),y (cm),z (cm)\n0,10,20,30\n100,10,20,30\n", ""),
+        (
+            "T,X,Y,Z\n0,10,20,30\n100,10,20,30\n",
+            "T=t_ms,X=x_cm,Y=y_cm,Z=z_cm",
+        ),
+        (
+            "t_ms,X (cm),b,c,x\n0,10,20,30,9\n100,10,20,30,9\n",
+            "2=x_m,3=y_cm,4=z_cm",
+        ),
+    ] {
+        let rows = read(text, map).unwrap();
+        let values: Vec<f64> = rows.columns.iter().map(|column| column.values[1]).collect();
+        assert_eq!(values, [0.1, 0.2, 0.3], "{text}");
+        assert_eq!(rows.times.own_s, None, "{text}");
+    }
+    let told = read("time,Pos X,Pos Y\n0,1,2\n", "")
+        .unwrap_err()
+        .to_string();
+    assert!(told.contains("--map 'Pos X=x_m,Pos Y=y_m'"), "{told}");
 }
