@@ -1,6 +1,7 @@
 //! Arguments that several commands have, how their values are read, and the scenario that they mean.
 
 use super::refuse;
+use crate::data::{ColumnOptions, ColumnSigma};
 use crate::export::Layout;
 use crate::export::layout::LayoutFile;
 use crate::lab::view::theme::Background;
@@ -15,6 +16,7 @@ use crate::tui::theme::ColourChoice;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
+use std::io;
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -122,9 +124,25 @@ pub(super) struct MeasuredArgs {
 pub(super) struct MapArgs {
     /// What the columns of measured data are
     ///
-    /// COLUMN is the name in the file, or the number from 1; NAME is gyrolab's.
+    /// COLUMN is the name in the file, or the number from 1; NAME is gyrolab's, in any unit: gx_dps=w1_deg_per_s,
+    /// theta=tilt_rad, x=x_cm. COLUMN=- leaves the column out.
     #[arg(long, value_name = "COLUMN=NAME,...", value_delimiter = ',', value_parser = renaming)]
     pub(super) map: Vec<Renaming>,
+
+    /// The standard uncertainty of the values of a column that has none in the file
+    ///
+    /// COLUMN is the name in the file or gyrolab's; VALUE is in the unit of that name.
+    #[arg(long, value_name = "COLUMN=VALUE,...", value_delimiter = ',')]
+    pub(super) sigma: Vec<ColumnSigma>,
+}
+
+impl MapArgs {
+    pub(super) fn options(&self) -> ColumnOptions {
+        ColumnOptions {
+            map: self.map.clone(),
+            sigma: self.sigma.clone(),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, Args)]
@@ -425,7 +443,19 @@ fn without_unit(text: &str, meant: &str) -> Option<String> {
 
 /// The scenario with all that the command line changes in it, so that its run file tells the whole run.
 pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Scenario, Problems> {
-    changed(Document::open(&args.scenario)?, &args.changes, length)
+    changed(open(&args.scenario)?, &args.changes, length)
+}
+
+/// In place of a file's name: standard input.
+pub(super) const STDIN: &str = "-";
+pub(super) const STDIN_WORDS: &str = "standard input";
+
+/// Opens what SCENARIO names, which may be standard input.
+pub(super) fn open(scenario: &str) -> Result<Document, Problems> {
+    if scenario == STDIN {
+        return Document::read_from(STDIN_WORDS, io::stdin().lock());
+    }
+    Document::open(scenario)
 }
 
 /// The scenario of `document` with these changes.

@@ -3,8 +3,9 @@
 use super::args::{Changes, LengthArgs, MapArgs, changed, positive, time};
 use super::progress::{self, Interrupted};
 use super::writeup::measured;
-use super::{ended_by, refuse, tell};
+use super::{ended_by, refuse, tell, tell_notes};
 use crate::analysis::cost;
+use crate::data::doubts;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::Run;
 use crate::figure::table::Table;
@@ -209,7 +210,10 @@ fn source(args: &FigureArgs) -> anyhow::Result<Source> {
         Kind::named(kind).unwrap_or_else(|refusal| no_kind(args, &refusal));
     }
     if let Some(name) = &args.measured {
-        let measured = measured(name, &args.columns.map)?;
+        let measured = measured(name, &args.columns)?;
+        if let Some(run) = source.runs.first() {
+            tell_notes(&doubts(&measured, &run.scenario));
+        }
         source.measured = Some(Arc::new(measured));
         (source.asked.measured_until_s, source.asked.kind) = (None, None);
     }

@@ -1,29 +1,30 @@
 //! `gyrolab fit`: keys of a scenario, so that its runs come nearest to measured data.
 
-use super::args::{Changes, MapArgs, change, positive, time};
+use super::args::{Changes, MapArgs, STDIN, STDIN_WORDS, change, open, positive, time};
 use super::progress::{self, Interrupted, Interruption, Meter};
-use super::{one_on_stdout, print_result, tell, tell_of_rows};
+use super::{one_on_stdout, print_result, refuse, tell_notes, tell_of_rows};
 use crate::data::{self, Measured};
 use crate::export::Destination;
 use crate::fit::report::{self, Asked, Report};
 use crate::fit::{Fit, Free, Model, NoFit, fit as fitted};
-use crate::scenario::{Document, Problem, Problems};
+use crate::scenario::{Document, Problem, Problems, csv};
 use crate::text::number::{shortest, significant};
 use crate::text::printable::{Shown, brief};
 use crate::verify::Unverified;
 use anyhow::{Context, anyhow, bail};
+use clap::error::ErrorKind;
 use clap::{Args, FromArgMatches};
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use toml::Value;
 
 #[derive(Debug, Args)]
 pub(super) struct FitArgs {
-    /// Measured data: a CSV file, a time series or a table of runs, or shipped data such as heidelberg-precession
+    /// Measured data: a CSV file, a time series or a table of runs, - for stdin, or shipped data such as heidelberg-precession
     pub(super) measured: String,
 
-    /// The scenario that is fitted: a preset's name, or a file (.toml or .csv)
+    /// The scenario that is fitted: a preset's name, a file (.toml or .csv), or - for stdin
     #[arg(long = "in", value_name = "SCENARIO")]
     pub(super) scenario: String,
 
@@ -98,10 +99,13 @@ const SCHEME: &str = "exact";
 
 pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     one_on_stdout("fit", args.output.as_deref(), args.json);
-    let (model, own) = model(args)?;
-    if let Some(left_out) = model.measured.left_out_in_words() {
-        tell(format_args!("gyrolab: {left_out}"));
+    if args.measured == STDIN && args.scenario == STDIN {
+        let message = "only one of the data and the scenario can be read from standard input";
+        refuse("fit", ErrorKind::ArgumentConflict, message);
     }
+    let (model, own) = model(args)?;
+    tell_notes(&model.measured.notes());
+    tell_notes(&model.doubts());
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let meter = Meter::counting("run");
     let told = |step: u64, sum: f64| {
@@ -146,6 +150,11 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
         let why = "the line command at its top is no command line of a fit";
         return Err(cannot(why.to_owned()));
     };
+    if [&args.measured, &args.scenario].contains(&&STDIN.to_owned()) {
+        return Err(cannot(
+            "it was fitted to what stood on standard input, which no file holds".to_owned(),
+        ));
+    }
     let (model, _) = model(&args).map_err(|problems| cannot(problems.to_string()))?;
     let found = match fitted(&model, &|| !interruption.has_come(), &|_, _| {}) {
         Ok(found) => found,
@@ -164,7 +173,7 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
 
 /// What is fitted, and the scenario's own scheme, where no other was asked for.
 fn model(args: &FitArgs) -> Result<(Model, Option<&'static str>), Problems> {
-    let measured = data::open_with(&args.measured, &args.columns.map)?;
+    let measured = measured(args)?;
     let mut measured = chosen(measured, args.rows.as_ref())?;
     if args.from.or(args.to).is_some() {
         measured.series()?;
@@ -181,9 +190,19 @@ fn model(args: &FitArgs) -> Result<(Model, Option<&'static str>), Problems> {
     Ok((Model::new(&document, keys, measured)?, own))
 }
 
+fn measured(args: &FitArgs) -> Result<Measured, Problems> {
+    let options = args.columns.options();
+    if args.measured != STDIN {
+        return data::open_with(&args.measured, &options);
+    }
+    let text = csv::text_from(io::stdin().lock());
+    let text = text.map_err(|problem| Problems::one(STDIN_WORDS, problem))?;
+    data::read_with(STDIN_WORDS, &text, &options)
+}
+
 /// The scenario with all that the command line changes in it, and its own scheme, where no other was asked for.
 fn scenario(args: &FitArgs) -> Result<(Document, Option<&'static str>), Problems> {
-    let mut document = Document::open(&args.scenario)?;
+    let mut document = open(&args.scenario)?;
     let mut own = None;
     let sets_scheme = |set: &String| set.trim_start().starts_with("motion.scheme");
     if args.changes.scheme.is_none() && !args.changes.set.iter().any(sets_scheme) {
@@ -233,6 +252,8 @@ fn command(args: &FitArgs) -> String {
         .iter()
         .map(|(column, name)| format!("{column}={name}"));
     let map = map.collect::<Vec<_>>().join(",");
+    let sigma = args.columns.sigma.iter().map(ToString::to_string);
+    let sigma = sigma.collect::<Vec<_>>().join(",");
     let time_step = args.changes.time_step.map(shortest).unwrap_or_default();
     let [from, to] = [args.from, args.to].map(|it| it.map(shortest).unwrap_or_default());
     let rows = args.rows.as_ref().map_or("", |rows| &rows.text);
@@ -244,6 +265,7 @@ fn command(args: &FitArgs) -> String {
         ("--from", &from),
         ("--to", &to),
         ("--map", &map),
+        ("--sigma", &sigma),
     ] {
         if !value.is_empty() {
             words.extend([option, value]);

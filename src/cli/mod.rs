@@ -331,6 +331,13 @@ fn tell(text: impl Display) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
+/// Says what is not read of measured data, or what cannot be right about them.
+fn tell_notes(notes: &[String]) {
+    for note in notes {
+        tell(format_args!("gyrolab: {note}"));
+    }
+}
+
 /// Says how many rows are in the file `path`.
 fn tell_of_rows(rows: u64, path: &Path) {
     let rows = counted(rows, "row");

@@ -99,7 +99,7 @@ pub(super) fn print_picture(
         lab.files_mut().confine(folder);
     }
     let beside = &args.beside;
-    lab.begin_with_measured(beside.measured.as_deref(), &beside.columns.map)?;
+    lab.begin_with_measured(beside.measured.as_deref(), &beside.columns.options())?;
     // What is not there is refused before a picture is promised; commands on stdin are waited for.
     why.iter().for_each(tell);
     let commands = args.commands.as_deref().map(command::open).transpose()?;

@@ -134,7 +134,7 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
     }
     let MeasuredArgs { measured, columns } = &args.beside;
     if args.resume.is_none() || measured.is_some() {
-        lab.begin_with_measured(measured.as_deref(), &columns.map)?;
+        lab.begin_with_measured(measured.as_deref(), &columns.options())?;
     }
     lab.view_mut().mouse = !args.look.no_mouse;
     lab.view_mut().fps = args.fps.unwrap_or(FPS);

@@ -4,13 +4,12 @@ use super::args::scenario_of;
 use super::args::{LengthArgs, MapArgs, ScenarioArgs};
 use super::progress::{self, Interrupted, Interruption};
 use super::run::played;
-use super::{ended_by, tell};
-use crate::data::{self, Measured};
+use super::{ended_by, tell, tell_notes};
+use crate::data::{self, Measured, doubts};
 use crate::export::stream::Ended;
 use crate::export::{CsvWriter, Folder};
 use crate::journal::changed::Original;
 use crate::run::Step;
-use crate::scenario::csv::Renaming;
 use crate::scenario::{Document, Scenario};
 use crate::text::advice::advised;
 use crate::text::printable::{Shown, printable};
@@ -54,8 +53,12 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenario_of(&args.scenario, &args.length)?;
     let scenario = marked(scenario, &args.scenario.scenario);
     let data = args.measured.as_deref();
-    let data = data.map(|name| measured(name, &args.columns.map));
-    let beside = data.transpose()?.map(Beside::new);
+    let data = data.map(|name| measured(name, &args.columns));
+    let data = data.transpose()?;
+    if let Some(measured) = &data {
+        tell_notes(&doubts(measured, &scenario));
+    }
+    let beside = data.map(Beside::new);
     let interruption = progress::interruption()?;
     let folder = Folder::begin(&args.output, args.force)?;
     let cannot_write = || format!("cannot write {}", Shown(&args.output));
@@ -94,7 +97,9 @@ pub(super) fn again(
     csv: &Path,
     interruption: &Interruption,
 ) -> anyhow::Result<(Writeup, Option<Against>)> {
-    let data = data.map(|name| measured(name, &[])).transpose()?;
+    let data = data
+        .map(|name| measured(name, &MapArgs::default()))
+        .transpose()?;
     let cannot_read = || format!("{}: cannot be read", Shown(csv));
     let against = against.map(|against| CsvWriter::new(against, &scenario));
     let against = against.transpose().with_context(cannot_read)?;
@@ -149,11 +154,9 @@ fn marked(scenario: Scenario, name: &str) -> Arc<Scenario> {
 }
 
 /// Measured data that stand beside a run.
-pub(super) fn measured(name: &str, map: &[Renaming]) -> anyhow::Result<Measured> {
-    let measured = data::open_with(name, map)?;
-    if let Some(left_out) = measured.left_out_in_words() {
-        tell(format_args!("gyrolab: {left_out}"));
-    }
+pub(super) fn measured(name: &str, columns: &MapArgs) -> anyhow::Result<Measured> {
+    let measured = data::open_with(name, &columns.options())?;
+    tell_notes(&measured.notes());
     measured.series()?; // a table of runs is refused before anything is run
     Ok(measured)
 }

@@ -6,29 +6,39 @@
 //! theirs: `tilt_uncertainty_deg` of `tilt_deg`.
 //!
 //! [`open`] reads a file, or data that come with the program; `names` says what its columns are, `numbers` what stands in
-//! them, `instruments` what other programs call theirs. [`of_run`] reads a run at the times of a series, and [`compared`] holds what was measured against it.
+//! them, `spellings` what other programs call theirs, and `hint` which `--map` would read a file that is refused.
+//! [`of_run`] reads a run at the times of a series, [`compared`] compares what was measured with it, and [`doubts`] says
+//! what cannot be right.
 
 pub mod compared;
-mod instruments;
+mod doubts;
+mod hint;
 mod names;
 mod numbers;
 pub mod of_run;
 pub mod places;
 pub mod quantity;
 mod reading;
+mod sigma;
+mod spellings;
 
 pub use compared::{Residual, is_counted, residuals};
+pub use doubts::doubts;
+pub use hint::map_option;
 pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
 pub use reading::{SHIPPED, find_shipped, open, open_with, read, read_with, text};
+pub use sigma::{ColumnOptions, ColumnSigma};
+pub use spellings::{name_columns, time_like};
 
 use crate::analysis::readouts::Readout;
 use crate::scenario::problem::listed;
 use crate::scenario::{Problem, Problems};
-use crate::text::number::shortest;
+use crate::text::number::{counted, shortest};
 use crate::text::printable::printable;
 use crate::text::unit::with_word;
+use std::ops::Range;
 use std::sync::Arc;
 use toml::Value;
 
@@ -45,6 +55,12 @@ pub struct Measured {
     pub lines: Vec<u64>,
     /// The columns that are not known, and not read.
     pub left_out: Vec<String>,
+    /// What columns with names of other programs were read as, in words.
+    pub read_as: Option<String>,
+    /// The number of rows before t = 0, which are left out.
+    pub rows_before: usize,
+    /// The number of rows outside of the time that was asked for, which are left out.
+    pub rows_outside: usize,
     pub data: Data,
 }
 
@@ -150,12 +166,23 @@ impl Measured {
         }
     }
 
-    /// Says which columns are not known, and not read; `None` where there are none.
-    pub fn left_out_in_words(&self) -> Option<String> {
+    /// Says which columns and rows are not read, and what columns with names of other programs are read as.
+    pub fn notes(&self) -> Vec<String> {
         let names = listed(self.left_out.iter().map(String::as_str));
+        let columns = format!("columns left out, which gyrolab does not know: {names}");
+        let rows = |count: usize, place: &str| {
+            let rows = counted(count as u64, "row");
+            (count > 0).then(|| format!("{rows} {place} left out"))
+        };
+        let notes = [
+            self.read_as.clone(),
+            (!self.left_out.is_empty()).then_some(columns),
+            rows(self.rows_before, "before t = 0"),
+            rows(self.rows_outside, "outside --from and --to"),
+        ];
         let origin = printable(&self.origin);
-        let told = || format!("{origin}: columns left out, which gyrolab does not know: {names}");
-        (!self.left_out.is_empty()).then(told)
+        let notes = notes.into_iter().flatten();
+        notes.map(|note| format!("{origin}: {note}")).collect()
     }
 
     /// The same without what was measured after `until_s`, s, where that is given.
@@ -171,19 +198,37 @@ impl Measured {
     /// Keeps the rows of a time series from `from_s` to `to_s`, and counts the time from `from_s` on. Returns whether there
     /// are some.
     pub fn keep_between(&mut self, from_s: f64, to_s: f64) -> bool {
+        let Data::Series(Series { times_s, .. }) = &mut self.data else {
+            return false;
+        };
+        let first = times_s.partition_point(|time_s| *time_s < from_s);
+        let end = times_s.partition_point(|time_s| *time_s <= to_s).max(first);
+        self.rows_outside += times_s.len() - (end - first);
+        times_s.iter_mut().for_each(|time_s| *time_s -= from_s);
+        self.keep_range(first..end)
+    }
+
+    /// Leaves out the rows of a time series before t = 0. Returns whether a measured value remains.
+    fn leave_out_rows_before_0(&mut self) -> bool {
+        let Data::Series(Series { times_s, .. }) = &self.data else {
+            return true;
+        };
+        self.rows_before = times_s.partition_point(|time_s| *time_s < 0.0);
+        let rows = self.rows_before..times_s.len();
+        rows.start == 0 || self.keep_range(rows)
+    }
+
+    /// Keeps these rows of a time series. Returns whether a measured value remains.
+    fn keep_range(&mut self, rows: Range<usize>) -> bool {
         let Data::Series(series) = &mut self.data else {
             return false;
         };
-        let times_s = &mut series.times_s;
-        let first = times_s.partition_point(|time_s| *time_s < from_s);
-        let end = times_s.partition_point(|time_s| *time_s <= to_s).max(first);
-        *times_s = times_s[first..end].iter().map(|it| it - from_s).collect();
-        self.lines = self.lines[first..end].to_vec();
+        series.times_s = series.times_s[rows.clone()].to_vec();
+        self.lines = self.lines[rows.clone()].to_vec();
         for curve in &mut series.curves {
-            curve
-                .points
-                .retain(|point| (first..end).contains(&point.row));
-            curve.points.iter_mut().for_each(|point| point.row -= first);
+            curve.points.retain(|point| rows.contains(&point.row));
+            let points = curve.points.iter_mut();
+            points.for_each(|point| point.row -= rows.start);
         }
         series.curves.retain(|curve| !curve.points.is_empty());
         !series.curves.is_empty()

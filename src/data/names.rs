@@ -2,12 +2,10 @@
 
 use super::quantity::{self, COUNTS, Quantity, TIME};
 use crate::analysis::readouts::{self, Readout, Source};
+use crate::scenario::Problem;
 use crate::scenario::csv::Csv;
 use crate::scenario::keys::{self, Kind};
-use crate::scenario::problem::{at_line, is_near, listed, nearest};
-use crate::scenario::{Problem, Problems};
-use crate::text::number::significant;
-use crate::text::unit::{Unit, with_word};
+use crate::text::unit::with_word;
 
 /// In the name of a column that is the uncertainty of another.
 pub(super) const UNCERTAINTY: &str = "uncertainty";
@@ -18,7 +16,7 @@ pub(super) enum Is {
     Time,
     /// A number of the run's steps or edits, which says nothing of the motion.
     Count,
-    /// Nothing that is known, nor near to it: a column for another purpose.
+    /// Nothing that is known: a column for another purpose.
     Foreign,
     /// A quantity at the time of its row.
     Quantity(&'static Quantity),
@@ -47,56 +45,99 @@ pub(super) struct Named {
     pub uncertainty: Option<usize>,
 }
 
-/// The columns of `cells`, without those that count, and the names of those of a time series that are not known.
-pub(super) fn named(cells: &Csv) -> Result<(Vec<Named>, Vec<String>), Problems> {
-    let mut problems = Vec::new();
+/// The columns of a file that are read, and the names of the others.
+#[derive(Debug, Default)]
+pub(super) struct Columns {
+    pub read: Vec<Named>,
+    pub left_out: Vec<String>,
+}
+
+/// The columns of `cells`, without those that count. Columns that are not known are left out, and in a file with mapped
+/// columns also those that would be refused.
+pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
     let names = &cells.names;
     let is_series = names.iter().any(|name| name == TIME);
+    let is_mapped = cells.own.iter().any(|own| own.is_mapped);
     let of = if is_series { of_series } else { of_table };
-    let (mut columns, mut left_out) = (Vec::new(), Vec::new());
-    for (place, name) in names.iter().enumerate() {
-        let mut refuse = |rule| problems.push(Problem::at(shown(name, place), rule));
-        if names[..place].contains(name) {
-            refuse("names two columns: leave one of them out".to_owned());
-        }
-        if is_uncertainty(name) {
+    let (mut columns, mut problems) = (Columns::default(), Vec::new());
+    for (place, (name, own)) in names.iter().zip(&cells.own).enumerate() {
+        if uncertainty_of(name).is_some() {
             continue;
         }
         match of(name) {
-            Ok(Is::Foreign) => left_out.push(name.clone()),
+            Ok(Is::Foreign) => columns.left_out.push(own.shown()),
             Ok(is) => {
                 let uncertainty = with_word(name, UNCERTAINTY);
                 let mut others = names.iter();
                 let uncertainty = others.position(|other| *other == uncertainty);
-                columns.push(Named {
+                columns.read.push(Named {
                     place,
                     name: name.clone(),
                     uncertainty: uncertainty.filter(|_| is.may_be_off()),
                     is,
                 });
             }
-            Err(rule) => refuse(rule),
+            Err(_) if is_mapped && !own.is_mapped => columns.left_out.push(own.shown()),
+            Err(rule) => problems.push(Problem::at(own.shown(), rule)),
         }
     }
-    problems.extend(uncertainties_alone(names, &columns));
+    for (place, (name, own)) in names.iter().zip(&cells.own).enumerate() {
+        let is_of = |column: &Named| column.uncertainty == Some(place);
+        let is_read = columns.read.iter().any(is_of);
+        match uncertainty_of(name) {
+            Some(of) if of == TIME && !is_mapped => {
+                let rule = format!(
+                    "is not read: make what was measured more uncertain, by its change in that time ({TIME} has no uncertainty)"
+                );
+                problems.push(Problem::at(own.shown(), rule));
+            }
+            Some(_) if !is_read => columns.left_out.push(own.shown()),
+            _ => {}
+        }
+    }
     if problems.is_empty() {
-        problems.extend(kind_is_whole(&columns, is_series));
+        problems.extend(kind_is_whole(&columns.read, is_series));
     }
-    columns.retain(|column| !matches!(column.is, Is::Count));
-    let place = |problem| at_line(cells.line_of_names, problem);
-    Problems::from(problems.into_iter().map(place).collect::<Vec<_>>()).or((columns, left_out))
-}
-
-/// A column's name, or its number where it has none.
-fn shown(name: &str, place: usize) -> String {
-    match name {
-        "" => format!("column {}", place + 1),
-        name => name.to_owned(),
+    columns
+        .read
+        .retain(|column| !matches!(column.is, Is::Count));
+    if problems.is_empty() {
+        Ok(columns)
+    } else {
+        Err(problems)
     }
 }
 
-fn is_uncertainty(name: &str) -> bool {
-    name.split(['_', '.']).any(|word| word == UNCERTAINTY)
+/// The name of the column whose uncertainty the column `name` holds.
+pub(super) fn uncertainty_of(name: &str) -> Option<String> {
+    name.split(['_', '.'])
+        .any(|word| word == UNCERTAINTY)
+        .then(|| name.replacen(&format!("_{UNCERTAINTY}"), "", 1))
+}
+
+/// `name` without the word for an uncertainty, wherever it has it; `None` if it has none.
+pub(super) fn without_uncertainty(name: &str) -> Option<String> {
+    let lower = name.to_lowercase();
+    let at = lower
+        .find(UNCERTAINTY)
+        .filter(|_| lower.len() == name.len())?;
+    let (front, back) = (name.get(..at)?, name.get(at + UNCERTAINTY.len()..)?);
+    let front = front.trim_end_matches(['_', ' ', '-']);
+    Some(match front {
+        "" => back.trim_start_matches(['_', ' ', '-']).to_owned(),
+        front => format!("{front}{back}"),
+    })
+}
+
+/// Whether gyrolab itself calls a column `name`.
+pub(super) fn is_known(name: &str) -> bool {
+    let is_key = || name.contains('.') && keys::find(name).is_ok();
+    quantity::names().any(|known| known == name) || readouts::find(name).is_some() || is_key()
+}
+
+/// Whether `--map` may give a column the name `name`.
+pub(super) fn may_be(name: &str) -> bool {
+    is_known(name) || uncertainty_of(name).is_some_and(|of| is_known(&of))
 }
 
 fn of_series(name: &str) -> Result<Is, String> {
@@ -109,26 +150,17 @@ fn of_series(name: &str) -> Result<Is, String> {
     if let Some(quantity) = Quantity::find(name) {
         return Ok(Is::Quantity(quantity));
     }
-    if keys::find(name).is_ok() {
+    if name.contains('.') && keys::find(name).is_ok() {
         return Err(format!(
-            "is a key of the scenario: beside {TIME} stands what was measured on one run; set the key in the scenario, or by --set"
+            "is a key of the scenario, and a file with the time {TIME} has what was measured on one run: set the key in the scenario, or by --set"
         ));
     }
-    if readouts::find(name).is_some() {
+    if readouts::find(name).is_some_and(|readout| !readout.is_text && name.contains('_')) {
         return Err(format!(
-            "is a number of a whole run, not of one time: a table of such has no column {TIME}, and a run in every row"
+            "is a number of a whole run, not of one time: a table of such numbers has no column {TIME}, and a run in every row"
         ));
     }
-    let known = quantity::names;
-    let is_meant = name.is_empty()
-        || is_time(name)
-        || wrong_unit(name, known()).is_some()
-        || is_near(name, known());
-    if is_meant {
-        Err(unknown(name, known()))
-    } else {
-        Ok(Is::Foreign)
-    }
+    Ok(Is::Foreign)
 }
 
 fn of_table(name: &str) -> Result<Is, String> {
@@ -142,97 +174,21 @@ fn of_table(name: &str) -> Result<Is, String> {
         };
         return Err(rule.to_owned());
     }
-    let first = name.split('.').next().unwrap_or_default();
-    if [
-        "gyrolab", "title", "about", "source", "expected", "edit", "view",
-    ]
-    .contains(&first)
-    {
+    let Some((first, _)) = name.split_once('.') else {
+        return Ok(Is::Foreign);
+    };
+    if ["expected", "edit", "view"].contains(&first) {
         return Err("is a key that no number of a run depends on".to_owned());
     }
-    match keys::find(name) {
-        Ok((_, kind)) => Ok(Is::Key(kind)),
-        Err(rule) if name.contains('.') => {
-            Err(wrong_unit(name, keys::KEYS.iter().map(|key| key.path)).unwrap_or(rule))
-        }
-        Err(_) => Err(unknown(name, readouts::names().chain([TIME]))),
+    if !["body", "start", "motion", "push", "friction"].contains(&first) {
+        return Ok(Is::Foreign);
     }
+    keys::find(name).map(|(_, kind)| Is::Key(kind))
 }
 
-/// Why `name` is none of `known`, and which is meant.
-fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
-    if name.is_empty() {
-        return "has no name: name it, or leave the column out".to_owned();
-    }
-    if let Some(told) = wrong_unit(name, known.clone()) {
-        return told;
-    }
-    let near = match is_time(name).then_some(TIME) {
-        Some(time) => format!("did you mean {time}?"),
-        None => nearest(name, known),
-    };
-    format!("is no column that gyrolab knows: {near}")
-}
-
-fn is_time(name: &str) -> bool {
-    ["t", "time", "zeit"].contains(&stem(name).to_lowercase().as_str())
-}
-
-fn stem(name: &str) -> &str {
-    let end = Unit::anybodys(name).map_or("", |unit| unit.end);
-    &name[..name.len() - end.len()]
-}
-
-/// Which unit is wanted where `name` is one of `known` but for that.
-fn wrong_unit<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
-    let last = |name: &'a str| name.rsplit('.').next().unwrap_or(name);
-    let own = name.rsplit('.').next().unwrap_or(name);
-    let found = Unit::anybodys(own)?;
-    let mut meant = known.filter_map(|known| {
-        let unit = Unit::of(last(known))?;
-        let is_same = stem(last(known)) == stem(own) && unit != found;
-        is_same.then_some((last(known), unit, found.times(unit)?))
-    });
-    let (meant, unit, times) = meant.next()?;
-    let table = &name[..name.len() - own.len()];
-    let factor = match times {
-        1.0 => "as it is".to_owned(),
-        times => format!("multiplied by {}", significant(times, 7)),
-    };
-    Some(format!(
-        "is in {}, and is wanted in {}: name the column {table}{meant}, its values {factor}",
-        found.name, unit.name
-    ))
-}
-
-fn uncertainties_alone(names: &[String], columns: &[Named]) -> Vec<Problem> {
-    let owned = |place| {
-        columns
-            .iter()
-            .any(|column| column.uncertainty == Some(place))
-    };
-    let all = names.iter().enumerate();
-    let alone = all.filter(|(place, name)| is_uncertainty(name) && !owned(*place));
-    let lacking = columns.iter();
-    let lacking = lacking.filter(|column| column.uncertainty.is_none() && column.is.may_be_off());
-    let wanted: Vec<String> = lacking
-        .map(|column| with_word(&column.name, UNCERTAINTY))
-        .collect();
-    let rule = |name: &str| {
-        if let Some(wrong) = wrong_unit(name, wanted.iter().map(String::as_str)) {
-            return wrong;
-        }
-        let own = name.replacen(&format!("_{UNCERTAINTY}"), "", 1);
-        if own == TIME {
-            return format!(
-                "is not taken: make what was measured the more uncertain, by its change in that time ({TIME} is without error)"
-            );
-        }
-        let known = listed(wanted.iter().map(String::as_str));
-        format!("is the uncertainty of no measured column: there is {known}")
-    };
-    let alone = alone.map(|(_, name)| Problem::at(name.clone(), rule(name)));
-    alone.collect()
+/// Whether a table of runs with a column `name` is refused.
+pub(super) fn is_refused_in_table(name: &str) -> bool {
+    of_table(name).is_err()
 }
 
 /// Why the columns make neither a time series nor a table of runs.
@@ -244,13 +200,18 @@ fn kind_is_whole(columns: &[Named], is_series: bool) -> Option<Problem> {
         );
         return (!has(|is| matches!(is, Is::Quantity(_)))).then(|| Problem::at("", rule));
     }
-    let rule = match (has(|is| matches!(is, Is::Key(_))), has(|is| matches!(is, Is::Readout(_)))) {
-        (true, true) => return None,
-        (true, false) => {
+    // What a run has at every time tells no run of a table from another.
+    let is_of_runs = |column: &Named| {
+        matches!(column.is, Is::Readout(_)) && Quantity::find(&column.name).is_none()
+    };
+    let has_key = has(|is| matches!(is, Is::Key(_)));
+    let rule = match has(|is| matches!(is, Is::Readout(_))) {
+        true if has_key || columns.iter().any(is_of_runs) => return None,
+        false if has_key => {
             "has no column that was measured: beside the keys of the scenario a table of runs needs a readout (gyrolab readouts lists them)".to_owned()
         }
-        (false, _) => format!(
-            "is neither a time series, which has a column {TIME}, nor a table of runs, which has a column named by a key of the scenario, such as start.spin_rpm"
+        _ => format!(
+            "has neither a column known as the time {TIME} (a time series), nor one named by a key of the scenario, such as start.spin_rpm, or by a number of a whole run (a table of runs)"
         ),
     };
     Some(Problem::at("", rule))

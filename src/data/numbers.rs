@@ -3,7 +3,7 @@
 use super::names::{Is, Named};
 use super::{Column, Curve, Point, Series, Setting, Table};
 use crate::scenario::Problem;
-use crate::scenario::csv::Csv;
+use crate::scenario::csv::{Csv, OwnColumn};
 use crate::scenario::document::toml_or_text;
 use crate::scenario::keys::Kind;
 use crate::scenario::problem::{Problems, at_line};
@@ -15,6 +15,8 @@ use toml::Value;
 pub(super) struct Numbers<'a> {
     cells: &'a Csv,
     pub found: Problems,
+    /// Columns that hold no numbers, which nobody has mapped in a file with mapped columns.
+    pub left_out: Vec<String>,
     /// The decimal signs that the file has used so far.
     uses_points: bool,
     uses_commas: bool,
@@ -25,6 +27,7 @@ impl<'a> Numbers<'a> {
         Self {
             cells,
             found: Problems::default(),
+            left_out: Vec::new(),
             uses_points: false,
             uses_commas: false,
         }
@@ -34,10 +37,10 @@ impl<'a> Numbers<'a> {
         let time = columns.iter().find(|column| matches!(column.is, Is::Time));
         let times_s = time.map_or_else(Vec::new, |column| self.times(column));
         let curves = columns.iter().filter_map(|column| match column.is {
-            Is::Quantity(quantity) => Some(Curve {
-                quantity,
-                points: self.points(column),
-            }),
+            Is::Quantity(quantity) => {
+                let points = self.points(column)?;
+                Some(Curve { quantity, points })
+            }
             _ => None,
         });
         Series {
@@ -51,10 +54,10 @@ impl<'a> Numbers<'a> {
         for column in columns {
             match column.is {
                 Is::Key(kind) => settings.push(self.setting(column, kind)),
-                Is::Readout(readout) => readouts.push(Column {
-                    readout,
-                    points: self.points(column),
-                }),
+                Is::Readout(readout) => {
+                    let points = self.points(column);
+                    readouts.extend(points.map(|points| Column { readout, points }));
+                }
                 Is::Time | Is::Count | Is::Foreign | Is::Quantity(_) => {}
             }
         }
@@ -68,11 +71,8 @@ impl<'a> Numbers<'a> {
             let text = &texts[column.place];
             let number = self.number(*line, &column.name, text);
             let time_s = number.unwrap_or(f64::NAN);
-            if text.is_empty() {
+            if number.is_none() && (text.is_empty() || text.eq_ignore_ascii_case("nan")) {
                 let rule = "is missing: every row needs its time";
-                self.refuse(*line, &column.name, text, rule);
-            } else if time_s < 0.0 {
-                let rule = "must not be negative: a run begins at t = 0; count the time from there";
                 self.refuse(*line, &column.name, text, rule);
             }
             if let Some((above, earlier)) = before.filter(|(_, earlier)| time_s < *earlier) {
@@ -90,8 +90,24 @@ impl<'a> Numbers<'a> {
         times_s
     }
 
-    /// The values of a measured column, with their uncertainties.
-    fn points(&mut self, column: &Named) -> Vec<Point> {
+    /// The values of a measured column, with their uncertainties; `None` for a column that is left out.
+    fn points(&mut self, column: &Named) -> Option<Vec<Point>> {
+        let is_mapped = |own: &OwnColumn| own.is_mapped;
+        let own = &self.cells.own[column.place];
+        if own.is_mapped || !self.cells.own.iter().any(is_mapped) {
+            return Some(self.every_point(column));
+        }
+        let before = (self.found.clone(), self.uses_points, self.uses_commas);
+        let points = self.every_point(column);
+        if self.found == before.0 {
+            return Some(points);
+        }
+        (self.found, self.uses_points, self.uses_commas) = before;
+        self.left_out.push(own.shown());
+        None
+    }
+
+    fn every_point(&mut self, column: &Named) -> Vec<Point> {
         let rows = self.cells.rows.iter().enumerate();
         let points = rows.filter_map(|(row, (line, texts))| {
             let value = self.number(*line, &column.name, &texts[column.place]);
@@ -138,9 +154,10 @@ impl<'a> Numbers<'a> {
         None
     }
 
-    /// The number that `text` in the column `name` is; `None` where the place is empty or the number refused.
+    /// The number that `text` in the column `name` is; `None` where there is none (an empty place, or NaN, as many programs
+    /// write it) or the number is refused.
     fn number(&mut self, line: u64, name: &str, text: &str) -> Option<f64> {
-        if text.is_empty() {
+        if text.is_empty() || text.eq_ignore_ascii_case("nan") {
             return None;
         }
         let has_comma = text.contains(',');

@@ -1,12 +1,14 @@
 //! A file of measured data, from its text to checked numbers.
 
-use super::instruments::name_columns;
-use super::names::named;
+use super::hint::hint;
+use super::names::{Columns, may_be, named};
 use super::numbers::Numbers;
 use super::quantity::TIME;
-use super::{Data, Measured};
-use crate::scenario::csv::{self, Csv, Renaming};
-use crate::scenario::problem::nearest;
+use super::sigma::set_sigmas;
+use super::spellings::{depends_on_name, name_columns, read_as};
+use super::{ColumnOptions, Data, Measured};
+use crate::scenario::csv::{self, Csv};
+use crate::scenario::problem::{at_line, nearest};
 use crate::scenario::{Document, Problem, Problems};
 use crate::text::shipped::{Shipped, shipped};
 use std::borrow::Cow;
@@ -30,12 +32,12 @@ pub fn find_shipped(name: &str) -> Option<&'static Shipped> {
 
 /// Opens what `name` names: data that come with the program, or else a file. A file's name holds a `/` or ends in `.csv`.
 pub fn open(name: &str) -> Result<Measured, Problems> {
-    open_with(name, &[])
+    open_with(name, &ColumnOptions::default())
 }
 
-/// The same, with columns renamed first.
-pub fn open_with(name: &str, map: &[Renaming]) -> Result<Measured, Problems> {
-    read_with(name, &text(name)?, map)
+/// The same, with what the user says of its columns.
+pub fn open_with(name: &str, options: &ColumnOptions) -> Result<Measured, Problems> {
+    read_with(name, &text(name)?, options)
 }
 
 pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
@@ -66,40 +68,35 @@ fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
 
 /// Reads the measured data that `text` holds, which is the file `origin`.
 pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
-    read_with(origin, text, &[])
+    read_with(origin, text, &ColumnOptions::default())
 }
 
-/// The same, with columns renamed first.
-pub fn read_with(origin: &str, text: &str, map: &[Renaming]) -> Result<Measured, Problems> {
-    let taken_apart = || {
-        let mut cells = Csv::of(text, MOST_VALUES)?;
-        cells.rename(map, |_| true)?;
-        name_columns(&mut cells);
-        Ok((named(&cells)?, cells))
-    };
-    let ((columns, left_out), cells) = taken_apart().map_err(|found: Problems| {
-        scenario_instead(origin, text).unwrap_or_else(|| found.of(origin))
-    })?;
+/// The same, with what the user says of its columns.
+pub fn read_with(origin: &str, text: &str, options: &ColumnOptions) -> Result<Measured, Problems> {
+    let (cells, columns) = taken_apart(origin, text, options)
+        .map_err(|found| scenario_instead(origin, text).unwrap_or_else(|| found.of(origin)))?;
     let mut numbers = Numbers::of(&cells);
-    let data = if columns.iter().any(|column| column.name == TIME) {
-        Data::Series(numbers.series(&columns))
+    let mut data = if columns.read.iter().any(|column| column.name == TIME) {
+        Data::Series(numbers.series(&columns.read))
     } else {
-        Data::Table(numbers.table(&columns))
+        Data::Table(numbers.table(&columns.read))
     };
-    let renamed = match &data {
-        Data::Series(series) if !map.is_empty() => Some(series.to_csv()),
-        _ => None,
-    };
+    let mut left_out = columns.left_out;
+    left_out.append(&mut numbers.left_out);
+    let mut found = numbers.found;
+    found.kept(set_sigmas(&mut data, &cells, &options.sigma));
     let mut measured = Measured {
         origin: origin.to_owned(),
-        text: renamed.as_deref().unwrap_or(text).into(),
+        text: text.into(),
         until_s: None,
         about: cells.header.clone(),
         left_out,
+        read_as: read_as(&cells),
+        rows_before: 0,
+        rows_outside: 0,
         lines: cells.rows.iter().map(|(line, _)| *line).collect(),
         data,
     };
-    let mut found = numbers.found;
     if found.list.is_empty() && measured.keep_rows(|_| true) == 0 {
         found.add(|| {
             Problem::at(
@@ -108,14 +105,44 @@ pub fn read_with(origin: &str, text: &str, map: &[Renaming]) -> Result<Measured,
             )
         });
     }
+    if found.list.is_empty() && !measured.leave_out_rows_before_0() {
+        let rule = "has no value measured at t = 0 or later: a run begins at t = 0, count the time from there";
+        found.add(|| Problem::at("", rule));
+    }
     if found.list.is_empty() {
+        // What the text does not say by itself is written into it.
+        if let Data::Series(series) = &measured.data
+            && (options.is_some() || depends_on_name(&cells))
+        {
+            measured.text = series.to_csv().into();
+        }
         return Ok(measured);
     }
-    // Columns are read one after the other, and a file is mended from its top to its end.
+    // Columns are read one after the other, and a file is corrected from its top to its end.
     let line = |problem: &Problem| {
         let place = problem.place.as_deref()?.strip_prefix("line ")?;
         place.parse::<u64>().ok()
     };
     found.list.sort_by_key(line);
     Err(found.of(origin))
+}
+
+/// The cells of `text`, the file `origin`, and what its columns are.
+fn taken_apart(
+    origin: &str,
+    text: &str,
+    options: &ColumnOptions,
+) -> Result<(Csv, Columns), Problems> {
+    let mut cells = Csv::of(text, MOST_VALUES)?;
+    cells.rename(&options.map, may_be)?;
+    let known = name_columns(&mut cells, origin, |_| true).and_then(|()| named(&cells));
+    let mut problems = match known {
+        Ok(columns) => return Ok((cells, columns)),
+        Err(problems) => problems,
+    };
+    if let Some(last) = problems.last_mut() {
+        last.rule += &hint(&cells, &options.map, origin);
+    }
+    let place = |problem| at_line(cells.line_of_names, problem);
+    Err(problems.into_iter().map(place).collect::<Vec<_>>().into())
 }

@@ -5,8 +5,8 @@ use super::levenberg::Stop;
 use crate::analysis::readouts::{self, Readout};
 use crate::cores;
 use crate::data::{
-    Data, Measured, Point, Quantity, Residual, Series, Setting, Table, at_times, is_within_reach,
-    residuals,
+    Data, Measured, Point, Quantity, Residual, Series, Setting, Table, at_times, doubts,
+    is_within_reach, residuals,
 };
 use crate::run::Clock;
 use crate::scenario::dotted::overlap;
@@ -71,6 +71,15 @@ impl Model {
             data,
             runs: AtomicU64::new(0),
         })
+    }
+
+    /// Says what in the data cannot be right for the scenario's body.
+    pub fn doubts(&self) -> Vec<String> {
+        let scenario = self.base.scenario();
+        scenario.map_or_else(
+            |_| Vec::new(),
+            |scenario| doubts(&self.measured, &Arc::new(scenario)),
+        )
     }
 
     pub fn runs(&self) -> u64 {
@@ -246,11 +255,20 @@ fn with_settings(
 
 /// Refuses data whose last row the run of `scenario` takes too many steps to come to.
 fn too_far(measured: &Measured, series: &Series, scenario: &Scenario) -> Problems {
+    let [first_s, last_s] = [series.times_s.first(), series.times_s.last()];
+    let [first_s, last_s] = [first_s, last_s].map(|time_s| time_s.copied().unwrap_or(0.0));
+    let begin = match first_s > 0.5 * last_s {
+        true => format!(
+            "; the recording begins at {0} s: --from {0} counts the time from there",
+            shortest(first_s)
+        ),
+        false => String::new(),
+    };
     let mut problem = Problem::at(
         "t_s",
         format!(
-            "{} s is too many time steps of {} s away: a run is followed for 10 000 000 steps (2^12 times as many where the scheme is exact); leave the row out, or give a longer motion.time_step_s",
-            shortest(series.times_s.last().copied().unwrap_or(0.0)),
+            "{} s is too many time steps of {} s away: a run is followed for 10 000 000 steps (2^12 times as many where the scheme is exact); leave the row out, or give a longer motion.time_step_s{begin}",
+            shortest(last_s),
             shortest(scenario.motion.time_step_s)
         ),
     );

@@ -11,6 +11,7 @@ use crate::figure::table::{Found, OF_FIT};
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, short, shortest, significant, uncertain};
 use crate::text::printable::{printable, printable_lines};
+use crate::text::wrap::columns;
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -229,7 +230,7 @@ fn write_table<const N: usize>(
     let rows: Vec<_> = std::iter::once(head.map(str::to_owned))
         .chain(rows)
         .collect();
-    let width = |cell: &String| cell.chars().count();
+    let width = |cell: &String| columns(&printable(cell));
     let widest = |column: usize| rows.iter().map(|row| width(&row[column])).max();
     let widths: Vec<usize> = (0..N).filter_map(widest).collect();
     for row in &rows {

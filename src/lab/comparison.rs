@@ -10,11 +10,10 @@ use super::player::{Change, Player, furthest_s};
 use super::runs::Reference;
 use super::view::{Pane, View};
 use crate::analysis::cost;
-use crate::data::{Measured, find_shipped};
+use crate::data::{ColumnOptions, Measured, doubts, find_shipped};
 use crate::own_code::rows;
 use crate::playback::ghost::{Ghost, GhostToBe};
 use crate::playback::live::LiveRun;
-use crate::scenario::csv::Renaming;
 use crate::scenario::{Problems, Scenario};
 pub use data::DataComparison;
 pub use own_code::OwnCode;
@@ -142,31 +141,31 @@ impl Comparison {
                 "there are no measured data beside the run"
             }));
         };
-        let put = self.put_beside(name, &[], player, files, false);
-        let left_out =
+        let put = self.put_beside(name, &ColumnOptions::default(), player, files, false);
+        let notes =
             put.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))?;
-        Ok(left_out.map_or(Done::SILENT, Done::saying))
+        Ok(notes.map_or(Done::SILENT, Done::saying))
     }
 
     /// Reads the measured data `name` and puts them beside the run. `may_wait` says whether they may be a FIFO or a device,
-    /// which is read for any length of time. Returns which columns are left out, in words.
+    /// which is read for any length of time. Returns what is not read, and what cannot be right, in words.
     pub(super) fn put_beside(
         &mut self,
         name: &str,
-        map: &[Renaming],
+        options: &ColumnOptions,
         player: &Player,
         files: &Files,
         may_wait: bool,
     ) -> Result<Option<String>, Problems> {
         let text = files.measured_text(name, may_wait)?;
         let scenario = player.run().scenario();
-        let (measured, own) = OwnCode::read(name, &text, map, scenario)?;
-        let left_out = measured.left_out_in_words();
-        let mut data = DataComparison::new(name, map, measured, scenario)?;
+        let (measured, own) = OwnCode::read(name, &text, options, scenario)?;
+        let notes = [doubts(&measured, scenario), measured.notes()].concat();
+        let mut data = DataComparison::new(name, options, measured, scenario)?;
         data.own = own;
         self.data = Some(data);
         self.catch_up(player);
-        Ok(left_out)
+        Ok((!notes.is_empty()).then(|| notes.join(" · ")))
     }
 
     /// Refuses `text`, the file `name`, where it could not stand beside the run. Returns why it cannot be judged as rows of
@@ -177,7 +176,12 @@ impl Comparison {
         text: &str,
         player: &Player,
     ) -> Result<Option<Problems>, Problems> {
-        let (measured, own) = OwnCode::read(name, text, &[], player.run().scenario())?;
+        let (measured, own) = OwnCode::read(
+            name,
+            text,
+            &ColumnOptions::default(),
+            player.run().scenario(),
+        )?;
         measured.series()?;
         let time_step_s = player.motion().time_step_s;
         let rows = || rows::read(text, &[], None, time_step_s).err();
@@ -202,7 +206,8 @@ impl Comparison {
         let Some(name) = wanted else {
             return Ok(());
         };
-        self.put_beside(&name, &[], player, files, false).map(drop)
+        self.put_beside(&name, &ColumnOptions::default(), player, files, false)
+            .map(drop)
     }
 
     /// Compares the data with the run as it goes on, for at most its share of the computing time, and takes the pictures

@@ -66,7 +66,7 @@ pub use settings::Settings;
 pub use step_pane::StepPane;
 pub use values::Values;
 
-use crate::scenario::csv::Renaming;
+use crate::data::ColumnOptions;
 use crate::scenario::{Problems, Scenario};
 use crate::storage::confined::Confined;
 use crate::storage::session::Content;
@@ -471,7 +471,7 @@ impl Lab {
         if let Some(name) = &place.measured
             && let Err(problems) =
                 self.comparison
-                    .put_beside(name, &place.map, &self.player, &self.files, false)
+                    .put_beside(name, &place.columns(), &self.player, &self.files, false)
         {
             let (name, why) = (printable(name), problems.in_one_line());
             text += &format!("; the measured data {name} are not beside it: {why}");
@@ -485,18 +485,18 @@ impl Lab {
     pub fn begin_with_measured(
         &mut self,
         name: Option<&str>,
-        map: &[Renaming],
+        options: &ColumnOptions,
     ) -> Result<(), Problems> {
         let file = &self.player.run().scenario().file;
         let of_file = file.viewed_text("measured");
         if let Some(name) = name.or(of_file).map(str::to_owned) {
             let (player, files) = (&self.player, &self.files);
-            let left_out = self
+            let notes = self
                 .comparison
-                .put_beside(&name, map, player, files, true)?;
+                .put_beside(&name, options, player, files, true)?;
             self.read_now();
-            if let Some(left_out) = left_out {
-                self.tell(left_out);
+            if let Some(notes) = notes {
+                self.tell(notes);
             }
         }
         Ok(())

@@ -6,6 +6,7 @@ use super::files::Files;
 use super::player::Player;
 use super::runs::Reference;
 use super::view::{Look, View};
+use crate::data::{ColumnOptions, ColumnSigma};
 use crate::journal::Journal;
 use crate::journal::history::History;
 use crate::journal::next_push::NextPush;
@@ -71,6 +72,9 @@ pub(super) struct KeptPlace {
     /// What its columns are called instead.
     #[serde(default)]
     pub(super) map: Vec<Renaming>,
+    /// The uncertainties of columns without any.
+    #[serde(default)]
+    pub(super) sigma: Vec<ColumnSigma>,
     pub(super) next_push: NextPush,
     /// What the room of the lessons keeps.
     pub(super) lessons: Option<toml::Table>,
@@ -141,6 +145,14 @@ pub(super) fn kept(content: &Content) -> Result<Kept, Unreadable> {
 }
 
 impl KeptPlace {
+    /// What is kept of the columns of the measured data.
+    pub(super) fn columns(&self) -> ColumnOptions {
+        ColumnOptions {
+            map: self.map.clone(),
+            sigma: self.sigma.clone(),
+        }
+    }
+
     pub(super) fn of(
         player: &Player,
         comparison: &Comparison,
@@ -158,9 +170,10 @@ impl KeptPlace {
             look: view.look.clone(),
             exporting: exported_to.map(|path| Shown(path).to_string()),
             measured: comparison.data_to_keep(files),
+            sigma: (comparison.data()).map_or_else(Vec::new, |data| data.options.sigma.clone()),
             map: comparison
                 .data()
-                .map_or_else(Vec::new, |data| data.map.clone()),
+                .map_or_else(Vec::new, |data| data.options.map.clone()),
             next_push: edits.values.next_push.clone(),
             lessons: None,
         }

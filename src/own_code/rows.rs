@@ -1,6 +1,7 @@
 //! The file that a program has written: which columns are compared, to how many digits, and which time step each row is.
 
 use super::times::{self, STEP, TIME, Times};
+use crate::data::{map_option, name_columns, time_like};
 use crate::scenario::csv::{Csv, Naming, Renaming};
 use crate::scenario::problem::{at_line, listed};
 use crate::scenario::{Problem, Problems};
@@ -188,12 +189,11 @@ pub fn read(
 fn renamed(text: &str, map: &[Renaming]) -> Result<Csv, Problems> {
     let mut cells = Csv::of(text, MOST_VALUES)?;
     cells.rename(map, |name| NAMES.contains(&name))?;
-    let names = cells.names.iter().enumerate();
-    let mut twice = names
-        .filter(|(place, name)| NAMES.contains(&&***name) && cells.names[..*place].contains(name));
-    if let Some((_, name)) = twice.next() {
-        let rule = "names two columns: leave one of them out, or map one of them (--map 3=z_m)";
-        return Err(vec![at_line(cells.line_of_names, Problem::at(name, rule))].into());
+    if cells.titles.is_empty() {
+        name_columns(&mut cells, "", |name| NAMES.contains(&name)).map_err(|problems| {
+            let place = |problem| at_line(cells.line_of_names, problem);
+            Problems::from(problems.into_iter().map(place).collect::<Vec<_>>())
+        })?;
     }
     Ok(cells)
 }
@@ -207,13 +207,33 @@ fn nothing_to_compare(cells: &Csv) -> Vec<Problem> {
         ),
         Naming::Names => {
             let names = brief(&listed(cells.names.iter().map(String::as_str)), 200);
+            let option = map_option(cells, &[], &coordinates(cells)).unwrap_or_default();
             format!(
-                "has none of the columns {wanted}, but {names}: say which is which, such as --map {}=x_m",
-                cells.names.first().map_or("1", String::as_str)
+                "has none of the columns {wanted}, but {names}: say which is which, such as {option}"
             )
         }
     };
     vec![Problem::at("", rule)]
+}
+
+/// The columns that are probably x, y and z, or else the first one as x.
+fn coordinates(cells: &Csv) -> Vec<(usize, String)> {
+    let mut found = Vec::new();
+    for axis in ["x", "y", "z"] {
+        let is_axis = |name: &String| {
+            let lower = name.to_lowercase();
+            lower
+                .split(|c: char| !c.is_alphanumeric())
+                .any(|word| word == axis)
+        };
+        let place = cells.names.iter().position(is_axis);
+        found.extend(place.map(|place| (place, format!("{axis}_m"))));
+    }
+    if found.is_empty() {
+        let first = cells.names.iter().position(|name| !time_like(name));
+        found.push((first.unwrap_or(0), COLUMNS[0].to_owned()));
+    }
+    found
 }
 
 fn no_number(name: &str, text: &str) -> Problem {

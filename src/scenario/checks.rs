@@ -7,7 +7,7 @@ use super::keys::{self, EDITABLE_MOTION, Effect, KEYS, TOP};
 use super::limits::too_many;
 use super::model::{Body, Edit, Motion, Pushes, Scenario};
 use super::parts::{body, friction, motion, objects, push, pushes, spinning};
-use super::problem::{Problem, Problems, listed, nearest};
+use super::problem::{Problem, Problems, nearest};
 use super::start::start;
 use crate::physics::{self, Friction, State, observables};
 use serde::de::DeserializeOwned;
@@ -15,14 +15,14 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use toml::{Table, Value};
 
-pub fn scenario(file: ScenarioFile) -> Result<Scenario, Problems> {
+pub fn scenario(mut file: ScenarioFile) -> Result<Scenario, Problems> {
     // Without a body nothing can be said of the rest; of that, each part is looked at by itself.
     let mut body = body(&file.body)?;
     let motion = motion(&file.motion);
     let mut problems = Problems::default();
     let trace = problems.kept(match &file.trace {
         Some(name) => body.find("trace", name),
-        None => body.point(TOP).ok_or_else(|| no_top(&body)),
+        None => Ok(traced(&body)),
     });
     let started = problems.kept(started(&file, &body, &motion));
     let pushed = problems.kept(pushes(&file.push, &body));
@@ -31,6 +31,12 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Problems> {
         return Err(problems);
     };
     body.mechanics = spinning;
+    if file.trace.is_none() && body.point(TOP).is_none() {
+        // What reads the file names the point.
+        let mut names = body.names().into_iter();
+        let name = names.find(|name| body.point(name) == Some(trace));
+        file.trace = name.map(str::to_owned);
+    }
     let edits = edits(&file, &body, &pushes, &friction)?;
     if !is_readable(&body, trace, &start, motion.gravity) {
         let rule = "energy or traced point leave the range of floating-point numbers: use momentum, gravity and distances nearer to 1";
@@ -98,16 +104,24 @@ fn is_readable(body: &Body, trace: usize, start: &State, gravity: f64) -> bool {
     energy.is_finite() && traced.iter().all(|c| c.is_finite())
 }
 
-fn no_top(body: &Body) -> Problem {
-    let names = body.names();
-    let known = if names.is_empty() {
-        "it has no named point: add a [[body.point]]".to_owned()
-    } else {
-        let names = listed(names.into_iter());
-        format!("name one of its points with trace = \"...\": {names}")
+/// The point that is traced if the file names none: "top", else the named point farthest from the pivot, else the farthest
+/// point of all.
+fn traced(body: &Body) -> usize {
+    if let Some(top) = body.point(TOP) {
+        return top;
+    }
+    let distance = |place: usize| body.mechanics.points()[place].at.norm();
+    let farther = |best: usize, place: usize| {
+        if distance(place) > distance(best) {
+            place
+        } else {
+            best
+        }
     };
-    let rule = format!("the body has no point \"{TOP}\" whose path could be shown; {known}");
-    Problem::at("trace", rule)
+    let named = body.names().into_iter().filter_map(|name| body.point(name));
+    let named = named.reduce(farther).filter(|&place| distance(place) > 0.0);
+    let any = || (0..body.mechanics.points().len()).reduce(farther);
+    named.or_else(any).unwrap_or(0)
 }
 
 /// The edits of `file`, whose pushes are `pushes` and whose friction is `friction`.

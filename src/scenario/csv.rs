@@ -1,14 +1,15 @@
 //! A CSV with a header of `#` lines, taken apart: measured data, what other programs print, and the tables of sweeps,
 //! comparisons and fits.
 
-use super::head::{Head, text_of};
+use super::head::{Head, bytes_of, utf8};
 use super::problem::{Problem, Problems, at_line, nearest};
 use crate::text::advice::unread;
 use crate::text::printable::brief;
+use crate::text::unit::{Unit, in_known_unit};
 use ::csv::{ReaderBuilder, StringRecord, Trim};
 use std::fmt;
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::Read;
 use std::path::Path;
 
 const LONGEST: u64 = 32 << 20;
@@ -35,23 +36,50 @@ pub struct Csv {
     pub header: String,
     pub line_of_names: u64,
     pub names: Vec<String>,
+    /// The columns as the file has them, in the order of `names`.
+    pub own: Vec<OwnColumn>,
     pub naming: Naming,
-    /// Whether a line of titles stands above the names, as Tracker writes it.
-    pub is_titled: bool,
+    /// The cells of a line of titles above the names, as Tracker writes it; empty without such a line.
+    pub titles: Vec<String>,
     /// What parts the cells; any number of blanks for a blank.
     pub separator: char,
     /// The rows, each with its line and as many cells as there are names.
     pub rows: Vec<(u64, Vec<String>)>,
 }
 
+/// A column as the file has it.
+#[derive(Clone, Debug)]
+pub struct OwnColumn {
+    /// Its number in the file, from 1.
+    pub number: usize,
+    pub name: String,
+    /// Whether `--map` says what it is.
+    pub is_mapped: bool,
+    /// The factor by which its numbers were multiplied to be in the unit of its new name.
+    pub factor: f64,
+}
+
+impl OwnColumn {
+    /// The name, or the number of a column without one.
+    pub fn shown(&self) -> String {
+        match &*self.name {
+            "" => format!("column {}", self.number),
+            name => name.to_owned(),
+        }
+    }
+}
+
 /// A column of a file, by name or by number from 1, and the name that it gets.
 pub type Renaming = (String, String);
+
+/// In place of a new name: the column is left out.
+pub const LEFT_OUT: &str = "-";
 
 /// Reads a renaming, `COLUMN=NAME`.
 pub fn renaming(text: &str) -> Result<Renaming, String> {
     let (column, name) = text
         .rsplit_once('=')
-        .ok_or("must be COLUMN=NAME, such as X=x_m or 3=z_m")?;
+        .ok_or("must be COLUMN=NAME, such as X=x_m, 3=z_m, or note=- to leave a column out")?;
     Ok((column.trim().to_owned(), name.trim().to_owned()))
 }
 
@@ -60,13 +88,26 @@ pub fn text(path: &Path) -> Result<String, Problem> {
     if path.is_dir() {
         return Err(Problem::at("", "is a folder: name a CSV file in it"));
     }
-    let cannot = |error: std::io::Error| Problem::at("", unread(&error));
-    let mut file = BufReader::new(File::open(path).map_err(cannot)?);
-    if file.fill_buf().map_err(cannot)?.starts_with(ZIP) {
+    let file = File::open(path).map_err(|error| Problem::at("", unread(&error)))?;
+    text_from(file)
+}
+
+/// The text of a CSV that `file` holds, in UTF-8 or Latin-1.
+pub fn text_from(file: impl Read) -> Result<String, Problem> {
+    let bytes = bytes_of(file, LONGEST, TOO_LONG)?;
+    if bytes.starts_with(ZIP) {
         let rule = "is a zip archive: unpack it and name the file in it (of phyphox \"Raw Data.csv\"); a spreadsheet is saved as CSV";
         return Err(Problem::at("", rule));
     }
-    text_of(file, LONGEST, TOO_LONG, " (\"CSV UTF-8\")")
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        let rule = "is text in UTF-16: save the file as \"CSV UTF-8\" (iconv -f UTF-16 -t UTF-8 converts it)";
+        return Err(Problem::at("", rule));
+    }
+    let is_of_text = |byte: &u8| !matches!(byte, 0..=8 | 14..=31 | 127..=159);
+    if str::from_utf8(&bytes).is_err() && bytes.iter().all(is_of_text) {
+        return Ok(bytes.into_iter().map(char::from).collect());
+    }
+    utf8(bytes, " (\"CSV UTF-8\")")
 }
 
 fn one(rule: String) -> Problems {
@@ -91,8 +132,10 @@ fn separator(line: &str) -> char {
         ','
     } else if !line.contains('"') && line.split_whitespace().count() > 1 {
         ' '
-    } else {
+    } else if has(',') {
         ','
+    } else {
+        ';' // one column, whose numbers may have decimal commas
     }
 }
 
@@ -114,8 +157,9 @@ impl Csv {
             header: head.header()?,
             line_of_names: head.line_of_names(),
             names: Vec::new(),
+            own: Vec::new(),
             naming: Naming::Names,
-            is_titled: false,
+            titles: Vec::new(),
             separator: separator(str::from_utf8(head.names()).unwrap_or_default()),
             rows: Vec::new(),
         };
@@ -125,8 +169,17 @@ impl Csv {
             && csv.separator != ' '
             && titles.starts_with(csv.separator)
             && !below.starts_with(csv.separator)
+            && !is_number(
+                below
+                    .split([csv.separator, '\n'])
+                    .next()
+                    .unwrap_or_default()
+                    .trim(),
+            )
         {
-            (lines, csv.is_titled) = (below, true);
+            let titles = titles.split(csv.separator);
+            csv.titles = titles.map(|title| title.trim().to_owned()).collect();
+            lines = below;
             csv.line_of_names += 1;
         }
         csv.read_rows(lines, most)?;
@@ -196,6 +249,14 @@ impl Csv {
             let cells = std::mem::replace(&mut self.names, numbers.collect());
             self.rows.push((line, cells));
         }
+        let names = self.names.iter().enumerate();
+        let own = names.map(|(place, name)| OwnColumn {
+            number: place + 1,
+            name: name.clone(),
+            is_mapped: false,
+            factor: 1.0,
+        });
+        self.own = own.collect();
     }
 
     /// A row of another number of values than there are names.
@@ -212,43 +273,178 @@ impl Csv {
         )
     }
 
-    /// Gives columns other names: each pair is the name or the number of a column, from 1, and its new name.
+    /// Gives columns other names: each pair is the name or the number of a column, from 1, and its new name, or
+    /// [`LEFT_OUT`]. A new name in another unit, or a unit in the column's own name, converts the column's numbers.
     ///
     /// # Errors
-    /// Where there is no such column, or the new name is none that `may_be` accepts.
+    /// If there is no such column, or the new name is none that `may_be` accepts in any unit.
     pub fn rename(
         &mut self,
         map: &[Renaming],
         may_be: impl Fn(&str) -> bool,
     ) -> Result<(), Problems> {
-        let own = self.names.clone();
         let mut found = Problems::default();
+        let mut left_out = Vec::new();
         for (column, name) in map {
-            let number = column
-                .parse()
-                .ok()
-                .filter(|number| (1..=own.len()).contains(number));
-            let place = own.iter().position(|own| own == column);
-            let Some(place) = place.or(number.map(|number: usize| number - 1)) else {
-                let near = nearest(column, own.iter().map(String::as_str));
-                let rule = format!("is no column of the file, by name or by number: {near}");
+            let place = match self.place_of(column) {
+                Ok(place) => place,
+                Err(rule) => {
+                    found.add(|| in_map(column, name, rule));
+                    continue;
+                }
+            };
+            if name == LEFT_OUT {
+                left_out.push(place);
+                continue;
+            }
+            if self.own[place].is_mapped {
+                let rule = "is mapped twice: give one name".to_owned();
+                found.add(|| in_map(column, name, rule));
+                continue;
+            }
+            let Some((ours, factor)) = in_known_unit(name, &may_be) else {
+                let rule = "is no column that is read here".to_owned();
                 found.add(|| in_map(column, name, rule));
                 continue;
             };
-            if !may_be(name) {
-                let rule = "is no column that is read here".to_owned();
-                found.add(|| in_map(column, name, rule));
-            }
-            for other in self.names.iter_mut().filter(|other| *other == name) {
+            let others = self.names.iter_mut().zip(&self.own).enumerate();
+            for (at, (other, own)) in
+                others.filter(|(at, (other, _))| *at != place && **other == ours)
+            {
+                if own.is_mapped {
+                    let rule =
+                        format!("column {} is mapped to {ours} too: map one of them", at + 1);
+                    found.add(|| in_map(column, name, rule));
+                }
                 other.insert_str(0, "(the file's own) ");
             }
-            self.names[place].clone_from(name);
+            let factor = if *name == ours {
+                unit_between(&self.own[place].name, &ours)
+            } else {
+                factor
+            };
+            self.own[place].is_mapped = true;
+            self.name_column(place, &ours, factor);
         }
-        found.or(())
+        found.or(())?;
+        let is_kept = |place: usize| !left_out.contains(&place);
+        keep(&mut self.names, is_kept);
+        keep(&mut self.own, is_kept);
+        let rows = self.rows.iter_mut();
+        rows.for_each(|(_, row)| keep(row, is_kept));
+        Ok(())
+    }
+
+    /// The place of a column, by its own name or its number from 1.
+    fn place_of(&self, column: &str) -> Result<usize, String> {
+        let of_name = |own: &&OwnColumn| own.name == column;
+        let named: Vec<&OwnColumn> = self.own.iter().filter(of_name).collect();
+        match named[..] {
+            [own] => Ok(own.number - 1),
+            [] => {
+                let number = column.parse::<usize>().ok();
+                let number = number.filter(|number| (1..=self.own.len()).contains(number));
+                number.map(|number| number - 1).ok_or_else(|| {
+                    let names = self.own.iter().map(|own| own.name.as_str());
+                    let near = nearest(column, names);
+                    format!("is no column of the file, by name or by number: {near}")
+                })
+            }
+            _ => {
+                let numbers: Vec<_> = named.iter().map(|own| own.number.to_string()).collect();
+                let numbers = numbers.join(" and ");
+                Err(format!("is the name of columns {numbers}: give the number"))
+            }
+        }
+    }
+
+    /// Gives the column at `place` the name `name`, and multiplies its numbers by `factor`.
+    pub fn name_column(&mut self, place: usize, name: &str, factor: f64) {
+        name.clone_into(&mut self.names[place]);
+        self.own[place].factor = factor;
+        if factor == 1.0 {
+            return;
+        }
+        for (_, row) in &mut self.rows {
+            if let Some(number) = multiplied(&row[place], factor, self.separator) {
+                row[place] = number;
+            }
+        }
     }
 
     pub fn column<'a>(&'a self, name: &str) -> Option<impl Iterator<Item = &'a str> + Clone> {
         let place = self.names.iter().position(|other| other == name)?;
         Some(self.rows.iter().map(move |(_, row)| row[place].as_str()))
+    }
+}
+
+/// The factor from the unit that the column's own name states to that of `ours`; 1 if it states none of the same kind.
+fn unit_between(own: &str, ours: &str) -> f64 {
+    let units = Unit::split(own).zip(Unit::of(ours));
+    let factor = units.and_then(|((_, stated), unit)| stated.times(unit));
+    factor.unwrap_or(1.0)
+}
+
+fn keep<T>(items: &mut Vec<T>, is_kept: impl Fn(usize) -> bool) {
+    let mut place = 0;
+    items.retain(|_| {
+        place += 1;
+        is_kept(place - 1)
+    });
+}
+
+/// The number in `cell` times `factor`, written with as many significant digits or more, and without a decimal sign that the
+/// file might not use; `None` if it is no finite number.
+fn multiplied(cell: &str, factor: f64, separator: char) -> Option<String> {
+    let plain = if separator == ',' {
+        cell.to_owned()
+    } else {
+        cell.replacen(',', ".", 1)
+    };
+    let number: f64 = plain
+        .parse()
+        .ok()
+        .filter(|number: &f64| number.is_finite())?;
+    let power = libm::log10(factor).round();
+    if (libm::pow(10.0, power) / factor - 1.0).abs() < 1e-12 {
+        // Another exponent keeps every digit.
+        let (mantissa, exponent) = cell.split_once(['e', 'E']).unwrap_or((cell, "0"));
+        let exponent = exponent.parse::<i32>().ok()?.checked_add(power as i32)?;
+        return Some(format!("{mantissa}e{exponent}"));
+    }
+    let mantissa = plain.split(['e', 'E']).next().unwrap_or_default();
+    let digits = mantissa.trim_start_matches(['+', '-', '0', '.']).chars();
+    let digits = digits.filter(char::is_ascii_digit).count();
+    let shortest = format!("{:e}", number * factor);
+    let (mantissa, exponent) = shortest.split_once('e')?;
+    let (whole, part) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let part = format!("{part:0<width$}", width = digits.saturating_sub(1));
+    let exponent = exponent.parse::<i32>().ok()? - part.len() as i32;
+    Some(format!("{whole}{part}e{exponent}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_converted_number_keeps_its_digits() {
+        for (cell, factor, converted) in [
+            ("25.00", 1e-2, "25.00e-2"),
+            ("2.500000E+01", 1e-2, "2.500000e-1"),
+            ("1700000000010000000", 1e-9, "1700000000010000000e-9"),
+            ("-1,5", 1e-3, "-1,5e-3"),
+            ("30.0", 60.0, "180e1"),
+            ("0.5", 2.5, "125e-2"),
+            ("0", 60.0, "0e0"),
+        ] {
+            let found = multiplied(cell, factor, ';');
+            assert_eq!(found.as_deref(), Some(converted));
+            let value = |text: &str| text.replace(',', ".").parse::<f64>().unwrap();
+            let error = value(converted) - factor * value(cell);
+            assert!(error.abs() <= 1e-15 * value(converted).abs(), "{cell}");
+        }
+        assert_eq!(multiplied("12 cm", 1e-2, ';'), None);
+        assert_eq!(multiplied("NaN", 1e-2, ';'), None);
     }
 }

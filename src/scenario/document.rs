@@ -2,7 +2,7 @@
 
 use super::checks;
 use super::dotted::{find, is_in, overlap, set_key};
-use super::head::{is_file, read_text, text_of_file};
+use super::head::{is_file, read_text, text_of_stream};
 use super::limits;
 use super::problem::{PRESETS, Problem, Problems, at_line, nearest};
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, solids, start};
@@ -55,8 +55,9 @@ impl Document {
         Self::parse_header(&origin, &text)
     }
 
+    /// Reads the same of a stream that is not a figure.
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
-        let text = text_of_file(reader).map_err(|problem| Problems::one(origin, problem))?;
+        let text = text_of_stream(reader).map_err(|problem| Problems::one(origin, problem))?;
         Self::parse_header(origin, &text)
     }
 

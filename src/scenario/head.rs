@@ -146,28 +146,34 @@ pub fn is_file(name: &str) -> bool {
     name.contains('/') || endings.iter().any(|ending| name.contains(ending))
 }
 
-pub(super) fn text_of_file(file: impl Read) -> Result<String, Problem> {
-    let text = text_of(file, LONGEST, limits::TOO_LONG, "")?;
+/// The text of a scenario, or the run file in the header of a CSV, that `stream` holds.
+pub(super) fn text_of_stream(stream: impl Read) -> Result<String, Problem> {
+    let mut reader = BufReader::new(stream);
+    let head = Head::read(&mut reader).map_err(|error| Problem::at("", unread(&error)))?;
+    if head.is_of_csv() {
+        return head.run_file();
+    }
+    text_of_file(head.bytes.as_slice().chain(reader))
+}
+
+fn text_of_file(file: impl Read) -> Result<String, Problem> {
+    let text = utf8(bytes_of(file, LONGEST, limits::TOO_LONG)?, "")?;
     limits::few_enough(&text, 1).map(|()| text)
 }
 
-/// The text of `file` to its end, of which no more than `most` bytes and one are read; `words` are said after the encoding.
-pub(super) fn text_of(
-    file: impl Read,
-    most: u64,
-    too_long: &str,
-    words: &str,
-) -> Result<String, Problem> {
+/// The bytes of `file` to its end, of which no more than `most` and one are read.
+pub(super) fn bytes_of(file: impl Read, most: u64, too_long: &str) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::new();
     let read = file.take(most + 1).read_to_end(&mut bytes);
     let length = read.map_err(|error| Problem::at("", unread(&error)))?;
     if length as u64 > most {
         return Err(Problem::at("", too_long));
     }
-    utf8(bytes, words)
+    Ok(bytes)
 }
 
-fn utf8(bytes: Vec<u8>, words: &str) -> Result<String, Problem> {
+/// The text that `bytes` are; `words` are added after the name of the encoding.
+pub(super) fn utf8(bytes: Vec<u8>, words: &str) -> Result<String, Problem> {
     String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = good.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;

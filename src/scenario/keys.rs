@@ -130,7 +130,7 @@ pub static KEYS: &[Key] = &[
     must("title", Line, "name of the scenario").lab("title", "", Typed),
     may("about", Paragraph, "one paragraph for the list of presets").lab("about", "", Typed),
     may("source", Paragraph, "where the set-up comes from").lab("source", "", Typed),
-    may("trace", Line, "name of the point whose path is shown (default: top)").lab("traced point", "", Turn),
+    may("trace", Line, "name of the point whose path is shown; if there is no top, the point farthest from the pivot (default: top)").lab("traced point", "", Turn),
     must("body.rim.points", Whole(1, MOST_POINTS), "equal masses on a circle across the axle; point j at angle 2 pi j/n from +x towards +y").lab("rim points", "", WholeHundredth),
     must("body.rim.radius_m", Number(Positive), "radius of the circle, m").lab("rim radius", "m", Hundredth(0.01)),
     must("body.rim.height_m", Number(Any), "height of the circle above the pivot, m").lab("rim height", "m", Hundredth(0.01)),

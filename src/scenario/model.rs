@@ -1,6 +1,7 @@
 //! A scenario whose numbers have been checked: what a run is made from.
 
 use super::file::ScenarioFile;
+use super::keys::TOP;
 use super::problem::{Problem, nearest};
 use crate::physics::{self, Friction, Part, SchemeInfo, State, observables, part};
 use nalgebra::Vector3;
@@ -133,6 +134,19 @@ impl Scenario {
     /// Distance of the traced point from the pivot, m: the measure of how far off a run may be.
     pub fn arm_m(&self) -> f64 {
         self.body.mechanics.points()[self.trace].at.norm()
+    }
+
+    /// Whether the point "top" is traced because the file names none.
+    pub fn traces_top(&self) -> bool {
+        self.file.trace.is_none() && self.body.point(TOP).is_some()
+    }
+
+    pub fn traced_name(&self) -> &str {
+        let unnamed = match self.traces_top() {
+            true => TOP,
+            false => "farthest point",
+        };
+        self.file.trace.as_deref().unwrap_or(unnamed)
     }
 
     /// The shortest time step by which a run of it is stepped, edits included, s.

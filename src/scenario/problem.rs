@@ -248,9 +248,12 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
     }
 }
 
-/// Whether one of `known` is so near to `name` that it was meant.
-pub fn is_near<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> bool {
-    name.len() <= LONGEST && closest(name, &letters(name), known).is_some()
+/// The name among `known` that is so near to `name` that it was probably meant.
+pub fn near<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Option<&'a str> {
+    let is_short = name.len() <= LONGEST;
+    is_short
+        .then(|| closest(name, &letters(name), known))
+        .flatten()
 }
 
 /// The name of `known` that is so near to `wrong`, whose letters are `bare`, that it was meant.

@@ -1,4 +1,5 @@
-//! Units as they stand at the end of a name (`tilt_deg`, `time_step_s`): what they are called, and how one becomes another.
+//! Units as they stand at the end of a name (`tilt_deg`, `time_step_s`): what they are called, how other programs write them
+//! (`x (cm)`, `gx_dps`), and how one becomes another.
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
@@ -7,13 +8,14 @@ pub struct Unit {
     /// The unit as it is written in text.
     pub name: &'static str,
     /// What it measures: two units of one kind can be converted.
-    kind: Kind,
+    pub kind: Kind,
     /// How many of the SI's unit one of it is.
     in_si: f64,
 }
 
+/// What a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+pub enum Kind {
     Time,
     Length,
     Mass,
@@ -61,8 +63,11 @@ const OURS: [Unit; 16] = [
 ];
 
 /// Units in which people measure, and in which no name of gyrolab is.
-const OTHERS: [Unit; 27] = [
+const OTHERS: [Unit; 30] = [
     unit("_deg_per_s", "deg/s", Kind::Rate, TAU / 360.0),
+    unit("_dps", "deg/s", Kind::Rate, TAU / 360.0),
+    unit("_deg_s", "deg/s", Kind::Rate, TAU / 360.0),
+    unit("_rad_s", "rad/s", Kind::Rate, 1.0),
     unit("_g_cm2", "g cm2", Kind::Moment, 1e-7),
     unit("_kg_cm2", "kg cm2", Kind::Moment, 1e-4),
     unit("_g_m2", "g m2", Kind::Moment, 1e-3),
@@ -104,10 +109,149 @@ impl Unit {
         fits.max_by_key(|unit| unit.end.len())
     }
 
+    /// The unit that `text` is, as people write it: `s`, `m/s2`, `°/s`, `deg s^-1`, `1/min`.
+    pub fn written(text: &str) -> Option<&'static Self> {
+        let plain = plain(text);
+        let known = || OURS.iter().chain(&OTHERS);
+        let is_written = |unit: &&Self| unit.name.replace(' ', "") == plain;
+        let in_lower_case = plain.to_lowercase();
+        let is_same = |unit: &&Self| unit.name.replace(' ', "").to_lowercase() == in_lower_case;
+        let alias = ALIASES
+            .iter()
+            .find(|(written, _)| *written == in_lower_case);
+        let of_alias = || known().find(|unit| alias.is_some_and(|(_, end)| unit.end == *end));
+        known()
+            .find(is_written)
+            .or_else(of_alias)
+            .or_else(|| known().find(is_same))
+    }
+
+    /// Splits the name of a column into the name alone and the unit that it states: `x (cm)`, `t [ms]`, `x / cm`, `x in cm`,
+    /// `gx_dps`.
+    pub fn split(name: &str) -> Option<(&str, &'static Self)> {
+        let name = name.trim();
+        let in_brackets = || {
+            let opening = match name.chars().last()? {
+                ')' => '(',
+                ']' => '[',
+                '}' => '{',
+                _ => return None,
+            };
+            let (stem, unit) = name[..name.len() - 1].rsplit_once(opening)?;
+            let stem = stem.trim_end().trim_end_matches('/');
+            Some((stem, Self::written(unit)?))
+        };
+        let behind = |sign: &str| {
+            let (stem, unit) = name.split_once(sign)?;
+            Some((stem, Self::written(unit)?))
+        };
+        let at_end = || {
+            let ends = name.rmatch_indices(['_', '-', '.', ' ']);
+            let units = ends.filter_map(|(at, _)| {
+                let unit = name[at + 1..].replace(['-', '.', ' '], "_");
+                let known = OURS
+                    .iter()
+                    .chain(&OTHERS)
+                    .find(|known| known.end[1..] == unit);
+                Some((&name[..at], known.or_else(|| Self::written(&unit))?))
+            });
+            units.last()
+        };
+        let found = in_brackets()
+            .or_else(|| behind("/"))
+            .or_else(|| behind(" in "));
+        let (stem, unit) = found.or_else(at_end)?;
+        Some((stem.trim(), unit))
+    }
+
     /// By what a number in this unit is multiplied to be one in `other`; `None` where they do not measure the same.
     pub fn times(&self, other: &Self) -> Option<f64> {
         (self.kind == other.kind).then(|| self.in_si / other.in_si)
     }
+}
+
+/// Other words for units, in lower case and without blanks, and the ends of the names that these units have here.
+const ALIASES: [(&str, &str); 21] = [
+    ("sec", "_s"),
+    ("sek", "_s"),
+    ("second", "_s"),
+    ("seconds", "_s"),
+    ("msec", "_ms"),
+    ("millisecond", "_ms"),
+    ("milliseconds", "_ms"),
+    ("microseconds", "_us"),
+    ("nanoseconds", "_ns"),
+    ("minutes", "_min"),
+    ("meter", "_m"),
+    ("meters", "_m"),
+    ("degree", "_deg"),
+    ("degrees", "_deg"),
+    ("radian", "_rad"),
+    ("radians", "_rad"),
+    ("dps", "_deg_per_s"),
+    ("rps", "_rps"),
+    ("rev/s", "_rps"),
+    ("rev/min", "_rpm"),
+    ("u/min", "_rpm"),
+];
+
+/// `text` without blanks, with the letters of a keyboard in place of signs, and `per s` or `s^-1` as `/s`.
+fn plain(text: &str) -> String {
+    let mut plain = text
+        .trim()
+        .replace(['°', 'º', '˚'], "deg")
+        .replace(['µ', 'μ'], "u");
+    for (written, short) in [
+        ("²", "2"),
+        ("^2", "2"),
+        ("⁻¹", "^-1"),
+        ("−", "-"),
+        ("_per_", "/"),
+        (" per ", "/"),
+    ] {
+        plain = plain.replace(written, short);
+    }
+    plain.retain(|c| !c.is_whitespace() && !"·⋅*".contains(c));
+    for of in ["s", "sec", "min"] {
+        for power in ["^-1", "^(-1)", "-1"] {
+            if let Some(front) = plain.strip_suffix(&format!("{of}{power}")) {
+                plain = format!("{}/{of}", if front.is_empty() { "1" } else { front });
+            }
+        }
+    }
+    for (long, short) in [
+        ("degrees/", "deg/"),
+        ("degree/", "deg/"),
+        ("radians/", "rad/"),
+        ("radian/", "rad/"),
+    ] {
+        plain = plain.replace(long, short);
+    }
+    for (long, short) in [("/second", "/s"), ("/sec", "/s")] {
+        if let Some(front) = plain.strip_suffix(long) {
+            plain = front.to_owned() + short;
+        }
+    }
+    plain
+}
+
+/// The name among those that `is_known` accepts that is `name` in a unit of its own, and the factor to that unit:
+/// `t_ms` is `t_s` times 0.001.
+pub fn in_known_unit(name: &str, is_known: impl Fn(&str) -> bool) -> Option<(String, f64)> {
+    if is_known(name) {
+        return Some((name.to_owned(), 1.0));
+    }
+    let (front, place) = match name.rsplit_once('.') {
+        Some((front, place)) if place.parse::<usize>().is_ok() => (front, &name[front.len()..]),
+        _ => (name, ""),
+    };
+    let other = Unit::anybodys(front)?;
+    let stem = &front[..front.len() - other.end.len()];
+    OURS.iter().find_map(|ours| {
+        let factor = other.times(ours)?;
+        let known = format!("{stem}{}{place}", ours.end);
+        is_known(&known).then_some((known, factor))
+    })
 }
 
 /// `name` with `word` before its unit: `tilt_deg` becomes `tilt_uncertainty_deg`. Of the parts of a vector, whose names end
@@ -143,6 +287,54 @@ mod tests {
         for end in OURS.iter().map(|unit| unit.end).chain(["spin_rad_per_s"]) {
             assert_eq!(Unit::of(end), Unit::anybodys(end), "{end}");
         }
+    }
+
+    #[test]
+    fn a_column_states_its_unit_in_many_ways() {
+        for (name, stem, unit) in [
+            ("x (cm)", "x", "cm"),
+            ("Gyr X (°/s)", "Gyr X", "deg/s"),
+            ("Gyroscope x(rad/s)", "Gyroscope x", "rad/s"),
+            ("\u{3c9}_z / (rad s^-1)", "\u{3c9}_z", "rad/s"),
+            ("X [rad s⁻¹]", "X", "rad/s"),
+            ("rotation x (degrees per second)", "rotation x", "deg/s"),
+            ("t / ms", "t", "ms"),
+            ("x/m", "x", "m"),
+            ("x in mm", "x", "mm"),
+            ("timestamp_ms", "timestamp", "ms"),
+            ("gx_dps", "gx", "deg/s"),
+            ("gyr_x_deg_per_s", "gyr_x", "deg/s"),
+            ("gyr.x.rad_s", "gyr.x", "rad/s"),
+            ("Time (\u{b5}s)", "Time", "us"),
+            ("Acceleration x (m/s²)", "Acceleration x", "m/s2"),
+            ("spin (U/min)", "spin", "rpm"),
+            ("Lz (J s)", "Lz", "J s"),
+        ] {
+            let found = Unit::split(name).map(|(stem, unit)| (stem, unit.name));
+            assert_eq!(found, Some((stem, unit)), "{name}");
+        }
+        for name in [
+            "x",
+            "temp",
+            "Time",
+            "gyro x",
+            "P (hPa)",
+            "note (of ours)",
+            "",
+        ] {
+            assert_eq!(Unit::split(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_name_in_another_unit_is_known() {
+        let is_known = |name: &str| ["t_s", "x_m", "body.point.0.at_m.2"].contains(&name);
+        let known = |name| in_known_unit(name, is_known);
+        assert_eq!(known("t_ms"), Some(("t_s".to_owned(), 1e-3)));
+        assert_eq!(known("x_m"), Some(("x_m".to_owned(), 1.0)));
+        assert_eq!(known("x_deg"), None);
+        let at = Some(("body.point.0.at_m.2".to_owned(), 1e-2));
+        assert_eq!(known("body.point.0.at_cm.2"), at);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use crate::lab::Lab;
 use crate::lab::action::Direction;
 use crate::lab::view::theme::Marker;
 use crate::lab::view::{Pane, Part};
+use crate::text::wrap::columns;
 use crate::tui::dots;
 use crate::tui::keymap::Mode;
 use crate::tui::layout::{Layout, Said};
@@ -150,8 +151,12 @@ pub fn text(lab: &Lab, keys: bool, (width, height): (u16, u16)) -> String {
     let mut buf = Buffer::empty(area);
     draw(lab, keys, area, &mut buf);
     let line = |y: u16| {
-        let cells = (area.left()..area.right()).filter_map(|x| buf.cell((x, y)));
-        let line: String = cells.map(ratatui::buffer::Cell::symbol).collect();
+        let (mut line, mut x) = (String::new(), area.left());
+        while let Some(cell) = buf.cell((x, y)).filter(|_| x < area.right()) {
+            line += cell.symbol();
+            // The cell behind a wide character is a part of it.
+            x += columns(cell.symbol()).max(1) as u16;
+        }
         line.trim_end().to_owned() + "\n"
     };
     (area.top()..area.bottom()).map(line).collect()

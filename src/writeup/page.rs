@@ -76,7 +76,7 @@ fn write_setup(page: &mut String, writeup: &Writeup) -> fmt::Result {
     let whole = format!("{mass} kg; centre of mass {centre} m from the pivot");
     row("body", &whole)?;
     row("moments of inertia about the pivot", &moments(scenario))?;
-    let name = scenario.file.trace.as_deref().unwrap_or("top");
+    let name = scenario.traced_name();
     let from_pivot = significant(body.points()[scenario.trace].at.norm(), 6);
     let traced = format!("{name}, {from_pivot} m from the pivot");
     row("traced point", &traced)?;

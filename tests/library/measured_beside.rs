@@ -6,7 +6,7 @@ use crate::support::scenarios::{preset, resumed};
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::{has, has_all};
 use gyrolab::data::compared::Sum;
-use gyrolab::data::{self, Measured, Quantity};
+use gyrolab::data::{self, ColumnOptions, Measured, Quantity};
 use gyrolab::figure::kind::Kind;
 use gyrolab::figure::labels::Labels;
 use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
@@ -201,7 +201,9 @@ fn a_session_keeps_them_by_name() {
 fn a_scenario_names_the_data_beside_its_run() {
     let scenario = preset("method-2", &["view.measured=\"heidelberg-spin-decay\""]);
     let mut desk = Desk::with("method-2", scenario);
-    desk.lab.begin_with_measured(None, &[]).unwrap();
+    desk.lab
+        .begin_with_measured(None, &ColumnOptions::default())
+        .unwrap();
     assert_eq!(sum(&desk.lab).points, 7);
     desk.commands("open = 'cusps'");
     // They were of the other run.

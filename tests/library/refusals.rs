@@ -377,6 +377,36 @@ fn no_key_is_left_out() {
 }
 
 #[test]
+fn without_top_the_farthest_point_is_traced() {
+    const RIM: &str = "title = 'x'\n[start]\nmomentum_Js = [0, 0, 1]\n[motion]\ntime_step_s = 0.1\nsteps = 3\n\
+                       [body.rim]\npoints = 5\nradius_m = 1\nheight_m = 1\npoint_mass_kg = 1\n";
+    let traced = |points: &str| {
+        let document = Document::parse("x.toml", &format!("{RIM}{points}")).unwrap();
+        let scenario = document.scenario().unwrap();
+        (scenario.traced_name().to_owned(), scenario.arm_m())
+    };
+    let point =
+        |name: &str, z: f64| format!("[[body.point]]\nname = '{name}'\nat_m = [0, 0, {z}]\n");
+    let hub = point("hub", 0.5);
+    assert_eq!(
+        traced(&(hub.clone() + &point("tip", -0.75))),
+        ("tip".to_owned(), 0.75)
+    );
+    assert_eq!(
+        traced(&(hub.clone() + &point("top", 0.25))),
+        ("top".to_owned(), 0.25)
+    );
+    // Of points as far away the first; a point at the pivot shows no path.
+    assert_eq!(
+        traced(&(hub + &point("other", -0.5))),
+        ("hub".to_owned(), 0.5)
+    );
+    for none in [String::new(), point("pivot", 0.0)] {
+        assert!((traced(&none).1 - 2_f64.sqrt()).abs() < 1e-12);
+    }
+}
+
+#[test]
 fn a_scenario_without_its_tables() {
     check_refusal("", 0, "start: is missing", "[start]").unwrap();
     check_refusal("", 0, "motion: is missing", "at the end of the file").unwrap();
@@ -385,12 +415,6 @@ fn a_scenario_without_its_tables() {
     let bare =
         "title = 'x'\n[start]\nmomentum_Js = [0, 0, 1]\n[motion]\ntime_step_s = 0.1\nsteps = 3\n";
     check_refusal(bare, 0, "body: ", "singular inertia").unwrap();
-    let nameless =
-        format!("{bare}[body.rim]\npoints = 5\nradius_m = 1\nheight_m = 1\npoint_mass_kg = 1\n");
-    let words = "trace: the body has no point \"top\"";
-    check_refusal(&nameless, 0, words, "add a [[body.point]]").unwrap();
-    let no_top = format!("{nameless}[[body.point]]\nname = 'hub'\nat_m = [0, 0, 1]\n");
-    check_refusal(&no_top, 0, words, "hub").unwrap();
     // All the mass on one line, but not on the axle.
     let line = format!(
         "{bare}[[body.point]]\nname = 'top'\nat_m = [1, 2, 3]\nmass_kg = 1\n[[body.point]]\nname = 'hub'\nat_m = [-2, -4, -6]\nmass_kg = 1\n"

@@ -105,14 +105,8 @@ fn the_csv_is_drawn_and_runs_again() {
 #[test]
 fn what_is_wrong_is_told_with_the_remedy() {
     let ground = Ground::new();
-    ground.write("min.csv", "t_min,tilt_deg\n0,1\n");
     ground.write("lab.csv", "t_s,tilt_deg\n0,20\n");
     for (args, code, words) in [
-        (
-            "fit min.csv --in cusps --free start.tilt_deg",
-            1,
-            "min.csv:1: t_min: is in min, and is wanted in s: name the column t_s, its values multiplied by 60",
-        ),
         (
             "fit lab.csv --in cusps --free start.tilt_deg,start.momentum_Js.2",
             1,

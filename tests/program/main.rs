@@ -16,6 +16,7 @@ mod classes;
 mod cli;
 mod commands;
 mod compare;
+mod data_files;
 mod escapes;
 mod examples;
 mod figures;

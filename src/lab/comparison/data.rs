@@ -6,10 +6,9 @@
 
 use super::OwnCode;
 use crate::data::compared::Compared;
-use crate::data::{Measured, Quantity, Reader, Series};
+use crate::data::{ColumnOptions, Measured, Quantity, Reader, Series};
 use crate::playback::recording::{Curve, Moment, Recording};
 use crate::run::Simulation;
-use crate::scenario::csv::Renaming;
 use crate::scenario::{Problems, Scenario};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -20,8 +19,8 @@ const IN_A_RECORDING: usize = Curve::OF_POINT.len();
 /// Measured data, and the run's values for them so far.
 pub struct DataComparison {
     pub name: String,
-    /// What its columns are called instead.
-    pub(in crate::lab) map: Vec<Renaming>,
+    /// What the user says of its columns.
+    pub(in crate::lab) options: ColumnOptions,
     pub measured: Arc<Measured>,
     pub own: Option<OwnCode>,
     series: Arc<Series>,
@@ -38,14 +37,14 @@ impl DataComparison {
     /// `measured` beside the run of `scenario`, of which nothing has been read yet.
     pub(super) fn new(
         name: &str,
-        map: &[Renaming],
+        options: &ColumnOptions,
         measured: Measured,
         scenario: &Arc<Scenario>,
     ) -> Result<Self, Problems> {
         let series = Arc::new(measured.series()?.clone());
         let mut comparison = Self {
             name: name.to_owned(),
-            map: map.to_vec(),
+            options: options.clone(),
             own: None,
             simulation: Simulation::new(Arc::clone(scenario)),
             reader: Reader::new(Arc::clone(&series)),

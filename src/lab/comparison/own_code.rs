@@ -2,7 +2,7 @@
 //! about the run as it stands, found in the background.
 
 use crate::data::quantity::TIME;
-use crate::data::{self, Measured};
+use crate::data::{self, ColumnOptions, Measured};
 use crate::own_code::{self, Trial, Verdict, rows};
 use crate::playback::background::Job;
 use crate::scenario::csv::Renaming;
@@ -30,11 +30,11 @@ impl OwnCode {
     pub(super) fn read(
         name: &str,
         text: &str,
-        map: &[Renaming],
+        options: &ColumnOptions,
         scenario: &Scenario,
     ) -> Result<(Measured, Option<Self>), Problems> {
         let time_step_s = scenario.motion.time_step_s;
-        let measured = data::read_with(name, text, map);
+        let (measured, map) = (data::read_with(name, text, options), &options.map);
         let has_times = measured.as_ref().is_ok_and(|it| it.series().is_ok());
         if scenario.motion.scheme.name != "report" {
             return Ok((measured?, None));
@@ -55,7 +55,7 @@ impl OwnCode {
         };
         let own = Self {
             text: text.into(),
-            map: map.into(),
+            map: map.as_slice().into(),
             judged: None,
             is_told: false,
         };

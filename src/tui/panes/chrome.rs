@@ -8,6 +8,7 @@ use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, Part};
 use crate::playback::reading::Reading;
 use crate::text::number::{fixed, significant};
+use crate::text::wrap::columns;
 use crate::tui::keymap::{BINDINGS, Binding, Does, Key, Mode, Worth};
 use crate::tui::screen::page_goes_on;
 use crate::tui::split::split_columns;
@@ -34,7 +35,7 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
         lab.player().run().scenario().least_time_step_s(),
         area.width as usize,
     );
-    let clock_x = area.width.saturating_sub(clock.chars().count() as u16);
+    let clock_x = area.width.saturating_sub(columns(&clock) as u16);
     write(area, (clock_x, 0), &clock, theme.style(Role::Text), buf);
     let [left, _] = split_columns(area, clock_x.saturating_sub(1));
     let room = left.width.saturating_sub(1) as usize;
@@ -46,10 +47,10 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
         String::new(),
     ];
     let title = &lab.player().run().scenario().file.title;
-    let least = title.chars().count().min(LEAST_TITLE);
-    let fits = |details: &&String| details.chars().count() + least <= room;
+    let least = columns(title).min(LEAST_TITLE);
+    let fits = |details: &&String| columns(details) + least <= room;
     if let Some(details) = details.iter().find(fits) {
-        let title = shortened(title, room - details.chars().count());
+        let title = shortened(title, room - columns(details));
         let x = write(left, (1, 0), &title, theme.style(Role::Heading), buf);
         write(left, (x, 0), details, theme.style(Role::Quiet), buf);
     }
@@ -98,7 +99,7 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
         };
         remarks.insert(BEFORE_OFFER.min(remarks.len()), offer);
     }
-    let length = |text: &String| text.chars().count() + SEPARATOR.chars().count();
+    let length = |text: &String| columns(text) + columns(SEPARATOR);
     let whole: usize = remarks.iter().map(|remark| length(&remark.long)).sum();
     let mut x = 1;
     for remark in &remarks {

@@ -3,3 +3,4 @@
 mod broken;
 mod of_run;
 mod read;
+mod spellings;

@@ -174,7 +174,7 @@ impl Subject<'_> {
     /// What is drawn besides the arrows.
     #[rustfmt::skip]
     fn signs_in_words(&self) -> Vec<Words> {
-        let is_top = self.seen.run.scenario().file.trace.is_none();
+        let is_top = self.seen.run.scenario().traces_top();
         let all = [
             (true, ["+ pivot"; 3], Role::Heading),
             (true, ["thick: axle", "", ""], Role::Focus),

@@ -45,8 +45,11 @@ impl Traces<'_> {
             let (step, time_s) = (cursor.step, decimal(cursor.time_s));
             return format!("step {step} at {time_s} s");
         }
-        let point = self.0.run.scenario().file.trace.as_deref();
-        let point = point.unwrap_or("axle top");
+        let scenario = self.0.run.scenario();
+        let point = match scenario.traces_top() {
+            true => "axle top",
+            false => scenario.traced_name(),
+        };
         let has_exact = self.0.run.overlay().is_some();
         let beside = [
             (has_exact, EXACT),

@@ -1,0 +1,102 @@
+//! What cannot be right about measured data beside a scenario: most often a unit.
+
+use super::hint::MOST_TILT_RAD;
+use super::{Measured, Series, at_times};
+use crate::scenario::Scenario;
+use crate::text::number::significant;
+use crate::text::printable::printable;
+use std::sync::Arc;
+
+/// By how much of its arm a point may be measured farther from the pivot than it is.
+const MARGIN: f64 = 0.05;
+/// Times at which the run's tilt is looked at, and the most steps for that.
+const MOST_TIMES: usize = 100;
+const MOST_STEPS: f64 = 1e5;
+
+/// Says what in `measured` cannot be right for the body of `scenario`; empty if nothing is found.
+pub fn doubts(measured: &Measured, scenario: &Arc<Scenario>) -> Vec<String> {
+    let Ok(series) = measured.series() else {
+        return Vec::new();
+    };
+    let found = [
+        point_beyond_arm(series, scenario.arm_m()),
+        tilt_in_radians(series, scenario),
+    ];
+    let origin = printable(&measured.origin);
+    let found = found.into_iter().flatten();
+    found.map(|doubt| format!("{origin}: {doubt}")).collect()
+}
+
+/// A traced point that was measured farther from the pivot than its arm is long.
+fn point_beyond_arm(series: &Series, arm_m: f64) -> Option<String> {
+    let mut squares = vec![0.0; series.times_s.len()];
+    let (mut names, mut sigma) = (Vec::new(), 0.0_f64);
+    for curve in &series.curves {
+        if ["x_m", "y_m", "z_m"].contains(&curve.quantity.name) {
+            names.push(curve.quantity.name);
+            for point in &curve.points {
+                squares[point.row] += point.value * point.value;
+                sigma = sigma.max(point.sigma.unwrap_or(0.0));
+            }
+        }
+    }
+    let farthest_m = squares.into_iter().fold(0.0, f64::max).sqrt();
+    if farthest_m - 3.0 * sigma <= (1.0 + MARGIN) * arm_m {
+        return None;
+    }
+    let unit = match farthest_m / arm_m {
+        30.0..300.0 => "cm",
+        300.0..3000.0 => "mm",
+        _ => "",
+    };
+    let cure = match unit {
+        "" => "check the unit and the origin of the coordinates".to_owned(),
+        unit => {
+            let column = |name: &&str| {
+                let axis = name.trim_end_matches("_m");
+                format!("{axis}={axis}_{unit}")
+            };
+            let columns: Vec<String> = names.iter().map(column).collect();
+            format!("are they in {unit}? --map {}", columns.join(","))
+        }
+    };
+    let names = names.join(", ");
+    Some(format!(
+        "{names}: the point was measured up to {} m from the pivot, and it is {} m from it: {cure}",
+        significant(farthest_m, 3),
+        significant(arm_m, 3)
+    ))
+}
+
+/// A tilt that never exceeds pi, where the run's does.
+fn tilt_in_radians(series: &Series, scenario: &Arc<Scenario>) -> Option<String> {
+    let is_tilt = |name: &str| name == "tilt_deg";
+    let curve = series
+        .curves
+        .iter()
+        .find(|curve| is_tilt(curve.quantity.name))?;
+    let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let most_deg = most(&mut curve.points.iter().map(|point| point.value.abs()));
+    if most_deg > MOST_TILT_RAD || curve.points.is_empty() {
+        return None;
+    }
+    let last_s = series.times_s.last().copied().unwrap_or(0.0);
+    let mut few = Series {
+        times_s: series.times_s.clone(),
+        curves: vec![curve.clone()],
+    };
+    let every = curve.points.len().div_ceil(MOST_TIMES);
+    few.curves[0].points = curve.points.iter().copied().step_by(every).collect();
+    if last_s / scenario.motion.time_step_s > MOST_STEPS {
+        few.curves[0].points.truncate(1);
+    }
+    let of_run = at_times(&few, scenario, &|| true).ok()??;
+    let of_run_deg = most(&mut of_run.into_iter().flatten());
+    (of_run_deg > MOST_TILT_RAD).then(|| {
+        format!(
+            "tilt_deg never exceeds {}, and the run's tilt reaches {} degrees: is it in radians? --map COLUMN=tilt_rad",
+            significant(most_deg, 3),
+            significant(of_run_deg, 3)
+        )
+    })
+}

@@ -1,0 +1,297 @@
+//! The `--map` that would read a file whose columns were refused, filled in with its own names.
+
+use super::names::{is_known, named};
+use super::quantity::{Quantity, TIME, names};
+use super::spellings::{name_columns, time_like, track};
+use crate::analysis::readouts;
+use crate::scenario::csv::{Csv, LEFT_OUT, Naming, Renaming};
+use crate::scenario::keys::KEYS;
+use crate::scenario::problem::near;
+use crate::text::printable::{brief, is_steering};
+use crate::text::unit::{Kind, Unit, in_known_unit};
+
+/// A name shorter than this is near to too many others.
+const LEAST_NEAR: usize = 4;
+/// A rate in rad/s is hardly above this; a gyroscope's in deg/s often is.
+const MOST_RATE: f64 = 40.0;
+/// A tilt in radians is at most this.
+pub(super) const MOST_TILT_RAD: f64 = 3.15;
+/// Rows from which units are guessed.
+const MOST_ROWS: usize = 2000;
+
+/// Says which `--map` reads `cells`, the file `origin`; `map` is the one given. Empty if none can be found.
+pub(super) fn hint(cells: &Csv, map: &[Renaming], origin: &str) -> String {
+    let mut tracks: Vec<&str> = Vec::new();
+    for place in 0..cells.names.len() {
+        if let Some(title) = track(cells, place).filter(|title| !tracks.contains(title)) {
+            tracks.push(title);
+        }
+    }
+    if tracks.len() < 2 {
+        let map = completed(cells, map, origin, None);
+        return map.map_or_else(String::new, |map| format!("; this reads the file: {map}"));
+    }
+    let of_track = |title: &&str| {
+        let map = completed(cells, map, origin, Some(title))?;
+        Some(format!("{map} reads the track \"{}\"", brief(title, 40)))
+    };
+    let all: Vec<String> = tracks.iter().filter_map(of_track).collect();
+    match all.is_empty() {
+        true => String::new(),
+        false => format!("; {}", all.join(", ")),
+    }
+}
+
+/// The option with `map` and what it lacks, of several tracks for this one.
+fn completed(cells: &Csv, map: &[Renaming], origin: &str, only: Option<&str>) -> Option<String> {
+    let mut guess = Guess {
+        cells,
+        added: Vec::new(),
+    };
+    guess.add_all(only, origin);
+    let reads = |added: &[(usize, String)]| {
+        let mut named_cells = cells.clone();
+        for (place, name) in added {
+            let known = in_known_unit(name, is_known);
+            let known = known.map_or_else(|| format!("({LEFT_OUT})"), |(known, _)| known);
+            named_cells.name_column(*place, &known, 1.0);
+            named_cells.own[*place].is_mapped = true;
+        }
+        name_columns(&mut named_cells, origin, |_| true).is_ok() && named(&named_cells).is_ok()
+    };
+    if !reads(&guess.added) {
+        return None;
+    }
+    map_option(cells, map, &guess.added)
+}
+
+/// The option that maps what `map` does, and the columns at these places.
+pub fn map_option(cells: &Csv, map: &[Renaming], added: &[(usize, String)]) -> Option<String> {
+    let given = map.iter().map(|(column, name)| format!("{column}={name}"));
+    let added = added.iter();
+    let added = added.map(|(place, name)| format!("{}={name}", label(cells, *place)));
+    let all = given.chain(added).collect::<Vec<_>>().join(",");
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_=,.:/+-@".contains(c);
+    if all.chars().all(is_plain) {
+        return Some(format!("--map {all}"));
+    }
+    let quoted = shlex::try_quote(&all).ok()?;
+    Some(format!("--map {quoted}"))
+}
+
+/// The name by which `--map` finds the column at `place`, or its number.
+fn label(cells: &Csv, place: usize) -> String {
+    let own = &cells.own[place];
+    let is_alone = cells.own.iter().filter(|it| it.name == own.name).count() == 1;
+    let is_plain = !own.name.is_empty()
+        && own
+            .name
+            .chars()
+            .all(|c| c != ',' && c != '\'' && !is_steering(c))
+        && own.name.len() <= 80
+        && (cells.naming == Naming::Numbers || own.name.parse::<usize>().is_err());
+    match is_alone && is_plain {
+        true => own.name.clone(),
+        false => own.number.to_string(),
+    }
+}
+
+/// Columns and the names that they probably should have.
+struct Guess<'a> {
+    cells: &'a Csv,
+    added: Vec<(usize, String)>,
+}
+
+impl Guess<'_> {
+    fn add_all(&mut self, only: Option<&str>, origin: &str) {
+        let places = (0..self.cells.names.len()).filter(|&place| {
+            let is_first = place == 0 || only.is_none();
+            !self.cells.own[place].is_mapped && (is_first || track(self.cells, place) == only)
+        });
+        let places: Vec<usize> = places.collect();
+        let has = |name: &str| {
+            let mut columns = self.cells.own.iter().zip(&self.cells.names);
+            columns.any(|(own, known)| own.is_mapped && known == name)
+        };
+        let is_of_table = |name: &str| {
+            name.contains('.')
+                || readouts::find(name).is_some() && Quantity::find(name).is_none() && name != TIME
+        };
+        let times = self.cells.names.iter().filter(|name| *name == TIME);
+        let has_time = times.count() == 1;
+        if !has_time && self.cells.names.iter().any(|name| is_of_table(name)) {
+            return self.add_of_table(&places);
+        }
+        if !has_time && let Some(place) = self.time(&places) {
+            let unit = self.time_unit(place);
+            self.added.push((place, unit.to_owned()));
+        }
+        let mut names = self.cells.names.iter();
+        let has_quantity = names.any(|name| Quantity::find(name).is_some());
+        let is_gyroscope = self.is_gyroscope(origin);
+        for &place in &places {
+            if self.is_added(place) {
+                continue;
+            }
+            let name = &self.cells.names[place];
+            let is_refused = name.contains('.') && is_known(name)
+                || name.contains("uncertainty") && name.starts_with("t_");
+            let guessed = self.quantity(place, is_gyroscope);
+            let is_free =
+                |known: &String| self.added.iter().all(|(_, name)| name != known) && !has(known);
+            if is_refused {
+                self.added.push((place, LEFT_OUT.to_owned()));
+            } else if let Some(known) = guessed.filter(is_free) {
+                self.added.push((place, known));
+            }
+        }
+        let is_quantity = |(_, name): &(usize, String)| name != LEFT_OUT && !name.starts_with("t_");
+        if !has_quantity
+            && !self.added.iter().any(is_quantity)
+            && let Some(&place) = places
+                .iter()
+                .filter(|&&place| self.cells.names[place] != TIME)
+                .find(|&&place| !self.is_added(place) && !self.numbers(place).is_empty())
+        {
+            self.added.push((place, self.tilt(place).to_owned()));
+        }
+    }
+
+    fn is_added(&self, place: usize) -> bool {
+        self.added.iter().any(|(added, _)| *added == place)
+    }
+
+    /// Of a table of runs: the key or readout that was meant, or nothing.
+    fn add_of_table(&mut self, places: &[usize]) {
+        let known = || KEYS.iter().map(|key| key.path).chain(readouts::names());
+        for &place in places {
+            let name = &self.cells.names[place];
+            if super::names::is_refused_in_table(name) {
+                let meant =
+                    near(name, known()).filter(|meant| !meant.contains('*') && *meant != name);
+                let meant = meant.unwrap_or(LEFT_OUT).to_owned();
+                self.added.push((place, meant));
+            }
+        }
+    }
+
+    /// The first numbers of a column.
+    fn numbers(&self, place: usize) -> Vec<f64> {
+        let rows = self.cells.rows.iter().take(MOST_ROWS);
+        let number = |(_, row): &(u64, Vec<String>)| {
+            let text = match self.cells.separator {
+                ',' => row[place].clone(),
+                _ => row[place].replacen(',', ".", 1),
+            };
+            text.parse::<f64>().ok().filter(|number| number.is_finite())
+        };
+        rows.filter_map(number).collect()
+    }
+
+    fn largest(&self, place: usize) -> f64 {
+        let numbers = self.numbers(place);
+        numbers
+            .iter()
+            .fold(0.0, |most, number| most.max(number.abs()))
+    }
+
+    /// The column that is probably the time: one called so, else one whose numbers increase, else the first with numbers.
+    fn time(&self, places: &[usize]) -> Option<usize> {
+        let increases = |&place: &usize| {
+            let numbers = self.numbers(place);
+            numbers.len() > 1 && numbers.windows(2).all(|pair| pair[0] < pair[1])
+        };
+        let is_unknown = |place: &usize| Quantity::find(&self.cells.names[*place]).is_none();
+        let is_called_so = |&place: &usize| time_like(&self.cells.own[place].name);
+        let mut columns = places.iter().copied().filter(is_unknown);
+        let of_both = columns
+            .clone()
+            .find(|place| is_called_so(place) && increases(place));
+        of_both
+            .or_else(|| columns.clone().find(is_called_so))
+            .or_else(|| columns.clone().find(increases))
+            .or_else(|| columns.find(|&place| !self.numbers(place).is_empty()))
+    }
+
+    fn time_unit(&self, place: usize) -> &'static str {
+        if Unit::split(&self.cells.own[place].name).is_some_and(|(_, unit)| unit.kind == Kind::Time)
+        {
+            return TIME; // its own unit is read
+        }
+        let numbers = self.numbers(place);
+        let span = numbers
+            .last()
+            .zip(numbers.first())
+            .map_or(0.0, |(last, first)| last - first);
+        let between = span / (numbers.len().max(2) - 1) as f64;
+        match between {
+            1e4.. => "t_ns",
+            1.5.. => "t_ms",
+            _ => TIME,
+        }
+    }
+
+    fn is_gyroscope(&self, origin: &str) -> bool {
+        let says_so = |text: &str| {
+            let text = text.to_lowercase();
+            ["gyr", "rot", "rate", "angular", "seconds_elapsed"]
+                .iter()
+                .any(|word| text.contains(word))
+        };
+        says_so(origin) || self.cells.own.iter().any(|own| says_so(&own.name))
+    }
+
+    /// The quantity that the column probably is.
+    fn quantity(&self, place: usize, is_gyroscope: bool) -> Option<String> {
+        let own = &self.cells.own[place].name;
+        if is_known(&self.cells.names[place]) && Quantity::find(&self.cells.names[place]).is_some()
+        {
+            // One that is alone is read without being mapped.
+            let name = &self.cells.names[place];
+            let same = self.cells.names.iter().filter(|other| *other == name);
+            return (same.count() > 1).then(|| name.clone());
+        }
+        let (stem, unit) =
+            Unit::split(own).map_or((own.as_str(), None), |(stem, unit)| (stem, Some(unit)));
+        let lower = stem.trim().to_lowercase();
+        if ["theta", "θ", "tilt", "inclination"]
+            .iter()
+            .any(|word| lower.contains(word))
+        {
+            return Some(self.tilt(place).to_owned());
+        }
+        let axis = ["x", "y", "z"].iter().position(|axis| {
+            let mut words = lower.split(|c: char| !c.is_alphanumeric());
+            let is_short = |front: &str| ["g", "w", "gyro", "gyr", "omega", "ω"].contains(&front);
+            words.any(|word| word == *axis || word.strip_suffix(axis).is_some_and(is_short))
+        });
+        let has_foreign_word = ["acc", "mag", "grav", "linear"]
+            .iter()
+            .any(|word| lower.contains(word));
+        if let Some(axis) = axis.filter(|_| !has_foreign_word) {
+            let number = axis + 1;
+            let is_length = unit.is_some_and(|unit| unit.kind == Kind::Length);
+            return match () {
+                () if is_length || !is_gyroscope && lower.len() == 1 && unit.is_none() => {
+                    Some(format!("{}_m", ["x", "y", "z"][axis]))
+                }
+                () if unit.is_some_and(|unit| unit.kind != Kind::Rate) => None,
+                () if unit.is_none() && self.largest(place) > MOST_RATE => {
+                    Some(format!("w{number}_deg_per_s"))
+                }
+                () => Some(format!("w{number}_rad_per_s")),
+            };
+        }
+        let quantities = names().filter(|name| *name != TIME && Quantity::find(name).is_some());
+        let meant = near(own, quantities).filter(|_| own.len() >= LEAST_NEAR)?;
+        Some(meant.to_owned())
+    }
+
+    fn tilt(&self, place: usize) -> &'static str {
+        let has_unit = Unit::split(&self.cells.own[place].name).is_some();
+        match !has_unit && self.largest(place) <= MOST_TILT_RAD {
+            true => "tilt_rad",
+            false => "tilt_deg",
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! The names that other programs give to the columns that gyrolab reads, in one table, with the units in them.
+//!
+//! Read without `--map`: phyphox (`Gyroscope x (rad/s)`, `Rotation x`, `Angular velocity x`, `X (rad/s)`), Tracker (`t`, `x`,
+//! `y`, with or without units and titles), Sensor Logger (`seconds_elapsed`; its `x`, `y`, `z` in a file called
+//! Gyroscope.csv), Physics Toolbox (`time`, `wx`, `wy`, `wz`), and loggers that state units (`timestamp_ms`, `gx_dps`).
+
+use super::names::{UNCERTAINTY, is_known, uncertainty_of, without_uncertainty};
+use super::quantity::{QUANTITIES, TIME};
+use crate::scenario::Problem;
+use crate::scenario::csv::Csv;
+use crate::text::number::significant;
+use crate::text::printable::brief;
+use crate::text::unit::{Kind, Unit, in_known_unit, with_word};
+use std::path::Path;
+
+/// Names of the time, without unit, in lower case and without separators.
+const TIMES: [&str; 9] = [
+    "t",
+    "time",
+    "zeit",
+    "timestamp",
+    "elapsed",
+    "elapsedtime",
+    "timeelapsed",
+    "secondselapsed",
+    "systemtime",
+];
+/// Those of them that are seconds where no unit is stated.
+const IN_SECONDS: [&str; 4] = ["t", "time", "zeit", "secondselapsed"];
+
+/// What stands before an axis in the name of an angular velocity about the body's own axis.
+const RATES: [&str; 17] = [
+    "",
+    "g",
+    "gyr",
+    "gyro",
+    "gyroscope",
+    "gyroskop",
+    "rot",
+    "rotation",
+    "rotationrate",
+    "angularvelocity",
+    "angularrate",
+    "angularspeed",
+    "angvel",
+    "omega",
+    "ω",
+    "winkelgeschwindigkeit",
+    "drehrate",
+];
+/// What stands before an axis in the name of a coordinate.
+const PLACES: [&str; 3] = ["", "pos", "position"];
+
+/// The most columns that are named with what they are read as.
+const MOST_TOLD: usize = 12;
+
+/// The time of Sensor Logger, which names its files after the sensors.
+const SENSOR_LOGGER: &str = "seconds_elapsed";
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+const BODY_RATES: [&str; 3] = ["w1_rad_per_s", "w2_rad_per_s", "w3_rad_per_s"];
+const COORDINATES: [&str; 3] = ["x_m", "y_m", "z_m"];
+
+/// How surely a column is what it is read as. Of several columns for one quantity the surest is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Surety {
+    /// By a name without a unit.
+    Bare,
+    /// By a name with a unit.
+    WithUnit,
+    /// By gyrolab's own name.
+    Named,
+}
+
+/// What a column is read as.
+#[derive(Clone, Debug)]
+struct Meaning {
+    /// gyrolab's name.
+    name: String,
+    /// The factor to the unit of that name.
+    factor: f64,
+    surety: Surety,
+}
+
+/// What other columns of the file say about names without a unit.
+struct Company {
+    /// A time `t` stands with coordinates in m, as Tracker writes them.
+    has_t: bool,
+    /// A time `time` stands with rates `wx`, `wy`, `wz` in rad/s, as Physics Toolbox writes them.
+    has_time: bool,
+    /// The file is the gyroscope's of Sensor Logger, with rates `x`, `y`, `z` in rad/s.
+    is_gyroscope: bool,
+}
+
+/// Gives the columns that `--map` does not name the names that gyrolab has for them, of those that are wanted, and converts
+/// their numbers. `origin` is the file.
+///
+/// # Errors
+/// If several columns have the same meaning and no `--map` chooses one.
+pub fn name_columns(
+    cells: &mut Csv,
+    origin: &str,
+    is_wanted: impl Fn(&str) -> bool,
+) -> Result<(), Vec<Problem>> {
+    let company = Company::of(cells, origin);
+    let is_mapped = cells.own.iter().any(|own| own.is_mapped);
+    let meanings: Vec<Option<Meaning>> = (0..cells.names.len())
+        .map(|place| match cells.own[place].is_mapped {
+            true => None,
+            false => meaning(&cells.names[place], &company).filter(|it| is_wanted(&it.name)),
+        })
+        .collect();
+    let mut problems = Vec::new();
+    for (place, meaning) in meanings.iter().enumerate() {
+        let Some(meaning) = meaning else { continue };
+        let of_name = |it: &&Meaning| it.name == meaning.name;
+        let surest = meanings.iter().flatten().filter(of_name);
+        let is_surest = surest.map(|it| it.surety).max() == Some(meaning.surety);
+        let is_rival = |other: &Option<Meaning>| {
+            let other = other.as_ref().filter(of_name);
+            other.is_some_and(|other| other.surety == meaning.surety)
+        };
+        let rivals = (0..meanings.len()).filter(|&place| is_rival(&meanings[place]));
+        let rivals: Vec<usize> = rivals.collect();
+        let mut columns = cells.own.iter().zip(&cells.names);
+        let is_taken = columns.any(|(own, name)| own.is_mapped && *name == meaning.name);
+        if is_taken || !is_surest || (is_mapped && rivals.len() > 1) {
+            cells.names[place].insert_str(0, OTHER);
+        } else if rivals.len() == 1 {
+            cells.name_column(place, &meaning.name, meaning.factor);
+        } else if rivals[0] == place {
+            problems.push(several(cells, &meaning.name, &rivals));
+        }
+    }
+    if problems.is_empty() {
+        Ok(())
+    } else {
+        Err(problems)
+    }
+}
+
+/// Stands before the name of a column that is not read because another one is.
+const OTHER: &str = "(another) ";
+
+fn several(cells: &Csv, name: &str, places: &[usize]) -> Problem {
+    let numbers = places
+        .iter()
+        .map(|&place| cells.own[place].number.to_string());
+    let numbers = numbers.collect::<Vec<_>>().join(" and ");
+    let tracks: Vec<String> = places
+        .iter()
+        .filter_map(|&place| track(cells, place))
+        .map(|title| format!("\"{}\"", brief(title, 40)))
+        .collect();
+    let of_tracks = match tracks.is_empty() {
+        true => String::new(),
+        false => format!(", of the tracks {}", tracks.join(" and ")),
+    };
+    let rule = format!(
+        "names columns {numbers}{of_tracks}, which would both be {name}: leave one of them out, or choose one by its number"
+    );
+    Problem::at(cells.own[places[0]].shown(), rule)
+}
+
+/// The title above the column, which is the name of its track.
+pub(super) fn track(cells: &Csv, place: usize) -> Option<&str> {
+    let titles = cells.titles.iter().take(cells.own[place].number);
+    let mut titles = titles.filter(|title| !title.is_empty());
+    titles.next_back().map(String::as_str)
+}
+
+impl Company {
+    fn of(cells: &Csv, origin: &str) -> Self {
+        let has = |name: &str| cells.own.iter().any(|own| own.name == name);
+        let is_t = |own: &str| Unit::split(own).map_or(own, |(stem, _)| stem) == "t";
+        let file = Path::new(origin).file_name().unwrap_or_default();
+        let file = file.to_string_lossy().to_lowercase();
+        Self {
+            has_t: cells.own.iter().any(|own| is_t(&own.name)),
+            has_time: has("time"),
+            is_gyroscope: has(SENSOR_LOGGER) && file.contains("gyroscope"),
+        }
+    }
+}
+
+/// Whether the name of the file `cells` says what its columns are.
+pub(super) fn depends_on_name(cells: &Csv) -> bool {
+    cells.own.iter().any(|own| own.name == SENSOR_LOGGER)
+}
+
+/// What the column `name` is read as.
+fn meaning(name: &str, company: &Company) -> Option<Meaning> {
+    if let Some(of) = without_uncertainty(name) {
+        let of = meaning(&of, company).filter(|of| of.name != TIME)?;
+        return Some(Meaning {
+            name: with_word(&of.name, UNCERTAINTY),
+            ..of
+        });
+    }
+    if is_known(name) {
+        return Some(Meaning {
+            name: name.to_owned(),
+            factor: 1.0,
+            surety: Surety::Named,
+        });
+    }
+    if let Some((known, factor)) = in_known_unit(name, is_known) {
+        return Some(Meaning {
+            name: known,
+            factor,
+            surety: Surety::WithUnit,
+        });
+    }
+    if let Some((stem, unit)) = Unit::split(name) {
+        let known = with_unit(stem, unit)?;
+        return Some(Meaning {
+            factor: unit.times(Unit::of(known)?)?,
+            name: known.to_owned(),
+            surety: Surety::WithUnit,
+        });
+    }
+    let known = without_unit(name, company)?;
+    Some(Meaning {
+        name: known.to_owned(),
+        factor: 1.0,
+        surety: match letters(name) == "secondselapsed" {
+            true => Surety::WithUnit,
+            false => Surety::Bare,
+        },
+    })
+}
+
+/// gyrolab's name for a column whose name is `stem` and which states `unit`.
+fn with_unit(stem: &str, unit: &Unit) -> Option<&'static str> {
+    let letters = letters(stem);
+    match unit.kind {
+        Kind::Time => TIMES.contains(&&*letters).then_some(TIME),
+        Kind::Rate if axis_after(&letters, &RATES).is_some() => {
+            axis_after(&letters, &RATES).map(|axis| BODY_RATES[axis])
+        }
+        Kind::Length if axis_after(&letters, &PLACES).is_some() => {
+            axis_after(&letters, &PLACES).map(|axis| COORDINATES[axis])
+        }
+        // Which axes wx (rad/s) is about cannot be known.
+        Kind::Rate if axis_after(&letters, &["w"]).is_some() => None,
+        kind => {
+            let is_same = |name: &&str| {
+                Unit::of(name).is_some_and(|unit| {
+                    unit.kind == kind
+                        && self::letters(&name[..name.len() - unit.end.len()]) == letters
+                })
+            };
+            QUANTITIES
+                .iter()
+                .map(|quantity| quantity.name)
+                .find(is_same)
+        }
+    }
+}
+
+/// The same for a column that states no unit.
+fn without_unit(name: &str, company: &Company) -> Option<&'static str> {
+    let letters = letters(name);
+    if IN_SECONDS.contains(&&*letters) {
+        return Some(TIME);
+    }
+    if company.has_time && name.len() == 2 {
+        return axis_after(name, &["w"]).map(|axis| BODY_RATES[axis]);
+    }
+    let axis = AXES.iter().position(|axis| *axis == name)?;
+    if company.is_gyroscope {
+        return Some(BODY_RATES[axis]);
+    }
+    company.has_t.then_some(COORDINATES[axis])
+}
+
+/// The axis at the end of a name that has one of `fronts` before it.
+fn axis_after(letters: &str, fronts: &[&str]) -> Option<usize> {
+    AXES.iter().position(|axis| {
+        let front = letters.strip_suffix(axis);
+        front.is_some_and(|front| fronts.contains(&front))
+    })
+}
+
+/// Whether `name` is one that programs give to the time, in whatever unit.
+pub fn time_like(name: &str) -> bool {
+    let stem = Unit::split(name).map_or(name, |(stem, _)| stem);
+    TIMES.contains(&&*letters(stem))
+}
+
+/// The letters and digits of `name` in lower case, without the word "axis".
+fn letters(name: &str) -> String {
+    let all = name.chars().filter(|c| c.is_alphanumeric());
+    let all: String = all.flat_map(char::to_lowercase).collect();
+    all.replace("axis", "")
+}
+
+/// Says what the columns with other names are read as; `None` if there are none.
+pub(super) fn read_as(cells: &Csv) -> Option<String> {
+    let columns = cells.own.iter().zip(&cells.names);
+    let renamed = columns.filter(|(own, name)| {
+        let of = uncertainty_of(name).unwrap_or_else(|| (*name).clone());
+        let is_read = is_known(&of) && **name != own.name;
+        is_read && (!own.is_mapped || own.factor != 1.0)
+    });
+    let words = renamed.map(|(own, name)| {
+        let own_name = brief(&own.shown(), 40);
+        match own.factor {
+            1.0 => format!("{own_name} as {name}"),
+            factor => format!("{own_name} as {name} (times {})", significant(factor, 7)),
+        }
+    });
+    let mut words: Vec<String> = words.collect();
+    let more = words.len().saturating_sub(MOST_TOLD);
+    words.truncate(MOST_TOLD);
+    words.extend((more > 0).then(|| format!("and {more} more")));
+    (!words.is_empty()).then(|| format!("columns read: {}", words.join(", ")))
+}
