@@ -128,11 +128,12 @@ fn play_run(
     let monitor = RefCell::new(Monitor::new(simulation.now()));
     let each = |step: &Step| monitor.borrow_mut().follow_ahead(step);
     let go_on = |step, steps: u64| {
-        monitor.borrow_mut().catch_up();
+        let mut go_on = || watch(step, steps);
+        monitor.borrow_mut().catch_up(&mut go_on)?;
         if differs() {
             return ControlFlow::Break(());
         }
-        watch(step, steps)
+        go_on()
     };
     let steps = scenario.steps;
     let (ended, _) = stream::play(&mut simulation, steps, Some(&mut csv), each, go_on)?;

@@ -1,5 +1,6 @@
 //! Schemes and time steps compared with the exact motion: a table of errors, drifts, cost and measured order.
 
+use super::cost::has_closed_form;
 use super::deviation::Deviation;
 use crate::cores;
 use crate::physics::{SchemeInfo, State};
@@ -94,6 +95,8 @@ pub fn compare(
 const LOOKS: u64 = 1000;
 /// Steps that are taken at once, without a look at the clock, the exact motion or the watcher.
 const BLOCK: u64 = 4096;
+/// The same where a step may have to be integrated, which may take long.
+const BLOCK_OF_INTEGRATIONS: u64 = 16;
 /// Fewer steps than these tell little of what a step costs.
 const TIMED: u64 = 1000;
 
@@ -125,6 +128,11 @@ impl Trial {
             ..Self::default()
         };
         let stride = stride(scenario.steps);
+        let block = if has_closed_form(scenario) {
+            BLOCK
+        } else {
+            BLOCK_OF_INTEGRATIONS
+        };
         let momentum = scenario.start.momentum.norm();
         let scale = if momentum > 0.0 { momentum } else { 1.0 };
         let mut states = Vec::new();
@@ -132,7 +140,7 @@ impl Trial {
         while simulation.step_number() < scenario.steps && !trial.has_broken {
             let looks = simulation.step_number() / stride + 1;
             let next_look = scenario.steps.min(looks.saturating_mul(stride));
-            let next = next_look.min(simulation.step_number() + BLOCK);
+            let next = next_look.min(simulation.step_number() + block);
             states.clear();
             let begin = Instant::now();
             trial.has_broken = take_steps(&mut simulation, next, &mut states).is_err();

@@ -46,7 +46,7 @@ pub fn integration_rad_per_s(scenario: &Scenario, state: &State) -> f64 {
 }
 
 /// Whether there is no friction, the body is symmetric and every push, those of edits too, acts on its axle.
-fn has_closed_form(scenario: &Scenario) -> bool {
+pub fn has_closed_form(scenario: &Scenario) -> bool {
     let body = &scenario.body.mechanics;
     let edited = scenario.edits.iter().flat_map(Edit::pushes_set);
     let mut pushed = scenario.pushes.iter().chain(edited).map(|push| push.point);

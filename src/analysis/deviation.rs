@@ -3,13 +3,14 @@
 //! The exact motion to the last bit costs as much as a step. Eight steps together are looked at within rounding, for a quarter
 //! of that; the farthest of all is computed to the last bit when it is asked for.
 
-use super::cost::is_affordable;
+use super::cost::{has_closed_form, is_affordable};
 use super::swings::{Swing, Swings, height};
 use crate::physics::State;
 use crate::physics::exact::AT_ONCE;
 use crate::run::Truth;
 use crate::scenario::Scenario;
 use nalgebra::{Matrix3, Vector3};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The exact motion beside one run, and how far the run has been off it.
@@ -17,8 +18,9 @@ use std::sync::Arc;
 pub struct Beside {
     /// `None` where it would take too long, or has left the range of numbers.
     truth: Option<Truth>,
-    /// The newest steps, which are looked at together.
+    /// The newest steps, which are looked at together, and how many these are: only a closed form is had faster for several.
     waiting: Vec<State>,
+    together: usize,
     /// The step that is farthest off so far, where its distance is known within rounding alone.
     farthest: Option<State>,
     /// The distance of the farthest step, m.
@@ -33,6 +35,7 @@ impl Beside {
         Self {
             truth,
             waiting: Vec::new(),
+            together: looked_at_together(scenario),
             farthest: None,
             most_m: 0.0,
             swings: Swings::new(&scenario.start),
@@ -42,6 +45,7 @@ impl Beside {
     /// Goes on beside a run of `scenario`, whose past is the same.
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
         self.settle(); // its steps so far belong to the forces so far
+        self.together = looked_at_together(scenario);
         match &mut self.truth {
             Some(truth) => truth.go_on_in(scenario),
             None => self.truth = Some(Truth::new(Arc::clone(scenario))),
@@ -64,7 +68,7 @@ impl Beside {
     #[inline]
     pub fn hold(&mut self, state: &State) {
         self.wait(state);
-        if self.waiting.len() >= AT_ONCE {
+        if self.waiting.len() >= self.together {
             self.look();
         }
     }
@@ -79,12 +83,20 @@ impl Beside {
 
     /// Looks at the steps that wait.
     fn look(&mut self) {
+        let _ = self.look_while(&mut || ControlFlow::Continue(()));
+    }
+
+    /// Looks at the steps that wait as long as `go_on` says so; it is asked after a few of them. Those that are left then
+    /// are never looked at.
+    fn look_while(&mut self, go_on: &mut dyn FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
         let mut states = std::mem::take(&mut self.waiting);
-        for together in states.chunks(AT_ONCE) {
+        for together in states.chunks(self.together) {
             self.look_at(together);
+            go_on()?;
         }
         states.clear();
         self.waiting = states;
+        ControlFlow::Continue(())
     }
 
     fn look_at(&mut self, states: &[State]) {
@@ -115,6 +127,14 @@ impl Beside {
     pub fn settle(&mut self) {
         self.look();
         self.settle_farthest();
+    }
+
+    /// As [`settle`](Self::settle), as long as `go_on` says so: each step may take long. A run that was left in between is
+    /// compared no further.
+    pub fn settle_while(&mut self, go_on: &mut dyn FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
+        self.look_while(go_on)?;
+        self.settle_farthest();
+        ControlFlow::Continue(())
     }
 
     fn settle_farthest(&mut self) {
@@ -153,6 +173,14 @@ impl Beside {
     /// against that.
     pub fn swing(&self) -> Option<Swing> {
         self.truth.as_ref().and_then(|_| self.swings.worst())
+    }
+}
+
+fn looked_at_together(scenario: &Scenario) -> usize {
+    if has_closed_form(scenario) {
+        AT_ONCE
+    } else {
+        1
     }
 }
 

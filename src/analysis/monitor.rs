@@ -36,6 +36,7 @@ use super::turning_points::TurningPoints;
 use super::turns::{Measured, WithoutNutation};
 use crate::physics::{LagrangeTop, SymmetricTop};
 use crate::run::Step;
+use std::ops::ControlFlow;
 
 /// The instruments that follow a run; to be shown every step of it.
 #[derive(Clone, Debug)]
@@ -137,9 +138,10 @@ impl Monitor {
         mean_at_rest(step)
     }
 
-    /// Compares the steps with the exact motion that have not been.
-    pub fn catch_up(&mut self) {
-        self.beside.settle();
+    /// Compares the steps with the exact motion that have not been, as long as `go_on` says so: see
+    /// [`Beside::settle_while`].
+    pub fn catch_up(&mut self, go_on: &mut dyn FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
+        self.beside.settle_while(go_on)
     }
 
     /// As [`follow`](Self::follow), without comparing the step with the exact motion: for a reader of what is measured

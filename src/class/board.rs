@@ -11,9 +11,16 @@ use chrono::Local;
 
 /// The lines of the board, at most `width` columns wide.
 pub fn lines(folder: &Folder, width: usize) -> Vec<String> {
-    let seats = sittings(folder);
+    let (seats, unread) = match sittings(folder) {
+        Ok(seats) => (seats, None),
+        Err(reason) => (Vec::new(), Some(reason)),
+    };
     let time = Local::now().format("%H:%M");
     let mut board = vec![format!("{time} · {}", present(&seats).1)];
+    board.extend(unread);
+    board.extend(seats.iter().filter_map(|it| it.trouble.clone()));
+    let waiting = login::waiting(folder, unix_ms() / 1000).into_iter();
+    board.extend(waiting.map(|seat| seat.in_words() + "; k 4 in the teacher's lab ends that"));
     if folder.is_full() {
         board.push("the disk is full: what is answered now cannot be kept".to_owned());
     }
@@ -34,7 +41,7 @@ pub fn lines(folder: &Folder, width: usize) -> Vec<String> {
             }
             board.extend(of_page(&state, &seats));
             board.push(String::new());
-            board.extend(of_seats(folder, &state, &seats, width));
+            board.extend(of_seats(&state, &seats, width));
         }
     }
     let fitted = |line: &String| match columns(line) {
@@ -71,10 +78,8 @@ fn of_rounds(predict: &Predict, state: &State, seats: &[Sitting]) -> String {
     (1..=question.round()).map(round_of).collect()
 }
 
-/// The seats in columns, and the names that are locked.
-fn of_seats(folder: &Folder, state: &State, seats: &[Sitting], width: usize) -> Vec<String> {
-    let locked = login::locked(folder, unix_ms() / 1000).into_iter();
-    let locked = locked.map(|name| format!("{name}: locked by wrong codes"));
+/// The seats in columns.
+fn of_seats(state: &State, seats: &[Sitting], width: usize) -> Vec<String> {
     let cell = |sitting: &Sitting| {
         let place = sitting.lessons.get(&state.lesson);
         let votes = place.map_or(0, |place| place.predictions.all().count());
@@ -88,5 +93,5 @@ fn of_seats(folder: &Folder, state: &State, seats: &[Sitting], width: usize) -> 
         row.trim_end().to_owned()
     };
     let rows = cells.chunks((width / widest).max(1)).map(row);
-    locked.chain(rows).collect()
+    rows.collect()
 }

@@ -135,9 +135,9 @@ impl Folder {
         self.own().join("wrong")
     }
 
-    /// Forgets the wrong codes that were typed for `name`.
-    pub(super) fn unlock(&self, name: &str) {
-        let _ = fs::remove_file(self.wrong().join(name)); // where it stays, it counts on
+    /// Forgets the wrong codes that were typed for the seat `word`.
+    pub(super) fn forget_wrong_codes(&self, word: &str) {
+        let _ = fs::remove_file(self.wrong().join(word)); // where it stays, it counts on
     }
 
     /// The folder of the teacher, for the state and the sessions.

@@ -1,24 +1,87 @@
-//! Taking a seat: a name becomes a seat with a drawn code, and the seat's word leads back to it. Five wrong codes lock a
-//! name for a minute, for every login: they are counted in the folder.
+//! Taking a seat: a name becomes a seat with a drawn code, and the seat's word leads back to it.
+//!
+//! A wrong code counts for every seat of its name, in the folder, for all logins together. After [`FREE`] of them the seats
+//! of that name accept no code for a minute, and after each further one for twice as long, up to [`LONGEST_WAIT_S`]. The
+//! right code of a seat resets the count of that seat alone; the teacher can reset it too.
+//!
+//! How long a guess takes: the code of a seat is one of a million. Someone who guesses a code in every hour, in however many
+//! logins and with however many seats of the same name, needs 500 000 hours on average, which is 57 years.
 
 use super::Folder;
-use super::seat::{LONGEST_NAME, Seat, all_seats, is_name, name_of};
+use super::seat::{CODES, DIGITS, LONGEST_NAME, Seat, all_seats, is_name, name_of};
 use crate::storage::shared;
 use crate::text::printable::printable;
 use std::fs::{self, File};
 use std::hash::{BuildHasher, Hasher, RandomState};
+use std::path::PathBuf;
 
 /// The most seats of a class.
 pub const MOST_SEATS: usize = 200;
-/// After this many wrong codes a name is locked, and for how long, s.
-const MOST_WRONG: u32 = 5;
-const LOCKED_S: u64 = 60;
+/// So many wrong codes may be typed one after the other.
+const FREE: u32 = 5;
+/// The wait after the last of them, s, and the longest.
+const FIRST_WAIT_S: u64 = 60;
+const LONGEST_WAIT_S: u64 = 3600;
+/// The longest file that counts wrong codes, bytes.
+const LONGEST_COUNT: usize = 100;
 
 pub const ASKS: &str = "A name for your seat (the teacher sees it, others do not);\n\
-    or, to come back, your seat's word, such as anna-4711: ";
+    or, to come back, your seat's word, such as anna-471108: ";
 const RULE: &str = "a name has letters, digits and hyphens,\n\
     no blanks, 24 at most; the word of a seat ends\n\
-    in a hyphen and four digits";
+    in a hyphen and six digits";
+
+/// The wrong codes that were typed for a seat since its right code was typed, or the teacher reset them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WrongCodes {
+    pub count: u32,
+    /// When the last one was typed, s since 1970.
+    at_unix_s: u64,
+}
+
+impl WrongCodes {
+    fn file(folder: &Folder, word: &str) -> PathBuf {
+        folder.wrong().join(word)
+    }
+
+    /// Reads what the folder holds for the seat `word`. A file that cannot be read counts nothing: the next wrong code
+    /// replaces it.
+    fn read(folder: &Folder, word: &str) -> Self {
+        let parsed = || {
+            let text = shared::read_of_anyone(&Self::file(folder, word), LONGEST_COUNT);
+            let text = text.ok()??;
+            let (count, at_unix_s) = text.split_once(' ')?;
+            Some(Self {
+                count: count.parse().ok()?,
+                at_unix_s: at_unix_s.parse().ok()?,
+            })
+        };
+        parsed().unwrap_or_default()
+    }
+
+    fn write(self, folder: &Folder, word: &str) -> Result<(), String> {
+        let Self { count, at_unix_s } = self;
+        if count == 0 {
+            folder.forget_wrong_codes(word);
+            return Ok(());
+        }
+        let text = format!("{count} {at_unix_s}");
+        shared::replace(&Self::file(folder, word), &text)
+            .map_err(|error| format!("no code can be tried now: {error}"))
+    }
+
+    /// Returns for how long no code is accepted from `now_unix_s` on, s.
+    fn wait_s(self, now_unix_s: u64) -> u64 {
+        let Some(further) = self.count.checked_sub(FREE) else {
+            return 0;
+        };
+        let whole_s = (FIRST_WAIT_S << further.min(6)).min(LONGEST_WAIT_S);
+        self.at_unix_s
+            .saturating_add(whole_s)
+            .saturating_sub(now_unix_s)
+            .min(whole_s) // the clock may have been set back
+    }
+}
 
 /// The seat that `typed` asks for, and whether it is new.
 ///
@@ -37,14 +100,14 @@ pub fn take(folder: &Folder, typed: &str, now_unix_s: u64) -> Result<(Seat, bool
 }
 
 fn begin(folder: &Folder, name: &str) -> Result<Seat, String> {
-    if all_seats(folder).len() >= MOST_SEATS {
+    if all_seats(folder)?.len() >= MOST_SEATS {
         return Err(format!(
             "this class has {MOST_SEATS} seats, the most that it can have: ask your teacher"
         ));
     }
     for _ in 0..100 {
-        let code = RandomState::new().build_hasher().finish() % 10_000;
-        let seat = Seat::of(folder, &format!("{name}-{code:04}"));
+        let code = RandomState::new().build_hasher().finish() % CODES;
+        let seat = Seat::of(folder, &format!("{name}-{code:0DIGITS$}"));
         match seat.make() {
             Ok(true) => return Ok(seat),
             Ok(false) => {}
@@ -54,49 +117,99 @@ fn begin(folder: &Folder, name: &str) -> Result<Seat, String> {
     Err("no seat is free under that name: choose another".to_owned())
 }
 
+/// Returns the seat `word`, whose name is `name`.
+///
+/// While a seat of that name waits, its right code gets the same answer as a wrong one: what is typed then says nothing
+/// about it. A seat of that name that does not wait can be taken meanwhile.
 fn come_back(folder: &Folder, word: &str, name: &str, now_unix_s: u64) -> Result<Seat, String> {
-    // One login after the other, so that each is counted.
-    let _turn = File::open(folder.wrong()).and_then(|turn| turn.lock().map(|()| turn));
-    let count = wrong(folder, name, now_unix_s);
-    if count >= MOST_WRONG {
-        let rule = "wait a minute, or ask your teacher";
-        return Err(format!("too many wrong codes for {name}: {rule}"));
+    // One login after the other, so that each is counted. On a file system without locks some may count as one.
+    let turn = File::open(folder.wrong());
+    let turn = turn.map_err(|error| format!("no code can be tried now: {error}"))?;
+    let _ = turn.lock(); // held until this function returns
+    let mut seats = all_seats(folder)?;
+    seats.retain(|seat| name_of(&seat.word) == Some(name));
+    let before: Vec<_> = seats
+        .iter()
+        .map(|seat| WrongCodes::read(folder, &seat.word))
+        .collect();
+    let waits = before.iter().map(|wrong| wrong.wait_s(now_unix_s));
+    let longest_s = waits.clone().max().unwrap_or(0);
+    let mut found = seats.iter().zip(waits).filter(|(_, wait_s)| *wait_s == 0);
+    let seat = found.find_map(|(seat, _)| (seat.word == word).then_some(seat));
+    if seat.is_none() && longest_s > 0 {
+        let wait = in_words(longest_s);
+        return Err(format!(
+            "too many wrong codes for {name}: wait {wait}, or ask your teacher"
+        ));
     }
-    let seat = Seat::of(folder, word);
-    if seat.folder.is_dir() {
-        let state = folder.state().ok().flatten().unwrap_or_default();
-        if state.closed.contains(word) {
-            return Err("this seat is closed: ask your teacher".to_owned());
-        }
-        folder.unlock(name);
-        return Ok(seat);
+    // Counted before the answer, whatever it is: where the disk is full, it is the same for every code.
+    for (seat, wrong) in seats.iter().zip(&before) {
+        let counted = WrongCodes {
+            count: wrong.count.saturating_add(1),
+            at_unix_s: now_unix_s,
+        };
+        counted.write(folder, &seat.word)?;
     }
-    // A name without a seat has nothing to guess, and would fill the folder.
-    let mut seats = all_seats(folder).into_iter();
-    if seats.any(|seat| name_of(&seat.word) == Some(name)) {
-        let text = format!("{} {now_unix_s}", count + 1);
-        let counted = shared::replace(&folder.wrong().join(name), &text);
-        counted.map_err(|error| format!("no code can be tried now: {error}"))?;
-    }
-    Err("there is no seat of that word; for a new seat type a name alone".to_owned())
-}
-
-/// How many wrong codes were typed for `name`; a lock that is over counts no more.
-fn wrong(folder: &Folder, name: &str, now_unix_s: u64) -> u32 {
-    let counted = || {
-        // Of either account: the teacher's may have made the folder.
-        let text = fs::read_to_string(folder.wrong().join(name)).ok()?;
-        let (count, at_s) = text.split_once(' ')?;
-        let (count, at_s): (u32, u64) = (count.parse().ok()?, at_s.parse().ok()?);
-        (count < MOST_WRONG || now_unix_s < at_s.saturating_add(LOCKED_S)).then_some(count)
+    let Some(seat) = seat else {
+        return Err("there is no seat of that word; for a new seat type a name alone".to_owned());
     };
-    counted().unwrap_or(0)
+    for (other, wrong) in seats.iter().zip(before) {
+        if other.word != seat.word {
+            wrong.write(folder, &other.word)?;
+        }
+    }
+    folder.forget_wrong_codes(&seat.word);
+    let state = folder.state().ok().flatten().unwrap_or_default();
+    if state.closed.contains(word) {
+        return Err("this seat is closed: ask your teacher".to_owned());
+    }
+    Ok(seat.clone())
 }
 
-/// The names that are locked now.
-pub fn locked(folder: &Folder, now_unix_s: u64) -> Vec<String> {
+/// A seat that accepts no code for a while.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Waiting {
+    pub word: String,
+    pub wrong: WrongCodes,
+    wait_s: u64,
+}
+
+impl Waiting {
+    /// As the lists of the teacher have it.
+    pub fn in_words(&self) -> String {
+        let (word, count) = (&self.word, self.wrong.count);
+        format!(
+            "{word}: {count} wrong codes, waits {}",
+            in_words(self.wait_s)
+        )
+    }
+}
+
+/// Returns the seats that accept no code now.
+pub fn waiting(folder: &Folder, now_unix_s: u64) -> Vec<Waiting> {
     let entries = fs::read_dir(folder.wrong()).into_iter().flatten().flatten();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let is_locked = |name: &String| is_name(name) && wrong(folder, name, now_unix_s) >= MOST_WRONG;
-    names.filter(is_locked).collect()
+    let words = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let seats = words.filter(|word| name_of(word).is_some() && Seat::of(folder, word).is_there());
+    let mut waiting: Vec<_> = seats
+        .map(|word| {
+            let wrong = WrongCodes::read(folder, &word);
+            let wait_s = wrong.wait_s(now_unix_s);
+            Waiting {
+                word,
+                wrong,
+                wait_s,
+            }
+        })
+        .filter(|seat| seat.wait_s > 0)
+        .collect();
+    waiting.sort_unstable_by(|a, b| a.word.cmp(&b.word));
+    waiting
+}
+
+/// A time in whole minutes, or in seconds below two.
+fn in_words(seconds: u64) -> String {
+    match seconds {
+        0..120 => format!("{seconds} s"),
+        _ => format!("{} min", seconds.div_ceil(60)),
+    }
 }

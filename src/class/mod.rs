@@ -1,10 +1,10 @@
 //! A class: a teacher's lab and the seats of the students, which know of each other through files in a folder.
 //!
 //! ```text
-//! DIR/.gyrolab/teacher/state              what the teacher's lab shows, and the rounds of votes
-//! DIR/.gyrolab/seats/anna-4711/           a seat: its exports
-//! DIR/.gyrolab/seats/anna-4711/.gyrolab/  seat (place and votes), open (who has it open, heartbeat), its session
-//! DIR/.gyrolab/wrong/anna                 wrong codes typed for that name
+//! DIR/.gyrolab/teacher/state                what the teacher's lab shows, and the rounds of votes
+//! DIR/.gyrolab/seats/anna-471108/           a seat: its exports
+//! DIR/.gyrolab/seats/anna-471108/.gyrolab/  seat (place and votes), open (who has it open, heartbeat), its session
+//! DIR/.gyrolab/wrong/anna-471108            wrong codes that count for that seat, and when the last was typed
 //! ```
 //!
 //! Each file is written whole by one account and read by the other, three times a second. A run is deterministic: a student's

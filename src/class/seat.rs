@@ -2,10 +2,13 @@
 
 use super::folder::{Folder, OF_ALL, VERSION};
 use super::{ago, unix_ms};
+use crate::lessons::class::KeptLessons;
 use crate::storage::confined::SESSIONS;
 use crate::storage::shared;
+use crate::text::printable::Shown;
 use serde::{Deserialize, Serialize};
 use std::fs;
+use std::io::{self, ErrorKind};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -13,8 +16,11 @@ use std::time::Duration;
 const FORMAT: u32 = 2;
 /// The most characters of a name.
 pub(super) const LONGEST_NAME: usize = 24;
-/// The digits of a code.
-const DIGITS: usize = 4;
+/// The digits of a code, and how many codes there are.
+pub(super) const DIGITS: usize = 6;
+pub(super) const CODES: u64 = 1_000_000;
+/// The digits of a code of an older version. The seats of that version keep their words.
+const OLD_DIGITS: usize = 4;
 /// The longest file of a seat, bytes.
 const LONGEST: usize = 1 << 20;
 /// A seat is lost when its lab has given no sign for longer than this, and away after an hour.
@@ -24,7 +30,7 @@ const AWAY: Duration = Duration::from_secs(3600);
 /// A seat of a class.
 #[derive(Clone, Debug, Default)]
 pub struct Seat {
-    /// Its word, such as `anna-4711`.
+    /// Its word, such as `anna-471108`.
     pub word: String,
     pub folder: PathBuf,
 }
@@ -57,20 +63,36 @@ pub(super) fn is_name(name: &str) -> bool {
     (1..=LONGEST_NAME).contains(&length) && name.chars().all(is_allowed) && !name.starts_with('-')
 }
 
-/// The name of a seat, if `word` is that of one.
+/// The name of a seat, if `word` is that of one. A word whose code lacks a digit is none, and no name either: nobody who
+/// mistypes a word gets a new seat.
 pub(super) fn name_of(word: &str) -> Option<&str> {
     let (name, code) = word.rsplit_once('-')?;
-    let is_code = code.len() == DIGITS && code.bytes().all(|digit| digit.is_ascii_digit());
+    let is_code = code.len() >= OLD_DIGITS && code.bytes().all(|digit| digit.is_ascii_digit());
     (is_code && is_name(name)).then_some(name)
 }
 
 /// The seats of the class, in the order of their names.
-pub fn all_seats(folder: &Folder) -> Vec<Seat> {
-    let entries = fs::read_dir(folder.seats()).into_iter().flatten().flatten();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let mut names: Vec<_> = names.filter(|name| name_of(name).is_some()).collect();
+///
+/// # Errors
+/// When the folder of the seats cannot be read.
+pub fn all_seats(folder: &Folder) -> Result<Vec<Seat>, String> {
+    let unread = |error: io::Error| format!("{}: {error}", Shown(&folder.seats()));
+    let entries = match fs::read_dir(folder.seats()) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries.map_err(unread)?,
+    };
+    let mut names = Vec::new();
+    for entry in entries {
+        let entry = entry.map_err(unread)?;
+        let is_folder = entry.file_type().is_ok_and(|it| it.is_dir());
+        let name = entry.file_name().into_string();
+        names.extend(
+            name.ok()
+                .filter(|name| is_folder && name_of(name).is_some()),
+        );
+    }
     names.sort_unstable();
-    names.iter().map(|name| Seat::of(folder, name)).collect()
+    Ok(names.iter().map(|name| Seat::of(folder, name)).collect())
 }
 
 impl Seat {
@@ -81,8 +103,12 @@ impl Seat {
         }
     }
 
+    pub(super) fn is_there(&self) -> bool {
+        self.folder.is_dir()
+    }
+
     /// Makes the folders of a seat; returns whether it is new.
-    pub(super) fn make(&self) -> std::io::Result<bool> {
+    pub(super) fn make(&self) -> io::Result<bool> {
         let is_new = shared::make_folder(&self.folder, OF_ALL)?;
         shared::make_folder(&self.folder.join(SESSIONS), OF_ALL)?;
         Ok(is_new)
@@ -106,6 +132,20 @@ impl Seat {
         is_own
             .then_some(record)
             .ok_or_else(|| format!("another version of gyrolab wrote it, this is {VERSION}"))
+    }
+
+    /// What its file holds, with the places in the lessons.
+    ///
+    /// # Errors
+    /// As for [`record`](Self::record), and when the places are damaged; with the name of the seat.
+    pub fn places(&self) -> Result<(Record, KeptLessons), String> {
+        let read = || {
+            let record = self.record()?;
+            let kept = KeptLessons::read(&record.lessons);
+            let kept = kept.map_err(|_| "is damaged".to_owned())?;
+            Ok((record, kept))
+        };
+        read().map_err(|reason: String| format!("the file of the seat {}: {reason}", self.word))
     }
 
     pub fn save(&self, record: &Record) -> Result<(), String> {

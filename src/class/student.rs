@@ -390,14 +390,22 @@ impl Role for Student {
     }
 
     fn leave(&mut self) -> Result<String, String> {
-        self.seat.leave(&self.holds);
-        let back = || {
-            format!(
-                "Your seat is {}: type that when you come back.",
-                self.seat.word
-            )
+        let is_unsaved = self.is_new && self.ended.is_none();
+        let saved = if is_unsaved {
+            self.seat.save(&self.record)
+        } else {
+            Ok(())
         };
-        Ok(self.ended.map_or_else(back, str::to_owned))
+        self.seat.leave(&self.holds);
+        if let Some(ended) = self.ended {
+            return Ok(ended.to_owned());
+        }
+        let word = &self.seat.word;
+        let back = format!("Your seat is {word}: type that when you come back.");
+        saved.map_err(|reason| {
+            format!("{reason}\nYour last answers are lost: tell your teacher. {back}")
+        })?;
+        Ok(back)
     }
 }
 

@@ -1,7 +1,6 @@
 //! The teacher's lab: what it shows goes to the class, and the votes of the class come to its pages.
 
 use super::folder::{Folder, LONGEST_RUN, Run, Stage, State, VERSION};
-use super::seat::name_of;
 use super::votes::{self, FEWEST, Sitting, Tally, present, sittings};
 use super::{EVERY, LEAST_WAIT, Role, login, unix_ms};
 use crate::data::find_shipped;
@@ -43,6 +42,12 @@ enum Menu {
     Seats(usize),
 }
 
+/// A line of the list of the seats.
+enum Entry<'a> {
+    Waiting(login::Waiting),
+    Seat(&'a Sitting),
+}
+
 impl Teacher {
     /// The class in `folder`, with the rounds of an earlier lab.
     pub fn new(folder: Folder, before: State) -> Self {
@@ -74,7 +79,13 @@ impl Teacher {
 
     /// Makes the state that of the lab and of the votes.
     fn look(&mut self, lab: &Lab, lessons: &Lessons) {
-        self.seats = sittings(&self.folder);
+        match sittings(&self.folder) {
+            Ok(seats) => {
+                self.trouble = seats.iter().find_map(|seat| seat.trouble.clone());
+                self.seats = seats;
+            }
+            Err(trouble) => self.trouble = Some(trouble),
+        }
         if let Some(taken) = lessons.taken() {
             self.state.lesson.clone_from(&taken.lesson.name);
             self.state.page = taken.place.page;
@@ -191,22 +202,27 @@ impl Teacher {
         Some((predict.name.clone(), lines))
     }
 
-    /// The names that are locked by wrong codes, then the words of the seats.
-    fn entries(&self) -> Vec<String> {
-        let mut entries = login::locked(&self.folder, unix_ms() / 1000);
-        entries.extend(self.seats.iter().map(|it| it.seat.word.clone()));
-        entries
+    /// The seats that accept no code, then all seats.
+    fn entries(&self) -> Vec<Entry<'_>> {
+        let waiting = login::waiting(&self.folder, unix_ms() / 1000).into_iter();
+        let seats = self.seats.iter().map(Entry::Seat);
+        waiting.map(Entry::Waiting).chain(seats).collect()
     }
 
     fn list(&self, selected: usize) -> Vec<Paragraph> {
-        let line = |(index, entry): (usize, String)| {
-            let sitting = self.seats.iter().find(|it| it.seat.word == entry);
-            let kind = Kind::Choice {
-                is_selected: index == selected,
-                is_given: sitting.is_none() || self.state.closed.contains(&entry),
+        let line = |(index, entry): (usize, Entry<'_>)| {
+            let (text, is_given) = match entry {
+                Entry::Waiting(seat) => (seat.in_words(), true),
+                Entry::Seat(sitting) => (
+                    sitting.in_words(&self.state),
+                    self.state.closed.contains(&sitting.seat.word),
+                ),
             };
-            let text = sitting.map(|sitting| sitting.in_words(&self.state));
-            let text = text.unwrap_or_else(|| format!("{entry}: locked by wrong codes"));
+            let is_selected = index == selected;
+            let kind = Kind::Choice {
+                is_selected,
+                is_given,
+            };
             Paragraph::new(kind, text)
         };
         let lines = self.entries().into_iter().enumerate().map(line);
@@ -259,16 +275,16 @@ impl Teacher {
         }
     }
 
-    /// Closes the selected seat, or opens it; lets a name that is locked try again.
+    /// Closes the selected seat, or opens it; ends the wait of a seat that accepts no code.
     fn close_or_open(&mut self, selected: usize, lab: &mut Lab) {
-        let Some(entry) = self.entries().into_iter().nth(selected) else {
-            return;
+        let word = match self.entries().into_iter().nth(selected) {
+            None => return,
+            Some(Entry::Waiting(seat)) => return self.folder.forget_wrong_codes(&seat.word),
+            Some(Entry::Seat(sitting)) => sitting.seat.word.clone(),
         };
-        if name_of(&entry).is_none() {
-            self.folder.unlock(&entry);
-        } else if !self.state.closed.remove(&entry) {
-            lab.refuse(format!("{entry} is closed: Enter opens it again"));
-            self.state.closed.insert(entry);
+        if !self.state.closed.remove(&word) {
+            lab.refuse(format!("{word} is closed: Enter opens it again"));
+            self.state.closed.insert(word);
         }
     }
 }

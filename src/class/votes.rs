@@ -27,22 +27,30 @@ pub struct Sitting {
     pub is_aside: bool,
     pub lessons: BTreeMap<String, Place>,
     pub presence: Presence,
+    /// Why its file cannot be read: it then has no lessons here.
+    pub trouble: Option<String>,
 }
 
-/// Every seat of the class. What cannot be read counts as a seat without votes.
-pub fn sittings(folder: &Folder) -> Vec<Sitting> {
+/// Every seat of the class.
+///
+/// # Errors
+/// When the folder of the seats cannot be read.
+pub fn sittings(folder: &Folder) -> Result<Vec<Sitting>, String> {
     let sitting = |seat: Seat| {
-        let record: Record = seat.record().unwrap_or_default();
+        let (places, trouble) = match seat.places() {
+            Ok(places) => (places, None),
+            Err(trouble) => (<(Record, KeptLessons)>::default(), Some(trouble)),
+        };
+        let (record, kept) = places;
         Sitting {
             is_aside: record.is_aside,
-            lessons: KeptLessons::read(&record.lessons)
-                .unwrap_or_default()
-                .lessons,
+            lessons: kept.lessons,
             presence: seat.presence(),
             seat,
+            trouble,
         }
     };
-    all_seats(folder).into_iter().map(sitting).collect()
+    Ok(all_seats(folder)?.into_iter().map(sitting).collect())
 }
 
 /// How many of `seats` are here, and in words with those that are aside, lost or away.
@@ -82,7 +90,12 @@ impl Sitting {
             Presence::Here if self.is_aside => "aside",
             Presence::Here => "here",
         };
-        format!("{word}: {is_there}")
+        let unread = if self.trouble.is_some() {
+            ", its file cannot be read"
+        } else {
+            ""
+        };
+        format!("{word}: {is_there}{unread}")
     }
 }
 
@@ -203,13 +216,13 @@ const COLUMNS: [&str; 8] = [
     "lesson", "question", "round", "seat", "choice", "late", "page", "time",
 ];
 
-/// All votes of the class as CSV, in the order of seats, lessons and questions. A choice that the lesson no longer has is
+/// The votes of `seats` as CSV, in the order of seats, lessons and questions. A choice that the lesson no longer has is
 /// told in its words.
-pub fn csv(folder: &Folder) -> Result<String, csv::Error> {
+pub fn csv(folder: &Folder, seats: &[Sitting]) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS)?;
     let mut read = BTreeMap::new();
-    for sitting in sittings(folder) {
+    for sitting in seats {
         for (name, place) in &sitting.lessons {
             let lesson = read.entry(name.clone());
             let lesson = lesson.or_insert_with(|| reading::open_again(name).ok());

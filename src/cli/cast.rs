@@ -72,8 +72,7 @@ pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
     lab.take_commands(commands);
     cast.record(&mut lab, &interruption)?;
     let (length, markers) = (cast.now.as_secs_f64(), cast.markers);
-    output.write_and_keep(cast.text.as_bytes())?;
-    interruption.may_act_at_once()?;
+    interruption.keep(output, cast.text.as_bytes())?;
     tell(format_args!(
         "gyrolab: {length:.1} s with {} in {}",
         counted(markers, "chapter"),

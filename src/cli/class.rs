@@ -6,17 +6,16 @@ use super::new_lab::{DEFAULT, new_lab, refused};
 use super::workbench::open_at;
 use super::{print, progress, sessions, tell};
 use crate::class::folder::Folder;
-use crate::class::seat::all_seats;
 use crate::class::student::Student;
 use crate::class::teacher::Teacher;
-use crate::class::{Seat, board, login, votes};
+use crate::class::votes::{self, Sitting, sittings};
+use crate::class::{Seat, board, login};
 use crate::export::Destination;
-use crate::lessons::class::KeptLessons;
 use crate::lessons::clock::unix_s;
 use crate::lessons::{handout, reading};
 use crate::storage::confined::{Confined, MOST_OF_SEAT};
 use crate::storage::session;
-use crate::text::printable::Shown;
+use crate::text::printable::{Shown, printable};
 use crate::tui;
 use anyhow::{Context, bail, ensure};
 use rustix::process::{Pid, Resource, Signal};
@@ -37,7 +36,7 @@ const PENALTY: Duration = Duration::from_secs(1);
 pub(super) fn class(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     let at = || Folder::at(&args.folder).map_err(anyhow::Error::msg);
     if args.votes {
-        return print(&votes::csv(&at()?)?);
+        return print_votes(&at()?);
     }
     if args.board {
         return show_board(&at()?);
@@ -89,13 +88,30 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher))
 }
 
+fn print_votes(folder: &Folder) -> anyhow::Result<ExitCode> {
+    let seats = sittings(folder).map_err(anyhow::Error::msg)?;
+    print(&votes::csv(folder, &seats)?)?;
+    Ok(unread(&seats))
+}
+
+/// Says which files of `seats` cannot be read. Returns the exit code.
+fn unread(seats: &[Sitting]) -> ExitCode {
+    let mut code = ExitCode::SUCCESS;
+    for trouble in seats.iter().filter_map(|seat| seat.trouble.as_ref()) {
+        tell(format_args!("gyrolab: {}", printable(trouble)));
+        code = ExitCode::FAILURE;
+    }
+    code
+}
+
 fn show_board(folder: &Folder) -> anyhow::Result<ExitCode> {
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         tui::board::run(|width| board::lines(folder, width))
             .context("the terminal cannot be used")?;
         return Ok(ExitCode::SUCCESS);
     }
-    print(&(board::lines(folder, WIDTH).join("\n") + "\n"))
+    print(&(board::lines(folder, WIDTH).join("\n") + "\n"))?;
+    Ok(unread(&sittings(folder).map_err(anyhow::Error::msg)?))
 }
 
 /// Writes what each seat has predicted beside what came out: a file for each in the folder `output`.
@@ -103,16 +119,25 @@ fn answers(folder: &Folder, output: &Path, force: bool, look: Look) -> anyhow::R
     std::fs::create_dir_all(output).with_context(|| Shown(output).to_string())?;
     let interruption = progress::interruption()?;
     let mut files = 0;
-    for seat in all_seats(folder) {
-        let record = seat.record().unwrap_or_default();
-        let kept = KeptLessons::read(&record.lessons).unwrap_or_default();
+    let seats = sittings(folder).map_err(anyhow::Error::msg)?;
+    let mut code = unread(&seats);
+    for Sitting { seat, lessons, .. } in seats {
         let mut text = String::new();
-        for (name, place) in kept.lessons {
+        for (name, place) in lessons {
             if place.predictions.is_empty() {
                 continue;
             }
-            let Ok(lesson) = reading::open_again(&name) else {
-                continue; // its file is gone
+            let lesson = match reading::open_again(&name) {
+                Ok(lesson) => lesson,
+                Err(problems) => {
+                    let (word, why) = (&seat.word, problems.in_one_line());
+                    tell(format_args!(
+                        "gyrolab: {word}: answers left out: {}",
+                        printable(&why)
+                    ));
+                    code = ExitCode::FAILURE;
+                    continue;
+                }
             };
             let mut meter = interruption.meter();
             text += &handout::answers(&lesson, &place, new_lab(look)?, &mut meter)
@@ -130,7 +155,7 @@ fn answers(folder: &Folder, output: &Path, force: bool, look: Look) -> anyhow::R
         "gyrolab: the answers of {files} seats are in {}",
         Shown(output)
     ));
-    Ok(ExitCode::SUCCESS)
+    Ok(code)
 }
 
 /// Asks for a seat of the class in `dir`, and opens its lab.

@@ -63,7 +63,7 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let rows = table_of(&scenario, &schemes, &time_steps, interruption.meter());
     let rows = rows.ok_or(Interrupted)?;
     if let Some(output) = output {
-        output.write_and_keep(&csv_of_comparison(&scenario, &rows)?)?;
+        interruption.keep(output, &csv_of_comparison(&scenario, &rows)?)?;
     }
     if on_stdout {
         return Ok(ExitCode::SUCCESS);

@@ -168,8 +168,9 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     }
     let figure = source.draw(interruption.meter());
     let figure = figure.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?;
-    output.write_and_keep(&source.write(&figure.scene, format)?)?;
-    interruption.may_act_at_once()?;
+    let write = || source.write(&figure.scene, format);
+    let bytes = progress::with_clock("writing the figure", write)?;
+    interruption.keep(output, &bytes)?;
     for warning in figure.told() {
         tell(format_args!("gyrolab: {warning}"));
     }

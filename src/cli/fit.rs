@@ -129,8 +129,10 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     };
     if let Some(mut output) = output {
         let path = args.output.as_deref().unwrap_or(Path::new("the output"));
-        let written = write(&mut output, &report, args).and_then(|()| Ok(output.keep()?));
-        written.with_context(|| format!("cannot write {}", Shown(path)))?;
+        let cannot_write = || format!("cannot write {}", Shown(path));
+        write(&mut output, &report, args).with_context(cannot_write)?;
+        interruption.may_keep()?;
+        output.keep().with_context(cannot_write)?;
     }
     interruption.may_act_at_once()?;
     tell_of(&report, args)

@@ -108,7 +108,7 @@ pub(super) fn write(
             } else {
                 text?.into_bytes()
             };
-            output.write_and_keep(&bytes)?;
+            interruption.keep(output, &bytes)?;
             Ok(ExitCode::SUCCESS)
         }
     }

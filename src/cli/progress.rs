@@ -10,7 +10,8 @@ use signal_hook::iterator::Signals;
 use std::io::{self, IsTerminal, Stderr, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -18,13 +19,45 @@ use std::time::{Duration, Instant};
 /// A signal to end raises a flag; where the command has not ended after a while, the process ends.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Interruption {
-    has_come: Arc<AtomicBool>,
+    /// [`WORKING`], [`INTERRUPTED`] or [`KEEPING`]: it leaves the first once, so that a file is kept or the command is
+    /// interrupted, and never both.
+    stage: Arc<AtomicU8>,
     at_once: Arc<AtomicBool>,
 }
 
+const WORKING: u8 = 0;
+/// A signal has come.
+const INTERRUPTED_BY_SIGNAL: u8 = 1;
+/// The result gets its name. A signal comes too late.
+const KEEPING: u8 = 2;
+
 impl Interruption {
     pub(super) fn has_come(&self) -> bool {
-        self.has_come.load(Ordering::SeqCst)
+        self.stage.load(Ordering::SeqCst) == INTERRUPTED_BY_SIGNAL
+    }
+
+    /// Enters the last stage of a command that writes a file or a folder. From now on the command ends as if no signal
+    /// came.
+    ///
+    /// # Errors
+    /// When one has come before: the result must not be kept.
+    pub(super) fn may_keep(&self) -> Result<(), Interrupted> {
+        match self.leave_working_for(KEEPING) {
+            Err(INTERRUPTED_BY_SIGNAL) => Err(Interrupted),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes `bytes`, the whole result, to `output`, and keeps it unless a signal has come.
+    pub(super) fn keep(&self, mut output: Destination, bytes: &[u8]) -> anyhow::Result<()> {
+        output.write_whole(bytes)?;
+        self.may_keep()?;
+        Ok(output.keep()?)
+    }
+
+    fn leave_working_for(&self, next: u8) -> Result<u8, u8> {
+        let order = Ordering::SeqCst;
+        self.stage.compare_exchange(WORKING, next, order, order)
     }
 
     /// Whether to go on, for what asks as it works.
@@ -63,8 +96,8 @@ impl Interruption {
         if signals.forever().next().is_none() {
             return;
         }
-        self.has_come.store(true, Ordering::SeqCst);
-        if !self.at_once.load(Ordering::SeqCst) {
+        let is_late = self.leave_working_for(INTERRUPTED_BY_SIGNAL).is_err();
+        if is_late || !self.at_once.load(Ordering::SeqCst) {
             thread::sleep(PATIENCE);
         }
         temporary::remove_own();
@@ -201,6 +234,29 @@ where
     }
 }
 
+/// Does `work`, which says nothing of how far it is. Meanwhile shows `what` it is and how long it has taken so far, after a
+/// second and for somebody who watches.
+pub(super) fn with_clock<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    if !io::stderr().is_terminal() {
+        return work();
+    }
+    let (working, is_done) = mpsc::channel::<()>();
+    let tick = move || {
+        let meter = Meter::counting("second");
+        while is_done.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
+            let elapsed = HumanDuration(meter.begin.elapsed());
+            meter.say(&format!("{what}: {elapsed:#}"));
+        }
+    };
+    thread::scope(|scope| {
+        // If the system gives no thread, nothing is shown.
+        let _ = thread::Builder::new().spawn_scoped(scope, tick);
+        let result = work();
+        drop(working);
+        result
+    })
+}
+
 /// What is going on, on stderr: after a second, for somebody who watches.
 pub(super) struct Meter {
     of: &'static str,
@@ -278,6 +334,17 @@ fn pace(of: &str, done: u64, left: u64, elapsed: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_result_is_kept_or_the_command_is_interrupted_and_never_both() {
+        let kept = Interruption::default();
+        assert!(kept.may_keep().is_ok() && kept.may_keep().is_ok());
+        assert!(kept.leave_working_for(INTERRUPTED_BY_SIGNAL).is_err());
+        assert!(!kept.has_come() && kept.may_act_at_once().is_ok());
+        let interrupted = Interruption::default();
+        assert!(interrupted.leave_working_for(INTERRUPTED_BY_SIGNAL).is_ok());
+        assert!(interrupted.has_come() && interrupted.may_keep().is_err());
+    }
 
     #[test]
     fn a_rate_is_told_once_there_is_one_and_never_as_0() {

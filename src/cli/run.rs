@@ -72,10 +72,12 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         bail!("no row lies between --from and --to: they are closer than the rows");
     }
     if let Some(output) = played.output.take() {
+        interruption.may_keep()?;
         output.keep()?;
     }
     interruption.may_act_at_once()?;
-    let summary = Summary::new(played.readouts(), played.wall).with_time_steps_of(&scenario);
+    let readouts = progress::with_clock(CHECKING, || played.readouts());
+    let summary = Summary::new(readouts, played.wall).with_time_steps_of(&scenario);
     let summary = summary.in_full(args.all);
     print_result(&summary, args.output.as_deref(), args.json)?;
     if let Some(rows) = played.rows.filter(|_| !to_stdout) {
@@ -85,6 +87,9 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let broke = played.ended.not_finite();
     Ok(ended_by(broke.map(|error| anyhow!(error).context(name))))
 }
+
+/// What goes on while the readouts at the end of a run are computed.
+pub(super) const CHECKING: &str = "comparing the run with the exact motion";
 
 fn cannot_write(path: &Path) -> String {
     if path == Path::new("-") {
@@ -140,7 +145,7 @@ pub(super) fn played<W: Write>(
     };
     let meter = interruption.meter();
     let watch = |step, steps| {
-        monitor.borrow_mut().catch_up();
+        monitor.borrow_mut().catch_up(&mut || meter(step, steps))?;
         meter(step, steps)
     };
     let ended = stream::play(&mut simulation, scenario.steps, csv.as_mut(), each, watch);

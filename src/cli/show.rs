@@ -114,11 +114,13 @@ pub(super) fn print_picture(
         lab.take_commands(commands);
         done = lab.finish_script_while(interruption.meter());
     }
-    interruption.may_act_at_once()?;
     let picture = args.picture(&lab);
     match output {
-        Some(output) => output.write_and_keep(&picture)?,
-        None => drop(print(&String::from_utf8_lossy(&picture))?),
+        Some(output) => interruption.keep(output, &picture)?,
+        None => {
+            interruption.may_act_at_once()?;
+            print(&String::from_utf8_lossy(&picture))?;
+        }
     }
     ended.with_context(|| name.to_owned())?; // the picture up to there is shown all the same
     done.map_err(anyhow::Error::msg)?;

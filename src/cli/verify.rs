@@ -252,7 +252,8 @@ fn verdict(
     let time_step_s = scenario.motion.time_step_s;
     let rows = own_code::rows::read(&text, &args.map, every, time_step_s)?;
     let name = args.against.as_deref().unwrap_or_default();
-    own_code::compare(&rows, name, scenario, &|| !interruption.has_come())
+    let compare = || own_code::compare(&rows, name, scenario, &|| !interruption.has_come());
+    progress::with_clock("comparing the rows with the scheme", compare)
 }
 
 /// As [`say`], of a file whose rows were computed again.

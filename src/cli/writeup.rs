@@ -3,7 +3,7 @@
 use super::args::scenario_of;
 use super::args::{LengthArgs, MapArgs, ScenarioArgs};
 use super::progress::{self, Interrupted, Interruption};
-use super::run::played;
+use super::run::{CHECKING, played};
 use super::{ended_by, tell, tell_notes};
 use crate::data::{self, Measured, doubts};
 use crate::export::stream::Ended;
@@ -65,13 +65,13 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let csv = File::create(folder.path().join(CSV)).with_context(cannot_write)?;
     let csv = CsvWriter::new(csv, &scenario).with_context(cannot_write)?;
     let (writeup, _) = made(scenario, beside, Some(csv), cannot_write, &interruption)?;
-    for (name, bytes) in writeup.files()? {
+    for (name, bytes) in progress::with_clock("drawing the figures", || writeup.files())? {
         let written = fs::write(folder.path().join(name), bytes);
         written
             .map_err(|error| advised(&error))
             .with_context(cannot_write)?;
     }
-    interruption.may_act_at_once()?;
+    interruption.may_keep()?;
     let others = folder.keep()?;
     tell(format_args!(
         "gyrolab: the write-up is in {}; begin with README.md",
@@ -126,10 +126,11 @@ fn made<W: Write>(
     let mut played = played.with_context(cannot)?;
     ensure!(played.ended != Ended::Stopped, Interrupted);
     let broken = played.ended.not_finite();
-    let readouts = played.readouts();
+    let readouts = progress::with_clock(CHECKING, || played.readouts());
     if let Some(beside) = &mut beside {
         let end_s = readouts.sample.time_s;
-        let held = beside.hold(&scenario, end_s, &|| !interruption.has_come());
+        let hold = || beside.hold(&scenario, end_s, &|| !interruption.has_come());
+        let held = progress::with_clock("comparing the run with the measured data", hold);
         ensure!(held.map_err(anyhow::Error::msg)?, Interrupted);
     }
     let (recorded, meter) = (recorder.end(broken), interruption.meter());

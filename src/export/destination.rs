@@ -147,10 +147,15 @@ impl Destination {
         }
     }
 
+    /// Writes `bytes`, all that there is to write.
+    pub fn write_whole(&mut self, bytes: &[u8]) -> Result<(), DestinationError> {
+        let written = self.write_all(bytes);
+        written.map_err(|error| self.refused(error))
+    }
+
     /// Writes `bytes`, all that there is to write, and [`keep`](Self::keep)s them.
     pub fn write_and_keep(mut self, bytes: &[u8]) -> Result<(), DestinationError> {
-        let written = self.write_all(bytes);
-        written.map_err(|error| self.refused(error))?;
+        self.write_whole(bytes)?;
         self.keep()
     }
 

@@ -15,14 +15,25 @@ const PREFIX: &str = ".gyrolab-";
 const DRAWN: usize = 6;
 const SUFFIX: &str = ".part";
 
-/// The paths of the temporary files of this process, also of those that have got their names or are gone.
+/// The paths of the temporary files and folders of this process, also of those that have got their names or are gone.
 static OWN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Removes the temporary files of this process, which ends on the spot.
+/// Removes the temporary files and folders of this process, which ends on the spot.
 pub fn remove_own() {
+    /// Another thread may still add files to a folder.
+    const ATTEMPTS: usize = 3;
     for path in &*OWN.lock().unwrap_or_else(PoisonError::into_inner) {
-        let _ = fs::remove_file(path); // there is nobody to tell
+        if path.is_dir() {
+            let _ = (0..ATTEMPTS).find(|_| fs::remove_dir_all(path).is_ok());
+        } else {
+            let _ = fs::remove_file(path); // there is nobody to tell
+        }
     }
+}
+
+fn remember(path: &Path) {
+    let mut own = OWN.lock().unwrap_or_else(PoisonError::into_inner);
+    own.push(path.to_owned());
 }
 
 pub fn file_in(folder: &Path, permissions: &Permissions) -> io::Result<NamedTempFile> {
@@ -31,8 +42,7 @@ pub fn file_in(folder: &Path, permissions: &Permissions) -> io::Result<NamedTemp
         let made = builder(permissions).tempfile_in(folder);
         let file = made.map_err(|error| of_the_system(&error))?;
         if is_locked_in_time(file.as_file())? {
-            let mut own = OWN.lock().unwrap_or_else(PoisonError::into_inner);
-            own.push(file.path().to_owned());
+            remember(file.path());
             return Ok(file);
         }
     }
@@ -46,6 +56,7 @@ pub fn folder_in(folder: &Path, permissions: &Permissions) -> io::Result<(TempDi
         let new = made.map_err(|error| of_the_system(&error))?;
         let lock = File::open(new.path())?;
         if is_locked_in_time(&lock)? {
+            remember(new.path());
             return Ok((new, lock));
         }
     }

@@ -298,6 +298,7 @@ pub fn exact(
     truth.state_at(begin_s);
     let closed = truth.motion().closed_form();
     let period_s = closed.and_then(LagrangeTop::nutation_period);
+    let look_every = if closed.is_some() { 1024 } else { 1 };
     let apart_s = apart_s(end_s - begin_s, scenario.motion.time_step_s, period_s);
     let count = ((end_s - begin_s) / apart_s).ceil().max(LEAST) as u64;
     let mut recorder = Recorder::of(scenario, wanted.clone(), true);
@@ -311,7 +312,7 @@ pub fn exact(
         azimuth.follow(&state.axle());
         let sample = sample(scenario, &state, &azimuth, truth.loads().gravity);
         recorder.take(time_s, 0.0, &sample.position, || sample);
-        if number.is_multiple_of(1024) && watch(number, count).is_break() {
+        if number.is_multiple_of(look_every) && watch(number, count).is_break() {
             return None;
         }
     }

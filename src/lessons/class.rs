@@ -65,7 +65,8 @@ pub fn files_in(folder: &Path) -> Vec<String> {
     let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
     let is_meant = |name: &String| name.ends_with(".md") && !name.starts_with('.');
     let paths = names.filter(is_meant).map(|name| folder.join(name));
-    let paths = paths.filter(|path| reading::read_again(path).is_ok());
+    // A FIFO would be waited for.
+    let paths = paths.filter(|path| path.is_file() && reading::read_again(path).is_ok());
     let mut paths: Vec<_> = paths.map(|path| path.display().to_string()).collect();
     paths.sort_unstable();
     paths

@@ -159,12 +159,27 @@ impl Form {
         }
     }
 
-    fn carry(self, picture: &[u8], text: &str) -> Option<Vec<u8>> {
+    /// Returns what stands behind the bytes that carry a text.
+    fn end(self) -> &'static [u8] {
         match self {
-            Self::Svg => svg::carry(picture, text),
-            Self::Pdf => pdf::carry(picture, text),
-            Self::Png => png::carry(picture, text),
+            Self::Svg => svg::END_OF_FILE,
+            Self::Pdf => b"",
+            Self::Png => png::END,
         }
+    }
+
+    /// Returns the bytes that carry `text` behind `before`.
+    fn carrier(self, before: &[u8], text: &str) -> Option<Vec<u8>> {
+        match self {
+            Self::Svg => Some(svg::carrier(text)),
+            Self::Pdf => pdf::carrier(before, text),
+            Self::Png => png::carrier(text),
+        }
+    }
+
+    fn carry(self, picture: &[u8], text: &str) -> Option<Vec<u8>> {
+        let before = picture.strip_suffix(self.end())?;
+        Some([before, &self.carrier(before, text)?, self.end()].concat())
     }
 
     fn part(self, file: &[u8]) -> Result<Parted, &'static str> {
@@ -194,16 +209,23 @@ pub struct Figure {
 
 impl Figure {
     /// The figure whose file has these bytes; or why no run can be had of it.
-    pub fn of(file: &[u8]) -> Result<Self, String> {
-        let form = Form::of(file).ok_or(NONE)?;
-        let Parted { picture, text } = form.part(file)?;
+    ///
+    /// A file may be large: it is neither copied, nor are two copies of its text kept with it for longer than is needed.
+    pub fn of(mut file: Vec<u8>) -> Result<Self, String> {
+        let form = Form::of(&file).ok_or(NONE)?;
+        let Parted { carrier, text } = form.part(&file)?;
         let text = String::from_utf8(text).map_err(|_| BROKEN)?;
+        let (before, rest) = file.split_at(carrier.start);
+        let is_as_written = rest[carrier.len()..] == *form.end()
+            && form.carrier(before, &text).as_deref() == Some(&rest[..carrier.len()]);
         let origin = Origin::read(&text)?;
+        drop(text);
+        file.drain(carrier);
         // Another version may have compressed the text otherwise.
         let is_own = origin.gyrolab == env!("CARGO_PKG_VERSION");
-        let changed = if origin.picture_sha256 != sha256(&picture) {
+        let changed = if origin.picture_sha256 != sha256(&file) {
             Some("its picture was changed after it was drawn: the SHA-256 is another")
-        } else if is_own && form.carry(&picture, &text).as_deref() != Some(file) {
+        } else if is_own && !is_as_written {
             Some("its file was changed after it was drawn, though not its picture and not its run")
         } else {
             None
@@ -211,7 +233,7 @@ impl Figure {
         Ok(Self {
             form,
             origin,
-            picture,
+            picture: file,
             changed,
         })
     }
@@ -237,7 +259,7 @@ impl Figure {
         if file.len() as u64 > LONGEST_FIGURE {
             return Err("is longer than 128 MiB, the most that is read of a figure".to_owned());
         }
-        Self::of(&file).map(Some)
+        Self::of(file).map(Some)
     }
 }
 

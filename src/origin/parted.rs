@@ -1,5 +1,7 @@
 //! What the forms of file share: a file without the text that it carries, how that is packed, and why it is not found.
 
+use std::ops::Range;
+
 /// The longest text that a figure carries, bytes.
 pub const LONGEST_TEXT: usize = 64 << 20;
 
@@ -8,9 +10,9 @@ pub const NONE: &str =
 pub const TWO: &str = "holds the metadata of two figures: nothing says which one is its own";
 pub const BROKEN: &str = "its metadata is damaged";
 
-/// A file without the text that it carries, and that text.
+/// The text that a file carries, and which of its bytes carry it. The other bytes are the picture.
 pub struct Parted {
-    pub picture: Vec<u8>,
+    pub carrier: Range<usize>,
     pub text: Vec<u8>,
 }
 

@@ -10,7 +10,8 @@ const NAME: &str = "gyrolab-figure.txt";
 /// The tail of a file in which its trailer stands, bytes.
 const TAIL: usize = 256;
 
-pub fn carry(picture: &[u8], text: &str) -> Option<Vec<u8>> {
+/// Returns the update that carries `text` behind `picture`.
+pub fn carrier(picture: &[u8], text: &str) -> Option<Vec<u8>> {
     let tail = String::from_utf8_lossy(&picture[picture.len().saturating_sub(TAIL)..]);
     let number = |key: &str| -> Option<usize> {
         let after = tail.rsplit_once(key)?.1.trim_start();
@@ -23,40 +24,40 @@ pub fn carry(picture: &[u8], text: &str) -> Option<Vec<u8>> {
     let (size, before) = (number("/Size")?, number("startxref")?);
     let (attached, stream) = (size, size + 1);
     let content = packed(text.as_bytes());
-    let mut file = picture.to_vec();
-    file.extend_from_slice(MARK.as_bytes());
-    let catalog_at = file.len();
-    file.extend(format!(
+    let mut update = MARK.as_bytes().to_vec();
+    let catalog_at = picture.len() + update.len();
+    update.extend(format!(
         "1 0 obj\n<</Type/Catalog/Pages 2 0 R/Names<</EmbeddedFiles<</Names[({NAME}) {attached} 0 R]>>>>>>\nendobj\n"
     ).bytes());
-    let attached_at = file.len();
-    file.extend(
+    let attached_at = picture.len() + update.len();
+    update.extend(
         format!("{attached} 0 obj\n<</Type/Filespec/F({NAME})/EF<</F {stream} 0 R>>>>\nendobj\n")
             .bytes(),
     );
-    let stream_at = file.len();
-    file.extend(format!(
+    let stream_at = picture.len() + update.len();
+    update.extend(format!(
         "{stream} 0 obj\n<</Type/EmbeddedFile/Subtype/text#2Fplain/Filter/FlateDecode/Length {}/Params<</Size {}>>>>",
         content.len(),
         text.len()
     ).bytes());
-    file.extend([STREAM, &content, b"\nendstream\nendobj\n"].concat());
-    let table_at = file.len();
-    file.extend(format!(
+    update.extend([STREAM, &content, b"\nendstream\nendobj\n"].concat());
+    let table_at = picture.len() + update.len();
+    update.extend(format!(
         "xref\n1 1\n{catalog_at:010} 00000 n\r\n{attached} 2\n{attached_at:010} 00000 n\r\n{stream_at:010} 00000 n\r\n\
          trailer\n<</Size {}/Root 1 0 R/Info 5 0 R/Prev {before}>>\nstartxref\n{table_at}\n%%EOF\n",
         stream + 1
     ).bytes());
-    Some(file)
+    Some(update)
 }
 
 pub fn part(file: &[u8]) -> Result<Parted, &'static str> {
-    let (picture, update) = file.split_at(place(file, MARK.as_bytes())?);
+    let begin = place(file, MARK.as_bytes())?;
+    let update = &file[begin..];
     let stream = update
         .windows(STREAM.len())
         .position(|window| window == STREAM);
     Ok(Parted {
-        picture: picture.to_vec(),
+        carrier: begin..file.len(),
         text: unpacked(&update[stream.ok_or(BROKEN)? + STREAM.len()..])?,
     })
 }

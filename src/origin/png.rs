@@ -7,14 +7,14 @@ const KEYWORD: &[u8] = b"iTXtgyrolab\0";
 /// Compressed, by zlib; of no language, and its keyword not translated.
 const COMPRESSED: &[u8] = b"\x01\0\0\0";
 /// The chunk IEND.
-const END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
+pub const END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
 
-pub fn carry(picture: &[u8], text: &str) -> Option<Vec<u8>> {
-    let before = picture.strip_suffix(END)?;
+/// Returns the chunk that carries `text`.
+pub fn carrier(text: &str) -> Option<Vec<u8>> {
     let chunk = [KEYWORD, COMPRESSED, &packed(text.as_bytes())].concat();
     let length = u32::try_from(chunk.len() - 4).ok()?.to_be_bytes();
     let sum = crc32fast::hash(&chunk).to_be_bytes();
-    Some([before, &length, &chunk, &sum, END].concat())
+    Some([&length, chunk.as_slice(), &sum].concat())
 }
 
 pub fn part(file: &[u8]) -> Result<Parted, &'static str> {
@@ -29,7 +29,7 @@ pub fn part(file: &[u8]) -> Result<Parted, &'static str> {
     }
     let (content, begin, end) = found.ok_or(NONE)?;
     Ok(Parted {
-        picture: [&file[..begin], &file[end..]].concat(),
+        carrier: begin..end,
         text: unpacked(content.strip_prefix(COMPRESSED).ok_or(NONE)?)?,
     })
 }

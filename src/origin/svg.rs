@@ -7,38 +7,30 @@ const BEGIN: &str = "<metadata>\n";
 /// The begin, with the first letters of the text.
 const BEGIN_OF_TEXT: &[u8] = b"<metadata>\n# gyrolab figure, ";
 const END: &str = "\n</metadata>\n";
-const END_OF_FILE: &[u8] = b"</svg>\n";
+pub const END_OF_FILE: &[u8] = b"</svg>\n";
 
-pub fn carry(picture: &[u8], text: &str) -> Option<Vec<u8>> {
-    let before = picture.strip_suffix(END_OF_FILE)?;
-    let text = escaped(text);
-    Some(
-        [
-            before,
-            BEGIN.as_bytes(),
-            text.as_bytes(),
-            END.as_bytes(),
-            END_OF_FILE,
-        ]
-        .concat(),
-    )
+/// Returns the element that carries `text`.
+pub fn carrier(text: &str) -> Vec<u8> {
+    let mut carrier = BEGIN.to_owned();
+    escape(text, &mut carrier);
+    carrier.push_str(END);
+    carrier.into_bytes()
 }
 
 pub fn part(file: &[u8]) -> Result<Parted, &'static str> {
     let begin = place(file, BEGIN_OF_TEXT)?;
-    let (before, rest) = file.split_at(begin);
-    let rest = &rest[BEGIN.len()..];
+    let rest = &file[begin + BEGIN.len()..];
     let end = rest.iter().position(|byte| *byte == b'<').ok_or(BROKEN)?;
     let (text, after) = rest.split_at(end.saturating_sub(1));
     let after = after.strip_prefix(END.as_bytes()).ok_or(BROKEN)?;
     Ok(Parted {
-        picture: [before, after].concat(),
+        carrier: begin..file.len() - after.len(),
         text: unescaped(text).ok_or(BROKEN)?,
     })
 }
 
-fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
+fn escape(text: &str, escaped: &mut String) {
+    escaped.reserve(text.len());
     for c in text.chars() {
         let is_plain = c == '\n' || c == '\t' || !c.is_control();
         if is_plain && !"%<>&\u{fffe}\u{ffff}".contains(c) {
@@ -49,7 +41,6 @@ fn escaped(text: &str) -> String {
             escaped.extend(bytes.map(|byte| format!("%{byte:02x}")));
         }
     }
-    escaped
 }
 
 fn unescaped(text: &[u8]) -> Option<Vec<u8>> {

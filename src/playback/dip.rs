@@ -1,10 +1,12 @@
 //! How the axle moves at first: it dips, and goes sideways.
 
+use super::live::integration_cost;
 use crate::run::Simulation;
 use crate::scenario::Scenario;
 use std::sync::Arc;
 
 const MOST_STEPS: u64 = 4000;
+/// The most points of all its steps together. A step that is integrated costs as much as many points.
 const MOST_COST: u64 = 2_000_000;
 /// An axle whose tilt has a smaller sine than this counts as upright: none of its sides is the lower one.
 const UPRIGHT: f64 = 1e-6;
@@ -31,11 +33,16 @@ impl Dip {
         }
         let arm_m = scenario.arm_m();
         let points = scenario.body.mechanics.points().len() as u64;
-        let last = last.min(MOST_STEPS).min(MOST_COST / points.max(1));
+        let (last, mut left) = (last.min(MOST_STEPS), MOST_COST);
         let mut way_m = vec![(0.0, 0.0)];
         let mut turns = 0;
         let mut is_falling = None;
         while run.step_number() < last && turns < 2 {
+            let cost = points.max(1) + integration_cost(&run, 0);
+            let Some(rest) = left.checked_sub(cost) else {
+                break;
+            };
+            left = rest;
             let Ok(step) = run.step() else { break };
             let turned = (step.azimuth().degrees() - azimuth_deg).to_radians();
             let fallen = (step.tilt_deg() - tilt_deg).to_radians();

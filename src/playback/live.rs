@@ -7,7 +7,7 @@ mod pictures;
 
 use super::path::Path;
 use super::recording::{Moment, Recording};
-use crate::analysis::cost::{integration_rad_per_s, is_affordable};
+use crate::analysis::cost::{has_closed_form, integration_rad_per_s, is_affordable};
 use crate::analysis::readouts::Source;
 use crate::analysis::{Health, Monitor, Readouts};
 use crate::journal::restart::in_force;
@@ -82,15 +82,15 @@ impl LiveRun {
         Ok(())
     }
 
-    /// Steps until the run stands at `step`.
+    /// Steps until the run stands at `step`, or until `enough` returns true: see [`play`](Self::play).
     ///
     /// # Errors
     /// When the numbers stop being finite; the run then stays at the step before.
-    pub fn step_to(&mut self, step: u64) -> Result<(), NotFinite> {
-        while self.simulation.step_number() < step {
-            self.step()?;
+    pub fn step_to(&mut self, step: u64, enough: impl FnMut() -> bool) -> Result<(), NotFinite> {
+        match self.play(f64::INFINITY, step, enough, |_| false) {
+            PlayEnd::NotFinite(error) => Err(error),
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     pub fn furthest(&self) -> u64 {
@@ -223,8 +223,10 @@ impl LiveRun {
         }
     }
 
+    /// A step that is integrated, by the scheme or beside the run, may take long, and nothing before it says so: a push may
+    /// set in.
     fn steps_per_look(&self) -> usize {
-        if self.integration_cost() > 0 {
+        if !has_closed_form(self.scenario()) {
             return 1;
         }
         (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1)
@@ -237,16 +239,9 @@ impl LiveRun {
     }
 
     /// What of that goes to integrations of the exact motion: by the scheme, and beside the run.
-    pub(super) fn integration_cost(&self) -> u64 {
-        let (motion, _) = in_force(self.scenario(), self.simulation.step_number());
-        let state = self.simulation.state();
-        let is_exact = motion.scheme.order.is_none();
-        let integrations = f64::from(is_exact) + f64::from(self.monitor.beside.is_known());
-        if integrations == 0.0 {
-            return 0;
-        }
-        let rad = integration_rad_per_s(self.scenario(), state) * motion.time_step_s;
-        (integrations * rad * COST_OF_A_RADIAN).ceil() as u64
+    fn integration_cost(&self) -> u64 {
+        let is_beside = self.monitor.beside.is_known();
+        integration_cost(&self.simulation, u32::from(is_beside))
     }
 
     /// Shows the exact motion beside the run where that can be had, or does not.
@@ -317,11 +312,11 @@ impl LiveRun {
             return Some(Arc::clone(workings));
         }
         let mut again = self.again_before(before);
-        let steps = before - again.step_number() + 1;
-        if steps.saturating_mul(self.integration_cost()) > MOST_INTEGRATION {
-            return None;
+        let mut left = MOST_INTEGRATION;
+        while again.step_number() < before {
+            left = left.checked_sub(integration_cost(&again, 0))?;
+            again.step().ok()?;
         }
-        again.step_to(before).ok()?;
         again.keep_workings(true);
         let workings = again.step().ok()?.workings()?;
         self.explained = Some((before + 1, Arc::clone(workings)));
@@ -359,6 +354,19 @@ impl LiveRun {
     pub fn path(&self) -> &Path {
         &self.pictures.path
     }
+}
+
+/// What the integrations of the next step of `simulation` cost, in points of a body: that of its scheme, if that is the exact
+/// one, and so many `others`.
+pub fn integration_cost(simulation: &Simulation, others: u32) -> u64 {
+    let (motion, _) = in_force(simulation.scenario(), simulation.step_number());
+    let is_exact = motion.scheme.order.is_none();
+    let integrations = f64::from(others) + f64::from(is_exact);
+    if integrations == 0.0 {
+        return 0;
+    }
+    let rad_per_s = integration_rad_per_s(simulation.scenario(), simulation.state());
+    (integrations * rad_per_s * motion.time_step_s * COST_OF_A_RADIAN).ceil() as u64
 }
 
 /// Steps between two checkpoints at first; a power of two.
@@ -445,7 +453,7 @@ impl LiveRun {
     /// The run of a preset at the step `steps`.
     pub fn played(preset: &str, steps: u64) -> Self {
         let mut run = Self::new(crate::scenario::preset(preset, &[]));
-        run.step_to(steps).unwrap();
+        run.step_to(steps, || false).unwrap();
         run
     }
 }

@@ -1,9 +1,10 @@
 //! The numbers of any step that a run has reached, computed again from its stored states, without moving the run.
 
-use super::live::LiveRun;
+use super::live::{LiveRun, integration_cost};
 use crate::run::{Sample, Simulation};
 
-/// The most time steps of a body of one point that are computed for an answer; a body of n points has 1/n of that.
+/// The most time steps of a body of one point that are computed for an answer; a body of n points has 1/n of that, and steps
+/// that are integrated count as so many points.
 const MOST_STEPS: u64 = 4_000_000;
 
 /// What a point of a body costs in one of these steps, as an integration's cost is counted.
@@ -83,17 +84,19 @@ pub fn turns(run: &LiveRun, from: u64, to: u64) -> Result<Vec<(f64, f64)>, Missi
 
 struct Steps {
     simulation: Simulation,
+    /// The points of the steps that may still be taken.
     left: u64,
+    points: u64,
     /// How the height of the axle changed in the last step, where it did.
     change: f64,
 }
 
 impl Steps {
     fn before(run: &LiveRun, step: u64) -> Self {
-        let points = run.scenario().body.mechanics.points().len() as u64;
         Self {
             simulation: run.again_before(step),
-            left: MOST_STEPS / (points + run.integration_cost() / COST_OF_A_POINT),
+            left: MOST_STEPS,
+            points: run.scenario().body.mechanics.points().len() as u64,
             change: 0.0,
         }
     }
@@ -104,7 +107,8 @@ impl Steps {
 
     /// Takes a step; gives the step before it where the tilt has turned there.
     fn step(&mut self) -> Result<Option<u64>, Missing> {
-        self.left = self.left.checked_sub(1).ok_or(Missing::TooFar)?;
+        let cost = self.points + integration_cost(&self.simulation, 0) / COST_OF_A_POINT;
+        self.left = self.left.checked_sub(cost).ok_or(Missing::TooFar)?;
         let (before, height) = (self.step_number(), self.simulation.state().axle().z);
         self.simulation.step().map_err(|_| Missing::NotReached)?;
         let change = self.simulation.state().axle().z - height;

@@ -28,6 +28,7 @@ pub mod recording;
 pub mod scale;
 pub mod strip;
 
+use crate::analysis::cost::has_closed_form;
 use crate::physics::Workings;
 use crate::run::{Clock, NotFinite, Simulation};
 use crate::scenario::{Scenario, keys};
@@ -35,7 +36,7 @@ use live::{LiveRun, PlayEnd};
 use pace::{Pace, Speed};
 use reading::Reading;
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 use toml::Value;
 
@@ -72,10 +73,23 @@ pub struct Playback {
     end_s: f64,
     is_endless: bool,
     until: Option<Condition>,
+    /// Tells the time since some moment, for the steps that are taken before returning.
+    clock: fn() -> Duration,
+}
+
+/// The time since it was asked for first.
+fn elapsed() -> Duration {
+    static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
+    BEGIN.elapsed()
 }
 
 impl Playback {
     pub fn new(scenario: Arc<Scenario>, running: bool) -> Self {
+        Self::with_clock(scenario, running, elapsed)
+    }
+
+    /// The same with another clock for the steps that are taken before returning.
+    pub fn with_clock(scenario: Arc<Scenario>, running: bool, clock: fn() -> Duration) -> Self {
         let speed = scenario.file.viewed("speed").and_then(Value::as_float);
         let (stop, end_s) = (scenario.steps, Clock::end_s(&scenario));
         let run = LiveRun::new(scenario);
@@ -87,6 +101,7 @@ impl Playback {
             end_s,
             is_endless: false,
             until: None,
+            clock,
         }
     }
 
@@ -319,6 +334,9 @@ const MOST_COST_PER_KEY: u64 = 1_000_000;
 /// first one, and a little less for each further nudge of a held key.
 const MOST_COST_PER_EDIT: u64 = 10_000_000;
 const MOST_COST_PER_NUDGE: u64 = 8_000_000;
+/// The longest time that all of these may take, if their cost was underestimated: a push makes a step dear that is reckoned
+/// from the state before it. The other steps are then taken over the next frames.
+const LONGEST_AT_ONCE: Duration = Duration::from_millis(200);
 
 impl Playback {
     /// Steps the run to `step` before returning.
@@ -340,16 +358,8 @@ impl Playback {
         go_on: impl Fn(u64, u64) -> ControlFlow<()>,
     ) -> Result<(), NotFinite> {
         const PART: Duration = Duration::from_millis(100);
-        let mut part = 1_u64;
         while self.step_number() < step && go_on(self.step_number(), step).is_continue() {
-            let begin = Instant::now();
-            self.run
-                .step_to(self.step_number().saturating_add(part).min(step))?;
-            part = if begin.elapsed() < PART {
-                part.saturating_mul(2)
-            } else {
-                (part / 2).max(1)
-            };
+            self.step_for(PART, step)?;
         }
         self.stop = self.next_stop();
         Ok(())
@@ -416,7 +426,7 @@ impl Playback {
         let here = self.step_number();
         self.stop = here.saturating_add(steps);
         let first = here.saturating_add(at_once);
-        let _ = self.run.step_to(first); // a failed step is tried again by advance(), which reports it
+        let _ = self.step_at_once(first); // a failed step is tried again by advance(), which reports it
         self.hurries = self.step_number() < self.stop;
         if !self.hurries {
             self.stop = self.next_stop();
@@ -427,12 +437,29 @@ impl Playback {
     fn arrive(&mut self) {
         let is_near = |to: u64| self.cost(to - self.step_number()) <= MOST_COST_PER_FRAME;
         if let Some(to) = self.run.destination().filter(|to| is_near(*to)) {
-            let _ = self.run.step_to(to); // it has been there before: its numbers are finite
+            let _ = self.step_at_once(to); // it has been there before: its numbers are finite
         }
         self.stop = self.run.destination().unwrap_or(self.next_stop());
         self.hurries = self.run.destination().is_some();
     }
 
+    /// Steps the run to `step`. Where steps may have to be integrated, their cost is not known, and this takes little more
+    /// than [`LONGEST_AT_ONCE`]; elsewhere what one key does depends on no clock.
+    fn step_at_once(&mut self, step: u64) -> Result<(), NotFinite> {
+        if has_closed_form(self.run.scenario()) {
+            self.run.step_to(step, || false)
+        } else {
+            self.step_for(LONGEST_AT_ONCE, step)
+        }
+    }
+
+    /// Steps the run to `step`, but for little more than `longest`.
+    fn step_for(&mut self, longest: Duration, step: u64) -> Result<(), NotFinite> {
+        let (clock, begin) = (self.clock, (self.clock)());
+        self.run.step_to(step, || clock() >= begin + longest)
+    }
+
+    /// The cost of `steps` like the next one. A later one may cost far more.
     fn cost(&self, steps: u64) -> u64 {
         steps.saturating_mul(self.run.cost_of_a_step())
     }

@@ -9,6 +9,7 @@ use crate::export::{COLUMNS, CsvWriter, Layout};
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{EXACT_BESIDE, Run};
 use crate::figure::{Asked, Format, Source};
+use crate::playback::live::integration_cost;
 use crate::run::{Clock, NotFinite, Sample, Simulation};
 use crate::scenario::Scenario;
 use crate::text::printable::printable;
@@ -291,6 +292,8 @@ fn rows(last: u64, every: u64) -> u64 {
 /// A CSV of 64 rows that have the numbers of the run's beginning, and steps and times spread over the whole run.
 fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
     const ROWS: u64 = 64;
+    const MOST_INTEGRATION: u64 = 50_000_000; // about 0.1 s
+    let mut left = MOST_INTEGRATION;
     let points = scenario.body.mechanics.points().len() as u64;
     let apart = ((1 << 15) / points).clamp(4, 32); // steps between rows; a step of a larger body takes longer
     let apart = apart.min(scenario.steps / ROWS).max(1);
@@ -304,7 +307,13 @@ fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
             time_s: Clock::at(scenario, step).time_s(step),
             ..simulation.sample()
         })?;
-        let _ = simulation.step_to(((row + 1) * apart).min(scenario.steps)); // where the numbers stop being finite it repeats the last state
+        // Where the numbers stop being finite, or steps take long, it repeats the last state.
+        for _ in simulation.step_number()..((row + 1) * apart).min(scenario.steps) {
+            left = left.saturating_sub(integration_cost(&simulation, 0));
+            if left == 0 || simulation.step().is_err() {
+                break;
+            }
+        }
     }
     csv.finish()
 }

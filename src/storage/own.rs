@@ -40,9 +40,18 @@ pub(super) fn refused(reason: &str) -> io::Error {
     io::Error::new(io::ErrorKind::PermissionDenied, reason)
 }
 
-pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
+/// Reads the file at `path`. It is refused as [`open`] refuses it, and if it has more than `most` bytes.
+pub(super) fn read(path: &Path, most: usize) -> io::Result<Vec<u8>> {
+    read_at_most(open(path, OpenOptions::new().read(true))?, most)
+}
+
+/// Reads the rest of `file`, which is refused, and read no further, if that has more than `most` bytes.
+pub(super) fn read_at_most(file: File, most: usize) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    open(path, OpenOptions::new().read(true))?.read_to_end(&mut bytes)?;
+    file.take(most as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > most {
+        return Err(io::Error::other(format!("it is longer than {most} bytes")));
+    }
     Ok(bytes)
 }
 

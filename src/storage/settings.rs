@@ -10,12 +10,14 @@ use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
 use crate::text::printable::Shown;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 pub const FILE: &str = "settings.toml";
+/// The longest file of settings, bytes.
+const LONGEST: usize = 1 << 20;
 
 const HEAD: &str = "# What was chosen in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and wins.\n";
 
@@ -111,7 +113,7 @@ pub fn config() -> Option<PathBuf> {
 pub fn read_config(path: &Path) -> Read {
     let bytes = match fs::metadata(path) {
         Ok(there) if !there.is_file() => Err(io::Error::other("it is not a file")),
-        _ => fs::read(path),
+        _ => File::open(path).and_then(|file| own::read_at_most(file, LONGEST)),
     };
     checked(path, bytes)
 }
@@ -119,7 +121,7 @@ pub fn read_config(path: &Path) -> Read {
 /// Reads the file that the program has written in `folder`, if it is the user's own; no symbolic link is followed.
 pub fn read(folder: &Path) -> Read {
     let path = folder.join(FILE);
-    checked(&path, own::read(&path))
+    checked(&path, own::read(&path, LONGEST))
 }
 
 /// Replaces the setting `key` in the file of `folder`, which is created if it does not exist. What is wrong in the file is
@@ -128,7 +130,7 @@ pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
     let path = folder.join(FILE);
     let remembered = || -> io::Result<()> {
         own::make_folder(folder)?;
-        let mut table = match own::read(&path) {
+        let mut table = match own::read(&path, LONGEST) {
             // What is no TOML was reported when the lab was opened.
             Ok(bytes) => sifted(&toml::from_slice(&bytes).unwrap_or_default()).0,
             Err(error) if error.kind() == ErrorKind::NotFound => Table::new(),

@@ -3,8 +3,8 @@
 //! may be able to write in that folder too.
 
 use super::own::{self, refused};
-use std::fs::{self, OpenOptions, Permissions};
-use std::io::{self, ErrorKind, Read};
+use std::fs::{self, File, OpenOptions, Permissions};
+use std::io::{self, ErrorKind};
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::Path;
 use std::time::SystemTime;
@@ -23,23 +23,33 @@ pub fn make_folder(path: &Path, mode: u32) -> io::Result<bool> {
     }
 }
 
-/// The text of the file at `path`; `None` where there is none. One of more than `most` bytes is refused.
+/// Reads the text of the file at `path`; `None` where there is none. A file of more than `most` bytes is refused.
 pub fn read(path: &Path, most: usize) -> io::Result<Option<String>> {
-    let file = match own::open_regular(path, OpenOptions::new().read(true)) {
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        file => file?,
+    let Some(file) = opened(path)? else {
+        return Ok(None);
     };
     let folder = fs::metadata(path.parent().unwrap_or(Path::new(".")))?;
     let owners = [rustix::process::geteuid().as_raw(), folder.uid()];
     if !owners.contains(&file.metadata()?.uid()) {
         return Err(refused("it belongs to another user"));
     }
-    let mut text = String::new();
-    file.take(most as u64 + 1).read_to_string(&mut text)?;
-    if text.len() > most {
-        return Err(io::Error::other(format!("it is longer than {most} bytes")));
+    text_of(file, most).map(Some)
+}
+
+/// As [`read`], whoever owns the file: for files that both accounts write, in a folder that either may have made.
+pub fn read_of_anyone(path: &Path, most: usize) -> io::Result<Option<String>> {
+    opened(path)?.map(|file| text_of(file, most)).transpose()
+}
+
+fn opened(path: &Path) -> io::Result<Option<File>> {
+    match own::open_regular(path, OpenOptions::new().read(true)) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        file => file.map(Some),
     }
-    Ok(Some(text))
+}
+
+fn text_of(file: File, most: usize) -> io::Result<String> {
+    String::from_utf8(own::read_at_most(file, most)?).map_err(io::Error::other)
 }
 
 /// Replaces the file at `path` by one that contains `text`. The file is complete at any moment; where the new one cannot be

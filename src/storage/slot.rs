@@ -32,6 +32,10 @@ const FORMAT: &str = "gyrolab session 4";
 /// The most sessions that are kept, of a user and of a login that several share.
 const MOST_KEPT: usize = 20;
 const MOST_SHARED: usize = 200;
+/// The longest file of a session, bytes.
+const LONGEST: usize = 64 << 20;
+/// The longest lock file, bytes: the number of a process.
+const LONGEST_LOCK: usize = 100;
 /// A lock that is held for a shorter time belongs to a process that only looks at the session.
 const GLANCE: Duration = Duration::from_millis(10);
 /// How long the system may take to unlock what a process held that has ended. On a busy machine it is more than a glance.
@@ -103,7 +107,7 @@ pub(super) fn is_in_use(folder: &Path, name: &str) -> bool {
 
 /// The number of the process that holds, or last held, the session; `None` where its lock file does not tell.
 pub(super) fn owner(folder: &Path, name: &str) -> Option<u32> {
-    let bytes = own::read(&file(folder, name, "lock")).ok()?;
+    let bytes = own::read(&file(folder, name, "lock"), LONGEST_LOCK).ok()?;
     str::from_utf8(&bytes).ok()?.parse().ok()
 }
 
@@ -114,7 +118,8 @@ fn is_running(process: u32) -> bool {
 
 /// Reads the session, whether or not a process holds it.
 pub(super) fn stored(folder: &Path, name: &str) -> Result<Content, String> {
-    let bytes = own::read(&file(folder, name, "session")).map_err(|error| error.to_string())?;
+    let bytes = own::read(&file(folder, name, "session"), LONGEST);
+    let bytes = bytes.map_err(|error| error.to_string())?;
     let text = String::from_utf8(bytes).unwrap_or_default();
     let (format, rest) = text.split_once('\n').unwrap_or_default();
     if format != FORMAT && format.starts_with("gyrolab session ") {
@@ -225,7 +230,13 @@ impl Slot {
         let Content { place, work } = content;
         let texts = format!("place {}\n{place}{}", place.len(), work.as_str());
         let path = file(&self.folder, &self.name, "session");
-        own::replace(&path, &format!("{FORMAT}\n{}\n{texts}", sum_of(&texts)))
+        let text = format!("{FORMAT}\n{}\n{texts}", sum_of(&texts));
+        if text.len() > LONGEST {
+            return Err(io::Error::other(format!(
+                "it would be longer than {LONGEST} bytes, the most that is read of a session"
+            )));
+        }
+        own::replace(&path, &text)
     }
 
     /// Removes the session's files, the lock file last: until then no other process can take the session.

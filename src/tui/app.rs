@@ -6,6 +6,7 @@ use crate::lab::{Lab, Request};
 use crate::lessons::Class as Lessons;
 use crate::storage::session::Session;
 use crate::tui::decoder::Typed;
+use crate::tui::job_control::{NO_SHELL, can_be_resumed};
 use crate::tui::mouse::Pointer;
 use crate::tui::pacing::Pacing;
 use crate::tui::press::press;
@@ -132,6 +133,7 @@ fn handle(
     pointer: &mut Pointer,
     session: Option<&Session>,
 ) -> io::Result<ControlFlow<()>> {
+    let is_signal = event == Event::Suspend;
     let request = request_of(event, lab, screen, pointer)?;
     if matches!(request, Some(Request::Quit | Request::Suspend)) {
         keep(lab, role, session); // what was pressed just before it came with it
@@ -151,7 +153,8 @@ fn handle(
         }
         Some(Request::Quit) => return Ok(ControlFlow::Break(())),
         Some(Request::Redraw) => screen.forget()?,
-        Some(Request::Suspend) => screen.suspend()?,
+        Some(Request::Suspend) if !can_be_resumed() => lab.refuse(NO_SHELL),
+        Some(Request::Suspend) => screen.suspend(!is_signal)?,
     }
     screen::fit(lab, screen.size()?); // all of it is to be drawn, at the size there is now
     Ok(ControlFlow::Continue(()))

@@ -1,6 +1,7 @@
 //! Lines that are drawn again and again, without a lab: the board of a class.
 
 use super::decoder::Typed;
+use super::job_control::can_be_resumed;
 use super::keymap::Key;
 use super::screen::to_ascii;
 use super::terminal::{Event, Screen};
@@ -39,10 +40,10 @@ pub fn run(lines: impl Fn(usize) -> Vec<String>) -> io::Result<()> {
                 Event::Typed(Typed::Key(Key::Char('q') | Key::Esc | Key::Ctrl('c'))) => {
                     return Ok(());
                 }
-                Event::Suspend => screen.suspend()?,
+                Event::Suspend if can_be_resumed() => screen.suspend(false)?,
                 Event::Resumed => screen.resume()?,
                 Event::Resized => screen.forget()?,
-                Event::Typed(_) => {}
+                Event::Suspend | Event::Typed(_) => {}
             }
         }
     }

@@ -14,12 +14,13 @@
 //!   slide; [`layout`] says which places those are, [`theme`] what colours look like and whether there are any, [`dots`] sets dots and says what they look like,
 //!   [`points`] what was measured, [`trail`] a path that fades, [`scene`] lines in space; [`plane`] takes metres to dots and cells,
 //!   [`split`] a part of the screen to two.
-//! - [`board`] shows lines without a lab.
+//! - [`board`] shows lines without a lab. [`job_control`] tells whether Ctrl-Z may stop the program.
 
 pub mod app;
 pub mod board;
 pub mod decoder;
 pub mod dots;
+pub mod job_control;
 pub mod keyboard;
 pub mod keymap;
 pub mod layout;

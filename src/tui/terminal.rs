@@ -16,7 +16,9 @@ use ratatui::backend::{self, Backend, CrosstermBackend};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 use ratatui::{Terminal, TerminalOptions, Viewport};
+use rustix::process::{Signal, kill_current_process_group};
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGWINCH, SIGXFSZ};
+use signal_hook::flag;
 use signal_hook::iterator::Signals;
 use std::cell::Cell;
 use std::fs::File;
@@ -24,9 +26,9 @@ use std::io::{self, BufWriter, Write};
 use std::mem::ManuallyDrop;
 use std::os::fd::AsFd;
 use std::rc::Rc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
-use std::sync::{Mutex, MutexGuard, Once, OnceLock, PoisonError, TryLockError};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, Once, OnceLock, PoisonError, TryLockError};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
@@ -43,12 +45,16 @@ const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 static PEN: Mutex<()> = Mutex::new(());
 /// A signal is ending the process.
 static ENDING: AtomicBool = AtomicBool::new(false);
+/// Which of SIGTSTP and SIGCONT came last and has not been handled: [`NEITHER`], [`SUSPEND`] or [`RESUMED`]. The signal
+/// handlers store it, so that a SIGCONT that follows a SIGTSTP at once cancels it, as it does for a program without handlers.
+static LAST_JOB_SIGNAL: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
+const NEITHER: usize = 0;
 /// SIGTSTP has asked to suspend the process.
-static SUSPEND: AtomicBool = AtomicBool::new(false);
+const SUSPEND: usize = 1;
+/// The shell has resumed the process.
+const RESUMED: usize = 2;
 /// The size of the screen has changed.
 static RESIZED: AtomicBool = AtomicBool::new(false);
-/// The shell has resumed the process.
-static RESUMED: AtomicBool = AtomicBool::new(false);
 
 /// The signals that the process has handlers for, until a thread takes them.
 static SIGNALS: Mutex<Option<Signals>> = Mutex::new(None);
@@ -60,7 +66,10 @@ static PANICS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 /// How long a terminal that accepts no bytes may delay the end of the process.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// How long the signal that resumes the process may take to be heard of.
+/// A SIGCONT that follows the request to suspend so soon cancels it. Once the process has stopped, the shell takes the
+/// terminal away from it, and SIGCONT alone does not bring that back.
+const CANCELED_WITHIN: Duration = Duration::from_millis(50);
+/// How long the handler of SIGCONT may take to run after the process is resumed.
 const HEARD_WITHIN: Duration = Duration::from_millis(200);
 /// The most events taken at once; a held key on a slow line may send many.
 const MOST_EVENTS: usize = 256;
@@ -153,16 +162,28 @@ impl Screen {
         self.terminal.resize(size) // not clear(), which asks where the cursor is
     }
 
-    /// Gives the terminal back to the shell until it resumes the program.
-    pub fn suspend(&mut self) -> io::Result<()> {
-        at_exit::run_hooks(Release::Suspend);
-        give_back();
-        RESUMED.store(false, Ordering::Relaxed);
-        signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
-        // The thread that handles signals may hear of SIGCONT only later: the terminal would be taken over twice.
+    /// Gives the terminal back to the shell until it resumes the program. `whole_job`: a script that runs the program stops
+    /// with it, as if Ctrl-Z was typed outside raw mode. If the program has been resumed already, it does not stop. A program that no shell started would stop for good: see
+    /// [`can_be_resumed`](super::job_control::can_be_resumed).
+    pub fn suspend(&mut self, whole_job: bool) -> io::Result<()> {
         let begin = Instant::now();
-        while !RESUMED.swap(false, Ordering::Relaxed) && begin.elapsed() < HEARD_WITHIN {
-            listen_without_thread();
+        at_exit::run_hooks(Release::Suspend);
+        let is_resumed = || LAST_JOB_SIGNAL.load(Ordering::SeqCst) == RESUMED;
+        while !is_resumed() && begin.elapsed() < CANCELED_WITHIN {
+            thread::sleep(Duration::from_millis(1));
+        }
+        give_back();
+        if !is_resumed() {
+            if whole_job {
+                kill_current_process_group(Signal::TSTP)?; // for this process it is one more request
+            }
+            signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
+        }
+        // If the handler of SIGCONT ran only after this, the terminal would be taken over twice.
+        let begin = Instant::now();
+        while LAST_JOB_SIGNAL.swap(NEITHER, Ordering::SeqCst) != RESUMED
+            && begin.elapsed() < HEARD_WITHIN
+        {
             thread::sleep(Duration::from_millis(1));
         }
         self.resume()
@@ -178,16 +199,16 @@ impl Screen {
         self.keyboard.wait(wait)?;
         listen_without_thread();
         let typed = std::iter::from_fn(|| self.keyboard.take_typed()).take(MOST_EVENTS);
-        let signals = [
-            (&RESIZED, Event::Resized),
-            (&SUSPEND, Event::Suspend),
-            (&RESUMED, Event::Resumed),
-        ];
-        let signals = signals.into_iter();
-        let came = signals.filter(|(signal, _)| signal.swap(false, Ordering::Relaxed));
+        let is_resized = RESIZED.swap(false, Ordering::Relaxed);
+        let of_job = match LAST_JOB_SIGNAL.swap(NEITHER, Ordering::SeqCst) {
+            SUSPEND => Some(Event::Suspend),
+            RESUMED => Some(Event::Resumed),
+            _ => None,
+        };
         Ok(typed
             .map(Event::Typed)
-            .chain(came.map(|(_, event)| event))
+            .chain(is_resized.then_some(Event::Resized))
+            .chain(of_job)
             .collect())
     }
 }
@@ -299,18 +320,25 @@ fn guard() -> io::Result<()> {
                 before(panic);
             }
         }));
-        let ends = [SIGHUP, SIGTERM, SIGINT, SIGQUIT];
-        result = Signals::new(ends.iter().chain(&[SIGTSTP, SIGCONT, SIGWINCH, SIGXFSZ])).map(
-            |signals| {
-                *locked(&SIGNALS) = Some(signals);
-                // If the system gives no thread, the loop handles signals: see listen_without_thread().
-                let _ = thread::Builder::new()
-                    .name("signals".to_owned())
-                    .spawn(listen);
-            },
-        );
+        result = install_handlers();
     });
     result
+}
+
+fn install_handlers() -> io::Result<()> {
+    // Before the thread is woken, so that the loop finds what was stored.
+    for (signal, is_last) in [(SIGTSTP, SUSPEND), (SIGCONT, RESUMED)] {
+        flag::register_usize(signal, Arc::clone(&LAST_JOB_SIGNAL), is_last)?;
+    }
+    let handled = [
+        SIGHUP, SIGTERM, SIGINT, SIGQUIT, SIGTSTP, SIGCONT, SIGWINCH, SIGXFSZ,
+    ];
+    *locked(&SIGNALS) = Some(Signals::new(handled)?);
+    // If the system gives no thread, the loop handles signals: see listen_without_thread().
+    let _ = thread::Builder::new()
+        .name("signals".to_owned())
+        .spawn(listen);
+    Ok(())
 }
 
 /// Handles signals on a thread of its own. It ends the process without the loop, which may hang or fail on a terminal that
@@ -333,9 +361,8 @@ fn listen_without_thread() {
 
 fn handle(signal: i32) {
     match signal {
-        SIGTSTP => SUSPEND.store(true, Ordering::Relaxed),
+        SIGTSTP | SIGCONT => {} // it is in LAST_JOB_SIGNAL, and the loop is woken
         SIGWINCH => RESIZED.store(true, Ordering::Relaxed),
-        SIGCONT => RESUMED.store(true, Ordering::Relaxed),
         SIGXFSZ => {} // a file past `ulimit -f`: the write fails then, like one to a full disk
         end => {
             at_exit::run_hooks(Release::Exit);

@@ -34,14 +34,18 @@ pub fn redraw(
     })?;
     let drawn = source.draw(watch)?.ok_or(Unverified::Stopped)?;
     let again = write(&drawn.scene, format(&figure, &source), Some(&figure.origin));
-    let again = Figure::of(&again.map_err(|error| error.to_string())?)?;
+    let again = Figure::of(again.map_err(|error| error.to_string())?)?;
     if figure.origin.all(Holds::Table).next().is_some() {
         notes.push("drawn from the table in it; gyrolab verify computes that where it has a file of its own".to_owned());
     }
     let (there, drawn) = (&figure.picture, &again.picture);
     let mut difference = None;
     if there != drawn {
-        if figure.form == Form::Png && pixels(drawn).is_some() && pixels(there) == pixels(drawn) {
+        let is_same = || {
+            let drawn = pixels(drawn, MOST_PIXELS)?;
+            Some(pixels(there, drawn.1.len())? == drawn)
+        };
+        if figure.form == Form::Png && is_same() == Some(true) {
             notes.push("its pixels are the same, compressed otherwise".to_owned());
         } else {
             difference = Some("its run, drawn again, gives another picture".to_owned());
@@ -59,15 +63,17 @@ fn format(figure: &Figure, source: &Source) -> Format {
     }
 }
 
-/// The size and the pixels of a PNG no larger than those that are drawn.
-fn pixels(file: &[u8]) -> Option<(png::OutputInfo, Vec<u8>)> {
-    const MOST: usize = 300_000_000;
+/// The most bytes of the pixels of a PNG that is drawn.
+const MOST_PIXELS: usize = 300_000_000;
+
+/// The size and the pixels of a PNG whose pixels take no more than `most` bytes.
+fn pixels(file: &[u8], most: usize) -> Option<(png::OutputInfo, Vec<u8>)> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(file))
         .read_info()
         .ok()?;
     let length = reader
         .output_buffer_size()
-        .filter(|length| *length <= MOST)?;
+        .filter(|length| *length <= most)?;
     let mut pixels = vec![0; length];
     let info = reader.next_frame(&mut pixels).ok()?;
     Some((info, pixels))

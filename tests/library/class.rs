@@ -1,15 +1,18 @@
 //! The folder of a class: seats, wrong codes, votes by round, and what the two accounts write in it.
 
+use gyrolab::class::board;
 use gyrolab::class::folder::{Stage, State};
 use gyrolab::class::seat::{Presence, Record, all_seats};
+use gyrolab::class::student::Student;
 use gyrolab::class::votes::{self, Tally, sittings};
-use gyrolab::class::{Folder, Seat, login};
+use gyrolab::class::{Folder, Role, Seat, login};
 use gyrolab::lessons::class::KeptLessons;
 use gyrolab::lessons::predictions::{Given, Place};
 use gyrolab::lessons::{Answer, Asked, Lesson, reading};
-use std::fs::{self, Permissions};
-use std::os::unix::fs::PermissionsExt;
-use std::path::Path;
+use std::fs::{self, File, Permissions};
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::path::{Path, PathBuf};
+use std::process::Command;
 use tempfile::TempDir;
 
 const LESSON: &str = "is-the-wobble-real";
@@ -64,7 +67,7 @@ fn keep(seat: &Seat, lesson: &Lesson, name: &str, votes: &[(u32, f64, bool)]) {
 fn a_seat_is_found_by_its_word_alone_and_its_modes_are_set() {
     let (_dir, folder) = class();
     let seat = new_seat(&folder, " Anna\n");
-    assert!(seat.word.starts_with("anna-") && seat.word.len() == 9);
+    assert!(seat.word.starts_with("anna-") && seat.word.len() == 11);
     assert_ne!(new_seat(&folder, "anna").word, seat.word);
     let (back, is_new) = login::take(&folder, &seat.word, 0).unwrap();
     assert!((&back.word, is_new) == (&seat.word, false));
@@ -93,9 +96,9 @@ fn hostile_names_make_no_seat() {
         "\u{1b}[2J",
         "a\u{202e}b",
         "a\0b",
-        "-4711",
+        "-471108",
         &long,
-        "../anna-4711",
+        "../anna-471108",
         "a;b",
     ] {
         let refused = login::take(&folder, name, 0).unwrap_err();
@@ -108,32 +111,170 @@ fn hostile_names_make_no_seat() {
             "{refused:?}"
         );
     }
-    assert!(all_seats(&folder).is_empty());
+    assert_eq!(all_seats(&folder).unwrap().len(), 0);
+}
+
+/// A word of this name that is none of `seats`.
+fn wrong_word(name: &str, seats: &[&Seat]) -> String {
+    let words = (0..).map(|code| format!("{name}-{code:06}"));
+    let is_wrong = |word: &String| seats.iter().all(|seat| seat.word != *word);
+    words.into_iter().find(is_wrong).unwrap()
+}
+
+#[track_caller]
+fn refused(folder: &Folder, word: &str, at_s: u64, reason: &str) -> String {
+    let refused = login::take(folder, word, at_s).unwrap_err();
+    assert!(refused.contains(reason), "{word} at {at_s} s: {refused}");
+    refused
+}
+
+const NO_SEAT: &str = "no seat of that word";
+const TOO_MANY: &str = "too many wrong codes for anna";
+
+#[test]
+fn wrong_codes_make_the_seats_of_a_name_wait_longer_and_longer() {
+    let (_dir, folder) = class();
+    let (anna, berta) = (new_seat(&folder, "anna"), new_seat(&folder, "berta"));
+    let wrong = wrong_word("anna", &[&anna]);
+    for _ in 0..5 {
+        refused(&folder, &wrong, 0, NO_SEAT);
+    }
+    let mut now_s = 0;
+    for wait_s in [60, 120, 240, 480, 960, 1920, 3600, 3600] {
+        refused(&folder, &anna.word, now_s + wait_s - 1, TOO_MANY);
+        now_s += wait_s;
+        refused(&folder, &wrong, now_s, NO_SEAT);
+    }
+    login::take(&folder, &berta.word, 0).unwrap();
+    login::take(&folder, &anna.word, now_s + 3600).unwrap();
+    for _ in 0..5 {
+        refused(&folder, &wrong, now_s + 3600, NO_SEAT);
+    }
 }
 
 #[test]
-fn five_wrong_codes_lock_a_name_for_a_minute_in_every_login() {
+fn a_right_code_resets_the_count_of_its_own_seat_alone() {
+    let (_dir, folder) = class();
+    let (own, other) = (new_seat(&folder, "anna"), new_seat(&folder, "anna"));
+    let wrong = wrong_word("anna", &[&own, &other]);
+    for _ in 0..5 {
+        login::take(&folder, &own.word, 0).unwrap();
+        refused(&folder, &wrong, 0, NO_SEAT);
+    }
+    login::take(&folder, &own.word, 1).unwrap();
+    let waiting = login::waiting(&folder, 1);
+    let words: Vec<_> = waiting.iter().map(|seat| seat.word.as_str()).collect();
+    assert_eq!(words, [&other.word]);
+    assert_eq!(waiting[0].wrong.count, 5);
+    // What is answered while the other seat waits does not tell its code.
+    let to_right = refused(&folder, &other.word, 2, TOO_MANY);
+    assert_eq!(to_right, refused(&folder, &wrong, 2, TOO_MANY));
+}
+
+#[test]
+fn guesses_of_several_logins_are_counted_together() {
     let (_dir, folder) = class();
     let seat = new_seat(&folder, "anna");
-    let code: u32 = seat.word[5..].parse().unwrap();
-    let wrong = format!("anna-{:04}", (code + 1) % 10_000);
-    let other = new_seat(&folder, "berta");
-    for try_at in 0..5 {
-        let refused = login::take(&folder, &wrong, try_at).unwrap_err();
-        assert!(refused.contains("no seat of that word"), "{refused}");
+    let wrong = wrong_word("anna", &[&seat]);
+    let tried = || {
+        let answers = (0..20).map(|_| login::take(&folder, &wrong, 0).unwrap_err());
+        answers.filter(|answer| answer.contains(NO_SEAT)).count()
+    };
+    let compared: usize = std::thread::scope(|scope| {
+        let logins: Vec<_> = (0..6).map(|_| scope.spawn(tried)).collect();
+        logins.into_iter().map(|login| login.join().unwrap()).sum()
+    });
+    assert_eq!(compared, 5);
+}
+
+#[test]
+fn a_code_that_cannot_be_counted_is_not_compared() {
+    let (_dir, folder) = class();
+    let seat = new_seat(&folder, "anna");
+    // No file can replace a folder.
+    fs::create_dir_all(wrong_codes(&folder, &seat).join("inner")).unwrap();
+    let uncounted = "no code can be tried now";
+    let to_right = refused(&folder, &seat.word, 0, uncounted);
+    let wrong = wrong_word("anna", &[&seat]);
+    assert_eq!(to_right, refused(&folder, &wrong, 0, uncounted));
+}
+
+fn wrong_codes(folder: &Folder, seat: &Seat) -> PathBuf {
+    folder.root.join(".gyrolab/wrong").join(&seat.word)
+}
+
+#[test]
+fn nothing_in_place_of_a_count_holds_anybody_up() {
+    let (_dir, folder) = class();
+    let seat = new_seat(&folder, "anna");
+    let count = wrong_codes(&folder, &seat);
+    let fifo = || {
+        assert!(
+            Command::new("mkfifo")
+                .arg(&count)
+                .status()
+                .unwrap()
+                .success()
+        )
+    };
+    let link = || symlink("/dev/zero", &count).unwrap();
+    let long = || File::create(&count).unwrap().set_len(3 << 30).unwrap();
+    for make in [&fifo as &dyn Fn(), &link, &long] {
+        make();
+        assert_eq!(login::waiting(&folder, 0), []);
+        board::lines(&folder, 80);
+        refused(&folder, &wrong_word("anna", &[&seat]), 0, NO_SEAT);
+        login::take(&folder, &seat.word, 0).unwrap();
+        assert!(fs::symlink_metadata(&count).is_err(), "it was replaced");
     }
-    let refused = login::take(&folder, &seat.word, 63).unwrap_err();
-    assert!(refused.contains("wait a minute"), "{refused}");
-    assert_eq!(login::locked(&folder, 63), ["anna"]);
-    login::take(&folder, &other.word, 10).unwrap();
-    login::take(&folder, &seat.word, 64).unwrap();
+}
+
+#[test]
+fn a_seat_of_an_older_version_keeps_its_four_digits() {
+    let (_dir, folder) = class();
+    fs::create_dir(folder.seats().join("anna-4711")).unwrap();
+    let (seat, is_new) = login::take(&folder, "anna-4711", 0).unwrap();
+    assert!((seat.word.as_str(), is_new) == ("anna-4711", false));
+    // A code that lacks a digit is no name for a new seat.
+    refused(&folder, "anna-47110", 0, NO_SEAT);
+}
+
+#[test]
+fn a_seat_whose_file_is_damaged_is_named() {
+    let (_dir, folder) = class();
+    let (anna, berta) = (new_seat(&folder, "anna"), new_seat(&folder, "berta"));
+    berta.save(&Record::default()).unwrap();
+    for damaged in ["format = ", "format = 2\n[lessons]\nlessons = 7\n", "\u{0}"] {
+        fs::write(anna.file("seat"), damaged).unwrap();
+        let seats = sittings(&folder).unwrap();
+        let troubles: Vec<_> = seats
+            .iter()
+            .filter_map(|seat| seat.trouble.as_ref())
+            .collect();
+        assert_eq!(troubles.len(), 1, "{damaged:?}");
+        assert!(troubles[0].contains(&anna.word), "{}", troubles[0]);
+        let board = board::lines(&folder, 200).join("\n");
+        assert!(board.contains(troubles[0]), "{board}");
+    }
+}
+
+#[test]
+fn answers_that_the_disk_has_not_are_told_at_the_end() {
+    let (_dir, folder) = class();
+    let seat = new_seat(&folder, "anna");
+    let holds = seat.hold().unwrap();
+    let mut student = Student::new(folder, seat.clone(), holds, Record::default());
+    fs::remove_dir_all(&seat.folder).unwrap();
+    let told = student.leave().unwrap_err();
+    assert!(told.contains("your answers cannot be kept"), "{told}");
+    assert!(told.contains(&seat.word), "{told}");
 }
 
 #[test]
 fn a_class_has_two_hundred_seats() {
     let (_dir, folder) = class();
     for index in 0..login::MOST_SEATS {
-        fs::create_dir(folder.seats().join(format!("s{index}-0000"))).unwrap();
+        fs::create_dir(folder.seats().join(format!("s{index}-000000"))).unwrap();
     }
     let refused = login::take(&folder, "anna", 0).unwrap_err();
     assert!(refused.contains("200 seats"), "{refused}");
@@ -150,7 +291,7 @@ fn votes_are_counted_by_round_and_late_ones_apart() {
         let votes = [(1, first, late), (2, second, false)];
         keep(&seat, &lesson, "finer", &votes);
     }
-    let seats = sittings(&folder);
+    let seats = sittings(&folder).unwrap();
     let counts = |round| {
         let tally = Tally::of(&seats, LESSON, predict, round);
         let counts: Vec<_> = tally.bars.iter().map(|(_, count)| *count).collect();
@@ -160,7 +301,7 @@ fn votes_are_counted_by_round_and_late_ones_apart() {
     assert_eq!(counts(2), (vec![1, 2], 0));
     let drawn = Tally::of(&seats, LESSON, predict, 1).drawn().text();
     assert!(drawn.contains("late:\n1 █"), "{drawn}");
-    let csv = votes::csv(&folder).unwrap();
+    let csv = votes::csv(&folder, &sittings(&folder).unwrap()).unwrap();
     assert!(
         csv.starts_with("lesson,question,round,seat,choice,late,page,time\n"),
         "{csv}"
@@ -198,7 +339,7 @@ fn what_is_right_leads_to_advice() {
             let seat = new_seat(&folder, &format!("seat{index}"));
             keep(&seat, &lesson, "a", &[(1, choice, false)]);
         }
-        let tally = Tally::of(&sittings(&folder), LESSON, predict, 1);
+        let tally = Tally::of(&sittings(&folder).unwrap(), LESSON, predict, 1);
         assert_eq!(tally.advice.as_deref(), Some(advice));
     }
 }

@@ -1,9 +1,10 @@
 //! A class in ptys: following, voting, and what is left when labs are killed.
 
 use crate::support::dice::Dice;
-use crate::support::ground::Ground;
+use crate::support::ground::{Ground, code, stderr};
 use crate::support::pty::Terminal;
 use crate::support::words::has_all;
+use std::fs;
 
 const LESSON: &str = "is-the-wobble-real";
 
@@ -159,4 +160,24 @@ fn thirty_seats_and_two_hundred_kills_lose_no_vote_and_no_page() {
         30,
         "{votes}"
     );
+}
+
+#[test]
+fn a_damaged_seat_is_named_and_the_exit_code_is_1() {
+    let ground = Ground::new();
+    let seats = ground.path().join(".gyrolab/seats");
+    for (word, text) in [("anna-471108", "format = "), ("ben-000001", "format = 2\n")] {
+        let inner = seats.join(word).join(".gyrolab");
+        fs::create_dir_all(&inner).unwrap();
+        fs::write(inner.join("seat"), text).unwrap();
+    }
+    for what in ["--votes", "--board", "--answers -o out"] {
+        let output = ground.run(&format!("class {what} --folder ."));
+        assert_eq!(code(&output), 1, "{what}");
+        has_all(
+            stderr(&output),
+            &["the file of the seat anna-471108: is damaged"],
+        );
+        assert!(!stderr(&output).contains("ben"), "{what}");
+    }
 }

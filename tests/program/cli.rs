@@ -496,6 +496,12 @@ fn a_signal_ends_a_command_with_130_and_leaves_nothing() {
             ),
             true,
         ),
+        (
+            &*format!(
+                "writeup wing-nut {steps} --scheme exact --set motion.time_step_s=1e4 -o folder"
+            ),
+            true,
+        ),
         // One scheme whose looks are far apart, and many on all cores.
         (
             "compare method-2 --schemes report --time-steps 1e-12 -o new.csv",

@@ -280,17 +280,82 @@ fn ctrl_l_draws_all_of_it_again() {
     terminal.wait_for("Method 2");
 }
 
+const CTRL_Z: &str = "\u{1a}";
+const NO_SHELL: &str = "there is no shell to go back to";
+
 #[test]
-fn ctrl_z_gives_the_terminal_back_and_resuming_draws_all_of_it() {
+fn ctrl_z_is_refused_where_the_lab_leads_its_session() {
     let mut terminal = opened("--paused");
-    terminal.press("\u{1a}");
-    terminal.has_given_the_terminal_back();
-    thread::sleep(Duration::from_millis(300));
-    terminal.forget();
-    terminal.signal("CONT");
-    terminal.wait_for("q quit");
-    terminal.wait_for("Method 2");
+    terminal.ask(CTRL_Z, NO_SHELL);
+    terminal.ask(".", "step 1 ");
+    // The signal is no other request than the key.
+    terminal.signal("TSTP");
+    terminal.wait_for(NO_SHELL);
+    terminal.ask(".", "step 2 ");
     terminal.quit();
+}
+
+#[test]
+fn ctrl_z_is_refused_where_the_process_group_is_orphaned() {
+    let ground = Ground::new();
+    // A shell without job control that leads the session, as sshd starts it, is in the group of the lab.
+    let mut terminal = ground.open_command("--paused; true");
+    terminal.wait_for("q quit");
+    terminal.ask(CTRL_Z, NO_SHELL);
+    terminal.ask(".", "step 1 ");
+    terminal.quit();
+}
+
+#[test]
+fn a_script_in_a_shell_with_job_control_is_suspended_with_its_lab() {
+    let mut shell = Ground::new().open_shell();
+    shell.wait_for("shell>");
+    let program = env!("CARGO_BIN_EXE_gyrolab");
+    shell.press(&format!("sh -c '{program} --paused; true'\r"));
+    shell.wait_for("q quit");
+    shell.press(CTRL_Z);
+    shell.has_given_the_terminal_back();
+    shell.ask("\r", "shell>");
+    shell.forget();
+    shell.press("fg\r");
+    shell.wait_for("q quit");
+    shell.press("q");
+    shell.has_given_the_terminal_back();
+}
+
+/// Whatever happens, it may not stay stopped. A busy machine may put much time between the two signals: the shell then
+/// takes the terminal, and that attempt does not count.
+#[test]
+fn a_sigcont_soon_after_a_sigtstp_leaves_the_lab_running() {
+    let mut shell = Ground::new().open_shell();
+    shell.wait_for("shell>");
+    let program = env!("CARGO_BIN_EXE_gyrolab");
+    shell.press(&format!("{program} --paused\r"));
+    shell.wait_for("q quit");
+    let found = shell
+        .ground()
+        .shell(&format!("pgrep -P {}", shell.child.process_id().unwrap()));
+    let lab = String::from_utf8(found.stdout).unwrap().trim().to_owned();
+    let is_left_running = (0..3).any(|_| {
+        shell.forget();
+        let both = format!("kill -TSTP {lab}; kill -CONT {lab}");
+        assert!(shell.ground().shell(&both).status.success());
+        shell.wait_until("a picture or a prompt", |shell| {
+            let words = shell.words();
+            words.contains("q quit") || words.contains("shell>")
+        });
+        let is_running = !shell.sent_text().contains("shell>");
+        if !is_running {
+            shell.press("fg\r");
+            shell.wait_for("q quit");
+        }
+        is_running
+    });
+    assert!(is_left_running);
+    shell.wait_for("q quit");
+    shell.ask(".", "step 1 ");
+    shell.press("q");
+    shell.has_given_the_terminal_back();
 }
 
 #[test]

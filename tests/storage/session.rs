@@ -252,6 +252,21 @@ fn what_is_damaged_is_left_alone_and_told_of() {
     }
 }
 
+/// The file is sparse: reading it whole would take memory, and no disk.
+#[test]
+fn a_session_that_is_too_long_is_left_alone() {
+    let (_outer, folder) = folder();
+    kept(&folder, "the one before", "");
+    age(&only(&folder, ".session"), 100);
+    let long = fs::File::create(folder.join("2.session")).unwrap();
+    long.set_len(64 << 30).unwrap();
+    let found = any(&folder);
+    assert_eq!(found.resumed.unwrap().1.0, "the one before");
+    has(&found.left_alone[0].reason, "longer than");
+    let listed = list(&folder).unwrap();
+    assert!(listed.iter().any(|listed| listed.content.is_err()));
+}
+
 fn cut(path: &Path, bytes: u64) {
     let file = fs::File::options().write(true).open(path).unwrap();
     let length = file.metadata().unwrap().len();

@@ -49,6 +49,13 @@ impl Ground {
         self.spawn(command, &VARIABLES)
     }
 
+    /// The program and what follows it in a script of a shell without job control, which leads the session.
+    pub fn open_command(&self, args: &str) -> Terminal {
+        let mut command = CommandBuilder::new("sh");
+        command.args(["-c", &format!("{GYROLAB} {args}")]);
+        self.spawn(command, &VARIABLES)
+    }
+
     fn spawn(&self, mut command: CommandBuilder, variables: &[(&str, &str)]) -> Terminal {
         for name in ["LC_ALL", "LC_CTYPE", "NO_COLOR", "COLORFGBG"] {
             command.env_remove(name);
