@@ -241,7 +241,7 @@ impl LiveRun {
         let (motion, _) = in_force(self.scenario(), self.simulation.step_number());
         let state = self.simulation.state();
         let is_exact = motion.scheme.order.is_none();
-        let integrations = f64::from(is_exact) + f64::from(self.monitor.beside.is_known());
+        let integrations = f64::from(is_exact) + f64::from(self.monitor.beside.motions());
         if integrations == 0.0 {
             return 0;
         }
