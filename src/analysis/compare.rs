@@ -2,9 +2,10 @@
 
 use super::cost::has_closed_form;
 use super::deviation::Deviation;
+use super::predictability::{Predictability, predictability};
 use crate::cores;
 use crate::physics::{SchemeInfo, State};
-use crate::run::{EnergyUnit, NotFinite, Simulation, Step, Truth, resampled};
+use crate::run::{Clock, EnergyUnit, NotFinite, Simulation, Step, Truth, resampled};
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, exponent, fixed, shortest};
 use serde::{Serialize, Serializer};
@@ -22,11 +23,11 @@ pub struct ComparisonRow {
     pub time_step_s: f64,
     /// Steps taken; fewer than asked for where the numbers stopped being finite.
     pub steps: u64,
-    /// Largest distance of the traced point from the exact motion, m; `None` where the numbers stopped being finite, its
-    /// own or those of the exact motion.
+    /// Largest distance of the traced point from the exact motion, m, while that can be predicted; `None` where the numbers
+    /// stopped being finite, its own or those of the exact motion.
     #[serde(serialize_with = "or_na")]
     pub error_m: Option<f64>,
-    /// The same at the end, m.
+    /// The same at the end, or when the motion can be predicted no longer, m.
     #[serde(serialize_with = "or_na")]
     pub error_at_end_m: Option<f64>,
     /// Order measured against the row before of the same scheme, from `error_m`: ln(error ratio)/ln(time step ratio);
@@ -73,6 +74,8 @@ pub fn compare(
                 .map(|&step| Arc::new(resampled(scenario, step, scheme)))
         })
         .collect();
+    let end_s = Clock::end_s(scenario);
+    let until_s = predictability(&Arc::new(scenario.clone()), end_s).until_s;
     let total = cells
         .iter()
         .map(|cell| cell.steps)
@@ -80,7 +83,7 @@ pub fn compare(
     let taken = AtomicU64::new(0);
     let row = |cell: &Arc<Scenario>| {
         let mut before = 0;
-        let trial = Trial::run(cell, |step| {
+        let trial = Trial::run(cell, until_s.unwrap_or(f64::INFINITY), |step| {
             let now = taken.fetch_add(step - before, Ordering::Relaxed) + (step - before);
             before = step;
             watch(now, total)
@@ -116,9 +119,11 @@ struct Trial {
 }
 
 impl Trial {
-    /// Plays `scenario` to its end, unless `watch`, which is asked from time to time, says no.
+    /// Plays `scenario` to its end, unless `watch`, which is asked from time to time, says no. Its errors are those up to
+    /// `until_s`.
     fn run(
         scenario: &Arc<Scenario>,
+        until_s: f64,
         mut watch: impl FnMut(u64) -> ControlFlow<()>,
     ) -> Option<Self> {
         let mut simulation = Simulation::new(Arc::clone(scenario));
@@ -149,7 +154,7 @@ impl Trial {
                 trial.time(timed);
                 timed = (0, Duration::ZERO);
             }
-            for state in &states {
+            for state in states.iter().filter(|state| state.time_s <= until_s) {
                 trial.hold(state, &mut truth, scale);
             }
             if next == next_look || trial.has_broken {
@@ -255,6 +260,8 @@ pub struct Table<'a> {
     pub rows: &'a [ComparisonRow],
     /// What the energy drifts are measured in; `None` where there is nothing to measure them by.
     pub energy_unit: Option<EnergyUnit>,
+    /// How far the exact motion can be predicted.
+    pub predictability: Predictability,
 }
 
 impl Table<'_> {
@@ -278,12 +285,20 @@ impl Table<'_> {
             "title": title,
             "duration_s": duration_s,
             "exact_motion": truth,
+        "predictable_until_s": self.predictability.until_s,
             "energy_drift_unit": self.energy_unit.map(|unit| unit.to_string()),
             "rows": rows?,
         }))
     }
 
     fn legend(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let limits = &self.predictability;
+        if *limits != Predictability::default() {
+            writeln!(f, "\nThe motion is {limits}.")?;
+        }
+        if limits.until_s.is_some() {
+            writeln!(f, "Errors and drifts of L are those up to then.")?;
+        }
         let energy = match self.energy_unit {
             Some(unit) => format!("in units of {unit}"),
             None => format!("{NONE}: neither weight nor kinetic energy to measure it by"),

@@ -1,6 +1,6 @@
 //! What the exact motion of a scenario costs: nothing in closed form, the turning of the body where it is integrated.
 
-use crate::physics::{Damping, State, SymmetricTop, observables};
+use crate::physics::{Damping, Loads, State, SymmetricTop, observables};
 use crate::run::Clock;
 use crate::scenario::{Edit, Scenario};
 use crate::text::number::shortest;
@@ -34,11 +34,21 @@ pub fn integration_rad_per_s(scenario: &Scenario, state: &State) -> f64 {
     if has_closed_form(scenario) {
         return 0.0;
     }
+    let weight = Loads {
+        gravity: scenario.motion.gravity,
+        pushes: Vec::new(),
+        friction: scenario.friction,
+    };
+    turning_rad_per_s(scenario, &weight, state)
+}
+
+/// Radians by which the body of `scenario` turns or swings in a second under `loads`, from `state` on.
+pub(super) fn turning_rad_per_s(scenario: &Scenario, loads: &Loads, state: &State) -> f64 {
     let body = &scenario.body.mechanics;
     let spin = observables::angular_velocity(body, state).norm();
     // A body at rest will swing and turn under its weight, at about this rate.
-    let weight = scenario.motion.gravity.abs() * body.first_moment().norm();
-    let swing = (weight * body.inverse_inertia().trace()).sqrt();
+    let moment = loads.moment(body).norm();
+    let swing = (moment * body.inverse_inertia().trace()).sqrt();
     // Strong friction makes the steps of the integration as short as fast turning does.
     let damping = Damping::new(body, &scenario.friction);
     let slowing = damping.map_or(0.0, |damping| damping.rate(spin));

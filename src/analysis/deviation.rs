@@ -4,6 +4,7 @@
 //! of that; the farthest of all is computed to the last bit when it is asked for.
 
 use super::cost::{has_closed_form, is_affordable};
+use super::predictability::{Companion, Predictability};
 use super::swings::{Swing, Swings, height};
 use crate::physics::State;
 use crate::physics::exact::AT_ONCE;
@@ -18,6 +19,8 @@ use std::sync::Arc;
 pub struct Beside {
     /// `None` where it would take too long, or has left the range of numbers.
     truth: Option<Truth>,
+    /// Made when the first steps are looked at: of a run that is never compared it is never needed.
+    companion: Option<Companion>,
     /// The newest steps, which are looked at together, and how many these are: only a closed form is had faster for several.
     waiting: Vec<State>,
     together: usize,
@@ -34,6 +37,7 @@ impl Beside {
         let truth = is_affordable(scenario).then(|| Truth::new(Arc::clone(scenario)));
         Self {
             truth,
+            companion: None,
             waiting: Vec::new(),
             together: looked_at_together(scenario),
             farthest: None,
@@ -48,14 +52,28 @@ impl Beside {
         self.together = looked_at_together(scenario);
         match &mut self.truth {
             Some(truth) => truth.go_on_in(scenario),
-            None => self.truth = Some(Truth::new(Arc::clone(scenario))),
+            None => {
+                self.truth = Some(Truth::new(Arc::clone(scenario)));
+                self.companion = None;
+            }
+        }
+        if let Some(companion) = &mut self.companion {
+            companion.go_on_in(scenario);
         }
         self.truth.take_if(|_| !is_affordable(scenario));
     }
 
     /// Whether the run is compared with the exact motion.
-    pub fn is_known(&self) -> bool {
+    fn is_known(&self) -> bool {
         self.truth.is_some()
+    }
+
+    /// Returns how many exact motions go on beside the run: that, and its companion.
+    pub fn motions(&self) -> u32 {
+        match &self.truth {
+            Some(_) if !self.has_parted() => 2,
+            _ => 0,
+        }
     }
 
     /// The exact motion, where the run is compared with it.
@@ -76,7 +94,7 @@ impl Beside {
     /// The same, at the latest when the run is [settled](Self::settle).
     #[inline]
     pub fn wait(&mut self, state: &State) {
-        if self.is_known() {
+        if self.is_known() && !self.has_parted() {
             self.waiting.push(*state);
         }
     }
@@ -102,7 +120,9 @@ impl Beside {
     fn look_at(&mut self, states: &[State]) {
         let near = self.truth.as_ref().zip(states.as_array());
         let near = near.and_then(|(truth, states)| Some((states, near_exact(states, truth)?)));
-        if let Some((states, (distances_m, heights))) = near {
+        if let Some((states, (distances_m, heights))) = near
+            && self.is_predictable_at(states[AT_ONCE - 1].time_s)
+        {
             self.swings.follow(states, &heights);
             for (state, distance_m) in states.iter().zip(distances_m) {
                 if distance_m > self.most_m {
@@ -112,6 +132,9 @@ impl Beside {
         } else {
             for state in states {
                 self.settle_farthest(); // the forces may change here, and it stood under those before
+                if !self.is_predictable_at(state.time_s) {
+                    break;
+                }
                 let Some(truth) = &mut self.truth else {
                     break;
                 };
@@ -121,6 +144,33 @@ impl Beside {
                 self.take_in(distance_m);
             }
         }
+    }
+
+    /// Whether the exact motion can be predicted up to `time_s`, which is not before the last such question. Of what comes
+    /// later no step is judged.
+    #[inline]
+    fn is_predictable_at(&mut self, time_s: f64) -> bool {
+        let Some(truth) = &mut self.truth else {
+            return true;
+        };
+        let companion = self
+            .companion
+            .get_or_insert_with(|| Companion::new(truth.scenario()));
+        companion.look_until(truth, time_s);
+        companion.until_s().is_none_or(|until_s| time_s <= until_s)
+    }
+
+    /// Whether the exact motion could be predicted no longer at a step that was [looked at](Self::settle).
+    fn has_parted(&self) -> bool {
+        let companion = self.companion.as_ref();
+        companion.is_some_and(|companion| companion.until_s().is_some())
+    }
+
+    /// Returns how far the exact motion can be predicted, as found up to the last time that the run was
+    /// [settled](Self::settle).
+    pub fn predictability(&self) -> Predictability {
+        let companion = self.companion.as_ref().filter(|_| self.is_known());
+        companion.map_or_else(Predictability::default, Companion::found)
     }
 
     /// Looks at all steps so far, and computes the largest distance to the last bit.
@@ -155,18 +205,22 @@ impl Beside {
         }
     }
 
-    /// How far off the run is in `state`; `None` where it is not compared with the exact motion.
+    /// How far off the run is in `state`; `None` where it is not compared with the exact motion, or that can be predicted
+    /// no longer.
     pub fn deviation(&mut self, state: &State) -> Option<Deviation> {
         self.settle();
+        if self.has_parted() {
+            return None;
+        }
         let deviation = Deviation::of(state, self.truth.as_mut()?);
         self.take_in(deviation.distance_m);
         self.truth.as_ref().map(|_| deviation)
     }
 
     /// The largest distance of the traced point from the exact motion up to the last time that it was [settled](Self::settle),
-    /// m; 0 where it is not compared.
-    pub fn most_distance_m(&self) -> f64 {
-        self.most_m
+    /// m, while that could be predicted; `None` where it is not compared.
+    pub fn most_distance_m(&self) -> Option<f64> {
+        self.truth.as_ref().map(|_| self.most_m)
     }
 
     /// How the tilt has swung up to then beside the exact motion's, where they differ most; `None` where it is not held

@@ -6,6 +6,7 @@
 
 use super::cost::{AFFORDABLE_RAD, integration_rad, is_affordable};
 use super::deviation::{Beside, Deviation};
+use super::predictability::Predictability;
 use super::slowing::Slowing;
 pub use super::swings::BELIEVED_WITHIN;
 use super::swings::Swing;
@@ -54,10 +55,13 @@ pub struct Health {
     pub energy_unit: Option<EnergyUnit>,
     /// What friction does; `None` where there is none.
     pub slowing: Option<Slowing>,
-    /// How far off the exact motion it is now; `None` where the exact motion would take too long.
+    /// How far off the exact motion it is now; `None` where the exact motion would take too long, or can be predicted no
+    /// longer.
     pub deviation: Option<Deviation>,
-    /// The largest distance of the traced point from the exact motion so far, m.
+    /// The largest distance of the traced point from the exact motion so far, m, while that could be predicted.
     pub most_distance_m: Option<f64>,
+    /// How far the exact motion can be predicted.
+    pub predictability: Predictability,
     /// Distance of the traced point from the pivot, m.
     pub arm_m: f64,
     pub steps: u64,
@@ -145,7 +149,8 @@ impl Health {
             energy_unit: step.energy_unit(),
             slowing: Slowing::new(step),
             deviation,
-            most_distance_m: deviation.map(|_| beside.most_distance_m()),
+            most_distance_m: beside.most_distance_m(),
+            predictability: beside.predictability(),
             arm_m: scenario.arm_m(),
             steps: step.number(),
             can_be_rescaled: rescale::can_be_rescaled(&scenario.file),
@@ -153,9 +158,29 @@ impl Health {
     }
 
     /// Whether the run is believed: the traced point has kept near enough to the exact motion, and the tilt swings as it
-    /// does. `None` where that is not known, or the traced point is the pivot.
+    /// does, while that could be predicted. `None` where that is not known, the traced point is the pivot, or rounding
+    /// decides whether the run leaves its unstable equilibrium.
     pub fn is_believed(&self) -> Option<bool> {
+        if self.limits().unstable.is_some() {
+            return None;
+        }
         Some(self.point_holds()? && self.swing?.is_right())
+    }
+
+    /// Whether the run's numbers at this step are those of the motion. `None` where that is not known.
+    pub fn is_reliable(&self) -> Option<bool> {
+        match self.predictability.until_s {
+            Some(_) => Some(false),
+            None => self.is_believed(),
+        }
+    }
+
+    /// Returns what limits every computation of the motion. A scheme that breaks down is to blame, not the equilibrium.
+    pub fn limits(&self) -> Predictability {
+        Predictability {
+            unstable: self.predictability.unstable.filter(|_| self.is_a_rotation),
+            ..self.predictability
+        }
     }
 
     /// Whether the traced point has kept near enough to the exact motion; `None` where that is not known, or the traced
@@ -261,7 +286,8 @@ fn turns_if_believed(scenario: &Arc<Scenario>, is_wanted: &dyn Fn() -> bool) -> 
             return None;
         }
         if end == scenario.steps {
-            return health.is_believed()?.then_some(most_turns);
+            // In an unstable equilibrium nobody knows more of a run than that it is a rotation.
+            return (health.is_believed() != Some(false)).then_some(most_turns);
         }
     }
 }

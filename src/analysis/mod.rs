@@ -1,6 +1,6 @@
 //! What a run's numbers are worth: [`theory`] says what the top should do, [`monitor`] and [`extremes`] what the run did,
 //! [`report_theory`] what the report's scheme should make of it, [`slowing`] what friction does to it, [`health`] what the
-//! time step made of it, [`remarks`] the same in words. [`readouts`] is the one table of all these numbers under their
+//! time step made of it, [`predictability`] how long the motion can be predicted at all, [`remarks`] the same in words. [`readouts`] is the one table of all these numbers under their
 //! names, and [`compare`] holds schemes and time steps against the exact motion.
 //!
 //! These rooms follow a run and read it; none of them changes a number of it.
@@ -15,6 +15,7 @@ mod foot_force;
 pub mod health;
 pub mod monitor;
 mod parabolas;
+pub mod predictability;
 pub mod readouts;
 pub mod remarks;
 pub mod report_theory;
@@ -28,6 +29,7 @@ pub use deviation::Beside;
 pub use extremes::Extremes;
 pub use health::Health;
 pub use monitor::{Instruments, Monitor};
+pub use predictability::Predictability;
 pub use readouts::Readouts;
 pub use slowing::Slowing;
 pub use theory::Theory;

@@ -186,9 +186,15 @@ impl Monitor {
         let (turn, momentum) = (state.orientation, state.momentum);
         let ceased = rubs.then(|| LagrangeTop::new(top.across, top.along, load, turn, momentum));
         let motion = ceased.as_ref().or_else(|| truth.motion().closed_form())?;
-        Some(Theory {
+        let theory = Theory {
             is_of_a_moment: rubs,
             ..Theory::new(&top, &load, motion, &state)
+        };
+        let is_unstable = self.beside.predictability().unstable.is_some();
+        Some(if is_unstable {
+            theory.in_balance()
+        } else {
+            theory
         })
     }
 }

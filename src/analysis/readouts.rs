@@ -136,7 +136,8 @@ impl Readouts {
             Source::Exact => {
                 let deviation = monitor.beside.deviation(simulation.state());
                 self.health.deviation = deviation;
-                self.health.most_distance_m = deviation.map(|_| monitor.beside.most_distance_m());
+                self.health.most_distance_m = monitor.beside.most_distance_m();
+                self.health.predictability = monitor.beside.predictability();
                 self.health.swing = monitor.beside.swing();
             }
             Source::Scenario | Source::State | Source::Scheme | Source::Theory | Source::Clock => {

@@ -2,6 +2,7 @@
 //! the summary.
 
 use super::health::{Advice, Nutation, Picture};
+use super::predictability::{Equilibrium, Predictability};
 use super::{Health, Slowing};
 use crate::run::EnergyUnit;
 use crate::text::number::{
@@ -47,11 +48,19 @@ impl Remark {
 
 /// What there is to say of `health`, and of what would mend it, where that is known; most important first.
 pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
+    let limit = limit(health);
+    if let Some(limit) = limit.as_ref()
+        && health.is_believed() != Some(false)
+    {
+        // Nothing else of it is right or wrong.
+        return vec![limit.clone(), energy(health)];
+    }
     let mut remarks = if health.is_a_rotation {
         vec![turns(health), distance(health)]
     } else {
         vec![broken_down(health)]
     };
+    remarks.extend(limit);
     remarks.extend(wrong_swing(health));
     if health.is_believed() == Some(false) {
         remarks.extend(advice.and_then(|advice| mend(health, advice)));
@@ -177,14 +186,57 @@ fn turns(health: &Health) -> Remark {
 }
 
 fn distance(health: &Health) -> Remark {
-    let Some(deviation) = health.deviation else {
-        return Remark::new("not held against the exact motion".to_owned(), false);
+    let metres = match (health.deviation, health.most_distance_m) {
+        (Some(deviation), _) => length(deviation.distance_m),
+        (None, Some(most_m)) => format!("up to {}", length(most_m)),
+        (None, None) => {
+            return Remark::new("not held against the exact motion".to_owned(), false);
+        }
     };
-    let metres = length(deviation.distance_m);
     Remark {
         long: format!("{metres} off the exact motion"),
         short: format!("{metres} off exact"),
         warns: health.point_holds() == Some(false),
+    }
+}
+
+/// Returns what limits every computation of the motion, where something does.
+fn limit(health: &Health) -> Option<Remark> {
+    let limits = health.limits();
+    let short = match limits {
+        Predictability {
+            unstable: Some(_), ..
+        } => "unstable equilibrium".to_owned(),
+        Predictability { until_s, .. } => format!("predictable until {} s", short(until_s?)),
+    };
+    Some(Remark {
+        long: limits.to_string(),
+        short,
+        warns: true,
+    })
+}
+
+impl fmt::Display for Predictability {
+    /// Writes what follows "the motion is"; nothing where there is no limit.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.unstable {
+            Some(Equilibrium::Upright) => {
+                f.write_str("an unstable equilibrium: stays upright only in exact arithmetic")?;
+            }
+            Some(Equilibrium::Other) => {
+                f.write_str("an unstable equilibrium: stays as it is only in exact arithmetic")?;
+            }
+            None => {}
+        }
+        let Some(until_s) = self.until_s else {
+            return Ok(());
+        };
+        f.write_str(self.unstable.map_or("", |_| "; "))?;
+        let until = short(until_s);
+        write!(
+            f,
+            "predictable until t = {until} s; after that, no double-precision computation can predict the motion"
+        )
     }
 }
 
@@ -311,7 +363,8 @@ pub fn constants_in_full(health: &Health) -> Option<String> {
 const TOO_FAR_RAD: f64 = 1.0;
 
 impl Health {
-    /// In one sentence of at most 40 words: whether the numbers hold, what is wrong with them, and what would mend it.
+    /// In one sentence of at most 40 words: whether the numbers hold, what is wrong with them, and what would mend it. One
+    /// more says how far the motion can be predicted, where the run goes on after that.
     pub fn sentence(&self, advice: Option<&Advice>) -> String {
         let Some(most) = self.most_distance_m else {
             return "Not held against the exact motion, which would take too long or leaves the range of numbers.".to_owned();
@@ -325,18 +378,34 @@ impl Health {
             short(most),
             short(100.0 * most / self.arm_m)
         );
+        let limits = self.limits();
+        if limits.unstable.is_some() {
+            return format!("The motion is {limits}.");
+        }
+        let limit = limits
+            .until_s
+            .map_or(String::new(), |_| format!(" The motion is {limits}."));
         let mend = advice.map_or(String::new(), |advice| how_to_mend(self, advice));
         if self.point_holds() == Some(false) {
             return format!(
-                "Do not believe this run: {}, and the traced point is up to {far} off the exact motion{mend}.",
+                "Do not believe this run: {}, and the traced point is up to {far} off the exact motion{mend}.{limit}",
                 cause(self)
             );
         }
         if let Some(swing) = self.swing.filter(|swing| !swing.is_right()) {
             let cause = cause_of_swing(self).map_or(String::new(), |cause| format!(": {cause}"));
             return format!(
-                "The traced point holds, and the nutation does not: {swing}{cause}{mend}."
+                "The traced point holds, and the nutation does not: {swing}{cause}{mend}.{limit}"
             );
+        }
+        if limits.until_s.is_some() {
+            let within = format!(": the traced point has kept within {far} of the exact motion");
+            // Two exact motions differ by rounding, which says nothing.
+            let within = match self.scheme.order {
+                Some(_) => within.as_str(),
+                None => "",
+            };
+            return format!("The motion is {limits}. Until then the numbers hold{within}.");
         }
         let picture = picture(self);
         if is_exact {

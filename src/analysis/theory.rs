@@ -183,6 +183,17 @@ impl Theory {
         }
     }
 
+    /// Returns the same of a top that is in its unstable equilibrium: it stays there, and rounding alone would tip it over.
+    pub fn in_balance(self) -> Self {
+        let tilt_deg = if self.load < 0.0 { 180.0 } else { 0.0 };
+        Self {
+            precession: None,
+            nutation_period_s: None,
+            tilt_range_deg: (tilt_deg, tilt_deg),
+            ..self
+        }
+    }
+
     /// The time of one turn of the mean precession, s; `None` where there is none, or it does not turn.
     pub fn precession_period_s(&self) -> Option<f64> {
         let rate = self.precession?.abs();

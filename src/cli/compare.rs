@@ -5,6 +5,7 @@ use super::progress::{self, Interrupted};
 use super::{one_on_stdout, print};
 use crate::analysis::compare::{Table, compare as table_of};
 use crate::analysis::cost;
+use crate::analysis::predictability::predictability;
 use crate::physics::{SchemeInfo, scheme};
 use crate::run::{Clock, EnergyScale, Truth};
 use crate::scenario::Scenario;
@@ -69,11 +70,12 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     interruption.may_act_at_once()?;
+    let duration_s = Clock::end_s(&scenario);
     let table = Table {
         rows: &rows,
         energy_unit: EnergyScale::of(&scenario).map(|scale| scale.unit),
+        predictability: predictability(&Arc::new(scenario.clone()), duration_s),
     };
-    let duration_s = Clock::end_s(&scenario);
     let truth = kind_of_truth(&scenario, duration_s);
     let title = scenario.file.title.as_str();
     if args.json {

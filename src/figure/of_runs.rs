@@ -14,6 +14,7 @@ use super::page::letters;
 use super::request::{Dense, Drawn, Job};
 pub use super::request::{Figure, Known, Request, Run};
 use super::space;
+use crate::analysis::Predictability;
 use crate::analysis::health::LEAST_SWING_DEG;
 use crate::export::Column;
 use crate::physics::exact::LagrangeTop;
@@ -111,6 +112,7 @@ fn play(
             !wanted.columns.is_empty() && (!is_exact(&run.scenario) || wanted.counts_steps());
         let few = || few_a_swing(run).filter(|_| is_shown);
         warnings.extend(not_believed(run, course, request.exact).or_else(few));
+        warnings.extend(limited(run, course));
     }
     if request.exact {
         let is_exact = |run: &Run| is_exact(&run.scenario);
@@ -331,6 +333,13 @@ fn not_believed(run: &Run, course: &Course, exact: bool) -> Option<String> {
         format!("; {EXACT_BESIDE}")
     };
     Some(format!("do not believe {what}{beside}"))
+}
+
+/// Returns what limits every computation of the motion of `run`, where something does.
+fn limited(run: &Run, course: &Course) -> Option<String> {
+    let limits = course.health?.limits();
+    (limits != Predictability::default())
+        .then(|| format!("the motion of {} is {limits}", run.named))
 }
 
 /// A nutation with fewer time steps than these is not seen in the lines from one to the next.

@@ -240,8 +240,7 @@ impl LiveRun {
 
     /// What of that goes to integrations of the exact motion: by the scheme, and beside the run.
     fn integration_cost(&self) -> u64 {
-        let is_beside = self.monitor.beside.is_known();
-        integration_cost(&self.simulation, u32::from(is_beside))
+        integration_cost(&self.simulation, self.monitor.beside.motions())
     }
 
     /// Shows the exact motion beside the run where that can be had, or does not.

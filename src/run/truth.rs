@@ -15,6 +15,8 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Truth {
     scenario: Arc<Scenario>,
+    /// The state at t = 0.
+    start: State,
     /// The stretches of time between edits of gravity and pushes, in order; the first begins at 0.
     eras: Vec<Era>,
     /// The motion since the forces last changed, and when they change next.
@@ -33,15 +35,22 @@ struct Era {
 
 impl Truth {
     pub fn new(scenario: Arc<Scenario>) -> Self {
+        let start = scenario.start;
+        Self::from_start(scenario, start)
+    }
+
+    /// Returns the exact motion under the forces of `scenario` that is in the state `start` at t = 0.
+    pub fn from_start(scenario: Arc<Scenario>, start: State) -> Self {
         let mut truth = Self {
             eras: eras(&scenario),
-            piece: ExactMotion::new(&scenario.body.mechanics, &Loads::default(), &scenario.start),
+            piece: ExactMotion::new(&scenario.body.mechanics, &Loads::default(), &start),
             end_s: 0.0,
             loads: Loads::default(),
             pieces: 0,
             scenario,
+            start,
         };
-        truth.begin_piece(truth.scenario.start);
+        truth.begin_piece(start);
         truth
     }
 
@@ -78,7 +87,7 @@ impl Truth {
     fn go_to(&mut self, time_s: f64) {
         if time_s < self.piece.begin_s() {
             self.pieces = 0;
-            self.begin_piece(self.scenario.start);
+            self.begin_piece(self.start);
         }
         while time_s > self.end_s {
             let state = self.piece.at(self.end_s);
@@ -95,7 +104,7 @@ impl Truth {
         // What is done where the piece begins, as at the start, is in force on all of it.
         if self.loads_from(begin_s) != self.loads {
             let state = if begin_s == 0.0 {
-                self.scenario.start
+                self.start
             } else {
                 self.piece.at(begin_s)
             };
@@ -115,6 +124,11 @@ impl Truth {
     /// The forces of the time asked for last.
     pub fn loads(&self) -> &Loads {
         &self.loads
+    }
+
+    /// Returns when the forces change next after the time asked for last, s; infinity if they never do.
+    pub fn end_s(&self) -> f64 {
+        self.end_s
     }
 
     /// How it is found at the time asked for last.

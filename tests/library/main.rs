@@ -38,6 +38,7 @@ mod own_code;
 mod parameters;
 mod parts;
 mod pictures;
+mod predictability;
 mod present;
 mod presets;
 mod readouts;

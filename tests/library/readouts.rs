@@ -4,6 +4,7 @@ use crate::support::desk::Desk;
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
 use crate::support::words::{has, has_no};
+use gyrolab::analysis::Predictability;
 use gyrolab::analysis::compare::{Table, compare};
 use gyrolab::analysis::readouts::{READOUTS, Value, find, names, nearest};
 use gyrolab::analysis::theory::Axis;
@@ -275,6 +276,7 @@ fn the_drift_of_a_balanced_body_is_measured_by_its_kinetic_energy() {
         let table = Table {
             rows: &rows,
             energy_unit: Some(scale.unit),
+            predictability: Predictability::default(),
         };
         has(table.to_string(), "of the kinetic energy at the start");
     }
@@ -428,6 +430,7 @@ fn no_table_shows_what_is_no_number() {
         let table = Table {
             rows: &rows,
             energy_unit,
+            predictability: Predictability::default(),
         };
         let text = table.to_string();
         assert_eq!(blemish(&text), None, "{case}\n{text}");

@@ -218,8 +218,10 @@ readouts! {
     "measured_tilt_swing_deg", "deg", Measured, "greatest tilt less least tilt, as the steps show it", |r| value(r.tilt_swing);
     "measured_tilt_swing_uncertainty_deg", "deg", Measured, "how much more the tilt swings between the steps", |r| uncertainty(r.tilt_swing);
     "true_steady_lag_deg", "deg", Theory, "that angle of the exact motion; given beside the report's scheme, null where the top spins too slowly for a steady precession", |r| r.health.nutation.and_then(|nutation| nutation.true_lag_deg);
-    "distance_m", "m", Exact, "distance of the traced point from the exact motion's", |r| r.health.deviation.map(|off| off.distance_m);
-    "most_distance_m", "m", Exact, "the largest such distance so far", |r| r.health.most_distance_m;
+    "distance_m", "m", Exact, "distance of the traced point from the exact motion's; null after predictable_until_s", |r| r.health.deviation.map(|off| off.distance_m);
+    "most_distance_m", "m", Exact, "the largest such distance so far, up to predictable_until_s", |r| r.health.most_distance_m;
+    "predictable_until_s", "s", Exact, "the time after which no double-precision computation can predict the motion; null where the run ends before that", |r| r.health.predictability.until_s;
+    "reliable", "", Exact, "whether the numbers of this step hold; false after predictable_until_s, null where that is not known", |r| r.health.is_reliable();
     "L_axle_drift_Js", "J s", Exact, "L along the axle less the exact motion's", |r| r.health.deviation.map(|off| off.spin);
     "Lz_drift_Js", "J s", Exact, "L_z less the exact motion's", |r| r.health.deviation.map(|off| off.lz);
     "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle; with start.rotor I3 is of that part alone", |r| r.kappa, "*κ*";
