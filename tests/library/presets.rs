@@ -3,6 +3,7 @@
 use crate::support::ground::names;
 use crate::support::scenarios::preset as preset_named;
 use gyrolab::analysis::compare::compare;
+use gyrolab::analysis::health::{Advice, advise};
 use gyrolab::analysis::{Monitor, Readouts};
 use gyrolab::export::Column;
 use gyrolab::run::Simulation;
@@ -306,10 +307,11 @@ fn the_figures_in_the_texts_are_those_of_the_runs() {
     let ratio = rate("fast_precession_rad_per_s") / rate("slow_precession_rad_per_s");
     let ratio = format!("{ratio:.2} times round");
     assert!(words("steady-fast").contains(&ratio), "{ratio}");
-    let step = 0.01;
+    let step = 0.002;
     let note = format!("at dt = {step} it is gone");
     assert!(words("wobble-push").contains(&note), "{note}");
     let push = preset_named("wobble-push", &[]);
+    assert_eq!(advise(&push), Advice::TimeStep(step));
     let go_on = |_, _| ControlFlow::Continue(());
     let rows = compare(&push, &[push.motion.scheme], &[step], go_on).unwrap();
     assert!(rows[0].error_m.unwrap() < 0.002 * push.arm_m(), "{rows:?}");
