@@ -36,9 +36,10 @@ pub(super) fn hint(cells: &Csv, map: &[Renaming], origin: &str) -> String {
         Some(format!("{map} reads the track \"{}\"", brief(title, 40)))
     };
     let all: Vec<String> = tracks.iter().filter_map(of_track).collect();
-    match all.is_empty() {
-        true => String::new(),
-        false => format!("; {}", all.join(", ")),
+    if all.is_empty() {
+        String::new()
+    } else {
+        format!("; {}", all.join(", "))
     }
 }
 
@@ -90,9 +91,10 @@ fn label(cells: &Csv, place: usize) -> String {
             .all(|c| c != ',' && c != '\'' && !is_steering(c))
         && own.name.len() <= 80
         && (cells.naming == Naming::Numbers || own.name.parse::<usize>().is_err());
-    match is_alone && is_plain {
-        true => own.name.clone(),
-        false => own.number.to_string(),
+    if is_alone && is_plain {
+        own.name.clone()
+    } else {
+        own.number.to_string()
     }
 }
 
@@ -271,16 +273,15 @@ impl Guess<'_> {
         if let Some(axis) = axis.filter(|_| !has_foreign_word) {
             let number = axis + 1;
             let is_length = unit.is_some_and(|unit| unit.kind == Kind::Length);
-            return match () {
-                () if is_length || !is_gyroscope && lower.len() == 1 && unit.is_none() => {
-                    Some(format!("{}_m", ["x", "y", "z"][axis]))
-                }
-                () if unit.is_some_and(|unit| unit.kind != Kind::Rate) => None,
-                () if unit.is_none() && self.largest(place) > MOST_RATE => {
-                    Some(format!("w{number}_deg_per_s"))
-                }
-                () => Some(format!("w{number}_rad_per_s")),
-            };
+            if is_length || !is_gyroscope && lower.len() == 1 && unit.is_none() {
+                return Some(format!("{}_m", ["x", "y", "z"][axis]));
+            }
+            if unit.is_some_and(|unit| unit.kind != Kind::Rate) {
+                return None;
+            }
+            let is_in_degrees = unit.is_none() && self.largest(place) > MOST_RATE;
+            let angle = if is_in_degrees { "deg" } else { "rad" };
+            return Some(format!("w{number}_{angle}_per_s"));
         }
         let quantities = names().filter(|name| *name != TIME && Quantity::find(name).is_some());
         let meant = near(own, quantities).filter(|_| own.len() >= LEAST_NEAR)?;
@@ -289,9 +290,10 @@ impl Guess<'_> {
 
     fn tilt(&self, place: usize) -> &'static str {
         let has_unit = Unit::split(&self.cells.own[place].name).is_some();
-        match !has_unit && self.largest(place) <= MOST_TILT_RAD {
-            true => "tilt_rad",
-            false => "tilt_deg",
+        if !has_unit && self.largest(place) <= MOST_TILT_RAD {
+            "tilt_rad"
+        } else {
+            "tilt_deg"
         }
     }
 }

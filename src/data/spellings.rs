@@ -105,9 +105,9 @@ pub fn name_columns(
     let company = Company::of(cells, origin);
     let is_mapped = cells.own.iter().any(|own| own.is_mapped);
     let meanings: Vec<Option<Meaning>> = (0..cells.names.len())
-        .map(|place| match cells.own[place].is_mapped {
-            true => None,
-            false => meaning(&cells.names[place], &company).filter(|it| is_wanted(&it.name)),
+        .map(|place| {
+            let meaning = meaning(&cells.names[place], &company);
+            meaning.filter(|it| !cells.own[place].is_mapped && is_wanted(&it.name))
         })
         .collect();
     let mut problems = Vec::new();
@@ -152,9 +152,10 @@ fn several(cells: &Csv, name: &str, places: &[usize]) -> Problem {
         .filter_map(|&place| track(cells, place))
         .map(|title| format!("\"{}\"", brief(title, 40)))
         .collect();
-    let of_tracks = match tracks.is_empty() {
-        true => String::new(),
-        false => format!(", of the tracks {}", tracks.join(" and ")),
+    let of_tracks = if tracks.is_empty() {
+        String::new()
+    } else {
+        format!(", of the tracks {}", tracks.join(" and "))
     };
     let rule = format!(
         "names columns {numbers}{of_tracks}, which would both be {name}: leave one of them out, or choose one by its number"
@@ -223,9 +224,10 @@ fn meaning(name: &str, company: &Company) -> Option<Meaning> {
     Some(Meaning {
         name: known.to_owned(),
         factor: 1.0,
-        surety: match letters(name) == "secondselapsed" {
-            true => Surety::WithUnit,
-            false => Surety::Bare,
+        surety: if letters(name) == "secondselapsed" {
+            Surety::WithUnit
+        } else {
+            Surety::Bare
         },
     })
 }

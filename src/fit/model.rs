@@ -257,12 +257,13 @@ fn with_settings(
 fn too_far(measured: &Measured, series: &Series, scenario: &Scenario) -> Problems {
     let [first_s, last_s] = [series.times_s.first(), series.times_s.last()];
     let [first_s, last_s] = [first_s, last_s].map(|time_s| time_s.copied().unwrap_or(0.0));
-    let begin = match first_s > 0.5 * last_s {
-        true => format!(
+    let begin = if first_s > 0.5 * last_s {
+        format!(
             "; the recording begins at {0} s: --from {0} counts the time from there",
             shortest(first_s)
-        ),
-        false => String::new(),
+        )
+    } else {
+        String::new()
     };
     let mut problem = Problem::at(
         "t_s",

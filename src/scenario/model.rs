@@ -142,9 +142,10 @@ impl Scenario {
     }
 
     pub fn traced_name(&self) -> &str {
-        let unnamed = match self.traces_top() {
-            true => TOP,
-            false => "farthest point",
+        let unnamed = if self.traces_top() {
+            TOP
+        } else {
+            "farthest point"
         };
         self.file.trace.as_deref().unwrap_or(unnamed)
     }

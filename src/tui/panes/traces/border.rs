@@ -46,9 +46,10 @@ impl Traces<'_> {
             return format!("step {step} at {time_s} s");
         }
         let scenario = self.0.run.scenario();
-        let point = match scenario.traces_top() {
-            true => "axle top",
-            false => scenario.traced_name(),
+        let point = if scenario.traces_top() {
+            "axle top"
+        } else {
+            scenario.traced_name()
         };
         let has_exact = self.0.run.overlay().is_some();
         let beside = [
