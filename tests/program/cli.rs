@@ -497,9 +497,7 @@ fn a_signal_ends_a_command_with_130_and_leaves_nothing() {
             true,
         ),
         (
-            &*format!(
-                "writeup wing-nut {steps} --scheme exact --set motion.time_step_s=1e4 -o folder"
-            ),
+            "writeup wing-nut --steps 9000 --scheme exact --set motion.time_step_s=1e4 -o folder",
             true,
         ),
         // One scheme whose looks are far apart, and many on all cores.
