@@ -98,6 +98,16 @@ pub enum Path {
     ThroughVertical,
 }
 
+impl Path {
+    pub const ALL: [Self; 5] = [
+        Self::Circle,
+        Self::Cusps,
+        Self::Loops,
+        Self::Waves,
+        Self::ThroughVertical,
+    ];
+}
+
 impl fmt::Display for Path {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
