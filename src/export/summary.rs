@@ -107,7 +107,10 @@ impl Summary {
         let period = theory.and_then(|theory| theory.nutation_period_s);
         let is_strobed = readouts.nutation_is_resolved() == Some(false);
         let nutation = self.compared("s", period, readouts.nutation, is_strobed);
-        vec![("precession", precession), ("nutation", nutation)]
+        let mut lines = vec![("precession", precession), ("nutation", nutation)];
+        let asymmetry = readouts.theory.and_then(|theory| theory.of_mean_moment());
+        lines.extend(asymmetry.map(|asymmetry| ("asymmetry", asymmetry)));
+        lines
     }
 
     /// A value by theory and as it was measured: "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s in this run", with the axis

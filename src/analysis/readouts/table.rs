@@ -264,7 +264,8 @@ readouts! {
     "most_distance_m", "m", Exact, "the largest such distance so far", |r| r.health.most_distance_m;
     "L_axle_drift_Js", "J s", Exact, "L along the axle less the exact motion's", |r| r.health.deviation.map(|off| off.spin);
     "Lz_drift_Js", "J s", Exact, "L_z less the exact motion's", |r| r.health.deviation.map(|off| off.lz);
-    "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle; with start.rotor I3 is of that part alone", |r| r.kappa, "*κ*";
+    "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle; with start.rotor I3 is of that part alone; of one that is symmetric to 1 % only, I1 is the mean moment", |r| r.kappa, "*κ*";
+    "asymmetry", "", Scenario, "how far the body is from symmetric about its axle: the largest of the difference of its moments across over their mean, the angle of its principal axis to the axle (rad), and the distance of its center of mass from the axle over its radius of gyration; 0 if symmetric, null where there is no theory (moments: above 0.01, or above a fifth of their difference from the one along the axle; the others: above 0.001)", |r| r.asymmetry;
     "theory_axis", "", Theory, "the axis that theory speaks of: +z, or another (against the forces, or along L where there are none), and then what it says about that axis is null", |r| r.theory.map(|theory| theory.axis.to_string());
     "path", "", Theory, "the path of the axle about +z", |r| r.lasting_theory().map(|theory| theory.path.to_string());
     "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z", |r| r.lasting_theory().map(|theory| theory.tilt_range_deg.0), "*θ*_{min}";
