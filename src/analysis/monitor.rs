@@ -36,6 +36,7 @@ use super::turning_points::TurningPoints;
 use super::turns::{Measured, WithoutNutation};
 use crate::physics::{LagrangeTop, SymmetricTop};
 use crate::run::Step;
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 /// The instruments that follow a run; to be shown every step of it.
@@ -174,21 +175,34 @@ impl Monitor {
         Health::new(step, &mut self.beside)
     }
 
-    /// What theory says of the exact motion at `time_s` (s), where there is friction as if it ceased then; `None` for a
-    /// lopsided body, a push off the axle, or a motion that would take too long.
+    /// Returns what theory says of the exact motion at `time_s` (s), where there is friction as if it ceased then; `None` for
+    /// a lopsided body, a push off the axle, or a motion that would take too long.
+    ///
+    /// For a nearly symmetric body it is the theory of the mean moment across, as the forces last changed: what is constant
+    /// in the motion of a symmetric top swings in its own.
     pub fn theory(&mut self, time_s: f64) -> Option<Theory> {
         let truth = self.beside.truth()?;
         let state = truth.state_at(time_s);
         let body = &truth.scenario().body.mechanics;
-        let top = SymmetricTop::of(body)?;
+        let (top, asymmetry) = SymmetricTop::nearly(body)?;
         let load = truth.loads().on_axle(body, &top)?;
         let rubs = !truth.loads().friction.is_none();
-        let (turn, momentum) = (state.orientation, state.momentum);
-        let ceased = rubs.then(|| LagrangeTop::new(top.across, top.along, load, turn, momentum));
-        let motion = ceased.as_ref().or_else(|| truth.motion().closed_form())?;
+        let of = if asymmetry > 0.0 && !rubs {
+            *truth.motion().begin()
+        } else {
+            state
+        };
+        let closed_form = truth.motion().closed_form();
+        let top_of = || LagrangeTop::new(top.across, top.along, load, of.orientation, of.momentum);
+        let motion = closed_form.map_or_else(|| Cow::Owned(top_of()), Cow::Borrowed);
+        let now = Theory::new(&top, &load, &motion, &state);
         let theory = Theory {
+            // The steady precessions are those at the present tilt.
+            slow_precession: now.slow_precession,
+            fast_precession: now.fast_precession,
             is_of_a_moment: rubs,
-            ..Theory::new(&top, &load, motion, &state)
+            asymmetry,
+            ..Theory::new(&top, &load, &motion, &of)
         };
         let is_unstable = self.beside.predictability().unstable.is_some();
         Some(if is_unstable {

@@ -37,8 +37,10 @@ pub struct Readouts {
     pub spin_rad_per_s: f64,
     /// Whether a rotor spins in a frame that does not.
     pub has_rotor: bool,
-    /// I3/I1 of a symmetric body.
+    /// I3/I1 of a symmetric body, or of a nearly symmetric one, I1 the mean of its moments across.
     pub kappa: Option<f64>,
+    /// The asymmetry of such a body.
+    pub asymmetry: Option<f64>,
     pub health: Health,
     /// What would mend it, where that has been sought.
     pub advice: Option<Advice>,
@@ -81,6 +83,7 @@ impl Readouts {
         let step = simulation.now();
         let state = step.after();
         let is_smooth = health.slowing.is_none();
+        let top = SymmetricTop::nearly(&step.scenario().body.mechanics);
         let mut readouts = Self {
             title: step.scenario().file.title.clone(),
             scheme: step.motion().scheme.name,
@@ -90,7 +93,8 @@ impl Readouts {
             spin: state.momentum.dot(&state.axle()),
             spin_rad_per_s: step.scenario().spin_rad_per_s(state),
             has_rotor: step.scenario().rotor().is_some(),
-            kappa: SymmetricTop::of(&step.scenario().body.mechanics).map(|top| top.kappa()),
+            kappa: top.map(|(top, _)| top.kappa()),
+            asymmetry: top.map(|(_, asymmetry)| asymmetry),
             health: *health,
             advice: advice.copied(),
             theory: monitor.theory(state.time_s),

@@ -4,6 +4,7 @@
 
 use crate::physics::symmetry::steady_precession;
 use crate::physics::{LagrangeTop, State, SymmetricTop};
+use crate::text::number::significant;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 use std::fmt;
@@ -45,6 +46,8 @@ pub struct Theory {
     /// Whether there is friction: then all this is of the motion that would follow if it ceased now, and no part of the
     /// motion that does follow, but for the rates at this moment.
     pub is_of_a_moment: bool,
+    /// The [asymmetry](SymmetricTop::nearly) of the body: above 0 the theory is that of the mean moment across.
+    pub asymmetry: f64,
 }
 
 /// The axis that a theory speaks of: its tilts are angles from it, its precession turns about it.
@@ -96,6 +99,16 @@ pub enum Path {
     Waves,
     /// It passes through the vertical, or stays there.
     ThroughVertical,
+}
+
+impl Path {
+    pub const ALL: [Self; 5] = [
+        Self::Circle,
+        Self::Cusps,
+        Self::Loops,
+        Self::Waves,
+        Self::ThroughVertical,
+    ];
 }
 
 impl fmt::Display for Path {
@@ -180,6 +193,7 @@ impl Theory {
                 path(tilt_range_deg, cusp_tilt_deg)
             },
             is_of_a_moment: false,
+            asymmetry: 0.0,
         }
     }
 
@@ -192,6 +206,13 @@ impl Theory {
             tilt_range_deg: (tilt_deg, tilt_deg),
             ..self
         }
+    }
+
+    /// Returns in words how asymmetric the body is, and so of which top the theory is; `None` for a symmetric body.
+    pub fn of_mean_moment(&self) -> Option<String> {
+        let percent = significant(100.0 * self.asymmetry, 2);
+        (self.asymmetry > 0.0)
+            .then(|| format!("{percent} %; theory is that of the mean moment across"))
     }
 
     /// The time of one turn of the mean precession, s; `None` where there is none, or it does not turn.

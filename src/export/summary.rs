@@ -117,6 +117,8 @@ impl Summary {
         let unmeasured = readouts.without_nutation.map_or("", WithoutNutation::words);
         let nutation = self.compared("s", period, readouts.nutation, is_strobed, unmeasured);
         let mut lines = vec![("precession", precession), ("nutation", nutation)];
+        let asymmetry = readouts.theory.and_then(|theory| theory.of_mean_moment());
+        lines.extend(asymmetry.map(|asymmetry| ("asymmetry", asymmetry)));
         lines.extend(self.foot_force().map(|force| ("foot force", force)));
         lines
     }

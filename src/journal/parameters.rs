@@ -164,6 +164,9 @@ fn present(key: &Key, place: &str, table: &Table, scenario: &Scenario) -> Option
         "start.momentum_Js" => Some(vector(&start.momentum)),
         "start.spin_rpm" => Some(start::rpm(spin()).into()),
         "start.spin_rad_per_s" => Some(spin().into()),
+        "start.precession_rad_per_s" | "start.nutation_rad_per_s" | "start.psi_dot_rad_per_s" => {
+            Some(Value::Float(0.0))
+        }
         "body.part.*.axis" => Some(vector(&Vector3::z())),
         "body.part.*.length_m" => {
             let shape = find(table, &place.replace("length_m", "shape"))?.as_str()?;
@@ -173,8 +176,8 @@ fn present(key: &Key, place: &str, table: &Table, scenario: &Scenario) -> Option
     }
 }
 
-/// Whether the key at `place` fits the other keys of its table: a push has its times either in steps or in seconds, and
-/// an angular velocity is listed only where the file gives one.
+/// Whether the key at `place` fits the other keys of its table: a push has its times either in steps or in seconds, an
+/// angular velocity and Euler rates are listed only where the file gives them, and only given moments are about a point.
 fn is_offered(place: &str, table: &Table) -> bool {
     let Some((inside, name)) = place.rsplit_once('.') else {
         return true;
@@ -183,6 +186,8 @@ fn is_offered(place: &str, table: &Table) -> bool {
     let is_in_seconds = || has("from_s") || has("for_s");
     match (inside.split('.').next(), name) {
         (Some("start"), "omega_rad_per_s" | "omega_frame") => has("omega_rad_per_s"),
+        (Some("start"), name) if start::EULER.contains(&name) => start::EULER.into_iter().any(has),
+        (Some("body"), "about") => has("moments_kg_m2"),
         (Some("push"), "first_step" | "steps" | "accumulates") => !is_in_seconds(),
         (Some("push"), "from_s" | "for_s") => is_in_seconds(),
         _ => true,

@@ -11,6 +11,7 @@
 
 use super::PointMass;
 use nalgebra::{Matrix3, Vector3};
+use std::fmt;
 
 /// A sum of two moments may be below the third by this part of the largest: it is the rounding of flat bodies, for which the
 /// two are equal.
@@ -117,9 +118,41 @@ pub enum PartError {
     /// One moment is above the sum of the two others.
     #[error("{0}: no body of real masses has these moments")]
     Unreal(&'static str),
+    /// A moment about the pivot, or A + B − C and its like, is less than the mass at its center alone has.
+    #[error(
+        "about the pivot {sum} must be at least {least} kg m^2, d the distance of its center of mass {from}"
+    )]
+    TooFar {
+        /// The moment, or the sum of moments.
+        sum: &'static str,
+        /// What it must reach, with its formula: "M d^2 = 1.25e-3".
+        least: Bound,
+        /// From or along which axis d counts.
+        from: &'static str,
+        /// The factor on the distance of the center at which these moments become possible, M d staying as it is.
+        nearer: f64,
+    },
     /// Mass or dimensions are so large or small that the moments leave the range of floating-point numbers.
     #[error("its moments leave the range of numbers: use masses and dimensions nearer to 1")]
     OutOfRange,
+}
+
+/// A bound on a moment, M d² or twice that, kg m².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// One or two.
+    factor: u8,
+    value: f64,
+}
+
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let factor = if self.factor == 1 { "" } else { "2 " };
+        // A product of decimals has twelve digits at the most, but for rounding.
+        let digits = format!("{:.11e}", self.value);
+        let value: f64 = digits.parse().unwrap_or(self.value);
+        write!(f, "{factor}M d^2 = {value:e}")
+    }
 }
 
 /// Distances of the six points from the centre for the moments A, B, C divided by the mass, m.
@@ -180,6 +213,39 @@ impl Part {
         })
     }
 
+    /// The part with these `moments` (kg m²) about the axes through the pivot that are parallel to its own x, y and axis; mass,
+    /// center and axis as in [`new`](Self::new). Its principal axes at the center are its own x, y and axis.
+    ///
+    /// # Errors
+    /// Where no body of real masses has these moments, this mass and this center, or they are no finite numbers.
+    pub fn about_pivot(
+        moments: &Vector3<f64>,
+        mass: f64,
+        centre: Vector3<f64>,
+        axis: &Vector3<f64>,
+    ) -> Result<Self, PartError> {
+        let per_mass = moments / mass;
+        distances(&per_mass)?;
+        // Steiner's theorem for the second moments of the mass, ∫x² dm and so on, divided by it.
+        let squares = turn_to(axis).tr_mul(&centre).map(|along| along * along);
+        let about_pivot = Vector3::repeat(0.5 * per_mass.sum()) - per_mass;
+        let about_center = about_pivot - squares;
+        if !about_center.sum().is_finite() {
+            return Err(PartError::OutOfRange);
+        }
+        if about_center.min() < -ROUNDING * per_mass.amax() {
+            let ratios = about_pivot.iter().zip(&squares);
+            let ratios = ratios.filter(|(_, square)| **square > 0.0);
+            let nearer = ratios.fold(f64::INFINITY, |least, (own, square)| {
+                least.min(own / square)
+            });
+            return Err(too_far(&per_mass, &squares, mass, nearer));
+        }
+        let [x, y, z] = about_center.map(|second| second.max(0.0)).into();
+        let shape = Shape::Moments(Vector3::new(y + z, x + z, x + y));
+        Self::new(shape, mass, centre, axis)
+    }
+
     /// The principal moments about the centre: about its own x, y and axis, kg m².
     pub fn moments(&self) -> Vector3<f64> {
         self.mass * self.shape.moments_per_mass()
@@ -194,6 +260,41 @@ impl Part {
         let mut points = [PointMass::new(self.centre, 0.0); POINTS];
         points[1..].copy_from_slice(&six);
         points
+    }
+}
+
+/// Returns which of the moments about the pivot, divided by the mass, is too small for a center whose own coordinates have these
+/// `squares`; where each alone is large enough, which sum.
+fn too_far(per_mass: &Vector3<f64>, squares: &Vector3<f64>, mass: f64, nearer: f64) -> PartError {
+    const FROM: [&str; 3] = [
+        "from the axis of A",
+        "from the axis of B",
+        "from the axis of C",
+    ];
+    const ALONG: [&str; 3] = [
+        "along the axis of A",
+        "along the axis of B",
+        "along the axis of C",
+    ];
+    const SUMS: [&str; 3] = ["B + C - A", "A + C - B", "A + B - C"];
+    let from = Vector3::repeat(squares.sum()) - squares;
+    let single = (0..3).find(|&axis| per_mass[axis] < from[axis]);
+    let missing = Vector3::repeat(per_mass.sum()) - 2.0 * (per_mass + squares);
+    let (sum, factor, square, from) = match single {
+        Some(axis) => (["A", "B", "C"][axis], 1, from[axis], FROM[axis]),
+        None => {
+            let axis = missing.imin();
+            (SUMS[axis], 2, squares[axis], ALONG[axis])
+        }
+    };
+    PartError::TooFar {
+        sum,
+        least: Bound {
+            factor,
+            value: f64::from(factor) * mass * square,
+        },
+        from,
+        nearer,
     }
 }
 

@@ -1,5 +1,5 @@
-//! Bodies that are symmetric about their axle, and forces that act on it: what the closed form and the theory of the
-//! heavy top need.
+//! Bodies that are symmetric about their axle, or nearly so, and forces that act on it: what the closed form and the theory
+//! of the heavy top need.
 
 use super::{Body, Loads, State};
 use nalgebra::Vector3;
@@ -10,6 +10,18 @@ use nalgebra::Vector3;
 /// The splitting schemes ask for equality to the rounding of a sum instead (`splitting::principal::ROUNDING`): what they
 /// take as zero is left out of every step.
 const WITHIN: f64 = 1e-9;
+
+/// The largest difference of the moments across, as a share of their mean, with which the motion is still near to that of a
+/// symmetric top.
+const NEARLY: f64 = 0.01;
+
+/// The same for a principal axis (rad) and a center of mass (of the radius of gyration) that are off the axle. The axle wobbles
+/// by as much with each turn of the body, and a wobble of 1 % hides the nutation of a fast top.
+const NEARLY_ON_AXLE: f64 = 1e-3;
+
+/// The largest difference of the moments across, as a share of the difference between their mean and the moment along the axle.
+/// Nearer to equal moments, the small difference decides how the axle moves.
+const OF_KAPPA: f64 = 0.2;
 
 /// The moments of a body that is symmetric about its axle (the body's z axis), its centre of mass on the axle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +53,38 @@ impl SymmetricTop {
             along: inertia[(2, 2)],
             first_moment: first.z,
         })
+    }
+
+    /// Returns the top whose moment across is the mean of the two of `body`, and the asymmetry of `body`: 0 where it is
+    /// symmetric, else at most 0.01. `None` for a body that is more lopsided.
+    ///
+    /// The asymmetry is the largest of three: the difference of the principal moments across, divided by their mean; the
+    /// angle between the axle and the principal axis nearest to it, rad; and the distance of the center of mass from the axle,
+    /// divided by the radius of gyration. The difference of the moments across must also be small against their difference
+    /// from the moment along the axle: else it decides how the axle moves.
+    pub fn nearly(body: &Body) -> Option<(Self, f64)> {
+        if let Some(top) = Self::of(body) {
+            return Some((top, 0.0));
+        }
+        let (inertia, first) = (body.inertia(), body.first_moment());
+        let top = Self {
+            across: 0.5 * (inertia[(0, 0)] + inertia[(1, 1)]),
+            along: inertia[(2, 2)],
+            first_moment: first.z,
+        };
+        let difference = inertia[(0, 0)] - inertia[(1, 1)];
+        let unequal = libm::hypot(difference, 2.0 * inertia[(0, 1)]);
+        let skew = libm::hypot(inertia[(0, 2)], inertia[(1, 2)]);
+        let from_sphere = (top.along - top.across).abs();
+        let size = (inertia.diagonal().amax() * body.mass()).sqrt();
+        let of_moments = unequal / top.across;
+        let of_axis = skew / from_sphere;
+        let of_center = libm::hypot(first.x, first.y) / size;
+        let is_near = unequal <= OF_KAPPA * from_sphere
+            && of_moments <= NEARLY
+            && of_axis <= NEARLY_ON_AXLE
+            && of_center <= NEARLY_ON_AXLE;
+        is_near.then(|| (top, of_moments.max(of_axis).max(of_center)))
     }
 
     /// Whether the point `at` (body frame, m) of `body` is on its axle: forces there leave the closed form as it is.

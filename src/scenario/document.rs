@@ -170,7 +170,8 @@ impl Document {
     pub(crate) fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
         if start::is_other_way(&self.table, key, &value) {
             let now = self.scenario()?;
-            start::tell_other_way(&mut self.table, key, &value, &now);
+            let told = start::tell_other_way(&mut self.table, key, &value, &now);
+            told.map_err(|problem| self.placed(problem))?;
         }
         let written = self.set_value(key, value);
         written.map_err(|problem| self.placed(problem))

@@ -95,6 +95,9 @@ pub struct StartFile {
     pub steady: Option<bool>,
     pub omega_rad_per_s: Option<[f64; 3]>,
     pub omega_frame: Option<Frame>,
+    pub precession_rad_per_s: Option<f64>,
+    pub nutation_rad_per_s: Option<f64>,
+    pub psi_dot_rad_per_s: Option<f64>,
     pub rotor: Option<String>,
 }
 

@@ -121,7 +121,7 @@ impl Key {
 pub const MOST_PHASES: i64 = 1000;
 
 /// What `start.momentum_Js` is, and what may stand for it.
-pub(super) const STATED: &str = "angular momentum L about the pivot, J s; or give spin_rpm or spin_rad_per_s instead, or omega_rad_per_s";
+pub(super) const STATED: &str = "angular momentum L about the pivot, J s; or give spin_rpm or spin_rad_per_s instead, or omega_rad_per_s, or Euler rates such as psi_dot_rad_per_s";
 
 /// Every key there is, in the order in which files are written.
 #[rustfmt::skip]
@@ -148,17 +148,21 @@ pub static KEYS: &[Key] = &[
     may("body.part.*.outer_radius_m", Number(Positive), "tube: radius of the outside, m").lab("outer radius", "m", Hundredth(0.01)),
     may("body.part.*.length_m", Number(NotNegative), "tube, rod, cone (its apex against the axis), cylinder (if absent: 0, a disk): along the axis, m").lab("length", "m", Hundredth(0.01)),
     may("body.part.*.size_m", Vector, "block: its sides along its x, y and axis, m").lab("size ", "m", Hundredth(0.01)),
-    may("body.part.*.moments_kg_m2", Vector, "moments: about its centre, across (x), across (y) and about the axis, kg m^2").lab("I", "kg m2", Hundredth(0.01)),
+    may("body.part.*.moments_kg_m2", Vector, "moments: about its center, or as about says; across (x), across (y) and about the axis, kg m^2").lab("I", "kg m2", Hundredth(0.01)),
+    may("body.part.*.about", OneOf(&["center", "pivot"]), "moments: \"pivot\": they are about the pivot, about axes parallel to its own (default: center)").lab("I about", "", Turn),
     may("start.tilt_deg", Number(Any), "turns the upright body about +x, degrees (default: 0)").lab("tilt", "deg", By(1.0)),
     may("start.turn_deg", Number(Any), "then turns the tilted body about +z, degrees (default: 0)").lab("turn", "deg", By(1.0)),
     may("start.roll_deg", Number(Any), "first turns the upright body about its own axle, degrees (default: 0)").lab("roll", "deg", By(1.0)),
-    must("start.momentum_Js", Vector, STATED).unless(&["spin_rpm", "spin_rad_per_s", "omega_rad_per_s"]).lab("L", "J s", Hundredth(1.0)),
+    must("start.momentum_Js", Vector, STATED).unless(&["spin_rpm", "spin_rad_per_s", "omega_rad_per_s", "precession_rad_per_s", "nutation_rad_per_s", "psi_dot_rad_per_s"]).lab("L", "J s", Hundredth(1.0)),
     may("start.momentum_frame", OneOf(&["world", "body"]), "\"body\": L is turned with the body (default: world)").lab("L given in", "", Turn),
     may("start.spin_rpm", Number(Any), "instead of momentum_Js: the body turns about its axle, revolutions a minute (rpm); omega = spin * axle").lab("spin", "rpm", Hundredth(1.0)),
-    may("start.spin_rad_per_s", Number(Any), "the same in rad/s").lab("spin", "rad/s", Hundredth(0.1)),
+    may("start.spin_rad_per_s", Number(Any), "the same in rad/s: omega_3, along the axle; many books mean psi_dot_rad_per_s by the spin").lab("spin", "rad/s", Hundredth(0.1)),
     may("start.steady", Flag, "true, with a spin: L is such that the top precesses steadily at this tilt, the slow way; pushes do not count (default: false)").lab("steady", "", Turn),
     may("start.omega_rad_per_s", Vector, "instead of momentum_Js: angular velocity, rad/s; L = I omega").lab("w", "rad/s", Hundredth(0.1)),
     may("start.omega_frame", OneOf(&["world", "body"]), "\"body\": omega is turned with the body (default: world)").lab("w given in", "", Turn),
+    may("start.precession_rad_per_s", Number(Any), "instead of momentum_Js: Euler rates, as Goldstein has them; phi-dot, rate of turn_deg about +z, rad/s (if absent: 0)").lab("precession", "rad/s", Hundredth(0.1)),
+    may("start.nutation_rad_per_s", Number(Any), "Euler rate theta-dot, rate of tilt_deg, rad/s (if absent: 0)").lab("nutation", "rad/s", Hundredth(0.1)),
+    may("start.psi_dot_rad_per_s", Number(Any), "Euler rate psi-dot, rate of roll_deg about the axle, rad/s; omega_3 = psi-dot + phi-dot cos(tilt) (if absent: 0)").lab("psi-dot", "rad/s", Hundredth(0.1)),
     may("start.rotor", Line, "name of the part that spins while the rest of the body does not: L along the axle is that part's moment times the spin").lab("rotor", "", Turn),
     may("motion.gravity_m_per_s2", Number(Any), "acceleration of gravity along -z, m/s^2 (default: 9.8)").lab("gravity", "m/s2", By(0.1)),
     may("motion.scheme", OneOf(&SCHEME_NAMES), "the numerical scheme (default: report)").lab("scheme", "", Turn),

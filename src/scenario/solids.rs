@@ -3,7 +3,8 @@
 use super::kind::vector;
 use super::problem::{Problem, Problems};
 use crate::physics::part::{Part, PartError, Shape};
-use crate::text::number::shortest;
+use crate::text::ladder::at_or_below;
+use crate::text::number::{shortest, significant};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
@@ -21,6 +22,17 @@ pub struct PartFile {
     pub length_m: Option<f64>,
     pub size_m: Option<[f64; 3]>,
     pub moments_kg_m2: Option<[f64; 3]>,
+    pub about: Option<About>,
+}
+
+/// The point about which the moments of a part are given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum About {
+    /// Its center of mass.
+    Center,
+    /// The pivot: about the axes through it that are parallel to the part's own.
+    Pivot,
 }
 
 /// A shape as a file names it, and its dimensions.
@@ -59,7 +71,7 @@ pub(super) static FORMS: [Form; 9] = [
     form("shell", &["radius_m"], &[], |file| Shape::Shell { radius: of(file.radius_m) }),
     form("cone", &["radius_m", "length_m"], &[], |file| Shape::Cone { radius: of(file.radius_m), length: of(file.length_m) }),
     form("block", &["size_m"], &[], |file| Shape::Block { size: of(file.size_m).into() }),
-    form("moments", &["moments_kg_m2"], &[], |file| Shape::Moments(Vector3::from(of(file.moments_kg_m2)) / file.mass_kg)),
+    form("moments", &["moments_kg_m2"], &["about"], |file| Shape::Moments(Vector3::from(of(file.moments_kg_m2)) / file.mass_kg)),
 ];
 
 /// The dimension that a form needs, or that is nothing where it may be left out.
@@ -67,14 +79,15 @@ fn of<T: Default>(dimension: Option<T>) -> T {
     dimension.unwrap_or_default()
 }
 
-/// The dimensions of any shape, in the order of the table of keys.
-pub(super) const DIMENSIONS: [&str; 6] = [
+/// The dimensions of any shape, in the order of the table of keys, and the point that moments are about.
+const DIMENSIONS: [&str; 7] = [
     "radius_m",
     "inner_radius_m",
     "outer_radius_m",
     "length_m",
     "size_m",
     "moments_kg_m2",
+    "about",
 ];
 
 pub(super) const fn names() -> [&'static str; FORMS.len()] {
@@ -106,14 +119,39 @@ pub(super) fn part(file: &PartFile) -> Result<Part, Problems> {
         return Err(Problem::with_value("axis", &vector(&axis), rule).into());
     }
     let centre = Vector3::from(file.at_m);
-    let part = Part::new((form.make)(file), file.mass_kg, centre, &axis);
-    Ok(part.map_err(|error| match error {
-        PartError::OutOfRange => Problem::at("", error.to_string()),
-        PartError::Unreal(_) => {
-            let moments = vector(&Vector3::from(file.moments_kg_m2.unwrap_or_default()));
-            Problem::with_value("moments_kg_m2", &moments, format!("cannot be: {error}"))
+    let part = match file.about {
+        Some(About::Pivot) => {
+            let moments = of(file.moments_kg_m2).into();
+            Part::about_pivot(&moments, file.mass_kg, centre, &axis)
         }
+        Some(About::Center) | None => Part::new((form.make)(file), file.mass_kg, centre, &axis),
+    };
+    Ok(part.map_err(|error| {
+        let moments = vector(&Vector3::from(of(file.moments_kg_m2)));
+        let rule = match error {
+            PartError::OutOfRange => return Problem::at("", error.to_string()),
+            PartError::Unreal(_) => format!("cannot be: {error}"),
+            PartError::TooFar { nearer, .. } => {
+                format!("cannot be: {error}{}", moves_alike(file, nearer))
+            }
+        };
+        Problem::with_value("moments_kg_m2", &moments, rule)
     })?)
+}
+
+/// Names a mass and a center that the part of `file` may have instead: a heavier one, nearer to the pivot by the factor
+/// `nearer` or less.
+fn moves_alike(file: &PartFile, nearer: f64) -> String {
+    let factor = at_or_below(nearer);
+    let mass = file.mass_kg / factor;
+    if !(factor > 0.0 && mass.is_finite()) {
+        return String::new();
+    }
+    let [x, y, z] = file.at_m.map(|at| significant(factor * at, 12));
+    let mass = significant(mass, 12);
+    format!(
+        ". The motion depends on M d, not on M: mass_kg = {mass} with at_m = [{x}, {y}, {z}] moves alike"
+    )
 }
 
 /// The dimensions that are missing, and those that a solid of this form has not.
@@ -222,6 +260,7 @@ fn dimensions(old: &PartFile, shape: &str) -> Vec<(&'static str, Value)> {
         vector(&size),
         vector(&part.moments()),
     ];
+    // Moments are then about the center, which needs no saying.
     let all = DIMENSIONS.into_iter().zip(values);
     all.filter(|(name, _)| has_dimension(shape, name)).collect()
 }

@@ -1,5 +1,5 @@
-//! The start: orientation, and momentum. A file gives the momentum itself, the spin about the axle, or the angular
-//! velocity.
+//! The start: orientation, and momentum. A file gives the momentum itself, the spin about the axle, the angular velocity,
+//! or the Euler rates.
 
 use super::dotted::find;
 use super::file::{Frame, StartFile};
@@ -14,6 +14,9 @@ use crate::text::number;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::TAU;
 use toml::{Table, Value};
+
+/// An Euler rate below this share of the angular velocity is rounding.
+const RATE_ROUNDING: f64 = 1e-15;
 
 /// rad/s of one revolution a minute.
 const RPM: f64 = TAU / 60.0;
@@ -37,8 +40,8 @@ pub(super) fn start(
             let omega = turned(file.omega_frame, omega);
             momentum_of(orientation.tr_mul(&omega))
         }
-        (None, None, spin) => {
-            let spin = spin.unwrap_or_default();
+        (None, None, None) => momentum_of(of_euler_rates(file, &orientation)),
+        (None, None, Some(spin)) => {
             let mut velocity = Vector3::new(0.0, 0.0, spin);
             if file.steady == Some(true) {
                 let precession = steady(body, &orientation, spin, gravity);
@@ -75,6 +78,51 @@ fn orientation(file: &StartFile) -> Matrix3<f64> {
     orientation
 }
 
+/// Returns the angular velocity, body frame, rad/s, of the Euler rates in `file`, of which the missing ones are 0: the rates of
+/// the turn φ, the tilt θ and the roll ψ of `orientation` = Rz(φ) Rx(θ) Rz(ψ).
+///
+/// It is φ' z + θ' n + ψ' e3, n the line of nodes (H. Goldstein, Classical Mechanics, section 4.9). Of a vertical axle too: then
+/// φ' and ψ' are about the same axis.
+fn of_euler_rates(file: &StartFile, orientation: &Matrix3<f64>) -> Vector3<f64> {
+    let vertical = orientation.row(2).transpose();
+    let (nodes, _) = nodes(file);
+    let rate = |rate: Option<f64>| rate.unwrap_or(0.0);
+    rate(file.precession_rad_per_s) * vertical
+        + rate(file.nutation_rad_per_s) * nodes
+        + rate(file.psi_dot_rad_per_s) * Vector3::z()
+}
+
+/// Returns the line of nodes and the direction across it and the axle, body frame; with the latter the vertical is
+/// (the direction) sin θ + e3 cos θ.
+fn nodes(file: &StartFile) -> (Vector3<f64>, Vector3<f64>) {
+    let (sin, cos) = libm::sincos(file.roll_deg.unwrap_or(0.0).to_radians());
+    (Vector3::new(cos, -sin, 0.0), Vector3::new(sin, cos, 0.0))
+}
+
+/// Returns precession, nutation and psi-dot, rad/s, at the start of `now`; `None` where the axle is vertical and turns out of
+/// the plane in which they can tilt it.
+fn euler_rates(now: &Scenario) -> Option<[f64; 3]> {
+    let start = &now.start;
+    let omega = angular_velocity(&now.body.mechanics, start);
+    let omega = start.orientation.tr_mul(&omega);
+    let vertical = start.orientation.row(2).transpose();
+    let (nodes, across) = nodes(&now.file.start);
+    let (sine, rate) = (vertical.dot(&across), omega.dot(&across));
+    let is_vertical = sine.abs() <= VERTICAL_WITHIN;
+    if is_vertical && rate.abs() > VERTICAL_WITHIN * omega.norm() {
+        return None;
+    }
+    let precession = if is_vertical { 0.0 } else { rate / sine };
+    let rates = [
+        precession,
+        omega.dot(&nodes),
+        omega.z - precession * vertical.z,
+    ];
+    // What is left of a zero by the turn into the body frame is rounding.
+    let rounding = RATE_ROUNDING * omega.norm();
+    Some(rates.map(|rate| if rate.abs() <= rounding { 0.0 } else { rate }))
+}
+
 fn spin(file: &StartFile) -> Option<f64> {
     file.spin_rad_per_s.or(file.spin_rpm.map(|rpm| rpm * RPM))
 }
@@ -92,8 +140,15 @@ fn is_told_once(file: &StartFile) -> Result<(), Problem> {
         let rule = format!("is missing ({STATED})");
         return Err(Problem::at("start.momentum_Js", rule));
     };
-    if let Some(other) = told.next() {
-        let rule = format!("is given beside {way}: keep one of the two");
+    let others = replaced(way);
+    if let Some(other) = told.find(|name| others.contains(name)) {
+        let rule = if EULER.contains(&other) {
+            format!(
+                "cannot be combined with {way}: remove it, or give psi_dot_rad_per_s in the place of {way}"
+            )
+        } else {
+            format!("is given beside {way}: keep one of the two")
+        };
         return Err(refused(other, written[other].clone(), rule));
     }
     for (frame, own) in [
@@ -163,18 +218,36 @@ fn above(number: f64) -> String {
     number::significant(up, 4)
 }
 
-/// The keys of which a start has one.
-const WAYS_TO_TELL: [&str; 4] = [
+/// The keys of which a start has one, or several of the last three.
+const WAYS_TO_TELL: [&str; 7] = [
     "momentum_Js",
     "spin_rpm",
     "spin_rad_per_s",
     "omega_rad_per_s",
+    "precession_rad_per_s",
+    "nutation_rad_per_s",
+    "psi_dot_rad_per_s",
+];
+/// The keys that replace another way to tell the momentum when they are set. Precession and nutation do not: with one of them
+/// alone the spin would be lost.
+const REPLACING: [&str; 5] = [
+    "momentum_Js",
+    "spin_rpm",
+    "spin_rad_per_s",
+    "omega_rad_per_s",
+    "psi_dot_rad_per_s",
 ];
 /// The ways to tell the momentum: the keys of each.
-const WAYS: [&[&str]; 3] = [&MOMENTUM, &SPIN, &OMEGA];
+const WAYS: [&[&str]; 4] = [&MOMENTUM, &SPIN, &OMEGA, &EULER];
 const MOMENTUM: [&str; 2] = ["momentum_Js", "momentum_frame"];
 const SPIN: [&str; 3] = ["spin_rpm", "spin_rad_per_s", "steady"];
 const OMEGA: [&str; 2] = ["omega_rad_per_s", "omega_frame"];
+/// The Euler rates; a start has one or more of them.
+pub(crate) const EULER: [&str; 3] = [
+    "precession_rad_per_s",
+    "nutation_rad_per_s",
+    "psi_dot_rad_per_s",
+];
 
 /// The keys of the way that the key `name` of the start belongs to.
 fn way_of(name: &str) -> Option<&'static [&'static str]> {
@@ -204,7 +277,7 @@ pub fn exclude_each_other(one: &str, other: &str) -> bool {
 /// Removes from the file's `table` what a new value at `key` replaces.
 pub(super) fn make_room(table: &mut Table, key: &str) {
     let name = key.strip_prefix("start.").unwrap_or_default();
-    if WAYS_TO_TELL.contains(&name) {
+    if REPLACING.contains(&name) {
         remove(table, &replaced(name));
     }
 }
@@ -224,6 +297,7 @@ pub(super) fn is_other_way(table: &Table, key: &str, value: &Value) -> bool {
         "omega_rad_per_s" if name != "omega_rad_per_s" => !is_given("omega_rad_per_s"),
         "momentum_frame" => !is_given("momentum_Js"),
         "omega_frame" => !is_given("omega_rad_per_s"),
+        name if EULER.contains(&name) => !EULER.iter().any(|rate| is_given(rate)),
         "steady" => value.as_bool() == Some(true) && !SPIN[..2].iter().any(|spin| is_given(spin)),
         _ => false,
     }
@@ -231,7 +305,15 @@ pub(super) fn is_other_way(table: &Table, key: &str, value: &Value) -> bool {
 
 /// Tells the momentum in `table` in the way that `key` is about, as it is at the start of `now`; where `value` is a frame,
 /// in that frame, and else in the world's.
-pub(super) fn tell_other_way(table: &mut Table, key: &str, value: &Value, now: &Scenario) {
+///
+/// # Errors
+/// Where the key is an Euler rate, and there are none that give this start.
+pub(super) fn tell_other_way(
+    table: &mut Table,
+    key: &str,
+    value: &Value,
+    now: &Scenario,
+) -> Result<(), Problem> {
     let name = key.split('.').nth(1).unwrap_or_default();
     let own = way_of(name).unwrap_or(&MOMENTUM);
     remove(table, &replaced(own[own.len() - 1]));
@@ -241,12 +323,21 @@ pub(super) fn tell_other_way(table: &mut Table, key: &str, value: &Value, now: &
         _ => vector(&in_world),
     };
     let omega = || angular_velocity(&now.body.mechanics, start);
-    let (name, told) = match own[0] {
-        "spin_rpm" => ("spin_rad_per_s", now.spin_rad_per_s(start).into()),
-        "omega_rad_per_s" => ("omega_rad_per_s", framed(omega())),
-        _ => ("momentum_Js", framed(start.momentum)),
+    let told: Vec<(&str, Value)> = match own[0] {
+        "spin_rpm" => vec![("spin_rad_per_s", now.spin_rad_per_s(start).into())],
+        "omega_rad_per_s" => vec![("omega_rad_per_s", framed(omega()))],
+        "precession_rad_per_s" => {
+            let rates = euler_rates(now).ok_or_else(|| Problem::at(key, NO_RATES))?;
+            EULER.into_iter().zip(rates.map(Value::from)).collect()
+        }
+        _ => vec![("momentum_Js", framed(start.momentum))],
     };
     if let Some(Value::Table(table)) = table.get_mut("start") {
-        table.insert(name.to_owned(), told);
+        let told = told.into_iter();
+        table.extend(told.map(|(name, value)| (name.to_owned(), value)));
     }
+    Ok(())
 }
+
+/// Why a start cannot be stated by Euler rates.
+const NO_RATES: &str = "cannot be set alone: the axle is vertical, and no Euler rates give its present angular velocity; tilt it, or write all rates into the file";

@@ -197,13 +197,22 @@ impl Sweep {
         values
     }
 
-    /// The beginning of the `row`-th row, from 0: its varied values, up to the comma before the first readout.
-    pub fn row_begins(&self, row: u64) -> String {
-        const BEHIND: &str = "0";
-        // A line of one empty field alone would be quoted: a cell stands behind the values, as in the row.
-        let mut begin = line(&(self.labels(row), BEHIND));
-        begin.truncate(begin.len().saturating_sub(BEHIND.len() + 1));
-        begin
+    /// Returns the readouts in `text`, the line of the `row`-th row, from 0, with its end; `None` where it is not such a line:
+    /// other values vary, a field is no value of its readout, or it would be written in other bytes.
+    pub fn parse_row(&self, row: u64, text: &[u8]) -> Option<Vec<Readable>> {
+        let labels = self.labels(row);
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .from_reader(text);
+        let record = reader.records().next()?.ok()?;
+        if record.len() != labels.len() + self.measure.len() {
+            return None;
+        }
+        let cells = record.iter().skip(labels.len());
+        let cells = self.measure.iter().zip(cells);
+        let cells = cells.map(|(readout, cell)| readout.parse(cell));
+        let cells: Vec<_> = cells.collect::<Option<_>>()?;
+        (line(&(labels, &cells)).as_bytes() == text).then_some(cells)
     }
 
     fn labels(&self, row: u64) -> Vec<String> {

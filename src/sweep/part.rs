@@ -5,6 +5,7 @@
 //! a row: it drops what follows. When all are there the file gets its name.
 
 use super::grid::{Sweep, SweepRow};
+use crate::analysis::readouts::Value;
 use crate::export::Destination;
 use crate::export::destination::{DestinationError, is_workbook};
 use crate::scenario::Problems;
@@ -19,6 +20,9 @@ use std::time::{Duration, Instant};
 
 /// Rows are forced onto the disk at least this often: a crash of the machine costs no more.
 const SYNC: Duration = Duration::from_secs(2);
+
+/// No row is longer, in bytes: what is there instead is not read whole.
+const LONGEST_ROW: u64 = 1 << 20;
 
 /// Why a sweep's file cannot be written, gone on with, or joined.
 #[derive(Debug, thiserror::Error)]
@@ -286,11 +290,14 @@ impl There {
         loop {
             there.bytes += line.len() as u64;
             line.clear();
-            reader.read_until(b'\n', &mut line)?;
-            let Some(readouts) = readouts(&line, sweep, there.rows) else {
+            let mut one_row = (&mut reader).take(LONGEST_ROW);
+            one_row.read_until(b'\n', &mut line)?;
+            let is_one_more = there.rows < sweep.rows();
+            let parsed = is_one_more.then(|| sweep.parse_row(there.rows, &line));
+            let Some(readouts) = parsed.flatten() else {
                 return Ok(there);
             };
-            if readouts.iter().all(|&byte| byte == b',') {
+            if readouts.iter().all(|readout| *readout == Value::Nothing) {
                 there.empty.add(there.rows, None);
             }
             there.rows += 1;
@@ -309,18 +316,6 @@ impl There {
             None => Err(format!("its line {line} is not row {} of {all}", rows + 1)),
         }
     }
-}
-
-/// The cells of the readouts, where `line` is the `row`-th of `sweep`, from 0: a whole line that begins with the values of
-/// its point and has enough cells.
-fn readouts<'a>(line: &'a [u8], sweep: &Sweep, row: u64) -> Option<&'a [u8]> {
-    if row >= sweep.rows() {
-        return None;
-    }
-    let readouts = line.strip_suffix(b"\n")?;
-    let readouts = readouts.strip_prefix(sweep.row_begins(row).as_bytes())?;
-    let commas = readouts.iter().filter(|&&byte| byte == b',').count();
-    (commas + 1 >= sweep.measure.len()).then_some(readouts)
 }
 
 /// The first line in which the header `there` differs from the `wanted` one, in words.

@@ -2,6 +2,7 @@
 
 use super::quantities::rows;
 use super::{AGAIN, Beside, CSV, Drawing, PREDICTED_SINCE, READOUTS_FILE, RUN_FILE, Writeup};
+use crate::analysis::Theory;
 use crate::export::summary::steps_in_words;
 use crate::physics::{SchemeInfo, SymmetricTop};
 use crate::scenario::Scenario;
@@ -20,6 +21,8 @@ const OF_THE_TIME_STEP: &str = "This is of the scheme and its time step alone: t
 const NOT_OF_DATA: &str = " Whether the run agrees with the measured data is told below.";
 const IS_THEORY: &str = "The scheme exact computes the exact motion, which theory speaks of too: no time step can show here, \
     and where the two differ it is by rounding.";
+const OF_ASYMMETRY: &str = "The difference between this run and theory is also an effect of the asymmetry, so it is not \
+    stated in standard errors.";
 /// A longer run file is not printed on the page.
 const MOST_LINES: usize = 120;
 /// A part of L that is smaller than this part of |L| is zero.
@@ -48,7 +51,10 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     let verdict = escaped(&writeup.verdict());
     writeln!(page, "{verdict}\n\n{OF_THE_TIME_STEP}{of_data}\n")?;
     writeln!(page, "## This run beside theory\n")?;
-    if writeup.scenario.motion.scheme.order.is_none() {
+    let theory = readouts.theory.as_ref();
+    if let Some(asymmetry) = theory.and_then(Theory::of_mean_moment) {
+        writeln!(page, "Asymmetry of the body: {asymmetry}. {OF_ASYMMETRY}\n")?;
+    } else if writeup.scenario.motion.scheme.order.is_none() {
         writeln!(page, "{IS_THEORY}\n")?;
     }
     write_quantities(&mut page, writeup)?;
@@ -94,16 +100,17 @@ fn write_setup(page: &mut String, writeup: &Writeup) -> fmt::Result {
 }
 
 fn moments(scenario: &Scenario) -> String {
-    let Some(top) = SymmetricTop::of(&scenario.body.mechanics) else {
+    let Some((top, asymmetry)) = SymmetricTop::nearly(&scenario.body.mechanics) else {
         return "lopsided: not symmetric about the axle".to_owned();
     };
+    let mean = if asymmetry > 0.0 { " (mean)" } else { "" };
     let of = if scenario.rotor().is_some() {
         "of the rotor"
     } else {
         "about it"
     };
     format!(
-        "I1 = {} kg m^2 across the axle, I3 = {} kg m^2 {of}, kappa = I3/I1 = {}",
+        "I1 = {} kg m^2 across the axle{mean}, I3 = {} kg m^2 {of}, kappa = I3/I1 = {}",
         significant(top.across, 6),
         significant(top.along, 6),
         significant(top.kappa(), 6)

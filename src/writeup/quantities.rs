@@ -77,7 +77,9 @@ fn row(
         .and_then(|(it, error)| uncertain(it, error));
     let both = measured.zip(predicted).filter(|_| !is_strobed);
     let difference = both.map(|(measured, predicted)| measured - predicted);
-    let in_errors = difference.zip(error.filter(|error| *error > 0.0));
+    // What the theory of the mean moment leaves out is no error of reading.
+    let is_exact = readouts.theory.is_none_or(|theory| theory.asymmetry == 0.0);
+    let in_errors = difference.zip(error.filter(|error| *error > 0.0 && is_exact));
     let in_errors = in_errors.map(|(difference, error)| difference / error);
     let (label, meaning) = words(readout, is_strobed, since_s);
     let none = || NONE.to_owned();

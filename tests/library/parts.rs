@@ -244,6 +244,104 @@ fn flat_moments_are_taken_with_their_rounding() {
     assert!(refusal(&beyond).contains("A + B is below C"));
 }
 
+/// A part of 2 kg whose moments are about the pivot.
+fn about_pivot(at: [f64; 3], axis: [f64; 3], moments: [f64; 3]) -> String {
+    format!(
+        "[[body.part]]\nshape = 'moments'\nname = 'body'\nmass_kg = 2\nat_m = {at:?}\naxis = {axis:?}\n\
+         moments_kg_m2 = {moments:?}\nabout = 'pivot'\n"
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn moments_about_the_pivot_are_those_about_parallel_axes(
+        lengths in [any_length(), any_length(), any_length()], at in any_vector(), axis in any_vector()
+    ) {
+        prop_assume!(Vector3::from(axis).norm() > 0.1);
+        let (.., block) = solids(lengths).pop().unwrap();
+        let whole = steiner(2.0, block, at, axis);
+        let turn = Rotation3::rotation_between(&Vector3::z(), &Vector3::from(axis)).unwrap();
+        let own = turn.matrix().transpose() * whole * turn.matrix();
+        let moments = [own[(0, 0)], own[(1, 1)], own[(2, 2)]];
+        let scenario = parse(&text(&about_pivot(at, axis, moments)));
+        let off = (scenario.body.mechanics.inertia() - whole).amax() / whole.amax();
+        prop_assert!(off < 1e-12, "{off:e}");
+    }
+}
+
+#[test]
+fn moments_about_the_pivot_are_kept_as_the_pivot_is_kept() {
+    let given = text(&about_pivot(
+        [0.0, 0.0, 0.2],
+        [0.0, 0.0, 1.0],
+        [0.4, 0.4, 0.6],
+    ));
+    let scenario = parse(&given);
+    let top = SymmetricTop::of(&scenario.body.mechanics).unwrap();
+    assert!((top.across - 0.4).abs() < 1e-15 && (top.along - 0.6).abs() < 1e-15);
+    assert!((top.first_moment - 0.4).abs() < 1e-15);
+    let again = parse(&scenario.to_toml());
+    assert_eq!(again.file.body.part, scenario.file.body.part);
+    let file = &scenario.file;
+    let nearer = changed(file, "body.part.0.at_m.2", Value::Float(0.1)).unwrap();
+    assert!((nearer.body.mechanics.inertia()[(0, 0)] - 0.4).abs() < 1e-15);
+    let centered = changed(file, "body.part.0.about", Value::from("center")).unwrap();
+    assert!((centered.body.mechanics.inertia()[(0, 0)] - 0.48).abs() < 1e-15);
+    let block = changed(file, "body.part.0.shape", Value::from("block")).unwrap();
+    assert_eq!(block.file.body.part[0].about, None);
+    assert!((block.body.mechanics.inertia()[(0, 0)] - 0.4).abs() < 1e-15);
+    let rows = listed(&scenario);
+    let row = rows.iter().find(|row| row.key == "body.part.0.about");
+    assert_eq!(row.map(Parameter::shown).as_deref(), Some("pivot"));
+    assert!(
+        !listed(&three())
+            .iter()
+            .any(|row| row.key.contains("part.0.about"))
+    );
+    // A flat body, and one whose mass is all at the pivot but for rounding.
+    let flat = about_pivot([0.0, 0.0, 30.0], [0.0, 0.0, 1.0], [1800.1, 1800.1, 0.2]);
+    assert!(read(&text(&flat)).is_ok());
+}
+
+#[test]
+fn moments_that_no_body_has_about_the_pivot_are_refused_with_the_bound() {
+    let curtis = about_pivot([0.0, 0.0, 0.05], [0.0, 0.0, 1.0], [12e-4, 12e-4, 4.5e-4])
+        .replace("mass_kg = 2", "mass_kg = 0.5");
+    let told = refusal(&curtis);
+    has(
+        &told,
+        "about the pivot A must be at least M d^2 = 1.25e-3 kg m^2",
+    );
+    // What it advises is the same motion.
+    has(&told, "mass_kg = 1 with at_m = [0, 0, 0.025]");
+    let alike = curtis
+        .replace("mass_kg = 0.5", "mass_kg = 1")
+        .replace("0.05]", "0.025]");
+    let body = parse(&text(&alike)).body;
+    assert!((body.mechanics.inertia()[(0, 0)] - 12e-4).abs() < 1e-18);
+    let flat = about_pivot([0.0, 0.0, 0.2], [0.0, 0.0, 1.0], [0.4, 0.4, 0.7]);
+    has(
+        refusal(&flat),
+        "about the pivot A + B - C must be at least 2 M d^2 = 1.6e-1",
+    );
+    let aside = about_pivot([0.3, 0.0, 0.2], [0.0, 0.0, 1.0], [0.4, 0.45, 0.1]);
+    has(
+        refusal(&aside),
+        "about the pivot C must be at least M d^2 = 1.8e-1",
+    );
+    let unreal = about_pivot([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 2.1]);
+    has(refusal(&unreal), "A + B is below C");
+    for wrong in [
+        part("ring", "radius_m = 1\nabout = 'pivot'"),
+        part("moments", "moments_kg_m2 = [1, 1, 1]\nabout = 'middle'"),
+        about_pivot([0.0, 0.0, 1e200], [0.0, 0.0, 1.0], [1.0; 3]),
+    ] {
+        assert!(!refusal(&wrong).contains("NaN"), "{wrong}");
+    }
+}
+
 #[test]
 fn a_part_counts_as_six_points() {
     let many = |rim: usize| {

@@ -7,7 +7,7 @@ use gyrolab::journal::parameters::{Parameter, parameters, table_of};
 use gyrolab::physics::observables::{angular_velocity, tilt_deg};
 use gyrolab::physics::rotation;
 use gyrolab::run::Simulation;
-use gyrolab::scenario::Scenario;
+use gyrolab::scenario::{Document, Scenario};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -437,4 +437,196 @@ fn what_cannot_be_a_rotor_is_refused() {
         .iter()
         .map(|text| format!("{}\n", read(text).unwrap_err()));
     insta::assert_snapshot!("rotors", told.collect::<String>());
+}
+
+/// The angular velocity, world frame, rad/s, of the turn Rz(turn) Rx(tilt) Rz(roll) whose angles change at `rates`, rad/s,
+/// by central differences.
+fn by_differences(degrees: [f64; 3], rates: [f64; 3]) -> Vector3<f64> {
+    let axes = [Vector3::z_axis(), Vector3::x_axis(), Vector3::z_axis()];
+    let at = |time: f64| {
+        let turns = (0..3).map(|i| {
+            let angle = degrees[i].to_radians() + time * rates[i];
+            Rotation3::from_axis_angle(&axes[i], angle)
+        });
+        turns.fold(Rotation3::identity(), |product, turn| product * turn)
+    };
+    let half = 1e-6;
+    let change = (at(half).matrix() - at(-half).matrix()) / (2.0 * half);
+    let spin = change * at(0.0).matrix().transpose();
+    Vector3::new(spin[(2, 1)], spin[(0, 2)], spin[(1, 0)])
+}
+
+#[test]
+fn euler_rates_are_the_rates_of_turn_tilt_and_roll() {
+    for [turn, tilt, roll] in [
+        [0.0, 60.0, 0.0],
+        [70.0, 40.0, -20.0],
+        [10.0, -30.0, 200.0],
+        [25.0, 0.0, 50.0],
+        [25.0, 180.0, 50.0],
+    ] {
+        let [precession, nutation, psi_dot] = [0.7, -0.3, 9.0];
+        let scenario = ring(&format!(
+            "turn_deg = {turn}\ntilt_deg = {tilt}\nroll_deg = {roll}\nprecession_rad_per_s = {precession}\n\
+             nutation_rad_per_s = {nutation}\npsi_dot_rad_per_s = {psi_dot}"
+        ));
+        let known = by_differences([turn, tilt, roll], [precession, nutation, psi_dot]);
+        let off = (omega(&scenario) - known).amax();
+        assert!(off < 1e-8, "{turn}, {tilt}, {roll}: {off}");
+        // omega_3 is not psi-dot.
+        let along = scenario.spin_rad_per_s(&scenario.start);
+        let spin = psi_dot + precession * f64::to_radians(tilt).cos();
+        assert!((along - spin).abs() < 1e-13, "{along}, not {spin}");
+        // In the body frame it is I (p, q, r): I1 = 6.6, I3 = 3.2 kg m².
+        let momentum = scenario.start.orientation.tr_mul(&scenario.start.momentum);
+        let in_body = scenario.start.orientation.tr_mul(&known);
+        let known = Vector3::new(6.6 * in_body.x, 6.6 * in_body.y, 3.2 * in_body.z);
+        assert!((momentum - known).amax() < 1e-7, "{momentum}");
+        assert_eq!(parse(&scenario.to_toml()).start, scenario.start);
+    }
+}
+
+#[test]
+fn euler_rates_that_are_left_out_are_zero() {
+    let spun = ring("tilt_deg = 40\nspin_rad_per_s = 20");
+    let psi_dot = ring("tilt_deg = 40\npsi_dot_rad_per_s = 20");
+    assert!((psi_dot.start.momentum - spun.start.momentum).amax() < 1e-13);
+    let swung = ring("tilt_deg = 40\nturn_deg = 90\nnutation_rad_per_s = 2");
+    assert!((omega(&swung) - Vector3::new(0.0, 2.0, 0.0)).amax() < 1e-14);
+}
+
+#[test]
+fn steady_precession_by_euler_rates_is_the_preset_s() {
+    for (name, sign) in [("steady-slow", -1.0), ("steady-fast", 1.0)] {
+        let preset = preset(name, &[]);
+        let cosine = 30.0_f64.to_radians().cos();
+        // I1 cos(tilt) w² − L3 w + M g l = 0 with 6.6, 60 and 49.
+        let root = (60.0_f64.powi(2) - 4.0 * 6.6 * cosine * 49.0).sqrt();
+        let rate = (60.0 + sign * root) / (2.0 * 6.6 * cosine);
+        let psi_dot = 60.0 / 3.2 - rate * cosine;
+        let scenario = ring(&format!(
+            "tilt_deg = 30\nprecession_rad_per_s = {rate:?}\npsi_dot_rad_per_s = {psi_dot:?}"
+        ));
+        let off = (scenario.start.momentum - preset.start.momentum).amax();
+        assert!(off < 1e-12, "{name}: {off}");
+        assert!(tilt_swing_deg(scenario) < 1e-9);
+    }
+}
+
+#[test]
+fn euler_rates_are_a_start_of_their_own() {
+    for (way, value) in [
+        ("momentum_Js", "[0, 0, 1]"),
+        ("omega_rad_per_s", "[0, 0, 1]"),
+        ("spin_rpm", "3"),
+        ("spin_rad_per_s", "3"),
+    ] {
+        for rate in ["precession", "nutation", "psi_dot"] {
+            let told = refusal(&format!("{way} = {value}\n{rate}_rad_per_s = 2"));
+            let words = format!("start.{rate}_rad_per_s (2.0) cannot be combined with {way}");
+            has(&told, &words);
+        }
+    }
+    has(
+        refusal("psi_dot_rad_per_s = 2\nsteady = true"),
+        "goes with a spin",
+    );
+    has(
+        refusal("psi_dot_rad_per_s = 2\nomega_frame = 'body'"),
+        "goes with omega_rad_per_s",
+    );
+    has(refusal("tilt_deg = 2"), "psi_dot_rad_per_s");
+    has(
+        refusal("nutation_rad_per_s = nan"),
+        "start.nutation_rad_per_s",
+    );
+}
+
+#[test]
+fn set_takes_euler_rates_for_a_start_and_never_loses_a_spin() {
+    let ways = [
+        "start.precession_rad_per_s=0.5",
+        "start.psi_dot_rad_per_s=18",
+    ];
+    for ways in [ways, [ways[1], ways[0]]] {
+        let file = preset("cusps", &ways).file.start;
+        assert_eq!((file.momentum_Js, file.momentum_frame), (None, None));
+        assert_eq!(file.precession_rad_per_s, Some(0.5));
+        assert_eq!(file.psi_dot_rad_per_s, Some(18.0));
+    }
+    let mut document = Document::open("cusps").unwrap();
+    document.set("start.precession_rad_per_s=0.5").unwrap();
+    has(
+        document.scenario().unwrap_err().to_string(),
+        "give psi_dot_rad_per_s in the place of momentum_Js",
+    );
+    let ways = [ways[0], ways[1], "start.spin_rpm=300"];
+    let file = preset("cusps", &ways).file.start;
+    assert_eq!(
+        (file.precession_rad_per_s, file.psi_dot_rad_per_s),
+        (None, None)
+    );
+}
+
+#[test]
+fn the_editor_lists_euler_rates_and_converts_them() {
+    let scenario = ring("tilt_deg = 40\nprecession_rad_per_s = 0.5\npsi_dot_rad_per_s = 18");
+    let near = |key: &str, number, is_default| {
+        assert_near(value(&scenario, key), number, is_default);
+    };
+    near("start.precession_rad_per_s", 0.5, false);
+    near("start.nutation_rad_per_s", 0.0, true);
+    near("start.psi_dot_rad_per_s", 18.0, false);
+    near(
+        "start.spin_rad_per_s",
+        18.0 + 0.5 * 40.0_f64.to_radians().cos(),
+        true,
+    );
+    let spun = ring("tilt_deg = 40\nspin_rad_per_s = 18");
+    let rows = parameters(&table_of(&spun.file), &spun);
+    assert!(!rows.iter().any(|row| row.key.contains("psi_dot")));
+    // One rate: the others stay, and the tilt may change under them.
+    let faster = with(&scenario, "start.nutation_rad_per_s", 0.1);
+    let file = &faster.file.start;
+    assert_eq!(file.nutation_rad_per_s, Some(0.1));
+    assert_eq!(file.precession_rad_per_s, Some(0.5));
+    let leaning = with(&scenario, "start.tilt_deg", 50.0);
+    assert_eq!(leaning.file.start.psi_dot_rad_per_s, Some(18.0));
+    // Any start in rates, and back.
+    let told = ring("tilt_deg = 40\nroll_deg = 9\nturn_deg = 5\nmomentum_Js = [3, 9, 64]");
+    let rates = with(&told, "start.nutation_rad_per_s", 0.0);
+    let by_hand = {
+        let (vertical, omega) = (told.start.orientation.row(2).transpose(), omega(&told));
+        let turned = told.start.orientation.tr_mul(&omega);
+        (vertical.x * turned.x + vertical.y * turned.y) / (1.0 - vertical.z * vertical.z)
+    };
+    let file = &rates.file.start;
+    assert!((file.precession_rad_per_s.unwrap() - by_hand).abs() < 1e-12);
+    assert_eq!(file.nutation_rad_per_s, Some(0.0));
+    let same = with(
+        &told,
+        "start.psi_dot_rad_per_s",
+        file.psi_dot_rad_per_s.unwrap(),
+    );
+    assert!((same.start.momentum - told.start.momentum).amax() < 1e-12);
+    let back = with(&rates, "start.momentum_Js.0", 3.0).file.start;
+    assert_eq!(
+        (back.precession_rad_per_s, back.psi_dot_rad_per_s),
+        (None, None)
+    );
+    let steady = with(&rates, "start.steady", true).file.start;
+    assert!(steady.spin_rad_per_s.is_some() && steady.psi_dot_rad_per_s.is_none());
+}
+
+#[test]
+fn a_vertical_axle_has_euler_rates_where_it_can() {
+    let spun = ring("spin_rad_per_s = 18");
+    let rates = with(&spun, "start.precession_rad_per_s", 1.0).file.start;
+    assert_eq!(rates.psi_dot_rad_per_s, Some(18.0));
+    let tipped = ring("momentum_Js = [0, 3, 64]");
+    let problems = changed(&tipped.file, "start.psi_dot_rad_per_s", Value::Float(1.0));
+    has(
+        problems.unwrap_err().in_one_line(),
+        "start.psi_dot_rad_per_s: cannot be set alone: the axle is vertical",
+    );
 }

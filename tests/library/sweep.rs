@@ -104,10 +104,57 @@ fn shards_are_the_rows_of_the_whole() {
         for row in 0..part.rows() {
             let there = there.next().unwrap();
             assert_eq!(part.row(row, &|| true).unwrap().line, *there);
-            assert!(there.starts_with(&part.row_begins(row)));
+            assert!(part.parse_row(row, there.as_bytes()).is_some());
         }
     }
     assert_eq!(there.next(), None);
+}
+
+#[test]
+fn a_line_counts_as_a_row_only_if_every_field_is_a_value_of_its_readout() {
+    let sweep = parsed(&SMALL.replace(
+        "\"z_m\", \"path\"",
+        "\"z_m\", \"steps\", \"nutation_is_resolved\", \"path\", \"scheme\"",
+    ));
+    let good = sweep.row(0, &|| true).unwrap().line;
+    let is_row = |line: &str| sweep.parse_row(0, line.as_bytes()).is_some();
+    assert!(is_row(&good), "{good}");
+    let cells: Vec<_> = good.trim_end().split(',').collect();
+    let with = |place: usize, cell: &str| {
+        let mut cells = cells.clone();
+        cells[place] = cell;
+        cells.join(",") + "\n"
+    };
+    assert!(cells.len() == 7 && is_row(&with(2, "")), "{good}");
+    let wrong: [(usize, &[&str]); 7] = [
+        (0, &["", "2", "1.0"]),
+        (1, &["", "10", "10.1"]),
+        (
+            2,
+            &[
+                "x", "53.67.1", "nan", "inf", "1e999", "+1.5", "1.50", " 1.5", "1.5 ", "0x1", "-",
+                "1,5", "\"1.5\"", "true", "1.5\0", "1.5\r", "15",
+            ],
+        ),
+        (3, &["x", "1.5", "-1", "01", "18446744073709551616"]),
+        (4, &["x", "tru", "1", "True"]),
+        (5, &["cusp", "cusps ", "\"cusps\"", "1"]),
+        (6, &["repor", "x", "report,x", "\"report"]),
+    ];
+    for (place, cells) in wrong {
+        for cell in cells {
+            assert!(!is_row(&with(place, cell)), "{cell:?} at {place}");
+        }
+    }
+    // A torn line, one without its end, and two in one.
+    for end in 0..good.len() - 1 {
+        let torn = format!("{}\n", &good[..end]);
+        // An empty field is a readout that cannot be stated.
+        let is_empty = torn.ends_with(",\n") && torn.matches(',').count() == 6;
+        assert!(!is_row(&good[..end]) && is_row(&torn) == is_empty, "{torn}");
+    }
+    assert!(!is_row(&good[..good.len() - 1]) && !is_row(&good.repeat(2)));
+    assert!(sweep.parse_row(0, &[200, 10]).is_none());
 }
 
 #[test]

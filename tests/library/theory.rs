@@ -443,3 +443,79 @@ fn uncertainty_is_that_of_repeated_measurements() {
         }
     }
 }
+
+/// The ball of Heidelberg with these moments about its center, g m².
+fn ball(moments: [f64; 3]) -> Arc<Scenario> {
+    let moments = moments.map(|moment| 1e-3 * moment);
+    let moments = format!("body.part.0.moments_kg_m2={moments:?}");
+    preset(
+        "heidelberg",
+        &[
+            &moments,
+            "start.steady=false",
+            "start.tilt_deg=70",
+            "motion.steps=3000",
+        ],
+    )
+}
+
+#[test]
+fn a_nearly_symmetric_body_has_the_theory_of_its_mean_moment() {
+    for [a, b] in [[4.0, 4.001], [4.01, 4.0], [4.0, 4.04]] {
+        let scenario = ball([a, b, 3.0]);
+        let (simulation, mut monitor) = followed(&scenario);
+        let theory = monitor.theory(simulation.now().time_s()).unwrap();
+        // The weight adds 0.00985 kg 15.55 cm up the axle.
+        let weight = 0.00985 * 0.1555 * 0.1555 * 1e3;
+        let asymmetry = (a - b).abs() / (0.5 * (a + b) + weight);
+        close("asymmetry", theory.asymmetry, asymmetry, 1e-12);
+        let mean = followed_theory(&ball([0.5 * (a + b), 0.5 * (a + b), 3.0]));
+        assert_eq!((mean.asymmetry, mean.path), (0.0, theory.path));
+        let instruments = &monitor.instruments;
+        for (what, predicted, of_mean, measured) in [
+            (
+                "precession",
+                theory.precession,
+                mean.precession,
+                instruments.precession_rad_per_s(),
+            ),
+            (
+                "nutation",
+                theory.nutation_period_s,
+                mean.nutation_period_s,
+                instruments.nutation_period_s(),
+            ),
+        ] {
+            let (predicted, measured) = (predicted.unwrap(), measured.unwrap());
+            close(what, predicted, of_mean.unwrap(), 1e-9 * predicted.abs());
+            let within = 0.5 * asymmetry * predicted.abs() + 5.0 * measured.uncertainty;
+            close(what, measured.value, predicted, within);
+        }
+        let extremes = monitor.extremes.tilt;
+        let (low, high) = theory.tilt_range_deg;
+        let within = 1.5 * asymmetry.to_degrees();
+        close("lowest tilt", extremes.lowest_deg, low, within);
+        close("highest tilt", extremes.highest_deg, high, within);
+    }
+    let text = summary(&ball([4.0, 4.01, 3.75])).to_string();
+    has(&text, "0.24 %; theory is that of the mean moment across");
+    has_no(&text, "none by theory");
+}
+
+fn followed_theory(scenario: &Arc<Scenario>) -> Theory {
+    theory(scenario, 0.0).unwrap()
+}
+
+#[test]
+fn theory_ends_where_the_asymmetry_decides_the_motion() {
+    let has_theory = |moments| theory(&ball(moments), 0.0).is_some();
+    assert!(has_theory([4.0, 4.042, 3.0]) && !has_theory([4.0, 4.044, 3.0]));
+    // The moment along the axle is between the two, or near to them.
+    assert!(!has_theory([4.0, 4.01, 4.24]) && !has_theory([4.0, 4.01, 4.2]));
+    // Off the axle by 1e-7 and by 10 % of the radius of gyration.
+    let aside = |x: &str| preset("cusps", &["body.point.2.mass_kg=0.5", x]);
+    let aside = |x: &str| theory(&aside(&format!("body.point.2.at_m=[{x},0,0]")), 0.0);
+    assert!(aside("1e-6").unwrap().asymmetry > 0.0);
+    assert!(aside("0.3").is_none());
+    assert_eq!(aside("0").unwrap().asymmetry, 0.0);
+}

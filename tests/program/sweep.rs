@@ -210,7 +210,15 @@ fn a_part_of_the_file_is_gone_on_with_and_no_row_is_computed_again() {
     // What is no row, and all behind it, is computed anew: a cell too few, another point, other bytes.
     let row = rows(&whole)[30];
     let (begin, _) = row.rsplit_once(',').unwrap();
-    for wrong in [begin.to_owned(), format!("1{row}")] {
+    let field = |cell: &str| format!("{begin},{cell}");
+    let extra = format!("{row},x");
+    for wrong in [
+        begin.to_owned(),
+        format!("1{row}"),
+        field("x"),
+        field("nan"),
+        extra,
+    ] {
         goes_on(whole.replace(row, &wrong).as_bytes(), 29);
     }
     let end = whole.find(row).unwrap();

@@ -1,7 +1,9 @@
 //! The table: a row for every readout, with its name, unit, source, meaning and formula.
 
 use super::{Readouts, Value};
+use crate::analysis::theory::Path;
 use crate::analysis::{Measured, Theory};
+use crate::physics::SchemeInfo;
 use crate::scenario::{problem, start};
 use std::time::Duration;
 
@@ -15,6 +17,7 @@ pub struct Readout {
     pub source: Source,
     /// Whether it is a text, never a number.
     pub is_text: bool,
+    kind: ValueKind,
     /// Its symbol in figures, as their markup; empty where it has none.
     pub symbol: &'static str,
     get: fn(&Readouts) -> Value,
@@ -87,6 +90,20 @@ impl Readout {
     pub fn of(&self, readouts: &Readouts) -> Value {
         (self.get)(readouts)
     }
+
+    /// Parses `cell` of a CSV as a value of this readout; `None` where it is no such value.
+    pub fn parse(&self, cell: &str) -> Option<Value> {
+        match self.kind {
+            _ if cell.is_empty() => Some(Value::Nothing),
+            ValueKind::Number => {
+                let number = cell.parse().ok().filter(|number: &f64| number.is_finite());
+                number.map(Value::Number)
+            }
+            ValueKind::Whole => cell.parse().ok().map(Value::Whole),
+            ValueKind::Flag => cell.parse().ok().map(Value::Flag),
+            ValueKind::Text => may_be(self.name, cell).then(|| Value::Text(cell.to_owned())),
+        }
+    }
 }
 
 pub fn find(name: &str) -> Option<&'static Readout> {
@@ -118,14 +135,34 @@ fn uncertainty(measured: Option<Measured>) -> Option<f64> {
     measured.map(|measured| measured.uncertainty)
 }
 
+/// Whether the text readout `name` may have the value `text`.
+fn may_be(name: &str, text: &str) -> bool {
+    match name {
+        "path" => Path::ALL.iter().any(|path| path.to_string() == text),
+        "scheme" => SchemeInfo::find(text).is_some(),
+        _ => true,
+    }
+}
+
+/// The kind of value that a row's formula gives where it gives one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ValueKind {
+    Number,
+    Whole,
+    Flag,
+    Text,
+}
+
 /// What a row's formula gives: a number, yes or no, or a text.
 trait Given {
-    const IS_TEXT: bool = false;
+    const KIND: ValueKind;
 
     fn value(self) -> Value;
 }
 
 impl Given for f64 {
+    const KIND: ValueKind = ValueKind::Number;
+
     fn value(self) -> Value {
         Some(self)
             .filter(|number| number.is_finite())
@@ -134,19 +171,23 @@ impl Given for f64 {
 }
 
 impl Given for u64 {
+    const KIND: ValueKind = ValueKind::Whole;
+
     fn value(self) -> Value {
         Value::Whole(self)
     }
 }
 
 impl Given for bool {
+    const KIND: ValueKind = ValueKind::Flag;
+
     fn value(self) -> Value {
         Value::Flag(self)
     }
 }
 
 impl Given for String {
-    const IS_TEXT: bool = true;
+    const KIND: ValueKind = ValueKind::Text;
 
     fn value(self) -> Value {
         Value::Text(self)
@@ -154,16 +195,16 @@ impl Given for String {
 }
 
 impl<T: Given> Given for Option<T> {
-    const IS_TEXT: bool = T::IS_TEXT;
+    const KIND: ValueKind = T::KIND;
 
     fn value(self) -> Value {
         self.map_or(Value::Nothing, T::value)
     }
 }
 
-/// Whether this formula gives a text.
-const fn is_text<T: Given>(_: &impl Fn(&Readouts) -> T) -> bool {
-    T::IS_TEXT
+/// Returns the kind of value that this formula gives.
+const fn kind<T: Given>(_: &impl Fn(&Readouts) -> T) -> ValueKind {
+    T::KIND
 }
 
 /// Makes a row of each line: name, unit, source, meaning, how it is got of the readouts `r`, and the symbol where it has one.
@@ -175,7 +216,8 @@ macro_rules! readouts {
                 unit: $unit,
                 meaning: $meaning,
                 source: Source::$source,
-                is_text: is_text(&|$r: &Readouts| $get),
+                is_text: matches!(kind(&|$r: &Readouts| $get), ValueKind::Text),
+                kind: kind(&|$r: &Readouts| $get),
                 symbol: concat!($($symbol)?),
                 get: |$r| $get.value(),
             }),*
@@ -224,7 +266,8 @@ readouts! {
     "reliable", "", Exact, "whether the numbers of this step hold; false after predictable_until_s, null where that is not known", |r| r.health.is_reliable();
     "L_axle_drift_Js", "J s", Exact, "L along the axle less the exact motion's", |r| r.health.deviation.map(|off| off.spin);
     "Lz_drift_Js", "J s", Exact, "L_z less the exact motion's", |r| r.health.deviation.map(|off| off.lz);
-    "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle; with start.rotor I3 is of that part alone", |r| r.kappa, "*κ*";
+    "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle; with start.rotor I3 is of that part alone; of one that is symmetric to 1 % only, I1 is the mean moment", |r| r.kappa, "*κ*";
+    "asymmetry", "", Scenario, "how far the body is from symmetric about its axle: the largest of the difference of its moments across over their mean, the angle of its principal axis to the axle (rad), and the distance of its center of mass from the axle over its radius of gyration; 0 if symmetric, null where there is no theory (moments: above 0.01, or above a fifth of their difference from the one along the axle; the others: above 0.001)", |r| r.asymmetry;
     "theory_axis", "", Theory, "the axis that theory speaks of: +z, or another (against the forces, or along L where there are none), and then what it says about that axis is null", |r| r.theory.map(|theory| theory.axis.to_string());
     "path", "", Theory, "the path of the axle about +z", |r| r.lasting_theory().map(|theory| theory.path.to_string());
     "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z in the whole run; null once the forces have changed", |r| r.predicted_tilts_of_run().map(|range| range.0), "*θ*_{min}";

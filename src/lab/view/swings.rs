@@ -29,7 +29,10 @@ pub(super) fn in_words(
     let theory = match (period_of_theory_s, readouts.predicted_tilt_range_deg()) {
         (Some(period_s), Some((low, high))) => {
             let period = period.to_the_same_digit(period_s);
-            format!("theory: {period} s, {} deg", short(0.5 * (low + high)))
+            let asymmetry = readouts.theory.and_then(|theory| theory.of_mean_moment());
+            let asymmetry = asymmetry.map_or(String::new(), |it| format!(" (asymmetry {it})"));
+            let mean = short(0.5 * (low + high));
+            format!("theory: {period} s, {mean} deg{asymmetry}")
         }
         _ => "no theory of it here".to_owned(),
     };

@@ -30,7 +30,7 @@ use nalgebra::{Matrix3, Vector3};
 /// [`AccurateMotion`], whichever [`kind`](Self::kind) it is.
 #[derive(Clone, Debug)]
 pub struct ExactMotion {
-    begin_s: f64,
+    begin: State,
     solution: Solution,
 }
 
@@ -76,7 +76,7 @@ impl ExactMotion {
             }
         };
         Self {
-            begin_s: state.time_s,
+            begin: *state,
             solution,
         }
     }
@@ -89,7 +89,7 @@ impl ExactMotion {
 
     /// The same, with each phase told to `listener`.
     pub(crate) fn at_heard<L: Listener>(&mut self, time_s: f64, listener: &mut L) -> State {
-        let t = time_s - self.begin_s;
+        let t = time_s - self.begin.time_s;
         let (orientation, momentum) = match &mut self.solution {
             Solution::Closed(top) => top.at_heard(t, listener),
             Solution::Integrated(motion) => {
@@ -113,7 +113,7 @@ impl ExactMotion {
     #[inline]
     pub fn orientation_at(&mut self, time_s: f64) -> Matrix3<f64> {
         match &self.solution {
-            Solution::Closed(top) => top.orientation_at(time_s - self.begin_s),
+            Solution::Closed(top) => top.orientation_at(time_s - self.begin.time_s),
             Solution::Integrated(_) | Solution::None => self.at(time_s).orientation,
         }
     }
@@ -124,13 +124,18 @@ impl ExactMotion {
         at: &Vector3<f64>,
         times: &[f64; AT_ONCE],
     ) -> Option<[[f64; AT_ONCE]; 3]> {
-        let since = times.map(|time_s| time_s - self.begin_s);
+        let since = times.map(|time_s| time_s - self.begin.time_s);
         self.closed_form()?.positions_near(at, &since)
     }
 
     /// When it began, s.
     pub fn begin_s(&self) -> f64 {
-        self.begin_s
+        self.begin.time_s
+    }
+
+    /// The state in which it began.
+    pub fn begin(&self) -> &State {
+        &self.begin
     }
 
     /// How it is found.

@@ -231,7 +231,7 @@ pub(super) fn further_lines(reading: &Reading) -> Vec<Line> {
         let known = known.filter(|_| readouts.health.is_a_rotation);
         number(rank, label, known, digits, unit)
     };
-    vec![
+    let mut lines = vec![
         heading("so far"),
         told(7, "tilt from", "measured_lowest_tilt_deg", 3, "deg"),
         told(8, PREDICTED, "predicted_lowest_tilt_deg", 3, "deg"),
@@ -246,7 +246,12 @@ pub(super) fn further_lines(reading: &Reading) -> Vec<Line> {
         told(9, "steady", "true_steady_lag_deg", 3, "deg"),
         of_body(10, "azimuth", "azimuth_deg", 2, "deg"),
         of_body(10, "off exact", "distance_m", 4, "m"),
-    ]
+    ];
+    // Of a nearly symmetric body the predicted numbers are those of its mean moment.
+    let asymmetry = readouts.asymmetry.filter(|asymmetry| *asymmetry > 0.0);
+    let asymmetry = asymmetry.map(|asymmetry| significant(100.0 * asymmetry, 2));
+    lines.extend(asymmetry.map(|percent| value(8, "asymmetry", percent, "%")));
+    lines
 }
 
 /// The readouts to watch while values are edited; the last is the energy's drift.
