@@ -2,24 +2,28 @@
 
 use super::args::{Changes, MapArgs, STDIN, STDIN_WORDS, change, open, positive, time};
 use super::progress::{self, Interrupted, Interruption, Meter};
-use super::{one_on_stdout, print_result, refuse, tell_notes, tell_of_rows};
-use crate::data::{self, Measured};
+use super::{one_on_stdout, print, print_result, refuse, tell, tell_notes, tell_of_rows};
+use crate::data::{self, Data, Measured};
 use crate::export::Destination;
+use crate::fit::flights::{self, Flight, Found};
 use crate::fit::report::{self, Asked, Report};
 use crate::fit::{Fit, Free, Model, NoFit, fit as fitted};
 use crate::scenario::{Document, Problem, Problems, csv};
 use crate::text::number::{shortest, significant};
-use crate::text::printable::{Shown, brief};
+use crate::text::printable::{Shown, brief, printable};
 use crate::verify::Unverified;
 use anyhow::{Context, anyhow, bail};
 use clap::error::ErrorKind;
 use clap::{Args, FromArgMatches};
+use serde::{Serialize, Serializer};
+use serde_json::json;
+use std::fmt;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use toml::Value;
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct FitArgs {
     /// Measured data: a CSV file, a time series or a table of runs, - for stdin, or shipped data such as heidelberg-precession
     pub(super) measured: String,
@@ -47,11 +51,16 @@ pub(super) struct FitArgs {
     #[arg(long, value_name = "ROWS")]
     pub(super) rows: Option<Rows>,
 
-    /// Begin at this time of the recording, s, which is the run's t = 0: of several throws, where one begins
+    /// Of a recording of throws, fit this free flight alone, counted from 1; without it and without --from and --to each
+    /// flight that is found is fitted
+    #[arg(long, value_name = "N", conflicts_with_all = ["rows", "from", "to"], value_parser = clap::value_parser!(u64).range(1..))]
+    pub(super) flight: Option<u64>,
+
+    /// Begin at this time of the recording, s, which is the run's t = 0; no flights are looked for then
     #[arg(long, value_name = "S", conflicts_with = "rows", value_parser = time)]
     pub(super) from: Option<f64>,
 
-    /// End at this time of the recording, s
+    /// End at this time of the recording, s; no flights are looked for then
     #[arg(long, value_name = "S", conflicts_with = "rows", value_parser = positive)]
     pub(super) to: Option<f64>,
 
@@ -103,29 +112,90 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
         let message = "only one of the data and the scenario can be read from standard input";
         refuse("fit", ErrorKind::ArgumentConflict, message);
     }
-    let (model, own) = model(args)?;
-    tell_notes(&model.measured.notes());
+    let task = Task::read(args)?;
+    tell_notes(&task.measured.notes());
+    let Some(throws) = task.throws(args)? else {
+        return fit_one(args, &task, None);
+    };
+    if let [throw] = &throws[..] {
+        return fit_one(&throw.args(args), &task, Some(throw));
+    }
+    if args.output.is_some() {
+        bail!(
+            "{} has {} free flights, and -o takes one fit: name one by --flight N\n{}",
+            args.measured,
+            throws.len(),
+            throws
+                .iter()
+                .map(Throw::to_string)
+                .collect::<Vec<_>>()
+                .join("\n")
+        );
+    }
+    fit_each(args, &task, &throws)
+}
+
+/// Fits each of the `throws`. One that cannot be fitted is told, and the others are.
+fn fit_each(args: &FitArgs, task: &Task, throws: &[Throw]) -> anyhow::Result<ExitCode> {
+    let (_, interruption) = progress::open(None, false)?;
+    if !args.json {
+        let list = throws.iter().map(|throw| format!("  {throw}\n"));
+        let list: String = list.collect();
+        let count = throws.len();
+        print(&format!(
+            "{count} free flights in {}:\n{list}",
+            printable(&args.measured)
+        ))?;
+    }
+    let (mut all, mut code) = (Vec::new(), ExitCode::SUCCESS);
+    for throw in throws {
+        let of_throw = task.model(&throw.args(args));
+        let fitted = of_throw.map_err(anyhow::Error::new).and_then(|model| {
+            tell_notes(&model.doubts());
+            let fit = task.found(args, &model, &interruption)?;
+            Ok((model, fit))
+        });
+        match fitted {
+            Ok((model, fit)) => {
+                let report = Report {
+                    fit: &fit,
+                    model: &model,
+                    instead_of: task.other_scheme(&model),
+                };
+                let thrown = Thrown {
+                    report,
+                    throw: Some(throw),
+                };
+                if args.json {
+                    all.push(thrown.json()?);
+                } else {
+                    print(&format!("\n{thrown}\n"))?;
+                }
+            }
+            Err(error) if error.is::<Interrupted>() => return Err(error),
+            Err(error) => {
+                code = ExitCode::FAILURE;
+                all.push(json!({ "flight": throw.json(), "error": format!("{error:#}") }));
+                tell(format_args!("gyrolab: flight {}: {error:#}", throw.number));
+            }
+        }
+    }
+    if args.json {
+        print(&format!("{}\n", json!({ "flights": all })))?;
+    }
+    interruption.may_act_at_once()?;
+    Ok(code)
+}
+
+fn fit_one(args: &FitArgs, task: &Task, throw: Option<&Throw>) -> anyhow::Result<ExitCode> {
+    let model = task.model(args)?;
     tell_notes(&model.doubts());
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
-    let meter = Meter::counting("run");
-    let told = |step: u64, sum: f64| {
-        let (runs, sum) = (model.runs(), significant(sum, 4));
-        meter.say(&format!("{runs} runs, step {step}, chi^2 {sum}"));
-    };
-    let found = fitted(&model, &|| !interruption.has_come(), &told);
-    drop(meter);
-    let found = match found {
-        Ok(found) => found,
-        Err(NoFit::Interrupted) => bail!(Interrupted),
-        Err(error) => {
-            let what = format!("{} in {}", args.measured, args.scenario);
-            return Err(anyhow::Error::new(error).context(what));
-        }
-    };
+    let found = task.found(args, &model, &interruption)?;
     let report = Report {
         fit: &found,
         model: &model,
-        instead_of: own.filter(|own| *own != model.scheme),
+        instead_of: task.other_scheme(&model),
     };
     if let Some(mut output) = output {
         let path = args.output.as_deref().unwrap_or(Path::new("the output"));
@@ -135,7 +205,190 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
         output.keep().with_context(cannot_write)?;
     }
     interruption.may_act_at_once()?;
-    tell_of(&report, args)
+    tell_of(&Thrown { report, throw }, args)
+}
+
+/// What is fitted to what, before any flight is chosen.
+struct Task {
+    measured: Measured,
+    document: Document,
+    /// The scenario's own scheme, where no other was asked for.
+    own_scheme: Option<&'static str>,
+}
+
+/// A free flight of the recording.
+struct Throw {
+    number: usize,
+    of: usize,
+    flight: Flight,
+}
+
+impl Task {
+    fn read(args: &FitArgs) -> Result<Self, Problems> {
+        let measured = measured(args)?;
+        let (document, own_scheme) = scenario(args)?;
+        Ok(Self {
+            measured,
+            document,
+            own_scheme,
+        })
+    }
+
+    /// Returns the flights that are fitted one by one; `None` where the recording is fitted as it is.
+    fn throws(&self, args: &FitArgs) -> Result<Option<Vec<Throw>>, Problems> {
+        let is_asked = args.flight.is_some();
+        if args.rows.is_some() || args.from.or(args.to).is_some() {
+            return Ok(None);
+        }
+        let refused = |rule: String| Problems::one(args.measured.clone(), Problem::at("", rule));
+        let found = match &self.measured.data {
+            Data::Series(series) => flights::find(series, &self.document.scenario()?),
+            Data::Table(_) => Found::NotThrown,
+        };
+        let flights = match found {
+            Found::NotThrown if is_asked => {
+                let rule = "--flight takes a recording of w1_rad_per_s, w2_rad_per_s and w3_rad_per_s and a scenario of a body that flies freely, such as thrown-phone";
+                return Err(refused(rule.to_owned()));
+            }
+            Found::Whole if args.flight.is_some_and(|number| number > 1) => {
+                return Err(refused(
+                    "is one free flight from end to end: leave --flight out".to_owned(),
+                ));
+            }
+            Found::NotThrown | Found::Whole => return Ok(None),
+            Found::Flights(flights) => flights,
+        };
+        if flights.is_empty() {
+            return Err(refused("has no free flight: nowhere do the rates stay above 2 rad/s for 0.2 s and change as those of a free body do. Name the time of one by --from and --to; --from 0 alone fits all of the recording".to_owned()));
+        }
+        let of = flights.len();
+        let throws = flights.into_iter().zip(1..);
+        let throws = throws.map(|(flight, number)| Throw { number, of, flight });
+        let is_chosen = |throw: &Throw| args.flight.is_none_or(|it| it == throw.number as u64);
+        let (chosen, others): (Vec<Throw>, Vec<Throw>) = throws.partition(is_chosen);
+        if chosen.is_empty() {
+            let list: Vec<String> = others.iter().map(Throw::to_string).collect();
+            return Err(refused(format!(
+                "has no free flight {}, but these:\n{}",
+                args.flight.unwrap_or_default(),
+                list.join("\n")
+            )));
+        }
+        Ok(Some(chosen))
+    }
+
+    /// Returns the model for the rows that `args` choose.
+    fn model(&self, args: &FitArgs) -> Result<Model, Problems> {
+        let mut measured = chosen(self.measured.clone(), args.rows.as_ref())?;
+        if args.from.or(args.to).is_some() {
+            measured.series()?;
+            let (from_s, to_s) = (args.from.unwrap_or(0.0), args.to.unwrap_or(f64::INFINITY));
+            if !measured.keep_between(from_s, to_s) {
+                let rule = "has no value measured in the time that --from and --to leave";
+                return Err(Problems::one(args.measured.clone(), Problem::at("", rule)));
+            }
+        }
+        let keys = args.free.iter();
+        let keys = keys.map(|argument| Free::parse(argument, &self.document));
+        Model::new(
+            &self.document,
+            keys.collect::<Result<Vec<_>, _>>()?,
+            measured,
+        )
+    }
+
+    fn found(
+        &self,
+        args: &FitArgs,
+        model: &Model,
+        interruption: &Interruption,
+    ) -> anyhow::Result<Fit> {
+        let meter = Meter::counting("run");
+        let told = |step: u64, sum: f64| {
+            let (runs, sum) = (model.runs(), significant(sum, 4));
+            meter.say(&format!("{runs} runs, step {step}, chi^2 {sum}"));
+        };
+        let found = fitted(model, &|| !interruption.has_come(), &told);
+        drop(meter);
+        match found {
+            Err(NoFit::Interrupted) => bail!(Interrupted),
+            found => found.with_context(|| format!("{} in {}", args.measured, args.scenario)),
+        }
+    }
+
+    /// Returns the scenario's own scheme, where the model has another.
+    fn other_scheme(&self, model: &Model) -> Option<&'static str> {
+        self.own_scheme.filter(|own| *own != model.scheme)
+    }
+}
+
+impl Throw {
+    /// Returns the command line that fits this flight alone.
+    fn args(&self, args: &FitArgs) -> FitArgs {
+        FitArgs {
+            from: Some(self.flight.from_s),
+            to: Some(self.flight.to_s),
+            flight: None,
+            ..args.clone()
+        }
+    }
+
+    fn json(&self) -> serde_json::Value {
+        let Flight {
+            from_s,
+            to_s,
+            rows,
+            rate,
+        } = self.flight;
+        json!({
+            "number": self.number, "of": self.of, "from_s": from_s, "to_s": to_s, "rows": rows,
+            "mean_rate_rad_per_s": rate,
+        })
+    }
+}
+
+impl fmt::Display for Throw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [from_s, to_s] = [self.flight.from_s, self.flight.to_s].map(|it| significant(it, 6));
+        let rate = significant(self.flight.rate, 3);
+        write!(
+            f,
+            "flight {} of {}: {from_s} s to {to_s} s, {} rows, {rate} rad/s on the mean",
+            self.number, self.of, self.flight.rows
+        )
+    }
+}
+
+/// The report of a fit, and which flight of the recording it is of.
+struct Thrown<'a> {
+    report: Report<'a>,
+    throw: Option<&'a Throw>,
+}
+
+impl Thrown<'_> {
+    fn json(&self) -> serde_json::Result<serde_json::Value> {
+        let mut json = serde_json::to_value(self.report)?;
+        if let Some(throw) = self.throw {
+            json["flight"] = throw.json();
+        }
+        Ok(json)
+    }
+}
+
+impl fmt::Display for Thrown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(throw) = self.throw {
+            writeln!(f, "{throw}")?;
+        }
+        self.report.fmt(f)
+    }
+}
+
+impl Serialize for Thrown<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let json = self.json().map_err(serde::ser::Error::custom)?;
+        json.serialize(serializer)
+    }
 }
 
 /// The CSV of the fit that the command line `command` makes.
@@ -157,7 +410,8 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
             "it was fitted to what stood on standard input, which no file holds".to_owned(),
         ));
     }
-    let (model, _) = model(&args).map_err(|problems| cannot(problems.to_string()))?;
+    let model = Task::read(&args).and_then(|task| task.model(&args));
+    let model = model.map_err(|problems| cannot(problems.to_string()))?;
     let found = match fitted(&model, &|| !interruption.has_come(), &|_, _| {}) {
         Ok(found) => found,
         Err(NoFit::Interrupted) => return Err(Unverified::Stopped),
@@ -171,25 +425,6 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
     let mut csv = Vec::new();
     write(&mut csv, &report, &args).map_err(|error| cannot(error.to_string()))?;
     Ok(csv)
-}
-
-/// What is fitted, and the scenario's own scheme, where no other was asked for.
-fn model(args: &FitArgs) -> Result<(Model, Option<&'static str>), Problems> {
-    let measured = measured(args)?;
-    let mut measured = chosen(measured, args.rows.as_ref())?;
-    if args.from.or(args.to).is_some() {
-        measured.series()?;
-        let (from_s, to_s) = (args.from.unwrap_or(0.0), args.to.unwrap_or(f64::INFINITY));
-        if !measured.keep_between(from_s, to_s) {
-            let rule = "has no value measured in the time that --from and --to leave";
-            return Err(Problems::one(args.measured.clone(), Problem::at("", rule)));
-        }
-    }
-    let (document, own) = scenario(args)?;
-    let keys = args.free.iter();
-    let keys = keys.map(|argument| Free::parse(argument, &document));
-    let keys = keys.collect::<Result<Vec<_>, _>>()?;
-    Ok((Model::new(&document, keys, measured)?, own))
 }
 
 fn measured(args: &FitArgs) -> Result<Measured, Problems> {
@@ -298,11 +533,11 @@ fn write(output: impl Write, report: &Report<'_>, args: &FitArgs) -> anyhow::Res
 }
 
 /// The result, and where its rows are written.
-fn tell_of(report: &Report<'_>, args: &FitArgs) -> anyhow::Result<ExitCode> {
+fn tell_of(thrown: &Thrown<'_>, args: &FitArgs) -> anyhow::Result<ExitCode> {
     let output = args.output.as_deref();
-    print_result(report, output, args.json)?;
+    print_result(thrown, output, args.json)?;
     if let Some(path) = output.filter(|path| !Destination::is_for_stdout(path)) {
-        tell_of_rows(report.fit.residuals.len() as u64, path);
+        tell_of_rows(thrown.report.fit.residuals.len() as u64, path);
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -17,6 +17,8 @@ pub struct Free {
     pub from: f64,
     /// The greatest value; infinity where there is none.
     pub to: f64,
+    /// The least value that it can have at all; -infinity where it can have any.
+    pub least: f64,
     /// A value of the size that is usual for it.
     pub scale: f64,
 }
@@ -77,6 +79,7 @@ impl Free {
             start,
             from,
             to,
+            least,
             scale,
         })
     }

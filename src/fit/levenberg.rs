@@ -1,11 +1,12 @@
-//! The search for the least sum of squares: Levenberg and Marquardt's, within bounds.
+//! The search for the least sum of squares: Levenberg and Marquardt's, within limits.
 //!
 //! Sources: D. W. Marquardt, J. Soc. Indust. Appl. Math. 11, 431 (1963); J. J. Moré, Lecture Notes in Mathematics 630, 105
 //! (1978), for the scaling of the parameters, which never shrinks; H. B. Nielsen, Damping parameter in Marquardt's method,
-//! IMM-REP-1999-05, Technical University of Denmark (1999), for the damping. Bounds are held by projection: a parameter at a
-//! bound, beyond which the sum would fall, stays there while the others are looked for (D. P. Bertsekas, SIAM J. Control
-//! Optim. 20, 221 (1982)). A well-kept crate with this method, levenberg-marquardt, needs another version of nalgebra.
+//! IMM-REP-1999-05, Technical University of Denmark (1999), for the damping. Each step is the least square of the linear
+//! problem [`within`](super::within) the limits of the parameters. A well-kept crate with this method, levenberg-marquardt,
+//! needs another version of nalgebra and has no limits.
 
+use super::within::{Limit, complement, least_squares};
 use nalgebra::{DMatrix, DVector};
 
 /// What is to be made small.
@@ -27,9 +28,6 @@ pub enum Stop {
     Interrupted,
 }
 
-/// The least and the greatest value of a parameter.
-pub type Bounds = (f64, f64);
-
 /// A place where the sum is less, and the residuals there.
 type Better = (Vec<f64>, DVector<f64>);
 
@@ -39,8 +37,8 @@ pub struct Minimum {
     pub residuals: DVector<f64>,
     /// −∂r/∂p there.
     pub slopes: DMatrix<f64>,
-    /// Which parameters are held at a bound, beyond which the sum would be less.
-    pub held: Vec<bool>,
+    /// The limits that hold the parameters, by their places: beyond each of them the sum would be less.
+    pub held: Vec<usize>,
     pub steps: u64,
     pub failure: Option<Failure>,
 }
@@ -63,12 +61,14 @@ const ENOUGH_OF_SUM: f64 = 1e-10;
 const ROUNDING: f64 = 1e-3;
 /// Singular values below this part of the largest are the rounding of the slopes.
 pub const SINGULAR: f64 = 1e-6;
+/// A limit that is nearer than this, in uncertainties, has been reached.
+const HERE: f64 = 1e-9;
 /// The damping at the beginning, of slopes whose columns have length 1.
 const DAMPING: f64 = 1e-3;
 const MOST_DAMPING: f64 = 1e12;
 
-/// Looks for the least sum of squares from `start` on.
-pub fn search(problem: &dyn Problem, start: &[f64], bounds: &[Bounds]) -> Result<Minimum, Stop> {
+/// Looks for the least sum of squares from `start` on, which is inside of all `limits`.
+pub fn search(problem: &dyn Problem, start: &[f64], limits: &[Limit]) -> Result<Minimum, Stop> {
     let mut p = start.to_vec();
     let mut r = problem.residuals(&p)?;
     let mut scale = DVector::zeros(p.len());
@@ -80,14 +80,14 @@ pub fn search(problem: &dyn Problem, start: &[f64], bounds: &[Bounds]) -> Result
         for (scale, column) in scale.iter_mut().zip(slopes.column_iter()) {
             *scale = column.norm().max(*scale);
         }
-        let held = held(&p, bounds, &slopes, &r);
-        let linear = Linear::new(&slopes, &scale, &held, &r);
-        let gain = linear.gain();
+        let linear = Linear::new(&slopes, &scale, &r, limits, &p);
+        let held = linear.held();
+        let gain = linear.gain(&held);
         let failure = if gain <= ENOUGH.max(ENOUGH_OF_SUM * sum) {
             None
         } else if step == MOST_STEPS {
             Some(Failure::TooManySteps)
-        } else if let Some(better) = linear.better(problem, &p, &r, bounds, &mut damping)? {
+        } else if let Some(better) = linear.better(problem, &p, &r, limits, &mut damping)? {
             (p, r) = better;
             continue;
         } else {
@@ -106,76 +106,89 @@ pub fn search(problem: &dyn Problem, start: &[f64], bounds: &[Bounds]) -> Result
     Err(Stop::Interrupted) // not reached: the steps are counted above
 }
 
-fn held(p: &[f64], bounds: &[Bounds], slopes: &DMatrix<f64>, r: &DVector<f64>) -> Vec<bool> {
-    let pull = slopes.tr_mul(r); // upwards where it is positive
-    let is_held = |index: usize| {
-        let (at, pull) = (p[index], pull[index]);
-        at <= bounds[index].0 && pull < 0.0 || at >= bounds[index].1 && pull > 0.0
-    };
-    (0..p.len()).map(is_held).collect()
-}
-
-fn projected(p: &[f64], step: &DVector<f64>, bounds: &[Bounds]) -> Vec<f64> {
-    let moved = p.iter().zip(step.iter()).zip(bounds);
-    moved
-        .map(|((p, step), (from, to))| (p + step).clamp(*from, *to))
-        .collect()
-}
-
-/// The linear problem at one place: J δ = r for the parameters that are not held, in units of their scales.
+/// The linear problem at one place, J d = r, in units of the scales of the parameters.
 struct Linear<'a> {
     slopes: &'a DMatrix<f64>,
-    scale: &'a DVector<f64>,
-    moving: Vec<usize>,
-    singular: DVector<f64>,
-    /// Uᵀ r.
+    units: DVector<f64>,
+    /// R of the slopes Q R, and Q^T r.
+    root: DMatrix<f64>,
     along: DVector<f64>,
-    v_t: DMatrix<f64>,
+    /// The limits of a step from here.
+    limits: Vec<Limit>,
 }
 
 impl<'a> Linear<'a> {
     fn new(
         slopes: &'a DMatrix<f64>,
-        scale: &'a DVector<f64>,
-        held: &[bool],
+        scale: &DVector<f64>,
         r: &DVector<f64>,
+        limits: &[Limit],
+        p: &[f64],
     ) -> Self {
-        let moves = |index: &usize| !held[*index] && scale[*index] > 0.0;
-        let moving: Vec<usize> = (0..held.len()).filter(moves).collect();
-        let columns = moving
-            .iter()
-            .map(|&index| slopes.column(index) / scale[index]);
-        let columns: Vec<DVector<f64>> = columns.collect();
-        let (mut singular, mut along) = (DVector::zeros(0), DVector::zeros(0));
-        let mut v_t = DMatrix::zeros(0, 0);
-        if !columns.is_empty() && !r.is_empty() {
-            let svd = DMatrix::from_columns(&columns).svd(true, true);
-            if let (Some(u), Some(rows)) = (svd.u, svd.v_t) {
-                (singular, along, v_t) = (svd.singular_values, u.tr_mul(r), rows);
+        let units = scale.map(|scale| if scale > 0.0 { scale.recip() } else { 1.0 });
+        let scaled = slopes * DMatrix::from_diagonal(&units);
+        let (q, root) = scaled.qr().unpack();
+        let of_step = |limit: &Limit| {
+            let normal = limit.normal.component_mul(&units);
+            Limit {
+                least: -limit.room(p).max(0.0) / normal.norm(),
+                normal: normal.normalize(),
             }
-        }
+        };
         Self {
             slopes,
-            scale,
-            moving,
-            singular,
-            along,
-            v_t,
+            limits: limits.iter().map(of_step).collect(),
+            along: q.tr_mul(r),
+            root,
+            units,
         }
     }
 
-    /// Where the longest step leads that reduces the sum; `None` where there is none.
+    /// Returns the limits that hold the parameters where they are: those that the steepest way down leads beyond.
+    fn held(&self) -> Vec<usize> {
+        let is_here = |place: &usize| self.limits[*place].least >= -HERE;
+        let here: Vec<usize> = (0..self.limits.len()).filter(is_here).collect();
+        let cone = here.iter().map(|&place| Limit {
+            least: 0.0,
+            normal: self.limits[place].normal.clone(),
+        });
+        let cone: Vec<Limit> = cone.collect();
+        let down = self.root.tr_mul(&self.along);
+        let unit = DMatrix::identity(down.len(), down.len());
+        let within = least_squares(&unit, &down, &cone);
+        within.held.into_iter().map(|place| here[place]).collect()
+    }
+
+    /// Returns by how much the sum would fall, were the residuals linear, along the limits that are `held`.
+    fn gain(&self, held: &[usize]) -> f64 {
+        let normals = held.iter().map(|&place| &self.limits[place].normal);
+        let free = complement(normals, self.units.len());
+        if free.is_empty() {
+            return 0.0;
+        }
+        let svd = (&self.root * free).svd(true, false);
+        let Some(u) = svd.u else {
+            return 0.0;
+        };
+        let least = SINGULAR * svd.singular_values.amax();
+        let along = u.tr_mul(&self.along);
+        let pairs = svd.singular_values.iter().zip(along.iter());
+        let seen = pairs.filter(|(singular, _)| **singular > least);
+        seen.map(|(_, along)| along * along).sum()
+    }
+
+    /// Returns where the longest step leads that reduces the sum; `None` where there is none.
     fn better(
         &self,
         problem: &dyn Problem,
         p: &[f64],
         r: &DVector<f64>,
-        bounds: &[Bounds],
+        limits: &[Limit],
         damping: &mut f64,
     ) -> Result<Option<Better>, Stop> {
         let (sum, mut growth) = (r.norm_squared(), 2.0);
         loop {
-            let trial = projected(p, &self.step(*damping), bounds);
+            let trial = moved(p, &self.step(*damping), limits);
             let moved = DVector::from_iterator(p.len(), trial.iter().zip(p).map(|(a, b)| a - b));
             let foreseen = sum - (r - self.slopes * &moved).norm_squared();
             let there = match problem.residuals(&trial) {
@@ -198,24 +211,31 @@ impl<'a> Linear<'a> {
         }
     }
 
-    /// By how much the sum would fall, were the residuals linear.
-    fn gain(&self) -> f64 {
-        let least = SINGULAR * self.singular.amax();
-        let pairs = self.singular.iter().zip(self.along.iter());
-        let seen = pairs.filter(|(singular, _)| **singular > least);
-        seen.map(|(_, along)| along * along).sum()
-    }
-
-    /// The step under `damping`, in the parameters' own units.
+    /// Returns the step under `damping`, in the parameters' own units.
     fn step(&self, damping: f64) -> DVector<f64> {
-        let mut step = DVector::zeros(self.scale.len());
-        let damped = self.singular.zip_map(&self.along, |singular, along| {
-            singular * along / (singular * singular + damping)
-        });
-        let moved = self.v_t.tr_mul(&damped);
-        for (&index, moved) in self.moving.iter().zip(moved.iter()) {
-            step[index] = moved / self.scale[index];
-        }
-        step
+        let (rows, count) = self.root.shape();
+        let own = DMatrix::from_diagonal_element(count, count, damping.sqrt());
+        let mut damped = self.root.clone().resize_vertically(rows + count, 0.0);
+        damped.view_mut((rows, 0), (count, count)).copy_from(&own);
+        let along = self.along.clone().resize_vertically(rows + count, 0.0);
+        let within = least_squares(&damped, &along, &self.limits);
+        within.y.component_mul(&self.units)
     }
+}
+
+/// Returns `p` after `step`. What one parameter alone is limited by holds exactly, and not but for rounding.
+fn moved(p: &[f64], step: &DVector<f64>, limits: &[Limit]) -> Vec<f64> {
+    let mut moved: Vec<f64> = p
+        .iter()
+        .zip(step.iter())
+        .map(|(p, step)| p + step)
+        .collect();
+    for limit in limits {
+        if let Some(place) = limit.only()
+            && limit.room(&moved) < 0.0
+        {
+            moved[place] = limit.least / limit.normal[place];
+        }
+    }
+    moved
 }

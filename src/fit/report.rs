@@ -2,7 +2,7 @@
 
 use super::free::shown;
 use super::model::Model;
-use super::search::{Fit, Fitted};
+use super::search::{Fit, Fitted, Sides};
 use super::solution::student;
 use crate::data::quantity::TIME;
 use crate::data::{Data, Residual};
@@ -26,12 +26,23 @@ pub struct Report<'a> {
     pub instead_of: Option<&'static str>,
 }
 
+/// Uncertainties to both sides that differ by no more than this part are one.
+const ALIKE: f64 = 0.05;
 /// Digits of a value whose uncertainty cannot be stated.
 const DIGITS: usize = 7;
 
 impl Fitted {
-    /// The value with its uncertainty, as people read it: 0.003920(38).
+    /// The value with its uncertainty, as people read it: 0.003920(38), or where that differs 0.003920 +0.000042 -0.000038.
     pub fn stated(&self) -> String {
+        if let Some(Sides { below, above }) = self.sides
+            && (below - above).abs() > ALIKE * below.max(above)
+        {
+            let digits =
+                |size: f64| (libm::log10((self.value / size).abs()) as usize).clamp(1, 14) + 2;
+            let digits = digits(below.max(above));
+            let [above, below] = [above, below].map(|side| significant(side, 2));
+            return format!("{} +{above} -{below}", significant(self.value, digits));
+        }
         let stated = self.sigma.and_then(|sigma| uncertain(self.value, sigma));
         match stated {
             Some(stated) => stated.to_string(),
@@ -43,17 +54,9 @@ impl Fitted {
         let bound = |bound: f64| bound.is_finite().then_some(bound);
         json!({
             "key": self.free.key, "value": self.value, "uncertainty": self.sigma, "start": self.free.start,
+            "uncertainty_below": self.sides.map(|sides| sides.below), "uncertainty_above": self.sides.map(|sides| sides.above),
             "from": bound(self.free.from), "to": bound(self.free.to), "is_at_bound": self.is_held,
         })
-    }
-
-    /// What is to be known of it beside its value; empty where there is nothing.
-    fn remark(&self) -> &'static str {
-        match (self.is_held, self.sigma) {
-            (true, _) => "at its bound",
-            (false, None) => "no uncertainty can be stated",
-            (false, Some(_)) => "",
-        }
     }
 }
 
@@ -70,8 +73,21 @@ impl Report<'_> {
         remarks.chain(self.fit.aliased(self.model)).collect()
     }
 
+    /// What is to be known of a key beside its value; empty where there is nothing.
+    fn remark(&self, index: usize) -> String {
+        let key = &self.fit.keys[index];
+        let held = self.fit.edges.iter().filter(|edge| edge.holds[index]);
+        let of_part: Vec<String> = held.filter_map(|edge| Some(edge.of_part()?.1)).collect();
+        match (&of_part[..], key.is_held, key.sigma) {
+            ([_, ..], ..) => format!("{}, at the bound", of_part.join(", ")),
+            ([], true, _) => "at its bound".to_owned(),
+            ([], false, None) => "no uncertainty can be stated".to_owned(),
+            ([], false, Some(_)) => String::new(),
+        }
+    }
+
     fn keys(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rows = self.fit.keys.iter().map(|key| {
+        let rows = self.fit.keys.iter().enumerate().map(|(index, key)| {
             let free = &key.free;
             let bounds = match (free.from.is_finite(), free.to.is_finite()) {
                 (false, false) => String::new(),
@@ -82,7 +98,7 @@ impl Report<'_> {
                 key.stated(),
                 shortest(free.start),
                 bounds,
-                key.remark().to_owned(),
+                self.remark(index),
             ]
         });
         write_table(f, ["key", "value", "start", "bounds", ""], rows)
@@ -176,6 +192,7 @@ impl Report<'_> {
             "probability": quality.probability, "scatter": quality.scatter,
             "student_factor": quality.scatter.and(fit.variance).map(|_| student(freedom)),
             "fits": quality.fits(), "verdict": fit.sentence(self.model), "remarks": self.remarks(),
+            "bounds": fit.edges.iter().map(|edge| edge.json(&fit.keys)).collect::<Vec<_>>(),
             "cannot_be_told_apart": alike.collect::<Vec<_>>(), "no_influence": silent.collect::<Vec<_>>(),
             "residuals": residuals.collect::<Vec<_>>(), "steps": fit.steps,
         })

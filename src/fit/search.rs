@@ -1,11 +1,14 @@
 //! The whole of a fit: from the start values to the minimum, and what the data say there.
 
+use super::chart::Chart;
+use super::edge::{Edge, edges};
 use super::free::Free;
-use super::levenberg::{self, Bounds, Failure, Minimum, Problem, Stop};
+use super::levenberg::{self, Failure, Minimum, Problem, Stop};
 use super::model::{GoOn, Model};
 use super::solution::{Quality, SILENT, Solution, variance};
 use super::thrown;
 use super::weights::Weights;
+use super::within::Limit;
 use crate::cores;
 use crate::data::Residual;
 use crate::text::number::significant;
@@ -25,6 +28,8 @@ pub struct Fit {
     pub steps: u64,
     /// The factor of the covariances: 1, or for unweighted data (scatter times Student's factor) squared.
     pub variance: Option<f64>,
+    /// The limits that hold the keys.
+    pub edges: Vec<Edge>,
 }
 
 #[derive(Clone, Debug)]
@@ -32,10 +37,19 @@ pub struct Fitted {
     /// The key, where the search began, and its bounds.
     pub free: Free,
     pub value: f64,
-    /// One standard uncertainty of it; `None` where it cannot be stated.
+    /// One standard uncertainty of it, of two sides the larger one; `None` where it cannot be stated.
     pub sigma: Option<f64>,
+    /// The uncertainties to both sides, which differ where a limit of nature holds the key: 68 % each.
+    pub sides: Option<Sides>,
     /// Whether it is held at a bound, beyond which the fit would be better.
     pub is_held: bool,
+}
+
+/// How far below and above its value a key may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sides {
+    pub below: f64,
+    pub above: f64,
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -78,6 +92,12 @@ const CHANGE: f64 = 1e-4;
 const LARGE: f64 = 0.5;
 /// The part that is aimed at then.
 const AIM: f64 = 0.1;
+/// A change is no larger than this part of the way to a limit that is not yet reached: there the data may bend.
+const OF_WAY: f64 = 1e-3;
+/// A limit that is nearer than this part of a change has been reached.
+const REACHED: f64 = 1e-4;
+/// From how many starts the search begins at most.
+const MOST_STARTS: usize = 4;
 /// How often the weights are computed anew.
 const MOST_ROUNDS: u32 = 40;
 
@@ -87,36 +107,75 @@ pub fn fit(model: &Model, go_on: GoOn<'_>, tell: &(dyn Fn(u64, f64) + Sync)) -> 
     if data < keys {
         return Err(NoFit::TooFew { data, keys });
     }
-    let mut p: Vec<f64> = model.free.iter().map(|free| free.start).collect();
-    if let Some(nearer) = thrown::start(model, &p) {
-        let off = |p: &[f64]| sum_of_squares(model, p, go_on);
-        if off(&nearer)? < off(&p)? {
-            p = nearer;
+    let own: Vec<f64> = model.free.iter().map(|free| free.start).collect();
+    let scenario = model.scenario(&own).map_err(Stop::Impossible)?;
+    let chart = Chart::new(&model.free, &scenario);
+    let mut first_failure = None;
+    for start in starts(model, &chart, own, go_on)? {
+        match fit_from(model, &chart, start, go_on, tell) {
+            Err(failure @ (NoFit::Stuck(_) | NoFit::TooLong { .. })) => {
+                first_failure.get_or_insert(failure);
+            }
+            ended => return ended,
         }
     }
-    let bounds = model.free.iter().map(|free| (free.from, free.to));
-    let bounds: Vec<Bounds> = bounds.collect();
+    Err(first_failure.unwrap_or(NoFit::Interrupted))
+}
+
+/// The values from which the search begins, one after the other until it ends well: the nearest to the data first.
+fn starts(
+    model: &Model,
+    chart: &Chart,
+    own: Vec<f64>,
+    go_on: GoOn<'_>,
+) -> Result<Vec<Vec<f64>>, Stop> {
+    let thrown = thrown::starts(model, &own);
+    let mut all = vec![own];
+    all.extend(thrown.into_iter().filter(|start| chart.holds(start)));
+    if all.len() == 1 {
+        return Ok(all);
+    }
+    let mut summed = Vec::with_capacity(all.len());
+    for start in all {
+        summed.push((sum_of_squares(model, &start, go_on)?, start));
+    }
+    summed.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let nearest = summed.into_iter().take(MOST_STARTS);
+    Ok(nearest.map(|(_, start)| start).collect())
+}
+
+fn fit_from(
+    model: &Model,
+    chart: &Chart,
+    mut p: Vec<f64>,
+    go_on: GoOn<'_>,
+    tell: &(dyn Fn(u64, f64) + Sync),
+) -> Result<Fit, NoFit> {
     let mut weights = Weights::at(model, &p, go_on)?;
     let changes = model.free.iter().map(|free| CHANGE * free.scale);
     let changes = Mutex::new(changes.collect::<Vec<f64>>());
     let mut steps = 0;
     for _ in 0..MOST_ROUNDS {
+        let start = chart.parameters(&p);
+        let limits = chart.limits_around(&start);
         let weighed = Weighed {
             model,
+            chart,
+            limits: &limits,
             weights: &weights,
             changes: &changes,
             go_on,
             tell: &|step, sum| tell(steps + step, sum),
         };
-        let minimum = levenberg::search(&weighed, &p, &bounds)?;
+        let minimum = levenberg::search(&weighed, &start, &limits)?;
         steps += minimum.steps;
+        p = chart.keys(&minimum.p);
         if let Some(failure) = minimum.failure {
-            return Err(NoFit::at(model, &minimum.p, failure));
+            return Err(NoFit::at(model, &p, failure));
         }
-        let Some(next) = weights.renewed(model, &minimum.p, go_on)? else {
-            return finished(model, &minimum, weights, steps, go_on);
+        let Some(next) = weights.renewed(model, &p, go_on)? else {
+            return finished(model, &minimum, chart, weights, steps, go_on);
         };
-        p.clone_from(&minimum.p);
         weights = next;
     }
     Err(NoFit::Unsettled)
@@ -153,12 +212,14 @@ impl NoFit {
 fn finished(
     model: &Model,
     minimum: &Minimum,
+    chart: &Chart,
     weights: Weights,
     steps: u64,
     go_on: GoOn<'_>,
 ) -> Result<Fit, NoFit> {
-    let solution = Solution::of(minimum, &model.free);
-    let values = model.values(&minimum.p, None, go_on)?;
+    let p = chart.keys(&minimum.p);
+    let solution = Solution::of(minimum, chart, &model.free);
+    let values = model.values(&p, None, go_on)?;
     let mut residuals = model.residuals(&values);
     for (residual, sigma) in residuals.iter_mut().zip(&weights.sigma) {
         residual.sigma = weights.are_stated.then_some(*sigma);
@@ -168,16 +229,17 @@ fn finished(
     let quality = Quality::of(sum, freedom, &weights);
     let scattered = || variance(sum, freedom);
     let variance = weights.are_stated.then_some(1.0).or_else(scattered);
+    let edges = edges(minimum, chart, &model.free, variance);
     let places = model.free.iter().enumerate();
-    let keys = places.map(|(index, free)| Fitted {
-        free: free.clone(),
-        value: minimum.p[index],
-        sigma: solution
-            .sigma(index)
-            .zip(variance)
-            .map(|(sigma, variance)| sigma * variance.sqrt())
-            .filter(|sigma| *sigma > 0.0 && sigma.is_finite()),
-        is_held: minimum.held[index],
+    let keys = places.map(|(index, free)| {
+        let sides = sides(index, p[index], &solution, &edges, variance);
+        Fitted {
+            free: free.clone(),
+            value: p[index],
+            sigma: sides.map(|sides| sides.below.max(sides.above)),
+            sides,
+            is_held: edges.iter().any(|edge| edge.holds[index]),
+        }
     });
     Ok(Fit {
         keys: keys.collect(),
@@ -187,14 +249,48 @@ fn finished(
         weights,
         steps,
         variance,
+        edges,
     })
+}
+
+/// The uncertainties of a key: those along the limits that hold it, and to the inside of each limit as far as it may be.
+fn sides(
+    index: usize,
+    value: f64,
+    solution: &Solution,
+    edges: &[Edge],
+    variance: Option<f64>,
+) -> Option<Sides> {
+    let along = solution.sigma(index).zip(variance);
+    let along = along.map(|(sigma, variance)| sigma * variance.sqrt());
+    let mut squares = [along.unwrap_or(0.0).powi(2); 2];
+    let is_silent = |edge: &&Edge| edge.is_of_nature && edge.most.is_none() && edge.holds[index];
+    let is_unknown =
+        along.is_none() && solution.is_moving[index] || edges.iter().any(|edge| is_silent(&edge));
+    let of_part = edges
+        .iter()
+        .filter(|edge| edge.holds[index] && edge.of_part().is_some());
+    let is_corner = of_part.count() > 1;
+    for edge in edges {
+        let moved = edge.most.map_or(0.0, |most| most.at_68 * edge.moves[index]);
+        squares[usize::from(moved > 0.0)] += moved * moved;
+    }
+    let [below, above] = squares.map(f64::sqrt);
+    // Inside of a corner of limits a key may move either way.
+    let most = below.max(above);
+    let [below, above] = if is_corner { [most; 2] } else { [below, above] };
+    let is_rounding = most <= f64::EPSILON * value.abs();
+    let is_stated = !is_unknown && !is_rounding && most > 0.0 && most.is_finite();
+    is_stated.then_some(Sides { below, above })
 }
 
 /// The model with its data weighed, as the search sees it.
 struct Weighed<'a> {
     model: &'a Model,
+    chart: &'a Chart,
+    limits: &'a [Limit],
     weights: &'a Weights,
-    /// The change of each key by which slopes are taken, in its unit.
+    /// The change of each parameter by which slopes are taken, in its unit.
     changes: &'a Mutex<Vec<f64>>,
     go_on: GoOn<'a>,
     tell: &'a (dyn Fn(u64, f64) + Sync),
@@ -205,13 +301,43 @@ impl Weighed<'_> {
         self.changes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The change of every datum with the `index`-th key by central differences, as far as the bounds and the scenario
-    /// allow, and the change of the key by which it was found.
+    fn values(&self, p: &[f64]) -> Result<Vec<f64>, Stop> {
+        self.model.values(&self.chart.keys(p), None, self.go_on)
+    }
+
+    /// How far the `index`-th parameter alone can be changed from `p`, to its least and its greatest value. Limits of several
+    /// together are left to the scenario, which refuses what cannot be: at one that the user drew no parameter is stuck.
+    fn ends(&self, p: &[f64], index: usize) -> (f64, f64) {
+        let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+        for limit in self.limits.iter().filter(|it| it.only() == Some(index)) {
+            let edge = p[index] - limit.room(p) / limit.normal[index];
+            if limit.normal[index] > 0.0 {
+                from = from.max(edge);
+            } else {
+                to = to.min(edge);
+            }
+        }
+        (from, to)
+    }
+
+    /// `change` of the `index`-th parameter from `p`, or a smaller one where a limit is near.
+    fn before_limits(&self, p: &[f64], index: usize, change: f64) -> f64 {
+        let ways = self
+            .limits
+            .iter()
+            .map(|limit| limit.room(p) / limit.normal[index].abs());
+        let near = ways.filter(|way| *way > REACHED * change);
+        near.fold(change, |change, way| change.min(OF_WAY * way))
+    }
+
+    /// The change of every datum with the `index`-th parameter by central differences, as far as the limits and the scenario
+    /// allow, and the change of the parameter by which it was found.
     fn slope(&self, p: &[f64], index: usize, mut change: f64) -> Result<(Vec<f64>, f64), Stop> {
         /// How often a change that was too large is made smaller.
         const TRIES: u32 = 4;
         for try_ in 0.. {
-            let (slope, width) = self.slope_by(p, index, change)?;
+            let near = self.before_limits(p, index, change);
+            let (slope, width) = self.slope_by(p, index, near)?;
             let moved = slope.iter().zip(&self.weights.resolution);
             let most = moved.map(|(slope, size)| (slope * width / size).abs());
             let most = most.fold(0.0, f64::max);
@@ -223,14 +349,13 @@ impl Weighed<'_> {
         Err(Stop::Interrupted) // not reached: the tries are counted
     }
 
-    /// The same by this change, and how far apart the two values of the key were.
+    /// The same by this change, and how far apart the two values of the parameter were.
     fn slope_by(&self, p: &[f64], index: usize, change: f64) -> Result<(Vec<f64>, f64), Stop> {
-        let Free { from, to, .. } = self.model.free[index];
+        let (from, to) = self.ends(p, index);
         let at = |value: f64| {
             let mut there = p.to_vec();
-            there[index] = value.clamp(from, to);
-            let values = self.model.values(&there, None, self.go_on);
-            values.map(|values| (there[index], values))
+            there[index] = value.max(from).min(to);
+            Ok((there[index], self.values(&there)?))
         };
         let (high, low) = (at(p[index] + change), at(p[index] - change));
         let why = match (&high, &low) {
@@ -247,7 +372,7 @@ impl Weighed<'_> {
             return Err(Stop::Impossible(format!(
                 "{} can be changed neither up nor down from {}: {why}",
                 self.model.free[index].key,
-                significant(p[index], 6)
+                significant(self.chart.keys(p)[index], 6)
             )));
         }
         let pairs = above.iter().zip(&below);
@@ -258,8 +383,7 @@ impl Weighed<'_> {
 
 impl Problem for Weighed<'_> {
     fn residuals(&self, p: &[f64]) -> Result<DVector<f64>, Stop> {
-        let values = self.model.values(p, None, self.go_on)?;
-        let residuals = self.model.residuals(&values);
+        let residuals = self.model.residuals(&self.values(p)?);
         let residuals: Vec<f64> = residuals.iter().map(Residual::value).collect();
         let white = self.weights.whitened(&residuals);
         are_numbers(white.norm_squared())?;
@@ -272,10 +396,11 @@ impl Problem for Weighed<'_> {
         let changes: Vec<_> = changes.into_iter().enumerate().collect();
         let found: Result<Vec<(Vec<f64>, f64)>, Stop> = cores::map(&changes, of);
         let found = found?;
+        let keys = self.chart.keys(p);
         let column = |(index, (slope, _)): (usize, &(Vec<f64>, f64))| {
             let column = self.weights.whitened(slope);
             // The slope of what does not move is rounding, and would lead anywhere.
-            if column.norm() * self.model.free[index].size(p[index]) <= SILENT {
+            if column.norm() * self.model.free[index].size(keys[index]) <= SILENT {
                 DVector::zeros(column.len())
             } else {
                 column

@@ -1,16 +1,18 @@
 //! What a minimum says of the keys: their uncertainties, how these hang together, and what cannot be told apart; and how
 //! well the model fits, in numbers.
 
+use super::chart::Chart;
 use super::free::Free;
 use super::levenberg::{Minimum, SINGULAR};
 use super::weights::Weights;
+use super::within::complement;
 use crate::text::number::significant;
 use nalgebra::{DMatrix, DVector};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// The covariances of the keys, in their units, for data whose uncertainty is 1; `None` of a key whose value the data do
-    /// not say, or that is held at a bound.
+    /// The covariances of the keys along the limits that hold them, in their units, for data whose uncertainty is 1; `None`
+    /// of a key whose value the data do not say, or that is held at a bound.
     pub covariance: Vec<Vec<Option<f64>>>,
     pub rank: usize,
     /// The keys on which no datum depends.
@@ -18,71 +20,108 @@ pub struct Solution {
     /// The combinations of keys that change no datum: the keys by their places, and the change of each, relative to its
     /// value, the largest of them 1; relative to [`Free::scale`](super::free::Free::scale) where the value is 0.
     pub alike: Vec<Vec<(usize, f64)>>,
+    /// Which keys change any datum along the limits that hold them.
+    pub is_moving: Vec<bool>,
 }
 
 /// A key that moves no datum by this part of its uncertainty when it changes by its own size moves none.
 pub(super) const SILENT: f64 = 1e-5;
 /// Parts of a combination below this are rounding.
-const PART: f64 = 1e-2;
+pub(super) const PART: f64 = 1e-2;
+/// The part of a key in a direction is rounding below this.
+const ROUNDING: f64 = 1e-9;
 
-/// The combination of the keys in the `k`-th direction: the `moving` keys that take part, with their changes in `units`, the
+/// The combination of the keys in the direction `way`, for keys in `units`: those that take part, with their changes, the
 /// largest of them 1.
-fn alike(v_t: &DMatrix<f64>, k: usize, moving: &[usize], units: &[f64]) -> Vec<(usize, f64)> {
-    let parts = units.iter().enumerate();
-    let parts: Vec<f64> = parts.map(|(place, unit)| v_t[(k, place)] / unit).collect();
+fn alike(way: &DVector<f64>, moving: &[usize], units: &[f64]) -> Vec<(usize, f64)> {
+    let parts: Vec<f64> = way
+        .iter()
+        .zip(units)
+        .map(|(way, unit)| way / unit)
+        .collect();
     // Of equal ones the first.
     let sizes = parts.iter().copied().rev();
     let largest = sizes.max_by(|a, b| a.abs().total_cmp(&b.abs()));
     let largest = largest.unwrap_or_default();
-    let places = (0..moving.len()).filter(|&place| v_t[(k, place)].abs() > PART);
+    let places = (0..moving.len()).filter(|&place| way[place].abs() > PART);
     let combined = places.map(|place| (moving[place], parts[place] / largest));
     combined.collect()
 }
 
+/// A direction of the keys along the limits that hold them, for keys in units in which the slope of each is 1.
+struct Way {
+    singular: f64,
+    parts: DVector<f64>,
+}
+
+/// The directions along which the keys can move, within the limits that hold them.
+fn ways(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<Way> {
+    let free = complement(normals.iter(), slopes.ncols());
+    if free.is_empty() {
+        return Vec::new();
+    }
+    let svd = (slopes * &free).svd(false, true);
+    let Some(v_t) = svd.v_t else {
+        return Vec::new();
+    };
+    let way = |k: usize| Way {
+        // With fewer data than keys some directions have no singular value at all.
+        singular: svd.singular_values.get(k).copied().unwrap_or(0.0),
+        parts: &free * v_t.row(k).transpose(),
+    };
+    (0..v_t.nrows()).map(way).collect()
+}
+
 impl Solution {
-    pub fn of(minimum: &Minimum, free: &[Free]) -> Self {
-        let slopes = &minimum.slopes;
+    pub fn of(minimum: &Minimum, chart: &Chart, free: &[Free]) -> Self {
+        let slopes = &minimum.slopes * &chart.matrix;
+        let keys = chart.keys(&minimum.p);
         let norms: Vec<f64> = slopes.column_iter().map(|column| column.norm()).collect();
-        let size = |index: usize| free[index].size(minimum.p[index]);
+        let size = |index: usize| free[index].size(keys[index]);
         let is_silent = |index: usize| norms[index] * size(index) <= SILENT;
         let silent: Vec<usize> = (0..free.len()).filter(|&index| is_silent(index)).collect();
-        let moves = |index: &usize| !minimum.held[*index] && !silent.contains(index);
-        let moving: Vec<usize> = (0..free.len()).filter(moves).collect();
+        let heard: Vec<usize> = (0..free.len()).filter(|index| !is_silent(*index)).collect();
         let mut solution = Self {
             covariance: vec![vec![None; free.len()]; free.len()],
             rank: 0,
             silent,
             alike: Vec::new(),
+            is_moving: vec![false; free.len()],
         };
-        if moving.is_empty() {
+        if heard.is_empty() {
             return solution;
         }
-        let columns = moving.iter();
+        let columns = heard.iter();
         let columns = columns.map(|&index| slopes.column(index) / norms[index]);
-        let svd = DMatrix::from_columns(&columns.collect::<Vec<DVector<f64>>>()).svd(false, true);
-        let Some(v_t) = svd.v_t else {
-            return solution;
+        let columns = DMatrix::from_columns(&columns.collect::<Vec<DVector<f64>>>());
+        let normal = |&place: &usize| {
+            let normal = chart.matrix.tr_mul(&chart.limits[place].normal);
+            let parts = heard.iter().map(|&index| normal[index] / norms[index]);
+            DVector::from_iterator(heard.len(), parts)
         };
-        // With fewer data than keys some directions have no singular value at all.
-        let singular = |k: usize| svd.singular_values.get(k).copied().unwrap_or(0.0);
-        let least = SINGULAR * svd.singular_values.amax();
-        let (seen, unseen): (Vec<usize>, Vec<usize>) =
-            (0..v_t.nrows()).partition(|&k| singular(k) > least);
+        let normals: Vec<DVector<f64>> = minimum.held.iter().map(normal).collect();
+        let ways = ways(&columns, &normals);
+        let largest = ways.iter().map(|way| way.singular).fold(0.0, f64::max);
+        let (seen, unseen): (Vec<&Way>, Vec<&Way>) =
+            (ways.iter()).partition(|way| way.singular > SINGULAR * largest);
         solution.rank = seen.len();
-        let units = moving.iter().map(|&index| norms[index] * size(index));
+        let units = heard.iter().map(|&index| norms[index] * size(index));
         let units: Vec<f64> = units.collect();
-        let alike = unseen.iter().map(|&k| alike(&v_t, k, &moving, &units));
+        let alike = unseen.iter().map(|way| alike(&way.parts, &heard, &units));
         solution.alike = alike.collect();
-        let is_known = |place: &usize| unseen.iter().all(|&k| v_t[(k, *place)].abs() <= PART);
-        let known = (0..moving.len()).filter(is_known);
-        for (i, j) in known
-            .clone()
-            .flat_map(|i| known.clone().map(move |j| (i, j)))
-        {
-            let term = |&k: &usize| v_t[(k, i)] * v_t[(k, j)] / singular(k).powi(2);
+        for (place, &index) in heard.iter().enumerate() {
+            solution.is_moving[index] = ways.iter().any(|way| way.parts[place].abs() > ROUNDING);
+        }
+        let is_known = |place: &usize| {
+            let mut unseen = unseen.iter();
+            solution.is_moving[heard[*place]] && unseen.all(|way| way.parts[*place].abs() <= PART)
+        };
+        let known: Vec<usize> = (0..heard.len()).filter(is_known).collect();
+        for (&i, &j) in known.iter().flat_map(|i| known.iter().map(move |j| (i, j))) {
+            let term = |way: &&Way| way.parts[i] * way.parts[j] / way.singular.powi(2);
             let covariance = seen.iter().map(term).sum::<f64>();
-            let covariance = covariance / (norms[moving[i]] * norms[moving[j]]);
-            solution.covariance[moving[i]][moving[j]] =
+            let covariance = covariance / (norms[heard[i]] * norms[heard[j]]);
+            solution.covariance[heard[i]][heard[j]] =
                 Some(covariance).filter(|covariance| covariance.is_finite());
         }
         solution

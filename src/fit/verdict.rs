@@ -140,15 +140,14 @@ impl Fit {
                 changes.collect::<Vec<_>>().join(" and ")
             )
         });
-        let held = self.keys.iter().filter(|fitted| fitted.is_held).map(|fitted| {
-            format!(
-                "{} stands at its bound {}: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within.",
-                fitted.free.key,
-                significant(fitted.value, 6)
-            )
-        });
+        let held = self.edges.iter().map(|edge| edge.remark(&self.keys));
         let pairs = (0..self.keys.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
-        let close = pairs.filter_map(|(i, j)| {
+        // Of two keys that one limit holds, each says what the other is.
+        let is_apart = |(i, j): &(usize, usize)| {
+            let mut edges = self.edges.iter();
+            !edges.any(|edge| edge.holds[*i] && edge.holds[*j])
+        };
+        let close = pairs.filter(is_apart).filter_map(|(i, j)| {
             let correlation = solution.correlation(i, j).filter(|c| c.abs() > HARDLY)?;
             let (one, other) = (key(j), key(i));
             Some(format!(

@@ -20,6 +20,8 @@ mod figure_files;
 mod figures;
 mod finding;
 mod fits;
+mod flat;
+mod flights;
 mod friction;
 mod health;
 mod journal;

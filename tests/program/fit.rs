@@ -165,3 +165,68 @@ fn a_part_of_a_recording_is_fitted_from_its_beginning_on() {
     let none = format!("{fit} --from 11");
     ground.refused(&none, 1, &["throws.csv: has no value measured"]);
 }
+
+/// A recording of two throws, between which the phone lies still, with a jolt where it is caught.
+fn two_throws(ground: &Ground) {
+    let columns = "--columns t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s";
+    let mut recording = String::new();
+    let mut time_s = 0.0;
+    let mut add = |rates: &str| {
+        recording += &format!("{time_s},{rates}\n");
+        time_s += 0.01;
+    };
+    for rate in [8.0, -9.0] {
+        (0..40).for_each(|_| add("0,0,0"));
+        let thrown = format!(
+            "run thrown-phone --set start.omega_rad_per_s.0={rate} --set motion.steps=60 {columns} -o -"
+        );
+        let told = ground.stdout(&thrown);
+        let rows = told.lines().filter(|line| !line.starts_with('#')).skip(1);
+        rows.for_each(|row| add(row.split_once(',').unwrap().1));
+        (0..20).for_each(|row| add(if row % 2 == 0 { "3,-2,1" } else { "-1,0,2" }));
+    }
+    let head = "t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s\n";
+    ground.write("throws.csv", &format!("{head}{recording}"));
+}
+
+#[test]
+fn throws_are_found_listed_and_fitted_one_by_one() {
+    let ground = Ground::new();
+    two_throws(&ground);
+    let fit =
+        "fit throws.csv --in thrown-phone --free start.omega_rad_per_s.0,start.omega_rad_per_s.1";
+    let told = ground.stdout(fit);
+    has(&told, "2 free flights in throws.csv:\n  flight 1 of 2: ");
+    let all = ground.json(&format!("{fit} --json"));
+    assert_eq!(all["flights"].as_array().unwrap().len(), 2);
+    for (number, rate) in [(1, 8.0), (2, -9.0)] {
+        let one = ground.json(&format!("{fit} --flight {number} --json"));
+        assert_eq!(one, all["flights"][number - 1]);
+        assert_eq!(one["flight"]["number"], number);
+        let found = one["keys"][0]["value"].as_f64().unwrap();
+        assert!((found / rate - 1.0).abs() < 0.1, "{number}: {found}");
+    }
+    ground.refused(
+        &format!("{fit} --flight 3"),
+        1,
+        &["no free flight 3", "flight 2 of 2"],
+    );
+    ground.refused(&format!("{fit} --flight 0"), 2, &["--flight"]);
+    ground.refused(&format!("{fit} --flight 1 --from 0"), 2, &["--from"]);
+    ground.refused(&format!("{fit} -o out.csv"), 1, &["--flight N"]);
+    done(ground.run(&format!("{fit} --flight 2 -o out.csv")));
+    done(ground.run("verify out.csv"));
+}
+
+#[test]
+fn a_recording_without_a_flight_is_refused_with_what_to_do() {
+    let ground = Ground::new();
+    let rows = (0..100).map(|row| format!("{},{},0.1,0\n", f64::from(row) / 100.0, row % 5));
+    let head = "t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s\n".to_owned();
+    ground.write("still.csv", &(head + &rows.collect::<String>()));
+    let fit = "fit still.csv --in thrown-phone --free start.omega_rad_per_s.0";
+    ground.refused(fit, 1, &["has no free flight", "--from and --to"]);
+    done(ground.run(&format!("{fit} --from 0")));
+    let other = "fit heidelberg-nutation --in heidelberg --free start.spin_rpm --flight 1";
+    ground.refused(other, 1, &["--flight takes a recording"]);
+}

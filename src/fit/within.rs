@@ -1,0 +1,136 @@
+//! Linear least squares within linear limits, by the primal active-set method (J. Nocedal, S. J. Wright, Numerical
+//! Optimization, 2nd ed., section 16.5).
+
+use nalgebra::{DMatrix, DVector};
+
+/// The half of all places p where normal . p is not below `least`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    pub normal: DVector<f64>,
+    pub least: f64,
+}
+
+impl Limit {
+    /// Returns how far `p` is inside, in the limit's own unit; negative outside.
+    pub fn room(&self, p: &[f64]) -> f64 {
+        let along = self.normal.iter().zip(p).map(|(normal, p)| normal * p);
+        along.sum::<f64>() - self.least
+    }
+
+    /// Returns the place of the only parameter that this limits; `None` where it limits several together.
+    pub fn only(&self) -> Option<usize> {
+        let mut places = (0..self.normal.len()).filter(|&place| self.normal[place] != 0.0);
+        places.next().filter(|_| places.next().is_none())
+    }
+}
+
+/// The place of the least square within limits.
+#[derive(Clone, Debug)]
+pub struct Within {
+    pub y: DVector<f64>,
+    /// The limits that hold it, by their places: beyond each of them the square would be less.
+    pub held: Vec<usize>,
+}
+
+/// Relative size below which a number is the rounding of others.
+const ROUNDING: f64 = 1e-12;
+
+/// Returns the y with the least |`a` y - `c`|^2 within `limits`, none of which 0 is outside of. Columns of `a` must be
+/// independent.
+pub fn least_squares(a: &DMatrix<f64>, c: &DVector<f64>, limits: &[Limit]) -> Within {
+    let mut y = DVector::zeros(a.ncols());
+    let mut held: Vec<usize> = Vec::new();
+    // Each round adds a limit or leaves one out; the bound ends a cycle between limits that meet in one place.
+    for _ in 0..4 * (limits.len() + 1) {
+        let free = complement(held.iter().map(|&place| &limits[place].normal), a.ncols());
+        let way = &free * solved(&(a * &free), &(c - a * &y));
+        let (part, blocking) = reach(&y, &way, limits, &held);
+        y += part * way;
+        if let Some(place) = blocking {
+            held.push(place);
+            continue;
+        }
+        let pull = a.tr_mul(&(c - a * &y));
+        match outward(&pull, limits, &held) {
+            Some(place) => held.retain(|it| *it != place),
+            None => break,
+        }
+    }
+    Within { y, held }
+}
+
+/// Returns how much of `way`, at most all of it, leads from `y` to the first limit, and which limit that is.
+fn reach(
+    y: &DVector<f64>,
+    way: &DVector<f64>,
+    limits: &[Limit],
+    held: &[usize],
+) -> (f64, Option<usize>) {
+    let (mut part, mut blocking) = (1.0, None);
+    for (place, limit) in limits.iter().enumerate() {
+        let speed = limit.normal.dot(way);
+        if held.contains(&place) || speed >= -ROUNDING * limit.normal.norm() * way.norm() {
+            continue;
+        }
+        let to_limit = limit.room(y.as_slice()).max(0.0) / -speed;
+        if to_limit < part {
+            (part, blocking) = (to_limit, Some(place));
+        }
+    }
+    (part, blocking)
+}
+
+/// Returns the one of the `held` limits that `pull` leads away from, to the inside, the most; `None` where it leads
+/// outside of all of them.
+fn outward(pull: &DVector<f64>, limits: &[Limit], held: &[usize]) -> Option<usize> {
+    if held.is_empty() {
+        return None;
+    }
+    let normals = held.iter().map(|&place| limits[place].normal.normalize());
+    let inward = solved(&DMatrix::from_columns(&normals.collect::<Vec<_>>()), pull);
+    let most = inward.imax();
+    (inward[most] > ROUNDING * pull.norm()).then(|| held[most])
+}
+
+/// Returns an orthonormal basis of all directions that are across the independent `normals`: where these are none, the
+/// directions of the parameters.
+pub fn complement<'a>(
+    normals: impl Iterator<Item = &'a DVector<f64>>,
+    count: usize,
+) -> DMatrix<f64> {
+    let across = |mut vector: DVector<f64>, basis: &[DVector<f64>]| {
+        for _ in 0..2 {
+            basis.iter().for_each(|it| vector -= it * it.dot(&vector));
+        }
+        vector
+    };
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    for normal in normals {
+        let next = across(normal.normalize(), &basis);
+        basis.extend(next.try_normalize(ROUNDING));
+    }
+    let taken = basis.len();
+    let mut units: Vec<DVector<f64>> = (0..count)
+        .map(|place| DVector::from_fn(count, |row, _| f64::from(u8::from(row == place))))
+        .collect();
+    while basis.len() < count {
+        let left = units.iter().map(|unit| across(unit.clone(), &basis).norm());
+        let left = DVector::from_iterator(units.len(), left);
+        let next = across(units.remove(left.imax()), &basis);
+        basis.push(next.normalize());
+    }
+    DMatrix::from_fn(count, count - taken, |row, column| {
+        basis[taken + column][row]
+    })
+}
+
+/// Returns the shortest x with the least |`a` x - `c`|^2.
+fn solved(a: &DMatrix<f64>, c: &DVector<f64>) -> DVector<f64> {
+    if a.ncols() == 0 {
+        return DVector::zeros(0);
+    }
+    let svd = a.clone().svd(true, true);
+    let least = ROUNDING * ROUNDING * svd.singular_values.amax();
+    svd.solve(c, least)
+        .unwrap_or_else(|_| DVector::zeros(a.ncols()))
+}
