@@ -26,6 +26,8 @@ const LASTS: (i64, i64) = (20, 10);
 const ROWS_AFTER: usize = 2;
 /// The same of a pair about whose motion rounding decides before the last row.
 const ROWS_BEFORE_PARTING: usize = 20;
+/// The same of one slip, in rows with the digits of single precision.
+const ROWS_OF_ONE_BEFORE_PARTING: usize = 8;
 /// Rows are evidence of a slip where they differ from the run without it by this many times what may be off.
 const EVIDENCE: f64 = 50.0;
 
@@ -275,9 +277,10 @@ impl Search<'_> {
     /// Whether the rows are enough for `explanation`, the only one, to be stated as fact. A shift by a row is another difference.
     pub fn is_proof_of(&self, explanation: &Explanation) -> bool {
         let followed = &explanation.followed;
-        let after = match followed.parted {
-            None => ROWS_AFTER,
-            Some(_) => ROWS_BEFORE_PARTING,
+        let after = match (followed.parted, self.has_few_digits) {
+            (None, _) => ROWS_AFTER,
+            (Some(_), false) => ROWS_OF_ONE_BEFORE_PARTING,
+            (Some(_), true) => ROWS_BEFORE_PARTING,
         };
         // Without axes two slips together make the rows of many others.
         let shows_pairs = || program::<f64>(self.plan, &[], Order::Forward).has_axes();

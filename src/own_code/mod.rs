@@ -203,12 +203,18 @@ impl Found<'_> {
         };
         let (explanations, closest) = search.alone();
         (self.explanations, self.closest) = (explanations, closest);
-        if self.explanations.is_empty() && rows.not_finite.is_none() && self.is_of_single(plan) {
+        let may_be_single = self.explanations.is_empty() && rows.not_finite.is_none();
+        let single = may_be_single.then(|| self.single(plan)).flatten();
+        if let Some(single) = single.as_ref().filter(|it| it.is_whole()) {
+            self.is_lenient = true;
+            self.beside = single.clone();
             return;
         }
         self.try_pairs(&search);
-        if self.explanations.is_empty() && (rows.may_be_single() || self.has_few_digits()) {
+        let differs = single.and_then(|single| single.differs);
+        if let Some(differs) = differs.filter(|_| self.explanations.is_empty()) {
             search.is_single = true;
+            search.first = (differs.row, differs.step);
             self.explanations = search.alone().0;
             self.try_pairs(&search);
         }
@@ -226,22 +232,17 @@ impl Found<'_> {
         }
     }
 
-    /// Whether the rows agree with the scheme as far as single precision can, or as far as their few digits show. Then they are
-    /// compared so.
-    fn is_of_single(&mut self, plan: &Plan) -> bool {
+    /// Compares the rows with the scheme as far as single precision can, or as far as their few digits show; `None` where they
+    /// cannot be of single precision.
+    fn single(&self, plan: &Plan) -> Option<Followed> {
         let rounding = match self.has_few_digits() {
             true => Rounding::FewDigits,
             false if self.rows.may_be_single() => Rounding::Single,
-            false => return false,
+            false => return None,
         };
         let scheme = Simulation::new(Arc::clone(self.scenario));
         let run = Run::of(scheme, explain::in_single(plan, &[]), rounding);
-        let followed = follow(self.rows, &self.rows.times.steps, run);
-        self.is_lenient = followed.is_whole();
-        if self.is_lenient {
-            self.beside = followed;
-        }
-        self.is_lenient
+        Some(follow(self.rows, &self.rows.times.steps, run))
     }
 
     /// Returns the precision of the program, after slips have been looked for.

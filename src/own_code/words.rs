@@ -338,12 +338,15 @@ fn listed(explanation: &Explanation) -> String {
 /// Says how many rows agree with an explanation.
 fn compared(explanation: &Explanation) -> String {
     let followed = &explanation.followed;
-    let rows = counted(followed.agreeing as u64, "row");
+    let rows = match followed.agreeing {
+        1 => "1 row agrees".to_owned(),
+        count => format!("{count} rows agree"),
+    };
     let worst = worst_of(followed.worst);
     let mut text = match followed.parted {
-        None => format!("all {rows} agree, {worst}"),
+        None => format!("all {rows}, {worst}"),
         Some(step) => {
-            format!("{rows} agree, {worst}; from step {step} on rounding decides about the motion")
+            format!("{rows}, {worst}; from step {step} on rounding decides about the motion")
         }
     };
     if let Some(shift) = shifted(followed.offset) {
