@@ -1,10 +1,10 @@
 //! Which slips make the rows of a file: each alone, then two together.
 
-use super::follow::{Followed, Run, follow};
+use super::follow::{Followed, Rounding, Run, difference, follow};
 use super::plan::{PARTS, Plan};
 use super::rows::Rows;
-use super::slips::{Changes, SLIPS};
-use super::step::{Order, Program};
+use super::slips::{Changes, Other, SLIPS};
+use super::step::{Order, Program, Real};
 use super::times::Steps;
 use crate::cores;
 use crate::scenario::{Document, Scenario};
@@ -22,8 +22,14 @@ const STARTS: [&str; 4] = ["method-1", "method-2", "wobble-push", "every-slip"];
 /// The least number of steps for which a slip must last to come closest, and how many times as long as the scheme itself.
 const LASTS: (i64, i64) = (20, 10);
 
-/// How many more rows than the first that differs a pair must explain.
-const ROWS_OF_PAIR: usize = 2;
+/// How many rows after the first that differs must agree with a pair, and with a slip that is stated as fact.
+const ROWS_AFTER: usize = 2;
+/// The same of a pair about whose motion rounding decides before the last row.
+const ROWS_BEFORE_PARTING: usize = 20;
+/// The same of one slip, in rows with the digits of single precision.
+const ROWS_OF_ONE_BEFORE_PARTING: usize = 8;
+/// Rows are evidence of a slip where they differ from the run without it by this many times what may be off.
+const EVIDENCE: f64 = 50.0;
 
 /// The last step at which rows may begin to differ, where pairs are tried.
 pub const MOST_FOR_PAIRS: i64 = 4000;
@@ -32,9 +38,13 @@ pub const MOST_FOR_PAIRS: i64 = 4000;
 #[derive(Clone, Debug)]
 pub struct Variant {
     pub name: &'static str,
-    /// What the program does, and what the report does.
-    pub words: String,
+    /// What the program does.
+    program: String,
+    /// What the report does instead, a sentence.
+    report: String,
     change: Change,
+    /// Its place among all variants.
+    place: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -50,7 +60,13 @@ enum Change {
 #[derive(Clone, Debug)]
 pub struct Explanation {
     pub variants: Vec<Variant>,
+    /// Other variants of the same slips with which the rows agree too.
+    alternatives: Vec<Vec<Variant>>,
     pub followed: Followed,
+    /// Whether the program computes in single precision.
+    pub is_single: bool,
+    /// By how much the rows differ from the runs without one of the slips, in units of what may be off.
+    evidence: f64,
 }
 
 impl Explanation {
@@ -62,6 +78,27 @@ impl Explanation {
     pub fn program(&self, plan: &Plan) -> Option<Program<f64>> {
         let program = || program(plan, &self.variants, Order::Forward);
         (!self.names().contains(&ANOTHER_STEP)).then(program)
+    }
+
+    /// Returns what the program does, and what the report does.
+    pub fn words(&self) -> String {
+        let of_place = |place: usize| {
+            let all = std::iter::once(&self.variants).chain(&self.alternatives);
+            let mut programs: Vec<&str> = Vec::new();
+            for variants in all {
+                let program = variants[place].program.as_str();
+                if !programs.contains(&program) {
+                    programs.push(program);
+                }
+            }
+            format!(
+                "{}. {}",
+                programs.join(", or "),
+                self.variants[place].report
+            )
+        };
+        let words: Vec<_> = (0..self.variants.len()).map(of_place).collect();
+        words.join(" Second: ")
     }
 }
 
@@ -77,7 +114,7 @@ fn changes<'a>(variants: impl IntoIterator<Item = &'a Variant>) -> Changes {
     changes
 }
 
-fn program(plan: &Plan, variants: &[Variant], order: Order) -> Program<f64> {
+fn program<T: Real>(plan: &Plan, variants: &[Variant], order: Order) -> Program<T> {
     let start = variants.iter().find_map(|variant| match &variant.change {
         Change::Start(plan, _) => Some(&**plan),
         _ => None,
@@ -94,6 +131,10 @@ pub struct Search<'a> {
     pub rows: &'a Rows,
     /// The first row that differs from the scheme, and its step.
     pub first: (usize, i64),
+    /// Whether the programs compute in single precision.
+    pub is_single: bool,
+    /// Whether the digits of the rows are too few to tell double from single precision.
+    pub has_few_digits: bool,
     pub go_on: &'a (dyn Fn() -> bool + Sync),
 }
 
@@ -101,24 +142,60 @@ impl Variant {
     fn all(plan: &Plan, rows: &Rows) -> Vec<Self> {
         let mut all = Vec::new();
         for (name, program, report, variants) in SLIPS {
-            all.extend(variants.iter().map(|(note, change)| Self {
-                name,
-                words: match *note {
-                    "" => format!("{program}. The report {report}."),
-                    note => format!("{program} ({note}). The report {report}."),
-                },
-                change: Change::Of(*change),
-            }));
+            for (note, change) in *variants {
+                let change = Change::Of(*change);
+                let Some(note) = Self::note(note, &change, plan) else {
+                    continue;
+                };
+                all.push(Self {
+                    name,
+                    program: format!("{program}{note}"),
+                    report: format!("The report {report}."),
+                    change,
+                    place: 0,
+                });
+            }
         }
         let dt = shortest(plan.time_step_s);
         let others = rows.times.others.iter().enumerate();
         all.extend(others.map(|(place, (own, _))| Self {
             name: ANOTHER_STEP,
-            words: format!("its time step is {own} s. The scenario's is {dt} s."),
+            program: format!("its time step is {own} s"),
+            report: format!("The scenario's is {dt} s."),
             change: Change::TimeStep(*own, place),
+            place: 0,
         }));
         all.extend(Self::other_starts(plan));
+        for (place, variant) in all.iter_mut().enumerate() {
+            variant.place = place;
+        }
         all
+    }
+
+    /// Returns `note` in parentheses, with the name of the point that it is about; `None` if the plan has no such point.
+    fn note(note: &str, change: &Change, plan: &Plan) -> Option<String> {
+        let changes = match change {
+            Change::Of(change) => {
+                let mut changes = Changes::default();
+                change(&mut changes);
+                changes
+            }
+            _ => Changes::default(),
+        };
+        if changes.hub_in_plane && plan.hub().is_none() {
+            return None;
+        }
+        let pushed = plan.pushes.first().map_or(0, |push| push.point);
+        let other = match (changes.traced, changes.push_point) {
+            (Some(Other::OfAxle(nth)), _) => Some(plan.other_of_axle(nth, plan.traced)?),
+            (_, Some(Other::OfAxle(nth))) => Some(plan.other_of_axle(nth, pushed)?),
+            _ => None,
+        };
+        Some(match (other, note) {
+            (Some(name), _) => format!(" ({name})"),
+            (None, "") => String::new(),
+            (None, note) => format!(" ({note})"),
+        })
     }
 
     fn other_starts(plan: &Plan) -> Vec<Self> {
@@ -137,12 +214,13 @@ impl Variant {
                 let (theirs, own): (Vec<_>, Vec<_>) = both.unzip();
                 let is_other = theirs.iter().zip(&own).all(|(theirs, own)| theirs != own);
                 let has = format!("it still has {}", theirs.join(", "));
-                if is_other && !all.iter().any(|known| known.words.starts_with(&has)) {
-                    let own = own.join(", ");
+                if is_other && !all.iter().any(|known| known.program.starts_with(&has)) {
                     all.push(Self {
                         name: ANOTHER_START,
-                        words: format!("{has}, as {preset} has. The scenario has {own}."),
+                        program: format!("{has}, as {preset} has"),
+                        report: format!("The scenario has {}.", own.join(", ")),
                         change: Change::Start(Arc::new(start), parts.is_power_of_two()),
+                        place: 0,
                     });
                 }
             }
@@ -158,14 +236,22 @@ impl Search<'_> {
         self.try_all(&candidates)
     }
 
-    pub fn in_pairs(&self) -> Came {
+    /// Tries two slips together. A pair with one of those that explain the rows `alone` is no other explanation: its second slip
+    /// changes nothing.
+    pub fn in_pairs(&self, alone: &[Explanation]) -> Came {
         let has_own_step = self.rows.times.own_s.is_some();
+        let all_alone = || {
+            alone
+                .iter()
+                .flat_map(|it| it.alternatives.iter().chain([&it.variants]))
+        };
         let mut variants = Variant::all(self.plan, self.rows);
         variants.retain(|it| match it.change {
             Change::Of(_) => true,
             Change::TimeStep(..) => has_own_step,
             Change::Start(_, is_one) => is_one,
         });
+        variants.retain(|it| !all_alone().any(|known| known[0].place == it.place));
         let mut pairs = Vec::new();
         for (place, one) in variants.iter().enumerate() {
             for other in &variants[place + 1..] {
@@ -178,33 +264,58 @@ impl Search<'_> {
                 }
             }
         }
-        self.try_all(&pairs)
+        let (mut found, closest) = self.try_all(&pairs);
+        // With few digits anything agrees with a run about which rounding decides soon.
+        let needs_all_rows = self.has_few_digits || self.is_single;
+        found.retain(|pair| {
+            let has_all_rows = pair.followed.parted.is_none();
+            pair.evidence >= EVIDENCE && (has_all_rows || !needs_all_rows)
+        });
+        (found, closest)
     }
 
-    /// Those of `candidates` that explain the rows, each list of names once; and of the others the closest, if one is close.
+    /// Whether the rows are enough for `explanation`, the only one, to be stated as fact. A shift by a row is another difference.
+    pub fn is_proof_of(&self, explanation: &Explanation) -> bool {
+        let followed = &explanation.followed;
+        let after = match (followed.parted, self.has_few_digits) {
+            (None, _) => ROWS_AFTER,
+            (Some(_), false) => ROWS_OF_ONE_BEFORE_PARTING,
+            (Some(_), true) => ROWS_BEFORE_PARTING,
+        };
+        // Without axes two slips together make the rows of many others.
+        let shows_pairs = || program::<f64>(self.plan, &[], Order::Forward).has_axes();
+        explanation.evidence >= EVIDENCE
+            && (explanation.variants.len() == 1 || shows_pairs())
+            && followed.offset == 0
+            && followed.explains(self.first.0 + after)
+            && !(self.is_single && self.has_few_digits)
+    }
+
+    /// Returns those of `candidates` that explain the rows, each list of names once; and of the others the closest, if one is
+    /// close.
     fn try_all(&self, candidates: &[Vec<Variant>]) -> Came {
         let tried: Vec<Option<Explanation>> = cores::map(candidates, |variants| {
-            let followed = (self.go_on)().then(|| followed(self.plan, self.rows, variants))?;
+            let followed = (self.go_on)().then(|| self.followed(variants))?;
             Some(Explanation {
                 variants: variants.clone(),
+                alternatives: Vec::new(),
                 followed,
+                is_single: self.is_single,
+                evidence: 0.0,
             })
         });
         let lasts = |tried: &Explanation| tried.followed.differs.map_or(0, |differs| differs.step);
         let (mut found, mut closest) = (Vec::<Explanation>::new(), None);
         let mut most = LASTS.0.max(LASTS.1 * self.first.1) - 1;
-        for tried in tried.into_iter().flatten() {
-            // Where hardly a row can be compared, two slips explain anything.
-            let more = if tried.variants.len() > 1 {
-                ROWS_OF_PAIR
-            } else {
-                0
-            };
-            let last = (self.first.0 + more).min(self.rows.count - 1);
-            if tried.followed.explains(last) {
-                let is_known = found.iter().any(|known| known.names() == tried.names());
-                if !is_known {
-                    found.push(tried);
+        for mut tried in tried.into_iter().flatten() {
+            if self.is_explained_by(&tried) {
+                let known = found.iter_mut().find(|it| it.names() == tried.names());
+                match known {
+                    Some(known) => known.alternatives.push(tried.variants),
+                    None => {
+                        tried.evidence = self.evidence(&tried);
+                        found.push(tried);
+                    }
                 }
             } else if lasts(&tried) > most {
                 most = lasts(&tried);
@@ -213,18 +324,75 @@ impl Search<'_> {
         }
         (found, closest)
     }
+
+    /// Whether the rows that can be compared agree with `tried`, and are enough. Two slips explain anything where hardly a row
+    /// can be compared.
+    fn is_explained_by(&self, tried: &Explanation) -> bool {
+        let after = match (tried.variants.len(), tried.followed.parted) {
+            (1, _) => 0,
+            (_, None) => ROWS_AFTER,
+            (_, Some(_)) => ROWS_BEFORE_PARTING,
+        };
+        let last = (self.first.0 + after).min(self.rows.count - 1);
+        tried.followed.explains(last)
+    }
+
+    /// Returns how far the rows agree with the program that has the changes of `variants`.
+    fn followed(&self, variants: &[Variant]) -> Followed {
+        let (rows, steps) = (self.rows, steps(self.rows, variants));
+        if self.is_single {
+            follow(rows, steps, single(self.plan, variants))
+        } else {
+            follow(rows, steps, double(self.plan, variants))
+        }
+    }
+
+    /// Returns by how much the rows that `explanation` explains differ from the runs without one of its slips.
+    fn evidence(&self, explanation: &Explanation) -> f64 {
+        let (plan, rows, followed) = (self.plan, self.rows, &explanation.followed);
+        let without = match &explanation.variants[..] {
+            [one, other] => vec![vec![one.clone()], vec![other.clone()]],
+            _ => vec![Vec::new()],
+        };
+        let differences = without.iter().map(|variants| {
+            let steps = steps(rows, variants);
+            let (count, offset) = (followed.next, followed.offset);
+            if self.is_single {
+                let run = single(plan, variants);
+                difference(rows, count, steps, offset, run)
+            } else {
+                difference(rows, count, steps, offset, double(plan, variants))
+            }
+        });
+        differences.fold(f64::INFINITY, f64::min)
+    }
 }
 
-/// How far the rows agree with the program that has the changes of `variants`.
-fn followed(plan: &Plan, rows: &Rows, variants: &[Variant]) -> Followed {
-    let steps = variants.iter().find_map(|variant| match variant.change {
+/// Returns the steps of the rows, by the time step of `variants`.
+fn steps<'a>(rows: &'a Rows, variants: &[Variant]) -> &'a Steps {
+    let others = variants.iter().find_map(|variant| match variant.change {
         Change::TimeStep(_, place) => Some(&rows.times.others[place].1),
         _ => None,
     });
-    let steps: &Steps = steps.unwrap_or(&rows.times.steps);
+    others.unwrap_or(&rows.times.steps)
+}
+
+fn double(plan: &Plan, variants: &[Variant]) -> Run<Program<f64>, Program<f64>> {
     let [one, other] =
         [Order::Forward, Order::Backward].map(|order| program(plan, variants, order));
-    follow(rows, steps, Run::of(one, vec![other], false))
+    Run::of(one, vec![other], Rounding::Double)
+}
+
+/// Returns the run of the program with `variants`, with room for the errors of single precision.
+fn single(plan: &Plan, variants: &[Variant]) -> Run<Program<f64>, Program<f32>> {
+    let run = program(plan, variants, Order::Forward);
+    Run::of(run, in_single(plan, variants), Rounding::SingleOfSlip)
+}
+
+/// Returns copies of the program with `variants` that compute in single precision, each in another order.
+pub fn in_single(plan: &Plan, variants: &[Variant]) -> Vec<Program<f32>> {
+    let orders = [Order::Forward, Order::Backward, Order::EvenThenOdd];
+    orders.map(|order| program(plan, variants, order)).into()
 }
 
 /// The slips that could hide in `rows`, which are the scheme's own: those that change none of them.
@@ -241,7 +409,8 @@ pub fn hidden(
         if !go_on() {
             return false;
         }
-        let followed = followed(plan, rows, std::slice::from_ref(variant));
+        let variants = std::slice::from_ref(variant);
+        let followed = follow(rows, steps(rows, variants), double(plan, variants));
         // A run that parts from its copy long before the scheme does is another one.
         let parts_with = |step: i64| parted.is_some_and(|own| step + 10 >= own);
         followed.is_whole() && followed.parted.is_none_or(parts_with)

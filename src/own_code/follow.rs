@@ -4,13 +4,18 @@ use super::rows::{Rows, within};
 use super::step::{Program, Real};
 use super::times::Steps;
 use crate::run::Simulation;
+use std::ops::Range;
 
-/// Two copies of a run have parted where they differ by more than this share of what right programs may differ by.
+/// Two copies of a run have parted where they differ by more than this share of the tolerance of a column of the file.
 const PARTED: f64 = 0.1;
-/// A difference within so many times the spread of the copies in single precision is of that precision.
-const SPREADS: f64 = 10.0;
+/// Errors of single precision are at most this many times those of the copies in single precision.
+const ERRORS: f64 = 10.0;
 /// Rounding of numbers in single precision, in units of the largest: of the start, and of what is written.
 const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
+/// The same of the whole vector, which few digits cannot tell from single precision.
+const ROUNDING_OF_ALL: f64 = 2.0 * ROUNDING;
+/// The largest room for errors of single precision that leaves something to compare, as a share of the vector.
+const MOST_SLACK: f64 = 0.02;
 /// The offsets that are tried, in rows.
 const OFFSETS: [i64; 3] = [0, 1, -1];
 
@@ -53,43 +58,82 @@ impl Stepper for Simulation {
     }
 }
 
+/// What the copies of a run are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounding {
+    /// Copies in double precision: where they differ, rounding decides about the motion.
+    Double,
+    /// Copies in single precision: their errors are allowed.
+    Single,
+    /// The same, as long as they are small beside the numbers themselves.
+    SingleOfSlip,
+    /// The same, and besides the rounding of the whole of L in each of its components.
+    FewDigits,
+}
+
 /// A run that rows are compared with, from step 0 on, and copies of it that add up in other orders.
 pub struct Run<A, B> {
     run: A,
     copies: Vec<B>,
-    /// Of copies in single precision, whose spread is what is not known of the run: the largest spread so far, and the largest
-    /// number, of x, y, z, and of L.
-    single: Option<[[f64; 2]; 2]>,
+    rounding: Rounding,
+    /// The largest error of the copies so far, and the largest number, of each place.
+    so_far: [[f64; 2]; 6],
 }
 
 impl<A: Stepper, B: Stepper> Run<A, B> {
-    pub fn of(run: A, copies: Vec<B>, is_single: bool) -> Self {
+    pub fn of(run: A, copies: Vec<B>, rounding: Rounding) -> Self {
+        let so_far = [[0.0; 2]; 6];
         Self {
-            single: is_single.then_some([[0.0; 2]; 2]),
             run,
             copies,
+            rounding,
+            so_far,
         }
     }
 
-    /// What it is now; `None` from where rounding has grown so much that nothing can be said.
-    fn now(&mut self) -> Option<At> {
-        let (values, mut slack) = (self.run.row(), [0.0; 6]);
-        let rows: Vec<_> = self.copies.iter().map(Stepper::row).collect();
-        let mut is_known = values.iter().all(|value| value.is_finite());
-        for place in 0..6 {
-            let value = values[place];
-            let all = || rows.iter().map(|row| row[place]);
-            if let Some(so_far) = &mut self.single {
-                let [spread, scale] = &mut so_far[place / 3];
-                let most = all().fold(f64::NEG_INFINITY, f64::max);
-                *spread = spread.max(most - all().fold(f64::INFINITY, f64::min));
-                *scale = scale.max(value.abs());
-                slack[place] = SPREADS * *spread + ROUNDING * *scale;
-            } else {
-                is_known &= all().all(|it| (value - it).abs() <= PARTED * within(place, value));
-            }
+    /// Returns its state now; `None` once rounding has grown so much that the digits of `rows` cannot be compared.
+    fn now(&mut self, rows: &Rows) -> Option<At> {
+        let values = self.run.row();
+        let copies: Vec<_> = self.copies.iter().map(Stepper::row).collect();
+        let is_finite = values.iter().all(|value| value.is_finite());
+        if self.rounding == Rounding::Double {
+            let mut columns = rows.columns.iter().map(|it| (it, values[it.place]));
+            let is_known = columns.all(|(column, value)| {
+                let room = PARTED * column.room(value);
+                let mut copies = copies.iter().map(|copy| copy[column.place]);
+                copies.all(|copy| (value - copy).abs() <= room)
+            });
+            let slack = [0.0; 6];
+            return (is_finite && is_known).then_some(At { values, slack });
         }
-        is_known.then_some(At { values, slack })
+        for (place, [error, scale]) in self.so_far.iter_mut().enumerate() {
+            let errors = copies
+                .iter()
+                .map(|copy| (copy[place] - values[place]).abs());
+            *error = errors.fold(*error, f64::max);
+            *scale = scale.max(values[place].abs());
+        }
+        // Errors of the turn are those of the whole arm. Each component of L is a sum of its own.
+        let slack = std::array::from_fn(|place| {
+            let (vector, own) = (place / 3 * 3..place / 3 * 3 + 3, place..place + 1);
+            let most = |places: Range<usize>, which: usize| {
+                let numbers = self.so_far[places].iter().map(|it| it[which]);
+                numbers.fold(0.0, f64::max)
+            };
+            let places = if place < 3 { vector.clone() } else { own };
+            let slack = ERRORS * most(places.clone(), 0) + ROUNDING * most(places, 1);
+            match self.rounding {
+                Rounding::FewDigits => slack + ROUNDING_OF_ALL * most(vector, 1),
+                _ => slack,
+            }
+        });
+        let is_large = |place: usize| {
+            let scales = self.so_far[place / 3 * 3..place / 3 * 3 + 3].iter();
+            let scale = scales.fold(0.0, |most: f64, it| most.max(it[1]));
+            slack[place] > MOST_SLACK * scale
+        };
+        let is_lost = self.rounding == Rounding::SingleOfSlip && (0..6).any(is_large);
+        (is_finite && !is_lost).then_some(At { values, slack })
     }
 
     fn step(&mut self) {
@@ -112,7 +156,11 @@ pub struct Followed {
     /// The largest difference in x, y, z, m, and that in L, J s, over the rows that were compared: each with column and step.
     pub worst: [Option<Worst>; 2],
     /// The first row that was not compared.
-    next: usize,
+    pub next: usize,
+    /// Whether a row after the start agrees.
+    moves: bool,
+    /// Whether a value of the column of this place is farther from the run than right programs with all digits are.
+    pub is_rounded: [bool; 6],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -142,12 +190,10 @@ impl Followed {
     /// Takes in what the run is at `step`.
     fn take(&mut self, rows: &Rows, steps: &Steps, step: i64, at: &At) {
         let (offset, count) = (self.offset * steps.stride, rows.count);
-        let of = |row: usize| steps.of_rows[row].saturating_add(offset);
-        while self.next < count && of(self.next) < step {
-            self.next += 1; // before the start
-        }
-        if self.next < count && of(self.next) == step {
-            self.next += usize::from(self.compare(rows, self.next, step, at));
+        // A row before the start repeats the start, or the rows do not begin there.
+        let is_due = |row: usize| steps.of_rows[row].saturating_add(offset) <= step;
+        while self.next < count && is_due(self.next) && self.compare(rows, self.next, step, at) {
+            self.next += 1;
         }
     }
 
@@ -158,6 +204,7 @@ impl Followed {
             let (yours, scheme) = (column.values[row], at.values[column.place]);
             agrees &= column.agrees(yours, scheme, at.slack[column.place]);
             let off = (yours - scheme).abs();
+            self.is_rounded[column.place] |= off > within(column.place, scheme);
             let worst = &mut self.worst[column.place / 3];
             if worst.is_none_or(|worst| off > worst.off) {
                 let place = column.place;
@@ -166,6 +213,7 @@ impl Followed {
         }
         if agrees {
             self.agreeing += 1;
+            self.moves |= step > 0;
         } else {
             let scheme = at.values;
             self.differs = Some(Difference { row, step, scheme });
@@ -187,7 +235,7 @@ pub fn follow<A: Stepper, B: Stepper>(rows: &Rows, steps: &Steps, mut run: Run<A
     let mut step = 0;
     let is_found = |lanes: &[Followed]| lanes[0].is_whole() && !goes_on(&lanes[0]);
     while lanes.iter().any(goes_on) && !is_found(&lanes) {
-        let Some(at) = run.now() else {
+        let Some(at) = run.now(rows) else {
             let unfinished = lanes.iter_mut().filter(|lane| goes_on(lane));
             unfinished.for_each(|lane| lane.parted = Some(step));
             break;
@@ -205,7 +253,38 @@ pub fn follow<A: Stepper, B: Stepper>(rows: &Rows, steps: &Steps, mut run: Run<A
         _ => best,
     };
     // That the start stands there twice is no agreement with the run.
-    let says_more = |lane: &Followed| lane.offset >= 0 || lane.agreeing > 1;
+    let says_more = |lane: &Followed| lane.offset >= 0 || lane.moves;
     let lanes = lanes.into_iter().filter(says_more);
     lanes.reduce(best).unwrap_or_default()
+}
+
+/// Returns the largest difference between `run` and the first `count` rows, which are the `steps` of it at `offset`, in units
+/// of what may be off. Rows at which rounding decides about the run are not counted.
+pub fn difference<A: Stepper, B: Stepper>(
+    rows: &Rows,
+    count: usize,
+    steps: &Steps,
+    offset: i64,
+    mut run: Run<A, B>,
+) -> f64 {
+    let (mut most, mut step): (f64, i64) = (0.0, 0);
+    let late = offset * steps.stride;
+    for (row, of_row) in steps.of_rows[..count].iter().enumerate() {
+        while step < of_row.saturating_add(late) {
+            run.step();
+            step += 1;
+            if run.rounding != Rounding::Double {
+                run.now(rows); // errors of every step count
+            }
+        }
+        let Some(at) = run.now(rows) else {
+            break;
+        };
+        for column in &rows.columns {
+            let (yours, value) = (column.values[row], at.values[column.place]);
+            let room = column.room(value) + at.slack[column.place];
+            most = most.max((yours - value).abs() / room);
+        }
+    }
+    most
 }

@@ -20,23 +20,46 @@ use crate::scenario::presets::PRESETS;
 use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::verify::Unverified;
 use explain::{Explanation, MOST_FOR_PAIRS, Search};
-use follow::{Followed, Run, follow};
+use follow::{Followed, Rounding, Run, follow};
 use plan::Plan;
 pub use rows::Rows;
+use rows::{Column, SINGLE_DIGITS};
 use serde::Serialize;
 use slips::Changes;
 use std::sync::Arc;
 pub use step::TRACED;
 use step::{Order, Program};
 
+/// The precision in which a program computes, as far as its rows show it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    Double,
+    Single,
+    Unknown,
+}
+
+/// How many explanations the rows have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Explanations {
+    Unique,
+    /// More than one, or one beside which the rows allow others that are not known.
+    Several,
+    None,
+}
+
 /// What has come out of the comparison, as `--json` gives it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
     pub agrees: bool,
-    /// "single" where the rows agree as far as single precision can.
-    pub precision: &'static str,
+    pub precision: Precision,
+    /// The significant digits of the column that has the fewest.
+    pub digits: i32,
     /// The rows that were compared: where they differ all of the file, else those that agree.
     pub rows: usize,
+    /// The rows that agree with the scheme, or else with the first explanation; without one, those up to the first difference.
+    pub rows_compared: usize,
     /// By how many rows the file is late.
     pub offset: i64,
     pub first_step: Option<i64>,
@@ -46,6 +69,7 @@ pub struct Verdict {
     pub scheme: Vec<f64>,
     /// The largest difference of x, y, z, m.
     pub worst_m: Option<f64>,
+    pub explanations: Explanations,
     pub slips: Vec<Vec<&'static str>>,
     pub unseen: Vec<&'static str>,
     /// The same in words, a line each, the first of which begins behind the file's name.
@@ -89,10 +113,14 @@ struct Found<'a> {
     rows: &'a Rows,
     /// The rows beside the scheme.
     beside: Followed,
-    is_single: bool,
+    precision: Precision,
+    /// Whether the rows agree only as far as single precision can, or as far as their few digits show.
+    is_lenient: bool,
     /// The preset whose own rows these are.
     other: Option<&'static str>,
     explanations: Vec<Explanation>,
+    /// Whether the only explanation is proved by the rows.
+    is_proved: bool,
     closest: Option<Explanation>,
     unseen: Vec<&'static str>,
     /// Whether slips could be looked for, and two together.
@@ -110,7 +138,8 @@ pub fn compare(
     let plan = Plan::of(scenario);
     let copy = |plan| Program::<f64>::new(plan, &Changes::default(), Order::Forward);
     let copies = plan.iter().map(copy).collect();
-    let run = Run::of(Simulation::new(Arc::clone(scenario)), copies, false);
+    let run = Simulation::new(Arc::clone(scenario));
+    let run = Run::of(run, copies, Rounding::Double);
     let beside = follow(rows, &rows.times.steps, run);
     if beside.differs.is_none() && beside.agreeing == 0 {
         let mut rule = "has no row of a step that there is: steps count from 0".to_owned();
@@ -124,9 +153,11 @@ pub fn compare(
         scenario,
         rows,
         beside,
-        is_single: false,
+        precision: Precision::Unknown,
+        is_lenient: false,
         other: None,
         explanations: Vec::new(),
+        is_proved: false,
         closest: None,
         unseen: Vec::new(),
         has_plan: plan.is_some(),
@@ -134,7 +165,8 @@ pub fn compare(
     };
     if let Some(plan) = &plan {
         found.explain(plan, go_on);
-        if found.beside.is_whole() && !found.is_single {
+        found.precision = found.precision(plan);
+        if found.beside.is_whole() && !found.is_lenient {
             found.unseen = explain::hidden(plan, rows, found.beside.parted, go_on);
         }
     }
@@ -159,27 +191,100 @@ impl Found<'_> {
             return;
         }
         let first = (differs.row, differs.step);
-        let search = Search {
+        // Each pair is computed up to the first row that differs.
+        self.has_pairs = differs.step <= MOST_FOR_PAIRS;
+        let mut search = Search {
             plan,
             rows,
             first,
+            is_single: false,
+            has_few_digits: self.has_few_digits(),
             go_on,
         };
-        (self.explanations, self.closest) = search.alone();
-        if self.explanations.is_empty() && rows.not_finite.is_none() {
-            let single = single(rows, self.scenario, plan);
-            self.is_single = single.is_whole();
-            if self.is_single {
-                self.beside = single;
-            }
+        let (explanations, closest) = search.alone();
+        (self.explanations, self.closest) = (explanations, closest);
+        let may_be_single = self.explanations.is_empty() && rows.not_finite.is_none();
+        let single = may_be_single.then(|| self.single(plan)).flatten();
+        if let Some(single) = single.as_ref().filter(|it| it.is_whole()) {
+            self.is_lenient = true;
+            self.beside = single.clone();
+            return;
         }
-        // Each pair is computed up to the first row that differs.
-        self.has_pairs = differs.step <= MOST_FOR_PAIRS;
-        if self.explanations.is_empty() && !self.is_single && self.has_pairs {
-            let (found, close) = search.in_pairs();
-            self.explanations = found;
-            self.closest = self.closest.take().or(close);
+        self.try_pairs(&search);
+        let differs = single.and_then(|single| single.differs);
+        if let Some(differs) = differs.filter(|_| self.explanations.is_empty()) {
+            search.is_single = true;
+            search.first = (differs.row, differs.step);
+            self.explanations = search.alone().0;
+            self.try_pairs(&search);
         }
+        if let [only] = &self.explanations[..] {
+            self.is_proved = self.has_pairs && search.is_proof_of(only);
+        }
+    }
+
+    /// Adds the pairs of slips that explain the rows, where pairs are tried.
+    fn try_pairs(&mut self, search: &Search<'_>) {
+        if self.has_pairs {
+            let (pairs, closest) = search.in_pairs(&self.explanations);
+            self.explanations.extend(pairs);
+            self.closest = self.closest.take().or(closest);
+        }
+    }
+
+    /// Compares the rows with the scheme as far as single precision can, or as far as their few digits show; `None` where they
+    /// cannot be of single precision.
+    fn single(&self, plan: &Plan) -> Option<Followed> {
+        let rounding = match self.has_few_digits() {
+            true => Rounding::FewDigits,
+            false if self.rows.may_be_single() => Rounding::Single,
+            false => return None,
+        };
+        let scheme = Simulation::new(Arc::clone(self.scenario));
+        let run = Run::of(scheme, explain::in_single(plan, &[]), rounding);
+        Some(follow(self.rows, &self.rows.times.steps, run))
+    }
+
+    /// Returns the precision of the program, after slips have been looked for.
+    fn precision(&self, plan: &Plan) -> Precision {
+        let rows = self.rows;
+        if self.has_few_digits() {
+            return Precision::Unknown;
+        }
+        if self.is_lenient || self.explanations.first().is_some_and(|it| it.is_single) {
+            return Precision::Single;
+        }
+        if !rows.may_be_single() || self.is_proved {
+            return Precision::Double;
+        }
+        if self.beside.differs.is_some() {
+            return Precision::Unknown;
+        }
+        let single = explain::in_single(plan, &[]).swap_remove(0);
+        let alone = Run::of(single, Vec::<Program<f64>>::new(), Rounding::Double);
+        match follow(rows, &rows.times.steps, alone).differs {
+            Some(_) => Precision::Double,
+            None => Precision::Unknown,
+        }
+    }
+
+    /// Returns the column that has the fewest digits. Of constant columns only those count that agree by their few digits alone.
+    fn coarsest(&self) -> Option<&Column> {
+        let agrees = self.beside.differs.is_none();
+        let counts =
+            |column: &&Column| column.varies() || agrees && self.beside.is_rounded[column.place];
+        let columns = &self.rows.columns;
+        let fewest = columns.iter().filter(counts).min_by_key(|it| it.digits());
+        fewest.or_else(|| columns.iter().min_by_key(|it| it.digits()))
+    }
+
+    fn digits(&self) -> i32 {
+        self.coarsest().map_or(0, Column::digits)
+    }
+
+    /// Whether the digits are fewer than those of single precision.
+    fn has_few_digits(&self) -> bool {
+        self.digits() < SINGLE_DIGITS
     }
 
     /// The preset with which all rows agree.
@@ -194,7 +299,7 @@ impl Found<'_> {
                 &others.find(|(own, _)| *own == dt)?.1
             };
             let none = Vec::<Program<f64>>::new();
-            let run = Run::of(Simulation::new(scenario.into()), none, false);
+            let run = Run::of(Simulation::new(scenario.into()), none, Rounding::Double);
             Some(follow(self.rows, steps, run))
         };
         let names = PRESETS.iter().map(|preset| preset.name);
@@ -205,9 +310,12 @@ impl Found<'_> {
         })
     }
 
-    /// The program that makes the rows; `None` where none does, or where its steps are others than the run's.
+    /// The program that makes the rows; `None` where that is not known, or where its steps are others than the run's.
     fn trial(&self, plan: &Plan) -> Option<Trial> {
         let (explanation, differs) = (self.explanations.first()?, self.beside.differs?);
+        if !self.is_proved {
+            return None;
+        }
         let mut program = explanation.program(plan)?;
         let first = u64::try_from(differs.step.max(1)).ok()?;
         for _ in 1..first {
@@ -219,20 +327,8 @@ impl Found<'_> {
             words: format!(
                 "{}: {}",
                 explanation.names().join(" + "),
-                words::words(explanation)
+                explanation.words()
             ),
         })
     }
-}
-
-/// The rows beside the scheme's run, with as much room as single precision needs. They differ where they cannot be of that
-/// precision: where no column holds numbers of it.
-fn single(rows: &Rows, scenario: &Arc<Scenario>, plan: &Plan) -> Followed {
-    if !rows.columns.iter().any(rows::Column::may_be_single) {
-        return Followed::default();
-    }
-    let copy = |order| Program::<f32>::new(plan, &Changes::default(), order);
-    let copies = [Order::Forward, Order::Backward, Order::EvenThenOdd].map(copy);
-    let run = Simulation::new(Arc::clone(scenario));
-    follow(rows, &rows.times.steps, Run::of(run, copies.into(), true))
 }

@@ -12,10 +12,11 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub(super) points: Vec<([f64; 3], f64)>,
-    /// The number of rim points, which come first, and of the axle's points, which follow.
+    /// The number of rim points, which come first.
     pub(super) rim: usize,
-    axle: usize,
-    traced: usize,
+    /// The names of the axle's points, which follow.
+    pub(super) axle: Vec<String>,
+    pub(super) traced: usize,
     start: Start,
     pub(super) gravity: f64,
     pub(super) time_step_s: f64,
@@ -55,7 +56,7 @@ impl Plan {
         is_plain.then(|| Self {
             points: points.map(|point| (point.at.into(), point.mass)).collect(),
             rim: file.rim_points(),
-            axle: file.point.len(),
+            axle: file.point.iter().map(|point| point.name.clone()).collect(),
             traced: scenario.trace,
             start: Start {
                 tilt_deg: start.tilt_deg.unwrap_or(0.0),
@@ -127,7 +128,10 @@ impl Plan {
                 point.0 = [x * cosine, x * sine, height];
             }
         }
-        let axle = self.rim..self.rim + self.axle;
+        let axle = self.rim..self.rim + self.axle.len();
+        if let Some(hub) = self.hub().filter(|_| changes.hub_in_plane) {
+            points[hub].0[2] = height;
+        }
         for (place, point) in points.iter_mut().enumerate() {
             let has_mass = changes.axle_mass.is_some_and(|top_alone| {
                 place == self.traced || !top_alone && axle.contains(&place)
@@ -170,9 +174,17 @@ impl Plan {
         (turned, momentum)
     }
 
-    pub(super) fn traced(&self, changes: &Changes) -> usize {
-        let mut others = (self.rim..self.rim + self.axle).filter(|&place| place != self.traced);
-        let traced = changes.traced.map(|number| others.nth(number).unwrap_or(0));
-        traced.unwrap_or(self.traced)
+    /// Returns the hub, the first of the axle's points, if it is not in the plane of the rim.
+    pub(super) fn hub(&self) -> Option<usize> {
+        let is_hub = |hub: &usize| *hub != self.traced && !self.axle.is_empty();
+        let hub = Some(self.rim).filter(is_hub)?;
+        (self.points[hub].0[2] != self.points[0].0[2]).then_some(hub)
+    }
+
+    /// Returns the name of the point that takes the place of point `k` as `Other::OfAxle(nth)`, if there is one.
+    pub(super) fn other_of_axle(&self, nth: usize, k: usize) -> Option<&str> {
+        let named = self.axle.iter().enumerate();
+        let mut others = named.filter(|(place, _)| self.rim + place != k);
+        others.nth(nth).map(|(_, name)| &**name)
     }
 }

@@ -14,6 +14,12 @@ const NAMES: [&str; 8] = ["x_m", "y_m", "z_m", "Lx_Js", "Ly_Js", "Lz_Js", STEP, 
 pub const COLUMNS: &[&str] = NAMES.split_at(6).0;
 /// The most values of one file, rows times columns.
 const MOST_VALUES: usize = 1_000_000;
+/// The digits of single precision, which a column needs to show it.
+pub const SINGLE_DIGITS: i32 = 7;
+/// The digits of double precision.
+const MOST_DIGITS: i32 = 17;
+/// The digits with which a column shows that its values are no numbers of single precision.
+const TELLING_DIGITS: i32 = 9;
 /// By how much right programs may differ, m and J s, times the value where it is above 1.
 const WITHIN: [f64; 2] = [1e-8, 1e-6];
 
@@ -23,8 +29,10 @@ pub struct Column {
     pub place: usize,
     pub values: Vec<f64>,
     /// How many digits its values have at most: behind the point, and in all.
-    decimals: i32,
+    pub decimals: i32,
     significant: i32,
+    /// Whether all values have the same number of decimals.
+    pub is_fixed: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -47,6 +55,7 @@ impl Column {
             values: Vec::with_capacity(cells.rows.len()),
             decimals: i32::MIN,
             significant: 0,
+            is_fixed: true,
         };
         for (line, texts) in &cells.rows {
             if column.take(&texts[at], cells.separator).is_none() {
@@ -68,6 +77,7 @@ impl Column {
         let decimals = (behind.len() as i32).saturating_sub(exponent.parse().unwrap_or(0));
         let digits = mantissa.trim_start_matches(['+', '-', '0', '.']).chars();
         let significant = digits.filter(char::is_ascii_digit).count() as i32;
+        self.is_fixed &= self.values.len() == 1 || decimals == self.decimals;
         self.decimals = self.decimals.max(decimals);
         self.significant = self.significant.max(significant);
         Some(())
@@ -100,12 +110,21 @@ impl Column {
         0.5 * self.unit(value) + within(self.place, value)
     }
 
-    /// Whether the values may be float32, as far as their digits say, and are not all the same.
-    pub fn may_be_single(&self) -> bool {
-        let may_be = |value: &f64| {
-            self.significant < 11 || (value - f64::from(*value as f32)).abs() <= self.unit(*value)
+    /// Returns the number of digits of its longest value. Zeros after the point count: they say that the value is small.
+    pub fn digits(&self) -> i32 {
+        self.significant.max(self.decimals.min(MOST_DIGITS)).max(1)
+    }
+
+    /// Whether each value is a number of single precision, as far as its digits say.
+    fn is_of_single(&self) -> bool {
+        let is_of_single = |value: &f64| {
+            let nearest = *value as f32;
+            let off = (value - f64::from(nearest)).abs();
+            // NumPy and others print the shortest number that reads back to the same float32.
+            off <= 0.5 * self.unit(*value) * (1.0 + 1e-6)
+                || nearest.to_string().parse() == Ok(*value)
         };
-        self.values.iter().all(may_be) && (self.values.len() == 1 || self.varies())
+        self.values.iter().all(is_of_single)
     }
 
     pub fn varies(&self) -> bool {
@@ -119,6 +138,18 @@ pub fn within(place: usize, value: f64) -> f64 {
 }
 
 impl Rows {
+    /// Whether the program may compute in single precision: whether one of the columns holds its numbers.
+    pub fn may_be_single(&self) -> bool {
+        let varying = || self.columns.iter().filter(|column| column.varies());
+        let mut telling = varying()
+            .filter(|it| it.significant >= TELLING_DIGITS)
+            .peekable();
+        if telling.peek().is_none() {
+            return varying().any(|column| column.significant >= SINGLE_DIGITS);
+        }
+        telling.any(Column::is_of_single)
+    }
+
     /// The rows as a CSV of measured data beside a run of this time step, each at the time of its step.
     pub fn to_csv(&self, time_step_s: f64) -> String {
         let dt = self.times.own_s.unwrap_or(time_step_s);

@@ -11,13 +11,40 @@ pub enum Sequence {
     LBeforeTurn,
 }
 
+/// A point that takes the place of another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Other {
+    /// The n-th of the axle's other points, from 0.
+    OfAxle(usize),
+    FirstOfRim,
+    CenterOfRim,
+}
+
+/// How Omega is made to point along L.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Along {
+    /// The body turns about L by |Omega|.
+    AxisAlone,
+    /// L is divided by the matrix's third diagonal element.
+    OverThird,
+    /// L is divided by the matrix's first diagonal element.
+    OverFirst,
+    /// L is divided by the moment about the axle.
+    OverAxle,
+    /// L is divided by the mean moment across the axle.
+    OverAcross,
+}
+
 /// Everything that a slip can change in the report's step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Changes {
     pub(super) inertia_kept: bool,
+    pub(super) inertia_sums_up: bool,
     /// Of the products of inertia: 1 adds them, 2 leaves them out.
     pub(super) products: u8,
     pub(super) without_e: bool,
+    /// The projector P is left out of the rotation.
+    pub(super) without_projector: bool,
     /// What stands in the rotation in the place of every component of E.
     pub(super) turn_e: Option<f64>,
     /// The cross product with its middle component reversed: that of the torque, or that with Omega.
@@ -29,8 +56,12 @@ pub struct Changes {
     pub(super) axle_mass: Option<bool>,
     pub(super) rim_point_twice: bool,
     pub(super) rotation_reversed: bool,
-    pub(super) dt_forgotten: bool,
+    /// The power of dt in the angle of the turn, where it is not 1.
+    pub(super) turn_dt: Option<i32>,
     pub(super) axis_not_unit: bool,
+    /// |Omega| squared in the angle: whether Omega is divided by it too.
+    pub(super) omega_squared: Option<bool>,
+    pub(super) along_momentum: Option<Along>,
     pub(super) first_order: bool,
     /// By what the angle is multiplied.
     pub(super) angle: Option<f64>,
@@ -38,16 +69,26 @@ pub struct Changes {
     pub(super) row_late: bool,
     /// Turned in place: whether the new y is used too.
     pub(super) in_place: Option<bool>,
-    pub(super) dt_missing: bool,
+    /// The power of dt by which the torque is multiplied, where it is not 1.
+    pub(super) torque_dt: Option<i32>,
     /// Weights without m: whether the points without mass have one too.
     pub(super) without_mass: Option<bool>,
-    /// Which of the axle's other points is written; beyond them the first of the rim.
-    pub(super) traced: Option<usize>,
+    /// The mass of the whole body for each point of the rim: whether in the inertia too.
+    pub(super) total_on_each: Option<bool>,
+    pub(super) traced: Option<Other>,
     pub(super) swapped: Option<(usize, usize)>,
+    /// x and y have changed places, and Lx and Ly too.
+    pub(super) swapped_twice: bool,
     pub(super) torque_reversed: bool,
     pub(super) gravity_up: bool,
+    /// r is measured from the center of mass in the torque.
+    pub(super) about_cm: bool,
     /// The torque at the centre of mass: whether of all forces, or of one point's weight.
     pub(super) centre: Option<bool>,
+    /// The whole weight acts on the traced point.
+    pub(super) weight_at_top: bool,
+    /// The hub is in the plane of the rim.
+    pub(super) hub_in_plane: bool,
     pub(super) sums_up: bool,
     pub(super) gravity: Option<f64>,
     pub(super) kept: bool,
@@ -62,11 +103,14 @@ pub struct Changes {
     /// How many steps longer it acts.
     pub(super) push_longer: i64,
     pub(super) accumulates: bool,
+    pub(super) push_reversed: bool,
+    pub(super) push_point: Option<Other>,
     pub(super) time_step_s: Option<f64>,
 }
 
 /// One thing that goes wrong in programs of the report's step: its name; what the program does, and what the report does,
 /// two sentences without their ends; and its variants, each with what is special about it and the change that it makes.
+/// `{n}` is the name of the n-th of the axle's other points.
 type Slip = (
     &'static str,
     &'static str,
@@ -75,12 +119,14 @@ type Slip = (
 );
 
 const DEGREES: f64 = std::f64::consts::PI / 180.0;
+const TURNS: f64 = std::f64::consts::TAU;
 pub(super) const FOREVER: i64 = i64::MAX / 4;
 
 /// Every slip that is looked for, but for another time step, which is read off the file.
 #[rustfmt::skip]
 pub const SLIPS: &[Slip] = &[
     ("inertia-kept", "the inertia is summed once, at the start", "sums it anew in each step, from the turned points", &[("", |c| c.inertia_kept = true)]),
+    ("inertia-sums-up", "the inertia is never set to zero, and adds up over the steps", "sums it anew in each step", &[("", |c| c.inertia_sums_up = true)]),
     ("inertia-product-sign", "the products of inertia are added", "subtracts them: I = sum m (|r|^2 E - r r^T)", &[("", |c| c.products = 1)]),
     ("inertia-diagonal", "the products of inertia are left out, or L is divided by the diagonal alone", "solves I Omega = L with the whole matrix", &[("", |c| c.products = 2)]),
     ("inertia-without-E", "r r^T is subtracted from the number r.r, in each of the nine places", "multiplies r.r by the unit matrix E first", &[("", |c| c.without_e = true)]),
@@ -91,37 +137,58 @@ pub const SLIPS: &[Slip] = &[
         ("the first, in inertia and weight", |c| c.left_out = Some((false, true))),
         ("the last, in inertia and weight", |c| c.left_out = Some((true, true)))]),
     ("top-has-mass", "points of the axle have the mass of a rim point", "gives the axle no mass", &[
-        ("all of them", |c| c.axle_mass = Some(false)), ("the top alone", |c| c.axle_mass = Some(true))]),
+        ("all of them", |c| c.axle_mass = Some(false)), ("the top alone", |c| c.axle_mass = Some(true)),
+        ("all of them, the hub in the plane of the rim", |c| (c.axle_mass, c.hub_in_plane) = (Some(false), true))]),
     ("rim-point-twice", "the first and the last point of the rim are in one place, as linspace(0, 2*pi, n) puts them", "puts n points at n different angles, 2 pi/n apart", &[("", |c| c.rim_point_twice = true)]),
     ("rotation-without-E", "the rotation is made without the unit matrix E", "has R = P + cos(angle) (E - P) + sin(angle) [u]x", &[
         ("1 - P in each of the nine places", |c| c.turn_e = Some(1.0)), ("-P in the place of E - P", |c| c.turn_e = Some(0.0))]),
+    ("projector-missing", "P is left out of the rotation, which is no rotation then", "has R = P + cos(angle) (E - P) + sin(angle) [u]x", &[("", |c| c.without_projector = true)]),
     ("cross-product-sign", "the middle component of a cross product has the wrong sign", "has a3 b1 - a1 b3 there", &[
         ("of r x F", |c| c.middle_sign = Some(true)), ("of Omega x r, as in the second row of [u]x", |c| c.middle_sign = Some(false))]),
     ("rotation-reversed", "the points are turned by minus the angle, as the transposed R does", "turns them by +|Omega| dt about Omega", &[("", |c| c.rotation_reversed = true)]),
-    ("dt-forgotten", "the points are turned by |Omega|", "turns them by |Omega| dt", &[("", |c| c.dt_forgotten = true)]),
+    ("dt-forgotten", "the points are turned by |Omega|", "turns them by |Omega| dt", &[("", |c| c.turn_dt = Some(0))]),
     ("axis-not-unit", "P and the cross matrix are made from Omega itself", "makes them from the unit vector Omega/|Omega|", &[("", |c| c.axis_not_unit = true)]),
+    ("omega-squared", "the points are turned by |Omega|^2 dt", "turns them by |Omega| dt", &[
+        ("", |c| c.omega_squared = Some(false)), ("u is Omega divided by |Omega|^2, too", |c| c.omega_squared = Some(true))]),
+    ("omega-along-L", "Omega is taken along L", "solves I Omega = L, whose Omega is not along L in general", &[
+        ("u is L/|L|, the angle |Omega| dt", |c| c.along_momentum = Some(Along::AxisAlone)), ("L is divided by Izz", |c| c.along_momentum = Some(Along::OverThird)),
+        ("L is divided by Ixx", |c| c.along_momentum = Some(Along::OverFirst)),
+        ("L is divided by the moment about the axle", |c| c.along_momentum = Some(Along::OverAxle)),
+        ("L is divided by the moment across the axle", |c| c.along_momentum = Some(Along::OverAcross))]),
     ("first-order-rotation", "the points move by dt Omega x r", "turns them by the rotation matrix", &[("", |c| c.first_order = true)]),
     ("angle-in-degrees", "degrees and radians are mixed up in the angle of the turn", "turns by |Omega| dt radians", &[
         ("radians in cosd and sind", |c| c.angle = Some(DEGREES)), ("degrees in cos and sin", |c| c.angle = Some(1.0 / DEGREES))]),
+    ("angle-in-turns", "the angle of the turn has a factor 2 pi too many or too few", "turns by |Omega| dt radians", &[
+        ("times 2 pi", |c| c.angle = Some(TURNS)), ("divided by 2 pi", |c| c.angle = Some(1.0 / TURNS))]),
     ("torque-before-turn", "the torque is taken before the points are turned", "turns them first, then sums r x F", &[("", |c| c.sequence = Sequence::TorqueBeforeTurn)]),
     ("L-before-turn", "L gets its torque first, and the points are turned with the new L", "turns the points with the old L, and then adds the torque to L", &[("", |c| c.sequence = Sequence::LBeforeTurn)]),
     ("L-a-row-late", "L is written a row late: in each row it is the L before the step", "has in one row the points and the L after the step", &[("", |c| c.row_late = true)]),
     ("points-in-place", "x is turned in place, and the new x is used for y and z", "turns all three from the old x, y and z", &[
         ("and the new y for z", |c| c.in_place = Some(true)), ("", |c| c.in_place = Some(false))]),
-    ("dt-missing-in-torque", "the torque is added to L without dt", "adds dt times the torque", &[("", |c| c.dt_missing = true)]),
+    ("dt-missing-in-torque", "the torque is added to L without dt", "adds dt times the torque", &[("", |c| c.torque_dt = Some(0))]),
+    ("dt-squared", "dt is multiplied twice", "multiplies by dt once", &[
+        ("in the torque", |c| c.torque_dt = Some(2)), ("in the angle of the turn", |c| c.turn_dt = Some(2))]),
     ("force-without-mass", "the weight of a point is g", "makes it m g", &[
-        ("also of the points without mass", |c| c.without_mass = Some(true)), ("of the points with mass", |c| c.without_mass = Some(false))]),
+        ("also of the points without mass", |c| c.without_mass = Some(true)), ("of the points with mass", |c| c.without_mass = Some(false)),
+        ("also of the points without mass, the hub in the plane of the rim", |c| (c.without_mass, c.hub_in_plane) = (Some(true), true))]),
+    ("total-mass-on-each", "each mass of the rim has the mass of the whole body", "gives each its own", &[
+        ("in the weight", |c| c.total_on_each = Some(false)), ("in inertia and weight", |c| c.total_on_each = Some(true))]),
     ("no-gravity", "there is no weight", "pulls each point down by m g", &[("", |c| c.gravity = Some(0.0))]),
     ("hub-traced", "another point is written", "traces the axle's top", &[
-        ("", |c| c.traced = Some(0)), ("", |c| c.traced = Some(1)), ("", |c| c.traced = Some(2)),
-        ("the first of the rim", |c| c.traced = Some(usize::MAX))]),
+        ("{0}", |c| c.traced = Some(Other::OfAxle(0))), ("{1}", |c| c.traced = Some(Other::OfAxle(1))),
+        ("{2}", |c| c.traced = Some(Other::OfAxle(2))), ("the first of the rim", |c| c.traced = Some(Other::FirstOfRim)),
+        ("the center of the rim", |c| c.traced = Some(Other::CenterOfRim))]),
     ("columns-swapped", "two columns have changed places", "has x, y, z in this order", &[
         ("x and y", |c| c.swapped = Some((0, 1))), ("x and z", |c| c.swapped = Some((0, 2))), ("y and z", |c| c.swapped = Some((1, 2))),
-        ("Lx and Ly", |c| c.swapped = Some((3, 4))), ("Lx and Lz", |c| c.swapped = Some((3, 5))), ("Ly and Lz", |c| c.swapped = Some((4, 5)))]),
+        ("Lx and Ly", |c| c.swapped = Some((3, 4))), ("Lx and Lz", |c| c.swapped = Some((3, 5))), ("Ly and Lz", |c| c.swapped = Some((4, 5))),
+        ("x and y, Lx and Ly too", |c| c.swapped_twice = true)]),
     ("torque-reversed", "the torque is F x r", "takes r x F", &[("", |c| c.torque_reversed = true)]),
     ("gravity-up", "the weight points up", "has it along -z", &[("", |c| c.gravity_up = true)]),
-    ("torque-of-centre", "the torque is taken at one point for all, the centre of mass", "sums r x F over the points, each with its own r and F", &[
-        ("with the mass of one point", |c| c.centre = Some(false)), ("with the whole mass, the push there too", |c| c.centre = Some(true))]),
+    ("torque-of-centre", "the torque is taken at one point for all", "sums r x F over the points, each with its own r and F", &[
+        ("the center of mass, with the mass of one point", |c| c.centre = Some(false)),
+        ("the center of mass, with the whole mass, the push there too", |c| c.centre = Some(true)),
+        ("the axle's top, with the whole mass", |c| c.weight_at_top = true)]),
+    ("torque-about-cm", "the torque is taken about the center of mass, with r - r_cm, as the report's formula (1) reads", "takes it about the pivot, about which L is too", &[("", |c| c.about_cm = true)]),
     ("torque-sums-up", "the torque is never set to zero, and adds up over the steps", "sums it anew in each step", &[("", |c| c.sums_up = true)]),
     ("gravity-9.81", "g is 9.81", "has g = 9.8", &[("", |c| c.gravity = Some(9.81))]),
     ("gravity-10", "g is 10", "has g = 9.8", &[("", |c| c.gravity = Some(10.0))]),
@@ -140,6 +207,11 @@ pub const SLIPS: &[Slip] = &[
     ("push-too-long", "the push acts too long", "ends it after its last step", &[
         ("one step more", |c| c.push_longer = 1), ("to the end of the run", |c| c.push_longer = FOREVER)]),
     ("push-accumulates", "the push is added to an array of forces that is never built anew, and grows with each step", "builds F anew in each step", &[("", |c| c.accumulates = true)]),
+    ("push-reversed", "the push has the opposite sign", "pushes along the force as the scenario states it", &[("", |c| c.push_reversed = true)]),
+    ("push-on-another-point", "the push acts on another point", "pushes the point that the scenario names", &[
+        ("{0}", |c| c.push_point = Some(Other::OfAxle(0))), ("{1}", |c| c.push_point = Some(Other::OfAxle(1))),
+        ("{2}", |c| c.push_point = Some(Other::OfAxle(2))), ("the first of the rim", |c| c.push_point = Some(Other::FirstOfRim)),
+        ("the center of the rim", |c| c.push_point = Some(Other::CenterOfRim))]),
 ];
 
 /// Another reading of the report's text is no slip.

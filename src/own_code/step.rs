@@ -5,7 +5,7 @@
 //! rounding, and no fault of a program.
 
 use super::plan::Plan;
-use super::slips::{Changes, FOREVER, Sequence};
+use super::slips::{Along, Changes, FOREVER, Other, Sequence};
 use crate::physics::workings::{Quantity, Value};
 use crate::scenario::{Push, Window};
 use nalgebra::{Matrix3, RealField, Vector3, convert, convert_unchecked};
@@ -55,6 +55,7 @@ pub struct Program<T> {
     torques: Vector3<T>,
     traced: usize,
     rim: usize,
+    axle: usize,
     pushes: Vec<Push>,
     gravity: T,
     time_step: T,
@@ -81,15 +82,26 @@ impl<T: Real> Program<T> {
             earlier: momentum.map(T::of),
             inertia: Matrix3::zeros(),
             torques: Vector3::zeros(),
-            traced: plan.traced(changes),
+            traced: plan.traced,
             rim: plan.rim,
+            axle: plan.axle.len(),
             pushes: plan.pushes.clone(),
             gravity: T::of(changes.gravity.unwrap_or(plan.gravity)),
             time_step: T::of(changes.time_step_s.unwrap_or(plan.time_step_s)),
             clock: 0,
         };
-        program.inertia = program.inertia();
+        if !changes.inertia_sums_up {
+            program.inertia = program.inertia();
+        }
         program
+    }
+
+    /// Whether the moments of inertia differ from axis to axis now.
+    pub fn has_axes(&self) -> bool {
+        const SAME_WITHIN: f64 = 1e-6;
+        let mean = self.inertia.trace() / T::of(3.0);
+        let rest = self.inertia - Matrix3::identity() * mean;
+        rest.amax().f64() > SAME_WITHIN * mean.f64()
     }
 
     /// The traced point, world frame, m, and L, J s, as the program writes them.
@@ -99,10 +111,14 @@ impl<T: Real> Program<T> {
         } else {
             self.momentum
         };
-        let at = self.points[self.traced].0;
+        let at = self.at(self.changes.traced, self.traced);
         let mut row = [at.x, at.y, at.z, momentum.x, momentum.y, momentum.z].map(T::f64);
         if let Some((one, other)) = self.changes.swapped {
             row.swap(one, other);
+        }
+        if self.changes.swapped_twice {
+            row.swap(0, 1);
+            row.swap(3, 4);
         }
         row
     }
@@ -117,10 +133,12 @@ impl<T: Real> Program<T> {
             self.kick(torque);
             early = Some(torque);
         }
-        if !self.changes.inertia_kept {
+        if self.changes.inertia_sums_up {
+            self.inertia += self.inertia();
+        } else if !self.changes.inertia_kept {
             self.inertia = self.inertia();
         }
-        let omega = solve(&self.inertia, &self.momentum);
+        let omega = self.omega();
         if self.changes.sequence == Sequence::TorqueBeforeTurn {
             early = Some(self.torque());
         }
@@ -175,13 +193,15 @@ impl<T: Real> Program<T> {
         } else {
             Matrix3::identity()
         };
+        let total = self.total(changes.total_on_each == Some(true));
         let mut sum = Matrix3::zeros();
         let counted = self
             .sequence
             .iter()
             .filter(|k| !self.is_left_out(**k, false));
         for &k in counted {
-            let (at, mass) = self.points[k];
+            let (at, own) = self.points[k];
+            let mass = total.filter(|_| own.f64() != 0.0).unwrap_or(own);
             let r = at - centre;
             sum += (e * self.dot(&r, &r) - r * r.transpose()) * mass;
         }
@@ -205,6 +225,55 @@ impl<T: Real> Program<T> {
         })
     }
 
+    /// Returns the mass of the whole body, where each point of the rim has it in the sum.
+    fn total(&self, has_it: bool) -> Option<T> {
+        let masses = || self.points.iter().map(|(_, mass)| *mass);
+        has_it.then(|| masses().fold(T::zero(), |sum, mass| sum + mass))
+    }
+
+    /// Returns the place of point `k`, or of the `other` that takes its place.
+    fn at(&self, other: Option<Other>, k: usize) -> Vector3<T> {
+        let rim = || self.points[..self.rim].iter().map(|(at, _)| at);
+        let place = match other {
+            None => None,
+            Some(Other::OfAxle(nth)) => {
+                let mut others = (self.rim..self.rim + self.axle).filter(|place| *place != k);
+                others.nth(nth).map(|place| self.points[place].0)
+            }
+            Some(Other::FirstOfRim) => rim().next().copied(),
+            Some(Other::CenterOfRim) if self.rim > 0 => {
+                Some(rim().sum::<Vector3<T>>() / T::of(self.rim as f64))
+            }
+            Some(Other::CenterOfRim) => None,
+        };
+        place.unwrap_or(self.points[k].0)
+    }
+
+    /// Omega = I \ L.
+    fn omega(&self) -> Vector3<T> {
+        let momentum = &self.momentum;
+        let omega = solve(&self.inertia, momentum);
+        let axle = match self.changes.along_momentum {
+            None => return omega,
+            Some(Along::AxisAlone) => {
+                let [rate, length] =
+                    [&omega, momentum].map(|of| T::of(self.dot(of, of).f64().sqrt()));
+                return momentum * (rate / length);
+            }
+            Some(Along::OverThird) => Vector3::z(),
+            Some(Along::OverFirst) => Vector3::x(),
+            Some(Along::OverAxle | Along::OverAcross) => {
+                let at = self.points[self.traced].0;
+                at / T::of(self.dot(&at, &at).f64().sqrt())
+            }
+        };
+        let moment = self.dot(&axle, &(self.inertia * axle));
+        if self.changes.along_momentum == Some(Along::OverAcross) {
+            return momentum / ((self.inertia.trace() - moment) * T::of(0.5));
+        }
+        momentum / moment
+    }
+
     fn centre(&self) -> Vector3<T> {
         let (mut sum, mut total) = (Vector3::zeros(), T::zero());
         for (at, mass) in &self.points {
@@ -221,14 +290,14 @@ impl<T: Real> Program<T> {
         if rate.f64() == 0.0 || changes.first_order {
             return None;
         }
-        let u = if changes.axis_not_unit {
-            *omega
-        } else {
-            omega / rate
+        let u = match (changes.axis_not_unit, changes.omega_squared) {
+            (true, _) => *omega,
+            (false, Some(true)) => omega / (rate * rate),
+            (false, _) => omega / rate,
         };
-        let mut angle = rate;
-        if !changes.dt_forgotten {
-            angle *= self.time_step;
+        let mut angle = rate * self.time_step.powi(changes.turn_dt.unwrap_or(1));
+        if changes.omega_squared.is_some() {
+            angle *= rate;
         }
         if let Some(factor) = changes.angle {
             angle *= T::of(factor);
@@ -243,7 +312,12 @@ impl<T: Real> Program<T> {
         }
         let e = changes.turn_e.map(|e| Matrix3::repeat(T::of(e)));
         let (p, e) = (u * u.transpose(), e.unwrap_or_else(Matrix3::identity));
-        let rotation = p + (e - p) * T::of(cosine) + cross * T::of(sine);
+        let along = if changes.without_projector {
+            Matrix3::zeros()
+        } else {
+            p
+        };
+        let rotation = along + (e - p) * T::of(cosine) + cross * T::of(sine);
         Some(Turn { u, angle, rotation })
     }
 
@@ -267,15 +341,27 @@ impl<T: Real> Program<T> {
     fn torque(&self) -> Vector3<T> {
         let changes = &self.changes;
         let (mut sum, mut weight) = (Vector3::zeros(), Vector3::zeros());
+        let (centre, one) = (self.centre(), self.points.first());
+        let about = if changes.about_cm {
+            centre
+        } else {
+            Vector3::zeros()
+        };
+        let total = self.total(changes.total_on_each.is_some());
         for &k in &self.sequence {
-            let (at, mass) = &self.points[k];
-            let force = Vector3::new(T::zero(), T::zero(), self.weight(k, *mass));
+            let (at, own) = self.points[k];
+            let mass = total.filter(|_| own.f64() != 0.0).unwrap_or(own);
+            let force = Vector3::new(T::zero(), T::zero(), self.weight(k, mass));
             weight += force;
+            let at = if changes.weight_at_top {
+                self.points[self.traced].0
+            } else {
+                at
+            };
             if changes.centre.is_none() {
-                sum += self.cross(at, &force, true);
+                sum += self.cross(&(at - about), &force, true);
             }
         }
-        let (centre, one) = (self.centre(), self.points.first());
         if let Some(of_all) = changes.centre {
             if !of_all {
                 weight.z = one.map_or(T::zero(), |(_, mass)| self.weight(0, *mass));
@@ -285,10 +371,10 @@ impl<T: Real> Program<T> {
         for push in &self.pushes {
             let force = push.force.map(T::of) * T::of(self.push_factor(push));
             let at = match changes.centre {
-                Some(true) => &centre,
-                _ => &self.points[push.point].0,
+                Some(true) => centre,
+                _ => self.at(changes.push_point, push.point),
             };
-            sum += self.cross(at, &force, true);
+            sum += self.cross(&(at - about), &force, true);
         }
         if changes.torque_reversed { -sum } else { sum }
     }
@@ -316,11 +402,12 @@ impl<T: Real> Program<T> {
         let changes = &self.changes;
         let nth = self.clock as i64 + 1 - first as i64 - changes.push_shift;
         let count = (count.min(FOREVER as u64) as i64 + changes.push_longer).clamp(0, FOREVER);
-        if push.accumulates || changes.accumulates {
+        let times = if push.accumulates || changes.accumulates {
             nth.clamp(0, count) as f64
         } else {
             f64::from(u8::from(nth >= 1 && nth <= count))
-        }
+        };
+        if changes.push_reversed { -times } else { times }
     }
 
     /// L <- L + dt torque.
@@ -334,12 +421,7 @@ impl<T: Real> Program<T> {
         if changes.kept || changes.turned == Some(false) {
             return;
         }
-        let dt = if changes.dt_missing {
-            T::of(1.0)
-        } else {
-            self.time_step
-        };
-        self.momentum += torque * dt;
+        self.momentum += torque * self.time_step.powi(changes.torque_dt.unwrap_or(1));
     }
 
     fn times(&self, matrix: &Matrix3<T>, vector: &Vector3<T>) -> Vector3<T> {

@@ -102,11 +102,9 @@ fn by_step(
         let (own, off) = ((times[last] - times[0]) / count, unit / count);
         let is_other = count > 0.0 && own > 0.0 && !is_same(own, time_step_s, off);
         all.own_s = is_other.then(|| plain(own, off));
-        all.others = all
-            .own_s
-            .map(|own| (own, all.steps.clone()))
-            .into_iter()
-            .collect();
+        if let Some(own) = all.own_s {
+            all.others = vec![(own, all.steps.clone())];
+        }
     }
     Ok(all)
 }
@@ -133,9 +131,13 @@ fn by_time(
     others.retain(|(own, _)| !is_same(*own, time_step_s, 0.0));
     let begins = if is_own { first(time_step_s) } else { 0 };
     let own = others.first().map(|(own, _)| *own);
+    let steps = Steps::evenly(times.len(), begins, stride);
+    if is_own {
+        others.extend(Times::at(steps.clone(), time_step_s).others); // its times may not be those of its steps
+    }
     Ok(Times {
-        steps: Steps::evenly(times.len(), begins, stride),
         own_s: own.filter(|_| !is_own),
+        steps,
         others,
     })
 }

@@ -2,9 +2,9 @@
 
 use super::explain::{COUNT, Explanation, MOST_FOR_PAIRS};
 use super::follow::{Difference, Worst};
-use super::rows::{COLUMNS, Column};
+use super::rows::{COLUMNS, Column, SINGLE_DIGITS};
 use super::slips::ANOTHER_READING;
-use super::{Found, Verdict};
+use super::{Explanations, Found, Precision, Verdict};
 use crate::run::pushes;
 use crate::text::number::{counted, short, shortest, significant};
 use crate::text::printable::brief;
@@ -13,6 +13,8 @@ use nalgebra::Vector3;
 /// The preset whose body and push show every slip.
 const EVERY_SLIP: &str = "every-slip";
 const UNITS: [&str; 2] = ["m", "J s"];
+/// A point's distance from the pivot changes by less of it where rounding alone changes it.
+const LENGTHENED: f64 = 1e-3;
 /// Digits of the values that differ.
 const DIGITS: usize = 12;
 
@@ -24,19 +26,35 @@ impl Found<'_> {
         let named = |(column, ..): &(&Column, f64, f64)| column.name();
         Verdict {
             agrees,
-            precision: if self.is_single { "single" } else { "double" },
+            precision: self.precision,
+            digits: self.digits(),
             rows: if agrees { beside.agreeing } else { rows.count },
+            rows_compared: self.rows_compared(),
             offset: beside.offset,
             first_step: beside.differs.map(|differs| differs.step),
             columns: differing.iter().map(named).collect(),
             yours: differing.iter().map(|(_, yours, _)| *yours).collect(),
             scheme: differing.iter().map(|(.., scheme)| *scheme).collect(),
             worst_m: beside.worst[0].map(|worst| worst.off),
+            explanations: match self.explanations[..] {
+                [] => Explanations::None,
+                _ if self.is_proved => Explanations::Unique,
+                _ => Explanations::Several,
+            },
             slips: self.explanations.iter().map(Explanation::names).collect(),
             unseen: self.unseen.clone(),
             lines: self.lines(agrees),
             is_unexplained: beside.differs.is_some() && self.is_unexplained(),
             trial: None,
+        }
+    }
+
+    fn rows_compared(&self) -> usize {
+        let beside = &self.beside;
+        match (self.explanations.first(), beside.differs) {
+            (Some(explanation), _) => explanation.followed.agreeing,
+            (None, Some(differs)) => differs.row + 1,
+            (None, None) => beside.agreeing,
         }
     }
 
@@ -67,6 +85,7 @@ impl Found<'_> {
         }
         if agrees {
             lines.push(self.agreement());
+            lines.extend(self.too_few_digits());
             lines.extend(self.not_reached());
         } else {
             lines.push(self.difference());
@@ -76,7 +95,8 @@ impl Found<'_> {
                 "In line {line} {column} is no finite number: the rows are compared up to there."
             ));
         }
-        lines.extend(self.offset().map(str::to_owned));
+        let shift = shifted(self.beside.offset);
+        lines.extend(shift.map(|shift| format!("The rows are {shift}.")));
         lines.extend(self.beside.parted.map(|step| format!(
             "From step {step} on rounding decides about the motion of this scenario: the rows there are not compared."
         )));
@@ -89,28 +109,32 @@ impl Found<'_> {
         lines
     }
 
-    /// Says at which offset the rows were compared.
-    fn offset(&self) -> Option<&'static str> {
-        match self.beside.offset {
-            0 => None,
-            1.. => Some(
-                "The file begins one row after the start, or numbers its rows one too low: compared so.",
-            ),
-            _ => {
-                Some("The file has the start twice, or numbers its rows one too high: compared so.")
-            }
-        }
-    }
-
     fn agreement(&self) -> String {
         let (name, rows) = (self.name, counted(self.beside.agreeing as u64, "row"));
-        let worst = worst_of(self.beside.worst);
-        let single = if self.is_single {
-            " as far as single precision can: compute in double"
-        } else {
-            ""
+        let [of_points, of_momentum] = self.beside.worst;
+        let mut worst = worst_of([of_points, of_momentum]);
+        let as_far = match self.precision {
+            Precision::Single => " as far as single precision can: compute in double",
+            Precision::Unknown if self.has_few_digits() => " to the digits written",
+            _ => "",
         };
-        format!("agrees with {name} in {rows}{single}; {worst}")
+        if self.is_lenient && of_points.is_some() && of_momentum.is_some() {
+            worst += &format!(", {}", worst_of([None, of_momentum]).replace("worst ", ""));
+        }
+        format!("agrees with {name} in {rows}{as_far}; {worst}")
+    }
+
+    /// Says how many digits are needed, where they are too few.
+    fn too_few_digits(&self) -> Option<String> {
+        let coarsest = self.coarsest().filter(|_| self.has_few_digits())?;
+        let name = coarsest.name();
+        let digits = match coarsest.is_fixed {
+            true => counted(coarsest.decimals.max(0) as u64, "decimal"),
+            false => counted(coarsest.digits() as u64, "digit"),
+        };
+        Some(format!(
+            "With {digits} a difference this small cannot be seen: write {SINGLE_DIGITS} or more ({name})."
+        ))
     }
 
     /// What the rows do not reach.
@@ -181,10 +205,26 @@ impl Found<'_> {
         if self.is_unexplained() {
             return vec![self.unexplained()];
         }
-        let mut lines: Vec<_> = self.explanations.iter().map(explained).collect();
-        for line in &mut lines[1..] {
-            line.insert_str(0, "The same rows come out another way. ");
+        let mut lines: Vec<_> = self.about_top().into_iter().collect();
+        if self.explanations.iter().any(|it| it.is_single) && self.precision == Precision::Single {
+            lines.push("The program computes in single precision: compute in double.".to_owned());
         }
+        if self.is_proved {
+            lines.extend(self.explanations.first().map(stated));
+            return lines;
+        }
+        lines.push("These rows are also produced by:".to_owned());
+        lines.extend(self.explanations.iter().map(listed));
+        let why = match (self.explanations.len(), self.too_few_digits()) {
+            (_, Some(words)) => words,
+            (1, None) if self.explanations[0].names().len() > 1 && self.name != EVERY_SLIP => "Other differences may produce them too, in a scenario that hides slips: try --against every-slip.".to_owned(),
+            (1, None) => "Other differences may produce them too: these rows are too few, or differ by too little. Write every row, from the start on.".to_owned(),
+            (_, None) if self.name == EVERY_SLIP => "These rows cannot tell them apart.".to_owned(),
+            (_, None) => {
+                "These rows cannot tell them apart: try --against every-slip.".to_owned()
+            }
+        };
+        lines.push(why);
         lines
     }
 
@@ -201,7 +241,7 @@ impl Found<'_> {
         }
         if let Some(closest) = &self.closest {
             let step = closest.followed.differs.map_or(0, |differs| differs.step);
-            let (names, words) = (closest.names().join(" + "), words(closest));
+            let (names, words) = (closest.names().join(" + "), closest.words());
             text += &format!("\n{names} comes closest, up to step {step}: {words}");
         }
         if let Some(words) = self.about_top() {
@@ -229,13 +269,16 @@ impl Found<'_> {
         let is_lost = |row: &usize| {
             let [first, now] = [0, *row].map(|row| at(row).norm());
             let room: f64 = [x, y, z].map(|column| column.room(now)).iter().sum();
-            (now - first).abs() > 2.0 * room
+            (now - first).abs() > 2.0 * room + LENGTHENED * first
         };
         let lost = (1..self.rows.count).find(is_lost)?;
-        let [first, now] = [0, lost].map(|row| significant(at(row).norm(), 7));
-        let step = self.rows.times.steps.of_rows[lost];
+        let [first, now] = [0, lost].map(|row| {
+            let length = at(row).norm();
+            significant(if length < 1e-12 { 0.0 } else { length }, 7)
+        });
+        let [begin, step] = [0, lost].map(|row| self.rows.times.steps.of_rows[row]);
         Some(format!(
-            "Its top is {first} m from the foot at first, and {now} m at step {step}: what turns it is no rotation."
+            "The rotation matrix is no rotation: the top is {first} m from the pivot at step {begin} and {now} m at step {step}."
         ))
     }
 
@@ -275,26 +318,54 @@ fn worst_of(worst: [Option<Worst>; 2]) -> String {
         .map_or(String::new(), words)
 }
 
-fn explained(explanation: &Explanation) -> String {
-    let followed = &explanation.followed;
+/// States the only explanation.
+fn stated(explanation: &Explanation) -> String {
     let begin = match &explanation.names()[..] {
         [name] if *name == ANOTHER_READING => "another reading of the report's push, and no slip",
         [_] => "the report's scheme with one difference",
         _ => "the report's scheme with two differences",
     };
-    let rows = counted(followed.agreeing as u64, "row");
-    let up_to = followed.parted.map_or(String::new(), |step| {
-        format!(" before step {step}, from which on rounding decides about its motion,")
-    });
-    let (names, words) = (explanation.names().join(" + "), words(explanation));
-    let worst = worst_of(followed.worst);
-    format!("This is {begin} ({names}): {words}\nWith that all {rows}{up_to} agree ({worst}).")
+    let names = explanation.names().join(" + ");
+    let (words, rows) = (explanation.words(), compared(explanation));
+    format!("This is {begin} ({names}): {words}\nWith that {rows}.")
 }
 
-/// What the program does, and what the report does.
-pub(super) fn words(explanation: &Explanation) -> String {
-    let words = explanation.variants.iter().map(|variant| &*variant.words);
-    words.collect::<Vec<_>>().join(" Second: ")
+fn listed(explanation: &Explanation) -> String {
+    let (names, words) = (explanation.names().join(" + "), explanation.words());
+    format!("  {names} ({}): {words}", compared(explanation))
+}
+
+/// Says how many rows agree with an explanation.
+fn compared(explanation: &Explanation) -> String {
+    let followed = &explanation.followed;
+    let rows = match followed.agreeing {
+        1 => "1 row agrees".to_owned(),
+        count => format!("{count} rows agree"),
+    };
+    let worst = worst_of(followed.worst);
+    let mut text = match followed.parted {
+        None => format!("all {rows}, {worst}"),
+        Some(step) => {
+            format!("{rows}, {worst}; from step {step} on rounding decides about the motion")
+        }
+    };
+    if let Some(shift) = shifted(followed.offset) {
+        text += &format!("; {shift}");
+    }
+    text
+}
+
+/// Says at which offset the rows were compared.
+fn shifted(offset: i64) -> Option<&'static str> {
+    match offset {
+        0 => None,
+        1.. => Some(
+            "compared one row later: the file begins after the start, or numbers its rows one too low",
+        ),
+        _ => Some(
+            "compared one row earlier: the file has the start twice, or numbers its rows one too high",
+        ),
+    }
 }
 
 /// The name of a column without its unit.

@@ -6,7 +6,7 @@ use crate::support::desk::Desk;
 use crate::support::ground::names;
 use crate::support::scenarios::preset;
 use crate::support::words::has_all;
-use gyrolab::own_code::{self, Rows, Verdict, rows};
+use gyrolab::own_code::{self, Explanations, Precision, Rows, Verdict, rows};
 use gyrolab::physics::workings::Value;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
@@ -55,31 +55,52 @@ fn named(file: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Slips that make the same rows in a scenario.
-const ALIKE: &[(&str, &str, &[&str])] = &[(
-    "method-1",
-    "no-gravity",
-    &["no-gravity", "L-kept", "L-turned"],
-)];
+/// Whether the rows of `file` have this explanation, and are said to have no other if it is the only one that they prove.
+fn is_explained(verdict: &Verdict, file: &str) -> bool {
+    let sorted = |mut slips: Vec<&'static str>| {
+        slips.sort_unstable();
+        slips
+    };
+    let mut expected = named(file);
+    expected.sort_unstable();
+    let slips: Vec<_> = verdict.slips.iter().cloned().map(sorted).collect();
+    let is_unique = verdict.explanations == Explanations::Unique;
+    slips.contains(&expected) && (!is_unique || slips.len() == 1)
+}
+
+/// Files whose rows have more than one explanation, or too few rows before rounding decides.
+const SEVERAL: &[&str] = &[
+    "every-slip/L-kept",
+    "every-slip/L-turned_only",
+    "every-slip/gravity-up",
+    "every-slip/torque-reversed",
+    "every-slip/push-reversed",
+    "every-slip/omega-squared_axis",
+    "every-slip/rotation-without-E",
+    "every-slip/rotation-without-E_left-out",
+    "every-slip/start-of-another-preset_push",
+    "every-slip/torque-about-cm",
+    "every-slip/torque-of-centre_all",
+    "method-1/no-gravity",
+    "method-1/points-in-place",
+    "wobble-push/gravity-up",
+    "wobble-push/torque-reversed",
+];
 
 #[test]
 fn every_slip_is_named_alone() {
     for scenario in ["every-slip", "method-1", "method-2", "wobble-push"] {
         for (file, text) in files(scenario) {
             let verdict = judged(&text, scenario, &[]);
-            let alike = ALIKE
-                .iter()
-                .find(|(of, slip, _)| *of == scenario && *slip == file);
-            let expected = match alike {
-                Some((.., slips)) => slips.iter().map(|slip| vec![*slip]).collect(),
-                None => vec![named(&file)],
-            };
-            assert!(!verdict.agrees, "{scenario}/{file}");
-            assert_eq!(
-                verdict.slips, expected,
-                "{scenario}/{file}: {:?}",
+            let path = format!("{scenario}/{file}");
+            assert!(
+                !verdict.agrees && is_explained(&verdict, &file),
+                "{path}: {:?}",
                 verdict.lines
             );
+            let is_unique = verdict.explanations == Explanations::Unique;
+            let expected = !SEVERAL.contains(&&*path);
+            assert_eq!(is_unique, expected, "{path}: {:?}", verdict.lines);
         }
     }
 }
@@ -90,20 +111,167 @@ fn pairs_of_slips_are_named() {
     assert_eq!(files.len(), 32);
     for (file, text) in files {
         let verdict = judged(&text, "every-slip", &[]);
-        let slips = verdict.slips.iter().map(|slips| {
-            let mut slips = slips.clone();
-            slips.sort_unstable();
-            slips
-        });
-        let mut expected = named(&file);
-        expected.sort_unstable();
-        assert_eq!(
-            slips.collect::<Vec<_>>(),
-            [expected],
-            "{file}: {:?}",
-            verdict.lines
-        );
+        if file == "inertia-product-sign+dt-forgotten" {
+            // Rounding decides from the third row on.
+            assert_eq!(verdict.explanations, Explanations::None);
+            continue;
+        }
+        assert!(is_explained(&verdict, &file), "{file}: {:?}", verdict.lines);
     }
+}
+
+/// What the verdict on a file of `tests/own_code/cases` must be: the file, its scenario, whether it agrees, one of its
+/// explanations, and words of the verdict.
+type Case<'a> = (&'a str, &'a str, bool, &'a [&'a str], &'a str);
+
+#[test]
+fn explanations_hold_on_all_rows_that_the_digits_allow() {
+    let cases: [Case<'_>; 12] = [
+        (
+            "g-9.80665-4-decimals",
+            "method-1",
+            true,
+            &[],
+            "With 4 decimals",
+        ),
+        (
+            "mean-torque",
+            "method-2-slow",
+            false,
+            &["torque-before-turn"],
+            "These rows are also produced by",
+        ),
+        (
+            "g-9.80665-3-decimals",
+            "method-2-slow",
+            false,
+            &[],
+            "With 3 decimals",
+        ),
+        ("twelve-masses", "method-2-slow", false, &[], "None of"),
+        (
+            "P-forgotten",
+            "method-2",
+            false,
+            &["projector-missing"],
+            "is no rotation: the top is 1.131371 m from the pivot at step 0 and 0 m at step 1",
+        ),
+        (
+            "push-up",
+            "wobble-push",
+            false,
+            &["push-reversed"],
+            "opposite sign",
+        ),
+        (
+            "push-on-hub",
+            "every-slip",
+            false,
+            &["push-on-another-point"],
+            "the center of the rim",
+        ),
+        (
+            "literal-cm",
+            "method-2",
+            false,
+            &["torque-about-cm"],
+            "formula (1)",
+        ),
+        (
+            "torque-about-cm",
+            "every-slip",
+            false,
+            &["torque-about-cm"],
+            "all 401 rows",
+        ),
+        (
+            "weight-5kg-each",
+            "method-2",
+            false,
+            &["total-mass-on-each"],
+            "dt-missing-in-torque",
+        ),
+        (
+            "dt-twice",
+            "method-2",
+            false,
+            &["dt-squared"],
+            "torque-of-centre",
+        ),
+        (
+            "inertia-sums-up",
+            "every-slip",
+            false,
+            &["inertia-sums-up"],
+            "adds up over the steps",
+        ),
+    ];
+    for (file, scenario, agrees, slips, told) in cases {
+        let text = fs::read_to_string(folder("cases").join(format!("{file}.csv"))).unwrap();
+        let verdict = judged(&text, scenario, &[]);
+        let lines = verdict.lines.join("\n");
+        assert_eq!(verdict.agrees, agrees, "{file}: {lines}");
+        has_all(&lines, [told]);
+        assert!(!lines.contains("single"), "{file}: {lines}");
+        match slips {
+            [] => assert_ne!(
+                verdict.explanations,
+                Explanations::Unique,
+                "{file}: {lines}"
+            ),
+            slips => assert!(
+                verdict.slips.iter().any(|it| it == slips),
+                "{file}: {lines}"
+            ),
+        }
+        let is_short =
+            file.starts_with("g-") || file.starts_with("mean") || file.starts_with("twelve");
+        let precision = if is_short {
+            Precision::Unknown
+        } else {
+            Precision::Double
+        };
+        assert_eq!(verdict.precision, precision, "{file}: {lines}");
+    }
+}
+
+/// A constant column has the digits that it is written with.
+#[test]
+fn two_rows_of_few_digits_agree_with_a_precision_that_is_unknown() {
+    let text = "step,Lx_Js,Lz_Js\n0,400.0,2000.0\n1,400.0,2000.0\n";
+    let verdict = judged(text, "method-1", &[]);
+    assert!(verdict.agrees, "{:?}", verdict.lines);
+    assert_eq!((verdict.precision, verdict.digits), (Precision::Unknown, 4));
+    has_all(&verdict.lines.join("\n"), ["write 7 or more"]);
+}
+
+#[test]
+fn a_slip_in_single_precision_is_named_with_its_precision() {
+    for file in ["gravity-9.81", "torque-before-turn"] {
+        let text = fs::read_to_string(folder("single").join(format!("{file}.csv"))).unwrap();
+        let verdict = judged(&text, "every-slip", &[]);
+        let lines = verdict.lines.join("\n");
+        assert_eq!(verdict.precision, Precision::Single, "{file}: {lines}");
+        assert!(
+            !verdict.agrees && is_explained(&verdict, file),
+            "{file}: {lines}"
+        );
+        has_all(&lines, ["single precision", file]);
+    }
+}
+
+/// The first row is at another place than the start of the program that makes the others.
+#[test]
+fn no_row_is_dropped_from_an_explanation() {
+    let text = fs::read_to_string(folder("every-slip/gravity-10.csv")).unwrap();
+    let moved = text.replacen("\n0,0,0,", "\n0,0,0.5,", 1);
+    assert_ne!(moved, text);
+    let verdict = judged(&moved, "every-slip", &[]);
+    assert!(
+        !verdict.agrees && verdict.slips.is_empty(),
+        "{:?}",
+        verdict.lines
+    );
 }
 
 #[test]
@@ -111,7 +279,11 @@ fn right_programs_are_not_accused_whatever_their_digits() {
     for (file, text) in files("right") {
         let (scenario, kind) = file.rsplit_once('-').unwrap();
         let verdict = judged(&text, scenario, &[]);
-        let precision = if kind == "single" { "single" } else { "double" };
+        let precision = match verdict.digits {
+            ..7 => Precision::Unknown,
+            _ if kind == "single" => Precision::Single,
+            _ => Precision::Double,
+        };
         assert!(
             verdict.agrees && verdict.slips.is_empty(),
             "{file}: {:?}",

@@ -19,6 +19,10 @@ push-early:short push-late push-too-long push-too-long:forever push-accumulates 
 rotation-without-E:left-out cross-product-sign cross-product-sign:turn start-of-another-preset:push
 start-of-another-preset:hub start-of-another-preset:top start-of-another-preset:tilt start-of-another-preset:L
 start-of-another-preset:nothing-changed""".split()
+# Slips that came later still.
+NEW = """torque-about-cm push-reversed push-on-another-point push-on-another-point:lower push-on-another-point:rim
+total-mass-on-each total-mass-on-each:inertia dt-squared dt-squared:turn projector-missing inertia-sums-up omega-squared
+omega-squared:axis angle-in-turns angle-in-turns:divided omega-along-L omega-along-L:Izz omega-along-L:axle""".split()
 # Slips that came later, and are not among the pairs that are drawn.
 LATER = ("rotation-without-E", "cross-product-sign")
 # Slips that can be told from all others in the report's own set-ups.
@@ -40,9 +44,9 @@ def file(folder, name, scenario, slips=(), steps=300, every=5, form="%.12g", dty
 
 
 def main():
-    for folder in [*OF_THE_REPORT, "every-slip", "pairs", "right", "unexplained"]:
+    for folder in [*OF_THE_REPORT, "every-slip", "pairs", "right", "single"]:
         shutil.rmtree(HERE / folder, ignore_errors=True)
-    for slip in SLIPS:
+    for slip in [*SLIPS, *NEW]:
         # Without E the points fall together: rounding decides from step 3 on.
         steps, every = (60, 1) if slip.startswith("rotation-without-E") else (300, 5)
         file("every-slip", slip.replace(":", "_"), "every-slip", [slip], steps, every)
@@ -59,6 +63,8 @@ def main():
         pair for pair in itertools.combinations(names, 2)
         if set(pair) not in unlike and not over & set(pair)
     ]
+    for slip in ("gravity-9.81", "torque-before-turn"):
+        file("single", slip, "every-slip", [slip], form="%.9g", dtype=np.float32)
     random.seed(1)
     for pair in [*random.sample(pairs, 30), ("cross-product-sign", "gravity-9.81"), ("start-of-another-preset:push", "dt-forgotten")]:
         file("pairs", "+".join(pair).replace(":", "_"), "every-slip", pair, steps=240, every=3)

@@ -26,7 +26,8 @@ def wheel(h, slips):
     if "rim-point-twice" in slips:
         a = np.linspace(0, 2 * np.pi, n)
     rim = np.column_stack([R * np.cos(a), R * np.sin(a), h * np.ones(n)])
-    axle = np.array([[0, 0, h], [0, 0, 2 * h], [0, 0, 0], [0, 0, h / 2]])
+    hub = 0.9 if h == 1 else h  # every-slip's hub is not at the center of mass
+    axle = np.array([[0, 0, hub], [0, 0, 2 * h], [0, 0, 0], [0, 0, h / 2]])
     mass = np.concatenate([0.5 * np.ones(n), np.zeros(4)])
     if "top-has-mass" in slips:
         mass[n:] = 0.5
@@ -79,6 +80,8 @@ def inertia(X, m, slips):
         which = range(1, len(X))
     if "point-left-out:last" in slips:
         which = [k for k in which if k != 9]
+    if "total-mass-on-each:inertia" in slips:
+        m = np.where(m > 0, m.sum(), m).astype(X.dtype)
     I = np.zeros((3, 3), dtype=X.dtype)
     for k in which:
         r = X[k]
@@ -95,12 +98,19 @@ def turn(X, Omega, dt, slips):
     one = X.dtype.type
     if "dt-forgotten" in slips:
         dt = one(1)
+    if "dt-squared:turn" in slips:
+        dt = dt * dt
     if "first-order-rotation" in slips:
         return X + dt * np.cross(Omega, X), np.eye(3, dtype=X.dtype)
     w = np.sqrt(Omega @ Omega)
     if w == 0:
         return X, np.eye(3, dtype=X.dtype)
     u = Omega if "axis-not-unit" in slips else Omega / w
+    if "omega-squared" in slips:
+        w = Omega @ Omega
+    if "omega-squared:axis" in slips:
+        w = Omega @ Omega
+        u = Omega / w
     P = np.outer(u, u)
     E = np.eye(3, dtype=X.dtype)
     if "rotation-without-E" in slips:  # 1 - P
@@ -113,9 +123,15 @@ def turn(X, Omega, dt, slips):
         angle = angle * one(np.pi / 180)
     if "angle-in-degrees:times" in slips:
         angle = angle * one(180 / np.pi)
+    if "angle-in-turns" in slips:
+        angle = angle * one(2 * np.pi)
+    if "angle-in-turns:divided" in slips:
+        angle = angle / one(2 * np.pi)
     if "cross-product-sign:turn" in slips:
         C[1] = -C[1]
     Rot = P + np.cos(angle) * (E - P) + np.sin(angle) * C
+    if "projector-missing" in slips:
+        Rot = np.cos(angle) * (E - P) + np.sin(angle) * C
     if "rotation-reversed" in slips:
         Rot = Rot.T
     if "points-in-place" in slips:
@@ -156,7 +172,14 @@ def torque(X, m, push, clock, steps, slips):
     top = n - 3
     F = np.zeros((n, 3), dtype=X.dtype)
     F[:, 2] = -one(g) if "force-without-mass" in slips else -m * one(g)
+    if "total-mass-on-each" in slips or "total-mass-on-each:inertia" in slips:
+        F[:, 2] = np.where(m > 0, -m.sum() * one(g), 0)
     P = push * one(push_factor(clock, steps, slips))
+    if "push-reversed" in slips:
+        P = -P
+    for slip, place in [("", n - 4), (":foot", n - 2), (":lower", n - 1), (":rim", 0)]:
+        if "push-on-another-point" + slip in slips:
+            top = place
     r = X
     centre = (m @ X) / m.sum()
     if "torque-of-centre" in slips or "torque-of-centre:one" in slips:
@@ -169,6 +192,8 @@ def torque(X, m, push, clock, steps, slips):
     else:
         F[top] += P
         tau = np.cross(r, F).sum(axis=0)
+    if "torque-about-cm" in slips:
+        tau = np.cross(r - centre, F).sum(axis=0)
     if "cross-product-sign" in slips:
         tau = tau * np.array([1, -1, 1], dtype=X.dtype)
     if "point-left-out:first" in slips:  # the weight too
@@ -185,6 +210,7 @@ def simulate(scenario, steps, every, slips, dtype=np.float64):
     X, m, L = (a.astype(dtype) for a in start(scenario, slips))
     push = np.array(push, dtype=dtype)
     shown = len(X) - 4 if "hub-traced" in slips else len(X) - 3
+    all_inertia = np.zeros((3, 3), dtype=dtype)
     earlier, I0, total = L, inertia(X, m, slips), np.zeros(3, dtype=dtype)
 
     def row(clock):
@@ -206,15 +232,27 @@ def simulate(scenario, steps, every, slips, dtype=np.float64):
                 tau = total
             if "L-kept" in slips:
                 return L
+            if "dt-squared" in slips:
+                return L + dt * dt * tau
             return L + (tau if "dt-missing-in-torque" in slips else dt * tau)
 
         if "L-before-turn" in slips:
             L = kick(L, X)
         I = I0 if "inertia-kept" in slips else inertia(X, m, slips)
+        if "inertia-sums-up" in slips:
+            all_inertia = all_inertia + I
+            I = all_inertia
         try:
             Omega = np.linalg.solve(I, L)
         except np.linalg.LinAlgError:  # the slip has shrunk the body to nothing
             break
+        if "omega-along-L" in slips:
+            Omega = L * np.sqrt((Omega @ Omega) / (L @ L))
+        if "omega-along-L:Izz" in slips:
+            Omega = L / I[2, 2]
+        if "omega-along-L:axle" in slips:
+            axle = X[-3] / np.sqrt(X[-3] @ X[-3])
+            Omega = L / (axle @ I @ axle)
         before = X
         X, Rot = turn(X, Omega, dt, slips)
         if "L-turned" in slips:

@@ -259,13 +259,16 @@ fn own_rows_are_held_against_a_scenario() {
     let mut expected = [
         "agrees",
         "precision",
+        "digits",
         "rows",
+        "rows_compared",
         "offset",
         "first_step",
         "columns",
         "yours",
         "scheme",
         "worst_m",
+        "explanations",
         "slips",
         "unseen",
     ];
