@@ -7,6 +7,7 @@
 
 use super::free::Free;
 use super::within::Limit;
+use crate::physics::part::Part;
 use crate::scenario::Scenario;
 use nalgebra::{DMatrix, DVector, Vector3};
 use std::collections::BTreeSet;
@@ -195,10 +196,12 @@ fn parts(free: &[Free]) -> BTreeSet<usize> {
     keys.filter_map(|key| Some(moment(key)?.0)).collect()
 }
 
-/// The three moments of `part` as functions of the keys.
+/// The three moments of `part` about its center as functions of the keys.
 fn of_part(free: &[Free], part: usize, scenario: &Scenario) -> [Row; 3] {
     let own = scenario.file.body.part.get(part);
-    let own = own.and_then(|part| part.moments_kg_m2).unwrap_or_default();
+    let own = Vector3::from(own.and_then(|part| part.moments_kg_m2).unwrap_or_default());
+    let about_center = scenario.body.parts.get(part).map_or(own, Part::moments);
+    let shift = own - about_center; // 0, unless the file gives the moments about the pivot
     [0, 1, 2].map(|axis| {
         let is_it = |free: &Free| {
             free.keys
@@ -209,7 +212,7 @@ fn of_part(free: &[Free], part: usize, scenario: &Scenario) -> [Row; 3] {
         let is_free = free.iter().any(is_it);
         Row {
             slopes: DVector::from_fn(free.len(), slope),
-            at_zero: if is_free { 0.0 } else { own[axis] },
+            at_zero: if is_free { 0.0 } else { own[axis] } - shift[axis],
         }
     })
 }
