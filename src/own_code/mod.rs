@@ -235,10 +235,12 @@ impl Found<'_> {
     /// Compares the rows with the scheme as far as single precision can, or as far as their few digits show; `None` where they
     /// cannot be of single precision.
     fn single(&self, plan: &Plan) -> Option<Followed> {
-        let rounding = match self.has_few_digits() {
-            true => Rounding::FewDigits,
-            false if self.rows.may_be_single() => Rounding::Single,
-            false => return None,
+        let rounding = if self.has_few_digits() {
+            Rounding::FewDigits
+        } else if self.rows.may_be_single() {
+            Rounding::Single
+        } else {
+            return None;
         };
         let scheme = Simulation::new(Arc::clone(self.scenario));
         let run = Run::of(scheme, explain::in_single(plan, &[]), rounding);

@@ -128,9 +128,10 @@ impl Found<'_> {
     fn too_few_digits(&self) -> Option<String> {
         let coarsest = self.coarsest().filter(|_| self.has_few_digits())?;
         let name = coarsest.name();
-        let digits = match coarsest.is_fixed {
-            true => counted(coarsest.decimals.max(0) as u64, "decimal"),
-            false => counted(coarsest.digits() as u64, "digit"),
+        let digits = if coarsest.is_fixed {
+            counted(coarsest.decimals.max(0) as u64, "decimal")
+        } else {
+            counted(coarsest.digits() as u64, "digit")
         };
         Some(format!(
             "With {digits} a difference this small cannot be seen: write {SINGLE_DIGITS} or more ({name})."
