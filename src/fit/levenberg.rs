@@ -219,7 +219,14 @@ impl<'a> Linear<'a> {
         damped.view_mut((rows, 0), (count, count)).copy_from(&own);
         let along = self.along.clone().resize_vertically(rows + count, 0.0);
         let within = least_squares(&damped, &along, &self.limits);
-        within.y.component_mul(&self.units)
+        let mut step = within.y.component_mul(&self.units);
+        for (step, slopes) in step.iter_mut().zip(self.root.column_iter()) {
+            // What moves no datum stays where it is, and not but for rounding.
+            if slopes.amax() == 0.0 {
+                *step = 0.0;
+            }
+        }
+        step
     }
 }
 
