@@ -192,9 +192,16 @@ impl Monitor {
         } else {
             state
         };
-        let closed_form = truth.motion().closed_form();
-        let top_of = || LagrangeTop::new(top.across, top.along, load, of.orientation, of.momentum);
-        let motion = closed_form.map_or_else(|| Cow::Owned(top_of()), Cow::Borrowed);
+        let motion = match truth.motion().closed_form() {
+            Some(motion) => Cow::Borrowed(motion),
+            None => Cow::Owned(LagrangeTop::new(
+                top.across,
+                top.along,
+                load,
+                of.orientation,
+                of.momentum,
+            )),
+        };
         let now = Theory::new(&top, &load, &motion, &state);
         let theory = Theory {
             // The steady precessions are those at the present tilt.
