@@ -16,7 +16,7 @@
 //! free body that turns exactly about its middle axis. Such a motion stays only in exact arithmetic, and rounding decides
 //! where a run goes. So a run is neither blamed nor praised for it.
 
-use super::cost::turning_rad_per_s;
+use super::cost::{is_affordable, turning_rad_per_s};
 use super::swings::BELIEVED_WITHIN;
 use crate::physics::loads::torque;
 use crate::physics::{State, observables};
@@ -116,6 +116,10 @@ impl Companion {
         let scenario = exact.scenario();
         let at = &scenario.body.mechanics.points()[scenario.trace].at;
         let difference = beside.orientation - state.orientation;
+        if !difference.norm().is_finite() {
+            self.next_look_s = f64::INFINITY; // the motion has left the range of numbers
+            return;
+        }
         // The norm of the difference of two near rotations is √2 times the angle between them.
         self.most_rad = self.most_rad.max(difference.norm() / 2.0_f64.sqrt());
         self.is_balanced &= is_balanced(exact, &state, self.most_rad);
@@ -152,8 +156,12 @@ impl Equilibrium {
     }
 }
 
-/// Returns how far the motion of `scenario` can be predicted, found up to `end_s` (s).
+/// Returns how far the motion of `scenario` can be predicted, found up to `end_s` (s); nothing is known where the exact
+/// motion would take too long.
 pub fn predictability(scenario: &Arc<Scenario>, end_s: f64) -> Predictability {
+    if !is_affordable(scenario) {
+        return Predictability::default();
+    }
     let mut companion = Companion::new(scenario);
     companion.look_until(&mut Truth::new(Arc::clone(scenario)), end_s);
     companion.found()
@@ -181,6 +189,9 @@ fn next_look_s(exact: &Truth, state: &State) -> f64 {
         Some(_) => apart_s.max(BETWEEN_LOOKS * (state.time_s - motion.begin_s())),
         None => apart_s,
     };
+    if !(apart_s > 0.0) {
+        return f64::INFINITY; // it turns faster than numbers reach
+    }
     // Just after the change, so that the next distance follows from the new forces; and later than now in any case.
     (state.time_s + apart_s)
         .min(exact.end_s().next_up())

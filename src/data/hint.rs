@@ -152,7 +152,7 @@ impl Guess<'_> {
             && !self.added.iter().any(is_quantity)
             && let Some(&place) = places
                 .iter()
-                .filter(|&&place| self.cells.names[place] != TIME)
+                .filter(|&&place| readouts::find(&self.cells.names[place]).is_none())
                 .find(|&&place| !self.is_added(place) && !self.numbers(place).is_empty())
         {
             self.added.push((place, self.tilt(place).to_owned()));

@@ -146,16 +146,16 @@ impl Unit {
             Some((stem, Self::written(unit)?))
         };
         let at_end = || {
-            let ends = name.rmatch_indices(['_', '-', '.', ' ']);
-            let units = ends.filter_map(|(at, _)| {
+            // The first of them has the longest unit behind it: "rad_per_s" and not "s".
+            let mut separators = name.match_indices(['_', '-', '.', ' ']);
+            separators.find_map(|(at, _)| {
                 let unit = name[at + 1..].replace(['-', '.', ' '], "_");
                 let known = OURS
                     .iter()
                     .chain(&OTHERS)
                     .find(|known| known.end[1..] == unit);
                 Some((&name[..at], known.or_else(|| Self::written(&unit))?))
-            });
-            units.last()
+            })
         };
         let found = in_brackets()
             .or_else(|| behind("/"))

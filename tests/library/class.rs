@@ -215,7 +215,7 @@ fn nothing_in_place_of_a_count_holds_anybody_up() {
                 .status()
                 .unwrap()
                 .success()
-        )
+        );
     };
     let link = || symlink("/dev/zero", &count).unwrap();
     let long = || File::create(&count).unwrap().set_len(3 << 30).unwrap();

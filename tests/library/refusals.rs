@@ -271,6 +271,10 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     // starts by an angular velocity, and a rotor
     (17, "omega_rad_per_s = [0, 0, 1]", 17, "start.omega_rad_per_s ([0.0, 0.0, 1.0]) is given beside momentum_Js", "keep one of the two"),
     (17, "omega_frame = \"bdy\"", 17, "start.omega_frame (\"bdy\") must be one of world, body", ""),
+    (13, "[[body.part]]\nabout = \"pvot\"", 14, "body.part.0.about (\"pvot\") must be one of center, pivot", "did you mean pivot?"),
+    (17, "precession_rad_per_s = \"1\"", 17, "start.precession_rad_per_s (\"1\") must be a number, not text", ""),
+    (17, "nutation_rad_per_s = nan", 17, "start.nutation_rad_per_s (nan) must be a finite number", ""),
+    (17, "psi_dot_rad_per_s = inf", 17, "start.psi_dot_rad_per_s (inf) must be a finite number", ""),
     (17, "omega_frame = \"body\"", 17, "start.omega_frame: goes with omega_rad_per_s, and momentum_Js is given", "leave it out"),
     (17, "rotor = 3", 17, "start.rotor (3) must be text", ""),
     (17, "rotor = \"top\"", 17, "start.rotor (\"top\") is no part of this body", "there is none"),

@@ -50,7 +50,7 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
             "force_N = [0.0, 0.0, -50.0]\nfirst_step = 1\nsteps = 200",
             "700 of 0.1 s",
             "Do not believe this run",
-            "\n\nSource: report, section 4, the extra force on the axle top; changed since\n\n",
+            "are our reading; changed since\n\n",
             "| tilt swing since 20 s |",
             "| nutation period (strobed) since 20 s |",
             "(`measured_nutation_period_s`)",

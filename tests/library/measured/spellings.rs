@@ -157,10 +157,10 @@ fn a_map_takes_units_and_leaves_columns_out() {
     assert_eq!(time_s, 1800.0);
     // The unit in the column's own name counts where the map states gyrolab's.
     let (time_s, values) = last(&mapped(
-        "when_ms,gx_dps\n500,180\n",
+        "when_ms,gx_dps\n500,100\n",
         "when_ms=t_s,gx_dps=w1_rad_per_s",
     ));
-    assert_eq!((time_s, values[0].1), (0.5, 3.141592654));
+    assert_eq!((time_s, values[0].1), (0.5, 1.745329252));
     let twice = refusal("lab.csv", euler, "theta=tilt_rad,phi=tilt_deg");
     assert!(twice.contains("is mapped to tilt_deg too"), "{twice}");
     let wrong = refusal("lab.csv", euler, "theta=tilt_kg");
@@ -352,9 +352,9 @@ fn text_in_other_encodings_is_read_or_told_what_to_do() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("lab.csv");
     let name = path.to_str().unwrap();
-    std::fs::write(&path, b"Time (s);Gyr X (\xb0/s)\r\n0,5;180\r\n").unwrap();
+    std::fs::write(&path, b"Time (s);Gyr X (\xb0/s)\r\n0,5;100\r\n").unwrap();
     let measured = gyrolab::data::open(name).unwrap();
-    assert_eq!(last(&measured), (0.5, vec![("w1_rad_per_s", 3.141592654)]));
+    assert_eq!(last(&measured), (0.5, vec![("w1_rad_per_s", 1.745329252)]));
     let utf16 = "t_s,tilt_deg\n0,1\n".encode_utf16();
     let bytes: Vec<u8> = [0xff, 0xfe]
         .into_iter()
