@@ -113,7 +113,6 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
         refuse("fit", ErrorKind::ArgumentConflict, message);
     }
     let task = Task::read(args)?;
-    tell_notes(&task.measured.notes());
     let Some(throws) = task.throws(args)? else {
         return fit_one(args, &task, None);
     };
@@ -138,6 +137,7 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
 /// Fits each of the `throws`. One that cannot be fitted is told, and the others are.
 fn fit_each(args: &FitArgs, task: &Task, throws: &[Throw]) -> anyhow::Result<ExitCode> {
     let (_, interruption) = progress::open(None, false)?;
+    tell_notes(&task.measured.notes());
     if !args.json {
         let list = throws.iter().map(|throw| format!("  {throw}\n"));
         let list: String = list.collect();
@@ -189,6 +189,7 @@ fn fit_each(args: &FitArgs, task: &Task, throws: &[Throw]) -> anyhow::Result<Exi
 
 fn fit_one(args: &FitArgs, task: &Task, throw: Option<&Throw>) -> anyhow::Result<ExitCode> {
     let model = task.model(args)?;
+    tell_notes(&model.measured.notes());
     tell_notes(&model.doubts());
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let found = task.found(args, &model, &interruption)?;

@@ -27,8 +27,8 @@ fn sit(ground: &Ground, name: &str) -> (Terminal, String) {
 
 /// Votes for the second choice.
 fn vote(lab: &mut Terminal) {
-    lab.wait_for("[ ] 2 is about ten times smaller");
-    lab.ask("2", "> [x] 2 is about ten times smaller");
+    lab.wait_for("[ ] 2 is about fifty times smaller");
+    lab.ask("2", "> [x] 2 is about fifty times smaller");
     lab.press("\r");
     lab.wait_until("a locked vote", |lab| !lab.words().contains("> [x]"));
 }
@@ -63,7 +63,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     // Back by the seat's word, with page and prediction.
     let mut anna = ground.open("--folder . --seat");
     anna.ask(&format!("{word}\r"), "following · 2 of 10");
-    anna.wait_for("[x] 2 is about ten times smaller");
+    anna.wait_for("[x] 2 is about fifty times smaller");
     // The seat is opened elsewhere: the lab before ends by itself.
     let mut again = ground.open("--folder . --seat");
     again.ask(&format!("{word}\r"), "following · 2 of 10");
@@ -88,7 +88,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     ben.wait_for("the class is over");
     ground.stdout("class --answers --folder . -o answers");
     let answers = ground.read(&format!("answers/{word}.md"));
-    has_all(&answers, &["**Predicted.** is about ten times smaller"]);
+    has_all(&answers, &["**Predicted.** is about fifty times smaller"]);
 }
 
 #[test]
