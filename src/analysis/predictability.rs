@@ -189,7 +189,7 @@ fn next_look_s(exact: &Truth, state: &State) -> f64 {
         Some(_) => apart_s.max(BETWEEN_LOOKS * (state.time_s - motion.begin_s())),
         None => apart_s,
     };
-    if !(apart_s > 0.0) {
+    if apart_s.is_nan() || apart_s == 0.0 {
         return f64::INFINITY; // it turns faster than numbers reach
     }
     // Just after the change, so that the next distance follows from the new forces; and later than now in any case.
