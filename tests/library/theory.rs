@@ -483,7 +483,7 @@ fn a_nearly_symmetric_body_has_the_theory_of_its_mean_moment() {
                 "nutation",
                 theory.nutation_period_s,
                 mean.nutation_period_s,
-                instruments.nutation_period_s(),
+                instruments.nutation_period_s().ok(),
             ),
         ] {
             let (predicted, measured) = (predicted.unwrap(), measured.unwrap());
