@@ -245,6 +245,8 @@ fn a_key_at_the_least_value_it_can_have_has_an_upper_limit() {
         sides.below == 0.0 && (1e-10..1e-6).contains(&sides.above),
         "{sides:?}"
     );
+    let stated = [0, 1].map(|key| fit.keys[key].stated());
+    assert_eq!(stated, ["1000.70 +0.65 -0.50", "0 +1.0e-8 -0"]);
     has(
         &fit.remarks().concat(),
         "the least that it can be, at most ",
