@@ -113,6 +113,7 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
         refuse("fit", ErrorKind::ArgumentConflict, message);
     }
     let task = Task::read(args)?;
+    tell_notes(&task.measured.notes());
     let Some(throws) = task.throws(args)? else {
         return fit_one(args, &task, None);
     };
@@ -137,7 +138,6 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
 /// Fits each of the `throws`. One that cannot be fitted is told, and the others are.
 fn fit_each(args: &FitArgs, task: &Task, throws: &[Throw]) -> anyhow::Result<ExitCode> {
     let (_, interruption) = progress::open(None, false)?;
-    tell_notes(&task.measured.notes());
     if !args.json {
         let list = throws.iter().map(|throw| format!("  {throw}\n"));
         let list: String = list.collect();
@@ -149,7 +149,7 @@ fn fit_each(args: &FitArgs, task: &Task, throws: &[Throw]) -> anyhow::Result<Exi
     }
     let (mut all, mut code) = (Vec::new(), ExitCode::SUCCESS);
     for throw in throws {
-        let of_throw = task.model(&throw.args(args));
+        let of_throw = task.model(args, Some(throw));
         let fitted = of_throw.map_err(anyhow::Error::new).and_then(|model| {
             tell_notes(&model.doubts());
             let fit = task.found(args, &model, &interruption)?;
@@ -188,8 +188,7 @@ fn fit_each(args: &FitArgs, task: &Task, throws: &[Throw]) -> anyhow::Result<Exi
 }
 
 fn fit_one(args: &FitArgs, task: &Task, throw: Option<&Throw>) -> anyhow::Result<ExitCode> {
-    let model = task.model(args)?;
-    tell_notes(&model.measured.notes());
+    let model = task.model(args, throw)?;
     tell_notes(&model.doubts());
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let found = task.found(args, &model, &interruption)?;
@@ -211,6 +210,7 @@ fn fit_one(args: &FitArgs, task: &Task, throw: Option<&Throw>) -> anyhow::Result
 
 /// What is fitted to what, before any flight is chosen.
 struct Task {
+    /// The rows that --rows, --from and --to leave.
     measured: Measured,
     document: Document,
     /// The scenario's own scheme, where no other was asked for.
@@ -226,7 +226,15 @@ struct Throw {
 
 impl Task {
     fn read(args: &FitArgs) -> Result<Self, Problems> {
-        let measured = measured(args)?;
+        let mut measured = chosen(measured(args)?, args.rows.as_ref())?;
+        if args.from.or(args.to).is_some() {
+            measured.series()?;
+            let (from_s, to_s) = (args.from.unwrap_or(0.0), args.to.unwrap_or(f64::INFINITY));
+            if !measured.keep_between(from_s, to_s) {
+                let rule = "has no value measured in the time that --from and --to leave";
+                return Err(Problems::one(args.measured.clone(), Problem::at("", rule)));
+            }
+        }
         let (document, own_scheme) = scenario(args)?;
         Ok(Self {
             measured,
@@ -278,16 +286,11 @@ impl Task {
         Ok(Some(chosen))
     }
 
-    /// Returns the model for the rows that `args` choose.
-    fn model(&self, args: &FitArgs) -> Result<Model, Problems> {
-        let mut measured = chosen(self.measured.clone(), args.rows.as_ref())?;
-        if args.from.or(args.to).is_some() {
-            measured.series()?;
-            let (from_s, to_s) = (args.from.unwrap_or(0.0), args.to.unwrap_or(f64::INFINITY));
-            if !measured.keep_between(from_s, to_s) {
-                let rule = "has no value measured in the time that --from and --to leave";
-                return Err(Problems::one(args.measured.clone(), Problem::at("", rule)));
-            }
+    /// Returns the model for the rows of `throw`, or for all of them.
+    fn model(&self, args: &FitArgs, throw: Option<&Throw>) -> Result<Model, Problems> {
+        let mut measured = self.measured.clone();
+        if let Some(Throw { flight, .. }) = throw {
+            measured.keep_between(flight.from_s, flight.to_s);
         }
         let keys = args.free.iter();
         let keys = keys.map(|argument| Free::parse(argument, &self.document));
@@ -411,7 +414,7 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
             "it was fitted to what stood on standard input, which no file holds".to_owned(),
         ));
     }
-    let model = Task::read(&args).and_then(|task| task.model(&args));
+    let model = Task::read(&args).and_then(|task| task.model(&args, None));
     let model = model.map_err(|problems| cannot(problems.to_string()))?;
     let found = match fitted(&model, &|| !interruption.has_come(), &|_, _| {}) {
         Ok(found) => found,

@@ -31,17 +31,24 @@ const ALIKE: f64 = 0.05;
 /// Digits of a value whose uncertainty cannot be stated.
 const DIGITS: usize = 7;
 
+/// Returns `number` to the second digit of `uncertainty`: 3.040e-4, where that is 2.2e-6.
+fn to_the_digit_of(number: f64, uncertainty: f64) -> String {
+    let stated = uncertain(number, uncertainty).filter(|_| number != 0.0);
+    stated.map_or_else(
+        || significant(number, DIGITS),
+        |stated| stated.to_the_same_digit(number),
+    )
+}
+
 impl Fitted {
     /// The value with its uncertainty, as people read it: 0.003920(38), or where that differs 0.003920 +0.000042 -0.000038.
     pub fn stated(&self) -> String {
         if let Some(Sides { below, above }) = self.sides
             && (below - above).abs() > ALIKE * below.max(above)
         {
-            let digits =
-                |size: f64| (libm::log10((self.value / size).abs()) as usize).clamp(1, 14) + 2;
-            let digits = digits(below.max(above));
-            let [above, below] = [above, below].map(|side| significant(side, 2));
-            return format!("{} +{above} -{below}", significant(self.value, digits));
+            let value = to_the_digit_of(self.value, below.max(above));
+            let [above, below] = [above, below].map(|side| to_the_digit_of(side, side));
+            return format!("{value} +{above} -{below}");
         }
         let stated = self.sigma.and_then(|sigma| uncertain(self.value, sigma));
         match stated {

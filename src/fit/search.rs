@@ -39,7 +39,7 @@ pub struct Fitted {
     pub value: f64,
     /// One standard uncertainty of it, of two sides the larger one; `None` where it cannot be stated.
     pub sigma: Option<f64>,
-    /// The uncertainties to both sides, which differ where a limit of nature holds the key: 68 % each.
+    /// The uncertainties to both sides, which differ where a limit of nature holds the key.
     pub sides: Option<Sides>,
     /// Whether it is held at a bound, beyond which the fit would be better.
     pub is_held: bool,

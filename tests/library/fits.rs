@@ -333,12 +333,8 @@ fn what_cannot_be_told_apart_is_named_and_has_no_uncertainty() {
 
 #[test]
 fn a_key_at_its_bound_is_said_to_be() {
-    let bounded = [
-        format!("{MOMENT}=0.003..0.0038"),
-        "motion.gravity_m_per_s2=9.0..9.82".to_owned(),
-    ];
-    let free: Vec<&str> = bounded.iter().map(String::as_str).collect();
-    let (model, fit) = heidelberg("heidelberg-precession", &free[..1], &|_| true);
+    let bounded = format!("{MOMENT}=0.003..0.0038");
+    let (model, fit) = heidelberg("heidelberg-precession", &[&bounded], &|_| true);
     let key = &fit.keys[0];
     assert_eq!((key.value, key.is_held, key.sigma), (0.0038, true, None));
     let report = Report {
@@ -361,10 +357,42 @@ fn a_key_at_its_bound_is_said_to_be() {
     let (_, fit) = heidelberg("heidelberg-precession", &[&inside], &|_| true);
     let is_of_bound = |remark: &String| remark.contains("bound");
     assert!(fit.keys[0].sigma.is_some() && !fit.remarks().iter().any(is_of_bound));
-    // With one at its bound the other can be told.
-    let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
-    assert!(fit.keys.iter().any(|key| key.is_held));
-    assert!(fit.keys.iter().any(|key| key.sigma.is_some()));
+}
+
+/// The data tell the ratio of moment and gravity alone, 0.00392 to 9.81.
+#[test]
+fn bounds_of_what_cannot_be_told_apart_hold_it_where_the_best_ratio_is_outside() {
+    let moment = format!("{MOMENT}=0.003..0.0038");
+    let fit_within = |gravity: &str| {
+        let gravity = format!("motion.gravity_m_per_s2={gravity}");
+        heidelberg("heidelberg-precession", &[&moment, &gravity], &|_| true).1
+    };
+    // Many pairs inside the bounds have the best ratio: no bound makes the fit worse, and neither value is known.
+    let fit = fit_within("9.0..9.82");
+    is_near(
+        "ratio",
+        fit.keys[0].value / fit.keys[1].value,
+        0.00392 / 9.81,
+        1e-6,
+    );
+    assert!(
+        fit.keys
+            .iter()
+            .all(|key| !key.is_held && key.sigma.is_none())
+    );
+    assert!(
+        fit.remarks()[0].contains("cannot tell"),
+        "{:?}",
+        fit.remarks()
+    );
+    // None has it: both bounds make the fit worse.
+    let fit = fit_within("9.7..9.82");
+    assert_eq!([0, 1].map(|key| fit.keys[key].value), [0.0038, 9.7]);
+    assert!(
+        fit.keys
+            .iter()
+            .all(|key| key.is_held && key.sigma.is_none())
+    );
 }
 
 #[test]

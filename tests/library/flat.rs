@@ -23,6 +23,11 @@ fn moments(second: [f64; 3]) -> [f64; 3] {
     [y + z, z + x, x + y]
 }
 
+/// Returns the true values of the keys A, B and RATES.
+fn truth_of_keys([a, b, _]: [f64; 3], [w1, w2, w3]: [f64; 3]) -> [f64; 5] {
+    [a, b, w1, w2, w3]
+}
+
 /// The recorded rates of a throw, with normal noise.
 fn thrown(
     moments: [f64; 3],
@@ -86,11 +91,11 @@ fn a_flat_body_is_found_at_the_bound_whichever_way_it_lies() {
         ([0.0, 4.0, 1.0], "flat: B + C = A, at the bound"),
         ([4.0, 0.0, 1.0], "flat: A + C = B, at the bound"),
     ] {
-        let truth = moments(second);
+        let omega = [8.0, 0.8, 4.6];
         for seed in 1..=6 {
-            let measured = thrown(truth, [8.0, 0.8, 4.6], (60, 100.0), 0.02, seed);
+            let measured = thrown(moments(second), omega, (60, 100.0), 0.02, seed);
             let (model, fit) = fitted(measured, &[A, B, RATES]);
-            for (key, truth) in fit.keys.iter().zip(truth) {
+            for (key, truth) in fit.keys.iter().zip(truth_of_keys(moments(second), omega)) {
                 let off = (key.value - truth).abs() / key.sigma.unwrap();
                 assert!(off < 4.0, "{words}, seed {seed}: {off} sigma off");
             }
@@ -115,10 +120,10 @@ fn a_flat_body_is_found_at_the_bound_whichever_way_it_lies() {
 
 #[test]
 fn a_flat_body_without_noise_is_found_to_all_its_digits() {
-    let truth = moments([72.53, 307.04, 0.0]);
-    let measured = thrown(truth, [8.0, 0.8, 0.6], (30, 50.0), 5e-7, 1);
+    let (moments, omega) = (moments([72.53, 307.04, 0.0]), [8.0, 0.8, 0.6]);
+    let measured = thrown(moments, omega, (30, 50.0), 5e-7, 1);
     let (_, fit) = fitted(measured, &[A, B, RATES]);
-    for (key, truth) in fit.keys.iter().zip(truth) {
+    for (key, truth) in fit.keys.iter().zip(truth_of_keys(moments, omega)) {
         assert!((key.value / truth - 1.0).abs() < 1e-6, "{}", key.value);
     }
 }
@@ -154,8 +159,7 @@ fn throws_of_bodies_from_flat_to_cubic_end_with_numbers_that_cover() {
     let off = |seed: u64| {
         let (truth, omega, measured) = any_throw(seed);
         let (_, fit) = fitted(measured, &[A, B, RATES]);
-        let truth = [truth[0], truth[1], omega[0], omega[1], omega[2]];
-        let pairs = fit.keys.iter().zip(truth);
+        let pairs = fit.keys.iter().zip(truth_of_keys(truth, omega));
         let off = pairs.map(|(key, truth)| {
             let sides = key
                 .sides
@@ -241,6 +245,8 @@ fn a_key_at_the_least_value_it_can_have_has_an_upper_limit() {
         sides.below == 0.0 && (1e-10..1e-6).contains(&sides.above),
         "{sides:?}"
     );
+    let stated = [0, 1].map(|key| fit.keys[key].stated());
+    assert_eq!(stated, ["1000.70 +0.65 -0.50", "0 +1.0e-8 -0"]);
     has(
         &fit.remarks().concat(),
         "the least that it can be, at most ",
