@@ -9,7 +9,7 @@
 use gyrolab::scenario::Document;
 use gyrolab::sweep::Sweep;
 use gyrolab::sweep::in_order::in_order;
-use gyrolab::sweep::part::{Opened, PartFile};
+use gyrolab::sweep::part::{Opened, PartialSweep};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -73,7 +73,7 @@ fn swept(sweep: &Sweep) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("sweep.csv");
     let begin = Instant::now();
-    let Opened::Part(mut part) = PartFile::open(&path, sweep, false).unwrap() else {
+    let Opened::Part(mut part) = PartialSweep::open(&path, sweep, false).unwrap() else {
         return f64::NAN;
     };
     in_order(

@@ -9,7 +9,7 @@ use crate::analysis::compare::{self, ComparisonRow};
 use crate::analysis::{Monitor, cost};
 use crate::export::layout::{above_run_file, commented};
 use crate::export::stream::{self, Ended};
-use crate::export::{CsvWriter, Layout};
+use crate::export::{CsvLayout, CsvWriter};
 use crate::fit::report::Header;
 use crate::physics::SchemeInfo;
 use crate::run::{Clock, Simulation, Step};
@@ -19,7 +19,7 @@ use crate::scenario::rescale::MOST_STEPS;
 use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::sweep::Sweep;
 use crate::sweep::in_order::in_order;
-pub use against::{Against, Difference, first_difference};
+pub use against::{Against, FileDifference, first_difference};
 pub use figure::redraw;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -35,7 +35,7 @@ pub use unverified::{Unverified, other_version};
 pub struct Verified {
     pub rows: u64,
     /// The first thing that differs; `None` where all is the same.
-    pub difference: Option<Difference>,
+    pub difference: Option<FileDifference>,
     /// What else there is to say, a line each: another version, where the run ends early, whether to believe it.
     pub notes: Vec<String>,
 }
@@ -75,7 +75,7 @@ pub fn verify(
     } else if document.table().contains_key("vary") {
         play_sweep(&Sweep::open(&document)?, &mut against, watch, &mut notes)?;
     } else {
-        let layout = Layout::read(&text).map_err(|error| format!("{error} (in its header)"))?;
+        let layout = CsvLayout::read(&text).map_err(|error| format!("{error} (in its header)"))?;
         let scenario = Arc::new(document.scenario()?);
         verdict = play_run(&scenario, layout, &mut against, watch, &mut notes)?;
     }
@@ -114,7 +114,7 @@ fn run_file(head: &Head) -> Result<String, Problems> {
 /// Plays `scenario`, and compares its rows. Gives the verdict on the run, where they are the same.
 fn play_run(
     scenario: &Arc<Scenario>,
-    layout: Layout,
+    layout: CsvLayout,
     against: &mut Against,
     watch: impl Fn(u64, u64) -> ControlFlow<()>,
     notes: &mut Vec<String>,

@@ -83,7 +83,7 @@ pub fn compare(
     let taken = AtomicU64::new(0);
     let row = |cell: &Arc<Scenario>| {
         let mut before = 0;
-        let trial = Trial::run(cell, until_s.unwrap_or(f64::INFINITY), |step| {
+        let trial = ComparisonTrial::run(cell, until_s.unwrap_or(f64::INFINITY), |step| {
             let now = taken.fetch_add(step - before, Ordering::Relaxed) + (step - before);
             before = step;
             watch(now, total)
@@ -105,7 +105,7 @@ const TIMED: u64 = 1000;
 
 /// A run that is played through beside the exact motion, as a [`ComparisonRow`] has its numbers.
 #[derive(Default)]
-struct Trial {
+struct ComparisonTrial {
     steps: u64,
     most_distance_m: f64,
     end_distance_m: f64,
@@ -118,7 +118,7 @@ struct Trial {
     has_broken: bool,
 }
 
-impl Trial {
+impl ComparisonTrial {
     /// Plays `scenario` to its end, unless `watch`, which is asked from time to time, says no. Its errors are those up to
     /// `until_s`.
     fn run(
@@ -256,7 +256,7 @@ fn order(coarse: &ComparisonRow, fine: &ComparisonRow, least_m: f64) -> Option<f
 
 /// The rows as a table for reading.
 #[derive(Clone, Copy, Debug)]
-pub struct Table<'a> {
+pub struct ComparisonTable<'a> {
     pub rows: &'a [ComparisonRow],
     /// What the energy drifts are measured in; `None` where there is nothing to measure them by.
     pub energy_unit: Option<EnergyUnit>,
@@ -264,7 +264,7 @@ pub struct Table<'a> {
     pub predictability: Predictability,
 }
 
-impl Table<'_> {
+impl ComparisonTable<'_> {
     /// The table as one JSON object: which run, compared with which exact motion, and a row for each scheme and time
     /// step under the names of the CSV's columns. null stands for a number that there is not.
     ///
@@ -325,7 +325,7 @@ impl Table<'_> {
     }
 }
 
-impl fmt::Display for Table<'_> {
+impl fmt::Display for ComparisonTable<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:<8} {:>10} {:>10}", "scheme", "dt s", "steps")?;
         write!(f, " {:>9} {:>9} {:>6}", "error m", "at end m", "order")?;

@@ -5,7 +5,7 @@
 
 use super::cost::{has_closed_form, is_affordable};
 use super::predictability::{Companion, Predictability};
-use super::swings::{Swing, Swings, height};
+use super::swings::{SwingComparison, Swings, height};
 use crate::physics::State;
 use crate::physics::exact::AT_ONCE;
 use crate::run::Truth;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 /// The exact motion beside one run, and how far the run has been off it.
 #[derive(Clone, Debug)]
-pub struct Beside {
+pub struct ExactReference {
     /// `None` where it would take too long, or has left the range of numbers.
     truth: Option<Truth>,
     /// Made when the first steps are looked at: of a run that is never compared it is never needed.
@@ -31,7 +31,7 @@ pub struct Beside {
     swings: Swings,
 }
 
-impl Beside {
+impl ExactReference {
     /// The exact motion beside the run of `scenario`, which stands at its start.
     pub fn new(scenario: &Arc<Scenario>) -> Self {
         let truth = is_affordable(scenario).then(|| Truth::new(Arc::clone(scenario)));
@@ -225,7 +225,7 @@ impl Beside {
 
     /// How the tilt has swung up to then beside the exact motion's, where they differ most; `None` where it is not held
     /// against that.
-    pub fn swing(&self) -> Option<Swing> {
+    pub fn swing(&self) -> Option<SwingComparison> {
         self.truth.as_ref().and_then(|_| self.swings.worst())
     }
 }

@@ -3,7 +3,7 @@
 //! With l = L/I1 and p the load over I1, both in the world frame, da/dt = l × a and dl/dt = a × p: the spin about the axle
 //! does not enter. Both right sides are products, so that a Taylor series follows term by term.
 
-use super::turns::Turn;
+use super::turns::HeightExtreme;
 use crate::physics::observables::Azimuth;
 use crate::run::Step;
 use nalgebra::Vector3;
@@ -18,17 +18,17 @@ const LAST_TERM: f64 = f64::EPSILON / 16.0;
 const MOST_STEPS: usize = 64;
 
 /// The terms of one series, from the constant one on.
-type Series = [Vector3<f64>; ORDER + 1];
+type PowerSeries = [Vector3<f64>; ORDER + 1];
 
 /// Axle and momentum of a symmetric top at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Motion {
+pub(super) struct TopMotion {
     pub axle: Vector3<f64>,
     /// L over the moment across the axle, rad/s.
     pub momentum: Vector3<f64>,
 }
 
-impl Motion {
+impl TopMotion {
     /// Rate of the axle's height, 1/s.
     pub fn climb(&self) -> f64 {
         self.momentum.x * self.axle.y - self.momentum.y * self.axle.x
@@ -63,7 +63,7 @@ impl Motion {
         for _ in 0..MOST_STEPS {
             let (axle, momentum, radius) = self.series(pull);
             let step = left.clamp(-radius, radius);
-            let sum = |terms: &Series| {
+            let sum = |terms: &PowerSeries| {
                 let rest = terms[1..].iter().rev();
                 terms[0] + rest.fold(Vector3::zeros(), |sum, term| (sum + term) * step)
             };
@@ -80,7 +80,7 @@ impl Motion {
     }
 
     /// The series of axle and momentum, and how far they hold, s.
-    fn series(&self, pull: &Vector3<f64>) -> (Series, Series, f64) {
+    fn series(&self, pull: &Vector3<f64>) -> (PowerSeries, PowerSeries, f64) {
         let zeros = [Vector3::zeros(); ORDER + 1];
         let (mut axle, mut momentum) = (zeros, zeros);
         (axle[0], momentum[0]) = (self.axle, self.momentum);
@@ -105,7 +105,7 @@ struct Interpolation {
 }
 
 impl Interpolation {
-    pub fn between(from: &Motion, to: &Motion, step_s: f64) -> Self {
+    pub fn between(from: &TopMotion, to: &TopMotion, step_s: f64) -> Self {
         Self {
             ends: [from.axle, to.axle],
             ways: [from, to].map(|swing| swing.momentum.cross(&swing.axle) * step_s),
@@ -132,14 +132,14 @@ impl Interpolation {
         share.clamp(0.0, 1.0) * self.step_s
     }
 
-    pub fn at(&self, time_s: f64) -> Motion {
+    pub fn at(&self, time_s: f64) -> TopMotion {
         let t = time_s / self.step_s;
         let [from, to] = self.ends;
         let [begin, end] = self.ways;
         let rise = to - from;
         let axle = from
             + t * (begin + t * ((3.0 * rise - 2.0 * begin - end) + t * (begin + end - 2.0 * rise)));
-        Motion {
+        TopMotion {
             axle,
             momentum: Vector3::zeros(),
         }
@@ -161,11 +161,11 @@ impl Equations {
     /// When the motion from `row` on comes to its highest point (else its lowest), s from it, between `low` and `high`.
     fn time_of_turn(
         &self,
-        row: &Motion,
+        row: &TopMotion,
         is_top: bool,
         guess: f64,
         [mut low, mut high]: [f64; 2],
-    ) -> (f64, Motion) {
+    ) -> (f64, TopMotion) {
         let mut time = guess.clamp(low, high);
         let mut swing = row.after(time, &self.pull);
         for _ in 0..16 {
@@ -194,7 +194,7 @@ impl Equations {
     }
 
     /// The turning point by interpolation, and how far it is off the one by the equations of motion.
-    pub fn turn(&self, crossing: &Crossing) -> Turn {
+    pub fn turn(&self, crossing: &Crossing) -> HeightExtreme {
         let (before, step, is_top) = (crossing.before, self.time_step_s, crossing.is_top);
         let from = before.swing;
         // The equations of motion from the row before it, and from the one after it.
@@ -221,7 +221,7 @@ impl Equations {
         let time_s = before.time_s + time + off_s;
         let rounding_s = f64::EPSILON * (self.rates[1] / bend.abs() + time_s.abs());
         let rounding = f64::EPSILON * (1.0 / level + self.rates[1] * time_s);
-        Turn {
+        HeightExtreme {
             time_s,
             time_off_s: off_s,
             time_error_s: libm::hypot(rounding_s, 0.5 * apart_s),
@@ -235,7 +235,7 @@ impl Equations {
     }
 
     /// The azimuth's way in `time_s` from `from` on, rad.
-    fn way(&self, from: &Motion, time_s: f64) -> f64 {
+    fn way(&self, from: &TopMotion, time_s: f64) -> f64 {
         let mut at = *from;
         let pieces = (4.0 * self.rates[1] * time_s.abs()).ceil().max(1.0);
         let mut way = 0.0;
@@ -249,7 +249,7 @@ impl Equations {
 
     /// The full turns of the azimuth from the row `before` to the next one, `now`, that their azimuths do not show.
     #[cold]
-    pub fn missed_turns(&self, before: &Row, now: &Row) -> i64 {
+    pub fn missed_turns(&self, before: &StepEquation, now: &StepEquation) -> i64 {
         let (from, to) = (before.swing, now.swing);
         let (begin, end) = (from.climb(), to.climb());
         // Near the vertical it turns fast where the tilt turns back: no piece of the way leads past that point.
@@ -269,21 +269,21 @@ impl Equations {
 
 /// What is known of the axle after a time step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
+pub(super) struct StepEquation {
     pub time_s: f64,
     /// Where the axle is, and how it moves.
-    pub swing: Motion,
+    pub swing: TopMotion,
     pub azimuth: Azimuth,
 }
 
-impl Row {
+impl StepEquation {
     /// The row after `step`; `per_across` is one over the moment across the axle, 1/(kg m²).
     #[inline]
     pub fn of(step: &Step, per_across: f64) -> Self {
         let state = step.after();
         Self {
             time_s: state.time_s,
-            swing: Motion {
+            swing: TopMotion {
                 axle: state.axle(),
                 momentum: state.momentum * per_across,
             },
@@ -300,9 +300,9 @@ impl Row {
 /// Two rows with a turning point between them, or a start that stands at one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crossing {
-    pub before: Row,
+    pub before: StepEquation,
     /// The row after it; `None` at a start that stands there.
-    pub after: Option<Row>,
+    pub after: Option<StepEquation>,
     /// Full turns of the azimuth that the rows up to `before` miss.
     pub missed: i64,
     /// Whether the axle is highest there, and not lowest.

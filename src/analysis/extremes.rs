@@ -7,7 +7,7 @@
 //! swing of the first then tells how much is still unseen.
 
 use super::swings::height_in;
-use super::turns::Measured;
+use super::turns::MeasuredNumber;
 use crate::physics::observables::tilt_of;
 use crate::run::Step;
 use nalgebra::Vector3;
@@ -104,14 +104,14 @@ pub(super) struct TiltSwing {
     last: [(Vector3<f64>, f64); 2],
     tilts: Tilts,
     /// The lowest and the highest turning point among the rows.
-    turned: [Option<Turned>; 2],
+    turned: [Option<TurningRow>; 2],
     /// The swing at the last two numbers of rows that were powers of two, degrees.
     earlier: [f64; 2],
 }
 
 /// A turning point, at the row nearest to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Turned {
+struct TurningRow {
     tilt_deg: f64,
     height: f64,
     /// By how much the parabola through it and its neighbours reaches beyond the row, degrees.
@@ -164,7 +164,7 @@ impl TiltSwing {
         if record.is_none_or(|there| sign * at > sign * there.tilt_deg) {
             let bend = (sign * (2.0 * at - before - after)).max(f64::MIN_POSITIVE);
             let beyond = ((before - after).powi(2) / (8.0 * bend)).min(bend);
-            *record = Some(Turned {
+            *record = Some(TurningRow {
                 tilt_deg: at,
                 height,
                 beyond,
@@ -174,7 +174,7 @@ impl TiltSwing {
     }
 
     /// The swing so far, degrees; `None` before it was seen whole.
-    pub fn measured(&self) -> Option<Measured> {
+    pub fn measured(&self) -> Option<MeasuredNumber> {
         let [Some(bottom), Some(top)] = self.turned else {
             return None;
         };
@@ -190,7 +190,7 @@ impl TiltSwing {
         } else {
             0.0
         };
-        (self.turns >= LEAST_TURNS).then_some(Measured {
+        (self.turns >= LEAST_TURNS).then_some(MeasuredNumber {
             value: swing,
             uncertainty: unseen + ROUNDING_DEG,
             nutations: self.turns / 2,

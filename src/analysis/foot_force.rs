@@ -8,7 +8,7 @@
 //! At a turning point the vertical momentum is 0. What is read there instead is the error of the reading, and makes the
 //! uncertainty.
 
-use super::turns::Measured;
+use super::turns::MeasuredNumber;
 use crate::physics::State;
 use crate::physics::observables::{pivot_force_z, rise, weight_height};
 use crate::run::Step;
@@ -124,7 +124,7 @@ impl FootForce {
     }
 
     /// The mean over whole nutations, N; `None` before one was seen.
-    pub fn mean(&self) -> Option<Measured> {
+    pub fn mean(&self) -> Option<MeasuredNumber> {
         let [bottoms, tops] = self.turns;
         let span = [tops, bottoms]
             .into_iter()
@@ -132,7 +132,7 @@ impl FootForce {
             .max_by_key(|span| span.nutations)?;
         let time_s = span.last.time_s - span.first.time_s;
         let rounding = f64::EPSILON * self.at_rest.abs();
-        (span.nutations > 0).then(|| Measured {
+        (span.nutations > 0).then(|| MeasuredNumber {
             value: self.at_rest + (span.last.rise - span.first.rise) / time_s,
             uncertainty: libm::hypot(span.first.rise, span.last.rise) / time_s + rounding,
             nutations: span.nutations,

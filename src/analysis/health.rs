@@ -5,11 +5,11 @@
 //! axle lag by δ/|1 − A|, where the truth is δ/(κψ).
 
 use super::cost::{AFFORDABLE_RAD, integration_rad, is_affordable};
-use super::deviation::{Beside, Deviation};
+use super::deviation::{Deviation, ExactReference};
 use super::predictability::Predictability;
-use super::slowing::Slowing;
+use super::slowing::FrictionEffect;
 pub use super::swings::BELIEVED_WITHIN;
-use super::swings::Swing;
+use super::swings::SwingComparison;
 use crate::journal::restart::in_force;
 use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
@@ -40,11 +40,11 @@ pub struct Health {
     /// Turns of the body in one time step, |Ω|dt/2π.
     pub turns_per_step: f64,
     /// What that does to the picture of the wheel.
-    pub picture: Picture,
+    pub picture: WheelPicture,
     /// The report's scheme alone: what it does to nutation and lag.
     pub nutation: Option<Nutation>,
     /// How the tilt has swung beside the exact motion's; `None` where the exact motion would take too long.
-    pub swing: Option<Swing>,
+    pub swing: Option<SwingComparison>,
     /// Whether the body's orientation is a rotation, as a scheme that breaks down does not leave it.
     pub is_a_rotation: bool,
     /// Angle between axle and L now, degrees.
@@ -54,7 +54,7 @@ pub struct Health {
     /// What S is; `None` where there is none.
     pub energy_unit: Option<EnergyUnit>,
     /// What friction does; `None` where there is none.
-    pub slowing: Option<Slowing>,
+    pub slowing: Option<FrictionEffect>,
     /// How far off the exact motion it is now; `None` where the exact motion would take too long, or can be predicted no
     /// longer.
     pub deviation: Option<Deviation>,
@@ -71,7 +71,7 @@ pub struct Health {
 
 /// What the time step does to the picture of a wheel of n equal points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Picture {
+pub enum WheelPicture {
     /// Each point is nearest to where it was: the turning shows as it is.
     Right,
     /// From π/n on one point moves to where another was.
@@ -119,7 +119,7 @@ pub enum Advice {
 
 impl Health {
     /// Of the run at `step`, which `beside` has been shown up to there.
-    pub fn new(step: &Step, beside: &mut Beside) -> Self {
+    pub fn new(step: &Step, beside: &mut ExactReference) -> Self {
         let scenario = step.scenario();
         let deviation = beside.deviation(step.after());
         // What is edited at this step is said at once: it is true of the step to come.
@@ -133,7 +133,7 @@ impl Health {
         Self {
             scheme: motion.scheme,
             turns_per_step: psi / TAU,
-            picture: Picture::of(
+            picture: WheelPicture::of(
                 psi,
                 scenario.file.body.rim.as_ref().map_or(1, |rim| rim.points),
             ),
@@ -147,7 +147,7 @@ impl Health {
             },
             energy_drift: step.energy_drift(),
             energy_unit: step.energy_unit(),
-            slowing: Slowing::new(step),
+            slowing: FrictionEffect::new(step),
             deviation,
             most_distance_m: beside.most_distance_m(),
             predictability: beside.predictability(),
@@ -213,7 +213,7 @@ impl Health {
     }
 }
 
-impl Picture {
+impl WheelPicture {
     /// Of a wheel of `points` equal points that turns by `psi` radians a step.
     fn of(psi: f64, points: usize) -> Self {
         match psi {
@@ -272,7 +272,7 @@ pub fn advise_while(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Option
 /// `None` where it is not, or `is_wanted` returned false.
 fn turns_if_believed(scenario: &Arc<Scenario>, is_wanted: &dyn Fn() -> bool) -> Option<f64> {
     let mut simulation = Simulation::new(Arc::clone(scenario));
-    let mut beside = Beside::new(scenario);
+    let mut beside = ExactReference::new(scenario);
     let together = (scenario.steps / LOOKS).clamp(1, MOST_TOGETHER);
     let mut most_turns = 0.0_f64;
     loop {

@@ -25,12 +25,12 @@ pub mod theory;
 mod turning_points;
 mod turns;
 
-pub use deviation::Beside;
+pub use deviation::ExactReference;
 pub use extremes::Extremes;
 pub use health::Health;
 pub use monitor::{Instruments, Monitor};
 pub use predictability::Predictability;
 pub use readouts::Readouts;
-pub use slowing::Slowing;
+pub use slowing::FrictionEffect;
 pub use theory::Theory;
-pub use turns::{Measured, WithoutNutation};
+pub use turns::{MeasuredNumber, WithoutNutation};

@@ -24,7 +24,7 @@
 //! What is measured is the run as its steps show it: the error of its scheme is not in the uncertainty, and a nutation of
 //! less than two time steps is seen as a slower one, as it is on the screen.
 
-use super::deviation::Beside;
+use super::deviation::ExactReference;
 use super::extremes::{Extremes, TiltSwing};
 use super::foot_force::{FootForce, mean_at_rest};
 use super::health::Health;
@@ -33,7 +33,7 @@ use super::report_theory::ReportTheory;
 use super::swings::height_in;
 use super::theory::Theory;
 use super::turning_points::TurningPoints;
-use super::turns::{Measured, WithoutNutation};
+use super::turns::{MeasuredNumber, WithoutNutation};
 use crate::physics::{LagrangeTop, SymmetricTop};
 use crate::run::Step;
 use std::borrow::Cow;
@@ -67,7 +67,7 @@ impl Instruments {
     ///
     /// # Errors
     /// Where there is none, or too little of it was seen to say how well it is known.
-    pub fn nutation_period_s(&self) -> Result<Measured, WithoutNutation> {
+    pub fn nutation_period_s(&self) -> Result<MeasuredNumber, WithoutNutation> {
         match self {
             Self::TurningPoints(points) => points.nutation_period_s(),
             Self::Parabolas(parabolas) => parabolas.nutation_period_s(),
@@ -75,7 +75,7 @@ impl Instruments {
     }
 
     /// Precession of the run so far, rad/s; `None` likewise, and where the axle passes through the vertical.
-    pub fn precession_rad_per_s(&self) -> Option<Measured> {
+    pub fn precession_rad_per_s(&self) -> Option<MeasuredNumber> {
         match self {
             Self::TurningPoints(points) => points.precession_rad_per_s(),
             Self::Parabolas(parabolas) => parabolas.precession_rad_per_s(),
@@ -94,7 +94,7 @@ pub struct Monitor {
     pub since: u64,
     tilt_swing: TiltSwing,
     pub report_theory: Option<ReportTheory>,
-    pub beside: Beside,
+    pub beside: ExactReference,
     foot_force: FootForce,
 }
 
@@ -107,7 +107,7 @@ impl Monitor {
             since: step.number(),
             tilt_swing: TiltSwing::new(step),
             report_theory: ReportTheory::new(step),
-            beside: Beside::new(step.scenario()),
+            beside: ExactReference::new(step.scenario()),
             foot_force: FootForce::new(step),
         }
     }
@@ -130,7 +130,7 @@ impl Monitor {
 
     /// The mean force of the floor on the foot over whole nutations since the forces last changed, N; `None` before one
     /// was seen.
-    pub fn mean_foot_force(&self) -> Option<Measured> {
+    pub fn mean_foot_force(&self) -> Option<MeasuredNumber> {
         self.foot_force.mean()
     }
 
@@ -140,7 +140,7 @@ impl Monitor {
     }
 
     /// Compares the steps with the exact motion that have not been, as long as `go_on` says so: see
-    /// [`Beside::settle_while`].
+    /// [`ExactReference::settle_while`].
     pub fn catch_up(&mut self, go_on: &mut dyn FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
         self.beside.settle_while(go_on)
     }
@@ -166,7 +166,7 @@ impl Monitor {
     }
 
     /// By how much the tilt has swung since the forces last changed, degrees; `None` before it was seen whole.
-    pub fn tilt_swing_deg(&self) -> Option<Measured> {
+    pub fn tilt_swing_deg(&self) -> Option<MeasuredNumber> {
         self.tilt_swing.measured()
     }
 

@@ -2,7 +2,7 @@
 //! of the axle by parabolas through three rows.
 
 use super::beats::{Point, slope};
-use super::turns::{Measured, ROUNDING, StraightLine, Turn, Turns, WithoutNutation};
+use super::turns::{HeightExtreme, MeasuredNumber, ROUNDING, StraightLine, Turns, WithoutNutation};
 use crate::physics::SymmetricTop;
 use crate::physics::observables::Azimuth;
 use crate::run::Step;
@@ -32,12 +32,12 @@ const AT_RANDOM: f64 = 1.75;
 #[derive(Clone, Debug)]
 pub struct Parabolas {
     /// The last three steps, the newest last.
-    looks: [Look; 3],
+    looks: [AxleSample; 3],
     seen: u64,
     /// The last highest point of the axle, still to be confirmed by a lower one after it.
-    candidate: Option<(Turn, f64)>,
+    candidate: Option<(HeightExtreme, f64)>,
     lowest_since: f64,
-    last: Option<(u64, Turn)>,
+    last: Option<(u64, HeightExtreme)>,
     count: u64,
     turns: Turns,
     is_lopsided: bool,
@@ -51,14 +51,14 @@ pub struct Parabolas {
     heights: [f64; 2],
     /// Whether the azimuth has turned so far in one step that it cannot be told which way.
     is_ambiguous: bool,
-    start: Look,
+    start: AxleSample,
     /// A step about half as far into the run as the newest.
-    half: Look,
-    next_half: Look,
+    half: AxleSample,
+    next_half: AxleSample,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Look {
+struct AxleSample {
     time_s: f64,
     axle: [f64; 3],
     azimuth: Azimuth,
@@ -66,7 +66,7 @@ struct Look {
     vertical: [f64; 2],
 }
 
-impl Look {
+impl AxleSample {
     fn at(step: &Step) -> Self {
         let state = step.after();
         Self {
@@ -85,7 +85,7 @@ impl Look {
 impl Parabolas {
     /// Instruments for the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
-        let look = Look::at(step);
+        let look = AxleSample::at(step);
         let is_lopsided = SymmetricTop::of(&step.scenario().body.mechanics).is_none();
         Self {
             looks: [look; 3],
@@ -114,7 +114,7 @@ impl Parabolas {
 
     #[inline]
     pub fn follow(&mut self, step: &Step) {
-        let look = Look::at(step);
+        let look = AxleSample::at(step);
         let before = self.looks[2].axle;
         self.is_ambiguous |= before[0] * look.axle[0] + before[1] * look.axle[1] < 0.0;
         self.looks = [self.looks[1], self.looks[2], look];
@@ -138,7 +138,7 @@ impl Parabolas {
     }
 
     /// The turning point between the last three steps: the top of a parabola through them.
-    fn turn(&self) -> Turn {
+    fn turn(&self) -> HeightExtreme {
         let [a, b, c] = self.looks;
         let parabola = |a: f64, b: f64, c: f64| ((c - a) / 2.0, a - 2.0 * b + c);
         let (slope, bend) = parabola(a.axle[2], b.axle[2], c.axle[2]);
@@ -150,7 +150,7 @@ impl Parabolas {
         } else {
             c.time_s - b.time_s
         };
-        Turn {
+        HeightExtreme {
             time_s: b.time_s + shift * step,
             time_off_s: 0.0,
             time_error_s: 0.0,
@@ -191,7 +191,7 @@ impl Parabolas {
 
     /// Counts the candidate once the axle has truly sunk below it.
     fn confirm(&mut self) {
-        let is_below = |(_, height): &(Turn, f64)| height - self.lowest_since > ROUNDING;
+        let is_below = |(_, height): &(HeightExtreme, f64)| height - self.lowest_since > ROUNDING;
         let Some((turn, _)) = self.candidate.filter(is_below) else {
             return;
         };
@@ -240,7 +240,7 @@ impl Parabolas {
         }
     }
 
-    pub fn nutation_period_s(&self) -> Result<Measured, WithoutNutation> {
+    pub fn nutation_period_s(&self) -> Result<MeasuredNumber, WithoutNutation> {
         let [lowest, highest] = self.heights;
         if highest - lowest <= ROUNDING {
             return Err(WithoutNutation::Steady);
@@ -263,14 +263,14 @@ impl Parabolas {
             phase: turn.phase,
         });
         let uncertainty = libm::hypot(line.time_error_s(AT_RANDOM) / count, beats);
-        Ok(Measured {
+        Ok(MeasuredNumber {
             value,
             uncertainty: uncertainty.max(f64::EPSILON * value),
             nutations: line.intervals,
         })
     }
 
-    pub fn precession_rad_per_s(&self) -> Option<Measured> {
+    pub fn precession_rad_per_s(&self) -> Option<MeasuredNumber> {
         if self.is_ambiguous {
             return None;
         }
@@ -287,7 +287,7 @@ impl Parabolas {
             phase: turn.phase,
         });
         let uncertainty = libm::hypot(line.rate_error(AT_RANDOM), beats);
-        Some(Measured {
+        Some(MeasuredNumber {
             value,
             uncertainty: uncertainty.max(f64::EPSILON * value.abs()),
             nutations: line.intervals,
@@ -296,7 +296,7 @@ impl Parabolas {
 
     /// How far `value`, the slope from the first to the last of the turning points' `points`, is off the slope that allows
     /// for a lopsided body's beats; 0 of a symmetric one.
-    fn beats(&self, value: f64, point: impl Fn((u64, Turn)) -> Point) -> f64 {
+    fn beats(&self, value: f64, point: impl Fn((u64, HeightExtreme)) -> Point) -> f64 {
         let Some(last) = self.last.filter(|_| self.is_lopsided) else {
             return 0.0;
         };
@@ -306,14 +306,15 @@ impl Parabolas {
     }
 
     /// The whole way of the azimuth over the time, for an axle that keeps its height.
-    fn way_of_the_azimuth(&self) -> Option<Measured> {
+    fn way_of_the_azimuth(&self) -> Option<MeasuredNumber> {
         let now = self.looks[2];
-        let rate =
-            |from: &Look| (now.azimuth_rad() - from.azimuth_rad()) / (now.time_s - from.time_s);
+        let rate = |from: &AxleSample| {
+            (now.azimuth_rad() - from.azimuth_rad()) / (now.time_s - from.time_s)
+        };
         let (whole, later) = (rate(&self.start), rate(&self.half));
         let [lowest, highest] = self.heights;
         let is_steady = highest - lowest <= ROUNDING;
-        (is_steady && whole.is_finite() && later.is_finite()).then(|| Measured {
+        (is_steady && whole.is_finite() && later.is_finite()).then(|| MeasuredNumber {
             value: whole,
             uncertainty: (whole - later).abs().max(f64::EPSILON * whole.abs()),
             nutations: 0,

@@ -2,16 +2,16 @@
 //! its unit and its meaning. The JSON, the summary, the lab and whoever asks for a number by its name read this table.
 //!
 //! A bare name is the live value of the run's last step. `predicted_...` is theory's, `measured_...` the run's own. What
-//! cannot be stated honestly is [`Value::Nothing`], null in JSON: no number of it is ever NaN or infinite.
+//! cannot be stated honestly is [`ReadoutValue::Nothing`], null in JSON: no number of it is ever NaN or infinite.
 
 mod table;
 
-pub use table::{READOUTS, Readout, Source, find, names, nearest};
+pub use table::{READOUTS, Readout, ReadoutSource, find, names, nearest};
 
 use super::health::{Advice, advise};
 use super::report_theory::ReportTheory;
-use super::theory::Axis;
-use super::{Extremes, Health, Measured, Monitor, Theory, WithoutNutation};
+use super::theory::TheoryAxis;
+use super::{Extremes, Health, MeasuredNumber, Monitor, Theory, WithoutNutation};
 use crate::physics::SymmetricTop;
 use crate::physics::observables::pivot_force_z;
 use crate::run::{Clock, Sample, Simulation};
@@ -52,17 +52,17 @@ pub struct Readouts {
     /// Vertical force of the floor on the foot, N.
     pub foot_force: Option<f64>,
     /// Its mean over whole nutations since the forces last changed, N.
-    pub mean_foot_force: Option<Measured>,
+    pub mean_foot_force: Option<MeasuredNumber>,
     /// That mean by Newton's second law, N.
     pub predicted_mean_foot_force: Option<f64>,
     /// Precession since the forces last changed, rad/s.
-    pub precession: Option<Measured>,
+    pub precession: Option<MeasuredNumber>,
     /// Nutation period since the forces last changed, s.
-    pub nutation: Option<Measured>,
+    pub nutation: Option<MeasuredNumber>,
     /// Why there is no such period.
     pub without_nutation: Option<WithoutNutation>,
     /// Swing of the tilt since the forces last changed, degrees.
-    pub tilt_swing: Option<Measured>,
+    pub tilt_swing: Option<MeasuredNumber>,
     /// What the linear theory of the report's scheme says of the motion since the forces last changed.
     pub report_theory: Option<ReportTheory>,
     /// The step at which they did.
@@ -133,18 +133,27 @@ impl Readouts {
 
     /// Reads those of `source` off `simulation` again, which `monitor` has followed on; the others stay as they are, where
     /// reading them as well would cost more.
-    pub fn read_again(&mut self, source: Source, simulation: &Simulation, monitor: &mut Monitor) {
+    pub fn read_again(
+        &mut self,
+        source: ReadoutSource,
+        simulation: &Simulation,
+        monitor: &mut Monitor,
+    ) {
         match source {
-            Source::EveryStep => self.extremes = monitor.extremes,
-            Source::Measured => self.read_measured(monitor),
-            Source::Exact => {
+            ReadoutSource::EveryStep => self.extremes = monitor.extremes,
+            ReadoutSource::Measured => self.read_measured(monitor),
+            ReadoutSource::Exact => {
                 let deviation = monitor.beside.deviation(simulation.state());
                 self.health.deviation = deviation;
                 self.health.most_distance_m = monitor.beside.most_distance_m();
                 self.health.predictability = monitor.beside.predictability();
                 self.health.swing = monitor.beside.swing();
             }
-            Source::Scenario | Source::State | Source::Scheme | Source::Theory | Source::Clock => {
+            ReadoutSource::Scenario
+            | ReadoutSource::State
+            | ReadoutSource::Scheme
+            | ReadoutSource::Theory
+            | ReadoutSource::Clock => {
                 let health = monitor.health(simulation.now());
                 *self = Self::new(simulation, monitor, &health, self.advice.as_ref());
             }
@@ -158,7 +167,9 @@ impl Readouts {
 
     /// Theory, where its axis is +z, about which the measured numbers are too.
     pub fn theory_about_z(&self) -> Option<&Theory> {
-        self.theory.as_ref().filter(|theory| theory.axis == Axis::Z)
+        self.theory
+            .as_ref()
+            .filter(|theory| theory.axis == TheoryAxis::Z)
     }
 
     /// The same, where it is of the motion that does follow: there is no friction.
@@ -201,7 +212,7 @@ impl Readouts {
     /// The period of the tilt's swings as the steps show them, s: measured, or before that predicted where the time step
     /// shows the nutation as it is; `None` where there are no swings.
     pub fn swing_s(&self) -> Option<f64> {
-        let measured = self.nutation.filter(Measured::is_settled);
+        let measured = self.nutation.filter(MeasuredNumber::is_settled);
         let predicted = || {
             let is_seen = self.nutation_is_resolved() != Some(false);
             self.theory_about_z()?.nutation_period_s.filter(|_| is_seen)
@@ -215,7 +226,7 @@ impl Readouts {
         let turn = self.health.turns_per_step * 2.0 * PI;
         match (&self.theory, self.kappa) {
             // A free symmetric top's axle goes round L at |L|/I1.
-            (Some(theory), Some(_)) if theory.axis == Axis::Momentum => {
+            (Some(theory), Some(_)) if theory.axis == TheoryAxis::Momentum => {
                 let rate = theory.precession.unwrap_or(0.0).abs();
                 turn.max(rate * self.time_step_s)
             }
@@ -230,7 +241,7 @@ impl Serialize for Readouts {
         let mut object = serializer.serialize_map(None)?;
         for readout in READOUTS {
             let value = readout.of(self);
-            if readout.name != "scheme_kind" || value != Value::Nothing {
+            if readout.name != "scheme_kind" || value != ReadoutValue::Nothing {
                 object.serialize_entry(readout.name, &value)?;
             }
         }
@@ -240,7 +251,7 @@ impl Serialize for Readouts {
 
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[serde(untagged)]
-pub enum Value {
+pub enum ReadoutValue {
     /// A finite number, in the readout's unit.
     Number(f64),
     Whole(u64),
@@ -249,7 +260,7 @@ pub enum Value {
     Nothing,
 }
 
-impl Value {
+impl ReadoutValue {
     /// As a number: 1 and 0 for yes and no; `None` of a text.
     pub fn number(&self) -> Option<f64> {
         match self {
@@ -269,10 +280,12 @@ pub fn at_end(
     scenario: Scenario,
     wanted: &[&Readout],
     go_on: &dyn Fn() -> bool,
-) -> Result<Option<Vec<Value>>, String> {
+) -> Result<Option<Vec<ReadoutValue>>, String> {
     let scenario = Arc::new(scenario);
     // Only these need every step compared with the exact motion, which may take longer than the run.
-    let is_held = wanted.iter().any(|readout| readout.source == Source::Exact);
+    let is_held = wanted
+        .iter()
+        .any(|readout| readout.source == ReadoutSource::Exact);
     let mut simulation = Simulation::new(Arc::clone(&scenario));
     let mut monitor = Monitor::new(simulation.now());
     let jumps = needs_no_steps(&scenario, wanted);
@@ -313,7 +326,7 @@ fn needs_no_steps(scenario: &Scenario, wanted: &[&Readout]) -> bool {
     scenario.motion.scheme.order.is_none()
         && wanted
             .iter()
-            .all(|readout| readout.source == Source::Theory)
+            .all(|readout| readout.source == ReadoutSource::Theory)
         && scenario.edits.is_empty()
         && !scenario.pushes.iter().any(|push| counts_steps(push.window))
 }

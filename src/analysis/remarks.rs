@@ -1,9 +1,9 @@
 //! The health of a run in words, all of them: the sentence after a run, the remarks on the lab's screen, and the lines of
 //! the summary.
 
-use super::health::{Advice, Nutation, Picture};
+use super::health::{Advice, Nutation, WheelPicture};
 use super::predictability::{Equilibrium, Predictability};
-use super::{Health, Slowing};
+use super::{FrictionEffect, Health};
 use crate::run::EnergyUnit;
 use crate::text::number::{
     NONE, exponent, fixed, short, shortest, signed, signed_exponent, steady, times,
@@ -16,7 +16,7 @@ const NO_ROTATION: &str = "its orientation is no rotation any more";
 /// Distances smaller than this are what decimals leave over, m.
 const ROUNDING_M: f64 = 1e-12;
 
-impl fmt::Display for Picture {
+impl fmt::Display for WheelPicture {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Right => "it shows as it is",
@@ -76,7 +76,7 @@ pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
     remarks.push(energy(health));
     remarks.extend(health.slowing.map(|slowing| taken(&slowing)));
     remarks.extend(others.into_iter().map(|(_, remark)| remark));
-    if health.picture == Picture::Strobed && health.is_believed() != Some(false) {
+    if health.picture == WheelPicture::Strobed && health.is_believed() != Some(false) {
         // Of the picture alone: it changes no number, so it is said last.
         remarks.push(Remark::new(
             "the body's picture is strobed, the motion is not".to_owned(),
@@ -167,13 +167,13 @@ fn swing_of(health: &Health, nutation: &Nutation) -> Vec<(bool, Remark)> {
 }
 
 fn turns(health: &Health) -> Remark {
-    if health.picture == Picture::Unknown {
+    if health.picture == WheelPicture::Unknown {
         let text = "the body turns further in a step than numbers reach".to_owned();
         return Remark::new(text, true);
     }
     let turns = steady(health.turns_per_step);
     let (long, warns) = match (health.picture, health.nutation) {
-        (Picture::Right | Picture::Strobed, _) => (String::new(), false),
+        (WheelPicture::Right | WheelPicture::Strobed, _) => (String::new(), false),
         (picture, None) => (format!(": {picture}"), true),
         (_, Some(_)) => (": strobed, the swing is the time step's".to_owned(), true),
     };
@@ -264,7 +264,7 @@ fn energy(health: &Health) -> Remark {
 }
 
 /// The energy that friction has taken; the drift counts it as work.
-fn taken(slowing: &Slowing) -> Remark {
+fn taken(slowing: &FrictionEffect) -> Remark {
     Remark::new(format!("friction took {} J", short(-slowing.work)), false)
 }
 
@@ -421,7 +421,7 @@ impl Health {
 /// What the time step makes of the picture of the turning body, where that is not right.
 fn picture(health: &Health) -> String {
     match health.picture {
-        Picture::Right => String::new(),
+        WheelPicture::Right => String::new(),
         picture => format!("; only a picture of the turning body would mislead: {picture}"),
     }
 }

@@ -23,12 +23,12 @@ pub struct ReportTheory {
     /// ln |A|.
     growth: f64,
     /// Phases of the swing; `None` where it is too large for the linear theory.
-    swing: Option<Swing>,
+    swing: Option<LagSwing>,
 }
 
 /// An axle that swings about its lag.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Swing {
+struct LagSwing {
     /// w*: downward, and the way of the precession.
     lag: [f64; 2],
     /// w − w* at the beginning.
@@ -89,7 +89,7 @@ impl ReportTheory {
         Some(Self {
             lag: Some(lag_size).filter(|&size| off_by(size) <= WITHIN),
             growth: 0.5 * libm::log1p(-2.0 * kappa * (1.0 - kappa) * (1.0 - cos)),
-            swing: (off_by(lag_size.max(swing_size)) <= WITHIN).then_some(Swing {
+            swing: (off_by(lag_size.max(swing_size)) <= WITHIN).then_some(LagSwing {
                 lag,
                 offset,
                 tilt,
@@ -125,7 +125,7 @@ impl ReportTheory {
     }
 }
 
-impl Swing {
+impl LagSwing {
     /// The greatest tilt less the least on the first `steps` steps, rad, if each turned the swing by `slip` more; its size grows by
     /// `growth` a step.
     fn seen(&self, steps: u64, growth: f64, slip: f64) -> f64 {

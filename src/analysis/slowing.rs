@@ -10,7 +10,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// Friction on a run at one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slowing {
+pub struct FrictionEffect {
     /// Work of friction since the start, J: 0, or less.
     pub work: f64,
     /// The time in which viscous friction alone takes the spin to 1/e, I3/k1, s.
@@ -21,7 +21,7 @@ pub struct Slowing {
     pub swing_decay_s: Option<f64>,
 }
 
-impl Slowing {
+impl FrictionEffect {
     /// Of the run at `step`; `None` where there is no friction. A lopsided body has no such times.
     pub fn new(step: &Step) -> Option<Self> {
         let friction = step.loads().friction;
@@ -50,7 +50,7 @@ impl Slowing {
     }
 }
 
-impl fmt::Display for Slowing {
+impl fmt::Display for FrictionEffect {
     /// In one line: "work -5.47 J so far; on the swing: a nutation falls to 1/e in 3.3 s, and a precession sinks".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "work {} J so far", short(self.work))?;

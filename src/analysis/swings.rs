@@ -32,7 +32,7 @@ const MOST_BLOCKS: usize = 128;
 /// Both swings so far; to be shown every step.
 #[derive(Clone, Debug)]
 pub(super) struct Swings {
-    blocks: Vec<Block>,
+    blocks: Vec<SwingBin>,
     /// Steps of a block, at least as many as are taken in together, and those that the last one has.
     steps: u64,
     last_steps: u64,
@@ -42,16 +42,16 @@ pub(super) struct Swings {
 
 /// What the heights of both axles did on consecutive steps.
 #[derive(Clone, Copy, Debug)]
-struct Block {
+struct SwingBin {
     from_s: f64,
     to_s: f64,
     /// The run's, and the exact motion's.
-    ways: [Way; 2],
+    ways: [HeightRange; 2],
 }
 
 /// Least and greatest [height], and the sum of all changes of it, without their signs.
 #[derive(Clone, Copy, Debug)]
-struct Way {
+struct HeightRange {
     least: f64,
     greatest: f64,
     length: f64,
@@ -59,7 +59,7 @@ struct Way {
 
 /// The swing of the tilt in a run beside the exact motion's, in the stretch in which they differ most.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Swing {
+pub struct SwingComparison {
     /// Where the stretch begins and ends, s; `None` where it is the whole run.
     pub stretch_s: Option<(f64, f64)>,
     /// The run's least and greatest tilt in it, degrees.
@@ -111,7 +111,7 @@ impl Swings {
     pub fn new(start: &State) -> Self {
         let last = [height_in(start); 2];
         Self {
-            blocks: vec![Block::new(start.time_s, last)],
+            blocks: vec![SwingBin::new(start.time_s, last)],
             steps: AT_ONCE as u64,
             last_steps: 0,
             last,
@@ -157,17 +157,17 @@ impl Swings {
             self.blocks = self
                 .blocks
                 .chunks(2)
-                .map(|two| two[1..].iter().fold(two[0], Block::and))
+                .map(|two| two[1..].iter().fold(two[0], SwingBin::and))
                 .collect();
         }
         self.last_steps = 0;
         let from_s = self.blocks.last().map_or(0.0, |block| block.to_s);
-        self.blocks.push(Block::new(from_s, self.last));
+        self.blocks.push(SwingBin::new(from_s, self.last));
     }
 
     /// Both swings where they differ most.
-    pub fn worst(&self) -> Option<Swing> {
-        let mut stretches: Vec<Block> = Vec::new();
+    pub fn worst(&self) -> Option<SwingComparison> {
+        let mut stretches: Vec<SwingBin> = Vec::new();
         for block in &self.blocks {
             match stretches.last_mut() {
                 Some(last) if last.ways[1].swings() < SWINGS => *last = last.and(block),
@@ -193,9 +193,9 @@ impl Swings {
     }
 }
 
-impl Block {
+impl SwingBin {
     fn new(from_s: f64, heights: [f64; 2]) -> Self {
-        let ways = heights.map(|height| Way {
+        let ways = heights.map(|height| HeightRange {
             least: height,
             greatest: height,
             length: 0.0,
@@ -217,7 +217,7 @@ impl Block {
         }
     }
 
-    fn swing(&self, is_whole_run: bool) -> Swing {
+    fn swing(&self, is_whole_run: bool) -> SwingComparison {
         let [run, exact] = self.ways;
         let (run_deg, exact_deg) = (run.tilts_deg(), exact.tilts_deg());
         let allowed_deg = allowed_deg(exact_deg);
@@ -231,7 +231,7 @@ impl Block {
         } else {
             0.0
         };
-        Swing {
+        SwingComparison {
             stretch_s: (!is_whole_run).then_some((self.from_s, self.to_s)),
             run_deg,
             exact_deg,
@@ -242,7 +242,7 @@ impl Block {
     }
 }
 
-impl Way {
+impl HeightRange {
     fn and(&self, next: &Self) -> Self {
         Self {
             least: self.least.min(next.least),
@@ -267,7 +267,7 @@ impl Way {
     }
 }
 
-impl Swing {
+impl SwingComparison {
     /// Whether the run's swing is the exact motion's.
     pub fn is_right(&self) -> bool {
         self.worst <= 1.0
@@ -295,7 +295,7 @@ impl Swing {
     }
 }
 
-impl fmt::Display for Swing {
+impl fmt::Display for SwingComparison {
     /// What is wrong: "the tilt swings from 29.690 to 30.000 degrees, not from 30.000 to 30.074".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some((from_s, to_s)) = self.stretch_s {
@@ -331,7 +331,7 @@ mod tests {
     use nalgebra::{Rotation3, Vector3};
 
     /// Ten thousand steps of a run whose tilt, degrees, is `tilt_of` the time, thirty to a second, beside a [wave] at 30 degrees.
-    fn beside(tilt_of: impl Fn(f64) -> f64) -> Swing {
+    fn beside(tilt_of: impl Fn(f64) -> f64) -> SwingComparison {
         let state = |time_s: f64| State {
             time_s,
             orientation: Rotation3::new(Vector3::x() * tilt_of(time_s).to_radians()).into_inner(),

@@ -15,7 +15,7 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Theory {
     /// The axis about which precession, tilts and path are meant.
-    pub axis: Axis,
+    pub axis: TheoryAxis,
     /// Moment of the load, N m: M g h for gravity alone, negative where it pulls the axle to +z.
     pub load: f64,
     /// L3 = L·axle, J s, a constant of the motion.
@@ -42,7 +42,7 @@ pub struct Theory {
     pub sleeping_limit: Option<f64>,
     /// Tilt at which the axle stands still in azimuth, degrees: the height of the cusps; `None` where it never does.
     pub cusp_tilt_deg: Option<f64>,
-    pub path: Path,
+    pub path: AxlePath,
     /// Whether there is friction: then all this is of the motion that would follow if it ceased now, and no part of the
     /// motion that does follow, but for the rates at this moment.
     pub is_of_a_moment: bool,
@@ -52,7 +52,7 @@ pub struct Theory {
 
 /// The axis that a theory speaks of: its tilts are angles from it, its precession turns about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Axis {
+pub enum TheoryAxis {
     /// +z, from which the measured tilts and azimuths count too.
     Z,
     /// The direction opposite to a load that does not pull along -z; a unit vector, world frame.
@@ -61,7 +61,7 @@ pub enum Axis {
     Momentum,
 }
 
-impl Axis {
+impl TheoryAxis {
     /// The axis that points along `up` (unit vector, world frame), opposite to a load or, without one, along L.
     fn new(up: Vector3<f64>, is_loaded: bool) -> Self {
         if (up - Vector3::z()).norm() <= SAME_DIRECTION {
@@ -74,7 +74,7 @@ impl Axis {
     }
 }
 
-impl fmt::Display for Axis {
+impl fmt::Display for TheoryAxis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Z => f.write_str("+z"),
@@ -88,7 +88,7 @@ impl fmt::Display for Axis {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Path {
+pub enum AxlePath {
     /// No nutation.
     Circle,
     /// It comes to rest at one end of every nutation.
@@ -101,7 +101,7 @@ pub enum Path {
     ThroughVertical,
 }
 
-impl Path {
+impl AxlePath {
     pub const ALL: [Self; 5] = [
         Self::Circle,
         Self::Cusps,
@@ -111,7 +111,7 @@ impl Path {
     ];
 }
 
-impl fmt::Display for Path {
+impl fmt::Display for AxlePath {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Circle => "circle",
@@ -174,7 +174,7 @@ impl Theory {
         let cusp_tilt_deg = (size > 0.0 && spins && cusp_cosine.abs() <= 1.0)
             .then(|| libm::acos(cusp_cosine).to_degrees());
         Self {
-            axis: Axis::new(up, size > 0.0),
+            axis: TheoryAxis::new(up, size > 0.0),
             load,
             spin,
             fast_top_precession: spins.then(|| load / spin),
@@ -188,7 +188,7 @@ impl Theory {
             sleeping_limit: (load >= 0.0).then(|| 2.0 * (top.across * size).sqrt()),
             cusp_tilt_deg,
             path: if is_through_vertical {
-                Path::ThroughVertical
+                AxlePath::ThroughVertical
             } else {
                 path(tilt_range_deg, cusp_tilt_deg)
             },
@@ -234,13 +234,13 @@ fn body_cone_period_s(top: &SymmetricTop, spin: f64, load: f64) -> Option<f64> {
         .filter(|period_s| period_s.is_finite())
 }
 
-fn path((low, high): (f64, f64), cusp: Option<f64>) -> Path {
+fn path((low, high): (f64, f64), cusp: Option<f64>) -> AxlePath {
     let inside = |tilt: f64| tilt > low + SAME_DEG && tilt < high - SAME_DEG;
     let at_end = |tilt: f64| (tilt - low).abs() <= SAME_DEG || (tilt - high).abs() <= SAME_DEG;
     match cusp {
-        _ if high - low <= SAME_DEG => Path::Circle,
-        Some(tilt) if inside(tilt) => Path::Loops,
-        Some(tilt) if at_end(tilt) => Path::Cusps,
-        _ => Path::Waves,
+        _ if high - low <= SAME_DEG => AxlePath::Circle,
+        Some(tilt) if inside(tilt) => AxlePath::Loops,
+        Some(tilt) if at_end(tilt) => AxlePath::Cusps,
+        _ => AxlePath::Waves,
     }
 }

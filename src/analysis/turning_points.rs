@@ -1,7 +1,7 @@
 //! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
 
-use super::equations::{AT_TURN, Crossing, Equations, Motion, Row};
-use super::turns::{Measured, ROUNDING, StraightLine, Turns, WithoutNutation};
+use super::equations::{AT_TURN, Crossing, Equations, StepEquation, TopMotion};
+use super::turns::{MeasuredNumber, ROUNDING, StraightLine, Turns, WithoutNutation};
 use crate::physics::{LagrangeTop, SchemeInfo, SymmetricTop};
 use crate::run::Step;
 use nalgebra::Vector3;
@@ -38,8 +38,8 @@ pub struct TurningPoints {
     steady_swing: Option<f64>,
     /// The axle must have gone so far from a turning point to confirm it.
     confirmed_by: f64,
-    start: Row,
-    now: Row,
+    start: StepEquation,
+    now: StepEquation,
     /// Full turns of the azimuth that the rows miss.
     missed: i64,
     is_rising: bool,
@@ -62,7 +62,7 @@ impl TurningPoints {
             return None;
         }
         let per_across = 1.0 / top.across;
-        let (start, motion) = (Row::of(step, per_across), step.motion());
+        let (start, motion) = (StepEquation::of(step, per_across), step.motion());
         let (swing, pull) = (start.swing, load * per_across);
         let axle_rate = swing.momentum.norm() + pull.norm().sqrt();
         let equations = Equations {
@@ -108,7 +108,7 @@ impl TurningPoints {
     pub fn follow(&mut self, step: &Step) {
         // Assigned at once: by way of a copy it would be stored in parts and read whole, for which processors wait.
         let before = self.now;
-        self.now = Row::of(step, self.per_across);
+        self.now = StepEquation::of(step, self.per_across);
         let (a, b) = (&before.swing.axle, &self.now.swing.axle);
         let missed = self.missed;
         if self.may_turn_far || a.x * b.x + a.y * b.y < 0.0 {
@@ -181,7 +181,7 @@ impl TurningPoints {
         of_ends / (self.equations.rates[1] * self.equations.time_step_s)
     }
 
-    pub fn nutation_period_s(&self) -> Result<Measured, WithoutNutation> {
+    pub fn nutation_period_s(&self) -> Result<MeasuredNumber, WithoutNutation> {
         let line = self.line().ok_or(match self.steady_swing {
             Some(_) => WithoutNutation::Steady,
             None => WithoutNutation::TooFew,
@@ -189,14 +189,14 @@ impl TurningPoints {
         let of_one = 2.0 / line.intervals as f64;
         let value = line.time_s() * of_one;
         let error = libm::hypot(line.time_error_s(1.0), self.lag_s(&line)) * of_one;
-        Ok(Measured {
+        Ok(MeasuredNumber {
             value,
             uncertainty: libm::hypot(error, f64::EPSILON * value),
             nutations: line.intervals.div_ceil(2),
         })
     }
 
-    pub fn precession_rad_per_s(&self) -> Option<Measured> {
+    pub fn precession_rad_per_s(&self) -> Option<MeasuredNumber> {
         if self.least_level < PASSES_RAD {
             return None;
         }
@@ -206,7 +206,7 @@ impl TurningPoints {
         };
         let value = line.rate();
         let lag = (line.last.azimuth_rate - value) * self.lag_s(&line) / line.time_s();
-        Some(Measured {
+        Some(MeasuredNumber {
             value,
             uncertainty: libm::hypot(libm::hypot(line.rate_error(1.0), lag), of_rates),
             nutations: line.intervals.div_ceil(2),
@@ -214,7 +214,7 @@ impl TurningPoints {
     }
 
     /// The whole way of the azimuth over the time, for an axle that keeps its height.
-    fn steady_precession(&self, of_rates: f64) -> Option<Measured> {
+    fn steady_precession(&self, of_rates: f64) -> Option<MeasuredNumber> {
         let [lowest, highest] = self.heights;
         let swing = self.steady_swing?.max(highest - lowest);
         let time = self.now.time_s - self.start.time_s;
@@ -223,13 +223,13 @@ impl TurningPoints {
         if swing > ROUNDING || !value.is_finite() {
             return None;
         }
-        let Motion { axle, momentum } = self.start.swing;
+        let TopMotion { axle, momentum } = self.start.swing;
         let (level, along) = (self.start.swing.level().powi(2), momentum.dot(&axle));
         // The azimuth's rate is (l_z - l3 u)/(1 - u²) at the height u.
         let by_height = (2.0 * axle.z * (momentum.z - along * axle.z) / level - along) / level;
         let of_ends = f64::EPSILON * (1.0 / level.sqrt() / time + self.equations.rates[1]);
         let of_swing = 0.25 * by_height * swing;
-        Some(Measured {
+        Some(MeasuredNumber {
             value,
             uncertainty: libm::hypot(libm::hypot(of_rates, of_ends), of_swing),
             nutations: 0,
@@ -243,7 +243,7 @@ fn swing_of_height(
     step: &Step,
     top: &SymmetricTop,
     load: Vector3<f64>,
-    swing: &Motion,
+    swing: &TopMotion,
 ) -> (f64, f64) {
     let length = swing.momentum.norm();
     let (period_s, range) = if (load * (1.0 / top.across)).norm() == 0.0 {
@@ -266,7 +266,7 @@ fn swing_of_height(
 fn is_followed(
     scheme: &SchemeInfo,
     equations: &Equations,
-    swing: &Motion,
+    swing: &TopMotion,
     period_s: f64,
     range: f64,
 ) -> bool {

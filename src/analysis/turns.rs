@@ -21,7 +21,7 @@ const OF_BEATS: Thinning = Thinning {
 
 /// A measured number with its uncertainty, in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
+pub struct MeasuredNumber {
     pub value: f64,
     /// One standard error.
     pub uncertainty: f64,
@@ -29,7 +29,7 @@ pub struct Measured {
     pub nutations: u64,
 }
 
-impl Measured {
+impl MeasuredNumber {
     /// A value measured without whole nutations is settled once its relative uncertainty is at most this, one measured with
     /// them once the uncertainty is at most half of the value. (An axle that passes through the vertical has nutations but no well-defined azimuth.)
     const SETTLED: f64 = 0.05;
@@ -77,7 +77,7 @@ pub(super) const ROUNDING: f64 = 1e-9;
 
 /// One turning point of the axle's height.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Turn {
+pub(super) struct HeightExtreme {
     pub time_s: f64,
     /// How far the time is off by its interpolation, s.
     pub time_off_s: f64,
@@ -101,15 +101,15 @@ pub(super) struct Turn {
 #[derive(Clone, Debug)]
 pub(super) struct Turns {
     thinning: Thinning,
-    kept: Vec<(u64, Turn)>,
+    kept: Vec<(u64, HeightExtreme)>,
     stride: u64,
 }
 
 /// The straight line of time and azimuth from the first turning point to the last, and how far those between are off it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StraightLine {
-    pub first: Turn,
-    pub last: Turn,
+    pub first: HeightExtreme,
+    pub last: HeightExtreme,
     /// How many intervals between two turning points there are from the first to the last.
     pub intervals: u64,
     /// Root mean square of the others' distance from even times, s.
@@ -142,7 +142,7 @@ impl Turns {
         number.is_multiple_of(self.stride)
     }
 
-    pub fn keep(&mut self, number: u64, turn: Turn) {
+    pub fn keep(&mut self, number: u64, turn: HeightExtreme) {
         self.kept.push((number, turn));
         if self.kept.len() > self.thinning.most {
             self.stride *= self.thinning.keeps_every;
@@ -153,12 +153,12 @@ impl Turns {
     }
 
     /// The turning points before that of this number, each with its own.
-    pub fn before(&self, number: u64) -> impl Iterator<Item = &(u64, Turn)> {
+    pub fn before(&self, number: u64) -> impl Iterator<Item = &(u64, HeightExtreme)> {
         self.kept.iter().take_while(move |(at, _)| *at < number)
     }
 
     /// The line from the first turning point to `last`, which has this number; `None` if they are the same.
-    pub fn line_to(&self, number: u64, last: Turn) -> Option<StraightLine> {
+    pub fn line_to(&self, number: u64, last: HeightExtreme) -> Option<StraightLine> {
         let (_, first) = *self.kept.first().filter(|_| number > 0)?;
         let (mut times, mut azimuths, mut between) = (0.0, 0.0, 0);
         // What the interpolation is known to be off by does not count twice.
@@ -196,7 +196,7 @@ impl StraightLine {
 
     /// Standard error of [`time_s`](Self::time_s), s, where the scatter counts `weight` times.
     pub fn time_error_s(&self, weight: f64) -> f64 {
-        let of_end = |turn: &Turn| libm::hypot(turn.time_off_s, turn.time_error_s);
+        let of_end = |turn: &HeightExtreme| libm::hypot(turn.time_off_s, turn.time_error_s);
         let ends = libm::hypot(of_end(&self.first), of_end(&self.last));
         libm::hypot(ends, 2_f64.sqrt() * weight * self.time_scatter_s)
     }
@@ -204,7 +204,7 @@ impl StraightLine {
     /// Standard error of [`rate`](Self::rate), rad/s, likewise.
     pub fn rate_error(&self, weight: f64) -> f64 {
         let rate = self.rate();
-        let of_end = |turn: &Turn| {
+        let of_end = |turn: &HeightExtreme| {
             let late = (turn.azimuth_rate - rate) * turn.time_error_s;
             let off = turn.azimuth_off - rate * turn.time_off_s;
             libm::hypot(libm::hypot(turn.azimuth_error, late), off)

@@ -1,7 +1,7 @@
 //! The board: the class on a second terminal, for the teacher. Seats, votes, notes, and the clock.
 
-use super::folder::{Folder, Stage, State};
-use super::votes::{Sitting, Tally, present, sittings};
+use super::folder::{ClassFolder, ClassState, VoteStage};
+use super::votes::{SeatStatus, Tally, present, sittings};
 use super::{login, unix_ms};
 use crate::lessons::page::told;
 use crate::lessons::{Predict, reading};
@@ -10,7 +10,7 @@ use crate::text::wrap::{columns, wrapped};
 use chrono::Local;
 
 /// The lines of the board, at most `width` columns wide.
-pub fn lines(folder: &Folder, width: usize) -> Vec<String> {
+pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
     let (seats, unread) = match sittings(folder) {
         Ok(seats) => (seats, None),
         Err(reason) => (Vec::new(), Some(reason)),
@@ -52,7 +52,7 @@ pub fn lines(folder: &Folder, width: usize) -> Vec<String> {
 }
 
 /// The page in words, with the votes on its questions.
-fn of_page(state: &State, seats: &[Sitting]) -> Vec<String> {
+fn of_page(state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
     let told = match reading::open_again(&state.lesson) {
         Ok(lesson) => told(&lesson, state.page, |predict| {
             of_rounds(predict, state, seats)
@@ -63,13 +63,13 @@ fn of_page(state: &State, seats: &[Sitting]) -> Vec<String> {
 }
 
 /// The votes on `predict`, a round after the other. While a round goes on nobody's choice is shown.
-fn of_rounds(predict: &Predict, state: &State, seats: &[Sitting]) -> String {
+fn of_rounds(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> String {
     let question = state.question(&predict.name);
     let round_of = |round| {
         let tally = Tally::of(seats, &state.lesson, predict, round);
         let (votes, late) = (counted(tally.votes as u64, "vote"), tally.late);
         let counts = format!("  round {round}: {votes}, {late} late\n");
-        if round == question.round() && question.stage == Stage::Counted {
+        if round == question.round() && question.stage == VoteStage::Counted {
             return counts;
         }
         let drawn = counts + &tally.drawn().text();
@@ -79,8 +79,8 @@ fn of_rounds(predict: &Predict, state: &State, seats: &[Sitting]) -> String {
 }
 
 /// The seats in columns.
-fn of_seats(state: &State, seats: &[Sitting], width: usize) -> Vec<String> {
-    let cell = |sitting: &Sitting| {
+fn of_seats(state: &ClassState, seats: &[SeatStatus], width: usize) -> Vec<String> {
+    let cell = |sitting: &SeatStatus| {
         let place = sitting.lessons.get(&state.lesson);
         let votes = place.map_or(0, |place| place.predictions.all().count());
         let votes = counted(votes as u64, "vote");

@@ -1,12 +1,12 @@
 //! The folder of a class, and the state that the teacher's lab publishes in it.
 
 use super::{ago, unix_ms};
-use crate::lessons::Kept;
-use crate::lessons::taken::Followed;
+use crate::lessons::KeptNumbers;
+use crate::lessons::taken::FollowedLesson;
 use crate::playback::pace::Speed;
 use crate::storage::confined::SESSIONS;
 use crate::storage::shared;
-use crate::text::printable::Shown;
+use crate::text::printable::PrintablePath;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -25,7 +25,7 @@ const OF_TEACHER: u32 = 0o2750;
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 #[derive(Clone, Debug, Default)]
-pub struct Folder {
+pub struct ClassFolder {
     /// The folder that the command line names, as a full path.
     pub root: PathBuf,
 }
@@ -33,7 +33,7 @@ pub struct Folder {
 /// What the teacher's lab publishes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct State {
+pub struct ClassState {
     /// The version that wrote it.
     pub gyrolab: String,
     pub is_on: bool,
@@ -49,20 +49,20 @@ pub struct State {
     /// The seats that the teacher has closed.
     pub closed: BTreeSet<String>,
     /// By LESSON and then by the question's name.
-    pub questions: BTreeMap<String, BTreeMap<String, Question>>,
+    pub questions: BTreeMap<String, BTreeMap<String, QuestionState>>,
     /// The numbers that the lesson has kept.
-    pub kept: Kept,
+    pub kept: KeptNumbers,
     /// What is shown; `None` where the class does not follow.
-    pub shown: Option<Run>,
+    pub shown: Option<PresentedRun>,
 }
 
 /// How the class stands with a question.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Question {
+pub struct QuestionState {
     /// The present round, less 1.
     pub earlier_rounds: u32,
-    pub stage: Stage,
+    pub stage: VoteStage,
     /// When the round began, ms since 1970.
     pub since_ms: u64,
     /// The bars, where all may see them.
@@ -72,7 +72,7 @@ pub struct Question {
 /// Who sees the votes of a round. The order is that of the key that shows more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Stage {
+pub enum VoteStage {
     /// Nobody sees more than their number.
     #[default]
     Counted,
@@ -85,7 +85,7 @@ pub enum Stage {
 
 /// The run that the class follows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Run {
+pub struct PresentedRun {
     /// The name under which it was opened.
     pub name: String,
     pub step: u64,
@@ -102,10 +102,11 @@ pub struct Run {
     pub run: String,
 }
 
-impl Folder {
+impl ClassFolder {
     /// The class in the folder DIR.
     pub fn at(dir: &Path) -> Result<Self, String> {
-        let root = fs::canonicalize(dir).map_err(|error| format!("{}: {error}", Shown(dir)))?;
+        let root =
+            fs::canonicalize(dir).map_err(|error| format!("{}: {error}", PrintablePath(dir)))?;
         Ok(Self { root })
     }
 
@@ -153,9 +154,9 @@ impl Folder {
     ///
     /// # Errors
     /// When it cannot be read, or another version has written it.
-    pub fn state(&self) -> Result<Option<State>, String> {
+    pub fn state(&self) -> Result<Option<ClassState>, String> {
         let path = self.state_file();
-        let unread = |error: &dyn std::fmt::Display| format!("{}: {error}", Shown(&path));
+        let unread = |error: &dyn std::fmt::Display| format!("{}: {error}", PrintablePath(&path));
         let read = shared::read(&path, LONGEST_STATE).map_err(|error| unread(&error))?;
         let Some(text) = read else { return Ok(None) };
         let table: toml::Table = toml::from_str(&text).map_err(|_| unread(&"is damaged"))?;
@@ -174,7 +175,7 @@ impl Folder {
     ///
     /// # Errors
     /// When it is too long, or cannot be written; the one before stays.
-    pub fn publish(&self, state: &State) -> Result<(), String> {
+    pub fn publish(&self, state: &ClassState) -> Result<(), String> {
         let text = toml::to_string(state).map_err(|error| error.to_string())?;
         if text.len() > LONGEST_STATE {
             return Err("the class's state is above 128 kB".to_owned());
@@ -206,20 +207,20 @@ impl Folder {
 
 fn make(path: &Path, mode: u32) -> Result<(), String> {
     let made = shared::make_folder(path, mode).map(drop);
-    made.map_err(|error| format!("{}: {error}", Shown(path)))
+    made.map_err(|error| format!("{}: {error}", PrintablePath(path)))
 }
 
-impl Question {
+impl QuestionState {
     /// The present round, from 1.
     pub fn round(&self) -> u32 {
         self.earlier_rounds.saturating_add(1)
     }
 }
 
-impl State {
+impl ClassState {
     /// What its lesson shows; `is_there` says whether the run has come where the teacher's is.
-    pub(super) fn followed(&self, is_there: bool) -> Followed<'_> {
-        Followed {
+    pub(super) fn followed(&self, is_there: bool) -> FollowedLesson<'_> {
+        FollowedLesson {
             lesson: &self.lesson,
             page: self.page,
             kept: &self.kept,
@@ -227,17 +228,17 @@ impl State {
         }
     }
 
-    pub fn question(&self, name: &str) -> Question {
+    pub fn question(&self, name: &str) -> QuestionState {
         let questions = self.questions.get(&self.lesson);
         let question = questions.and_then(|all| all.get(name));
         question.cloned().unwrap_or_default()
     }
 
-    pub(super) fn question_mut(&mut self, name: &str) -> &mut Question {
+    pub(super) fn question_mut(&mut self, name: &str) -> &mut QuestionState {
         let questions = self.questions.entry(self.lesson.clone()).or_default();
-        let new = || Question {
+        let new = || QuestionState {
             since_ms: unix_ms(),
-            ..Question::default()
+            ..QuestionState::default()
         };
         questions.entry(name.to_owned()).or_insert_with(new)
     }

@@ -7,7 +7,7 @@
 //! How long a guess takes: the code of a seat is one of a million. Someone who guesses a code in every hour, in however many
 //! logins and with however many seats of the same name, needs 500 000 hours on average, which is 57 years.
 
-use super::Folder;
+use super::ClassFolder;
 use super::seat::{CODES, DIGITS, LONGEST_NAME, Seat, all_seats, is_name, name_of};
 use crate::storage::shared;
 use crate::text::printable::printable;
@@ -40,13 +40,13 @@ pub struct WrongCodes {
 }
 
 impl WrongCodes {
-    fn file(folder: &Folder, word: &str) -> PathBuf {
+    fn file(folder: &ClassFolder, word: &str) -> PathBuf {
         folder.wrong().join(word)
     }
 
     /// Reads what the folder holds for the seat `word`. A file that cannot be read counts nothing: the next wrong code
     /// replaces it.
-    fn read(folder: &Folder, word: &str) -> Self {
+    fn read(folder: &ClassFolder, word: &str) -> Self {
         let parsed = || {
             let text = shared::read_of_anyone(&Self::file(folder, word), LONGEST_COUNT);
             let text = text.ok()??;
@@ -59,7 +59,7 @@ impl WrongCodes {
         parsed().unwrap_or_default()
     }
 
-    fn write(self, folder: &Folder, word: &str) -> Result<(), String> {
+    fn write(self, folder: &ClassFolder, word: &str) -> Result<(), String> {
         let Self { count, at_unix_s } = self;
         if count == 0 {
             folder.forget_wrong_codes(word);
@@ -87,7 +87,7 @@ impl WrongCodes {
 ///
 /// # Errors
 /// Why there is none, in words for the student.
-pub fn take(folder: &Folder, typed: &str, now_unix_s: u64) -> Result<(Seat, bool), String> {
+pub fn take(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<(Seat, bool), String> {
     let typed = typed.trim().to_lowercase();
     match name_of(&typed) {
         Some(name) => come_back(folder, &typed, name, now_unix_s).map(|seat| (seat, false)),
@@ -99,7 +99,7 @@ pub fn take(folder: &Folder, typed: &str, now_unix_s: u64) -> Result<(Seat, bool
     }
 }
 
-fn begin(folder: &Folder, name: &str) -> Result<Seat, String> {
+fn begin(folder: &ClassFolder, name: &str) -> Result<Seat, String> {
     if all_seats(folder)?.len() >= MOST_SEATS {
         return Err(format!(
             "this class has {MOST_SEATS} seats, the most that it can have: ask your teacher"
@@ -121,7 +121,12 @@ fn begin(folder: &Folder, name: &str) -> Result<Seat, String> {
 ///
 /// While a seat of that name waits, its right code gets the same answer as a wrong one: what is typed then says nothing
 /// about it. A seat of that name that does not wait can be taken meanwhile.
-fn come_back(folder: &Folder, word: &str, name: &str, now_unix_s: u64) -> Result<Seat, String> {
+fn come_back(
+    folder: &ClassFolder,
+    word: &str,
+    name: &str,
+    now_unix_s: u64,
+) -> Result<Seat, String> {
     // One login after the other, so that each is counted. On a file system without locks some may count as one.
     let turn = File::open(folder.wrong());
     let turn = turn.map_err(|error| format!("no code can be tried now: {error}"))?;
@@ -186,7 +191,7 @@ impl Waiting {
 }
 
 /// Returns the seats that accept no code now.
-pub fn waiting(folder: &Folder, now_unix_s: u64) -> Vec<Waiting> {
+pub fn waiting(folder: &ClassFolder, now_unix_s: u64) -> Vec<Waiting> {
     let entries = fs::read_dir(folder.wrong()).into_iter().flatten().flatten();
     let words = entries.filter_map(|entry| entry.file_name().into_string().ok());
     let seats = words.filter(|word| name_of(word).is_some() && Seat::of(folder, word).is_there());

@@ -10,9 +10,9 @@
 //! Each file is written whole by one account and read by the other, three times a second. A run is deterministic: a student's
 //! lab computes what the teacher's shows.
 //!
-//! - [`folder`]: the folders, and the teacher's [`State`]; [`seat`]: the files of a seat; [`login`]: taking a seat.
+//! - [`folder`]: the folders, and the teacher's [`ClassState`]; [`seat`]: the files of a seat; [`login`]: taking a seat.
 //! - [`votes`]: the votes of a question, counted; as CSV and as bars.
-//! - [`teacher`] and [`student`]: the [`Role`] of a lab in a class; [`board`]: the class on a second terminal.
+//! - [`teacher`] and [`student`]: the [`ClassRole`] of a lab in a class; [`board`]: the class on a second terminal.
 
 pub mod board;
 pub mod folder;
@@ -22,12 +22,12 @@ pub mod student;
 pub mod teacher;
 pub mod votes;
 
-pub use folder::{Folder, State};
+pub use folder::{ClassFolder, ClassState};
 pub use seat::Seat;
 
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
-use crate::lessons::Class as Lessons;
+use crate::lessons::Lessons;
 use std::ops::ControlFlow;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -36,7 +36,7 @@ const EVERY: Duration = Duration::from_millis(300);
 const LEAST_WAIT: Duration = Duration::from_millis(10);
 
 /// What a class adds to a lab.
-pub trait Role {
+pub trait ClassRole {
     /// Takes note of the lab before it is shown.
     fn begin(&mut self, _lab: &mut Lab) {}
 
@@ -79,9 +79,9 @@ pub trait Role {
 
 /// The role of a lab without a class.
 #[derive(Debug)]
-pub struct Alone;
+pub struct NoClass;
 
-impl Role for Alone {
+impl ClassRole for NoClass {
     fn act(&mut self, lab: &mut Lab, _lessons: &mut Lessons) {
         lab.refuse("this is no lab of a class: gyrolab man class says how one begins");
     }

@@ -1,11 +1,11 @@
 //! The files of a seat: where it stands in its lessons, its votes, and who has it open.
 
-use super::folder::{Folder, OF_ALL, VERSION};
+use super::folder::{ClassFolder, OF_ALL, VERSION};
 use super::{ago, unix_ms};
 use crate::lessons::class::KeptLessons;
 use crate::storage::confined::SESSIONS;
 use crate::storage::shared;
-use crate::text::printable::Shown;
+use crate::text::printable::PrintablePath;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -75,8 +75,8 @@ pub(super) fn name_of(word: &str) -> Option<&str> {
 ///
 /// # Errors
 /// When the folder of the seats cannot be read.
-pub fn all_seats(folder: &Folder) -> Result<Vec<Seat>, String> {
-    let unread = |error: io::Error| format!("{}: {error}", Shown(&folder.seats()));
+pub fn all_seats(folder: &ClassFolder) -> Result<Vec<Seat>, String> {
+    let unread = |error: io::Error| format!("{}: {error}", PrintablePath(&folder.seats()));
     let entries = match fs::read_dir(folder.seats()) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
         entries => entries.map_err(unread)?,
@@ -96,7 +96,7 @@ pub fn all_seats(folder: &Folder) -> Result<Vec<Seat>, String> {
 }
 
 impl Seat {
-    pub(super) fn of(folder: &Folder, word: &str) -> Self {
+    pub(super) fn of(folder: &ClassFolder, word: &str) -> Self {
         Self {
             word: word.to_owned(),
             folder: folder.seats().join(word),

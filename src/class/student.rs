@@ -1,16 +1,16 @@
 //! A student's lab: it follows the teacher's, and keeps in the files of its seat where it stands and what was voted.
 
-use super::folder::{Folder, Question, Run, Stage, State};
+use super::folder::{ClassFolder, ClassState, PresentedRun, QuestionState, VoteStage};
 use super::seat::{Record, Seat};
-use super::{EVERY, LEAST_WAIT, Role, unix_ms, votes};
+use super::{ClassRole, EVERY, LEAST_WAIT, unix_ms, votes};
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
-use crate::lab::command::{Command, Place};
-use crate::lab::view::Part;
-use crate::lessons::page::Dress;
+use crate::lab::command::{Command, SeekTarget};
+use crate::lab::view::HideablePart;
+use crate::lessons::page::ClassOverlay;
 use crate::lessons::predictions::Predictions;
-use crate::lessons::taken::Taken;
-use crate::lessons::{Class as Lessons, Setup};
+use crate::lessons::taken::OpenLesson;
+use crate::lessons::{Lessons, Setup};
 use crate::playback::Playback;
 use crate::playback::pace::Speed;
 use crate::scenario::{Document, Scenario};
@@ -25,20 +25,20 @@ const OFF_S: f64 = 0.6;
 
 #[derive(Debug, Default)]
 pub struct Student {
-    folder: Folder,
+    folder: ClassFolder,
     seat: Seat,
     /// The word under which this process has the seat open.
     holds: String,
     record: Record,
     /// Whether the record is to be written.
     is_new: bool,
-    state: Option<State>,
+    state: Option<ClassState>,
     seen: Option<SystemTime>,
     /// Whether the teacher's lab was open at the last look.
     is_on: bool,
     /// What of the teacher's run is shown.
-    shown: Shown,
-    stood: Option<Stand>,
+    shown: PresentedView,
+    stood: Option<PlaybackSnapshot>,
     /// Whether a run that was played aside is pinned.
     has_pinned: bool,
     /// Whether a class was on in this lab.
@@ -50,17 +50,17 @@ pub struct Student {
 }
 
 #[derive(Debug, Default)]
-struct Shown {
+struct PresentedView {
     /// The run file, and the scenario as the lab has it.
     run: Option<(String, Arc<Scenario>)>,
     look: Table,
-    hidden: Vec<Part>,
+    hidden: Vec<HideablePart>,
     exact: Option<bool>,
     page: usize,
 }
 
 /// What a key changes that leads away from the class's run or page: run, step, goal, whether it plays, speed, page.
-type Stand = (
+type PlaybackSnapshot = (
     (usize, usize),
     u64,
     Option<u64>,
@@ -69,9 +69,9 @@ type Stand = (
     Option<(String, usize)>,
 );
 
-fn stand(lab: &Lab, lessons: &Lessons) -> Stand {
+fn stand(lab: &Lab, lessons: &Lessons) -> PlaybackSnapshot {
     let playback = &lab.player().playback;
-    let page = |taken: &Taken| (taken.lesson.name.clone(), taken.place.page);
+    let page = |taken: &OpenLesson| (taken.lesson.name.clone(), taken.place.page);
     (
         lab.runs().depth(),
         playback.step_number(),
@@ -84,7 +84,7 @@ fn stand(lab: &Lab, lessons: &Lessons) -> Stand {
 
 impl Student {
     /// The lab of `seat`, which this process has open under the word `holds`; `record` is what its file holds.
-    pub fn new(folder: Folder, seat: Seat, holds: String, record: Record) -> Self {
+    pub fn new(folder: ClassFolder, seat: Seat, holds: String, record: Record) -> Self {
         Self {
             folder,
             seat,
@@ -103,7 +103,7 @@ impl Student {
     }
 
     /// The state of the class, while it is on.
-    fn class(&self) -> Option<&State> {
+    fn class(&self) -> Option<&ClassState> {
         self.state.as_ref().filter(|_| self.is_on)
     }
 
@@ -153,7 +153,7 @@ impl Student {
             lab.tell(format!("{what}: n and N turn pages"));
         }
         if !self.is_on {
-            self.shown = Shown::default();
+            self.shown = PresentedView::default();
         }
     }
 
@@ -192,23 +192,23 @@ impl Student {
     }
 
     /// Opens the run of the teacher.
-    fn open(&mut self, run: &Run, lab: &mut Lab) -> Result<(), &'static str> {
+    fn open(&mut self, run: &PresentedRun, lab: &mut Lab) -> Result<(), &'static str> {
         let read = Document::parse(&run.name, &run.run);
         let scenario = read.and_then(|document| document.scenario());
         let unread = "the teacher's run cannot be read: n and N turn pages";
         let scenario = scenario.map_err(|_| unread)?;
         lab.show_run(&run.name, Arc::new(scenario), run.end_s);
         let shown = Arc::clone(lab.player().run().scenario());
-        self.shown = Shown {
+        self.shown = PresentedView {
             run: Some((run.run.clone(), shown)),
             page: self.shown.page,
-            ..Shown::default()
+            ..PresentedView::default()
         };
         Ok(())
     }
 
     /// Shows the run as the teacher does, where that has changed.
-    fn show_as(&mut self, run: &Run, lab: &mut Lab, lessons: &Lessons) {
+    fn show_as(&mut self, run: &PresentedRun, lab: &mut Lab, lessons: &Lessons) {
         // What stands so already is left out: a key may be refused where it has no use.
         let own = Table::try_from(&lab.view().look).unwrap_or_default();
         let mut patch = run.look.clone();
@@ -232,28 +232,28 @@ impl Student {
     }
 
     /// What the class adds to the page.
-    fn dress(&self, lessons: &Lessons) -> Dress {
+    fn dress(&self, lessons: &Lessons) -> ClassOverlay {
         let Some(taken) = lessons.taken().filter(|_| self.has_begun) else {
-            return Dress::default();
+            return ClassOverlay::default();
         };
         let Some(state) = self.class() else {
-            return Dress {
+            return ClassOverlay {
                 framed: self.title(taken, false),
-                ..Dress::default()
+                ..ClassOverlay::default()
             };
         };
         let asked = taken.page().filter(|_| taken.lesson.name == state.lesson);
         let asked = asked.and_then(|page| votes::question(page, state));
         let border = if self.follows() { "k: step aside" } else { "" };
         let of_lesson = state.questions.get(&taken.lesson.name).into_iter();
-        let round = |(name, question): (&String, &Question)| {
-            let is_closed = question.stage == Stage::Closed;
+        let round = |(name, question): (&String, &QuestionState)| {
+            let is_closed = question.stage == VoteStage::Closed;
             (name.clone(), (question.round(), is_closed))
         };
         let shown = asked
             .as_ref()
             .filter(|(_, question)| !question.bars.is_empty());
-        Dress {
+        ClassOverlay {
             framed: self.title(taken, asked.is_some()),
             border: border.to_owned(),
             is_followed: self.follows(),
@@ -261,12 +261,12 @@ impl Student {
             votes: shown.map(|(predict, question)| {
                 (predict.name.clone(), vec![votes::drawn(&question.bars)])
             }),
-            ..Dress::default()
+            ..ClassOverlay::default()
         }
     }
 
     /// The title of the page, a form a line; `asks` says whether the page has a question.
-    fn title(&self, taken: &Taken, asks: bool) -> String {
+    fn title(&self, taken: &OpenLesson, asks: bool) -> String {
         let page = taken.place.page;
         let of = format!("{page} of {}", taken.lesson.pages.len());
         let Some(state) = self.class() else {
@@ -290,7 +290,7 @@ impl Student {
 
     fn step_aside(&mut self, lab: &mut Lab) {
         (self.record.is_aside, self.is_new) = (true, true);
-        self.shown = Shown::default();
+        self.shown = PresentedView::default();
         self.next_look = Duration::ZERO;
         lab.tell("you have stepped aside: k leads back to the class");
     }
@@ -322,7 +322,7 @@ impl Student {
     }
 }
 
-impl Role for Student {
+impl ClassRole for Student {
     fn begin(&mut self, lab: &mut Lab) {
         if !self.record.lessons.is_empty() {
             lab.lessons = Some(self.record.lessons.clone()); // never older than the session
@@ -410,9 +410,9 @@ impl Role for Student {
 }
 
 /// What is hidden: what the page hides stays so until the predictions here are locked, whatever the teacher sees.
-fn hidden(run: &Run, taken: Option<&Taken>) -> Vec<Part> {
+fn hidden(run: &PresentedRun, taken: Option<&OpenLesson>) -> Vec<HideablePart> {
     let shown = run.look.get("hide").cloned();
-    let shown: Vec<Part> = shown
+    let shown: Vec<HideablePart> = shown
         .and_then(|hidden| hidden.try_into().ok())
         .unwrap_or_default();
     let page = taken.and_then(|taken| Some((taken.page()?, &taken.place.predictions)));
@@ -428,7 +428,7 @@ fn hidden(run: &Run, taken: Option<&Taken>) -> Vec<Part> {
 }
 
 /// The step at which `run` is by now, and how many steps it may be off.
-fn wanted(run: &Run, playback: &Playback, time_step_s: f64) -> (u64, f64) {
+fn wanted(run: &PresentedRun, playback: &Playback, time_step_s: f64) -> (u64, f64) {
     let since_s = unix_ms().saturating_sub(run.at_ms) as f64 / 1000.0;
     let (ahead, off) = match run.speed {
         _ if !run.is_running => (0.0, 0.0),
@@ -444,7 +444,7 @@ fn wanted(run: &Run, playback: &Playback, time_step_s: f64) -> (u64, f64) {
 
 /// Brings the run of `lab` to where `run` is by now. Returns whether it stands or plays there. A command that is refused
 /// leaves it where it is.
-fn go_with(run: &Run, lab: &mut Lab) -> bool {
+fn go_with(run: &PresentedRun, lab: &mut Lab) -> bool {
     let playback = &lab.player().playback;
     if playback.steps_to_go().is_some() {
         return false;
@@ -455,7 +455,7 @@ fn go_with(run: &Run, lab: &mut Lab) -> bool {
         let _ = lab.carry_out(&Command::Speed(run.speed));
     }
     if is_off {
-        let _ = lab.carry_out(&Command::GoTo(Place::Step(wanted)));
+        let _ = lab.carry_out(&Command::GoTo(SeekTarget::Step(wanted)));
     }
     let playback = &lab.player().playback;
     if playback.steps_to_go().is_some() {

@@ -1,17 +1,17 @@
 //! The teacher's lab: what it shows goes to the class, and the votes of the class come to its pages.
 
-use super::folder::{Folder, LONGEST_RUN, Run, Stage, State, VERSION};
-use super::votes::{self, FEWEST, Sitting, Tally, present, sittings};
-use super::{EVERY, LEAST_WAIT, Role, login, unix_ms};
+use super::folder::{ClassFolder, ClassState, LONGEST_RUN, PresentedRun, VERSION, VoteStage};
+use super::votes::{self, FEWEST, SeatStatus, Tally, present, sittings};
+use super::{ClassRole, EVERY, LEAST_WAIT, login, unix_ms};
 use crate::data::find_shipped;
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
-use crate::lab::sheet::{Kind, Paragraph};
-use crate::lessons::page::Dress;
-use crate::lessons::taken::Taken;
-use crate::lessons::{Class as Lessons, Page};
+use crate::lab::sheet::{Paragraph, SheetLineKind};
+use crate::lessons::page::ClassOverlay;
+use crate::lessons::taken::OpenLesson;
+use crate::lessons::{LessonPage, Lessons};
 use crate::scenario::Scenario;
-use crate::text::printable::Shown;
+use crate::text::printable::PrintablePath;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
@@ -19,13 +19,13 @@ use toml::Table;
 
 #[derive(Debug, Default)]
 pub struct Teacher {
-    folder: Folder,
-    state: State,
+    folder: ClassFolder,
+    state: ClassState,
     /// The state that the class knows.
-    published: Option<State>,
+    published: Option<ClassState>,
     is_followed: bool,
     menu: Menu,
-    seats: Vec<Sitting>,
+    seats: Vec<SeatStatus>,
     /// The run that was shown last, and its file.
     run: Option<(Arc<Scenario>, String)>,
     next_look: Duration,
@@ -45,13 +45,13 @@ enum Menu {
 /// A line of the list of the seats.
 enum Entry<'a> {
     Waiting(login::Waiting),
-    Seat(&'a Sitting),
+    Seat(&'a SeatStatus),
 }
 
 impl Teacher {
     /// The class in `folder`, with the rounds of an earlier lab.
-    pub fn new(folder: Folder, before: State) -> Self {
-        let state = State {
+    pub fn new(folder: ClassFolder, before: ClassState) -> Self {
+        let state = ClassState {
             gyrolab: VERSION.to_owned(),
             is_on: true,
             ..before
@@ -99,18 +99,18 @@ impl Teacher {
         if let Some((predict, question)) = page.and_then(|page| votes::question(page, &self.state))
         {
             let (lesson, round) = (&self.state.lesson, question.round());
-            let has_answered = |it: &&Sitting| it.vote(lesson, predict, round).is_some();
+            let has_answered = |it: &&SeatStatus| it.vote(lesson, predict, round).is_some();
             let here = self.seats.iter().filter(|sitting| sitting.is_here());
             self.state.answered = here.filter(has_answered).count();
             let tally = Tally::of(&self.seats, lesson, predict, round);
-            let is_shown = question.stage == Stage::All && tally.votes >= FEWEST;
+            let is_shown = question.stage == VoteStage::All && tally.votes >= FEWEST;
             let bars = if is_shown { tally.bars } else { Vec::new() };
             self.state.question_mut(&predict.name).bars = bars;
         }
     }
 
     /// The run in `lab`, as the class follows it.
-    fn shown(&mut self, lab: &Lab) -> Option<Run> {
+    fn shown(&mut self, lab: &Lab) -> Option<PresentedRun> {
         let playback = &lab.player().playback;
         let scenario = playback.run().scenario();
         let known = self.run.take();
@@ -126,7 +126,7 @@ impl Teacher {
         let (step, is_running) = (playback.step_number(), playback.is_running());
         let before = self.state.shown.as_ref();
         let still = before.filter(|before| !is_running && before.step == step);
-        Some(Run {
+        Some(PresentedRun {
             name: lab.runs().name().to_owned(),
             step,
             end_s: lab.runs().present().end_s,
@@ -140,7 +140,7 @@ impl Teacher {
     }
 
     /// What the class adds to the page.
-    fn dress(&self, lessons: &Lessons) -> Dress {
+    fn dress(&self, lessons: &Lessons) -> ClassOverlay {
         let (here, counts) = present(&self.seats);
         let framed = lessons.taken().map(|taken| {
             let (page, pages) = (taken.place.page, taken.lesson.pages.len());
@@ -160,7 +160,7 @@ impl Teacher {
             (Menu::Open, false) => "1 show 2 again 3 follow 4 seats",
             (Menu::Seats(_), _) => "Enter closes, opens; Esc: back",
         };
-        Dress {
+        ClassOverlay {
             framed: framed.unwrap_or_default(),
             border: border.to_owned(),
             is_of_teacher: true,
@@ -170,22 +170,22 @@ impl Teacher {
                 Menu::Seats(selected) => Some(self.list(selected)),
                 _ => None,
             },
-            ..Dress::default()
+            ..ClassOverlay::default()
         }
     }
 
     /// The name of the question that the class is at, and the votes as far as they are shown.
-    fn votes(&self, page: &Page) -> Option<(String, Vec<Paragraph>)> {
+    fn votes(&self, page: &LessonPage) -> Option<(String, Vec<Paragraph>)> {
         let (predict, question) = votes::question(page, &self.state)?;
         let (round, answered, here) = (question.round(), self.state.answered, self.state.here);
         let since_s = unix_ms().saturating_sub(question.since_ms) / 1000;
         let (minutes, seconds) = (since_s / 60, since_s % 60);
         let tally = Tally::of(&self.seats, &self.state.lesson, predict, round);
         let seen = match question.stage {
-            Stage::Counted | Stage::Teacher => "",
-            Stage::All if tally.votes < FEWEST => " · students see no bars: under 5 votes",
-            Stage::All => " · shown",
-            Stage::Closed => " · closed",
+            VoteStage::Counted | VoteStage::Teacher => "",
+            VoteStage::All if tally.votes < FEWEST => " · students see no bars: under 5 votes",
+            VoteStage::All => " · shown",
+            VoteStage::Closed => " · closed",
         };
         let late = match tally.late {
             0 => String::new(),
@@ -193,11 +193,11 @@ impl Teacher {
         };
         let counted = format!("round {round} · {answered} of {here}");
         let line = format!("{counted} · {minutes}:{seconds:02}{late}{seen}");
-        let mut lines = vec![Paragraph::new(Kind::Note, line)];
-        if question.stage != Stage::Counted {
+        let mut lines = vec![Paragraph::new(SheetLineKind::Note, line)];
+        if question.stage != VoteStage::Counted {
             lines.push(tally.drawn());
             let advice = tally.advice.into_iter();
-            lines.extend(advice.map(|words| Paragraph::new(Kind::Note, words)));
+            lines.extend(advice.map(|words| Paragraph::new(SheetLineKind::Note, words)));
         }
         Some((predict.name.clone(), lines))
     }
@@ -219,29 +219,29 @@ impl Teacher {
                 ),
             };
             let is_selected = index == selected;
-            let kind = Kind::Choice {
+            let kind = SheetLineKind::Choice {
                 is_selected,
                 is_given,
             };
             Paragraph::new(kind, text)
         };
         let lines = self.entries().into_iter().enumerate().map(line);
-        let title = Paragraph::new(Kind::Heading, "The seats");
+        let title = Paragraph::new(SheetLineKind::Heading, "The seats");
         let legend = if self.seats.is_empty() {
             "No seat is taken yet."
         } else {
             "[x]: closed, and Enter opens it. lost: no sign for 10 s; away: left."
         };
-        let legend = Paragraph::new(Kind::Hint, legend);
+        let legend = Paragraph::new(SheetLineKind::Hint, legend);
         [title].into_iter().chain(lines).chain([legend]).collect()
     }
 
     /// Does what the menu has under `digit`.
-    fn choose(&mut self, digit: u8, lab: &mut Lab, taken: Option<&Taken>) {
+    fn choose(&mut self, digit: u8, lab: &mut Lab, taken: Option<&OpenLesson>) {
         self.menu = Menu::Closed;
         match digit {
             1 | 2 => {
-                let page = taken.and_then(Taken::page);
+                let page = taken.and_then(OpenLesson::page);
                 let asked = page.and_then(|page| votes::question(page, &self.state));
                 let Some((predict, _)) = asked else {
                     return lab.refuse("this page asks nothing");
@@ -250,16 +250,16 @@ impl Teacher {
                 let question = self.state.question_mut(&predict.name);
                 if digit == 2 {
                     question.earlier_rounds = question.round();
-                    (question.stage, question.since_ms) = (Stage::Counted, unix_ms());
+                    (question.stage, question.since_ms) = (VoteStage::Counted, unix_ms());
                     let round = format!("round {}: the class votes again", question.round());
                     let late = "; its outcome was seen, so votes count apart, as late";
                     return lab.refuse(round + if is_seen { late } else { "" });
                 }
                 question.stage = match question.stage {
-                    Stage::Counted => Stage::Teacher,
-                    Stage::Teacher => Stage::All,
-                    Stage::All => Stage::Closed,
-                    Stage::Closed => return lab.refuse("closed: k 2 asks it again"),
+                    VoteStage::Counted => VoteStage::Teacher,
+                    VoteStage::Teacher => VoteStage::All,
+                    VoteStage::All => VoteStage::Closed,
+                    VoteStage::Closed => return lab.refuse("closed: k 2 asks it again"),
                 };
             }
             3 => {
@@ -289,7 +289,7 @@ impl Teacher {
     }
 }
 
-impl Role for Teacher {
+impl ClassRole for Teacher {
     fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) -> ControlFlow<()> {
         let is_new = lessons.taken().is_some_and(|taken| {
             (&taken.lesson.name, taken.place.page) != (&self.state.lesson, self.state.page)
@@ -348,7 +348,7 @@ impl Role for Teacher {
     fn leave(&mut self) -> Result<String, String> {
         self.state.is_on = false;
         self.folder.publish(&self.state)?;
-        let root = Shown(&self.folder.root);
+        let root = PrintablePath(&self.folder.root);
         Ok(format!("gyrolab class --resume --folder {root} goes on"))
     }
 }

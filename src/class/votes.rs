@@ -1,13 +1,13 @@
 //! The votes of a question, counted: as bars, as advice to the teacher, and as CSV.
 
-use super::Folder;
-use super::folder::{Question, Stage, State};
+use super::ClassFolder;
+use super::folder::{ClassState, QuestionState, VoteStage};
 use super::seat::{Presence, Record, Seat, all_seats};
-use crate::lab::sheet::{Kind, Paragraph};
+use crate::lab::sheet::{Paragraph, SheetLineKind};
 use crate::lessons::class::KeptLessons;
 use crate::lessons::lesson::Right;
-use crate::lessons::predictions::{Given, Place};
-use crate::lessons::{Answer, Asked, Page, Predict, reading};
+use crate::lessons::predictions::{LessonProgress, LockedAnswer};
+use crate::lessons::{AnswerKind, LessonPage, Predict, PredictionAnswer, reading};
 use crate::text::number::{shortest, significant};
 use crate::text::printable::printable;
 use chrono::{DateTime, Utc};
@@ -22,10 +22,10 @@ const BAR: usize = 20;
 
 /// A seat with its record and whether somebody sits there.
 #[derive(Clone, Debug)]
-pub struct Sitting {
+pub struct SeatStatus {
     pub seat: Seat,
     pub is_aside: bool,
-    pub lessons: BTreeMap<String, Place>,
+    pub lessons: BTreeMap<String, LessonProgress>,
     pub presence: Presence,
     /// Why its file cannot be read: it then has no lessons here.
     pub trouble: Option<String>,
@@ -35,14 +35,14 @@ pub struct Sitting {
 ///
 /// # Errors
 /// When the folder of the seats cannot be read.
-pub fn sittings(folder: &Folder) -> Result<Vec<Sitting>, String> {
+pub fn sittings(folder: &ClassFolder) -> Result<Vec<SeatStatus>, String> {
     let sitting = |seat: Seat| {
         let (places, trouble) = match seat.places() {
             Ok(places) => (places, None),
             Err(trouble) => (<(Record, KeptLessons)>::default(), Some(trouble)),
         };
         let (record, kept) = places;
-        Sitting {
+        SeatStatus {
             is_aside: record.is_aside,
             lessons: kept.lessons,
             presence: seat.presence(),
@@ -54,9 +54,9 @@ pub fn sittings(folder: &Folder) -> Result<Vec<Sitting>, String> {
 }
 
 /// How many of `seats` are here, and in words with those that are aside, lost or away.
-pub fn present(seats: &[Sitting]) -> (usize, String) {
-    let count = |is_so: &dyn Fn(&Sitting) -> bool| seats.iter().filter(|it| is_so(it)).count();
-    let here = count(&Sitting::is_here);
+pub fn present(seats: &[SeatStatus]) -> (usize, String) {
+    let count = |is_so: &dyn Fn(&SeatStatus) -> bool| seats.iter().filter(|it| is_so(it)).count();
+    let here = count(&SeatStatus::is_here);
     let others = [
         (count(&|it| it.is_here() && it.is_aside), "of them aside"),
         (count(&|it| it.presence == Presence::Lost), "lost"),
@@ -69,19 +69,24 @@ pub fn present(seats: &[Sitting]) -> (usize, String) {
     (here, format!("{here} here{others}"))
 }
 
-impl Sitting {
+impl SeatStatus {
     pub fn is_here(&self) -> bool {
         self.presence == Presence::Here
     }
 
     /// What it has answered to `of`, a question of `lesson`, in this round.
-    pub fn vote<'a>(&'a self, lesson: &str, of: &'a Predict, round: u32) -> Option<&'a Given> {
+    pub fn vote<'a>(
+        &'a self,
+        lesson: &str,
+        of: &'a Predict,
+        round: u32,
+    ) -> Option<&'a LockedAnswer> {
         let place = self.lessons.get(lesson)?;
         place.predictions.in_round(of, round)
     }
 
     /// Its word, and how it is there, as the lists of the teacher have it.
-    pub fn in_words(&self, state: &State) -> String {
+    pub fn in_words(&self, state: &ClassState) -> String {
         let word = &self.seat.word;
         let is_there = match self.presence {
             _ if state.closed.contains(word) => "closed",
@@ -113,18 +118,18 @@ pub struct Tally {
 }
 
 impl Tally {
-    pub fn of(seats: &[Sitting], lesson: &str, predict: &Predict, round: u32) -> Self {
+    pub fn of(seats: &[SeatStatus], lesson: &str, predict: &Predict, round: u32) -> Self {
         let votes = seats
             .iter()
             .filter_map(|it| it.vote(lesson, predict, round));
         let (late, in_time): (Vec<_>, Vec<_>) = votes.partition(|given| given.late);
-        let numbers = |given: &[&Given]| -> Vec<f64> {
+        let numbers = |given: &[&LockedAnswer]| -> Vec<f64> {
             let answers = given.iter().map(|given| &given.answer);
             answers.filter_map(|it| predict.asked.number(it)).collect()
         };
         let bars = |numbers: &[f64]| match &predict.asked {
-            Asked::Choice(all) => of_choices(all.len(), numbers),
-            Asked::Number { .. } => of_numbers(numbers.to_vec()),
+            AnswerKind::Choice(all) => of_choices(all.len(), numbers),
+            AnswerKind::Number { .. } => of_numbers(numbers.to_vec()),
         };
         let choices = numbers(&in_time);
         let right = predict.right.as_ref();
@@ -143,7 +148,7 @@ impl Tally {
         if self.late > 0 {
             text += &format!("late:\n{}", drawn(&self.late_bars).text());
         }
-        Paragraph::new(Kind::Code, text)
+        Paragraph::new(SheetLineKind::Code, text)
     }
 }
 
@@ -197,18 +202,24 @@ pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
         let bar = "█".repeat((count * BAR).div_ceil(most));
         format!("{name:<width$} {bar} {count}\n")
     };
-    Paragraph::new(Kind::Code, bars.iter().map(line).collect::<String>())
+    Paragraph::new(
+        SheetLineKind::Code,
+        bars.iter().map(line).collect::<String>(),
+    )
 }
 
 /// The question of `page` that the class is at: the first that is not closed, or else the first.
-pub fn question<'a>(page: &'a Page, state: &State) -> Option<(&'a Predict, Question)> {
+pub fn question<'a>(
+    page: &'a LessonPage,
+    state: &ClassState,
+) -> Option<(&'a Predict, QuestionState)> {
     let asked = |predict: &'a Predict| (predict, state.question(&predict.name));
     let mut all = page.predicts().map(asked);
     let first = all.next()?;
-    if first.1.stage != Stage::Closed {
+    if first.1.stage != VoteStage::Closed {
         return Some(first);
     }
-    let open = all.find(|(_, question)| question.stage != Stage::Closed);
+    let open = all.find(|(_, question)| question.stage != VoteStage::Closed);
     Some(open.unwrap_or(first))
 }
 
@@ -218,7 +229,7 @@ const COLUMNS: [&str; 8] = [
 
 /// The votes of `seats` as CSV, in the order of seats, lessons and questions. A choice that the lesson no longer has is
 /// told in its words.
-pub fn csv(folder: &Folder, seats: &[Sitting]) -> Result<String, csv::Error> {
+pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS)?;
     let mut read = BTreeMap::new();
@@ -230,8 +241,8 @@ pub fn csv(folder: &Folder, seats: &[Sitting]) -> Result<String, csv::Error> {
                 let predict = lesson.as_ref().and_then(|lesson| lesson.predict(question));
                 let number = predict.and_then(|predict| predict.asked.number(&given.answer));
                 let choice = match (&given.answer, number) {
-                    (Answer::Choice(words), None) => printable(words).into_owned(),
-                    (Answer::Number(number), _) => shortest(*number),
+                    (PredictionAnswer::Choice(words), None) => printable(words).into_owned(),
+                    (PredictionAnswer::Number(number), _) => shortest(*number),
                     (_, Some(number)) => shortest(number),
                 };
                 writer.write_record([
@@ -254,7 +265,7 @@ pub fn csv(folder: &Folder, seats: &[Sitting]) -> Result<String, csv::Error> {
 }
 
 /// The time of `given`, as RFC 3339 writes it.
-fn time(given: &Given) -> String {
+fn time(given: &LockedAnswer) -> String {
     let time = DateTime::<Utc>::from_timestamp(given.time_unix_s as i64, 0).unwrap_or_default();
     time.format("%Y-%m-%dT%H:%M:%SZ").to_string()
 }

@@ -2,7 +2,7 @@
 
 use super::refuse;
 use crate::data::{ColumnOptions, ColumnSigma};
-use crate::export::Layout;
+use crate::export::CsvLayout;
 use crate::export::layout::LayoutFile;
 use crate::lab::view::theme::Background;
 use crate::lab::view::theme::Marker;
@@ -27,11 +27,11 @@ pub(super) struct ScenarioArgs {
     pub(super) scenario: String,
 
     #[command(flatten)]
-    pub(super) changes: Changes,
+    pub(super) changes: SetArgs,
 }
 
 #[derive(Clone, Debug, Default, Args)]
-pub(super) struct Changes {
+pub(super) struct SetArgs {
     /// Change a value first: start.tilt_deg=30; may be repeated
     ///
     /// KEY is one that gyrolab keys lists, VALUE is TOML: push.0.force_N=[0,0,-50].
@@ -49,7 +49,7 @@ pub(super) struct Changes {
     pub(super) scheme: Option<String>,
 }
 
-impl Changes {
+impl SetArgs {
     pub(super) fn is_some(&self) -> bool {
         !self.set.is_empty() || self.time_step.is_some() || self.scheme.is_some()
     }
@@ -61,7 +61,7 @@ pub(super) struct WorkbenchArgs {
     pub(super) scenario: Option<String>,
 
     #[command(flatten)]
-    pub(super) changes: Changes,
+    pub(super) changes: SetArgs,
 
     /// Come back to a session: the newest, or NAME
     ///
@@ -99,7 +99,7 @@ pub(super) struct WorkbenchArgs {
     pub(super) commands: Option<PathBuf>,
 
     #[command(flatten)]
-    pub(super) look: Look,
+    pub(super) look: DisplayArgs,
 
     /// Frames a second at most [default: 15, or as config.toml says]
     #[arg(long, value_name = "FRAMES", allow_negative_numbers = true, value_parser = frames)]
@@ -146,7 +146,7 @@ impl MapArgs {
 }
 
 #[derive(Clone, Copy, Debug, Default, Args)]
-pub(super) struct Look {
+pub(super) struct DisplayArgs {
     /// Colours: auto honours NO_COLOR [default: as chosen last in the lab, or auto]
     #[arg(long, alias = "colour", value_enum, value_name = "WHEN")]
     pub(super) color: Option<ColourChoice>,
@@ -241,7 +241,7 @@ pub(super) struct ClassArgs {
     pub(super) force: bool,
 
     #[command(flatten)]
-    pub(super) look: Look,
+    pub(super) look: DisplayArgs,
 }
 
 #[derive(Debug, Args)]
@@ -290,7 +290,7 @@ pub(super) struct LessonArgs {
     pub(super) force: bool,
 
     #[command(flatten)]
-    pub(super) look: Look,
+    pub(super) look: DisplayArgs,
 }
 
 /// Which rows and columns a CSV has, and how its numbers are written.
@@ -342,7 +342,7 @@ pub(super) fn time(text: &str) -> Result<f64, String> {
 
 impl LayoutArgs {
     /// The layout; the process ends where there is none such, as it does where clap refuses.
-    pub(super) fn layout(&self) -> Layout {
+    pub(super) fn layout(&self) -> CsvLayout {
         let file = LayoutFile {
             every: Some(self.every),
             from_s: self.from,
@@ -461,7 +461,7 @@ pub(super) fn open(scenario: &str) -> Result<Document, Problems> {
 /// The scenario of `document` with these changes.
 pub(super) fn changed(
     mut document: Document,
-    changes: &Changes,
+    changes: &SetArgs,
     length: &LengthArgs,
 ) -> Result<Scenario, Problems> {
     change(&mut document, changes)?;
@@ -483,7 +483,7 @@ pub(super) fn changed(
     document.scenario()
 }
 
-pub(super) fn change(document: &mut Document, changes: &Changes) -> Result<(), Problems> {
+pub(super) fn change(document: &mut Document, changes: &SetArgs) -> Result<(), Problems> {
     for set in &changes.set {
         document.set(set)?;
     }

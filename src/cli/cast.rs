@@ -3,7 +3,7 @@
 //! The lab's own clock tells the time: it goes on by the same step from picture to picture, however long the computer needs
 //! for one. Neither settings nor the environment are read, so that a file of commands has one recording.
 
-use super::args::{Changes, size};
+use super::args::{SetArgs, size};
 use super::new_lab::{DEFAULT, lab};
 use super::progress::{self, Interrupted, Interruption};
 use super::tell;
@@ -12,8 +12,8 @@ use crate::lab::command;
 use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::text::number::counted;
-use crate::text::printable::{Shown, printable};
-use crate::tui::screen::Recorder;
+use crate::text::printable::{PrintablePath, printable};
+use crate::tui::screen::ScreenRecorder;
 use anyhow::{bail, ensure};
 use clap::Args;
 use serde_json::{Value, json};
@@ -65,7 +65,7 @@ pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
         colour: true,
         background: Background::Dark,
     };
-    let (marker, unchanged) = (Some(Marker::Braille), Changes::default());
+    let (marker, unchanged) = (Some(Marker::Braille), SetArgs::default());
     let mut lab = lab(DEFAULT, &unchanged, marker, theme, false)?;
     let (output, interruption) = progress::open_for(&args.output, args.force)?;
     let mut cast = Cast::begin(args, &mut lab)?;
@@ -76,14 +76,14 @@ pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
     tell(format_args!(
         "gyrolab: {length:.1} s with {} in {}",
         counted(markers, "chapter"),
-        Shown(&args.output)
+        PrintablePath(&args.output)
     ));
     Ok(ExitCode::SUCCESS)
 }
 
 /// A recording: a line of JSON for its head and one for each event.
 struct Cast {
-    recorder: Recorder,
+    recorder: ScreenRecorder,
     text: String,
     now: Duration,
     /// The time of the last event.
@@ -102,7 +102,7 @@ impl Cast {
             head["title"] = Value::from(printable(title).into_owned());
         }
         Ok(Self {
-            recorder: Recorder::new(lab, args.size)?,
+            recorder: ScreenRecorder::new(lab, args.size)?,
             text: format!("{head}\n"),
             now: Duration::ZERO,
             written: Duration::ZERO,

@@ -1,21 +1,21 @@
 //! `gyrolab class` and `gyrolab --seat`: a class in a folder.
 
-use super::args::{ClassArgs, Look, WorkbenchArgs};
+use super::args::{ClassArgs, DisplayArgs, WorkbenchArgs};
 use super::lesson::admit;
 use super::new_lab::{DEFAULT, new_lab, refused};
 use super::workbench::open_at;
 use super::{print, progress, sessions, tell};
-use crate::class::folder::Folder;
+use crate::class::folder::ClassFolder;
 use crate::class::student::Student;
 use crate::class::teacher::Teacher;
-use crate::class::votes::{self, Sitting, sittings};
+use crate::class::votes::{self, SeatStatus, sittings};
 use crate::class::{Seat, board, login};
 use crate::export::Destination;
 use crate::lessons::clock::unix_s;
 use crate::lessons::{handout, reading};
 use crate::storage::confined::{Confined, MOST_OF_SEAT};
 use crate::storage::session;
-use crate::text::printable::{Shown, printable};
+use crate::text::printable::{PrintablePath, printable};
 use crate::tui;
 use anyhow::{Context, bail, ensure};
 use rustix::process::{Pid, Resource, Signal};
@@ -34,7 +34,7 @@ const LONGEST_LINE: u64 = 200;
 const PENALTY: Duration = Duration::from_secs(1);
 
 pub(super) fn class(args: &ClassArgs) -> anyhow::Result<ExitCode> {
-    let at = || Folder::at(&args.folder).map_err(anyhow::Error::msg);
+    let at = || ClassFolder::at(&args.folder).map_err(anyhow::Error::msg);
     if args.votes {
         return print_votes(&at()?);
     }
@@ -53,7 +53,7 @@ pub(super) fn class(args: &ClassArgs) -> anyhow::Result<ExitCode> {
 
 /// Opens the teacher's lab.
 fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
-    let folder = Folder::open(&args.folder).map_err(anyhow::Error::msg)?;
+    let folder = ClassFolder::open(&args.folder).map_err(anyhow::Error::msg)?;
     folder.make_teacher().map_err(anyhow::Error::msg)?;
     let confined = Confined::enter(&args.folder).with_context(|| sessions::named(&args.folder))?;
     let confined = confined.keeping_in(folder.teacher());
@@ -62,7 +62,7 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     ensure!(
         !matches!(turn.try_lock(), Err(TryLockError::WouldBlock)),
         "a class is on in {}: its board is gyrolab class --board --folder DIR",
-        Shown(&folder.root)
+        PrintablePath(&folder.root)
     );
     let before = match folder.state() {
         Err(reason) if args.resume => bail!(reason),
@@ -88,14 +88,14 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher))
 }
 
-fn print_votes(folder: &Folder) -> anyhow::Result<ExitCode> {
+fn print_votes(folder: &ClassFolder) -> anyhow::Result<ExitCode> {
     let seats = sittings(folder).map_err(anyhow::Error::msg)?;
     print(&votes::csv(folder, &seats)?)?;
     Ok(unread(&seats))
 }
 
 /// Says which files of `seats` cannot be read. Returns the exit code.
-fn unread(seats: &[Sitting]) -> ExitCode {
+fn unread(seats: &[SeatStatus]) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for trouble in seats.iter().filter_map(|seat| seat.trouble.as_ref()) {
         tell(format_args!("gyrolab: {}", printable(trouble)));
@@ -104,7 +104,7 @@ fn unread(seats: &[Sitting]) -> ExitCode {
     code
 }
 
-fn show_board(folder: &Folder) -> anyhow::Result<ExitCode> {
+fn show_board(folder: &ClassFolder) -> anyhow::Result<ExitCode> {
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         tui::board::run(|width| board::lines(folder, width))
             .context("the terminal cannot be used")?;
@@ -115,13 +115,18 @@ fn show_board(folder: &Folder) -> anyhow::Result<ExitCode> {
 }
 
 /// Writes what each seat has predicted beside what came out: a file for each in the folder `output`.
-fn answers(folder: &Folder, output: &Path, force: bool, look: Look) -> anyhow::Result<ExitCode> {
-    std::fs::create_dir_all(output).with_context(|| Shown(output).to_string())?;
+fn answers(
+    folder: &ClassFolder,
+    output: &Path,
+    force: bool,
+    look: DisplayArgs,
+) -> anyhow::Result<ExitCode> {
+    std::fs::create_dir_all(output).with_context(|| PrintablePath(output).to_string())?;
     let interruption = progress::interruption()?;
     let mut files = 0;
     let seats = sittings(folder).map_err(anyhow::Error::msg)?;
     let mut code = unread(&seats);
-    for Sitting { seat, lessons, .. } in seats {
+    for SeatStatus { seat, lessons, .. } in seats {
         let mut text = String::new();
         for (name, place) in lessons {
             if place.predictions.is_empty() {
@@ -153,7 +158,7 @@ fn answers(folder: &Folder, output: &Path, force: bool, look: Look) -> anyhow::R
     }
     tell(format_args!(
         "gyrolab: the answers of {files} seats are in {}",
-        Shown(output)
+        PrintablePath(output)
     ));
     Ok(code)
 }
@@ -170,7 +175,7 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
     let now = limit.current.unwrap_or(MOST_OF_SEAT);
     limit.current = Some(now.min(MOST_OF_SEAT));
     rustix::process::setrlimit(Resource::Fsize, limit)?;
-    let folder = Folder::open(dir).map_err(anyhow::Error::msg)?;
+    let folder = ClassFolder::open(dir).map_err(anyhow::Error::msg)?;
     let Some(seat) = asked(&folder)? else {
         return Ok(ExitCode::SUCCESS);
     };
@@ -193,7 +198,7 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
 }
 
 /// Asks for a name or the word of a seat until there is one; `None` where nothing more is typed.
-fn asked(folder: &Folder) -> anyhow::Result<Option<Seat>> {
+fn asked(folder: &ClassFolder) -> anyhow::Result<Option<Seat>> {
     loop {
         let mut stdout = io::stdout();
         write!(stdout, "{}", login::ASKS)?;

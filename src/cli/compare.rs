@@ -3,7 +3,7 @@
 use super::args::{LengthArgs, ScenarioArgs, positive, scenario_of};
 use super::progress::{self, Interrupted};
 use super::{one_on_stdout, print};
-use crate::analysis::compare::{Table, compare as table_of};
+use crate::analysis::compare::{ComparisonTable, compare as table_of};
 use crate::analysis::cost;
 use crate::analysis::predictability::predictability;
 use crate::physics::{SchemeInfo, scheme};
@@ -71,7 +71,7 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     }
     interruption.may_act_at_once()?;
     let duration_s = Clock::end_s(&scenario);
-    let table = Table {
+    let table = ComparisonTable {
         rows: &rows,
         energy_unit: EnergyScale::of(&scenario).map(|scale| scale.unit),
         predictability: predictability(&Arc::new(scenario.clone()), duration_s),

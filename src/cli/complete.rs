@@ -5,10 +5,10 @@ use super::manual::names_and_commands;
 use super::{command, print};
 use crate::analysis::readouts::READOUTS;
 use crate::data::SHIPPED;
-use crate::export::columns::{COLUMNS, Column, OPTIONAL_COLUMNS, POINT_COLUMNS};
+use crate::export::columns::{COLUMNS, CsvColumn, OPTIONAL_COLUMNS, POINT_COLUMNS};
 use crate::figure::kind;
 use crate::lessons::shipped::LESSONS;
-use crate::scenario::keys::{Effect, KEYS, Key, Kind};
+use crate::scenario::keys::{Effect, KEYS, ScenarioKey, ValueKind};
 use crate::scenario::presets::PRESETS;
 use crate::sweep::SWEEPS;
 use crate::text::shipped::Shipped;
@@ -27,12 +27,12 @@ use std::process::ExitCode;
 pub(super) const VARIABLE: &str = "GYROLAB_COMPLETE";
 
 /// Names with what they mean, given what is typed before them (a list up to its comma, a key up to its `=`) and of them.
-type Names = fn(&str, &str) -> Vec<(String, &'static str)>;
+type CompletionSource = fn(&str, &str) -> Vec<(String, &'static str)>;
 
 /// The names that complete the value of the argument `arg` of `command`, and the endings of files that do; `None` where clap
 /// knows better.
-fn completing(command: &str, arg: &str) -> Option<(Names, &'static [&'static str])> {
-    let names: Names = match (command, arg) {
+fn completing(command: &str, arg: &str) -> Option<(CompletionSource, &'static [&'static str])> {
+    let names: CompletionSource = match (command, arg) {
         ("presets", "name") => |_, _| [presets(), shipped(SWEEPS), shipped(SHIPPED)].concat(),
         ("sweep", "scenario") => |_, _| [shipped(SWEEPS), presets()].concat(),
         ("lesson", "name") => |_, _| shipped(LESSONS),
@@ -112,7 +112,7 @@ fn script(shell: Shell) -> anyhow::Result<String> {
 /// The names that begin as `current` does behind its last `,` or `=`, and the files and folders that end so.
 fn completed(
     current: &OsStr,
-    names: Names,
+    names: CompletionSource,
     endings: &'static [&'static str],
 ) -> Vec<CompletionCandidate> {
     let text = current.to_string_lossy();
@@ -158,7 +158,7 @@ fn columns() -> Vec<(String, &'static str)> {
     columns.extend(named(OPTIONAL_COLUMNS, |column| {
         (column.name, column.about)
     }));
-    columns.extend(of_points.filter(|(name, _)| Column::find(name).is_none()));
+    columns.extend(of_points.filter(|(name, _)| CsvColumn::find(name).is_none()));
     columns
 }
 
@@ -178,12 +178,12 @@ fn settings(typed: &str, begin: &str) -> Vec<(String, &'static str)> {
 }
 
 /// The dotted keys that are `wanted`, each with `end`; of a vector that is typed its three numbers.
-fn keys(begin: &str, wanted: fn(&Key) -> bool, end: &str) -> Vec<(String, &'static str)> {
+fn keys(begin: &str, wanted: fn(&ScenarioKey) -> bool, end: &str) -> Vec<(String, &'static str)> {
     let mut found = Vec::new();
     let of_scenario = KEYS.iter().filter(|key| !key.path.starts_with("edit."));
     for key in of_scenario.filter(|key| wanted(key)) {
         let path = instance(key.path, begin);
-        if key.kind == Kind::Vector && begin.starts_with(&format!("{path}.")) {
+        if key.kind == ValueKind::Vector && begin.starts_with(&format!("{path}.")) {
             found.extend([0, 1, 2].map(|place| (format!("{path}.{place}{end}"), key.about)));
         } else {
             found.push((path + end, key.about));
@@ -192,8 +192,9 @@ fn keys(begin: &str, wanted: fn(&Key) -> bool, end: &str) -> Vec<(String, &'stat
     found
 }
 
-fn is_free(key: &Key) -> bool {
-    Effect::of(key.path) != Effect::None && matches!(key.kind, Kind::Number(_) | Kind::Vector)
+fn is_free(key: &ScenarioKey) -> bool {
+    Effect::of(key.path) != Effect::None
+        && matches!(key.kind, ValueKind::Number(_) | ValueKind::Vector)
 }
 
 /// The key `path` with a number for each `*`: the one that stands there in `typed`, or else 0.

@@ -1,20 +1,20 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{Changes, LengthArgs, MapArgs, changed, positive, time};
+use super::args::{LengthArgs, MapArgs, SetArgs, changed, positive, time};
 use super::progress::{self, Interrupted};
 use super::writeup::measured;
 use super::{ended_by, refuse, tell, tell_notes};
 use crate::analysis::cost;
 use crate::data::doubts;
-use crate::figure::kind::Kind;
-use crate::figure::of_runs::Run;
-use crate::figure::table::Table;
-use crate::figure::{Asked, Format, PT_PER_MM, Source, WIDTHS_MM};
+use crate::figure::kind::FigureKind;
+use crate::figure::of_runs::FigureRun;
+use crate::figure::table::TableSource;
+use crate::figure::{FigureOptions, FigureSource, PT_PER_MM, PageFormat, WIDTHS_MM};
 use crate::origin;
 use crate::physics::scheme;
 use crate::scenario::head::is_file;
 use crate::scenario::{Document, Problem, Problems};
-use crate::text::printable::{Shown, printable};
+use crate::text::printable::{PrintablePath, printable};
 use anyhow::{bail, ensure};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -74,7 +74,7 @@ pub(super) struct FigureArgs {
     labels: LabelArgs,
 
     #[command(flatten)]
-    changes: Changes,
+    changes: SetArgs,
 
     #[command(flatten)]
     length: LengthArgs,
@@ -117,9 +117,9 @@ struct LabelArgs {
 
 impl LabelArgs {
     /// The form in which `output` is written.
-    fn format(&self, output: &Path) -> anyhow::Result<Format> {
-        match (Format::of(output)?, self.text) {
-            (Format::Svg, true) => Ok(Format::SvgText),
+    fn format(&self, output: &Path) -> anyhow::Result<PageFormat> {
+        match (PageFormat::of(output)?, self.text) {
+            (PageFormat::Svg, true) => Ok(PageFormat::SvgText),
             (_, true) => {
                 bail!("--text is for .svg: the words of a .pdf can be selected as they are")
             }
@@ -159,8 +159,8 @@ fn width(text: &str) -> Result<f64, String> {
 pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     let mut format = args.labels.format(&args.output)?;
     let source = source(args)?;
-    if format == Format::Svg && source.asked.text {
-        format = Format::SvgText;
+    if format == PageFormat::Svg && source.asked.text {
+        format = PageFormat::SvgText;
     }
     let (output, interruption) = progress::open_for(&args.output, args.force)?;
     for line in said(&source) {
@@ -179,19 +179,19 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
         "gyrolab: {} mm x {} mm in {}",
         mm(figure.scene.width_pt),
         mm(figure.scene.height_pt),
-        Shown(&args.output)
+        PrintablePath(&args.output)
     ));
     Ok(ended_by(figure.broke.map(anyhow::Error::msg)))
 }
 
 /// What is said before the figure is drawn.
-fn said(source: &Source) -> Vec<String> {
+fn said(source: &FigureSource) -> Vec<String> {
     let from_csv = source.runs.iter().filter(|run| run.named.ends_with(".csv"));
     let computed = from_csv.map(|run| {
         let (named, steps) = (printable(&run.named), run.scenario.steps);
         format!("{named}: its {steps} steps are computed anew from its header")
     });
-    let files = source.origin(Format::Svg).files.into_iter();
+    let files = source.origin(PageFormat::Svg).files.into_iter();
     let left_behind = files.filter(|file| file.sha256.is_some()).map(|file| {
         let name = printable(&file.name);
         format!("{name}: more than 1 MB when compressed, it does not travel with the figure: keep it beside")
@@ -200,15 +200,15 @@ fn said(source: &Source) -> Vec<String> {
 }
 
 /// What the RUNs name, with what the command line changes.
-fn source(args: &FigureArgs) -> anyhow::Result<Source> {
-    let mut source = Source::default();
+fn source(args: &FigureArgs) -> anyhow::Result<FigureSource> {
+    let mut source = FigureSource::default();
     for name in &args.runs {
         add(&mut source, name, args)?;
     }
     if source.table.is_some() {
         refuse_for_table(args)?;
     } else if let Some(kind) = &args.kind {
-        Kind::named(kind).unwrap_or_else(|refusal| no_kind(args, &refusal));
+        FigureKind::named(kind).unwrap_or_else(|refusal| no_kind(args, &refusal));
     }
     if let Some(name) = &args.measured {
         let measured = measured(name, &args.columns)?;
@@ -236,14 +236,14 @@ fn source(args: &FigureArgs) -> anyhow::Result<Source> {
 }
 
 /// Adds to `source` what a RUN of the command line names.
-fn add(source: &mut Source, name: &str, args: &FigureArgs) -> anyhow::Result<()> {
+fn add(source: &mut FigureSource, name: &str, args: &FigureArgs) -> anyhow::Result<()> {
     let path = Path::new(name);
-    if let Some(table) = Table::read(path)? {
+    if let Some(table) = TableSource::read(path)? {
         source.table = Some(table);
         return Ok(());
     }
     let figure = if is_file(name) {
-        origin::Figure::open(path)
+        origin::FigureFile::open(path)
     } else {
         Ok(None)
     };
@@ -252,7 +252,7 @@ fn add(source: &mut Source, name: &str, args: &FigureArgs) -> anyhow::Result<()>
         return add_runs(source, &origin::name_of(name), &Document::open(name)?, args);
     };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let one = Source::of(&figure.origin, folder).map_err(|problems| problems.of(name))?;
+    let one = FigureSource::of(&figure.origin, folder).map_err(|problems| problems.of(name))?;
     for run in one.runs {
         let document = Document::from_file(&run.named, &run.scenario.file)?;
         add_runs(source, &run.named, &document, args)?;
@@ -265,7 +265,7 @@ fn add(source: &mut Source, name: &str, args: &FigureArgs) -> anyhow::Result<()>
 
 /// Adds the run of `document`, changed, by every scheme that is named.
 fn add_runs(
-    source: &mut Source,
+    source: &mut FigureSource,
     named: &str,
     document: &Document,
     args: &FigureArgs,
@@ -275,7 +275,7 @@ fn add_runs(
     for scheme in by_scheme.chain(as_it_is) {
         let mut changes = args.changes.clone();
         changes.scheme = scheme.cloned().or(changes.scheme);
-        source.runs.push(Run {
+        source.runs.push(FigureRun {
             scenario: Arc::new(changed(document.clone(), &changes, &args.length)?),
             named: named.to_owned(),
         });
@@ -284,7 +284,7 @@ fn add_runs(
 }
 
 /// Writes what the command line asks for over what is `asked`.
-fn ask(args: &FigureArgs, asked: &mut Asked) {
+fn ask(args: &FigureArgs, asked: &mut FigureOptions) {
     asked.kind = args.kind.clone().or(asked.kind.take());
     asked.from_s = args.from.unwrap_or(asked.from_s);
     asked.to_s = args.to.or(asked.to_s);

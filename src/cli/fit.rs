@@ -1,16 +1,16 @@
 //! `gyrolab fit`: keys of a scenario, so that its runs come nearest to measured data.
 
-use super::args::{Changes, MapArgs, STDIN, STDIN_WORDS, change, open, positive, time};
+use super::args::{MapArgs, STDIN, STDIN_WORDS, SetArgs, change, open, positive, time};
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::{one_on_stdout, print, print_result, refuse, tell, tell_notes, tell_of_rows};
-use crate::data::{self, Data, Measured};
+use crate::data::{self, DataKind, MeasuredData};
 use crate::export::Destination;
 use crate::fit::flights::{self, Flight, Found};
-use crate::fit::report::{self, Asked, Report};
+use crate::fit::report::{self, FitCommand, FitReport};
 use crate::fit::{Fit, Free, Model, NoFit, fit as fitted};
 use crate::scenario::{Document, Problem, Problems, csv};
 use crate::text::number::{shortest, significant};
-use crate::text::printable::{Shown, brief, printable};
+use crate::text::printable::{PrintablePath, brief, printable};
 use crate::verify::Unverified;
 use anyhow::{Context, anyhow, bail};
 use clap::error::ErrorKind;
@@ -42,14 +42,14 @@ pub(super) struct FitArgs {
     pub(super) free: Vec<String>,
 
     #[command(flatten)]
-    pub(super) changes: Changes,
+    pub(super) changes: SetArgs,
 
     #[command(flatten)]
     pub(super) columns: MapArgs,
 
     /// Fit these rows of the data alone, counted from 1, such as 1,3,5-8
     #[arg(long, value_name = "ROWS")]
-    pub(super) rows: Option<Rows>,
+    pub(super) rows: Option<RowRange>,
 
     /// Of a recording of throws, fit this free flight alone, counted from 1; without it and without --from and --to each
     /// flight that is found is fitted
@@ -79,12 +79,12 @@ pub(super) struct FitArgs {
 
 /// Rows of the data, counted from 1, as they were given.
 #[derive(Clone, Debug)]
-pub(super) struct Rows {
+pub(super) struct RowRange {
     text: String,
     ranges: Vec<(usize, usize)>,
 }
 
-impl std::str::FromStr for Rows {
+impl std::str::FromStr for RowRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -157,7 +157,7 @@ fn fit_each(args: &FitArgs, task: &Task, throws: &[Throw]) -> anyhow::Result<Exi
         });
         match fitted {
             Ok((model, fit)) => {
-                let report = Report {
+                let report = FitReport {
                     fit: &fit,
                     model: &model,
                     instead_of: task.other_scheme(&model),
@@ -192,14 +192,14 @@ fn fit_one(args: &FitArgs, task: &Task, throw: Option<&Throw>) -> anyhow::Result
     tell_notes(&model.doubts());
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let found = task.found(args, &model, &interruption)?;
-    let report = Report {
+    let report = FitReport {
         fit: &found,
         model: &model,
         instead_of: task.other_scheme(&model),
     };
     if let Some(mut output) = output {
         let path = args.output.as_deref().unwrap_or(Path::new("the output"));
-        let cannot_write = || format!("cannot write {}", Shown(path));
+        let cannot_write = || format!("cannot write {}", PrintablePath(path));
         write(&mut output, &report, args).with_context(cannot_write)?;
         interruption.may_keep()?;
         output.keep().with_context(cannot_write)?;
@@ -211,7 +211,7 @@ fn fit_one(args: &FitArgs, task: &Task, throw: Option<&Throw>) -> anyhow::Result
 /// What is fitted to what, before any flight is chosen.
 struct Task {
     /// The rows that --rows, --from and --to leave.
-    measured: Measured,
+    measured: MeasuredData,
     document: Document,
     /// The scenario's own scheme, where no other was asked for.
     own_scheme: Option<&'static str>,
@@ -251,8 +251,8 @@ impl Task {
         }
         let refused = |rule: String| Problems::one(args.measured.clone(), Problem::at("", rule));
         let found = match &self.measured.data {
-            Data::Series(series) => flights::find(series, &self.document.scenario()?),
-            Data::Table(_) => Found::NotThrown,
+            DataKind::Series(series) => flights::find(series, &self.document.scenario()?),
+            DataKind::Table(_) => Found::NotThrown,
         };
         let flights = match found {
             Found::NotThrown if is_asked => {
@@ -365,7 +365,7 @@ impl fmt::Display for Throw {
 
 /// The report of a fit, and which flight of the recording it is of.
 struct Thrown<'a> {
-    report: Report<'a>,
+    report: FitReport<'a>,
     throw: Option<&'a Throw>,
 }
 
@@ -421,7 +421,7 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
         Err(NoFit::Interrupted) => return Err(Unverified::Stopped),
         Err(error) => return Err(cannot(error.to_string())),
     };
-    let report = Report {
+    let report = FitReport {
         fit: &found,
         model: &model,
         instead_of: None,
@@ -431,7 +431,7 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
     Ok(csv)
 }
 
-fn measured(args: &FitArgs) -> Result<Measured, Problems> {
+fn measured(args: &FitArgs) -> Result<MeasuredData, Problems> {
     let options = args.columns.options();
     if args.measured != STDIN {
         return data::open_with(&args.measured, &options);
@@ -457,7 +457,7 @@ fn scenario(args: &FitArgs) -> Result<(Document, Option<&'static str>), Problems
     Ok((document, own))
 }
 
-fn chosen(mut measured: Measured, rows: Option<&Rows>) -> Result<Measured, Problems> {
+fn chosen(mut measured: MeasuredData, rows: Option<&RowRange>) -> Result<MeasuredData, Problems> {
     let Some(rows) = rows else {
         return Ok(measured);
     };
@@ -516,12 +516,12 @@ fn command(args: &FitArgs) -> String {
     shlex::try_join(words).unwrap_or_default()
 }
 
-fn write(output: impl Write, report: &Report<'_>, args: &FitArgs) -> anyhow::Result<()> {
+fn write(output: impl Write, report: &FitReport<'_>, args: &FitArgs) -> anyhow::Result<()> {
     let Fit { keys, quality, .. } = report.fit;
     let values: Vec<f64> = keys.iter().map(|key| key.value).collect();
     let scenario = report.model.as_long_as_measured(&values);
     let scenario = scenario.map_err(|why| anyhow!(why))?;
-    let asked = Asked {
+    let asked = FitCommand {
         command: command(args),
         measured: args.measured.clone(),
         scenario: args.scenario.clone(),

@@ -9,13 +9,13 @@ use crate::lab::command;
 use crate::lessons::shipped;
 use crate::physics::scheme::SCHEMES;
 use crate::run::Clock;
-use crate::scenario::keys::{KEYS, Key};
+use crate::scenario::keys::{KEYS, ScenarioKey};
 use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario, Window};
 use crate::sweep::{self, SWEEPS, Sweep};
 use crate::text::number::{counted, decimal, shortest};
-use crate::text::printable::{Shown, printable, printable_lines};
+use crate::text::printable::{PrintablePath, printable, printable_lines};
 use anyhow::bail;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -72,7 +72,7 @@ pub(super) fn scheme_list() -> Result<String, std::fmt::Error> {
 
 pub(super) fn key_list() -> Result<String, std::fmt::Error> {
     let mut text = String::new();
-    for Key {
+    for ScenarioKey {
         path,
         required,
         instead,
@@ -118,7 +118,7 @@ pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
         };
         match checked {
             Ok(described) => {
-                print(&format!("{}: {described}\n", Shown(file)))?;
+                print(&format!("{}: {described}\n", PrintablePath(file)))?;
             }
             Err(problems) => {
                 tell(printable_lines(&problems.to_string()));

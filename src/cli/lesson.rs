@@ -1,17 +1,17 @@
 //! `gyrolab lesson`: the list of lessons, a lesson in the lab, on paper, or to begin from; and `check` of one.
 
-use super::args::{LessonArgs, Look};
+use super::args::{DisplayArgs, LessonArgs};
 use super::new_lab::{new_lab, refused, write};
 use super::{notes, print, progress, sessions, tell, workbench};
 use crate::lab::Lab;
 use crate::lessons::class::files_in;
 use crate::lessons::handout::{self, Paper};
-use crate::lessons::play::{self, Walk};
-use crate::lessons::{Lesson, Page, reading, shipped};
+use crate::lessons::play::{self, LessonWalk};
+use crate::lessons::{Lesson, LessonPage, reading, shipped};
 use crate::scenario::Problems;
 use crate::storage::confined::Confined;
 use crate::text::number::counted;
-use crate::text::printable::{Shown, printable_lines};
+use crate::text::printable::{PrintablePath, printable_lines};
 use anyhow::Context;
 use std::io::{self, IsTerminal};
 use std::path::Path;
@@ -76,14 +76,14 @@ fn print_frame(args: &LessonArgs, name: &str, language: &str) -> anyhow::Result<
     write(args, |_| Ok(frame.to_owned()))
 }
 
-fn print_page(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCode> {
+fn print_page(lesson: &Lesson, page: &LessonPage, look: DisplayArgs) -> anyhow::Result<ExitCode> {
     tell(format_args!(
         "gyrolab: there is no terminal to open the lesson on, so page {} of {} is printed",
         page.number,
         lesson.pages.len()
     ));
     let interruption = progress::interruption()?;
-    let mut walk = Walk::new(lesson, new_lab(look)?);
+    let mut walk = LessonWalk::new(lesson, new_lab(look)?);
     let walked = walk.jump(page, &mut interruption.meter());
     walked.map_err(|problem| refused(lesson, problem))?;
     let text = handout::page(page, &walk, &picture);
@@ -100,7 +100,7 @@ fn list(folder: Option<&Confined>) -> anyhow::Result<String> {
     {
         let lesson = reading::open(&path)?;
         let name = Path::new(&path).file_name().unwrap_or_default();
-        text += &format!("{}: {}\n", Shown(Path::new(name)), lesson.title);
+        text += &format!("{}: {}\n", PrintablePath(Path::new(name)), lesson.title);
     }
     for shipped in shipped::LESSONS {
         let lesson = reading::open(shipped.name)?;
@@ -110,7 +110,7 @@ fn list(folder: Option<&Confined>) -> anyhow::Result<String> {
 }
 
 /// The page that is asked for; the first where none is.
-fn page_of<'a>(lesson: &'a Lesson, args: &LessonArgs) -> anyhow::Result<&'a Page> {
+fn page_of<'a>(lesson: &'a Lesson, args: &LessonArgs) -> anyhow::Result<&'a LessonPage> {
     let number = args.page.map_or(1, std::num::NonZeroU64::get);
     let page = usize::try_from(number).ok();
     let page = page.and_then(|number| lesson.page(number));
@@ -132,7 +132,7 @@ pub(super) fn checked(file: &Path) -> anyhow::Result<Result<String, Problems>> {
         Err(problems) => return Ok(Err(problems)),
     };
     let interruption = progress::interruption()?;
-    let lab = new_lab(Look::default())?;
+    let lab = new_lab(DisplayArgs::default())?;
     let played = play::check(&lesson, lab, &mut interruption.meter());
     interruption.may_act_at_once()?;
     Ok(played.map(|unstated| {

@@ -5,10 +5,10 @@ use super::{command, info, print, tell};
 use crate::export::Destination;
 use crate::export::columns::{COLUMNS, OPTIONAL_COLUMNS, POINT_COLUMNS};
 use crate::lab::command::COMMANDS;
-use crate::scenario::keys::Kind;
+use crate::scenario::keys::ValueKind;
 use crate::scenario::problem::nearest;
 use crate::storage::settings;
-use crate::text::printable::{Shown, printable};
+use crate::text::printable::{PrintablePath, printable};
 use crate::text::wrap::{columns, wrapped};
 use crate::tui::panes::help as keys_of_lab;
 use anyhow::{Context, bail};
@@ -85,7 +85,7 @@ fn help(command: &Command) -> String {
     short.render_help().to_string()
 }
 
-fn in_plain(sections: &[Section]) -> String {
+fn in_plain(sections: &[ManualSection]) -> String {
     let sections = sections.iter();
     let sections = sections.map(|(title, text)| format!("\n{title}\n\n{}\n", text.trim_end()));
     sections.collect()
@@ -93,7 +93,7 @@ fn in_plain(sections: &[Section]) -> String {
 
 /// Writes the page of the program and that of each command into `folder`.
 fn write_pages(gyrolab: &Command, folder: &Path, replace: bool) -> anyhow::Result<ExitCode> {
-    let cannot = || format!("cannot make the folder {}", Shown(folder));
+    let cannot = || format!("cannot make the folder {}", PrintablePath(folder));
     std::fs::create_dir_all(folder).with_context(cannot)?;
     let mut pages = vec![page(gyrolab, "gyrolab", &of_program()?)?];
     for command in commands(gyrolab) {
@@ -105,12 +105,19 @@ fn write_pages(gyrolab: &Command, folder: &Path, replace: bool) -> anyhow::Resul
         output.write_and_keep(page.as_bytes())?;
     }
     let count = pages.len();
-    tell(format_args!("gyrolab: {count} pages in {}", Shown(folder)));
+    tell(format_args!(
+        "gyrolab: {count} pages in {}",
+        PrintablePath(folder)
+    ));
     Ok(ExitCode::SUCCESS)
 }
 
 /// The file of the page `name` and its text in roff, the language of man(1).
-fn page(command: &Command, name: &str, sections: &[Section]) -> anyhow::Result<(String, String)> {
+fn page(
+    command: &Command,
+    name: &str,
+    sections: &[ManualSection],
+) -> anyhow::Result<(String, String)> {
     let mut page = Vec::new();
     let man = Man::new(command.clone().display_name(name.to_owned()))
         .date(DATE)
@@ -202,9 +209,9 @@ fn in_width(table: &str) -> String {
 }
 
 /// The name of a table in a topic, and what is written in its place.
-type Table = (&'static str, fn() -> Result<String, fmt::Error>);
+type ManualTable = (&'static str, fn() -> Result<String, fmt::Error>);
 
-const TABLES: [Table; 6] = [
+const TABLES: [ManualTable; 6] = [
     ("{COLUMNS}", || {
         Ok(two_columns(COLUMNS, |it| (it.name, it.about)))
     }),
@@ -227,9 +234,9 @@ fn two_columns<T>(rows: &[T], row: fn(&T) -> (&'static str, &'static str)) -> St
 }
 
 /// A title, and the text below it.
-type Section = (&'static str, String);
+type ManualSection = (&'static str, String);
 
-fn of_program() -> Result<Vec<Section>, fmt::Error> {
+fn of_program() -> Result<Vec<ManualSection>, fmt::Error> {
     let topics: Vec<_> = topic_names().collect();
     let topics = paragraph(&format!("gyrolab man TOPIC, of {}.", topics.join(", ")));
     Ok(vec![
@@ -243,14 +250,14 @@ fn of_program() -> Result<Vec<Section>, fmt::Error> {
     ])
 }
 
-fn of_command(command: &Command) -> Result<Vec<Section>, fmt::Error> {
+fn of_command(command: &Command) -> Result<Vec<ManualSection>, fmt::Error> {
     let notes = topic(command.get_name())?;
     let notes = notes.map(|text| ("NOTES", text));
     Ok(notes.into_iter().chain([fixed("EXIT STATUS")]).collect())
 }
 
 /// The section `title` of those that no table of the program makes.
-fn fixed(title: &'static str) -> Section {
+fn fixed(title: &'static str) -> ManualSection {
     let text = part(include_str!("manual/sections.txt"), title);
     (title, text.unwrap_or_default().to_owned())
 }
@@ -309,8 +316,8 @@ fn files_of_commands() -> String {
 fn chosen() -> String {
     let rows = settings::KEYS.iter().map(|(key, kind, about)| {
         let value = match kind {
-            Kind::OneOf(words) => format!("\"{}\"", words.join("\", \"")),
-            Kind::Whole(least, most) => format!("{least} to {most}"),
+            ValueKind::OneOf(words) => format!("\"{}\"", words.join("\", \"")),
+            ValueKind::Whole(least, most) => format!("{least} to {most}"),
             _ => "true, false".to_owned(),
         };
         (format!("{key} = {value}"), *about)

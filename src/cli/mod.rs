@@ -27,7 +27,7 @@ mod writeup;
 use crate::export::destination::{Destination, DestinationError};
 use crate::scenario::{presets, screen};
 use crate::text::number::counted;
-use crate::text::printable::{Shown, is_steering, printable, printable_lines};
+use crate::text::printable::{PrintablePath, is_steering, printable, printable_lines};
 use crate::tui::panes;
 use anyhow::Context;
 use args::{ClassArgs, LessonArgs, WorkbenchArgs};
@@ -53,14 +53,14 @@ use std::process::ExitCode;
 )]
 struct Cli {
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Option<CliCommand>,
 
     #[command(flatten)]
     workbench: WorkbenchArgs,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum CliCommand {
     /// Run a scenario without a terminal: a summary, or with -o its CSV
     Run(run::RunArgs),
     /// Print the lab's picture at the end of a run, as plain text
@@ -156,25 +156,25 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         return open_lab(&cli.workbench);
     };
     match command {
-        Command::Run(args) => run::run(&args),
-        Command::Show(args) => show::show(&args),
-        Command::Compare(args) => compare::compare(&args),
-        Command::Figure(args) => figure::figure(&args),
-        Command::Sweep(args) => sweep::sweep(&args),
-        Command::Fit(args) => fit::fit(&args),
-        Command::Verify(args) => verify::verify(&args),
-        Command::Cast(args) => cast::cast(&args),
-        Command::Presets { name } => info::presets(name.as_deref()),
-        Command::Sessions { folder } => sessions::list(folder.as_deref()),
-        Command::Schemes => print(&info::scheme_list()?),
-        Command::Keys => print(&info::key_list()?),
-        Command::Readouts => print(&info::readout_list()?),
-        Command::Writeup(args) => writeup::writeup(&args),
-        Command::Class(args) => class::class(&args),
-        Command::Lesson(args) => lesson::lesson(&args),
-        Command::Check { files } => info::check(&files),
-        Command::Completions { shell } => complete::completions(shell),
-        Command::Man(args) => manual::man(&args),
+        CliCommand::Run(args) => run::run(&args),
+        CliCommand::Show(args) => show::show(&args),
+        CliCommand::Compare(args) => compare::compare(&args),
+        CliCommand::Figure(args) => figure::figure(&args),
+        CliCommand::Sweep(args) => sweep::sweep(&args),
+        CliCommand::Fit(args) => fit::fit(&args),
+        CliCommand::Verify(args) => verify::verify(&args),
+        CliCommand::Cast(args) => cast::cast(&args),
+        CliCommand::Presets { name } => info::presets(name.as_deref()),
+        CliCommand::Sessions { folder } => sessions::list(folder.as_deref()),
+        CliCommand::Schemes => print(&info::scheme_list()?),
+        CliCommand::Keys => print(&info::key_list()?),
+        CliCommand::Readouts => print(&info::readout_list()?),
+        CliCommand::Writeup(args) => writeup::writeup(&args),
+        CliCommand::Class(args) => class::class(&args),
+        CliCommand::Lesson(args) => lesson::lesson(&args),
+        CliCommand::Check { files } => info::check(&files),
+        CliCommand::Completions { shell } => complete::completions(shell),
+        CliCommand::Man(args) => manual::man(&args),
     }
 }
 
@@ -341,7 +341,7 @@ fn tell_notes(notes: &[String]) {
 /// Says how many rows are in the file `path`.
 fn tell_of_rows(rows: u64, path: &Path) {
     let rows = counted(rows, "row");
-    tell(format_args!("gyrolab: {rows} in {}", Shown(path)));
+    tell(format_args!("gyrolab: {rows} in {}", PrintablePath(path)));
 }
 
 /// The exit code of a command that ends with `error`, which is told, or without one.

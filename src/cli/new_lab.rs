@@ -1,7 +1,7 @@
 //! A new lab, with the scenario, the colours and the dots that the command line asks for; one in which a lesson is played
 //! without a terminal, and where what comes of it is written.
 
-use super::args::{Changes, LessonArgs, Look, WorkbenchArgs, change};
+use super::args::{DisplayArgs, LessonArgs, SetArgs, WorkbenchArgs, change};
 use super::print;
 use super::progress::{self, Interrupted};
 use crate::export::Destination;
@@ -24,7 +24,7 @@ pub(super) const DEFAULT: &str = "method-2";
 /// A lab with what `name` names, changed.
 pub(super) fn lab(
     name: &str,
-    changes: &Changes,
+    changes: &SetArgs,
     markers: Option<Marker>,
     theme: Theme,
     running: bool,
@@ -49,7 +49,7 @@ pub(super) fn variable(name: &str) -> Option<String> {
 }
 
 /// The colours that `look` asks for, or that suit the terminal.
-pub(super) fn theme(look: Look) -> Theme {
+pub(super) fn theme(look: DisplayArgs) -> Theme {
     let theme = theme::theme(look.color.unwrap_or_default(), variable);
     Theme {
         background: look.background.unwrap_or(theme.background),
@@ -75,12 +75,12 @@ pub(super) fn of_workbench(args: &WorkbenchArgs, name: &str) -> anyhow::Result<L
 }
 
 /// A lab without colours.
-pub(super) fn new_lab(look: Look) -> anyhow::Result<Lab> {
+pub(super) fn new_lab(look: DisplayArgs) -> anyhow::Result<Lab> {
     let plain = Theme {
         colour: false,
         background: Background::Dark,
     };
-    lab(DEFAULT, &Changes::default(), look.markers, plain, false)
+    lab(DEFAULT, &SetArgs::default(), look.markers, plain, false)
 }
 
 pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
@@ -91,7 +91,7 @@ pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
 /// says so. `make` asks now and then whether to go on.
 pub(super) fn write(
     args: &LessonArgs,
-    make: impl FnOnce(play::GoOn<'_>) -> anyhow::Result<String>,
+    make: impl FnOnce(play::LessonProgressCallback<'_>) -> anyhow::Result<String>,
 ) -> anyhow::Result<ExitCode> {
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let text = make(&mut interruption.meter());

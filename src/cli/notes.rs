@@ -9,7 +9,7 @@ use crate::lab::lessons_in;
 use crate::lessons::class::KeptLessons;
 use crate::lessons::clock;
 use crate::lessons::page::told;
-use crate::lessons::predictions::Place;
+use crate::lessons::predictions::LessonProgress;
 use crate::lessons::{Lesson, handout, reading};
 use crate::storage::confined::Confined;
 use crate::storage::session::{self, Listed};
@@ -42,7 +42,7 @@ pub(super) fn answers(
         (!place.predictions.is_empty() || !place.tasks.is_empty())
             .then_some((session.written, place))
     });
-    let newest: Option<(SystemTime, Place)> = found.max_by_key(|(written, _)| *written);
+    let newest: Option<(SystemTime, LessonProgress)> = found.max_by_key(|(written, _)| *written);
     let Some((_, place)) = newest else {
         let name = printable(name);
         bail!("no session holds a prediction for {name}: gyrolab lesson {name} opens it");
@@ -94,7 +94,7 @@ fn lessons_of(session: &Listed) -> Option<KeptLessons> {
 }
 
 /// The lesson that is open in `session`, and its page.
-fn open_in(session: &Listed) -> Option<(String, Place)> {
+fn open_in(session: &Listed) -> Option<(String, LessonProgress)> {
     let mut lessons = lessons_of(session)?;
     let open = lessons.open?;
     let place = lessons.lessons.remove(&open)?;
@@ -115,7 +115,7 @@ fn follow(
     interruption: &Interruption,
 ) -> io::Result<()> {
     let mut seen = None;
-    let mut open: Option<(Lesson, Place)> = None;
+    let mut open: Option<(Lesson, LessonProgress)> = None;
     while !interruption.has_come() {
         let session = session::look_at(folder, name);
         let saved = session.as_ref().map(|session| session.written);
@@ -123,7 +123,7 @@ fn follow(
             seen = saved;
             let now = session.as_ref().and_then(open_in);
             let now = now.and_then(|(name, place)| Some((reading::open(&name).ok()?, place)));
-            let page = |open: &(Lesson, Place)| (open.0.name.clone(), open.1.page);
+            let page = |open: &(Lesson, LessonProgress)| (open.0.name.clone(), open.1.page);
             if let Some((lesson, place)) = &now
                 && now.as_ref().map(page) != open.as_ref().map(page)
             {
@@ -160,7 +160,7 @@ fn tell(line: Option<&LiveLine<Stdout>>, text: &str) -> io::Result<()> {
     stdout.flush()
 }
 
-fn times(lesson: &Lesson, place: &Place) -> String {
+fn times(lesson: &Lesson, place: &LessonProgress) -> String {
     let since = clock::unix_s().saturating_sub(place.began_unix_s);
     clock::shown(Duration::from_secs(since), lesson.minutes)
 }

@@ -6,12 +6,12 @@ use super::{ended_by, one_on_stdout, print_result, tell_of_rows};
 use crate::analysis::health::advise;
 use crate::analysis::{Monitor, Readouts};
 use crate::export::stream::{self, Ended};
-use crate::export::{CsvWriter, Summary};
+use crate::export::{CsvWriter, RunSummary};
 use crate::run::{Clock, Simulation, Step};
 use crate::scenario::Scenario;
 use crate::text::advice::advised;
 use crate::text::number::shortest;
-use crate::text::printable::Shown;
+use crate::text::printable::PrintablePath;
 use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use std::cell::RefCell;
@@ -77,7 +77,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     }
     interruption.may_act_at_once()?;
     let readouts = progress::with_clock(CHECKING, || played.readouts());
-    let summary = Summary::new(readouts, played.wall).with_time_steps_of(&scenario);
+    let summary = RunSummary::new(readouts, played.wall).with_time_steps_of(&scenario);
     let summary = summary.in_full(args.all);
     print_result(&summary, args.output.as_deref(), args.json)?;
     if let Some(rows) = played.rows.filter(|_| !to_stdout) {
@@ -95,12 +95,12 @@ fn cannot_write(path: &Path) -> String {
     if path == Path::new("-") {
         "cannot write to stdout".to_owned()
     } else {
-        format!("cannot write {}", Shown(path))
+        format!("cannot write {}", PrintablePath(path))
     }
 }
 
 /// A run that was played to its end.
-pub(super) struct Played<W> {
+pub(super) struct FinishedRun<W> {
     pub(super) ended: Ended,
     /// Time spent on stepping alone.
     pub(super) wall: Duration,
@@ -112,7 +112,7 @@ pub(super) struct Played<W> {
     monitor: Monitor,
 }
 
-impl<W> Played<W> {
+impl<W> FinishedRun<W> {
     /// What is read off it at its end. Where the run is not to be believed, what would mend it is sought, which takes a
     /// while.
     pub(super) fn readouts(&mut self) -> Readouts {
@@ -134,7 +134,7 @@ pub(super) fn played<W: Write>(
     mut csv: Option<CsvWriter<W>>,
     mut also: impl FnMut(&Step),
     interruption: &Interruption,
-) -> io::Result<Played<W>> {
+) -> io::Result<FinishedRun<W>> {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let monitor = RefCell::new(Monitor::new(simulation.now()));
     also(simulation.now());
@@ -156,7 +156,7 @@ pub(super) fn played<W: Write>(
         .map(CsvWriter::finish)
         .transpose()
         .map_err(|error| advised(&error))?;
-    Ok(Played {
+    Ok(FinishedRun {
         ended,
         wall,
         rows,

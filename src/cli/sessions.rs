@@ -1,15 +1,15 @@
 //! `gyrolab sessions`: what `--resume NAME` can come back to; and the session of a lab: coming back to one, beginning one,
 //! and what is said of it on the shell's screen.
 
-use super::args::{Look, WorkbenchArgs};
+use super::args::{DisplayArgs, WorkbenchArgs};
 use super::new_lab::{DEFAULT, marker, of_workbench, theme};
 use super::{print, tell};
 use crate::lab::view::View;
-use crate::lab::{Lab, Summary};
+use crate::lab::{Lab, SessionSummary};
 use crate::scenario::Scenario;
 use crate::storage::confined::Confined;
 use crate::storage::session::{self, LeftAlone, Listed, Session};
-use crate::text::printable::{Shown, printable};
+use crate::text::printable::{PrintablePath, printable};
 use crate::tui::panes;
 use anyhow::{Context, bail};
 use std::fmt::Write as _;
@@ -29,7 +29,7 @@ pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
     if sessions.is_empty() {
         tell(format_args!(
             "gyrolab: there are no sessions in {}",
-            Shown(&folder)
+            PrintablePath(&folder)
         ));
         return Ok(ExitCode::SUCCESS);
     }
@@ -58,13 +58,13 @@ pub(super) fn folder_of(confined: Option<&Confined>) -> Result<PathBuf, String> 
 }
 
 pub(super) fn named(folder: &Path) -> String {
-    format!("--folder {}", Shown(folder))
+    format!("--folder {}", PrintablePath(folder))
 }
 
 fn row(session: &Listed, now: SystemTime) -> [String; 5] {
     let content = session.content.as_ref().map_err(Clone::clone);
     let summary =
-        content.and_then(|content| Summary::of(content).map_err(|error| error.to_string()));
+        content.and_then(|content| SessionSummary::of(content).map_err(|error| error.to_string()));
     let (step, run) = match summary {
         Ok(summary) => (
             summary.step.to_string(),
@@ -105,7 +105,7 @@ pub(super) fn tell_of_session(
         Err(trouble) => (None, Some(trouble)),
     };
     let trouble = trouble.as_deref().map(printable);
-    let Some(summary) = kept.and_then(|content| Summary::of(&content).ok()) else {
+    let Some(summary) = kept.and_then(|content| SessionSummary::of(&content).ok()) else {
         tell(format_args!(
             "gyrolab: there is no session to come back to: {}",
             trouble.unwrap_or_else(|| "nothing was kept".into())
@@ -118,9 +118,9 @@ pub(super) fn tell_of_session(
         ));
     }
     let folder = folder.map_or(String::new(), |folder| {
-        format!(" --folder {}", Shown(folder))
+        format!(" --folder {}", PrintablePath(folder))
     });
-    let Summary { title, step, .. } = summary;
+    let SessionSummary { title, step, .. } = summary;
     writeln!(
         io::stdout(),
         "gyrolab{folder} --resume comes back to step {step} of {} (session {name})",
@@ -131,8 +131,8 @@ pub(super) fn tell_of_session(
 
 /// The lab that a session has kept, as the command line wants it to look.
 fn resumed(
-    content: &session::Content,
-    look: Look,
+    content: &session::SessionContent,
+    look: DisplayArgs,
     confined: Option<&Confined>,
 ) -> Result<Lab, String> {
     let view =
@@ -149,7 +149,7 @@ pub(super) fn come_back_to(
 ) -> anyhow::Result<(Lab, Result<Session, String>)> {
     let folder = folder.map_err(anyhow::Error::msg)?;
     let name_shown = printable(name);
-    let read = |content: &session::Content| resumed(content, args.look, confined);
+    let read = |content: &session::SessionContent| resumed(content, args.look, confined);
     let found = session::resume(&folder, Some(name), read)
         .with_context(|| format!("--resume {name_shown} (gyrolab sessions lists what there is)"))?;
     let passed_over = left_alone(&found.left_alone);
@@ -169,7 +169,7 @@ pub(super) fn come_back(
     confined: Option<&Confined>,
     folder: Result<PathBuf, String>,
 ) -> anyhow::Result<(Lab, Result<Session, String>)> {
-    let read = |content: &session::Content| resumed(content, args.look, confined);
+    let read = |content: &session::SessionContent| resumed(content, args.look, confined);
     let found = folder
         .clone()
         .and_then(|folder| session::resume(&folder, None, read).map_err(|error| error.to_string()));
@@ -215,9 +215,13 @@ pub(super) fn begun(folder: Result<PathBuf, String>) -> Result<Session, String> 
 }
 
 fn left_alone(sessions: &[LeftAlone]) -> String {
-    let names = sessions
-        .iter()
-        .map(|one| format!("{} is left alone ({}); ", Shown(&one.path), one.reason));
+    let names = sessions.iter().map(|one| {
+        format!(
+            "{} is left alone ({}); ",
+            PrintablePath(&one.path),
+            one.reason
+        )
+    });
     names.collect()
 }
 

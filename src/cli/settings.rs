@@ -1,7 +1,7 @@
 //! The settings of the lab that no option names: those of the user's `config.toml`, and after them those that were chosen in
 //! the lab.
 
-use super::args::{Look, WorkbenchArgs};
+use super::args::{DisplayArgs, WorkbenchArgs};
 use super::new_lab::variable;
 use super::tell;
 use crate::lab::Lab;
@@ -37,7 +37,7 @@ impl Chosen {
         let mut args = args.clone();
         let fps = || u32::try_from(value("fps")?.as_integer()?).ok();
         args.fps = args.fps.or_else(fps);
-        args.look = Look {
+        args.look = DisplayArgs {
             color: args.look.color.or_else(|| option(value("colour"))),
             background: args.look.background.or_else(|| option(value("background"))),
             markers: args.look.markers.or_else(|| option(value("marker"))),
@@ -98,12 +98,12 @@ fn option<T: ValueEnum>(value: Option<&Value>) -> Option<T> {
 mod tests {
     use super::*;
     use crate::lab::view::theme::Background;
-    use crate::scenario::keys::Kind;
+    use crate::scenario::keys::ValueKind;
     use crate::tui::theme::ColourChoice;
 
     fn are_options<T: ValueEnum>(wanted: &str) -> bool {
         let row = settings::KEYS.iter().find(|(key, ..)| *key == wanted);
-        let Some((_, Kind::OneOf(words), _)) = row else {
+        let Some((_, ValueKind::OneOf(words), _)) = row else {
             return false;
         };
         let is_option = |word: &&str| option::<T>(Some(&(*word).into())).is_some();

@@ -1,11 +1,11 @@
 //! `gyrolab show`: the lab's picture as plain text or as SVG, at one step or after commands.
 
-use super::args::{Changes, MeasuredArgs, size, steps};
+use super::args::{MeasuredArgs, SetArgs, size, steps};
 use super::new_lab::{self, DEFAULT};
 use super::{print, progress, tell};
 use crate::lab::view::theme::{Background, Marker, Theme};
 use crate::lab::{Lab, command};
-use crate::origin::{self, File, Holds, Origin, SCREEN};
+use crate::origin::{self, File, Origin, Payload, SCREEN};
 use crate::storage::confined::Confined;
 use crate::tui::screen;
 use crate::tui::svg::svg;
@@ -22,7 +22,7 @@ pub(super) struct ShowArgs {
     pub(super) scenario: Option<String>,
 
     #[command(flatten)]
-    pub(super) changes: Changes,
+    pub(super) changes: SetArgs,
 
     /// Show this step instead of the run's end
     #[arg(long, value_name = "STEP", allow_negative_numbers = true, value_parser = steps)]
@@ -75,7 +75,7 @@ impl ShowArgs {
         let picture = svg(lab, self.size, self.background.unwrap_or(Background::Dark)).into_bytes();
         let scenario = lab.player().run().scenario();
         let name = self.scenario.as_deref().unwrap_or(DEFAULT);
-        let files = vec![File::new(Holds::Run, name, &scenario.to_toml())];
+        let files = vec![File::new(Payload::Run, name, &scenario.to_toml())];
         let origin = Origin::new(&BTreeMap::from([(SCREEN, true)]), files);
         origin::carry(&picture, &origin).unwrap_or(picture)
     }

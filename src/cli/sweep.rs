@@ -1,6 +1,6 @@
 //! `gyrolab sweep`: a grid of runs, a row each.
 
-use super::args::{Changes, change};
+use super::args::{SetArgs, change};
 use super::info::listed;
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::{print, tell, tell_of_rows};
@@ -9,10 +9,10 @@ use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
 use crate::sweep::in_order::in_order;
 use crate::sweep::join::join;
-use crate::sweep::part::{Opened, PartFile, SweepFileError};
+use crate::sweep::part::{Opened, PartialSweep, SweepFileError};
 use crate::sweep::{self, EmptyRows, SWEEPS, Shard, Sweep, SweepFile, axis};
 use crate::text::number::counted;
-use crate::text::printable::{Shown, printable_lines};
+use crate::text::printable::{PrintablePath, printable_lines};
 use anyhow::bail;
 use clap::Args;
 use std::ops::ControlFlow;
@@ -27,7 +27,7 @@ pub(super) struct SweepArgs {
     pub(super) scenario: Option<String>,
 
     #[command(flatten)]
-    pub(super) changes: Changes,
+    pub(super) changes: SetArgs,
 
     /// Vary a key over N values from A to B, or over these values; may be repeated
     ///
@@ -162,13 +162,13 @@ fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
 /// Makes the file whole, or as much of it as there is time for.
 fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCode> {
     let interruption = progress::interruption()?;
-    let mut part = match PartFile::open(output, sweep, may_replace)? {
+    let mut part = match PartialSweep::open(output, sweep, may_replace)? {
         Opened::Whole(empty) => {
             tell_of_empty(&empty, sweep, &interruption);
             let rows = counted(sweep.rows(), "row");
             tell(format_args!(
                 "gyrolab: {} is whole, {rows} of this very sweep",
-                Shown(output)
+                PrintablePath(output)
             ));
             return Ok(ExitCode::SUCCESS);
         }
@@ -182,7 +182,7 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
         tell(format_args!(
             "gyrolab: {rows} of {} are in {}: the same command goes on behind them",
             counted(all, "row"),
-            Shown(&part.path)
+            PrintablePath(&part.path)
         ));
         added?;
         bail!(Interrupted);
@@ -193,11 +193,11 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
 }
 
 /// Says how many rows an earlier command has left.
-fn tell_of_part(sweep: &Sweep, part: &PartFile) {
+fn tell_of_part(sweep: &Sweep, part: &PartialSweep) {
     if part.rows == 0 {
         return;
     }
-    let (rows, all, path) = (part.rows, sweep.rows(), Shown(&part.path));
+    let (rows, all, path) = (part.rows, sweep.rows(), PrintablePath(&part.path));
     let empty = match part.empty.count {
         0 => String::new(),
         empty => format!(", {empty} of them without readouts"),
@@ -230,7 +230,7 @@ fn tell_of_empty(empty: &EmptyRows, sweep: &Sweep, interruption: &Interruption) 
 /// Computes the rows that are not there yet and adds them to `part`, until a signal comes.
 fn add_rows(
     sweep: &Sweep,
-    part: &mut PartFile,
+    part: &mut PartialSweep,
     interruption: &Interruption,
 ) -> Result<(), SweepFileError> {
     let (begin, all) = (part.rows, sweep.rows());

@@ -3,13 +3,13 @@
 use super::args::{one_or_more, setting};
 use super::progress::{self, Interrupted, Interruption};
 use super::{fit, print, tell, writeup};
-use crate::export::Folder;
+use crate::export::OutputFolder;
 use crate::own_code::{self, Verdict};
 use crate::scenario::csv::{self, Renaming, renaming};
 use crate::scenario::{Document, Problems, Scenario};
 use crate::text::advice::unread;
 use crate::text::number::counted;
-use crate::text::printable::{Shown, brief, printable_lines};
+use crate::text::printable::{PrintablePath, brief, printable_lines};
 use crate::verify::verify as verified;
 use crate::verify::{Against, Unverified, first_difference, other_version, redraw};
 use crate::writeup::{CSV, MEASURED_DATA, READOUTS_FILE, RUN_FILE};
@@ -108,7 +108,7 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
     let version = version.unwrap_or(OWN);
     let data = measured_in(folder);
     let against = csv.is_file().then(|| Against::open(&csv)).transpose();
-    let against = against.with_context(|| Shown(&csv).to_string())?;
+    let against = against.with_context(|| PrintablePath(&csv).to_string())?;
     let again = writeup::again(scenario, data.as_deref(), against, &csv, interruption);
     let (again, against) = again?;
     let notes = other_version(version).into_iter();
@@ -135,10 +135,10 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
 /// Names the files in `folder` that are none of the write-up's `own`.
 fn say_of_others(folder: &Path, own: impl Iterator<Item = OsString>) -> anyhow::Result<()> {
     let own: Vec<_> = own.chain([CSV.into()]).collect();
-    let others = Folder::others(folder, &own)?;
+    let others = OutputFolder::others(folder, &own)?;
     if !others.is_empty() {
         let count = counted(others.len() as u64, "file");
-        let (folder, others) = (Shown(folder), brief(&others.join(", "), 200));
+        let (folder, others) = (PrintablePath(folder), brief(&others.join(", "), 200));
         print(&format!(
             "{folder}: {count} not of the write-up: {others}\n"
         ))?;
@@ -231,7 +231,10 @@ fn own(
         print(&format!("{json}\n"))?;
     } else {
         let lines = printable_lines(&verdict.lines.join("\n")).into_owned();
-        let (file, name) = (Shown(file), args.against.as_deref().unwrap_or_default());
+        let (file, name) = (
+            PrintablePath(file),
+            args.against.as_deref().unwrap_or_default(),
+        );
         print(&format!("{file}: {lines}\n"))?;
         if verdict.is_unexplained && args.set.is_empty() {
             let next = format!("gyrolab {name} --measured {file}");
@@ -278,7 +281,7 @@ fn say(
     difference: Option<&impl Display>,
     notes: &[String],
 ) -> anyhow::Result<bool> {
-    let file = Shown(file);
+    let file = PrintablePath(file);
     let mut text = match difference {
         Some(difference) => format!("{file}: differs: {difference}\n"),
         None => format!("{file}: {same}\n"),

@@ -5,15 +5,15 @@ use super::new_lab::{DEFAULT, of_workbench, variable};
 use super::sessions::{self, begun, come_back, come_back_to, tell_of_session};
 use super::settings;
 use super::show::{ShowArgs, print_picture};
-use crate::class::{Alone, Role};
+use crate::class::{ClassRole, NoClass};
 use crate::lab::Lab;
 use crate::lab::command;
 use crate::lab::view::FPS;
-use crate::lessons::taken::Taken;
-use crate::lessons::{Class as Lessons, Lesson, Page};
+use crate::lessons::taken::OpenLesson;
+use crate::lessons::{Lesson, LessonPage, Lessons};
 use crate::storage::confined::Confined;
 use crate::storage::exporting;
-use crate::text::printable::{Shown, printable};
+use crate::text::printable::{PrintablePath, printable};
 use crate::tui::app;
 use crate::tui::theme::{self, ColourChoice};
 use anyhow::Context;
@@ -26,7 +26,7 @@ use std::sync::Arc;
 /// Opens the lab on the terminal, at a page of a lesson.
 pub(super) fn open_lesson(
     lesson: &Lesson,
-    page: &Page,
+    page: &LessonPage,
     args: &LessonArgs,
     confined: Option<Confined>,
 ) -> anyhow::Result<ExitCode> {
@@ -59,7 +59,8 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             && file != Path::new("-")
         {
             // What is not there is said before what is done with it.
-            fs::metadata(file).with_context(|| format!("{}: cannot be read", Shown(file)))?;
+            fs::metadata(file)
+                .with_context(|| format!("{}: cannot be read", PrintablePath(file)))?;
         }
         let why = format!(
             "gyrolab: there is no terminal to open the lab on, so its picture {} is printed",
@@ -86,10 +87,10 @@ pub(super) fn open_at(
     name: &str,
     confined: Option<Confined>,
     lesson: Option<(&Lesson, usize)>,
-    role: Option<Box<dyn Role>>,
+    role: Option<Box<dyn ClassRole>>,
 ) -> anyhow::Result<ExitCode> {
     let is_alone = role.is_none();
-    let mut role = role.unwrap_or(Box::new(Alone));
+    let mut role = role.unwrap_or(Box::new(NoClass));
     // A write past `ulimit -f` fails then, like one to a full disk, and does not end the process.
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     let commands = args.commands.as_deref().map(command::open).transpose()?;
@@ -148,7 +149,7 @@ fn lessons(lab: &mut Lab, lesson: Option<(&Lesson, usize)>) -> anyhow::Result<Le
     if let Err(reason) = taken {
         lab.tell(format!("the lesson cannot be taken again: {reason}"));
     }
-    let stands = |taken: &Taken| (taken.lesson.name.clone(), taken.place.page);
+    let stands = |taken: &OpenLesson| (taken.lesson.name.clone(), taken.place.page);
     let stands = lessons.taken().map(stands);
     if let Some((lesson, page)) = lesson
         && stands != Some((lesson.name.clone(), page))
@@ -162,7 +163,7 @@ fn lessons(lab: &mut Lab, lesson: Option<(&Lesson, usize)>) -> anyhow::Result<Le
 fn moment(args: &WorkbenchArgs) -> String {
     match (&args.commands, args.at) {
         (Some(file), _) if file == Path::new("-") => "after the commands on stdin".to_owned(),
-        (Some(file), _) => format!("after the commands in {}", Shown(file)),
+        (Some(file), _) => format!("after the commands in {}", PrintablePath(file)),
         (None, Some(step)) => format!("at step {step}"),
         (None, None) => "at the end of the run".to_owned(),
     }
@@ -172,7 +173,7 @@ fn moment(args: &WorkbenchArgs) -> String {
 fn tell_of_exports(lab: &Lab) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
     for written in &lab.files().written {
-        let path = Shown(&written.path);
+        let path = PrintablePath(&written.path);
         let rows = written.rows.map(|rows| format!(": {rows} rows"));
         let rows = rows.unwrap_or_default();
         let scp = exporting::scp_line(&written.path);

@@ -5,17 +5,17 @@ use super::args::{LengthArgs, MapArgs, ScenarioArgs};
 use super::progress::{self, Interrupted, Interruption};
 use super::run::{CHECKING, played};
 use super::{ended_by, tell, tell_notes};
-use crate::data::{self, Measured, doubts};
+use crate::data::{self, MeasuredData, doubts};
 use crate::export::stream::Ended;
-use crate::export::{CsvWriter, Folder};
+use crate::export::{CsvWriter, OutputFolder};
 use crate::journal::changed::Original;
 use crate::run::Step;
 use crate::scenario::{Document, Scenario};
 use crate::text::advice::advised;
-use crate::text::printable::{Shown, printable};
+use crate::text::printable::{PrintablePath, printable};
 use crate::verify::Against;
 use crate::writeup::figures::{figures, recorder};
-use crate::writeup::{Beside, CSV, Writeup};
+use crate::writeup::{CSV, MeasuredComparison, Writeup};
 use anyhow::{Context, anyhow, ensure};
 use clap::Args;
 use std::fs::{self, File};
@@ -58,10 +58,10 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     if let Some(measured) = &data {
         tell_notes(&doubts(measured, &scenario));
     }
-    let beside = data.map(Beside::new);
+    let beside = data.map(MeasuredComparison::new);
     let interruption = progress::interruption()?;
-    let folder = Folder::begin(&args.output, args.force)?;
-    let cannot_write = || format!("cannot write {}", Shown(&args.output));
+    let folder = OutputFolder::begin(&args.output, args.force)?;
+    let cannot_write = || format!("cannot write {}", PrintablePath(&args.output));
     let csv = File::create(folder.path().join(CSV)).with_context(cannot_write)?;
     let csv = CsvWriter::new(csv, &scenario).with_context(cannot_write)?;
     let (writeup, _) = made(scenario, beside, Some(csv), cannot_write, &interruption)?;
@@ -75,7 +75,7 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let others = folder.keep()?;
     tell(format_args!(
         "gyrolab: the write-up is in {}; begin with README.md",
-        Shown(&args.output)
+        PrintablePath(&args.output)
     ));
     if !others.is_empty() {
         tell(format_args!(
@@ -100,12 +100,12 @@ pub(super) fn again(
     let data = data
         .map(|name| measured(name, &MapArgs::default()))
         .transpose()?;
-    let cannot_read = || format!("{}: cannot be read", Shown(csv));
+    let cannot_read = || format!("{}: cannot be read", PrintablePath(csv));
     let against = against.map(|against| CsvWriter::new(against, &scenario));
     let against = against.transpose().with_context(cannot_read)?;
     made(
         scenario,
-        data.map(Beside::new),
+        data.map(MeasuredComparison::new),
         against,
         cannot_read,
         interruption,
@@ -115,7 +115,7 @@ pub(super) fn again(
 /// The write-up of the run of `scenario`, which is played, and its rows written to `csv`.
 fn made<W: Write>(
     scenario: Arc<Scenario>,
-    mut beside: Option<Beside>,
+    mut beside: Option<MeasuredComparison>,
     csv: Option<CsvWriter<W>>,
     cannot: impl FnOnce() -> String,
     interruption: &Interruption,
@@ -155,7 +155,7 @@ fn marked(scenario: Scenario, name: &str) -> Arc<Scenario> {
 }
 
 /// Measured data that stand beside a run.
-pub(super) fn measured(name: &str, columns: &MapArgs) -> anyhow::Result<Measured> {
+pub(super) fn measured(name: &str, columns: &MapArgs) -> anyhow::Result<MeasuredData> {
     let measured = data::open_with(name, &columns.options())?;
     tell_notes(&measured.notes());
     measured.series()?; // a table of runs is refused before anything is run

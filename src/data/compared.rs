@@ -1,22 +1,22 @@
 //! Measured data held against a model: the residuals, from which everything that shows or fits measured data takes them, and
 //! each value beside the run's with statistics of all.
 
-use super::{Curve, Place, Point, Quantity, Series, places};
+use super::{MeasuredCurve, MeasuredPlace, MeasuredPoint, RunQuantity, TimeSeries, places};
 use nalgebra::Vector3;
 
 /// Measured data, each value beside the run's.
 #[derive(Clone, Debug, Default)]
 pub struct Compared {
     /// The values of each column, in the order of time.
-    pub curves: Vec<Vec<Shown>>,
+    pub curves: Vec<Vec<ComparedPoint>>,
     /// Where the traced point was measured to be, from above; empty where the columns do not tell.
-    pub places: Vec<Place>,
+    pub places: Vec<MeasuredPlace>,
     pub sum: Sum,
     pub sums: Vec<Sum>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shown {
+pub struct ComparedPoint {
     pub time_s: f64,
     /// The value, in the unit of its column; of a direction, with the number of full turns at which it is nearest to the run.
     pub value: f64,
@@ -36,17 +36,17 @@ pub struct Sum {
     pub chi_squared: f64,
     pub largest: Option<Largest>,
     /// The root of the mean square of the residuals without uncertainty, for each column that has some.
-    pub scatter: Vec<(&'static Quantity, f64)>,
+    pub scatter: Vec<(&'static RunQuantity, f64)>,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub struct Largest {
     pub sigmas: f64,
-    pub quantity: &'static Quantity,
+    pub quantity: &'static RunQuantity,
     pub time_s: f64,
 }
 
-impl Shown {
+impl ComparedPoint {
     pub fn residual(&self) -> Option<f64> {
         self.model.map(|model| self.value - model)
     }
@@ -55,7 +55,7 @@ impl Shown {
 impl Compared {
     /// `series` against the `model`, the values of a run at the first points of each curve, up to `now_s`. `traced` is the
     /// traced point, body frame, m.
-    pub fn new(series: &Series, model: &[Vec<f64>], now_s: f64, traced: &Vector3<f64>) -> Self {
+    pub fn new(series: &TimeSeries, model: &[Vec<f64>], now_s: f64, traced: &Vector3<f64>) -> Self {
         let mut compared = Self {
             places: places(series, traced),
             ..Self::default()
@@ -74,15 +74,15 @@ impl Compared {
 }
 
 /// How many of the points of `curve` were measured at `now_s` or before.
-fn reached(series: &Series, curve: &Curve, now_s: f64) -> usize {
-    let is_reached = |point: &Point| series.times_s[point.row] <= now_s;
+fn reached(series: &TimeSeries, curve: &MeasuredCurve, now_s: f64) -> usize {
+    let is_reached = |point: &MeasuredPoint| series.times_s[point.row] <= now_s;
     curve.points.partition_point(is_reached)
 }
 
 /// The points of `curve`. The first of them have the values `model` in the run.
-fn shown(series: &Series, curve: &Curve, model: &[f64]) -> Vec<Shown> {
+fn shown(series: &TimeSeries, curve: &MeasuredCurve, model: &[f64]) -> Vec<ComparedPoint> {
     let held = residuals(Some(curve.quantity), &curve.points, model);
-    let mut shown: Vec<Shown> = Vec::with_capacity(curve.points.len());
+    let mut shown: Vec<ComparedPoint> = Vec::with_capacity(curve.points.len());
     for (index, point) in curve.points.iter().enumerate() {
         let residual = held.get(index);
         // A direction that the run has not reached gets the number of turns that is nearest to the last one.
@@ -93,7 +93,7 @@ fn shown(series: &Series, curve: &Curve, model: &[f64]) -> Vec<Shown> {
             }
             (None, _) => point.value,
         };
-        shown.push(Shown {
+        shown.push(ComparedPoint {
             time_s: series.times_s[point.row],
             value,
             sigma: point.sigma,
@@ -104,7 +104,7 @@ fn shown(series: &Series, curve: &Curve, model: &[f64]) -> Vec<Shown> {
 }
 
 impl Sum {
-    fn take(&mut self, quantity: &'static Quantity, shown: &[Shown]) {
+    fn take(&mut self, quantity: &'static RunQuantity, shown: &[ComparedPoint]) {
         self.points += shown.len();
         let (mut squares, mut count) = (0.0, 0_u32);
         for point in shown {
@@ -168,7 +168,11 @@ impl Residual {
 /// Where the values do not leave one turn, they are read as directions, and each is taken at the turn at which it is nearest
 /// to the model. Where they were counted on through full turns, that count stays as it was measured, and all are shifted
 /// by the same number of turns, so that the first is nearest to the model.
-pub fn residuals(quantity: Option<&Quantity>, points: &[Point], model: &[f64]) -> Vec<Residual> {
+pub fn residuals(
+    quantity: Option<&RunQuantity>,
+    points: &[MeasuredPoint],
+    model: &[f64],
+) -> Vec<Residual> {
     let is_direction = quantity.is_some_and(|quantity| quantity.is_direction);
     let shift = |index: usize| turns_deg(model[index] - points[index].value);
     let common = (is_counted(points) && !points.is_empty() && !model.is_empty()).then(|| shift(0));
@@ -187,7 +191,7 @@ pub fn residuals(quantity: Option<&Quantity>, points: &[Point], model: &[f64]) -
 }
 
 /// Whether the directions of `points`, degrees, were counted on through full turns.
-pub fn is_counted(points: &[Point]) -> bool {
+pub fn is_counted(points: &[MeasuredPoint]) -> bool {
     let values = || points.iter().map(|point| point.value);
     let (least, most) = (
         values().fold(f64::INFINITY, f64::min),
@@ -205,7 +209,7 @@ mod tests {
     use super::*;
     use crate::data::read;
 
-    fn series(text: &str) -> Series {
+    fn series(text: &str) -> TimeSeries {
         read("test.csv", text).unwrap().series().unwrap().clone()
     }
 
@@ -222,13 +226,13 @@ mod tests {
     }
 
     fn between(name: &str, values: &[f64], model: &[f64]) -> Vec<Residual> {
-        let point = |(row, &value)| Point {
+        let point = |(row, &value)| MeasuredPoint {
             row,
             value,
             sigma: Some(2.0),
         };
         let points: Vec<_> = values.iter().enumerate().map(point).collect();
-        residuals(Quantity::find(name), &points, model)
+        residuals(RunQuantity::find(name), &points, model)
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! What cannot be right about measured data beside a scenario: most often a unit.
 
 use super::hint::MOST_TILT_RAD;
-use super::{Measured, Series, at_times};
+use super::{MeasuredData, TimeSeries, at_times};
 use crate::scenario::Scenario;
 use crate::text::number::significant;
 use crate::text::printable::printable;
@@ -14,7 +14,7 @@ const MOST_TIMES: usize = 100;
 const MOST_STEPS: f64 = 1e5;
 
 /// Says what in `measured` cannot be right for the body of `scenario`; empty if nothing is found.
-pub fn doubts(measured: &Measured, scenario: &Arc<Scenario>) -> Vec<String> {
+pub fn doubts(measured: &MeasuredData, scenario: &Arc<Scenario>) -> Vec<String> {
     let Ok(series) = measured.series() else {
         return Vec::new();
     };
@@ -28,7 +28,7 @@ pub fn doubts(measured: &Measured, scenario: &Arc<Scenario>) -> Vec<String> {
 }
 
 /// A traced point that was measured farther from the pivot than its arm is long.
-fn point_beyond_arm(series: &Series, arm_m: f64) -> Option<String> {
+fn point_beyond_arm(series: &TimeSeries, arm_m: f64) -> Option<String> {
     let mut squares = vec![0.0; series.times_s.len()];
     let (mut names, mut sigma) = (Vec::new(), 0.0_f64);
     for curve in &series.curves {
@@ -69,7 +69,7 @@ fn point_beyond_arm(series: &Series, arm_m: f64) -> Option<String> {
 }
 
 /// A tilt that never exceeds pi, where the run's does.
-fn tilt_in_radians(series: &Series, scenario: &Arc<Scenario>) -> Option<String> {
+fn tilt_in_radians(series: &TimeSeries, scenario: &Arc<Scenario>) -> Option<String> {
     let is_tilt = |name: &str| name == "tilt_deg";
     let curve = series
         .curves
@@ -81,7 +81,7 @@ fn tilt_in_radians(series: &Series, scenario: &Arc<Scenario>) -> Option<String> 
         return None;
     }
     let last_s = series.times_s.last().copied().unwrap_or(0.0);
-    let mut few = Series {
+    let mut few = TimeSeries {
         times_s: series.times_s.clone(),
         curves: vec![curve.clone()],
     };

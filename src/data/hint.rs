@@ -1,14 +1,14 @@
 //! The `--map` that would read a file whose columns were refused, filled in with its own names.
 
 use super::names::{is_known, named};
-use super::quantity::{Quantity, TIME, names};
+use super::quantity::{RunQuantity, TIME, names};
 use super::spellings::{name_columns, time_like, track};
 use crate::analysis::readouts;
 use crate::scenario::csv::{Csv, LEFT_OUT, Naming, Renaming};
 use crate::scenario::keys::KEYS;
 use crate::scenario::problem::near;
 use crate::text::printable::{brief, is_steering};
-use crate::text::unit::{Kind, Unit, in_known_unit};
+use crate::text::unit::{Unit, UnitKind, in_known_unit};
 
 /// A name shorter than this is near to too many others.
 const LEAST_NEAR: usize = 4;
@@ -117,7 +117,9 @@ impl Guess<'_> {
         };
         let is_of_table = |name: &str| {
             name.contains('.')
-                || readouts::find(name).is_some() && Quantity::find(name).is_none() && name != TIME
+                || readouts::find(name).is_some()
+                    && RunQuantity::find(name).is_none()
+                    && name != TIME
         };
         let times = self.cells.names.iter().filter(|name| *name == TIME);
         let has_time = times.count() == 1;
@@ -129,7 +131,7 @@ impl Guess<'_> {
             self.added.push((place, unit.to_owned()));
         }
         let mut names = self.cells.names.iter();
-        let has_quantity = names.any(|name| Quantity::find(name).is_some());
+        let has_quantity = names.any(|name| RunQuantity::find(name).is_some());
         let is_gyroscope = self.is_gyroscope(origin);
         for &place in &places {
             if self.is_added(place) {
@@ -203,7 +205,7 @@ impl Guess<'_> {
             let numbers = self.numbers(place);
             numbers.len() > 1 && numbers.windows(2).all(|pair| pair[0] < pair[1])
         };
-        let is_unknown = |place: &usize| Quantity::find(&self.cells.names[*place]).is_none();
+        let is_unknown = |place: &usize| RunQuantity::find(&self.cells.names[*place]).is_none();
         let is_called_so = |&place: &usize| time_like(&self.cells.own[place].name);
         let mut columns = places.iter().copied().filter(is_unknown);
         let of_both = columns
@@ -216,7 +218,8 @@ impl Guess<'_> {
     }
 
     fn time_unit(&self, place: usize) -> &'static str {
-        if Unit::split(&self.cells.own[place].name).is_some_and(|(_, unit)| unit.kind == Kind::Time)
+        if Unit::split(&self.cells.own[place].name)
+            .is_some_and(|(_, unit)| unit.kind == UnitKind::Time)
         {
             return TIME; // its own unit is read
         }
@@ -246,7 +249,8 @@ impl Guess<'_> {
     /// The quantity that the column probably is.
     fn quantity(&self, place: usize, is_gyroscope: bool) -> Option<String> {
         let own = &self.cells.own[place].name;
-        if is_known(&self.cells.names[place]) && Quantity::find(&self.cells.names[place]).is_some()
+        if is_known(&self.cells.names[place])
+            && RunQuantity::find(&self.cells.names[place]).is_some()
         {
             // One that is alone is read without being mapped.
             let name = &self.cells.names[place];
@@ -272,18 +276,18 @@ impl Guess<'_> {
             .any(|word| lower.contains(word));
         if let Some(axis) = axis.filter(|_| !has_foreign_word) {
             let number = axis + 1;
-            let is_length = unit.is_some_and(|unit| unit.kind == Kind::Length);
+            let is_length = unit.is_some_and(|unit| unit.kind == UnitKind::Length);
             if is_length || !is_gyroscope && lower.len() == 1 && unit.is_none() {
                 return Some(format!("{}_m", ["x", "y", "z"][axis]));
             }
-            if unit.is_some_and(|unit| unit.kind != Kind::Rate) {
+            if unit.is_some_and(|unit| unit.kind != UnitKind::Rate) {
                 return None;
             }
             let is_in_degrees = unit.is_none() && self.largest(place) > MOST_RATE;
             let angle = if is_in_degrees { "deg" } else { "rad" };
             return Some(format!("w{number}_{angle}_per_s"));
         }
-        let quantities = names().filter(|name| *name != TIME && Quantity::find(name).is_some());
+        let quantities = names().filter(|name| *name != TIME && RunQuantity::find(name).is_some());
         let meant = near(own, quantities).filter(|_| own.len() >= LEAST_NEAR)?;
         Some(meant.to_owned())
     }

@@ -1,7 +1,7 @@
 //! Measured data: a CSV file that somebody wrote at the bench, read and checked, and what a run says of the same quantities.
 //!
-//! There are two kinds. A [`Series`] has the time in a column `t_s`, and beside it quantities that a run has at every
-//! step ([`quantity`]). A [`Table`] has a run in every row: columns named by keys of the scenario set it, columns named by
+//! There are two kinds. A [`TimeSeries`] has the time in a column `t_s`, and beside it quantities that a run has at every
+//! step ([`quantity`]). A [`RunTable`] has a run in every row: columns named by keys of the scenario set it, columns named by
 //! readouts were measured on it. The uncertainty of a column stands in a column of its own, named as readouts name
 //! theirs: `tilt_uncertainty_deg` of `tilt_deg`.
 //!
@@ -25,9 +25,9 @@ mod spellings;
 pub use compared::{Residual, is_counted, residuals};
 pub use doubts::doubts;
 pub use hint::map_option;
-pub use of_run::{Reader, at_times, is_within_reach};
-pub use places::{Place, places};
-pub use quantity::Quantity;
+pub use of_run::{RunReader, at_times, is_within_reach};
+pub use places::{MeasuredPlace, places};
+pub use quantity::RunQuantity;
 pub use reading::{SHIPPED, find_shipped, open, open_with, read, read_with, text};
 pub use sigma::{ColumnOptions, ColumnSigma};
 pub use spellings::{name_columns, time_like};
@@ -43,7 +43,7 @@ use std::sync::Arc;
 use toml::Value;
 
 #[derive(Clone, Debug)]
-pub struct Measured {
+pub struct MeasuredData {
     /// The file, as the user named it.
     pub origin: String,
     /// Its content.
@@ -61,28 +61,28 @@ pub struct Measured {
     pub rows_before: usize,
     /// The number of rows outside of the time that was asked for, which are left out.
     pub rows_outside: usize,
-    pub data: Data,
+    pub data: DataKind,
 }
 
 #[derive(Clone, Debug)]
-pub enum Data {
-    Series(Series),
-    Table(Table),
+pub enum DataKind {
+    Series(TimeSeries),
+    Table(RunTable),
 }
 
 #[derive(Clone, Debug)]
-pub struct Series {
+pub struct TimeSeries {
     /// The time of each row, s: not negative, and none before the row above.
     pub times_s: Vec<f64>,
     /// A curve for each column, in the order of the file.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<MeasuredCurve>,
 }
 
-impl Series {
+impl TimeSeries {
     /// The same as a CSV with the program's names.
     pub fn to_csv(&self) -> String {
         let with_sigma = |curve| (curve, has_sigma(curve));
-        let curves: Vec<(&Curve, bool)> = self.curves.iter().map(with_sigma).collect();
+        let curves: Vec<(&MeasuredCurve, bool)> = self.curves.iter().map(with_sigma).collect();
         let mut text = String::from("t_s");
         for (curve, has_sigma) in &curves {
             let name = curve.quantity.name;
@@ -107,29 +107,29 @@ impl Series {
     }
 }
 
-fn has_sigma(curve: &Curve) -> bool {
+fn has_sigma(curve: &MeasuredCurve) -> bool {
     curve.points.iter().any(|point| point.sigma.is_some())
 }
 
 #[derive(Clone, Debug)]
-pub struct Curve {
-    /// What was measured; its [`readout`](Quantity::readout) has name, unit and symbol.
-    pub quantity: &'static Quantity,
+pub struct MeasuredCurve {
+    /// What was measured; its [`readout`](RunQuantity::readout) has name, unit and symbol.
+    pub quantity: &'static RunQuantity,
     /// The values, by rows; rows without one have no point.
-    pub points: Vec<Point>,
+    pub points: Vec<MeasuredPoint>,
 }
 
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct RunTable {
     /// The columns that set the scenario, in the order of the file.
-    pub settings: Vec<Setting>,
+    pub settings: Vec<RunSetting>,
     /// The columns that were measured, in the order of the file.
-    pub readouts: Vec<Column>,
+    pub readouts: Vec<MeasuredReadout>,
 }
 
 /// A key of the scenario that a table's rows set.
 #[derive(Clone, Debug)]
-pub struct Setting {
+pub struct RunSetting {
     pub key: String,
     /// Its value in each row; `None` where the scenario's own stands.
     pub values: Vec<Option<Value>>,
@@ -139,14 +139,14 @@ pub struct Setting {
 
 /// A readout that was measured on the runs of a table.
 #[derive(Clone, Debug)]
-pub struct Column {
+pub struct MeasuredReadout {
     pub readout: &'static Readout,
     /// The values, by rows; rows without one have no point.
-    pub points: Vec<Point>,
+    pub points: Vec<MeasuredPoint>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct MeasuredPoint {
     /// Its row, from 0: the index of the time, or of the settings.
     pub row: usize,
     /// The value, in the unit of its column.
@@ -157,12 +157,12 @@ pub struct Point {
 
 const TABLE: &str = "is a table of runs: each of its rows is a run of its own, so it cannot stand beside a single one. gyrolab fit holds such a table against a scenario; what stands beside a run has a column t_s";
 
-impl Measured {
+impl MeasuredData {
     /// The data as quantities over the time of one run.
-    pub fn series(&self) -> Result<&Series, Problems> {
+    pub fn series(&self) -> Result<&TimeSeries, Problems> {
         match &self.data {
-            Data::Series(series) => Ok(series),
-            Data::Table(_) => Err(Problems::one(&self.origin, Problem::at("", TABLE))),
+            DataKind::Series(series) => Ok(series),
+            DataKind::Table(_) => Err(Problems::one(&self.origin, Problem::at("", TABLE))),
         }
     }
 
@@ -188,7 +188,8 @@ impl Measured {
     /// The same without what was measured after `until_s`, s, where that is given.
     #[must_use]
     pub fn until(mut self, until_s: Option<f64>) -> Self {
-        if let (Data::Series(Series { times_s, .. }), Some(until_s)) = (&self.data, until_s) {
+        if let (DataKind::Series(TimeSeries { times_s, .. }), Some(until_s)) = (&self.data, until_s)
+        {
             let times_s = times_s.clone();
             self.keep_rows(|row| times_s[row] <= until_s);
         }
@@ -198,7 +199,7 @@ impl Measured {
     /// Keeps the rows of a time series from `from_s` to `to_s`, and counts the time from `from_s` on. Returns whether there
     /// are some.
     pub fn keep_between(&mut self, from_s: f64, to_s: f64) -> bool {
-        let Data::Series(Series { times_s, .. }) = &mut self.data else {
+        let DataKind::Series(TimeSeries { times_s, .. }) = &mut self.data else {
             return false;
         };
         let first = times_s.partition_point(|time_s| *time_s < from_s);
@@ -210,7 +211,7 @@ impl Measured {
 
     /// Leaves out the rows of a time series before t = 0. Returns whether a measured value remains.
     fn leave_out_rows_before_0(&mut self) -> bool {
-        let Data::Series(Series { times_s, .. }) = &self.data else {
+        let DataKind::Series(TimeSeries { times_s, .. }) = &self.data else {
             return true;
         };
         self.rows_before = times_s.partition_point(|time_s| *time_s < 0.0);
@@ -220,7 +221,7 @@ impl Measured {
 
     /// Keeps these rows of a time series. Returns whether a measured value remains.
     fn keep_range(&mut self, rows: Range<usize>) -> bool {
-        let Data::Series(series) = &mut self.data else {
+        let DataKind::Series(series) = &mut self.data else {
             return false;
         };
         series.times_s = series.times_s[rows.clone()].to_vec();
@@ -236,15 +237,15 @@ impl Measured {
 
     /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts, and returns how many values that are.
     pub fn keep_rows(&mut self, is_kept: impl Fn(usize) -> bool) -> usize {
-        let keep = |points: &mut Vec<Point>| {
+        let keep = |points: &mut Vec<MeasuredPoint>| {
             points.retain(|point| is_kept(point.row));
             points.len()
         };
         match &mut self.data {
-            Data::Series(Series { curves, .. }) => {
+            DataKind::Series(TimeSeries { curves, .. }) => {
                 (curves.iter_mut().map(|it| keep(&mut it.points))).sum()
             }
-            Data::Table(Table { readouts, .. }) => {
+            DataKind::Table(RunTable { readouts, .. }) => {
                 (readouts.iter_mut().map(|it| keep(&mut it.points))).sum()
             }
         }

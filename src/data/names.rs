@@ -1,17 +1,17 @@
 //! What the columns of a file are: the time, quantities, keys of the scenario, readouts, and uncertainties of these.
 
-use super::quantity::{self, COUNTS, Quantity, TIME};
-use crate::analysis::readouts::{self, Readout, Source};
+use super::quantity::{self, COUNTS, RunQuantity, TIME};
+use crate::analysis::readouts::{self, Readout, ReadoutSource};
 use crate::scenario::Problem;
 use crate::scenario::csv::Csv;
-use crate::scenario::keys::{self, Kind};
+use crate::scenario::keys::{self, ValueKind};
 use crate::text::unit::with_word;
 
 /// In the name of a column that is the uncertainty of another.
 pub(super) const UNCERTAINTY: &str = "uncertainty";
 
 #[derive(Clone, Debug)]
-pub(super) enum Is {
+pub(super) enum ColumnRole {
     /// The time, s.
     Time,
     /// A number of the run's steps or edits, which says nothing of the motion.
@@ -19,36 +19,36 @@ pub(super) enum Is {
     /// Nothing that is known: a column for another purpose.
     Foreign,
     /// A quantity at the time of its row.
-    Quantity(&'static Quantity),
+    Quantity(&'static RunQuantity),
     /// What the scenario has in the run of its row.
-    Key(Kind),
+    Key(ValueKind),
     /// A readout of the run of its row.
     Readout(&'static Readout),
 }
 
-impl Is {
+impl ColumnRole {
     /// Whether a column may hold its uncertainty.
     fn may_be_off(&self) -> bool {
         match self {
             Self::Quantity(_) | Self::Readout(_) => true,
-            Self::Key(kind) => matches!(kind, Kind::Number(_)),
+            Self::Key(kind) => matches!(kind, ValueKind::Number(_)),
             Self::Time | Self::Count | Self::Foreign => false,
         }
     }
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Named {
+pub(super) struct NamedColumn {
     pub place: usize,
     pub name: String,
-    pub is: Is,
+    pub is: ColumnRole,
     pub uncertainty: Option<usize>,
 }
 
 /// The columns of a file that are read, and the names of the others.
 #[derive(Debug, Default)]
 pub(super) struct Columns {
-    pub read: Vec<Named>,
+    pub read: Vec<NamedColumn>,
     pub left_out: Vec<String>,
 }
 
@@ -65,12 +65,12 @@ pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
             continue;
         }
         match of(name) {
-            Ok(Is::Foreign) => columns.left_out.push(own.shown()),
+            Ok(ColumnRole::Foreign) => columns.left_out.push(own.shown()),
             Ok(is) => {
                 let uncertainty = with_word(name, UNCERTAINTY);
                 let mut others = names.iter();
                 let uncertainty = others.position(|other| *other == uncertainty);
-                columns.read.push(Named {
+                columns.read.push(NamedColumn {
                     place,
                     name: name.clone(),
                     uncertainty: uncertainty.filter(|_| is.may_be_off()),
@@ -82,7 +82,7 @@ pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
         }
     }
     for (place, (name, own)) in names.iter().zip(&cells.own).enumerate() {
-        let is_of = |column: &Named| column.uncertainty == Some(place);
+        let is_of = |column: &NamedColumn| column.uncertainty == Some(place);
         let is_read = columns.read.iter().any(is_of);
         match uncertainty_of(name) {
             Some(of) if of == TIME && !is_mapped => {
@@ -100,7 +100,7 @@ pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
     }
     columns
         .read
-        .retain(|column| !matches!(column.is, Is::Count));
+        .retain(|column| !matches!(column.is, ColumnRole::Count));
     if problems.is_empty() {
         Ok(columns)
     } else {
@@ -140,15 +140,15 @@ pub(super) fn may_be(name: &str) -> bool {
     is_known(name) || uncertainty_of(name).is_some_and(|of| is_known(&of))
 }
 
-fn of_series(name: &str) -> Result<Is, String> {
+fn of_series(name: &str) -> Result<ColumnRole, String> {
     if name == TIME {
-        return Ok(Is::Time);
+        return Ok(ColumnRole::Time);
     }
     if COUNTS.contains(&name) {
-        return Ok(Is::Count);
+        return Ok(ColumnRole::Count);
     }
-    if let Some(quantity) = Quantity::find(name) {
-        return Ok(Is::Quantity(quantity));
+    if let Some(quantity) = RunQuantity::find(name) {
+        return Ok(ColumnRole::Quantity(quantity));
     }
     if name.contains('.') && keys::find(name).is_ok() {
         return Err(format!(
@@ -160,30 +160,30 @@ fn of_series(name: &str) -> Result<Is, String> {
             "is a number of a whole run, not of one time: a table of such numbers has no column {TIME}, and a run in every row"
         ));
     }
-    Ok(Is::Foreign)
+    Ok(ColumnRole::Foreign)
 }
 
-fn of_table(name: &str) -> Result<Is, String> {
+fn of_table(name: &str) -> Result<ColumnRole, String> {
     if let Some(readout) = readouts::find(name) {
         let rule = match readout.source {
-            _ if COUNTS.contains(&name) || name == "steps" => return Ok(Is::Count),
+            _ if COUNTS.contains(&name) || name == "steps" => return Ok(ColumnRole::Count),
             _ if readout.is_text => "is a text of the run, and cannot be measured",
-            Source::Clock => "is told by the clock, and says nothing of the motion",
-            Source::Scenario => "follows from the scenario alone: nothing is measured by it",
-            _ => return Ok(Is::Readout(readout)),
+            ReadoutSource::Clock => "is told by the clock, and says nothing of the motion",
+            ReadoutSource::Scenario => "follows from the scenario alone: nothing is measured by it",
+            _ => return Ok(ColumnRole::Readout(readout)),
         };
         return Err(rule.to_owned());
     }
     let Some((first, _)) = name.split_once('.') else {
-        return Ok(Is::Foreign);
+        return Ok(ColumnRole::Foreign);
     };
     if ["expected", "edit", "view"].contains(&first) {
         return Err("is a key that no number of a run depends on".to_owned());
     }
     if !["body", "start", "motion", "push", "friction"].contains(&first) {
-        return Ok(Is::Foreign);
+        return Ok(ColumnRole::Foreign);
     }
-    keys::find(name).map(|(_, kind)| Is::Key(kind))
+    keys::find(name).map(|(_, kind)| ColumnRole::Key(kind))
 }
 
 /// Whether a table of runs with a column `name` is refused.
@@ -192,20 +192,20 @@ pub(super) fn is_refused_in_table(name: &str) -> bool {
 }
 
 /// Why the columns make neither a time series nor a table of runs.
-fn kind_is_whole(columns: &[Named], is_series: bool) -> Option<Problem> {
-    let has = |is: fn(&Is) -> bool| columns.iter().any(|column| is(&column.is));
+fn kind_is_whole(columns: &[NamedColumn], is_series: bool) -> Option<Problem> {
+    let has = |is: fn(&ColumnRole) -> bool| columns.iter().any(|column| is(&column.is));
     if is_series {
         let rule = format!(
             "has no column that a run has too: beside {TIME} one is needed, such as tilt_deg, azimuth_deg, x_m or spin_rpm"
         );
-        return (!has(|is| matches!(is, Is::Quantity(_)))).then(|| Problem::at("", rule));
+        return (!has(|is| matches!(is, ColumnRole::Quantity(_)))).then(|| Problem::at("", rule));
     }
     // What a run has at every time tells no run of a table from another.
-    let is_of_runs = |column: &Named| {
-        matches!(column.is, Is::Readout(_)) && Quantity::find(&column.name).is_none()
+    let is_of_runs = |column: &NamedColumn| {
+        matches!(column.is, ColumnRole::Readout(_)) && RunQuantity::find(&column.name).is_none()
     };
-    let has_key = has(|is| matches!(is, Is::Key(_)));
-    let rule = match has(|is| matches!(is, Is::Readout(_))) {
+    let has_key = has(|is| matches!(is, ColumnRole::Key(_)));
+    let rule = match has(|is| matches!(is, ColumnRole::Readout(_))) {
         true if has_key || columns.iter().any(is_of_runs) => return None,
         false if has_key => {
             "has no column that was measured: beside the keys of the scenario a table of runs needs a readout (gyrolab readouts lists them)".to_owned()

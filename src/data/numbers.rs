@@ -1,18 +1,18 @@
 //! The numbers in the cells of a file, and the rules that they obey.
 
-use super::names::{Is, Named};
-use super::{Column, Curve, Point, Series, Setting, Table};
+use super::names::{ColumnRole, NamedColumn};
+use super::{MeasuredCurve, MeasuredPoint, MeasuredReadout, RunSetting, RunTable, TimeSeries};
 use crate::scenario::Problem;
 use crate::scenario::csv::{Csv, OwnColumn};
 use crate::scenario::document::toml_or_text;
-use crate::scenario::keys::Kind;
+use crate::scenario::keys::ValueKind;
 use crate::scenario::problem::{Problems, at_line};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
 use toml::Value;
 
 /// Reads cells, and takes down what is wrong with them.
-pub(super) struct Numbers<'a> {
+pub(super) struct CellParser<'a> {
     cells: &'a Csv,
     pub found: Problems,
     /// Columns that hold no numbers, which nobody has mapped in a file with mapped columns.
@@ -22,7 +22,7 @@ pub(super) struct Numbers<'a> {
     uses_commas: bool,
 }
 
-impl<'a> Numbers<'a> {
+impl<'a> CellParser<'a> {
     pub fn of(cells: &'a Csv) -> Self {
         Self {
             cells,
@@ -33,38 +33,43 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    pub fn series(&mut self, columns: &[Named]) -> Series {
-        let time = columns.iter().find(|column| matches!(column.is, Is::Time));
+    pub fn series(&mut self, columns: &[NamedColumn]) -> TimeSeries {
+        let time = columns
+            .iter()
+            .find(|column| matches!(column.is, ColumnRole::Time));
         let times_s = time.map_or_else(Vec::new, |column| self.times(column));
         let curves = columns.iter().filter_map(|column| match column.is {
-            Is::Quantity(quantity) => {
+            ColumnRole::Quantity(quantity) => {
                 let points = self.points(column)?;
-                Some(Curve { quantity, points })
+                Some(MeasuredCurve { quantity, points })
             }
             _ => None,
         });
-        Series {
+        TimeSeries {
             curves: curves.collect(),
             times_s,
         }
     }
 
-    pub fn table(&mut self, columns: &[Named]) -> Table {
+    pub fn table(&mut self, columns: &[NamedColumn]) -> RunTable {
         let (mut settings, mut readouts) = (Vec::new(), Vec::new());
         for column in columns {
             match column.is {
-                Is::Key(kind) => settings.push(self.setting(column, kind)),
-                Is::Readout(readout) => {
+                ColumnRole::Key(kind) => settings.push(self.setting(column, kind)),
+                ColumnRole::Readout(readout) => {
                     let points = self.points(column);
-                    readouts.extend(points.map(|points| Column { readout, points }));
+                    readouts.extend(points.map(|points| MeasuredReadout { readout, points }));
                 }
-                Is::Time | Is::Count | Is::Foreign | Is::Quantity(_) => {}
+                ColumnRole::Time
+                | ColumnRole::Count
+                | ColumnRole::Foreign
+                | ColumnRole::Quantity(_) => {}
             }
         }
-        Table { settings, readouts }
+        RunTable { settings, readouts }
     }
 
-    fn times(&mut self, column: &Named) -> Vec<f64> {
+    fn times(&mut self, column: &NamedColumn) -> Vec<f64> {
         let mut times_s: Vec<f64> = Vec::with_capacity(self.cells.rows.len());
         let mut before: Option<(u64, f64)> = None;
         for (line, texts) in &self.cells.rows {
@@ -91,7 +96,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// The values of a measured column, with their uncertainties; `None` for a column that is left out.
-    fn points(&mut self, column: &Named) -> Option<Vec<Point>> {
+    fn points(&mut self, column: &NamedColumn) -> Option<Vec<MeasuredPoint>> {
         let is_mapped = |own: &OwnColumn| own.is_mapped;
         let own = &self.cells.own[column.place];
         if own.is_mapped || !self.cells.own.iter().any(is_mapped) {
@@ -107,24 +112,24 @@ impl<'a> Numbers<'a> {
         None
     }
 
-    fn every_point(&mut self, column: &Named) -> Vec<Point> {
+    fn every_point(&mut self, column: &NamedColumn) -> Vec<MeasuredPoint> {
         let rows = self.cells.rows.iter().enumerate();
         let points = rows.filter_map(|(row, (line, texts))| {
             let value = self.number(*line, &column.name, &texts[column.place]);
             let sigma = self.sigma(*line, column, texts);
-            value.map(|value| Point { row, value, sigma })
+            value.map(|value| MeasuredPoint { row, value, sigma })
         });
         points.collect()
     }
 
-    fn setting(&mut self, column: &Named, kind: Kind) -> Setting {
+    fn setting(&mut self, column: &NamedColumn, kind: ValueKind) -> RunSetting {
         let cells = self.cells;
-        let mut setting = Setting {
+        let mut setting = RunSetting {
             key: column.name.clone(),
             values: Vec::new(),
             sigmas: Vec::new(),
         };
-        let is_number = matches!(kind, Kind::Number(_));
+        let is_number = matches!(kind, ValueKind::Number(_));
         for (line, texts) in &cells.rows {
             let text = &texts[column.place];
             let value = match (text.is_empty(), is_number) {
@@ -142,7 +147,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// The uncertainty that stands in a row for the value in `column`.
-    fn sigma(&mut self, line: u64, column: &Named, texts: &[String]) -> Option<f64> {
+    fn sigma(&mut self, line: u64, column: &NamedColumn, texts: &[String]) -> Option<f64> {
         let place = column.uncertainty?;
         let name = self.cells.names[place].clone();
         let sigma = self.number(line, &name, &texts[place])?;

@@ -4,7 +4,7 @@
 //! of the steps. Where nothing but the time places the rows of a run, as under `exact`, it goes from one measured time to
 //! the next, and the time step does not count. Neither does the length of the run: the motion goes on after its last step.
 
-use super::Series;
+use super::TimeSeries;
 use crate::run::{NotFinite, Simulation};
 use crate::scenario::{Scenario, Window};
 use std::borrow::Borrow;
@@ -15,14 +15,14 @@ const BLOCK: u64 = 4096;
 
 /// Reads a run at the times of a series, which it borrows or shares, while the run is stepped.
 #[derive(Clone, Debug)]
-pub struct Reader<S> {
+pub struct RunReader<S> {
     series: S,
     /// The index of the next point to be read of each curve.
     next: Vec<usize>,
     values: Vec<Vec<f64>>,
 }
 
-impl<S: Borrow<Series>> Reader<S> {
+impl<S: Borrow<TimeSeries>> RunReader<S> {
     pub fn new(series: S) -> Self {
         let curves = series.borrow().curves.len();
         Self {
@@ -91,11 +91,11 @@ impl<S: Borrow<Series>> Reader<S> {
 /// What the run of `scenario` says at the times of `series`: of each curve a value for every point, in the point's unit.
 /// `None` where `go_on` said no on the way.
 pub fn at_times(
-    series: &Series,
+    series: &TimeSeries,
     scenario: &Arc<Scenario>,
     go_on: &dyn Fn() -> bool,
 ) -> Result<Option<Vec<Vec<f64>>>, NotFinite> {
-    let mut reader = Reader::new(series);
+    let mut reader = RunReader::new(series);
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let jumps = needs_no_steps(series, scenario);
     while let Some(time_s) = reader.next_time_s() {
@@ -119,7 +119,7 @@ pub fn at_times(
 }
 
 /// Whether the run of `scenario` comes to the last time of `series` in ten million steps, or parts of an integration.
-pub fn is_within_reach(series: &Series, scenario: &Scenario) -> bool {
+pub fn is_within_reach(series: &TimeSeries, scenario: &Scenario) -> bool {
     const MOST: f64 = 1e7;
     let last_s = series.times_s.last().copied().unwrap_or(0.0);
     let steps = last_s / scenario.motion.time_step_s;
@@ -132,7 +132,7 @@ pub fn is_within_reach(series: &Series, scenario: &Scenario) -> bool {
 }
 
 /// Whether the motion at a time does not depend on the steps that lead there.
-fn needs_no_steps(series: &Series, scenario: &Scenario) -> bool {
+fn needs_no_steps(series: &TimeSeries, scenario: &Scenario) -> bool {
     let is_exact = scenario.motion.scheme.order.is_none();
     let counts_steps = |window: Window| matches!(window, Window::Steps { .. });
     // Full turns are counted step by step.

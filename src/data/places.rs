@@ -1,6 +1,6 @@
 //! Where the traced point was measured to be, from above.
 
-use super::Series;
+use super::TimeSeries;
 use nalgebra::{Vector2, Vector3};
 
 /// A traced point that is nearer to the axle than this part of its distance from the pivot is on it.
@@ -8,7 +8,7 @@ const ON_AXLE: f64 = 1e-9;
 
 /// Where the traced point was measured to be, from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct MeasuredPlace {
     pub time_s: f64,
     /// x and y, world frame, m.
     pub at: Vector2<f64>,
@@ -18,7 +18,7 @@ pub struct Place {
 
 /// Where the point `traced` (body frame, m) was measured to be: by x and y, or else by tilt and azimuth, where it is on the
 /// axle. Empty where the columns of `series` do not tell.
-pub fn places(series: &Series, traced: &Vector3<f64>) -> Vec<Place> {
+pub fn places(series: &TimeSeries, traced: &Vector3<f64>) -> Vec<MeasuredPlace> {
     let of = |name: &str| {
         let mut curves = series.curves.iter();
         curves.find(|curve| curve.quantity.name == name)
@@ -43,7 +43,7 @@ pub fn places(series: &Series, traced: &Vector3<f64>) -> Vec<Place> {
         } else {
             (values, sigmas)
         };
-        places.push(Place {
+        places.push(MeasuredPlace {
             time_s: series.times_s[first.row],
             at: at.into(),
             sigmas,

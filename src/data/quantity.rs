@@ -1,7 +1,7 @@
 //! What can be measured on one run over its time: quantities that it has at every step.
 
 use crate::analysis::readouts::{self, Readout};
-use crate::export::Column;
+use crate::export::CsvColumn;
 use crate::run::Step;
 use crate::text::unit::Unit;
 use std::sync::LazyLock;
@@ -13,26 +13,26 @@ pub const COUNTS: [&str; 2] = ["step", "segment"];
 
 /// A quantity that a run has at every step.
 #[derive(Debug)]
-pub struct Quantity {
+pub struct RunQuantity {
     /// Its name with the unit, as in the run's CSV and in the table of readouts.
     pub name: &'static str,
     /// Whether it is an angle that can be measured only up to whole turns.
     pub is_direction: bool,
-    column: &'static Column,
+    column: &'static CsvColumn,
 }
 
 /// Every quantity that can be measured over time.
-pub static QUANTITIES: LazyLock<Vec<Quantity>> = LazyLock::new(|| {
-    let is_measured = |column: &&Column| column.name != TIME && !COUNTS.contains(&column.name);
-    let quantity = |column: &'static Column| Quantity {
+pub static QUANTITIES: LazyLock<Vec<RunQuantity>> = LazyLock::new(|| {
+    let is_measured = |column: &&CsvColumn| column.name != TIME && !COUNTS.contains(&column.name);
+    let quantity = |column: &'static CsvColumn| RunQuantity {
         name: column.name,
         is_direction: column.name == "azimuth_deg",
         column,
     };
-    Column::all().filter(is_measured).map(quantity).collect()
+    CsvColumn::all().filter(is_measured).map(quantity).collect()
 });
 
-impl Quantity {
+impl RunQuantity {
     pub fn find(name: &str) -> Option<&'static Self> {
         QUANTITIES.iter().find(|quantity| quantity.name == name)
     }
@@ -70,10 +70,15 @@ mod tests {
 
     #[test]
     fn every_quantity_has_a_readout_of_the_state() {
-        assert_eq!(QUANTITIES.len(), Column::all().count() - 3);
+        assert_eq!(QUANTITIES.len(), CsvColumn::all().count() - 3);
         for quantity in &*QUANTITIES {
             let readout = quantity.readout().unwrap();
-            assert_eq!(readout.source, readouts::Source::State, "{}", quantity.name);
+            assert_eq!(
+                readout.source,
+                readouts::ReadoutSource::State,
+                "{}",
+                quantity.name
+            );
         }
     }
 }

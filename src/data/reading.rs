@@ -2,11 +2,11 @@
 
 use super::hint::hint;
 use super::names::{Columns, may_be, named};
-use super::numbers::Numbers;
+use super::numbers::CellParser;
 use super::quantity::TIME;
 use super::sigma::set_sigmas;
 use super::spellings::{depends_on_name, name_columns, read_as};
-use super::{ColumnOptions, Data, Measured};
+use super::{ColumnOptions, DataKind, MeasuredData};
 use crate::scenario::csv::{self, Csv};
 use crate::scenario::problem::{at_line, nearest};
 use crate::scenario::{Document, Problem, Problems};
@@ -31,12 +31,12 @@ pub fn find_shipped(name: &str) -> Option<&'static Shipped> {
 }
 
 /// Opens what `name` names: data that come with the program, or else a file. A file's name holds a `/` or ends in `.csv`.
-pub fn open(name: &str) -> Result<Measured, Problems> {
+pub fn open(name: &str) -> Result<MeasuredData, Problems> {
     open_with(name, &ColumnOptions::default())
 }
 
 /// The same, with what the user says of its columns.
-pub fn open_with(name: &str, options: &ColumnOptions) -> Result<Measured, Problems> {
+pub fn open_with(name: &str, options: &ColumnOptions) -> Result<MeasuredData, Problems> {
     read_with(name, &text(name)?, options)
 }
 
@@ -67,25 +67,29 @@ fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
 }
 
 /// Reads the measured data that `text` holds, which is the file `origin`.
-pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
+pub fn read(origin: &str, text: &str) -> Result<MeasuredData, Problems> {
     read_with(origin, text, &ColumnOptions::default())
 }
 
 /// The same, with what the user says of its columns.
-pub fn read_with(origin: &str, text: &str, options: &ColumnOptions) -> Result<Measured, Problems> {
+pub fn read_with(
+    origin: &str,
+    text: &str,
+    options: &ColumnOptions,
+) -> Result<MeasuredData, Problems> {
     let (cells, columns) = taken_apart(origin, text, options)
         .map_err(|found| scenario_instead(origin, text).unwrap_or_else(|| found.of(origin)))?;
-    let mut numbers = Numbers::of(&cells);
+    let mut numbers = CellParser::of(&cells);
     let mut data = if columns.read.iter().any(|column| column.name == TIME) {
-        Data::Series(numbers.series(&columns.read))
+        DataKind::Series(numbers.series(&columns.read))
     } else {
-        Data::Table(numbers.table(&columns.read))
+        DataKind::Table(numbers.table(&columns.read))
     };
     let mut left_out = columns.left_out;
     left_out.append(&mut numbers.left_out);
     let mut found = numbers.found;
     found.kept(set_sigmas(&mut data, &cells, &options.sigma));
-    let mut measured = Measured {
+    let mut measured = MeasuredData {
         origin: origin.to_owned(),
         text: text.into(),
         until_s: None,
@@ -111,7 +115,7 @@ pub fn read_with(origin: &str, text: &str, options: &ColumnOptions) -> Result<Me
     }
     if found.list.is_empty() {
         // What the text does not say by itself is written into it.
-        if let Data::Series(series) = &measured.data
+        if let DataKind::Series(series) = &measured.data
             && (options.is_some() || depends_on_name(&cells))
         {
             measured.text = series.to_csv().into();

@@ -1,6 +1,6 @@
 //! What the user says of a file's columns: their names, and uncertainties for columns that have none.
 
-use super::{Data, Point};
+use super::{DataKind, MeasuredPoint};
 use crate::scenario::csv::{Csv, Renaming};
 use crate::scenario::problem::listed;
 use crate::scenario::{Problem, Problems};
@@ -59,7 +59,7 @@ impl fmt::Display for ColumnSigma {
 /// # Errors
 /// If a column is not among the measured ones of `cells`.
 pub(super) fn set_sigmas(
-    data: &mut Data,
+    data: &mut DataKind,
     cells: &Csv,
     sigmas: &[ColumnSigma],
 ) -> Result<(), Problems> {
@@ -93,13 +93,15 @@ pub(super) fn set_sigmas(
 }
 
 /// The measured columns, each with its gyrolab's name and its values.
-fn measured(data: &mut Data) -> Box<dyn Iterator<Item = (&'static str, &mut Vec<Point>)> + '_> {
+fn measured(
+    data: &mut DataKind,
+) -> Box<dyn Iterator<Item = (&'static str, &mut Vec<MeasuredPoint>)> + '_> {
     match data {
-        Data::Series(series) => {
+        DataKind::Series(series) => {
             let curves = series.curves.iter_mut();
             Box::new(curves.map(|curve| (curve.quantity.name, &mut curve.points)))
         }
-        Data::Table(table) => {
+        DataKind::Table(table) => {
             let columns = table.readouts.iter_mut();
             Box::new(columns.map(|column| (column.readout.name, &mut column.points)))
         }

@@ -10,7 +10,7 @@ use crate::scenario::Problem;
 use crate::scenario::csv::Csv;
 use crate::text::number::significant;
 use crate::text::printable::brief;
-use crate::text::unit::{Kind, Unit, in_known_unit, with_word};
+use crate::text::unit::{Unit, UnitKind, in_known_unit, with_word};
 use std::path::Path;
 
 /// Names of the time, without unit, in lower case and without separators.
@@ -236,15 +236,15 @@ fn meaning(name: &str, company: &Company) -> Option<Meaning> {
 fn with_unit(stem: &str, unit: &Unit) -> Option<&'static str> {
     let letters = letters(stem);
     match unit.kind {
-        Kind::Time => TIMES.contains(&&*letters).then_some(TIME),
-        Kind::Rate if axis_after(&letters, &RATES).is_some() => {
+        UnitKind::Time => TIMES.contains(&&*letters).then_some(TIME),
+        UnitKind::Rate if axis_after(&letters, &RATES).is_some() => {
             axis_after(&letters, &RATES).map(|axis| BODY_RATES[axis])
         }
-        Kind::Length if axis_after(&letters, &PLACES).is_some() => {
+        UnitKind::Length if axis_after(&letters, &PLACES).is_some() => {
             axis_after(&letters, &PLACES).map(|axis| COORDINATES[axis])
         }
         // Which axes wx (rad/s) is about cannot be known.
-        Kind::Rate if axis_after(&letters, &["w"]).is_some() => None,
+        UnitKind::Rate if axis_after(&letters, &["w"]).is_some() => None,
         kind => {
             let is_same = |name: &&str| {
                 Unit::of(name).is_some_and(|unit| {

@@ -7,16 +7,16 @@ use crate::scenario::{Scenario, start};
 use nalgebra::Vector3;
 
 #[derive(Debug)]
-pub struct Column {
+pub struct CsvColumn {
     /// Name with its unit, as in the header line.
     pub name: &'static str,
     pub about: &'static str,
-    pub(super) cell: for<'a> fn(&Row<'a>) -> Cell<'a>,
+    pub(super) cell: for<'a> fn(&CsvRow<'a>) -> CsvCell<'a>,
 }
 
 /// What a row is of: a step, in a CSV of all points a point at that step.
 #[derive(Clone, Copy)]
-pub(super) struct Row<'a> {
+pub(super) struct CsvRow<'a> {
     pub scenario: &'a Scenario,
     pub sample: &'a Sample,
     pub point: PlacedPoint<'a>,
@@ -24,13 +24,13 @@ pub(super) struct Row<'a> {
 
 /// A field: a count without a decimal point, any other number so that it reads back as the same f64, or a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Cell<'a> {
+pub(super) enum CsvCell<'a> {
     Whole(u64),
     Number(f64),
     Text(&'a str),
 }
 
-use Cell::{Number, Text, Whole};
+use CsvCell::{Number, Text, Whole};
 
 const TRACED: &str = "traced point, world frame";
 const MOMENTUM: &str = "angular momentum about the pivot, world frame";
@@ -41,7 +41,7 @@ const AZIMUTH: &str = "azimuth of the axle, counted on through full turns";
 const ENERGY: &str = "kinetic energy, and that of the weight from the pivot";
 const SEGMENT: &str = "edits of time step, scheme or gravity before this step";
 
-pub const COLUMNS: &[Column] = &[
+pub const COLUMNS: &[CsvColumn] = &[
     column("step", "number of the time step, 0 at the start", |r| {
         Whole(r.sample.step)
     }),
@@ -68,7 +68,7 @@ pub const COLUMNS: &[Column] = &[
 ];
 
 /// Columns that a CSV has where they are asked for: not every run has a use for them.
-pub const OPTIONAL_COLUMNS: &[Column] = &[
+pub const OPTIONAL_COLUMNS: &[CsvColumn] = &[
     column("spin_rpm", "rate of the spin about the axle", |r| {
         Number(start::rpm(r.scenario.spin_rad_per_s(&r.state())))
     }),
@@ -92,7 +92,7 @@ const POINT: &str =
     "name of the point; rim.0 is the rim's first, a part's six stand along its own axes: wheel +x";
 
 /// The columns of a CSV of all points: one row for each point of the body at each step.
-pub const POINT_COLUMNS: &[Column] = &[
+pub const POINT_COLUMNS: &[CsvColumn] = &[
     column("step", "number of the time step", |r| Whole(r.sample.step)),
     column("t_s", "time", |r| Number(r.sample.time_s)),
     column("point", POINT, |r| Text(r.point.name)),
@@ -109,12 +109,12 @@ pub const POINT_COLUMNS: &[Column] = &[
 const fn column(
     name: &'static str,
     about: &'static str,
-    cell: for<'a> fn(&Row<'a>) -> Cell<'a>,
-) -> Column {
-    Column { name, about, cell }
+    cell: for<'a> fn(&CsvRow<'a>) -> CsvCell<'a>,
+) -> CsvColumn {
+    CsvColumn { name, about, cell }
 }
 
-impl Column {
+impl CsvColumn {
     /// The column of that name which every CSV of a run has.
     pub fn find(name: &str) -> Option<&'static Self> {
         COLUMNS.iter().find(|column| column.name == name)
@@ -126,7 +126,7 @@ impl Column {
     }
 
     pub fn value(&self, scenario: &Scenario, sample: &Sample) -> f64 {
-        match (self.cell)(&Row::new(scenario, sample)) {
+        match (self.cell)(&CsvRow::new(scenario, sample)) {
             Whole(count) => count as f64,
             Number(number) => number,
             Text(_) => f64::NAN,
@@ -134,7 +134,7 @@ impl Column {
     }
 }
 
-impl<'a> Row<'a> {
+impl<'a> CsvRow<'a> {
     pub fn new(scenario: &'a Scenario, sample: &'a Sample) -> Self {
         let point = PlacedPoint::default();
         Self {

@@ -1,8 +1,8 @@
 //! A run as CSV: the run file in `# ` lines, one header line, then the rows. Each row is written when it is added, so that
 //! memory does not grow with the run.
 
-use super::Layout;
-use super::columns::{Cell, NamedPoint, Row};
+use super::CsvLayout;
+use super::columns::{CsvCell, CsvRow, NamedPoint};
 use super::layout::commented;
 use crate::run::Sample;
 use crate::scenario::Scenario;
@@ -16,7 +16,7 @@ pub struct CsvWriter<W: Write> {
     out: BufWriter<W>,
     line: Vec<u8>,
     count: u64,
-    layout: Layout,
+    layout: CsvLayout,
     scenario: Scenario,
     points: Vec<NamedPoint>,
 }
@@ -24,11 +24,11 @@ pub struct CsvWriter<W: Write> {
 impl<W: Write> CsvWriter<W> {
     /// Begins a CSV of every row and column on `out` with the run file of `scenario` and the header line.
     pub fn new(out: W, scenario: &Scenario) -> io::Result<Self> {
-        Self::with_layout(out, scenario, Layout::default())
+        Self::with_layout(out, scenario, CsvLayout::default())
     }
 
     /// Begins a CSV as `layout` says on `out`.
-    pub fn with_layout(out: W, scenario: &Scenario, layout: Layout) -> io::Result<Self> {
+    pub fn with_layout(out: W, scenario: &Scenario, layout: CsvLayout) -> io::Result<Self> {
         let mut out = BufWriter::new(out);
         let mark = if layout.file().excel {
             BYTE_ORDER_MARK
@@ -54,7 +54,7 @@ impl<W: Write> CsvWriter<W> {
         })
     }
 
-    pub fn layout(&self) -> &Layout {
+    pub fn layout(&self) -> &CsvLayout {
         &self.layout
     }
 
@@ -62,8 +62,8 @@ impl<W: Write> CsvWriter<W> {
     /// has asked the layout whether there is one.
     pub fn write(&mut self, sample: &Sample) -> io::Result<()> {
         let is_of_points = self.layout.file().points;
-        let step = Row::new(&self.scenario, sample);
-        let points = self.points.iter().map(|point| Row {
+        let step = CsvRow::new(&self.scenario, sample);
+        let points = self.points.iter().map(|point| CsvRow {
             point: point.placed(sample),
             ..step
         });
@@ -87,20 +87,20 @@ impl<W: Write> CsvWriter<W> {
     }
 }
 
-fn delimiter(layout: &Layout) -> u8 {
+fn delimiter(layout: &CsvLayout) -> u8 {
     if layout.file().excel { b';' } else { b',' }
 }
 
 /// Adds one row to `line`. Numbers have the digits that the csv crate gives them with serde; where a text needs quotes, it has
 /// them already.
-fn add(line: &mut Vec<u8>, layout: &Layout, row: &Row<'_>) {
+fn add(line: &mut Vec<u8>, layout: &CsvLayout, row: &CsvRow<'_>) {
     let (mut digits, mut whole) = (ryu::Buffer::new(), itoa::Buffer::new());
     for column in layout.columns() {
         let begin = line.len();
         match (column.cell)(row) {
-            Cell::Text(text) => line.extend_from_slice(text.as_bytes()),
-            Cell::Whole(count) => line.extend_from_slice(whole.format(count).as_bytes()),
-            Cell::Number(number) => {
+            CsvCell::Text(text) => line.extend_from_slice(text.as_bytes()),
+            CsvCell::Whole(count) => line.extend_from_slice(whole.format(count).as_bytes()),
+            CsvCell::Number(number) => {
                 line.extend_from_slice(digits.format(number).as_bytes());
                 if layout.file().excel
                     && let Some(point) = line[begin..].iter_mut().find(|c| **c == b'.')

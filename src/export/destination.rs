@@ -2,7 +2,7 @@
 
 use super::temporary;
 use crate::text::advice::unwritten;
-use crate::text::printable::Shown;
+use crate::text::printable::PrintablePath;
 use std::borrow::Cow;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};
@@ -27,21 +27,25 @@ pub enum Destination {
 
 #[derive(Debug, thiserror::Error)]
 pub enum DestinationError {
-    #[error("{} exists; --force replaces it", Shown(.0))]
+    #[error("{} exists; --force replaces it", PrintablePath(.0))]
     Exists(PathBuf),
-    #[error("{}: gyrolab writes CSV, and no workbook: let the name end in .csv (--excel makes it one that a double click opens)", Shown(.0))]
+    #[error("{}: gyrolab writes CSV, and no workbook: let the name end in .csv (--excel makes it one that a double click opens)", PrintablePath(.0))]
     Workbook(PathBuf),
-    #[error("{} is a folder: name a file in it", Shown(.0))]
+    #[error("{} is a folder: name a file in it", PrintablePath(.0))]
     Folder(PathBuf),
-    #[error("{} is not a folder: name one that is empty or new", Shown(.0))]
+    #[error("{} is not a folder: name one that is empty or new", PrintablePath(.0))]
     NotAFolder(PathBuf),
-    #[error("{} holds files; --force replaces those of the same names", Shown(.0))]
+    #[error("{} holds files; --force replaces those of the same names", PrintablePath(.0))]
     FolderInUse(PathBuf),
-    #[error("cannot write {}: it is not a regular file but a device, a pipe or a socket, which may block; gyrolab run -o writes to such", Shown(.0))]
+    #[error("cannot write {}: it is not a regular file but a device, a pipe or a socket, which may block; gyrolab run -o writes to such", PrintablePath(.0))]
     NotAFile(PathBuf),
-    #[error("cannot write {}: there is no folder {}", Shown(path), Shown(folder))]
+    #[error(
+        "cannot write {}: there is no folder {}",
+        PrintablePath(path),
+        PrintablePath(folder)
+    )]
     NoFolder { path: PathBuf, folder: PathBuf },
-    #[error("cannot write {}: {}", Shown(path), unwritten(error))]
+    #[error("cannot write {}: {}", PrintablePath(path), unwritten(error))]
     Refused { path: PathBuf, error: io::Error },
 }
 
@@ -56,7 +60,7 @@ impl DestinationError {
     /// The message without the advice that applies to the command line only.
     pub fn fact(&self) -> String {
         match self {
-            Self::Exists(path) => format!("{} exists", Shown(path)),
+            Self::Exists(path) => format!("{} exists", PrintablePath(path)),
             other => other.to_string(),
         }
     }
@@ -252,14 +256,14 @@ impl Write for Destination {
 
 /// A folder that is being written, under a temporary name beside the place that it will have.
 #[derive(Debug)]
-pub struct Folder {
+pub struct OutputFolder {
     temporary: TempDir,
     path: PathBuf,
     replace: bool,
     _lock: File,
 }
 
-impl Folder {
+impl OutputFolder {
     /// Begins a folder that will be at `path`. One that is there already must be empty, unless `replace` is true: then its
     /// files of the same names are replaced, and its others stay.
     pub fn begin(path: &Path, replace: bool) -> Result<Self, DestinationError> {

@@ -3,7 +3,7 @@
 //! Whatever is not the default stands above the run file in the CSV's header, as TOML in TOML's comments, such as
 //! `# # every = 10`: the CSV runs again as any other, and can be recomputed as it was written.
 
-use super::columns::{COLUMNS, Column, POINT_COLUMNS};
+use super::columns::{COLUMNS, CsvColumn, POINT_COLUMNS};
 use crate::run::{Clock, Step};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, Scenario};
@@ -36,12 +36,12 @@ pub struct LayoutFile {
 
 /// Which rows and columns a CSV has, and how its numbers are written. The default is every row and every column.
 #[derive(Clone, Debug)]
-pub struct Layout {
+pub struct CsvLayout {
     file: LayoutFile,
-    columns: Vec<&'static Column>,
+    columns: Vec<&'static CsvColumn>,
 }
 
-impl Default for Layout {
+impl Default for CsvLayout {
     fn default() -> Self {
         Self {
             file: LayoutFile::default(),
@@ -56,7 +56,7 @@ fn is_false(flag: &bool) -> bool {
 
 impl LayoutFile {
     /// The layout, checked.
-    pub fn check(mut self) -> Result<Layout, Problem> {
+    pub fn check(mut self) -> Result<CsvLayout, Problem> {
         // No run is longer, and TOML has no larger number.
         let most = NonZeroU64::new(i64::MAX as u64).unwrap_or(NonZeroU64::MAX);
         let every = self.every.filter(|every| every.get() > 1);
@@ -77,10 +77,10 @@ impl LayoutFile {
         let columns = match (&self.columns, self.points) {
             (None, false) => COLUMNS.iter().collect(),
             (None, true) => POINT_COLUMNS.iter().collect(),
-            (Some(names), false) => chosen(names, &Column::all())?,
+            (Some(names), false) => chosen(names, &CsvColumn::all())?,
             (Some(names), true) => chosen(names, &POINT_COLUMNS.iter())?,
         };
-        Ok(Layout {
+        Ok(CsvLayout {
             file: self,
             columns,
         })
@@ -89,8 +89,8 @@ impl LayoutFile {
 
 fn chosen(
     names: &[String],
-    all: &(impl Iterator<Item = &'static Column> + Clone),
-) -> Result<Vec<&'static Column>, Problem> {
+    all: &(impl Iterator<Item = &'static CsvColumn> + Clone),
+) -> Result<Vec<&'static CsvColumn>, Problem> {
     let wrong = |rule: String| Problem::at("columns", rule);
     if names.is_empty() {
         return Err(wrong("must name a column".to_owned()));
@@ -108,13 +108,13 @@ fn chosen(
     names.iter().enumerate().map(column).collect()
 }
 
-impl PartialEq for Layout {
+impl PartialEq for CsvLayout {
     fn eq(&self, other: &Self) -> bool {
         self.file == other.file
     }
 }
 
-impl Layout {
+impl CsvLayout {
     /// Every `every`-th row, and the last, with every column.
     pub fn every(every: NonZeroU64) -> Self {
         let file = LayoutFile {
@@ -132,7 +132,7 @@ impl Layout {
         self.file.every.map_or(1, NonZeroU64::get)
     }
 
-    pub(super) fn columns(&self) -> &[&'static Column] {
+    pub(super) fn columns(&self) -> &[&'static CsvColumn] {
         &self.columns
     }
 

@@ -10,8 +10,8 @@ pub mod stream;
 pub mod summary;
 pub mod temporary;
 
-pub use columns::{COLUMNS, Column};
+pub use columns::{COLUMNS, CsvColumn};
 pub use csv::CsvWriter;
-pub use destination::{Destination, Folder};
-pub use layout::Layout;
-pub use summary::Summary;
+pub use destination::{Destination, OutputFolder};
+pub use layout::CsvLayout;
+pub use summary::RunSummary;

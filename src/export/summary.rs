@@ -1,7 +1,7 @@
 //! The summary of a finished run, as text for a reader and as JSON for a program.
 
-use crate::analysis::theory::{Axis, Path, Theory};
-use crate::analysis::{Measured, Readouts, WithoutNutation, remarks};
+use crate::analysis::theory::{AxlePath, Theory, TheoryAxis};
+use crate::analysis::{MeasuredNumber, Readouts, WithoutNutation, remarks};
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, counted, exponent, fixed, shortest, significant};
 use nalgebra::Vector3;
@@ -12,7 +12,7 @@ use std::time::Duration;
 /// The summary of a finished run. As JSON it is the table of [readouts](crate::analysis::readouts).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
-pub struct Summary {
+pub struct RunSummary {
     readouts: Readouts,
     /// How many steps of which time step it had, in words, where it had several.
     #[serde(skip)]
@@ -26,9 +26,9 @@ pub struct Summary {
 const FAR_APART: &str = "the steps are too far apart to see it";
 
 /// A line of the summary: what it is about, and what it says.
-type Line = (&'static str, String);
+type SummaryLine = (&'static str, String);
 
-impl Summary {
+impl RunSummary {
     /// The summary of a run that has `readouts` at its end and spent the time `wall` on stepping.
     pub fn new(readouts: Readouts, wall: Duration) -> Self {
         Self {
@@ -55,7 +55,7 @@ impl Summary {
         }
     }
 
-    fn extent(&self) -> Vec<Line> {
+    fn extent(&self) -> Vec<SummaryLine> {
         let Readouts {
             sample, extremes, ..
         } = &self.readouts;
@@ -72,7 +72,7 @@ impl Summary {
         ]
     }
 
-    fn state(&self) -> Vec<Line> {
+    fn state(&self) -> Vec<SummaryLine> {
         let readouts = &self.readouts;
         let sample = &readouts.sample;
         let scheme = match &readouts.scheme_kind {
@@ -96,14 +96,14 @@ impl Summary {
         ]
     }
 
-    fn rates(&self) -> Vec<Line> {
+    fn rates(&self) -> Vec<SummaryLine> {
         let readouts = &self.readouts;
         // Under friction no motion goes on as theory has it.
         let theory = readouts.theory.filter(|theory| !theory.is_of_a_moment);
         let predicted = theory.and_then(|theory| theory.precession);
         let path = readouts.theory.as_ref().map(|theory| theory.path);
         let why = match (predicted, path) {
-            (None, Some(Path::ThroughVertical)) => ": the axle passes through the vertical",
+            (None, Some(AxlePath::ThroughVertical)) => ": the axle passes through the vertical",
             _ => "",
         };
         let unmeasured = match why {
@@ -137,7 +137,7 @@ impl Summary {
             format!(" and {} N by pushes", fixed(predicted - weight, 3))
         };
         let measured = match readouts.mean_foot_force {
-            Some(Measured {
+            Some(MeasuredNumber {
                 value,
                 uncertainty,
                 nutations,
@@ -161,13 +161,13 @@ impl Summary {
         &self,
         unit: &str,
         predicted: Option<f64>,
-        measured: Option<Measured>,
+        measured: Option<MeasuredNumber>,
         is_strobed: bool,
         unmeasured: &str,
     ) -> String {
         let readouts = &self.readouts;
         let axis = readouts.theory.as_ref().map(|theory| theory.axis);
-        let about = on(" about", &axis.unwrap_or(Axis::Z));
+        let about = on(" about", &axis.unwrap_or(TheoryAxis::Z));
         let about_z = if about.is_empty() { "" } else { " about +z" };
         let theory = match predicted {
             Some(value) => format!("{} {unit} by theory{about}", fixed(value, 6)),
@@ -179,13 +179,13 @@ impl Summary {
             }
             None => format!("none by theory{about}"),
         };
-        let is_finite = |it: &Measured| it.value.is_finite() && it.uncertainty.is_finite();
+        let is_finite = |it: &MeasuredNumber| it.value.is_finite() && it.uncertainty.is_finite();
         let measured = match measured.filter(is_finite) {
-            Some(Measured { value, .. }) if is_strobed => {
+            Some(MeasuredNumber { value, .. }) if is_strobed => {
                 let shown = significant(value, 3);
                 format!("strobed: {FAR_APART}, and show {shown} {unit}{about_z}")
             }
-            Some(Measured {
+            Some(MeasuredNumber {
                 value, uncertainty, ..
             }) => {
                 let (value, uncertainty) = (fixed(value, 6), exponent(uncertainty, 1));
@@ -199,7 +199,7 @@ impl Summary {
         format!("{theory}, {measured}")
     }
 
-    fn theory(&self) -> Vec<Line> {
+    fn theory(&self) -> Vec<SummaryLine> {
         let Some(kappa) = self.readouts.kappa else {
             return vec![("theory", "none: the body is lopsided".to_owned())];
         };
@@ -225,7 +225,7 @@ impl Summary {
         let motion = format!(
             "{ceased}kappa {kappa}; path: {path}, tilt {low} to {high} degrees{from}{since}"
         );
-        if *axis == Axis::Momentum {
+        if *axis == TheoryAxis::Momentum {
             let why = "without a load the axle goes round L, and no spin is too small to stand";
             return vec![("theory", motion), ("steady", why.to_owned())];
         }
@@ -249,14 +249,14 @@ impl Summary {
             "it would not"
         };
         let along = match &theory.axis {
-            Axis::Z => "sleeps".to_owned(),
+            TheoryAxis::Z => "sleeps".to_owned(),
             axis => format!("along {axis} it sleeps"),
         };
         let [limit, spin] = [limit, spin].map(|momentum| fixed(momentum, 3));
         format!("{along} with L.axle above {limit} J s; with {spin} {sleeps}")
     }
 
-    fn health(&self) -> Vec<Line> {
+    fn health(&self) -> Vec<SummaryLine> {
         let readouts = &self.readouts;
         let health = &readouts.health;
         let azimuth = fixed(readouts.sample.azimuth_deg, 6);
@@ -330,17 +330,17 @@ fn vector(at: &Vector3<f64>, digits: usize) -> String {
 }
 
 /// `word` and the axis where that is another than +z, else nothing.
-fn on(word: &str, axis: &Axis) -> String {
+fn on(word: &str, axis: &TheoryAxis) -> String {
     match axis {
-        Axis::Z => String::new(),
+        TheoryAxis::Z => String::new(),
         axis => format!("{word} {axis}"),
     }
 }
 
-impl fmt::Display for Summary {
+impl fmt::Display for RunSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let readouts = &self.readouts;
-        let text = |lines: Vec<Line>| -> String {
+        let text = |lines: Vec<SummaryLine>| -> String {
             let lines = lines.into_iter();
             let lines = lines.map(|(name, said)| format!("  {name:<14}{said}\n"));
             lines.collect()

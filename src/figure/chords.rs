@@ -4,16 +4,16 @@
 //! Beside the exact motion that looks like an error of the run: so the points are drawn, and not joined. The exact motion is
 //! a line with more points, though over a very long stretch of time they are too few as well.
 
-use super::chart::Style;
-use super::course::Course;
-use super::path::Path;
-use super::request::Drawn;
+use super::chart::SeriesStyle;
+use super::course::SampledRun;
+use super::path::TracedPath;
+use super::request::SampledRunNumbers;
 
 /// What the legend says of points that are not joined.
 pub(super) const EVERY_STEP: &str = ", every step";
 
 /// What is drawn, as its `path` is drawn: of a run with too few points to look round these alone, and its name says so.
-pub(super) fn as_drawn(drawn: &Drawn, path: &Path) -> (String, Style) {
+pub(super) fn as_drawn(drawn: &SampledRunNumbers, path: &TracedPath) -> (String, SeriesStyle) {
     if path.few_a_turn.is_none() || drawn.is_exact {
         return (drawn.name.clone(), drawn.style.clone());
     }
@@ -25,7 +25,10 @@ pub(super) fn as_drawn(drawn: &Drawn, path: &Path) -> (String, Style) {
 }
 
 /// What is said of the first of `drawn` whose `path` has too few points to look round.
-pub(super) fn warning(drawn: &[Drawn], path: fn(&Course) -> &Path) -> Option<String> {
+pub(super) fn warning(
+    drawn: &[SampledRunNumbers],
+    path: fn(&SampledRun) -> &TracedPath,
+) -> Option<String> {
     drawn.iter().find_map(|drawn| {
         let a_turn = path(&drawn.course).few_a_turn?;
         Some(match (drawn.is_exact, drawn.name.as_str()) {

@@ -1,13 +1,13 @@
 //! The numbers of a figure, from a run that is stepped through: once more, or while something else is read off it.
 
-use super::path::{self, Path};
-use crate::analysis::{Beside, Health};
-use crate::export::Column;
+use super::path::{self, TracedPath};
+use crate::analysis::{ExactReference, Health};
+use crate::export::CsvColumn;
 use crate::export::stream::{self, Ended};
 use crate::physics::State;
 use crate::physics::exact::LagrangeTop;
 use crate::physics::observables::{self, Azimuth};
-use crate::playback::recording::{Block, Extent, Recording};
+use crate::playback::recording::{Extent, Recording, RecordingBin};
 use crate::run::{Clock, NotFinite, Sample, Simulation, Step, Truth};
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
@@ -20,20 +20,20 @@ const TOGETHER: usize = 4;
 const PARTS: f64 = 8192.0;
 
 #[derive(Clone, Debug)]
-pub struct Wanted {
-    pub columns: Vec<&'static Column>,
+pub struct SampleRequest {
+    pub columns: Vec<&'static CsvColumn>,
     pub path: bool,
     pub from_s: f64,
     pub to_s: Option<f64>,
 }
 
 #[derive(Clone, Debug)]
-pub struct Course {
-    wanted: Wanted,
+pub struct SampledRun {
+    wanted: SampleRequest,
     curves: Arc<Vec<Recording>>,
-    pub path: Arc<Path>,
+    pub path: Arc<TracedPath>,
     /// The same from above, with z = 0: a path that goes up and down in one place is not interrupted there.
-    pub above: Arc<Path>,
+    pub above: Arc<TracedPath>,
     pub end_s: f64,
     /// Whether no moment lay in the stretch.
     pub is_empty: bool,
@@ -47,7 +47,7 @@ pub struct Course {
 
 /// A column in a part of the time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct Bin {
     /// Its first and last time, s.
     pub times_s: [f64; 2],
     pub extent: Extent,
@@ -56,7 +56,7 @@ pub(super) struct Part {
     pub turns: u32,
 }
 
-impl Wanted {
+impl SampleRequest {
     /// Whether something is wanted that the exact motion has not: the number of the step, or of the stretch between edits.
     pub fn counts_steps(&self) -> bool {
         let mut columns = self.columns.iter();
@@ -69,9 +69,9 @@ impl Wanted {
     }
 }
 
-impl Course {
+impl SampledRun {
     /// The part of the run of `scenario` that is `wanted`, where it has all of that.
-    pub(super) fn part(&self, scenario: &Scenario, wanted: &Wanted) -> Option<Self> {
+    pub(super) fn part(&self, scenario: &Scenario, wanted: &SampleRequest) -> Option<Self> {
         let end_s = wanted.end_s(scenario);
         let mut columns = wanted.columns.iter();
         let is_all = self.wanted.from_s == wanted.from_s
@@ -85,30 +85,30 @@ impl Course {
         })
     }
 
-    fn place(&self, column: &Column) -> Option<usize> {
+    fn place(&self, column: &CsvColumn) -> Option<usize> {
         let mut columns = self.wanted.columns.iter();
         columns.position(|it| it.name == column.name)
     }
 
     /// `column` part by part, in the order of time.
-    pub(super) fn parts(&self, column: &Column) -> Vec<Part> {
+    pub(super) fn parts(&self, column: &CsvColumn) -> Vec<Bin> {
         let Some(place) = self.place(column) else {
             return Vec::new();
         };
         let blocks = in_parts(&self.curves[place / TOGETHER]);
         let curve = place % TOGETHER;
-        let parts = blocks.iter().map(|block| Part {
+        let parts = blocks.iter().map(|block| Bin {
             times_s: [block.begin_s, block.end_s],
             extent: block.extents[curve],
             last: block.last[curve],
             turns: block.turned[curve],
         });
-        let are_finite = |part: &Part| (part.extent.min + part.extent.max + part.last).is_finite();
+        let are_finite = |part: &Bin| (part.extent.min + part.extent.max + part.last).is_finite();
         parts.filter(are_finite).collect()
     }
 
     /// The points of `column`, every extreme among them.
-    pub fn points(&self, column: &Column) -> Vec<[f64; 2]> {
+    pub fn points(&self, column: &CsvColumn) -> Vec<[f64; 2]> {
         let mut points: Vec<[f64; 2]> = Vec::new();
         for part in self.parts(column) {
             let ([begin_s, end_s], Extent { min, max }) = (part.times_s, part.extent);
@@ -131,8 +131,8 @@ impl Course {
 }
 
 /// The blocks of `curves`, those of one part of the time together.
-fn in_parts(curves: &Recording) -> Vec<Block> {
-    let mut blocks: Vec<Block> = Vec::new();
+fn in_parts(curves: &Recording) -> Vec<RecordingBin> {
+    let mut blocks: Vec<RecordingBin> = Vec::new();
     let Some(whole) = curves.whole() else {
         return blocks;
     };
@@ -148,30 +148,30 @@ fn in_parts(curves: &Recording) -> Vec<Block> {
 }
 
 #[derive(Clone, Debug)]
-pub struct Recorder {
-    wanted: Wanted,
+pub struct RunSampler {
+    wanted: SampleRequest,
     scenario: Arc<Scenario>,
     stretch_end_s: f64,
     curves: Vec<Recording>,
-    path: path::Recorder,
-    above: path::Recorder,
+    path: path::PathRecorder,
+    above: path::PathRecorder,
     end_s: f64,
     is_empty: bool,
 }
 
-impl Recorder {
+impl RunSampler {
     /// A recorder of what is `wanted` of the run of `scenario`, before its start.
-    pub fn new(scenario: &Arc<Scenario>, wanted: Wanted) -> Self {
+    pub fn new(scenario: &Arc<Scenario>, wanted: SampleRequest) -> Self {
         Self::of(scenario, wanted, false)
     }
 
     /// The same; `is_exact` says whether it is of the exact motion, whose path is a line.
-    fn of(scenario: &Arc<Scenario>, wanted: Wanted, is_exact: bool) -> Self {
+    fn of(scenario: &Arc<Scenario>, wanted: SampleRequest, is_exact: bool) -> Self {
         Self {
             stretch_end_s: wanted.end_s(scenario),
             curves: vec![Recording::default(); wanted.columns.len().div_ceil(TOGETHER)],
-            path: path::Recorder::new(is_exact),
-            above: path::Recorder::new(is_exact),
+            path: path::PathRecorder::new(is_exact),
+            above: path::PathRecorder::new(is_exact),
             end_s: 0.0,
             is_empty: true,
             scenario: Arc::clone(scenario),
@@ -222,8 +222,8 @@ impl Recorder {
     }
 
     /// What was written down; `broke` says why the run ended before the stretch, where it did.
-    pub fn end(self, broke: Option<NotFinite>) -> Course {
-        Course {
+    pub fn end(self, broke: Option<NotFinite>) -> SampledRun {
+        SampledRun {
             wanted: self.wanted,
             curves: Arc::new(self.curves),
             path: Arc::new(self.path.end()),
@@ -246,13 +246,13 @@ fn rounding_s(end_s: f64) -> f64 {
 /// says whether to go on; `None` where it said no.
 pub fn play(
     scenario: &Arc<Scenario>,
-    wanted: &Wanted,
+    wanted: &SampleRequest,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Option<Course> {
+) -> Option<SampledRun> {
     let mut simulation = Simulation::new(Arc::clone(scenario));
-    let mut recorder = Recorder::new(scenario, wanted.clone());
+    let mut recorder = RunSampler::new(scenario, wanted.clone());
     let last = Simulation::step_at(scenario, wanted.end_s(scenario)).min(scenario.steps);
-    let mut beside = Beside::new(scenario);
+    let mut beside = ExactReference::new(scenario);
     recorder.follow(simulation.now());
     let each = |step: &Step| {
         recorder.follow(step);
@@ -264,7 +264,7 @@ pub fn play(
         Ok((Ended::NotFinite(error), _)) => Some(error),
         Ok((Ended::Done, _)) | Err(_) => None, // nothing is written that could fail
     };
-    Some(Course {
+    Some(SampledRun {
         health: Some(Health::new(simulation.now(), &mut beside)),
         ..recorder.end(broke)
     })
@@ -282,9 +282,9 @@ const OTHER_PHASE: f64 = 0.381_966;
 /// As [`play`], of the exact motion beside the run: between the time steps too, where these are too long to show it.
 pub fn exact(
     scenario: &Arc<Scenario>,
-    wanted: &Wanted,
+    wanted: &SampleRequest,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Option<Course> {
+) -> Option<SampledRun> {
     let mut truth = Truth::new(Arc::clone(scenario));
     // The azimuth is counted on from the start, and nothing else needs what came before.
     let mut columns = wanted.columns.iter();
@@ -301,7 +301,7 @@ pub fn exact(
     let look_every = if closed.is_some() { 1024 } else { 1 };
     let apart_s = apart_s(end_s - begin_s, scenario.motion.time_step_s, period_s);
     let count = ((end_s - begin_s) / apart_s).ceil().max(LEAST) as u64;
-    let mut recorder = Recorder::of(scenario, wanted.clone(), true);
+    let mut recorder = RunSampler::of(scenario, wanted.clone(), true);
     let mut azimuth = Azimuth::start(&scenario.start.axle());
     for number in 0..=count {
         let time_s = begin_s + (end_s - begin_s) * (number as f64 / count as f64);
@@ -316,7 +316,7 @@ pub fn exact(
             return None;
         }
     }
-    Some(Course {
+    Some(SampledRun {
         swing_s: period_s,
         ..recorder.end(None)
     })
@@ -356,9 +356,13 @@ mod tests {
     use crate::scenario::Document;
 
     /// A stretch of `scenario`, and the points of its curve of z.
-    fn of_z(scenario: &Arc<Scenario>, from_s: f64, to_s: Option<f64>) -> (Course, Vec<[f64; 2]>) {
-        let column = Column::find("z_m").unwrap();
-        let wanted = Wanted {
+    fn of_z(
+        scenario: &Arc<Scenario>,
+        from_s: f64,
+        to_s: Option<f64>,
+    ) -> (SampledRun, Vec<[f64; 2]>) {
+        let column = CsvColumn::find("z_m").unwrap();
+        let wanted = SampleRequest {
             columns: vec![column],
             path: to_s.is_some(),
             from_s,

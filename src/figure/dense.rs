@@ -3,13 +3,13 @@
 
 use super::chart::Chart;
 use super::chart::curve;
-use super::chart::layout::{Layout, Placed};
-use super::course::{Course, Part};
+use super::chart::layout::{ChartLayout, PlacedPanel};
+use super::course::{Bin, SampledRun};
 use super::page::cover::Grid;
 use super::page::scene::Point;
-use super::path::Path;
-use super::request::{Dense, Drawn, Request};
-use crate::export::Column;
+use super::path::TracedPath;
+use super::request::{Dense, FigureRequest, SampledRunNumbers};
+use crate::export::CsvColumn;
 use crate::playback::recording::Extent;
 use crate::text::ladder;
 
@@ -27,7 +27,7 @@ const SWINGS: f64 = 20.0;
 struct Columns(Vec<(u32, Option<Extent>)>);
 
 impl Columns {
-    fn new(parts: &[Part], placed: &Placed) -> Self {
+    fn new(parts: &[Bin], placed: &PlacedPanel) -> Self {
         let count = (placed.frame.width() / PART_PT).ceil() as usize;
         let mut columns: Vec<(u32, Option<Extent>)> = vec![(0, None); count.max(1)];
         for part in parts {
@@ -46,7 +46,7 @@ impl Columns {
     }
 
     /// Whether a line `width_pt` wide is too dense in most of them.
-    fn are_dense(&self, width_pt: f64, placed: &Placed) -> bool {
+    fn are_dense(&self, width_pt: f64, placed: &PlacedPanel) -> bool {
         let high = HIGH * (placed.y.range.1 - placed.y.range.0);
         let dense = self.0.iter().filter(|(turns, extent)| {
             let is_high = extent.is_some_and(|extent| extent.max - extent.min >= high);
@@ -56,7 +56,7 @@ impl Columns {
     }
 
     /// The band between the extremes of each part and its neighbours.
-    fn band(&self, placed: &Placed) -> Vec<[f64; 3]> {
+    fn band(&self, placed: &PlacedPanel) -> Vec<[f64; 3]> {
         let (low, high) = placed.x.range;
         let apart = (high - low) / self.0.len() as f64;
         let extent = |index: usize| {
@@ -84,14 +84,14 @@ impl Columns {
 /// Which stretch of time shows the curves of `chart` apart, where one of them, of the `columns` of `drawn`, is too dense.
 pub(super) fn over_time(
     chart: &Chart,
-    columns: &[&'static Column],
-    drawn: &[Drawn],
-    request: &Request,
+    columns: &[&'static CsvColumn],
+    drawn: &[SampledRunNumbers],
+    request: &FigureRequest,
 ) -> Option<Dense> {
     if chart.x.is_log {
         return None; // swings are ever denser along it
     }
-    let layout = Layout::new(chart, 0.0);
+    let layout = ChartLayout::new(chart, 0.0);
     let panels = columns.iter().zip(chart.panels.iter().zip(&layout.panels));
     let all = panels.flat_map(|(column, (panel, placed))| {
         let series = drawn.iter().zip(&panel.series);
@@ -118,8 +118,12 @@ pub(super) fn over_time(
 
 /// Makes those curves of `chart` bands that are too dense in its places; in a panel with one of them the others too that
 /// would be in a line as wide.
-pub(super) fn draw_bands(chart: &mut Chart, columns: &[&'static Column], drawn: &[Drawn]) {
-    let layout = Layout::new(chart, 0.0);
+pub(super) fn draw_bands(
+    chart: &mut Chart,
+    columns: &[&'static CsvColumn],
+    drawn: &[SampledRunNumbers],
+) {
+    let layout = ChartLayout::new(chart, 0.0);
     let panels = chart.panels.iter_mut().zip(&layout.panels);
     for (column, (panel, placed)) in columns.iter().zip(panels) {
         let all = drawn
@@ -151,12 +155,12 @@ const LOOSE: f64 = 0.3;
 /// As [`over_time`], of each `path` of `drawn`, whose points stand at a `place` on the page: of the runs, and where none of them
 /// is dense, of the exact motion.
 pub(super) fn of_paths(
-    drawn: &[Drawn],
-    request: &Request,
-    path: fn(&Course) -> &Path,
+    drawn: &[SampledRunNumbers],
+    request: &FigureRequest,
+    path: fn(&SampledRun) -> &TracedPath,
     place: impl Fn(&[f64; 3]) -> Point,
 ) -> Option<Dense> {
-    let dense = |drawn: &Drawn| {
+    let dense = |drawn: &SampledRunNumbers| {
         let path = path(&drawn.course);
         if path.points.len() < 2000 {
             return None;
@@ -184,11 +188,11 @@ pub(super) fn of_paths(
     earliest(false).or_else(|| earliest(true))
 }
 
-fn width_mm(request: &Request) -> f64 {
+fn width_mm(request: &FigureRequest) -> f64 {
     (request.width_pt / super::PT_PER_MM).round()
 }
 
-fn proposal(window_s: f64, request: &Request, what: String) -> Dense {
+fn proposal(window_s: f64, request: &FigureRequest, what: String) -> Dense {
     Dense {
         what,
         from_s: request.from_s,

@@ -1,15 +1,15 @@
 //! The kinds of figures of a run, by the names of the lab's panes and of a CSV's columns.
 
 use crate::analysis::readouts;
-use crate::data::Series;
-use crate::export::Column;
-use crate::playback::recording::Curve;
+use crate::data::TimeSeries;
+use crate::export::CsvColumn;
+use crate::playback::recording::RecordedCurve;
 use crate::scenario::problem;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
 
 #[derive(Clone, Debug)]
-pub enum Kind {
-    OverTime(Vec<&'static Column>),
+pub enum FigureKind {
+    OverTime(Vec<&'static CsvColumn>),
     /// What was measured less what the run says, a panel for each quantity.
     Residuals,
     Above,
@@ -23,17 +23,17 @@ pub const RESIDUALS: &str = "residuals";
 /// The names that stand alone; a list of columns is the other way to name a figure.
 pub const NAMES: [&str; 4] = [TRACES, ABOVE, THREE_D, RESIDUALS];
 
-fn find(name: &str) -> Option<&'static Column> {
-    Column::all().find(|column| column.name == name)
+fn find(name: &str) -> Option<&'static CsvColumn> {
+    CsvColumn::all().find(|column| column.name == name)
 }
 
-impl Kind {
+impl FigureKind {
     pub fn traces() -> Self {
-        let columns = Curve::OF_POINT.iter().map(|curve| curve.column());
+        let columns = RecordedCurve::OF_POINT.iter().map(|curve| curve.column());
         Self::OverTime(columns.filter_map(find).collect())
     }
 
-    pub fn columns(&self) -> &[&'static Column] {
+    pub fn columns(&self) -> &[&'static CsvColumn] {
         match self {
             Self::OverTime(columns) => columns,
             Self::Above | Self::ThreeD | Self::Residuals => &[],
@@ -53,7 +53,7 @@ impl Kind {
     }
 
     /// What was measured in `series`, over time.
-    pub fn measured(series: &Series) -> Self {
+    pub fn measured(series: &TimeSeries) -> Self {
         let names = series.curves.iter().map(|curve| curve.quantity.name);
         Self::OverTime(names.filter_map(find).collect())
     }
@@ -91,14 +91,14 @@ impl Kind {
     }
 }
 
-fn column(name: &str) -> Result<&'static Column, String> {
+fn column(name: &str) -> Result<&'static CsvColumn, String> {
     if name.is_empty() {
         return Err("lacks a name: traces, above, 3d, residuals, or columns of the CSV with commas between them".to_owned());
     }
     if NAMES.contains(&name) {
         return Err("is a figure of its own: no columns can stand beside it".to_owned());
     }
-    let columns = || Column::all().map(|column| column.name);
+    let columns = || CsvColumn::all().map(|column| column.name);
     find(name).ok_or_else(|| if readouts::find(name).is_some() {
         format!(
             "is a readout, one number of a run, and no column: a sweep's table is drawn by its readouts; over time there is {}",
@@ -116,11 +116,11 @@ mod tests {
 
     #[test]
     fn kinds_have_the_names_of_panes_and_columns() {
-        assert_eq!(Kind::named("traces").unwrap().name(), "x_m,y_m,z_m");
-        let two = Kind::named("tilt_deg, energy_J").unwrap();
+        assert_eq!(FigureKind::named("traces").unwrap().name(), "x_m,y_m,z_m");
+        let two = FigureKind::named("tilt_deg, energy_J").unwrap();
         assert_eq!(two.name(), "tilt_deg,energy_J");
-        assert!(matches!(Kind::named("above"), Ok(Kind::Above)));
-        assert!(matches!(Kind::named("3d"), Ok(Kind::ThreeD)));
+        assert!(matches!(FigureKind::named("above"), Ok(FigureKind::Above)));
+        assert!(matches!(FigureKind::named("3d"), Ok(FigureKind::ThreeD)));
     }
 
     #[test]
@@ -131,7 +131,7 @@ mod tests {
             ("x_m,energy", "energy_J"),
             ("x_m,above", "of its own"),
         ] {
-            let refusal = Kind::named(wrong).unwrap_err();
+            let refusal = FigureKind::named(wrong).unwrap_err();
             assert!(refusal.contains(near), "{refusal}");
         }
     }

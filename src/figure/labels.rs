@@ -1,14 +1,14 @@
 //! Words and axes that a figure has instead of its own.
 
-use super::chart::{Axis, Chart};
+use super::chart::{Chart, ChartAxis};
 use super::page::ink::{self, TITLE_PT, at};
 use super::page::letters;
-use super::page::scene::Scene;
+use super::page::scene::PageScene;
 use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Labels {
+pub struct FigureLabels {
     /// Written above the figure.
     pub title: Option<String>,
     /// What the legend calls the runs, in order.
@@ -28,7 +28,7 @@ const SHARE: f64 = 0.62;
 /// Above and below the title of a figure, pt.
 const AROUND_PT: f64 = 4.0;
 
-impl Labels {
+impl FigureLabels {
     /// # Errors
     /// Where something is asked for that a path in space does not have.
     pub fn check_in_space(&self) -> Result<(), String> {
@@ -69,7 +69,7 @@ impl Labels {
     /// Where the chart cannot have them.
     pub fn apply(&self, chart: &mut Chart) -> Result<Option<String>, String> {
         self.check(chart)?;
-        let renamed = |text: &String, axis: &mut Axis, room_pt: f64| {
+        let renamed = |text: &String, axis: &mut ChartAxis, room_pt: f64| {
             axis.name = letters::shortened(text, TITLE_PT, room_pt);
             axis.unit.clear();
         };
@@ -97,7 +97,7 @@ impl Labels {
     }
 
     /// Writes the title above all that is on the page.
-    pub fn write_title(&self, scene: &mut Scene) {
+    pub fn write_title(&self, scene: &mut PageScene) {
         let Some(title) = &self.title else {
             return;
         };

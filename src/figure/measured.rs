@@ -1,16 +1,17 @@
 //! What was measured, drawn with runs: points with error bars over time and from above, and their residuals.
 
 use super::chart::legend::longest_name;
-use super::chart::{Axis, Chart, Panel, Series, Style};
+use super::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
 use super::names::names;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
 use super::quantity;
-use super::request::{Figure, Job, Request, Run};
+use super::request::{DrawnFigure, FigureJob, FigureRequest, FigureRun};
 use crate::data::{
-    self, Curve, Measured, Point, Residual, at_times, places, residuals as held_against,
+    self, MeasuredCurve, MeasuredData, MeasuredPoint, Residual, at_times, places,
+    residuals as held_against,
 };
-use crate::export::Column;
+use crate::export::CsvColumn;
 use crate::text::number::shortest;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -28,9 +29,9 @@ const BESIDE_POINTS: f64 = 0.015;
 /// # Errors
 /// Where the data are no series, or the numbers of a run stop being finite.
 pub(super) fn over_time(
-    job: &Job<'_>,
+    job: &FigureJob<'_>,
     chart: &mut Chart,
-    columns: &[&'static Column],
+    columns: &[&'static CsvColumn],
 ) -> Result<Option<String>, String> {
     let request = job.request;
     let Some(measured) = &request.measured else {
@@ -58,9 +59,9 @@ pub(super) fn over_time(
     }
     let count = times().count();
     for (index, it) in added {
-        chart.panels[index].series.push(Series {
+        chart.panels[index].series.push(ChartSeries {
             name: name(measured, count, request),
-            style: Style::measured(it.points.len()),
+            style: SeriesStyle::measured(it.points.len()),
             ..it
         });
     }
@@ -91,7 +92,7 @@ fn make_room<Times: Iterator<Item = f64>>(range: &mut (f64, f64), times: impl Fn
 ///
 /// # Errors
 /// Where the data are no series.
-pub(super) fn above(job: &Job<'_>) -> Result<(Option<Series>, Option<String>), String> {
+pub(super) fn above(job: &FigureJob<'_>) -> Result<(Option<ChartSeries>, Option<String>), String> {
     let (Some(measured), Some(run)) = (&job.request.measured, job.runs.first()) else {
         return Ok((None, None));
     };
@@ -112,18 +113,18 @@ pub(super) fn above(job: &Job<'_>) -> Result<(Option<Series>, Option<String>), S
         let sigmas = shown.iter().map(|place| place.sigmas[part]);
         sigmas.map(|sigma| sigma.unwrap_or(f64::NAN)).collect()
     };
-    let places = Series {
+    let places = ChartSeries {
         name: name(measured, shown.len(), job.request),
         points: shown.iter().map(|place| [place.at.x, place.at.y]).collect(),
         errors: [errors(0), errors(1)],
-        style: Style::measured(shown.len()),
-        ..Series::default()
+        style: SeriesStyle::measured(shown.len()),
+        ..ChartSeries::default()
     };
     Ok((Some(places), None))
 }
 
 /// What is said where the runs end before the last point of a figure.
-pub(super) fn beyond_runs(job: &Job<'_>) -> Option<String> {
+pub(super) fn beyond_runs(job: &FigureJob<'_>) -> Option<String> {
     let measured = job.request.measured.as_ref()?;
     let series = measured.series().ok()?;
     let end_s = job.end_s();
@@ -137,7 +138,7 @@ pub(super) fn beyond_runs(job: &Job<'_>) -> Option<String> {
 }
 
 /// What is said where measured points are asked for in space.
-pub(super) fn in_space(request: &Request) -> Option<String> {
+pub(super) fn in_space(request: &FigureRequest) -> Option<String> {
     let measured = request.measured.as_ref()?;
     Some(format!(
         "the points of {} are not drawn in space: --kind above or columns show them",
@@ -150,10 +151,10 @@ pub(super) fn in_space(request: &Request) -> Option<String> {
 /// # Errors
 /// Where there is nothing measured, or the numbers of a run stop being finite.
 pub(super) fn residuals(
-    job: &Job<'_>,
+    job: &FigureJob<'_>,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Result<Option<Figure>, String> {
-    let &Job { runs, request, .. } = job;
+) -> Result<Option<DrawnFigure>, String> {
+    let &FigureJob { runs, request, .. } = job;
     let Some(measured) = &request.measured else {
         return Err("residuals are of measured data: --measured FILE".to_owned());
     };
@@ -171,12 +172,12 @@ pub(super) fn residuals(
             return Ok(None);
         };
         let (name, style) = match runs {
-            [_] => (name(measured, count, request), Style::measured(0)),
-            _ => (run_name, Style::points(index)),
+            [_] => (name(measured, count, request), SeriesStyle::measured(0)),
+            _ => (run_name, SeriesStyle::points(index)),
         };
         for ((panel, curve), model) in panels.iter_mut().zip(&series.curves).zip(&model) {
             let points = beside(curve, model, Residual::value);
-            panel.series.push(Series {
+            panel.series.push(ChartSeries {
                 name: name.clone(),
                 style: style.clone(),
                 ..drawn(job, series, &points)
@@ -187,21 +188,21 @@ pub(super) fn residuals(
     request.labels.apply(&mut chart)?;
     let mut scene = chart.scene();
     request.labels.write_title(&mut scene);
-    Ok(Some(Figure::of(scene)))
+    Ok(Some(DrawnFigure::of(scene)))
 }
 
 /// The panel of the residuals of `curve` with the line of zero alone.
-fn empty(curve: &Curve, range: (f64, f64)) -> Panel {
+fn empty(curve: &MeasuredCurve, range: (f64, f64)) -> Panel {
     let axis = quantity::axis(curve.quantity.name);
-    let y = Axis::new(format!("{}, measured − run", axis.name), axis.unit);
-    Panel::new(y, vec![Series::level(range)])
+    let y = ChartAxis::new(format!("{}, measured − run", axis.name), axis.unit);
+    Panel::new(y, vec![ChartSeries::level(range)])
 }
 
 /// What `run` says of each curve of `series`; `None` where `watch` stopped it.
 fn said(
-    job: &Job<'_>,
-    series: &data::Series,
-    run: &Run,
+    job: &FigureJob<'_>,
+    series: &data::TimeSeries,
+    run: &FigureRun,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<Vec<f64>>>, String> {
     if let Some(said) = &job.known.said {
@@ -213,9 +214,13 @@ fn said(
 }
 
 /// The points of `curve` with what `value` makes of each and of what the run says of it, `model`.
-fn beside(curve: &Curve, model: &[f64], value: impl Fn(&Residual) -> f64) -> Vec<Point> {
+fn beside(
+    curve: &MeasuredCurve,
+    model: &[f64],
+    value: impl Fn(&Residual) -> f64,
+) -> Vec<MeasuredPoint> {
     let pairs = held_against(Some(curve.quantity), &curve.points, model);
-    let point = |pair: &Residual| Point {
+    let point = |pair: &Residual| MeasuredPoint {
         row: pair.row,
         value: value(pair),
         sigma: pair.sigma,
@@ -223,13 +228,13 @@ fn beside(curve: &Curve, model: &[f64], value: impl Fn(&Residual) -> f64) -> Vec
     pairs.iter().map(point).collect()
 }
 
-fn series(measured: &Measured) -> Result<&data::Series, String> {
+fn series(measured: &MeasuredData) -> Result<&data::TimeSeries, String> {
     let series = measured.series();
     series.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))
 }
 
 /// The name of the data in the legend, as markup, with the `count` of the points that the figure has of them.
-fn name(measured: &Measured, count: usize, request: &Request) -> String {
+fn name(measured: &MeasuredData, count: usize, request: &FigureRequest) -> String {
     let file = Path::new(&measured.origin).file_stem();
     let file = file.map_or(measured.origin.as_str().into(), |file| {
         file.to_string_lossy()
@@ -243,8 +248,8 @@ fn name(measured: &Measured, count: usize, request: &Request) -> String {
 }
 
 /// `points` in the stretch of time that is drawn, with their errors: NaN where none is stated.
-fn drawn(job: &Job<'_>, series: &data::Series, points: &[Point]) -> Series {
-    let time_s = |point: &Point| series.times_s[point.row];
+fn drawn(job: &FigureJob<'_>, series: &data::TimeSeries, points: &[MeasuredPoint]) -> ChartSeries {
+    let time_s = |point: &MeasuredPoint| series.times_s[point.row];
     let points = points.iter();
     let points = points.filter(|point| job.has(time_s(point)));
     let (points, errors) = points
@@ -255,16 +260,20 @@ fn drawn(job: &Job<'_>, series: &data::Series, points: &[Point]) -> Series {
             )
         })
         .unzip();
-    Series {
+    ChartSeries {
         points,
         errors: [Vec::new(), errors],
-        ..Series::default()
+        ..ChartSeries::default()
     }
 }
 
 /// The points of the curve at `place`: of directions each with the number of full turns at which it is nearest to the first of
 /// the runs.
-fn turned(job: &Job<'_>, series: &data::Series, place: usize) -> Result<Vec<Point>, String> {
+fn turned(
+    job: &FigureJob<'_>,
+    series: &data::TimeSeries,
+    place: usize,
+) -> Result<Vec<MeasuredPoint>, String> {
     let curve = &series.curves[place];
     match job.runs.first() {
         Some(run) if curve.quantity.is_direction => {

@@ -41,6 +41,9 @@ fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     ends.reduce(|(low, high), (value, _)| (low.min(value), high.max(value)))
 }
 
-pub use source::{Asked, Source, WIDTHS_MM};
+pub use source::{FigureOptions, FigureSource, WIDTHS_MM};
 
-pub use page::{Color, Format, Item, Paint, Path, Pen, Point, Scene, Segment, Unwritable, write};
+pub use page::{
+    Color, PageFormat, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, Unwritable,
+    VectorPath, write,
+};

@@ -4,26 +4,26 @@ use super::chart::legend::longest_name;
 use super::chords::EVERY_STEP;
 use super::page::ink::{self, LABEL_PT};
 use super::page::letters;
-use super::request::{Job, Run};
+use super::request::{FigureJob, FigureRun};
 use crate::text::number::significant;
 
 /// A name for each of the runs, as markup with room in the legend; empty where there is nothing to tell apart.
-pub(super) fn names(job: &Job<'_>) -> Vec<String> {
-    let &Job { runs, request, .. } = job;
+pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
+    let &FigureJob { runs, request, .. } = job;
     let room_pt = longest_name(request.width_pt) - ink::width(EVERY_STEP, LABEL_PT);
     let shortened = |text: &str| letters::shortened(text, LABEL_PT, room_pt);
     let given = &request.labels.names;
     if !given.is_empty() {
         return given.iter().map(|name| shortened(name)).collect();
     }
-    let title = |run: &Run| run.scenario.file.title.clone();
-    let scheme = |run: &Run| scheme_in_words(run.scenario.motion.scheme.name).to_owned();
-    let parts: [&dyn Fn(&Run) -> String; 3] = [&title, &scheme, &step];
+    let title = |run: &FigureRun| run.scenario.file.title.clone();
+    let scheme = |run: &FigureRun| scheme_in_words(run.scenario.motion.scheme.name).to_owned();
+    let parts: [&dyn Fn(&FigureRun) -> String; 3] = [&title, &scheme, &step];
     let mut differs = parts.map(|of| runs.iter().any(|run| of(run) != of(&runs[0])));
     if let ([run], true) = (runs, request.is_beside()) {
         differs = [false, true, run.scenario.motion.scheme.order.is_some()];
     }
-    let name = |run: &Run| -> String {
+    let name = |run: &FigureRun| -> String {
         if differs == [false; 3] {
             let is_alone = runs.len() == 1;
             return if is_alone {
@@ -58,7 +58,7 @@ pub(super) fn scheme_in_words(name: &str) -> &str {
 pub(super) const EXACT: &str = "exact motion";
 
 /// "Δt = 10 ms" as markup.
-fn step(run: &Run) -> String {
+fn step(run: &FigureRun) -> String {
     let seconds = run.scenario.motion.time_step_s;
     let (number, unit) = match seconds {
         s if s >= 0.1 => (s, "s"),

@@ -3,20 +3,20 @@
 pub(super) mod charts;
 
 use super::chart::legend::longest_name;
-use super::chart::{Chart, KINDS_OF_LINE, Style};
+use super::chart::{Chart, KINDS_OF_LINE, SeriesStyle};
 use super::chords;
-use super::course::{self, Course, Wanted};
+use super::course::{self, SampleRequest, SampledRun};
 use super::dense;
-use super::kind::Kind;
+use super::kind::FigureKind;
 use super::measured;
 use super::names::{EXACT, names};
 use super::page::letters;
-use super::request::{Dense, Drawn, Job};
-pub use super::request::{Figure, Known, Request, Run};
+use super::request::{Dense, FigureJob, SampledRunNumbers};
+pub use super::request::{DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
 use super::space;
 use crate::analysis::Predictability;
 use crate::analysis::health::LEAST_SWING_DEG;
-use crate::export::Column;
+use crate::export::CsvColumn;
 use crate::physics::exact::LagrangeTop;
 use crate::run::Truth;
 use crate::scenario::Scenario;
@@ -25,8 +25,8 @@ use crate::text::number::{short, shortest};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-struct Played {
-    drawn: Vec<Drawn>,
+struct SampledRuns {
+    drawn: Vec<SampledRunNumbers>,
     warnings: Vec<String>,
     broke: Option<String>,
 }
@@ -37,12 +37,12 @@ struct Played {
 /// # Errors
 /// When the stretch of time lies beyond the ends of the runs.
 pub fn figure(
-    runs: &[Run],
-    request: &Request,
+    runs: &[FigureRun],
+    request: &FigureRequest,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Result<Option<Figure>, String> {
+) -> Result<Option<DrawnFigure>, String> {
     let requests = std::slice::from_ref(request);
-    let figures = figures(runs, requests, &Known::default(), watch)?;
+    let figures = figures(runs, requests, &KnownNumbers::default(), watch)?;
     Ok(figures.and_then(|mut figures| figures.pop()))
 }
 
@@ -52,23 +52,23 @@ pub fn figure(
 /// # Errors
 /// As [`figure`].
 pub fn figures(
-    runs: &[Run],
-    requests: &[Request],
-    known: &Known,
+    runs: &[FigureRun],
+    requests: &[FigureRequest],
+    known: &KnownNumbers,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Result<Option<Vec<Figure>>, String> {
-    let nothing = Known::default();
+) -> Result<Option<Vec<DrawnFigure>>, String> {
+    let nothing = KnownNumbers::default();
     let known = if runs.len() == 1 { known } else { &nothing };
     let mut figures = Vec::new();
-    let mut all_played: Vec<(&Request, Played)> = Vec::new();
+    let mut all_played: Vec<(&FigureRequest, SampledRuns)> = Vec::new();
     for request in requests {
-        let job = Job {
+        let job = FigureJob {
             runs,
             request,
             known,
         };
         check_range(&job)?;
-        if let Kind::Residuals = &request.kind {
+        if let FigureKind::Residuals = &request.kind {
             match measured::residuals(&job, &mut watch)? {
                 Some(figure) => figures.push(figure),
                 None => return Ok(None),
@@ -94,17 +94,17 @@ pub fn figures(
 }
 
 fn play(
-    job: &Job<'_>,
-    wanted: &Wanted,
+    job: &FigureJob<'_>,
+    wanted: &SampleRequest,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Result<Option<Played>, String> {
-    let &Job { runs, request, .. } = job;
+) -> Result<Option<SampledRuns>, String> {
+    let &FigureJob { runs, request, .. } = job;
     let Some(mut drawn) = play_runs(job, wanted, &mut watch) else {
         return Ok(None);
     };
     let mut broke = None;
     let mut warnings = Vec::new();
-    for (run, Drawn { course, .. }) in runs.iter().zip(&drawn) {
+    for (run, SampledRunNumbers { course, .. }) in runs.iter().zip(&drawn) {
         if let Some(error) = course.broke {
             broke.get_or_insert_with(|| format!("{}: {error}", run.named));
         }
@@ -115,7 +115,7 @@ fn play(
         warnings.extend(limited(run, course));
     }
     if request.exact {
-        let is_exact = |run: &Run| is_exact(&run.scenario);
+        let is_exact = |run: &FigureRun| is_exact(&run.scenario);
         warnings.extend(runs.iter().any(is_exact).then(|| IS_EXACT.to_owned()));
         let Some(truths) = play_truths(job, wanted, watch) else {
             return Ok(None);
@@ -127,7 +127,7 @@ fn play(
         let none = || "there is no step of the run in that stretch of time".to_owned();
         return Err(broke.unwrap_or_else(none));
     }
-    Ok(Some(Played {
+    Ok(Some(SampledRuns {
         drawn,
         warnings,
         broke,
@@ -136,21 +136,21 @@ fn play(
 
 /// Plays the runs as far as nothing is known of them; `None` where `watch` said no.
 fn play_runs(
-    job: &Job<'_>,
-    wanted: &Wanted,
+    job: &FigureJob<'_>,
+    wanted: &SampleRequest,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Option<Vec<Drawn>> {
+) -> Option<Vec<SampledRunNumbers>> {
     let named = job.runs.iter().zip(names(job)).enumerate();
     let drawn = named.map(|(index, (run, name))| {
         let recorded = job.known.recorded.as_ref();
         let recorded = recorded.and_then(|all| all.part(&run.scenario, wanted));
         let is_exact = is_exact(&run.scenario);
-        Some(Drawn {
+        Some(SampledRunNumbers {
             name,
             style: if is_exact && index > 0 {
-                Style::exact(index)
+                SeriesStyle::exact(index)
             } else {
-                Style::curve(index)
+                SeriesStyle::curve(index)
             },
             course: if is_exact && !wanted.counts_steps() && is_coarse(run) {
                 // The exact motion is known between its steps too.
@@ -166,16 +166,16 @@ fn play_runs(
 
 /// Plays the exact motions beside the runs; `None` where `watch` said no.
 fn play_truths(
-    job: &Job<'_>,
-    wanted: &Wanted,
+    job: &FigureJob<'_>,
+    wanted: &SampleRequest,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Option<Vec<Drawn>> {
+) -> Option<Vec<SampledRunNumbers>> {
     let room_pt = longest_name(job.request.width_pt);
     let truths = (job.runs.len()..).zip(truths(job.runs, room_pt));
     let drawn = truths.map(|(place, (run, name))| {
-        Some(Drawn {
+        Some(SampledRunNumbers {
             name,
-            style: Style::exact(place),
+            style: SeriesStyle::exact(place),
             course: course::exact(&run.scenario, wanted, &mut watch)?,
             is_exact: true,
         })
@@ -188,16 +188,16 @@ fn play_truths(
 /// # Errors
 /// When what was measured cannot be drawn so.
 fn draw(
-    job: &Job<'_>,
-    played: &Played,
+    job: &FigureJob<'_>,
+    played: &SampledRuns,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Result<Option<Figure>, String> {
+) -> Result<Option<DrawnFigure>, String> {
     let drawn = &played.drawn;
     let mut warnings = played.warnings.clone();
     let labels = &job.request.labels;
     let dense;
     let mut scene = match &job.request.kind {
-        Kind::OverTime(columns) => {
+        FigureKind::OverTime(columns) => {
             let (mut chart, told) = over_time(job, columns, drawn)?;
             warnings.extend(told);
             warnings.extend(measured::beyond_runs(job));
@@ -211,7 +211,7 @@ fn draw(
             }
             chart.scene()
         }
-        Kind::Above => {
+        FigureKind::Above => {
             let (measured, none) = measured::above(job)?;
             warnings.extend(none);
             let mut chart = charts::above(job, drawn, measured);
@@ -220,7 +220,7 @@ fn draw(
             warnings.extend(chords::warning(drawn, |course| &course.above));
             chart.scene()
         }
-        Kind::ThreeD | Kind::Residuals => {
+        FigureKind::ThreeD | FigureKind::Residuals => {
             labels.check_in_space()?;
             let scene;
             (scene, dense) = space::scene(job, drawn);
@@ -230,7 +230,7 @@ fn draw(
         }
     };
     labels.write_title(&mut scene);
-    Ok(Some(Figure {
+    Ok(Some(DrawnFigure {
         scene,
         warnings,
         dense,
@@ -240,9 +240,9 @@ fn draw(
 
 /// The chart of `columns` with what was measured of them and the axes that were asked for, and what is to be said of it.
 fn over_time(
-    job: &Job<'_>,
-    columns: &[&'static Column],
-    drawn: &[Drawn],
+    job: &FigureJob<'_>,
+    columns: &[&'static CsvColumn],
+    drawn: &[SampledRunNumbers],
 ) -> Result<(Chart, Vec<String>), String> {
     let mut chart = charts::over_time(job, columns, drawn);
     let none = measured::over_time(job, &mut chart, columns)?;
@@ -252,16 +252,16 @@ fn over_time(
 
 /// The chart of the stretch in which what is `dense` is told apart; `None` where `watch` said no.
 fn magnified(
-    job: &Job<'_>,
-    columns: &[&'static Column],
+    job: &FigureJob<'_>,
+    columns: &[&'static CsvColumn],
     dense: &Dense,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Chart>, String> {
-    let request = Request {
+    let request = FigureRequest {
         to_s: Some(dense.to_s),
         ..job.request.clone()
     };
-    let part = Job {
+    let part = FigureJob {
         request: &request,
         ..*job
     };
@@ -273,8 +273,11 @@ fn magnified(
     Ok(Some(chart))
 }
 
-fn wanted<'a>(request: &Request, kinds: impl Iterator<Item = &'a Kind>) -> Wanted {
-    let mut wanted = Wanted {
+fn wanted<'a>(
+    request: &FigureRequest,
+    kinds: impl Iterator<Item = &'a FigureKind>,
+) -> SampleRequest {
+    let mut wanted = SampleRequest {
         columns: Vec::new(),
         path: false,
         from_s: request.from_s,
@@ -282,12 +285,12 @@ fn wanted<'a>(request: &Request, kinds: impl Iterator<Item = &'a Kind>) -> Wante
     };
     for kind in kinds {
         wanted.columns.extend(kind.columns());
-        wanted.path |= matches!(kind, Kind::Above | Kind::ThreeD);
+        wanted.path |= matches!(kind, FigureKind::Above | FigureKind::ThreeD);
     }
     wanted
 }
 
-fn check_range(job: &Job<'_>) -> Result<(), String> {
+fn check_range(job: &FigureJob<'_>) -> Result<(), String> {
     let (from_s, end_s) = (job.request.from_s, job.end_s());
     let from = shortest(from_s);
     if let Some(to_s) = job.request.to_s.filter(|to_s| *to_s <= from_s) {
@@ -307,7 +310,7 @@ fn check_range(job: &Job<'_>) -> Result<(), String> {
 pub const EXACT_BESIDE: &str = "--exact draws that beside it";
 
 /// What is said of `run` where it is not to be believed.
-fn not_believed(run: &Run, course: &Course, exact: bool) -> Option<String> {
+fn not_believed(run: &FigureRun, course: &SampledRun, exact: bool) -> Option<String> {
     let health = course
         .health
         .filter(|health| health.is_believed() == Some(false))?;
@@ -336,7 +339,7 @@ fn not_believed(run: &Run, course: &Course, exact: bool) -> Option<String> {
 }
 
 /// Returns what limits every computation of the motion of `run`, where something does.
-fn limited(run: &Run, course: &Course) -> Option<String> {
+fn limited(run: &FigureRun, course: &SampledRun) -> Option<String> {
     let limits = course.health?.limits();
     (limits != Predictability::default())
         .then(|| format!("the motion of {} is {limits}", run.named))
@@ -348,7 +351,7 @@ const LEAST_A_SWING: f64 = 6.0;
 const A_SMOOTH_SWING: f64 = 20.0;
 
 /// Whether the time steps of `run` do not show its nutation as a smooth curve.
-fn is_coarse(run: &Run) -> bool {
+fn is_coarse(run: &FigureRun) -> bool {
     let truth = Truth::new(Arc::clone(&run.scenario));
     let period_s = truth
         .motion()
@@ -358,7 +361,7 @@ fn is_coarse(run: &Run) -> bool {
 }
 
 /// What is said of `run` where it has too few time steps in a nutation for a curve over time.
-fn few_a_swing(run: &Run) -> Option<String> {
+fn few_a_swing(run: &FigureRun) -> Option<String> {
     let truth = Truth::new(Arc::clone(&run.scenario));
     let motion = truth.motion().closed_form()?;
     let ((low, high), period_s) = (motion.tilt_range(), motion.nutation_period()?);
@@ -377,7 +380,7 @@ fn few_a_swing(run: &Run) -> Option<String> {
 }
 
 /// What is said of more curves than there are kinds of line.
-fn look_alike(drawn: &[Drawn]) -> Option<String> {
+fn look_alike(drawn: &[SampledRunNumbers]) -> Option<String> {
     let repeated = drawn.get(KINDS_OF_LINE)?;
     Some(format!(
         "{} curves have {KINDS_OF_LINE} kinds of line: {} looks like {}, and those after it like the next ones; fewer curves in a figure are told apart",
@@ -399,8 +402,8 @@ const IS_EXACT: &str =
     "the scheme exact gives the exact motion itself: no second curve of it is drawn";
 
 /// The runs whose exact motions differ and are drawn by none of `runs`, each with the name of that motion.
-fn truths(runs: &[Run], room_pt: f64) -> Vec<(&Run, String)> {
-    let motion = |run: &Run| {
+fn truths(runs: &[FigureRun], room_pt: f64) -> Vec<(&FigureRun, String)> {
+    let motion = |run: &FigureRun| {
         let mut file = run.scenario.file.clone();
         let motion = &mut file.motion;
         (motion.scheme, motion.time_step_s, motion.steps) = (None, 0.0, 0);
@@ -409,19 +412,19 @@ fn truths(runs: &[Run], room_pt: f64) -> Vec<(&Run, String)> {
         file.expected.clear();
         file
     };
-    let mut distinct: Vec<&Run> = Vec::new();
+    let mut distinct: Vec<&FigureRun> = Vec::new();
     for run in runs {
         if distinct.iter().all(|other| motion(other) != motion(run)) {
             distinct.push(run);
         }
     }
-    let is_drawn = |run: &&Run| {
+    let is_drawn = |run: &&FigureRun| {
         let mut exact = runs.iter().filter(|other| is_exact(&other.scenario));
         exact.any(|other| motion(other) == motion(run))
     };
     let count = distinct.len();
     distinct.retain(|run| !is_drawn(run));
-    let name = |run: &Run| {
+    let name = |run: &FigureRun| {
         if count == 1 {
             return EXACT.to_owned();
         }

@@ -13,9 +13,9 @@ const FINEST: f64 = 4096.0;
 /// a way that has not been gone before. Of a path that is drawn as points each cell has one. The cells grow with what there is
 /// to keep; upright they have a size of their own, since a picture in space may stretch z.
 #[derive(Clone, Debug)]
-pub struct Recorder {
+pub struct PathRecorder {
     is_line: bool,
-    path: Path,
+    path: TracedPath,
     low: [f64; 3],
     high: [f64; 3],
     /// Where it was last, once it is thinned.
@@ -28,7 +28,7 @@ pub struct Recorder {
 }
 
 #[derive(Clone, Debug, Default)]
-pub struct Path {
+pub struct TracedPath {
     /// Its points, world frame, m; NaN where the line is interrupted, since it has been there before.
     pub points: Vec<[f64; 3]>,
     /// How many times as long the whole path is, about.
@@ -37,7 +37,7 @@ pub struct Path {
     pub few_a_turn: Option<f64>,
 }
 
-impl Path {
+impl TracedPath {
     /// Its lines, of each point what `place` gives.
     pub fn lines<Place>(&self, place: impl Fn(&[f64; 3]) -> Place) -> Vec<Vec<Place>> {
         let lines = self.points.split(|point| point[0].is_nan());
@@ -47,12 +47,12 @@ impl Path {
     }
 }
 
-impl Recorder {
+impl PathRecorder {
     /// A recorder of a path that has not begun; `is_line` says whether it is drawn as a line however few points it has.
     pub fn new(is_line: bool) -> Self {
         Self {
             is_line,
-            path: Path::default(),
+            path: TracedPath::default(),
             low: [f64::INFINITY; 3],
             high: [f64::NEG_INFINITY; 3],
             last: None,
@@ -145,7 +145,7 @@ impl Recorder {
         }
     }
 
-    pub fn end(mut self) -> Path {
+    pub fn end(mut self) -> TracedPath {
         if self.cells.is_none() {
             self.path.few_a_turn = points_a_turn(&self.path.points);
         } else if self.path.points.is_empty() {
@@ -200,8 +200,8 @@ fn width(path: &[[f64; 3]]) -> f64 {
 mod tests {
     use super::*;
 
-    fn recorded(is_line: bool, points: impl Iterator<Item = [f64; 3]>) -> Path {
-        let mut recorder = Recorder::new(is_line);
+    fn recorded(is_line: bool, points: impl Iterator<Item = [f64; 3]>) -> TracedPath {
+        let mut recorder = PathRecorder::new(is_line);
         points.for_each(|point| recorder.push(point));
         recorder.end()
     }

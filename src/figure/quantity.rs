@@ -1,6 +1,6 @@
 //! What is written along the axis of a quantity: symbol and unit of a column, a readout or a key of a scenario.
 
-use super::chart::Axis;
+use super::chart::ChartAxis;
 use super::chart::ticks::with_minus;
 use super::page::letters;
 use crate::analysis::readouts;
@@ -15,7 +15,7 @@ const PARTS: [(&str, &str); 3] = [("0", "*x*"), ("1", "*y*"), ("2", "*z*")];
 
 /// The axis of a column, of a readout, or of a dotted key of a scenario: of the readout's value at the start, where there is
 /// such a readout.
-pub fn axis(name: &str) -> Axis {
+pub fn axis(name: &str) -> ChartAxis {
     let last = name.rsplit('.').next().unwrap_or(name);
     let readout = readouts::find(if last == "step" { "steps" } else { last });
     let (words, unit) = words(name);
@@ -26,16 +26,16 @@ pub fn axis(name: &str) -> Axis {
             } else {
                 readout.symbol.to_owned()
             };
-            Axis::new(symbol, unit_markup(readout.unit))
+            ChartAxis::new(symbol, unit_markup(readout.unit))
         }
-        Some(readout) if last == name => Axis::new(words, unit_markup(readout.unit)),
-        _ => Axis::new(words, unit_markup(unit)),
+        Some(readout) if last == name => ChartAxis::new(words, unit_markup(readout.unit)),
+        _ => ChartAxis::new(words, unit_markup(unit)),
     }
 }
 
 /// The axis of a key of this `scenario`: a point or a part of the body is called by its name, "mass of weight", and L has the
 /// axes of its frame.
-pub fn axis_in(scenario: &toml::Table, key: &str) -> Axis {
+pub fn axis_in(scenario: &toml::Table, key: &str) -> ChartAxis {
     if let Some(axis) = of_momentum(scenario, key) {
         return axis;
     }
@@ -51,12 +51,12 @@ pub fn axis_in(scenario: &toml::Table, key: &str) -> Axis {
     };
     let own = axis(rest.strip_prefix("at_m.").unwrap_or(rest));
     let unit = axis(rest).unit;
-    Axis::new(format!("{} of {}", own.name, letters::escape(name)), unit)
+    ChartAxis::new(format!("{} of {}", own.name, letters::escape(name)), unit)
 }
 
 /// The axis of a part of L at the start: along x, y, z of the world, or along 1, 2, 3 of the body. `None` where `key` is
 /// another one, or `scenario` has no start.
-fn of_momentum(scenario: &toml::Table, key: &str) -> Option<Axis> {
+fn of_momentum(scenario: &toml::Table, key: &str) -> Option<ChartAxis> {
     let number = key.strip_prefix("start.momentum_Js.")?;
     let part = PARTS.iter().position(|(other, _)| *other == number)?;
     let frame = scenario.get("start")?.get("momentum_frame");
@@ -65,7 +65,7 @@ fn of_momentum(scenario: &toml::Table, key: &str) -> Option<Axis> {
         _ => PARTS[part].1.to_owned(),
     };
     let unit = unit_markup(Unit::of("momentum_Js").map_or("", |unit| unit.name));
-    Some(Axis::new(at_start(&format!("*L*_{{{index}}}")), unit))
+    Some(ChartAxis::new(at_start(&format!("*L*_{{{index}}}")), unit))
 }
 
 /// The symbol of a quantity's value at the start: with the index 0, behind the one that it may have.

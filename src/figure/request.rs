@@ -1,11 +1,11 @@
 //! What a figure of runs is to show, what it is drawn from, and what it then is.
 
-use super::chart::{Axis, Chart, Panel, Style};
-use super::course::Course;
-use super::kind::Kind;
-use super::labels::Labels;
-use super::page::scene::Scene;
-use crate::data::Measured;
+use super::chart::{Chart, ChartAxis, Panel, SeriesStyle};
+use super::course::SampledRun;
+use super::kind::FigureKind;
+use super::labels::FigureLabels;
+use super::page::scene::PageScene;
+use crate::data::MeasuredData;
 use crate::run::Clock;
 use crate::scenario::Scenario;
 use crate::text::number::{shortest, significant};
@@ -13,49 +13,49 @@ use std::fmt;
 use std::sync::Arc;
 
 #[derive(Clone, Debug)]
-pub struct Request {
-    pub kind: Kind,
+pub struct FigureRequest {
+    pub kind: FigureKind,
     pub from_s: f64,
     /// Until when, s; `None`: to the end of the longest run.
     pub to_s: Option<f64>,
     pub exact: bool,
     /// What was measured on a run, to be drawn with them.
-    pub measured: Option<Arc<Measured>>,
+    pub measured: Option<Arc<MeasuredData>>,
     pub width_pt: f64,
-    pub labels: Labels,
+    pub labels: FigureLabels,
 }
 
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct FigureRun {
     pub scenario: Arc<Scenario>,
     pub named: String,
 }
 
 /// What is known of a single run before its figures are drawn: so much of it need not be computed once more.
 #[derive(Clone, Debug, Default)]
-pub struct Known {
-    pub recorded: Option<Course>,
+pub struct KnownNumbers {
+    pub recorded: Option<SampledRun>,
     /// What it says of the measured data of the figures: of each column a value for every point.
     pub said: Option<Vec<Vec<f64>>>,
 }
 
 /// A run with its numbers, or the exact motion beside it.
-pub(super) struct Drawn {
+pub(super) struct SampledRunNumbers {
     pub name: String,
-    pub style: Style,
-    pub course: Course,
+    pub style: SeriesStyle,
+    pub course: SampledRun,
     pub is_exact: bool,
 }
 
 /// Runs, what a figure of them is to show, and what is known of them.
 #[derive(Clone, Copy)]
-pub(super) struct Job<'a> {
-    pub runs: &'a [Run],
-    pub request: &'a Request,
-    pub known: &'a Known,
+pub(super) struct FigureJob<'a> {
+    pub runs: &'a [FigureRun],
+    pub request: &'a FigureRequest,
+    pub known: &'a KnownNumbers,
 }
 
-impl Job<'_> {
+impl FigureJob<'_> {
     /// The end of the longest run, s.
     pub fn end_s(&self) -> f64 {
         let ends = self.runs.iter().map(|run| Clock::end_s(&run.scenario));
@@ -80,7 +80,7 @@ impl Job<'_> {
         titles.join("; ")
     }
 
-    pub fn chart(&self, x: Axis, panels: Vec<Panel>) -> Chart {
+    pub fn chart(&self, x: ChartAxis, panels: Vec<Panel>) -> Chart {
         Chart {
             title: self.title(),
             width_pt: self.request.width_pt,
@@ -91,11 +91,11 @@ impl Job<'_> {
     }
 }
 
-impl Request {
+impl FigureRequest {
     /// Whether both are drawn from the same numbers of the runs under the same names.
     pub(super) fn is_alike(&self, other: &Self) -> bool {
         let of_runs = |it: &Self| {
-            let is_of_data = matches!(it.kind, Kind::Residuals);
+            let is_of_data = matches!(it.kind, FigureKind::Residuals);
             let stretch = (it.from_s, it.to_s);
             (
                 stretch,
@@ -138,8 +138,8 @@ impl fmt::Display for Dense {
 }
 
 #[derive(Clone, Debug)]
-pub struct Figure {
-    pub scene: Scene,
+pub struct DrawnFigure {
+    pub scene: PageScene,
     /// Warnings without the one of `dense`, each a sentence without its full stop.
     pub warnings: Vec<String>,
     /// What covers the paper so densely that it is solid black, where something does.
@@ -148,9 +148,9 @@ pub struct Figure {
     pub broke: Option<String>,
 }
 
-impl Figure {
+impl DrawnFigure {
     /// A picture of which there is nothing to say.
-    pub fn of(scene: Scene) -> Self {
+    pub fn of(scene: PageScene) -> Self {
         Self {
             scene,
             warnings: Vec::new(),

@@ -1,17 +1,17 @@
 //! How large the quantities of a run are by their nature: a difference far below that is rounding.
 
-use super::chart::Axis;
+use super::chart::ChartAxis;
 use super::quantity;
-use super::request::Run;
+use super::request::FigureRun;
 use crate::physics::observables;
 use crate::scenario::Scenario;
 use crate::scenario::start;
 
 /// The axis of the column `name` of `runs`, which shows no differences that are rounding. Drawn as high as the page, an error
 /// of the scheme in the eighth digit of a position or an angle looks like a motion.
-pub(super) fn axis(runs: &[Run], name: &str) -> Axis {
+pub(super) fn axis(runs: &[FigureRun], name: &str) -> ChartAxis {
     let sizes = runs.iter().map(|run| of_run(&run.scenario, name));
-    Axis {
+    ChartAxis {
         size: sizes.filter(|size| size.is_finite()).fold(0.0, f64::max),
         flat_below: match name {
             "x_m" | "y_m" | "z_m" | "tilt_deg" | "azimuth_deg" => 1e-7,

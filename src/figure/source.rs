@@ -1,14 +1,14 @@
 //! What a figure is drawn from, what of that its file carries, and the way back.
 
-use super::kind::Kind;
-use super::labels::Labels;
-use super::of_runs::{self, Figure, Request, Run};
-use super::page::format::{self, Format};
-use super::page::scene::{Scene, Unwritable};
-use super::table::Table;
+use super::kind::FigureKind;
+use super::labels::FigureLabels;
+use super::of_runs::{self, DrawnFigure, FigureRequest, FigureRun};
+use super::page::format::{self, PageFormat};
+use super::page::scene::{PageScene, Unwritable};
+use super::table::TableSource;
 use super::{COLUMN_PT, PT_PER_MM, of_table};
-use crate::data::{self, Measured};
-use crate::origin::{File, Holds, Origin, sha256};
+use crate::data::{self, MeasuredData};
+use crate::origin::{File, Origin, Payload, sha256};
 use crate::scenario::{Document, Problem, Problems, csv};
 use crate::text::printable::brief;
 use serde::{Deserialize, Serialize};
@@ -21,18 +21,18 @@ pub const WIDTHS_MM: RangeInclusive<f64> = 30.0..=1000.0;
 
 /// What a figure shows: runs, beside what was measured where there is something, or else a table.
 #[derive(Clone, Debug, Default)]
-pub struct Source {
-    pub asked: Asked,
-    pub runs: Vec<Run>,
-    pub measured: Option<Arc<Measured>>,
-    pub table: Option<Table>,
+pub struct FigureSource {
+    pub asked: FigureOptions,
+    pub runs: Vec<FigureRun>,
+    pub measured: Option<Arc<MeasuredData>>,
+    pub table: Option<TableSource>,
 }
 
 /// What of it is to be shown, as the figure's file has it; of a table kind, width and labels.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Asked {
-    /// The name of a [`Kind`], or the columns of a table; what is usual where there is none.
+pub struct FigureOptions {
+    /// The name of a [`FigureKind`], or the columns of a table; what is usual where there is none.
     pub kind: Option<String>,
     pub from_s: f64,
     pub to_s: Option<f64>,
@@ -43,13 +43,13 @@ pub struct Asked {
     pub width_pt: Option<f64>,
     /// Whether an SVG has its text as text.
     pub text: bool,
-    pub labels: Labels,
+    pub labels: FigureLabels,
 }
 
-impl Source {
-    pub fn new(runs: &[Run], request: &Request) -> Self {
-        let Request { measured, .. } = request;
-        let asked = Asked {
+impl FigureSource {
+    pub fn new(runs: &[FigureRun], request: &FigureRequest) -> Self {
+        let FigureRequest { measured, .. } = request;
+        let asked = FigureOptions {
             kind: Some(request.kind.name()),
             from_s: request.from_s,
             to_s: request.to_s,
@@ -74,7 +74,7 @@ impl Source {
     pub fn draw(
         &self,
         watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-    ) -> Result<Option<Figure>, String> {
+    ) -> Result<Option<DrawnFigure>, String> {
         self.check()?;
         match &self.table {
             Some(table) => match of_table(table, &self.asked) {
@@ -107,16 +107,16 @@ impl Source {
         Ok(())
     }
 
-    fn request(&self) -> Result<Request, String> {
+    fn request(&self) -> Result<FigureRequest, String> {
         let asked = &self.asked;
         let kind = match (&asked.kind, &self.measured) {
             (Some(kind), _) => {
-                Kind::named(kind).map_err(|rule| format!("{} {rule}", brief(kind, 60)))?
+                FigureKind::named(kind).map_err(|rule| format!("{} {rule}", brief(kind, 60)))?
             }
-            (None, Some(measured)) => Kind::measured(measured.series()?),
-            (None, None) => Kind::traces(),
+            (None, Some(measured)) => FigureKind::measured(measured.series()?),
+            (None, None) => FigureKind::traces(),
         };
-        Ok(Request {
+        Ok(FigureRequest {
             kind,
             from_s: asked.from_s,
             to_s: asked.to_s,
@@ -131,19 +131,19 @@ impl Source {
     ///
     /// # Errors
     /// As [`format::write`].
-    pub fn write(&self, scene: &Scene, format: Format) -> Result<Vec<u8>, Unwritable> {
+    pub fn write(&self, scene: &PageScene, format: PageFormat) -> Result<Vec<u8>, Unwritable> {
         format::write(scene, format, Some(&self.origin(format)))
     }
 
     /// What its file carries.
-    pub fn origin(&self, format: Format) -> Origin {
-        let run = |run: &Run| File::new(Holds::Run, &run.named, &run.scenario.to_toml());
+    pub fn origin(&self, format: PageFormat) -> Origin {
+        let run = |run: &FigureRun| File::new(Payload::Run, &run.named, &run.scenario.to_toml());
         let data = self.measured.iter();
-        let data = data.map(|it| File::new(Holds::Data, &it.origin, &it.text));
+        let data = data.map(|it| File::new(Payload::Data, &it.origin, &it.text));
         let table = self.table.iter();
-        let table = table.map(|it| File::new(Holds::Table, &it.origin, &it.text));
-        let asked = Asked {
-            text: format == Format::SvgText,
+        let table = table.map(|it| File::new(Payload::Table, &it.origin, &it.text));
+        let asked = FigureOptions {
+            text: format == PageFormat::SvgText,
             ..self.asked.clone()
         };
         let files = self.runs.iter().map(run).chain(data).chain(table);
@@ -152,7 +152,7 @@ impl Source {
 
     /// What the figure of that `origin` shows. A file that was too large to travel is sought in `folder`.
     pub fn of(origin: &Origin, folder: &Path) -> Result<Self, Problems> {
-        let asked: Result<Asked, _> = origin.figure.clone().try_into();
+        let asked: Result<FigureOptions, _> = origin.figure.clone().try_into();
         let mut source = Self {
             asked: asked.map_err(|error| refused(error.message()))?,
             ..Self::default()
@@ -160,17 +160,17 @@ impl Source {
         for file in &origin.files {
             let (named, text) = (file.name.clone(), content(file, folder)?);
             match file.holds {
-                Holds::Run => {
+                Payload::Run => {
                     let scenario = Document::parse_header(&named, &text)?.scenario()?;
                     let scenario = Arc::new(scenario);
-                    source.runs.push(Run { scenario, named });
+                    source.runs.push(FigureRun { scenario, named });
                 }
-                Holds::Data => {
+                Payload::Data => {
                     let data = data::read(&named, &text)?;
                     let data = data.until(source.asked.measured_until_s);
                     source.measured = Some(Arc::new(data));
                 }
-                Holds::Table => source.table = Table::of(&named, text)?,
+                Payload::Table => source.table = TableSource::of(&named, text)?,
             }
         }
         Ok(source)
@@ -178,13 +178,13 @@ impl Source {
 }
 
 /// The figure of `table` that is asked for.
-fn of_table(table: &Table, asked: &Asked) -> Result<Figure, String> {
+fn of_table(table: &TableSource, asked: &FigureOptions) -> Result<DrawnFigure, String> {
     let columns = asked.kind.iter().flat_map(|kind| kind.split(','));
     let columns: Vec<_> = columns.map(str::trim).collect();
     let mut chart = of_table::chart(table, &columns, asked.width_pt.unwrap_or(COLUMN_PT))?;
     let without_point = of_table::warning(table, &chart);
     let hidden = asked.labels.apply(&mut chart)?;
-    let mut figure = Figure::of(chart.scene());
+    let mut figure = DrawnFigure::of(chart.scene());
     asked.labels.write_title(&mut figure.scene);
     figure
         .warnings

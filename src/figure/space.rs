@@ -8,15 +8,15 @@ mod path;
 use super::chart::layout::EDGE;
 use super::chart::legend::Legend;
 use super::chart::ticks::{Tick, Ticks};
-use super::chart::{Axis, Style, curve};
+use super::chart::{ChartAxis, SeriesStyle, curve};
 use super::chords;
 use super::dense;
 use super::page::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
-use super::page::scene::{Color, Pen, Point, Scene};
+use super::page::scene::{Color, PageScene, Point, StrokeStyle};
 use super::quantity;
-use super::request::{Dense, Drawn, Job, Run};
+use super::request::{Dense, FigureJob, FigureRun, SampledRunNumbers};
 use super::size;
-use crate::playback::camera::{Camera, View};
+use crate::playback::camera::{Camera, CameraView};
 use crate::text::number::significant;
 use nalgebra::Vector3;
 
@@ -39,14 +39,17 @@ const SEEN: f64 = 1.1;
 const SIZES: [f64; 3] = [1.0, 1.0, TALL];
 
 struct Space {
-    view: View,
+    view: CameraView,
     /// What the three sides of the box show.
     ranges: [(f64, f64); 3],
     side_pt: f64,
 }
 
 /// The figure of paths in space; and of one that is solid black, what it is and which stretch of time is not.
-pub(super) fn scene(job: &Job<'_>, drawn: &[Drawn]) -> (Scene, Option<Dense>) {
+pub(super) fn scene(
+    job: &FigureJob<'_>,
+    drawn: &[SampledRunNumbers],
+) -> (PageScene, Option<Dense>) {
     let width_pt = job.request.width_pt;
     let space = Space::fitted(job.runs, drawn, width_pt);
     let looks = drawn.iter();
@@ -76,7 +79,7 @@ pub(super) fn scene(job: &Job<'_>, drawn: &[Drawn]) -> (Scene, Option<Dense>) {
 }
 
 /// The direction that the first run's file asks for, or the usual one; never so low or so high that a side of the box vanishes.
-fn camera(runs: &[Run]) -> Camera {
+fn camera(runs: &[FigureRun]) -> Camera {
     let file = runs
         .first()
         .and_then(|run| run.scenario.file.viewed("camera"));
@@ -88,7 +91,7 @@ fn camera(runs: &[Run]) -> Camera {
     }
 }
 
-fn ranges(drawn: &[Drawn], size: &Axis) -> [(f64, f64); 3] {
+fn ranges(drawn: &[SampledRunNumbers], size: &ChartAxis) -> [(f64, f64); 3] {
     let range = |index: usize| {
         let paths = drawn.iter().flat_map(|drawn| &drawn.course.path.points);
         size.range_of(paths.map(|point| point[index]))
@@ -100,7 +103,7 @@ fn ranges(drawn: &[Drawn], size: &Axis) -> [(f64, f64); 3] {
 }
 
 /// Left, upper, right and lower end of what is drawn, pt.
-fn extent(scene: &Scene) -> (f64, f64, f64, f64) {
+fn extent(scene: &PageScene) -> (f64, f64, f64, f64) {
     let points = || scene.items.iter().flat_map(|item| item.path.points());
     let ends = |of: fn(Point) -> f64| super::extent(points().map(of)).unwrap_or_default();
     let ((left, right), (top, bottom)) = (ends(|p| p.x), ends(|p| p.y));
@@ -109,7 +112,7 @@ fn extent(scene: &Scene) -> (f64, f64, f64, f64) {
 
 impl Space {
     /// The space in which the box and its labels are as wide as the page.
-    fn fitted(runs: &[Run], drawn: &[Drawn], width_pt: f64) -> Self {
+    fn fitted(runs: &[FigureRun], drawn: &[SampledRunNumbers], width_pt: f64) -> Self {
         let mut space = Self {
             view: camera(runs).view(),
             ranges: ranges(drawn, &size::axis(runs, "z_m")),
@@ -162,8 +165,8 @@ impl Space {
     }
 
     /// The box with the paths of `drawn`, each in one of `styles`.
-    fn draw(&self, drawn: &[Drawn], styles: &[Style]) -> Scene {
-        let mut scene = Scene::new(0.0, 0.0, "");
+    fn draw(&self, drawn: &[SampledRunNumbers], styles: &[SeriesStyle]) -> PageScene {
+        let mut scene = PageScene::new(0.0, 0.0, "");
         let edges = [self.edge(0), self.edge(1), self.edge(2)];
         let ticks = [0, 1, 2].map(|axis| self.ticks(axis, &edges[axis]));
         self.walls(&ticks, &mut scene);
@@ -229,7 +232,7 @@ impl Space {
     }
 
     /// The far sides: their grids, and their outlines.
-    fn walls(&self, ticks: &[Ticks; 3], scene: &mut Scene) {
+    fn walls(&self, ticks: &[Ticks; 3], scene: &mut PageScene) {
         /// Along which sides the grid of each axis runs.
         const ALONG: [[usize; 2]; 3] = [[1, 2], [0, 2], [1, 0]];
         let far = Vector3::new(-self.near(0), -self.near(1), -0.5 * TALL);
@@ -260,7 +263,7 @@ impl Space {
     }
 
     /// An axis with its ticks, labels and title, outside of the box.
-    fn axis(&self, axis: usize, edge: &[Vector3<f64>; 2], ticks: &Ticks, scene: &mut Scene) {
+    fn axis(&self, axis: usize, edge: &[Vector3<f64>; 2], ticks: &Ticks, scene: &mut PageScene) {
         let ends = edge.map(|end| self.place(&end));
         scene.line(ends, 0.6, BLACK);
         let out = self.outwards(axis, edge);
@@ -311,8 +314,8 @@ impl Space {
     }
 }
 
-fn round_pen(width_pt: f64, color: Color) -> Pen {
-    Pen {
+fn round_pen(width_pt: f64, color: Color) -> StrokeStyle {
+    StrokeStyle {
         is_round: true,
         ..pen(width_pt, color)
     }

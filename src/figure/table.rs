@@ -15,15 +15,15 @@ use std::path::Path;
 const MOST_VALUES: usize = 4_000_000;
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Subject {
+pub enum TableSubject {
     Comparison,
-    Sweep(Sweep),
+    Sweep(SweepTable),
     /// What was measured, and what a fitted model says of it.
-    Fit(Fit),
+    Fit(FitTable),
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sweep {
+pub struct SweepTable {
     /// The keys that were varied; the last runs fastest.
     pub varied: Vec<String>,
     /// The scenario, in which the keys have their names.
@@ -31,19 +31,19 @@ pub struct Sweep {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fit {
+pub struct FitTable {
     /// The columns that say where each value was measured: the time, or settings.
     pub settings: Vec<String>,
     /// The run file of the fitted scenario.
     pub run_file: String,
     /// What was found for the free keys.
-    pub found: Vec<Found>,
+    pub found: Vec<FittedKey>,
 }
 
 /// A fitted key, as the header of a fit's CSV has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Found {
+pub struct FittedKey {
     pub key: String,
     pub value: f64,
     /// One standard uncertainty of it.
@@ -61,8 +61,8 @@ pub const OF_FIT: [&str; 6] = [
 ];
 
 #[derive(Clone, Debug)]
-pub struct Table {
-    pub subject: Subject,
+pub struct TableSource {
+    pub subject: TableSubject,
     /// The title in its header, or empty.
     pub title: String,
     /// The file, as the user named it, and its content.
@@ -71,7 +71,7 @@ pub struct Table {
     csv: Csv,
 }
 
-impl Table {
+impl TableSource {
     /// The table in the file `path`; `None` where that is a run or no CSV.
     pub fn read(path: &Path) -> Result<Option<Self>, Problems> {
         let refused = |problem| Problems::one(path.display().to_string(), problem);
@@ -136,7 +136,7 @@ impl Table {
 }
 
 /// What the table with this head is, and its title; `None` where it is none.
-fn subject(head: &Head) -> Option<(Subject, String)> {
+fn subject(head: &Head) -> Option<(TableSubject, String)> {
     let names = String::from_utf8_lossy(head.names()).into_owned();
     let names: Vec<&str> = names
         .split(',')
@@ -151,16 +151,16 @@ fn subject(head: &Head) -> Option<(Subject, String)> {
     let has = |name: &str| names.contains(&name);
     if has("scheme") && has("time_step_s") && has("error_m") {
         let title = table.as_ref().map(title).unwrap_or_default();
-        return Some((Subject::Comparison, title));
+        return Some((TableSubject::Comparison, title));
     }
     let table = table?;
     if let Some(settings) = settings_of_fit(names) {
-        let fit = Fit {
+        let fit = FitTable {
             settings,
             found: found(&header),
             run_file: header,
         };
-        return Some((Subject::Fit(fit), title(&table)));
+        return Some((TableSubject::Fit(fit), title(&table)));
     }
     let vary = table.get("vary")?.as_array()?;
     let keys = vary.iter().filter_map(|vary| vary.get("key")?.as_str());
@@ -171,14 +171,14 @@ fn subject(head: &Head) -> Option<(Subject, String)> {
         own => own,
     };
     let scenario = of_scenario.cloned().unwrap_or_default();
-    Some((Subject::Sweep(Sweep { varied, scenario }), title))
+    Some((TableSubject::Sweep(SweepTable { varied, scenario }), title))
 }
 
 /// What was found by the fit in whose CSV this is the `header`; nothing where that does not tell.
-fn found(header: &str) -> Vec<Found> {
+fn found(header: &str) -> Vec<FittedKey> {
     #[derive(Deserialize)]
     struct AboveRunFile {
-        key: Vec<Found>,
+        key: Vec<FittedKey>,
     }
     let above: Option<AboveRunFile> = toml::from_str(&above_run_file(header)).ok();
     above.map(|above| above.key).unwrap_or_default()

@@ -7,7 +7,7 @@
 
 use super::free::Free;
 use super::within::Limit;
-use crate::physics::part::Part;
+use crate::physics::part::PlacedSolid;
 use crate::scenario::Scenario;
 use nalgebra::{DMatrix, DVector, Vector3};
 use std::collections::BTreeSet;
@@ -200,7 +200,11 @@ fn parts(free: &[Free]) -> BTreeSet<usize> {
 fn of_part(free: &[Free], part: usize, scenario: &Scenario) -> [Row; 3] {
     let own = scenario.file.body.part.get(part);
     let own = Vector3::from(own.and_then(|part| part.moments_kg_m2).unwrap_or_default());
-    let about_center = scenario.body.parts.get(part).map_or(own, Part::moments);
+    let about_center = scenario
+        .body
+        .parts
+        .get(part)
+        .map_or(own, PlacedSolid::moments);
     let shift = own - about_center; // 0, unless the file gives the moments about the pivot
     [0, 1, 2].map(|axis| {
         let is_it = |free: &Free| {

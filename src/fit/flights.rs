@@ -6,7 +6,7 @@
 //! body changes the rates without such a product.
 
 use super::thrown::{flies, recorded};
-use crate::data::Series;
+use crate::data::TimeSeries;
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
 use std::ops::Range;
@@ -54,7 +54,7 @@ const MARGIN_S: f64 = 0.015;
 const PAUSE: f64 = 4.5;
 
 /// Looks for the free flights of `series`, in the order of time.
-pub fn find(series: &Series, scenario: &Scenario) -> Found {
+pub fn find(series: &TimeSeries, scenario: &Scenario) -> Found {
     let Some(recorded) = recorded(series).filter(|_| flies(scenario)) else {
         return Found::NotThrown;
     };

@@ -1,7 +1,7 @@
 //! A key whose value is looked for.
 
 use crate::scenario::dotted;
-use crate::scenario::keys::{self, Effect, Kind, Nudge, Range};
+use crate::scenario::keys::{self, Effect, Nudge, Range, ValueKind};
 use crate::scenario::{Document, Problem, Problems, float};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
@@ -87,7 +87,7 @@ impl Free {
     /// The value of `key` in `scenario`, a small change of it, and the least value that it may have.
     fn one(key: &str, scenario: &Document) -> Result<(f64, f64, f64), String> {
         let (row, kind) = keys::find(key)?;
-        let Kind::Number(range) = kind else {
+        let ValueKind::Number(range) = kind else {
             return Err(not_a_number(key, kind));
         };
         if Effect::of(key) == Effect::None || key.starts_with("edit.") {
@@ -131,12 +131,12 @@ fn can_begin(key: &str, start: f64, from: f64, to: f64) -> Result<(), String> {
     Ok(())
 }
 
-fn not_a_number(key: &str, kind: Kind) -> String {
+fn not_a_number(key: &str, kind: ValueKind) -> String {
     match kind {
-        Kind::Vector => {
+        ValueKind::Vector => {
             format!("is a vector, of which each number can be free: {key}.0, {key}.1, {key}.2")
         }
-        Kind::Whole(..) | Kind::WholeOr(..) => {
+        ValueKind::Whole(..) | ValueKind::WholeOr(..) => {
             "is a whole number, which cannot be varied by little: vary it by gyrolab sweep"
                 .to_owned()
         }

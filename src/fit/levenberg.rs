@@ -10,7 +10,7 @@ use super::within::{Limit, complement, least_squares};
 use nalgebra::{DMatrix, DVector};
 
 /// What is to be made small.
-pub trait Problem {
+pub trait LeastSquares {
     /// The residuals r at `p`, in units in which a standard uncertainty is 1.
     fn residuals(&self, p: &[f64]) -> Result<DVector<f64>, Stop>;
 
@@ -68,7 +68,11 @@ const DAMPING: f64 = 1e-3;
 const MOST_DAMPING: f64 = 1e12;
 
 /// Looks for the least sum of squares from `start` on, which is inside of all `limits`.
-pub fn search(problem: &dyn Problem, start: &[f64], limits: &[Limit]) -> Result<Minimum, Stop> {
+pub fn search(
+    problem: &dyn LeastSquares,
+    start: &[f64],
+    limits: &[Limit],
+) -> Result<Minimum, Stop> {
     let mut p = start.to_vec();
     let mut r = problem.residuals(&p)?;
     let mut scale = DVector::zeros(p.len());
@@ -180,7 +184,7 @@ impl<'a> Linear<'a> {
     /// Returns where the longest step leads that reduces the sum; `None` where there is none.
     fn better(
         &self,
-        problem: &dyn Problem,
+        problem: &dyn LeastSquares,
         p: &[f64],
         r: &DVector<f64>,
         limits: &[Limit],

@@ -5,8 +5,8 @@ use super::levenberg::Stop;
 use crate::analysis::readouts::{self, Readout};
 use crate::cores;
 use crate::data::{
-    Data, Measured, Point, Quantity, Residual, Series, Setting, Table, at_times, doubts,
-    is_within_reach, residuals,
+    DataKind, MeasuredData, MeasuredPoint, Residual, RunQuantity, RunSetting, RunTable, TimeSeries,
+    at_times, doubts, is_within_reach, residuals,
 };
 use crate::run::Clock;
 use crate::scenario::dotted::overlap;
@@ -17,14 +17,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Value;
 
-pub type GoOn<'a> = &'a (dyn Fn() -> bool + Sync);
+pub type FitProgress<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// A scenario, its free keys, and the data that its runs are held against.
 #[derive(Debug)]
 pub struct Model {
     base: Document,
     pub free: Vec<Free>,
-    pub measured: Measured,
+    pub measured: MeasuredData,
     pub title: String,
     pub scheme: &'static str,
     pub columns: Vec<Measurand>,
@@ -37,13 +37,13 @@ pub struct Model {
 pub struct Measurand {
     pub readout: &'static Readout,
     /// The quantity, of a time series.
-    pub quantity: Option<&'static Quantity>,
+    pub quantity: Option<&'static RunQuantity>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Datum {
     pub column: usize,
-    pub point: Point,
+    pub point: MeasuredPoint,
 }
 
 impl Model {
@@ -51,10 +51,14 @@ impl Model {
     ///
     /// # Errors
     /// When the scenario is wrong, a key is free that a column sets, or the run would take too many steps to the last row.
-    pub fn new(scenario: &Document, free: Vec<Free>, measured: Measured) -> Result<Self, Problems> {
+    pub fn new(
+        scenario: &Document,
+        free: Vec<Free>,
+        measured: MeasuredData,
+    ) -> Result<Self, Problems> {
         let checked = scenario.scenario()?;
         are_apart(&free, settings(&measured.data))?;
-        if let Data::Series(series) = &measured.data
+        if let DataKind::Series(series) = &measured.data
             && !is_within_reach(series, &checked)
         {
             return Err(too_far(&measured, series, &checked));
@@ -94,8 +98,8 @@ impl Model {
     pub fn as_long_as_measured(&self, p: &[f64]) -> Result<Scenario, String> {
         let scenario = self.scenario(p)?;
         let last_s = match &self.measured.data {
-            Data::Series(series) => series.times_s.last().copied().unwrap_or(0.0),
-            Data::Table(_) => 0.0,
+            DataKind::Series(series) => series.times_s.last().copied().unwrap_or(0.0),
+            DataKind::Table(_) => 0.0,
         };
         let steps = Clock::at(&scenario, scenario.steps).step_at(last_s);
         match i64::try_from(steps) {
@@ -127,15 +131,20 @@ impl Model {
         &self,
         p: &[f64],
         changed: Option<(usize, f64)>,
-        go_on: GoOn<'_>,
+        go_on: FitProgress<'_>,
     ) -> Result<Vec<f64>, Stop> {
         match &self.measured.data {
-            Data::Series(series) => self.of_series(series, p, go_on),
-            Data::Table(table) => self.of_table(table, p, changed, go_on),
+            DataKind::Series(series) => self.of_series(series, p, go_on),
+            DataKind::Table(table) => self.of_table(table, p, changed, go_on),
         }
     }
 
-    fn of_series(&self, series: &Series, p: &[f64], go_on: GoOn<'_>) -> Result<Vec<f64>, Stop> {
+    fn of_series(
+        &self,
+        series: &TimeSeries,
+        p: &[f64],
+        go_on: FitProgress<'_>,
+    ) -> Result<Vec<f64>, Stop> {
         let scenario = self.scenario(p).map_err(Stop::Impossible)?;
         self.runs.fetch_add(1, Ordering::Relaxed);
         let values = at_times(series, &Arc::new(scenario), go_on);
@@ -149,10 +158,10 @@ impl Model {
 
     fn of_table(
         &self,
-        table: &Table,
+        table: &RunTable,
         p: &[f64],
         changed: Option<(usize, f64)>,
-        go_on: GoOn<'_>,
+        go_on: FitProgress<'_>,
     ) -> Result<Vec<f64>, Stop> {
         let document = self.document(p).map_err(Stop::Impossible)?;
         let wanted: Vec<&Readout> = self.columns.iter().map(|column| column.readout).collect();
@@ -166,7 +175,7 @@ impl Model {
             self.runs.fetch_add(1, Ordering::Relaxed);
             let read = readouts::at_end(scenario, &wanted, &|| go_on());
             let read = read.map_err(impossible)?.ok_or(Stop::Interrupted)?;
-            let values = read.iter().map(readouts::Value::number);
+            let values = read.iter().map(readouts::ReadoutValue::number);
             Ok((row, values.collect()))
         };
         let of_rows: Result<HashMap<usize, Vec<Option<f64>>>, Stop> = cores::map(&rows, of_row);
@@ -196,7 +205,7 @@ impl Model {
         let mut all = Vec::with_capacity(values.len());
         for (column, measurand) in self.columns.iter().enumerate() {
             let of_column = self.data.iter().zip(values);
-            let (points, model): (Vec<Point>, Vec<f64>) = of_column
+            let (points, model): (Vec<MeasuredPoint>, Vec<f64>) = of_column
                 .filter(|(datum, _)| datum.column == column)
                 .map(|(datum, value)| (datum.point, *value))
                 .unzip();
@@ -207,22 +216,22 @@ impl Model {
 }
 
 /// The columns that were measured, and every value in them.
-fn listed(data: &Data) -> (Vec<Measurand>, Vec<Datum>) {
+fn listed(data: &DataKind) -> (Vec<Measurand>, Vec<Datum>) {
     let (mut columns, mut all) = (Vec::new(), Vec::new());
-    let mut add = |readout, quantity, points: &[Point]| {
+    let mut add = |readout, quantity, points: &[MeasuredPoint]| {
         let column = columns.len();
         columns.push(Measurand { readout, quantity });
         all.extend(points.iter().map(|&point| Datum { column, point }));
     };
     match data {
-        Data::Series(series) => {
+        DataKind::Series(series) => {
             for curve in &series.curves {
                 if let Some(readout) = curve.quantity.readout() {
                     add(readout, Some(curve.quantity), &curve.points);
                 }
             }
         }
-        Data::Table(table) => {
+        DataKind::Table(table) => {
             for column in &table.readouts {
                 add(column.readout, None, &column.points);
             }
@@ -234,7 +243,7 @@ fn listed(data: &Data) -> (Vec<Measurand>, Vec<Datum>) {
 /// `document` with the settings of the `row` of `table`, one of them changed by a multiple of its uncertainty.
 fn with_settings(
     document: &Document,
-    table: &Table,
+    table: &RunTable,
     row: usize,
     changed: Option<(usize, f64)>,
 ) -> Result<Document, String> {
@@ -254,7 +263,7 @@ fn with_settings(
 }
 
 /// Refuses data whose last row the run of `scenario` takes too many steps to come to.
-fn too_far(measured: &Measured, series: &Series, scenario: &Scenario) -> Problems {
+fn too_far(measured: &MeasuredData, series: &TimeSeries, scenario: &Scenario) -> Problems {
     let [first_s, last_s] = [series.times_s.first(), series.times_s.last()];
     let [first_s, last_s] = [first_s, last_s].map(|time_s| time_s.copied().unwrap_or(0.0));
     let begin = if first_s > 0.5 * last_s {
@@ -278,15 +287,15 @@ fn too_far(measured: &Measured, series: &Series, scenario: &Scenario) -> Problem
 }
 
 /// The settings at which `data` were measured.
-pub(super) fn settings(data: &Data) -> &[Setting] {
+pub(super) fn settings(data: &DataKind) -> &[RunSetting] {
     match data {
-        Data::Table(table) => &table.settings,
-        Data::Series(_) => &[],
+        DataKind::Table(table) => &table.settings,
+        DataKind::Series(_) => &[],
     }
 }
 
 /// Refuses free keys that write into the same value, or into one that a column sets.
-fn are_apart(free: &[Free], settings: &[Setting]) -> Result<(), Problems> {
+fn are_apart(free: &[Free], settings: &[RunSetting]) -> Result<(), Problems> {
     let keys: Vec<&String> = free.iter().flat_map(|free| &free.keys).collect();
     for (index, key) in keys.iter().enumerate() {
         let rule = if keys[..index].iter().any(|other| overlap(key, other)) {

@@ -5,9 +5,9 @@ use super::model::Model;
 use super::search::{Fit, Fitted, Sides};
 use super::solution::student;
 use crate::data::quantity::TIME;
-use crate::data::{Data, Residual};
+use crate::data::{DataKind, Residual};
 use crate::export::layout::commented;
-use crate::figure::table::{Found, OF_FIT};
+use crate::figure::table::{FittedKey, OF_FIT};
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, short, shortest, significant, uncertain};
 use crate::text::printable::{printable, printable_lines};
@@ -19,7 +19,7 @@ use std::fmt;
 use std::io::{self, Write};
 
 #[derive(Clone, Copy, Debug)]
-pub struct Report<'a> {
+pub struct FitReport<'a> {
     pub fit: &'a Fit,
     pub model: &'a Model,
     /// The scheme of the scenario, where the runs have another.
@@ -67,7 +67,7 @@ impl Fitted {
     }
 }
 
-impl Report<'_> {
+impl FitReport<'_> {
     /// What is to be known beside the values, a sentence each.
     fn remarks(&self) -> Vec<String> {
         let other = self.instead_of.map(|own| {
@@ -184,7 +184,7 @@ impl Report<'_> {
         let silent = silent.map(|&index| &fit.keys[index].free.key);
         let residuals = fit.residuals.iter().zip(&self.model.data);
         let residuals = residuals.map(|(residual, datum)| {
-            let mut row = json!(Numbers::of(residual));
+            let mut row = json!(ValueColumns::of(residual));
             row["row"] = json!(residual.row + 1);
             row["quantity"] = json!(self.model.columns[datum.column].readout.name);
             row
@@ -206,7 +206,7 @@ impl Report<'_> {
     }
 }
 
-impl fmt::Display for Report<'_> {
+impl fmt::Display for FitReport<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let quality = self.fit.quality;
         writeln!(
@@ -239,7 +239,7 @@ impl fmt::Display for Report<'_> {
     }
 }
 
-impl Serialize for Report<'_> {
+impl Serialize for FitReport<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.json().serialize(serializer)
     }
@@ -272,14 +272,14 @@ fn write_table<const N: usize>(
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Header {
-    pub fit: Asked,
-    pub key: Vec<Found>,
+    pub fit: FitCommand,
+    pub key: Vec<FittedKey>,
 }
 
 /// The command of a fit, and how well the model fits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Asked {
+pub struct FitCommand {
     /// The whole command, without its output.
     pub command: String,
     pub measured: String,
@@ -302,11 +302,11 @@ pub struct Asked {
 /// has what was asked for.
 pub fn write_csv(
     mut out: impl Write,
-    report: &Report<'_>,
+    report: &FitReport<'_>,
     scenario: &Scenario,
-    asked: Asked,
+    asked: FitCommand,
 ) -> io::Result<()> {
-    let found = report.fit.keys.iter().map(|key| Found {
+    let found = report.fit.keys.iter().map(|key| FittedKey {
         key: key.free.key.clone(),
         value: key.value,
         uncertainty: key.sigma,
@@ -332,7 +332,7 @@ pub fn write_csv(
             residual.row + 1,
             at_cells(data, residual.row),
             quantity,
-            Numbers::of(residual),
+            ValueColumns::of(residual),
         );
         rows.serialize(row).map_err(io::Error::other)?;
     }
@@ -341,7 +341,7 @@ pub fn write_csv(
 
 /// The columns of a row behind its quantity.
 #[derive(Serialize)]
-struct Numbers {
+struct ValueColumns {
     measured: f64,
     uncertainty: Option<f64>,
     model: f64,
@@ -349,7 +349,7 @@ struct Numbers {
     residual_sigmas: Option<f64>,
 }
 
-impl Numbers {
+impl ValueColumns {
     fn of(residual: &Residual) -> Self {
         Self {
             measured: residual.measured,
@@ -362,18 +362,18 @@ impl Numbers {
 }
 
 /// The names of what says where a value was measured.
-fn at_names(data: &Data) -> Vec<&str> {
+fn at_names(data: &DataKind) -> Vec<&str> {
     match data {
-        Data::Series(_) => vec![TIME],
-        Data::Table(table) => table.settings.iter().map(|it| it.key.as_str()).collect(),
+        DataKind::Series(_) => vec![TIME],
+        DataKind::Table(table) => table.settings.iter().map(|it| it.key.as_str()).collect(),
     }
 }
 
 /// The same of a row, from 0.
-fn at_cells(data: &Data, row: usize) -> Vec<String> {
+fn at_cells(data: &DataKind, row: usize) -> Vec<String> {
     match data {
-        Data::Series(series) => vec![number(series.times_s[row])],
-        Data::Table(table) => {
+        DataKind::Series(series) => vec![number(series.times_s[row])],
+        DataKind::Table(table) => {
             let values = table.settings.iter().map(|setting| &setting.values[row]);
             let cell = |value: &Option<toml::Value>| match value {
                 None => String::new(),

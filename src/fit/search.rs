@@ -3,9 +3,9 @@
 use super::chart::Chart;
 use super::edge::{Edge, edges};
 use super::free::Free;
-use super::levenberg::{self, Failure, Minimum, Problem, Stop};
-use super::model::{GoOn, Model};
-use super::solution::{Quality, SILENT, Solution, variance};
+use super::levenberg::{self, Failure, LeastSquares, Minimum, Stop};
+use super::model::{FitProgress, Model};
+use super::solution::{FitSolution, Quality, SILENT, variance};
 use super::thrown;
 use super::weights::Weights;
 use super::within::Limit;
@@ -20,7 +20,7 @@ pub struct Fit {
     /// The keys with their values, in the order in which they were asked for.
     pub keys: Vec<Fitted>,
     /// What the data say of the keys; its covariances are for the uncertainties of `weights`.
-    pub solution: Solution,
+    pub solution: FitSolution,
     /// Measured less model, one a datum; the uncertainty is that by which it was weighed, `None` where none is stated.
     pub residuals: Vec<Residual>,
     pub quality: Quality,
@@ -102,7 +102,11 @@ const MOST_STARTS: usize = 4;
 const MOST_ROUNDS: u32 = 40;
 
 /// Fits the free keys of `model` to its data. `tell` hears of each step: how many, and chi^2.
-pub fn fit(model: &Model, go_on: GoOn<'_>, tell: &(dyn Fn(u64, f64) + Sync)) -> Result<Fit, NoFit> {
+pub fn fit(
+    model: &Model,
+    go_on: FitProgress<'_>,
+    tell: &(dyn Fn(u64, f64) + Sync),
+) -> Result<Fit, NoFit> {
     let (data, keys) = (model.data.len(), model.free.len());
     if data < keys {
         return Err(NoFit::TooFew { data, keys });
@@ -127,7 +131,7 @@ fn starts(
     model: &Model,
     chart: &Chart,
     own: Vec<f64>,
-    go_on: GoOn<'_>,
+    go_on: FitProgress<'_>,
 ) -> Result<Vec<Vec<f64>>, Stop> {
     let thrown = thrown::starts(model, &own);
     let mut all = vec![own];
@@ -148,7 +152,7 @@ fn fit_from(
     model: &Model,
     chart: &Chart,
     mut p: Vec<f64>,
-    go_on: GoOn<'_>,
+    go_on: FitProgress<'_>,
     tell: &(dyn Fn(u64, f64) + Sync),
 ) -> Result<Fit, NoFit> {
     let mut weights = Weights::at(model, &p, go_on)?;
@@ -182,7 +186,7 @@ fn fit_from(
 }
 
 /// How far the data are from the run with these values; infinitely where there is no such run.
-fn sum_of_squares(model: &Model, p: &[f64], go_on: GoOn<'_>) -> Result<f64, Stop> {
+fn sum_of_squares(model: &Model, p: &[f64], go_on: FitProgress<'_>) -> Result<f64, Stop> {
     match model.values(p, None, go_on) {
         Ok(values) => {
             let residuals = model.residuals(&values);
@@ -215,10 +219,10 @@ fn finished(
     chart: &Chart,
     weights: Weights,
     steps: u64,
-    go_on: GoOn<'_>,
+    go_on: FitProgress<'_>,
 ) -> Result<Fit, NoFit> {
     let p = chart.keys(&minimum.p);
-    let solution = Solution::of(minimum, chart, &model.free);
+    let solution = FitSolution::of(minimum, chart, &model.free);
     let values = model.values(&p, None, go_on)?;
     let mut residuals = model.residuals(&values);
     for (residual, sigma) in residuals.iter_mut().zip(&weights.sigma) {
@@ -257,7 +261,7 @@ fn finished(
 fn sides(
     index: usize,
     value: f64,
-    solution: &Solution,
+    solution: &FitSolution,
     edges: &[Edge],
     variance: Option<f64>,
 ) -> Option<Sides> {
@@ -292,7 +296,7 @@ struct Weighed<'a> {
     weights: &'a Weights,
     /// The change of each parameter by which slopes are taken, in its unit.
     changes: &'a Mutex<Vec<f64>>,
-    go_on: GoOn<'a>,
+    go_on: FitProgress<'a>,
     tell: &'a (dyn Fn(u64, f64) + Sync),
 }
 
@@ -381,7 +385,7 @@ impl Weighed<'_> {
     }
 }
 
-impl Problem for Weighed<'_> {
+impl LeastSquares for Weighed<'_> {
     fn residuals(&self, p: &[f64]) -> Result<DVector<f64>, Stop> {
         let residuals = self.model.residuals(&self.values(p)?);
         let residuals: Vec<f64> = residuals.iter().map(Residual::value).collect();

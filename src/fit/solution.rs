@@ -10,7 +10,7 @@ use crate::text::number::significant;
 use nalgebra::{DMatrix, DVector};
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
+pub struct FitSolution {
     /// The covariances of the keys along the limits that hold them, in their units, for data whose uncertainty is 1; `None`
     /// of a key whose value the data do not say, or that is held at a bound.
     pub covariance: Vec<Vec<Option<f64>>>,
@@ -72,7 +72,7 @@ fn ways(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<Way> {
     (0..v_t.nrows()).map(way).collect()
 }
 
-impl Solution {
+impl FitSolution {
     pub fn of(minimum: &Minimum, chart: &Chart, free: &[Free]) -> Self {
         let slopes = &minimum.slopes * &chart.matrix;
         let keys = chart.keys(&minimum.p);

@@ -7,9 +7,9 @@
 use super::Free;
 use super::chart::{moment, second_moments};
 use super::model::Model;
-use crate::data::{Data, Series};
+use crate::data::{DataKind, TimeSeries};
 use crate::scenario::Scenario;
-use crate::scenario::file::Frame;
+use crate::scenario::file::VectorFrame;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 const RATES: [&str; 3] = ["w1_rad_per_s", "w2_rad_per_s", "w3_rad_per_s"];
@@ -40,8 +40,8 @@ const SHARES: [[f64; 3]; 13] = [
 /// a body that flies freely.
 pub(super) fn starts(model: &Model, p: &[f64]) -> Vec<Vec<f64>> {
     let recorded = match &model.measured.data {
-        Data::Series(series) => recorded(series).unwrap_or_default(),
-        Data::Table(_) => Vec::new(),
+        DataKind::Series(series) => recorded(series).unwrap_or_default(),
+        DataKind::Table(_) => Vec::new(),
     };
     let scenario = model.scenario(p).ok().filter(flies);
     let own = scenario.and_then(|it| it.file.body.part.first()?.moments_kg_m2);
@@ -112,11 +112,11 @@ pub(super) fn flies(scenario: &Scenario) -> bool {
         && scenario.pushes.is_empty()
         && scenario.edits.is_empty()
         && scenario.friction.is_none()
-        && scenario.file.start.omega_frame == Some(Frame::Body)
+        && scenario.file.start.omega_frame == Some(VectorFrame::Body)
 }
 
 /// The times, s, with the three rates, rad/s.
-pub(super) fn recorded(series: &Series) -> Option<Vec<(f64, Vector3<f64>)>> {
+pub(super) fn recorded(series: &TimeSeries) -> Option<Vec<(f64, Vector3<f64>)>> {
     let points = |name| {
         let mut curves = series.curves.iter();
         let curve = curves.find(|curve| curve.quantity.name == name)?;

@@ -3,7 +3,7 @@
 use super::model::{Measurand, Model};
 use super::search::Fit;
 use super::solution::{LEAST_FREEDOM, Quality, RARE, student, too_large};
-use crate::data::{Data, Point, Residual, is_counted};
+use crate::data::{DataKind, MeasuredPoint, Residual, is_counted};
 use crate::text::number::{short, significant};
 use std::collections::BTreeSet;
 
@@ -163,14 +163,14 @@ impl Fit {
     /// What is said of an azimuth that was measured as a direction at even times, where the model turns it so far from one
     /// time to the next that other whole turns between them may be the true ones.
     pub(super) fn aliased(&self, model: &Model) -> Option<String> {
-        let Data::Series(series) = &model.measured.data else {
+        let DataKind::Series(series) = &model.measured.data else {
             return None;
         };
         let is_direction = |column: &Measurand| column.quantity.is_some_and(|q| q.is_direction);
         let column = model.columns.iter().position(is_direction)?;
         let of_column =
             (model.data.iter().zip(&self.residuals)).filter(|(d, _)| d.column == column);
-        let (points, at): (Vec<Point>, Vec<[f64; 2]>) = of_column
+        let (points, at): (Vec<MeasuredPoint>, Vec<[f64; 2]>) = of_column
             .map(|(datum, r)| (datum.point, [series.times_s[datum.point.row], r.model]))
             .unzip();
         let ways = at

@@ -6,7 +6,7 @@
 //! minimum until nothing changes any more.
 
 use super::levenberg::Stop;
-use super::model::{GoOn, Model, settings};
+use super::model::{FitProgress, Model, settings};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 #[derive(Clone, Debug)]
@@ -74,7 +74,12 @@ fn uncertain_settings(model: &Model) -> impl Iterator<Item = usize> {
 
 /// How far each datum moves with one uncertainty of the setting, which is changed up and down, or at the edge of its range
 /// only to the one side that is possible.
-fn moved_by(setting: usize, model: &Model, p: &[f64], go_on: GoOn<'_>) -> Result<Vec<f64>, Stop> {
+fn moved_by(
+    setting: usize,
+    model: &Model,
+    p: &[f64],
+    go_on: FitProgress<'_>,
+) -> Result<Vec<f64>, Stop> {
     let at = |by: f64| model.values(p, Some((setting, by)), go_on);
     let ((high, above), (low, below)) = match (at(PART), at(-PART)) {
         (Ok(above), Err(Stop::Impossible(_))) => ((PART, above), (0.0, at(0.0)?)),
@@ -89,7 +94,7 @@ fn moved_by(setting: usize, model: &Model, p: &[f64], go_on: GoOn<'_>) -> Result
 
 impl Weights {
     /// The weights of the data of `model` at the values `p` of its free keys.
-    pub fn at(model: &Model, p: &[f64], go_on: GoOn<'_>) -> Result<Self, Stop> {
+    pub fn at(model: &Model, p: &[f64], go_on: FitProgress<'_>) -> Result<Self, Stop> {
         if !are_stated(model).map_err(Stop::Impossible)? {
             return Ok(Self::alike(model));
         }
@@ -171,7 +176,7 @@ impl Weights {
         &self,
         model: &Model,
         p: &[f64],
-        go_on: GoOn<'_>,
+        go_on: FitProgress<'_>,
     ) -> Result<Option<Self>, Stop> {
         if !self.count_settings {
             return Ok(None);

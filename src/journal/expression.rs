@@ -12,7 +12,7 @@ const LONGEST: usize = 1000;
 #[serde(try_from = "String", into = "String")]
 pub struct Expression {
     text: String,
-    root: Node,
+    root: ExpressionNode,
     /// Every name in it once, and the column (from 1) where it stands first.
     names: Vec<(String, usize)>,
 }
@@ -26,12 +26,12 @@ pub struct Fault {
 }
 
 #[derive(Clone, Debug)]
-enum Node {
+enum ExpressionNode {
     Number(f64),
     Name(usize),
-    Negated(Box<Node>),
-    Absolute(Box<Node>),
-    Computed(&'static Operator, Box<Node>, Box<Node>),
+    Negated(Box<ExpressionNode>),
+    Absolute(Box<ExpressionNode>),
+    Computed(&'static Operator, Box<ExpressionNode>, Box<ExpressionNode>),
 }
 
 #[derive(Debug)]
@@ -179,15 +179,15 @@ impl Expression {
         let mut name = |index: usize| value_of(&self.names[index].0);
         let mut parts = Vec::new();
         let mut rest = &self.root;
-        while let Node::Computed(Operator { power: AND, .. }, left, right) = rest {
+        while let ExpressionNode::Computed(Operator { power: AND, .. }, left, right) = rest {
             parts.push(right.as_ref());
             rest = left;
         }
         parts.push(rest);
-        let conjunct = |part: &Node| Conjunct {
+        let conjunct = |part: &ExpressionNode| Conjunct {
             holds: part.value(&mut name).is_some_and(|value| value != 0.0),
             left: match part {
-                Node::Computed(operator, left, _) if operator.power == COMPARES => {
+                ExpressionNode::Computed(operator, left, _) if operator.power == COMPARES => {
                     left.off_by().unwrap_or(left).value(&mut name)
                 }
                 _ => None,
@@ -197,7 +197,7 @@ impl Expression {
     }
 }
 
-impl Node {
+impl ExpressionNode {
     /// The expression in `abs(EXPRESSION - NUMBER)`.
     fn off_by(&self) -> Option<&Self> {
         let Self::Absolute(inside) = self else {
@@ -234,7 +234,7 @@ impl PartialEq for Expression {
     }
 }
 
-impl Node {
+impl ExpressionNode {
     fn is_condition(&self) -> bool {
         matches!(self, Self::Computed(operator, ..) if operator.power <= COMPARES)
     }
@@ -334,7 +334,7 @@ impl<'a> Parser<'a> {
     }
 
     /// The operands joined by operators that bind at least as tightly as `least`.
-    fn expression(&mut self, least: u8) -> Result<Node, Fault> {
+    fn expression(&mut self, least: u8) -> Result<ExpressionNode, Fault> {
         let begin = self.column();
         self.depth += 1;
         if self.depth > DEEPEST {
@@ -349,13 +349,18 @@ impl<'a> Parser<'a> {
             for (side, at) in [(&left, begin), (&right, right_begins)] {
                 Self::check_side(operator, side, at, column)?;
             }
-            left = Node::Computed(operator, Box::new(left), Box::new(right));
+            left = ExpressionNode::Computed(operator, Box::new(left), Box::new(right));
         }
         self.depth -= 1;
         Ok(left)
     }
 
-    fn check_side(operator: &Operator, side: &Node, at: usize, column: usize) -> Result<(), Fault> {
+    fn check_side(
+        operator: &Operator,
+        side: &ExpressionNode,
+        at: usize,
+        column: usize,
+    ) -> Result<(), Fault> {
         let name = operator.name;
         match (operator.power < COMPARES, side.is_condition()) {
             (true, false) => Self::fault(at, format!("{name} joins comparisons, not numbers")),
@@ -367,7 +372,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn operand(&mut self) -> Result<Node, Fault> {
+    fn operand(&mut self) -> Result<ExpressionNode, Fault> {
         let (column, rest, operator) = (self.column(), self.rest(), self.operator());
         let word = word(rest);
         match (operator, rest.chars().next()) {
@@ -376,7 +381,7 @@ impl<'a> Parser<'a> {
                 self.at += 1;
                 let inner = self.expression(MULTIPLIES + 1)?;
                 Self::check_side(operator, &inner, column, column)?;
-                Ok(Node::Negated(Box::new(inner)))
+                Ok(ExpressionNode::Negated(Box::new(inner)))
             }
             (None, Some('(')) => {
                 self.at += 1;
@@ -391,7 +396,7 @@ impl<'a> Parser<'a> {
             (None, Some(c)) if c.is_ascii_digit() || c == '.' => {
                 self.at += word.len();
                 match word.parse::<f64>() {
-                    Ok(number) if number.is_finite() => Ok(Node::Number(number)),
+                    Ok(number) if number.is_finite() => Ok(ExpressionNode::Number(number)),
                     _ => Self::fault(column, format!("{word} is no number")),
                 }
             }
@@ -399,14 +404,14 @@ impl<'a> Parser<'a> {
                 self.at += word.len();
                 match word {
                     "abs" => self.absolute(column),
-                    name => Ok(Node::Name(self.number_of(name, column))),
+                    name => Ok(ExpressionNode::Name(self.number_of(name, column))),
                 }
             }
             _ => self.misplaced("needs a number or a name before it"),
         }
     }
 
-    fn absolute(&mut self, column: usize) -> Result<Node, Fault> {
+    fn absolute(&mut self, column: usize) -> Result<ExpressionNode, Fault> {
         if !self.rest().starts_with('(') {
             return Self::fault(self.column(), "abs needs parentheses: abs(...)");
         }
@@ -414,7 +419,7 @@ impl<'a> Parser<'a> {
         if inner.is_condition() {
             return Self::fault(column, "abs takes a number, not a comparison");
         }
-        Ok(Node::Absolute(Box::new(inner)))
+        Ok(ExpressionNode::Absolute(Box::new(inner)))
     }
 
     fn number_of(&mut self, name: &str, column: usize) -> usize {

@@ -39,15 +39,15 @@ pub struct Journal {
     base: Arc<ScenarioFile>,
     /// All acts in the order in which the user did them, including those that newer ones have dropped.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    log: Vec<Arc<Entry>>,
+    log: Vec<Arc<JournalEntry>>,
     /// Undone entries, the one undone last at the end: redo takes it first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    undone: Vec<Arc<Entry>>,
+    undone: Vec<Arc<JournalEntry>>,
 }
 
 /// One act of the user, and the step at which it was done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Entry {
+struct JournalEntry {
     step: u64,
     /// Whether the entry is an edit that the opened file contained.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -95,7 +95,7 @@ impl Act {
     }
 }
 
-impl Entry {
+impl JournalEntry {
     /// Whether it has its effect later than an act done at `step` would. A description belongs to no step.
     fn is_later_than(&self, step: u64) -> bool {
         self.step > step && !self.is_description()
@@ -117,7 +117,7 @@ impl Journal {
     /// The journal of a run file: the file without its edits is the base, and each edit is an entry.
     pub fn of(mut file: ScenarioFile) -> Self {
         let entry = |edit: EditFile| {
-            Arc::new(Entry {
+            Arc::new(JournalEntry {
                 step: edit.step,
                 act: Act::Edit(edit.set),
                 from_file: true,
@@ -146,13 +146,13 @@ impl Journal {
         self.scenario_with(&self.in_force())
     }
 
-    fn scenario_with(&self, entries: &[&Entry]) -> Result<Arc<Scenario>, Problems> {
+    fn scenario_with(&self, entries: &[&JournalEntry]) -> Result<Arc<Scenario>, Problems> {
         self.document(entries)?.scenario().map(Arc::new)
     }
 
     /// The scenario as it was when its number of steps was set last: by the opened file, or by a later `motion.steps`.
     pub fn when_steps_were_set(&self) -> Result<Arc<Scenario>, Problems> {
-        let sets_steps = |entry: &Entry| match &entry.act {
+        let sets_steps = |entry: &JournalEntry| match &entry.act {
             Act::Describe(set) => set.contains_key("motion.steps"),
             Act::Edit(_) | Act::Push(_) => entry.from_file,
         };
@@ -171,9 +171,9 @@ impl Journal {
 
     /// The entries in force, in the order in which they were done: those that no newer entry has dropped. Descriptions
     /// are never dropped and drop nothing. Neither do edits of the opened file, which may have any order.
-    fn in_force(&self) -> Vec<&Entry> {
+    fn in_force(&self) -> Vec<&JournalEntry> {
         let mut earliest = u64::MAX; // smallest step of the newer entries
-        let is_in_force = |entry: &&Arc<Entry>| {
+        let is_in_force = |entry: &&Arc<JournalEntry>| {
             let is_in_force = !entry.is_later_than(earliest);
             if !entry.from_file && !entry.is_description() {
                 earliest = earliest.min(entry.step);
@@ -187,14 +187,14 @@ impl Journal {
     }
 
     /// The entries in force that have an effect by `step`; descriptions always do.
-    fn in_force_by(&self, step: u64) -> Vec<&Entry> {
+    fn in_force_by(&self, step: u64) -> Vec<&JournalEntry> {
         let mut entries = self.in_force();
         entries.retain(|entry| !entry.is_later_than(step));
         entries
     }
 
     /// The base with the pushes and edits of `entries`, and what they describe.
-    fn moved_by(&self, entries: &[&Entry]) -> (ScenarioFile, Table) {
+    fn moved_by(&self, entries: &[&JournalEntry]) -> (ScenarioFile, Table) {
         let mut file = (*self.base).clone();
         let mut described = Table::new();
         // The step of the last edit, where another may be joined with it.
@@ -220,7 +220,7 @@ impl Journal {
         (file, described)
     }
 
-    fn document(&self, entries: &[&Entry]) -> Result<Document, Problems> {
+    fn document(&self, entries: &[&JournalEntry]) -> Result<Document, Problems> {
         let (file, described) = self.moved_by(entries);
         let mut document = Document::from_file(ORIGIN, &file)?;
         for (key, value) in described {
@@ -251,7 +251,7 @@ impl Journal {
             Act::Push(push) => self.push_with_new_number(push),
             act => act,
         };
-        self.log.push(Arc::new(Entry {
+        self.log.push(Arc::new(JournalEntry {
             step,
             act,
             from_file: false,

@@ -36,14 +36,14 @@ pub struct NextPush {
 /// One of the four values of a [`NextPush`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the names say it")]
-pub enum Field {
+pub enum PushField {
     Point,
     Size,
     Toward,
     Length,
 }
 
-impl Field {
+impl PushField {
     pub const ALL: [Self; 4] = [Self::Point, Self::Size, Self::Toward, Self::Length];
 
     pub fn about(self) -> &'static str {
@@ -120,34 +120,39 @@ impl NextPush {
     }
 
     /// The value of `field` as text that [`typed`](Self::typed) reads back.
-    pub fn shown(&self, field: Field) -> String {
+    pub fn shown(&self, field: PushField) -> String {
         match field {
-            Field::Point => self.point.clone(),
-            Field::Size => shortest(self.size_N),
-            Field::Toward => self.toward.shown(),
-            Field::Length if self.from_s > 0.0 => {
+            PushField::Point => self.point.clone(),
+            PushField::Size => shortest(self.size_N),
+            PushField::Toward => self.toward.shown(),
+            PushField::Length if self.from_s > 0.0 => {
                 format!("{} from {}", shortest(self.for_s), shortest(self.from_s))
             }
-            Field::Length => shortest(self.for_s),
+            PushField::Length => shortest(self.for_s),
         }
     }
 
     /// The push with `field` nudged `times` times, downwards where negative.
-    pub fn nudged(&self, field: Field, times: i32, scenario: &Scenario) -> Result<Self, String> {
+    pub fn nudged(
+        &self,
+        field: PushField,
+        times: i32,
+        scenario: &Scenario,
+    ) -> Result<Self, String> {
         let mut next = self.clone();
         match field {
-            Field::Point => {
+            PushField::Point => {
                 let names = scenario.body.names();
                 let point = nudge::cycled(&names, |name| **name == *self.point, times);
                 next.point = point.copied().unwrap_or_default().to_owned();
             }
-            Field::Toward => {
+            PushField::Toward => {
                 let toward =
                     nudge::cycled(&Toward::NAMED, |(_, toward)| *toward == self.toward, times);
                 next.toward = toward.map_or(self.toward, |(_, toward)| *toward);
             }
-            Field::Size => next.size_N = climbed(self.size_N, times),
-            Field::Length => next.for_s = climbed(self.for_s, times),
+            PushField::Size => next.size_N = climbed(self.size_N, times),
+            PushField::Length => next.for_s = climbed(self.for_s, times),
         }
         next.checked()
     }
@@ -155,7 +160,7 @@ impl NextPush {
     /// The push with the value of `field` that the user typed. A duration in steps is converted with `time_step_s` (s).
     pub fn typed(
         &self,
-        field: Field,
+        field: PushField,
         text: &str,
         scenario: &Scenario,
         time_step_s: f64,
@@ -164,7 +169,7 @@ impl NextPush {
         let number = |text| nudge::typed(text, unit).map_err(|reason| format!("{label} {reason}"));
         let mut next = self.clone();
         match field {
-            Field::Point => {
+            PushField::Point => {
                 let point = text.trim();
                 scenario.body.point(point).ok_or_else(|| {
                     let names = listed(scenario.body.names().into_iter());
@@ -172,9 +177,9 @@ impl NextPush {
                 })?;
                 next.point = point.to_owned();
             }
-            Field::Size => next.size_N = number(text)?,
-            Field::Toward => next.toward = Toward::typed(text)?,
-            Field::Length => {
+            PushField::Size => next.size_N = number(text)?,
+            PushField::Toward => next.toward = Toward::typed(text)?,
+            PushField::Length => {
                 let (length, from) = text.split_once("from").unwrap_or((text, NOW));
                 next.for_s = match length.trim().split_once(" step") {
                     Some((steps, _)) => nudge::typed(steps, "")? * time_step_s,
@@ -230,7 +235,7 @@ impl NextPush {
     }
 
     pub fn in_words(&self) -> String {
-        let [point, size, toward, length] = Field::ALL.map(|field| self.shown(field));
+        let [point, size, toward, length] = PushField::ALL.map(|field| self.shown(field));
         format!("{size} N on {point}, {toward}, for {length} s")
     }
 }
@@ -354,7 +359,7 @@ mod tests {
     fn shown_values_can_be_typed_and_invalid_ones_are_refused() {
         let scenario = scenario("method-2");
         let push = NextPush::of(&scenario);
-        for field in Field::ALL {
+        for field in PushField::ALL {
             assert_eq!(
                 push.typed(field, &push.shown(field), &scenario, 0.1),
                 Ok(push.clone())
@@ -364,15 +369,15 @@ mod tests {
             assert_eq!(back, push, "{field:?}");
         }
         for (field, text) in [
-            (Field::Size, "-3"),
-            (Field::Size, "0"),
-            (Field::Length, "0"),
-            (Field::Length, "nan"),
-            (Field::Point, "hub 7"),
+            (PushField::Size, "-3"),
+            (PushField::Size, "0"),
+            (PushField::Length, "0"),
+            (PushField::Length, "nan"),
+            (PushField::Point, "hub 7"),
         ] {
             assert!(push.typed(field, text, &scenario, 0.1).is_err(), "{text}");
         }
-        let typed = push.typed(Field::Length, "20 steps", &scenario, 0.1);
+        let typed = push.typed(PushField::Length, "20 steps", &scenario, 0.1);
         assert_eq!(typed.unwrap().for_s, 2.0);
     }
 

@@ -4,7 +4,7 @@
 use crate::physics::scheme;
 use crate::scenario::dotted::{find, join, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
-use crate::scenario::keys::{InLab, KEYS, Key, Kind, Nudge, Range};
+use crate::scenario::keys::{InLab, KEYS, Nudge, Range, ScenarioKey, ValueKind};
 use crate::scenario::solids::has_dimension;
 use crate::scenario::{Document, Problems, Scenario, float, nudge, start, vector};
 use crate::text::number::shortest;
@@ -21,7 +21,7 @@ pub struct Parameter {
     /// Dotted key, as `--set` takes it: `start.momentum_Js.2`, `push.0.force_N.0`.
     pub key: String,
     /// Its row in the table of keys; a component of a vector has the vector's row.
-    pub spec: &'static Key,
+    pub spec: &'static ScenarioKey,
     /// Heading under which it is listed: `scenario`, `body`, `point top`, `part wheel`, `start`, `motion`, `push 0`,
     /// `view`. Pushes and points without a name are numbered from 0, as in their keys.
     pub group: String,
@@ -34,7 +34,7 @@ pub struct Parameter {
     pub is_default: bool,
     /// The words or point names to choose from; empty where the value is none of these.
     pub choices: Vec<String>,
-    kind: Kind,
+    kind: ValueKind,
     lab: InLab,
     /// Scale of relative nudges: the absolute value, or the norm of the vector that it is a component of.
     size: f64,
@@ -103,7 +103,7 @@ pub fn changed(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
     document.scenario()
 }
 
-fn array_of(key: &Key) -> Option<&'static str> {
+fn array_of(key: &ScenarioKey) -> Option<&'static str> {
     key.path.split_once(".*.").map(|(array, _)| array)
 }
 
@@ -120,7 +120,7 @@ fn names(table: &Table, array: &str) -> Vec<String> {
 
 /// The parameters of one key, at its `place` in `table`: none, one, or the three components of a vector.
 fn parameters_of(
-    key: &'static Key,
+    key: &'static ScenarioKey,
     place: &str,
     table: &Table,
     scenario: &Scenario,
@@ -150,14 +150,14 @@ fn parameters_of(
         lab,
     };
     match key.kind {
-        Kind::Vector => parameter.components(),
+        ValueKind::Vector => parameter.components(),
         _ => vec![parameter],
     }
 }
 
 /// The value that the file implies by leaving out the key at `place`, where it follows from other values: the spin or
 /// momentum of a start that is given in another way, the axis and the length of a part.
-fn present(key: &Key, place: &str, table: &Table, scenario: &Scenario) -> Option<Value> {
+fn present(key: &ScenarioKey, place: &str, table: &Table, scenario: &Scenario) -> Option<Value> {
     let start = &scenario.start;
     let spin = || scenario.spin_rad_per_s(start);
     match key.path {
@@ -208,13 +208,13 @@ fn group(place: &str, table: &Table) -> String {
     }
 }
 
-fn choices(key: &Key, table: &Table, scenario: &Scenario) -> Vec<String> {
+fn choices(key: &ScenarioKey, table: &Table, scenario: &Scenario) -> Vec<String> {
     match (key.kind, key.path) {
         (_, "motion.scheme") => {
             let able = scheme::true_to(scenario.friction);
             able.map(|scheme| scheme.name.to_owned()).collect()
         }
-        (Kind::OneOf(words), _) => words.iter().map(|&word| word.to_owned()).collect(),
+        (ValueKind::OneOf(words), _) => words.iter().map(|&word| word.to_owned()).collect(),
         (_, "trace" | "push.*.point") => {
             [names(table, "body.point"), names(table, "body.part")].concat()
         }
@@ -231,9 +231,9 @@ fn size(value: &Value) -> f64 {
 }
 
 /// `value` as a float where `kind` is a number; whole numbers stay integers.
-fn as_kind(value: Value, kind: Kind) -> Value {
+fn as_kind(value: Value, kind: ValueKind) -> Value {
     match (kind, float(&value)) {
-        (Kind::Number(_), Some(number)) => Value::Float(number),
+        (ValueKind::Number(_), Some(number)) => Value::Float(number),
         _ => value,
     }
 }
@@ -247,7 +247,7 @@ impl Parameter {
     pub fn shown(&self) -> String {
         match &self.value {
             Value::Float(number) => shortest(*number),
-            Value::String(text) if self.kind == Kind::Paragraph => {
+            Value::String(text) if self.kind == ValueKind::Paragraph => {
                 text.replace('\\', "\\\\").replace('\n', "\\n")
             }
             Value::String(text) => text.clone(),
@@ -284,16 +284,16 @@ impl Parameter {
     /// The value that the user typed: a number with or without its unit, a word, true or false, or text.
     pub fn typed(&self, text: &str) -> Result<Value, String> {
         let value = match self.kind {
-            Kind::Number(_) => Value::Float(nudge::typed(text, self.unit())?),
-            Kind::Whole(..) => Value::Integer(typed_whole(text)?),
-            Kind::Flag => Value::Boolean(typed_flag(text)?),
-            Kind::OneOf(_) | Kind::Pane(_) => Value::String(text.trim().to_owned()),
-            Kind::Paragraph => Value::String(unescaped(text)),
-            Kind::WholeOr(..) => match typed_whole(text) {
+            ValueKind::Number(_) => Value::Float(nudge::typed(text, self.unit())?),
+            ValueKind::Whole(..) => Value::Integer(typed_whole(text)?),
+            ValueKind::Flag => Value::Boolean(typed_flag(text)?),
+            ValueKind::OneOf(_) | ValueKind::Pane(_) => Value::String(text.trim().to_owned()),
+            ValueKind::Paragraph => Value::String(unescaped(text)),
+            ValueKind::WholeOr(..) => match typed_whole(text) {
                 Ok(whole) => Value::Integer(whole),
                 Err(_) => Value::String(text.trim().to_owned()),
             },
-            Kind::Line | Kind::Vector | Kind::Panes(_) | Kind::Settings => {
+            ValueKind::Line | ValueKind::Vector | ValueKind::Panes(_) | ValueKind::Settings => {
                 Value::String(text.to_owned())
             }
         };
@@ -311,7 +311,7 @@ impl Parameter {
             key: join(&self.key, &format!("{index}")),
             label: format!("{}{}", self.label, ["x", "y", "z"][index]),
             value: Value::Float(number),
-            kind: Kind::Number(Range::Any),
+            kind: ValueKind::Number(Range::Any),
             ..self.clone()
         };
         numbers.take(3).enumerate().map(component).collect()

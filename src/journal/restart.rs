@@ -27,7 +27,7 @@ const ROUNDING: f64 = 1e-9;
 pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Scenario, Problems> {
     let origin = "the scenario from here";
     let (motion, pushes) = in_force(scenario, step);
-    let now = Now {
+    let now = RestartPoint {
         scenario,
         state,
         step,
@@ -110,14 +110,14 @@ fn angles_deg(orientation: &Matrix3<f64>) -> [f64; 3] {
 }
 
 /// The moment at which the new scenario starts.
-struct Now<'a> {
+struct RestartPoint<'a> {
     scenario: &'a Scenario,
     state: &'a State,
     step: u64,
     motion: &'a Motion,
 }
 
-impl Now<'_> {
+impl RestartPoint<'_> {
     /// The rest of `push`, number `index` of the run, from now on; `None` where it is over.
     fn push(&self, index: usize, push: &Push) -> Result<Option<PushFile>, Problem> {
         let file = PushFile {

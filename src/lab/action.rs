@@ -69,7 +69,7 @@ impl Action {
 
 /// What the lab leaves to the rooms above it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Request {
+pub enum LabRequest {
     /// Do in the lesson what a key stands for.
     Lesson(LessonKey),
     /// Take this number as the answer to the question of the lesson that was asked last.

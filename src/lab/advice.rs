@@ -4,7 +4,7 @@ use super::command::Command;
 use super::player::Player;
 use crate::analysis::health::{Advice, advise};
 use crate::journal::restart::as_advised;
-use crate::playback::background::{self, Job};
+use crate::playback::background::{self, BackgroundJob};
 use crate::run::Simulation;
 use crate::scenario::Scenario;
 use crate::text::number::shortest;
@@ -24,7 +24,7 @@ pub(super) struct Offer {
 pub struct Adviser {
     /// Whether to look for a scheme or time step that would make doubtful numbers right.
     pub(super) is_on: bool,
-    search: Option<Job<Advice>>,
+    search: Option<BackgroundJob<Advice>>,
     offer: Option<Offer>,
 }
 
@@ -47,7 +47,7 @@ impl Adviser {
 
     /// Takes the answer of the search, if it has just come. Returns whether it has.
     pub(super) fn advance(&mut self, player: &Player) -> bool {
-        let has_come = self.search.as_mut().is_some_and(Job::take_news);
+        let has_come = self.search.as_mut().is_some_and(BackgroundJob::take_news);
         if has_come {
             self.offer = self.advice().and_then(|advice| offered(advice, player));
         }

@@ -11,12 +11,12 @@ pub struct Done {
     /// Whether the message stays until the next key, instead of a few seconds.
     pub stays: bool,
     /// The action that the command has started and that takes time; `None` if the command is complete.
-    pub under_way: Option<UnderWay>,
+    pub under_way: Option<PendingAction>,
 }
 
 /// An action that takes time; [`Lab::advance`](super::Lab::advance) continues it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UnderWay {
+pub enum PendingAction {
     Going,
     /// The run plays until a condition holds.
     Playing,
@@ -66,7 +66,7 @@ impl Done {
         }
     }
 
-    pub(super) fn going_on(self, under_way: UnderWay) -> Self {
+    pub(super) fn going_on(self, under_way: PendingAction) -> Self {
         Self {
             under_way: Some(under_way),
             ..self
@@ -74,4 +74,4 @@ impl Done {
     }
 }
 
-pub type Answer = Result<Done, Refusal>;
+pub type ActionResult = Result<Done, Refusal>;

@@ -11,7 +11,7 @@ const ABOVE: &str = "../";
 
 /// A preset or file that can be opened, or a folder of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
+pub struct BrowserEntry {
     /// The name of the preset or the path of the file, as SCENARIO on the command line; that of a folder ends in `/`.
     pub name: String,
     pub is_file: bool,
@@ -20,7 +20,7 @@ pub struct Entry {
 
 #[derive(Debug, Default)]
 pub struct Browser {
-    entries: Vec<Entry>,
+    entries: Vec<BrowserEntry>,
     /// The folder whose files are listed, the one whose files were listed first, and those through which the way led down.
     folder: PathBuf,
     first: PathBuf,
@@ -33,7 +33,7 @@ pub struct Browser {
     open: String,
     pub filter: String,
     pub selected: usize,
-    preview: Option<(Entry, Preview)>,
+    preview: Option<(BrowserEntry, Preview)>,
 }
 
 /// The scenario of an entry, or why it cannot be opened.
@@ -71,8 +71,8 @@ impl Browser {
         let from = std::fs::canonicalize(&from).unwrap_or(from);
         let of_folder = || self.entries.iter().skip(PRESETS.len());
         let came_from =
-            |entry: &Entry| is_up && Path::new(&entry.name).file_name() == from.file_name();
-        let is_below = |entry: &Entry| !is_up && entry.name != ABOVE;
+            |entry: &BrowserEntry| is_up && Path::new(&entry.name).file_name() == from.file_name();
+        let is_below = |entry: &BrowserEntry| !is_up && entry.name != ABOVE;
         let found = of_folder().position(|entry| came_from(entry) || is_below(entry));
         let last = self.entries.len().saturating_sub(1);
         self.selected = (PRESETS.len() + found.unwrap_or(0)).min(last);
@@ -82,7 +82,7 @@ impl Browser {
 
     /// Lists presets, and of `folder` the way up, folders and files, as far as `may_be_read` is true for them.
     fn list(&mut self, folder: &Path, may_be_read: impl Fn(&Path) -> bool) {
-        let entry = |name, is_file, is_folder| Entry {
+        let entry = |name, is_file, is_folder| BrowserEntry {
             name,
             is_file,
             is_folder,
@@ -113,7 +113,7 @@ impl Browser {
     }
 
     /// The entries whose names contain the filter.
-    pub fn shown(&self) -> Vec<&Entry> {
+    pub fn shown(&self) -> Vec<&BrowserEntry> {
         let wanted = self.filter.to_lowercase();
         self.entries
             .iter()
@@ -131,7 +131,7 @@ impl Browser {
         self.entries.iter().filter(|entry| entry.is_file).count()
     }
 
-    pub fn choice(&self) -> Option<&Entry> {
+    pub fn choice(&self) -> Option<&BrowserEntry> {
         self.shown().get(self.selected).copied()
     }
 
@@ -159,7 +159,7 @@ impl Browser {
 
     /// Selects the first entry that is shown; without a filter, the one that is open.
     fn refilter(&mut self) {
-        let is_open = |entry: &Entry| self.filter.is_empty() && entry.name == self.open;
+        let is_open = |entry: &BrowserEntry| self.filter.is_empty() && entry.name == self.open;
         self.selected = self.entries.iter().position(is_open).unwrap_or(0);
         self.load_preview();
     }

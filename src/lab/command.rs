@@ -7,19 +7,19 @@
 mod file;
 mod form;
 
-pub use file::{Commands, Placed, is_file_of_commands, open, read};
+pub use file::{Commands, LocatedCommand, is_file_of_commands, open, read};
 pub use form::MOST_MAGNIFIED;
 
 use crate::export::layout::LayoutFile;
 use crate::journal::expression::Expression;
 use crate::journal::next_push::Toward;
-use crate::lab::view::{Look, Pane};
+use crate::lab::view::{Pane, ViewSettings};
 use crate::playback::pace::Speed;
 use crate::scenario::Problem;
 use crate::scenario::file::Choice;
-use crate::scenario::keys::{KEYS, Kind};
+use crate::scenario::keys::{KEYS, ValueKind};
 use crate::scenario::screen::TRACES;
-use form::Form::{self, Is, View};
+use form::ValueSchema::{self, Is, View};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::sync::LazyLock;
@@ -48,7 +48,7 @@ pub enum Command {
     /// Takes this many time steps, or goes back by as many where that is negative. Not 0.
     Step(i64),
     /// Goes to a step or a time, and stops there.
-    GoTo(Place),
+    GoTo(SeekTarget),
     /// Plays at the present speed until this condition holds, and stops there.
     RunUntil(Expression),
     #[serde(with = "only_true")]
@@ -64,7 +64,7 @@ pub enum Command {
     /// Does this many undone acts again.
     Redo(u32),
     Export(Export),
-    Figure(Figure),
+    Figure(FigureCommand),
     Save(Save),
     Speed(Speed),
     /// Time at the left edge of the traces, s; `None`: they follow the run.
@@ -88,7 +88,7 @@ pub enum Command {
     Fill(Option<Pane>),
     #[serde(with = "or_none")]
     PointAt(Option<Pane>),
-    /// Shows the run as these keys of `[view]` say: those of [`Look`].
+    /// Shows the run as these keys of `[view]` say: those of [`ViewSettings`].
     #[serde(skip)]
     Look(Table),
 }
@@ -99,10 +99,15 @@ pub struct CommandRow {
     /// Examples of its value, as TOML.
     pub value: Cow<'static, str>,
     pub about: &'static str,
-    form: Form,
+    form: ValueSchema,
 }
 
-fn row(name: &'static str, value: &'static str, about: &'static str, form: Form) -> CommandRow {
+fn row(
+    name: &'static str,
+    value: &'static str,
+    about: &'static str,
+    form: ValueSchema,
+) -> CommandRow {
     CommandRow {
         name,
         value: value.into(),
@@ -129,14 +134,14 @@ pub static COMMANDS: LazyLock<Vec<CommandRow>> = LazyLock::new(|| {
 });
 
 /// Examples of a value of this kind, as TOML.
-fn examples(kind: Kind) -> String {
+fn examples(kind: ValueKind) -> String {
     let words = kind.words().join("\", \"");
     match kind {
-        Kind::Flag => "true or false".to_owned(),
-        Kind::Number(_) => "2.5".to_owned(),
-        Kind::WholeOr(..) => format!("4, or \"{words}\""),
-        Kind::Panes(_) => format!("[\"{words}\"]"),
-        Kind::OneOf(_) | Kind::Pane(_) => format!("\"{words}\""),
+        ValueKind::Flag => "true or false".to_owned(),
+        ValueKind::Number(_) => "2.5".to_owned(),
+        ValueKind::WholeOr(..) => format!("4, or \"{words}\""),
+        ValueKind::Panes(_) => format!("[\"{words}\"]"),
+        ValueKind::OneOf(_) | ValueKind::Pane(_) => format!("\"{words}\""),
         _ => "\"one line\"".to_owned(),
     }
 }
@@ -146,7 +151,7 @@ fn examples(kind: Kind) -> String {
 fn own() -> Vec<CommandRow> {
     vec![
         row("open", "\"wobble-push\"", "open a preset or a file, SCENARIO as on the command line; it stands still at step 0", form::OPEN),
-        row("set", "{ \"motion.time_step_s\" = 0.05 }", "set dotted keys of the scenario, from the next step on; of body or start in a new run", Form::Keys),
+        row("set", "{ \"motion.time_step_s\" = 0.05 }", "set dotted keys of the scenario, from the next step on; of body or start in a new run", ValueSchema::Keys),
         row("nudge", "{ key = \"motion.time_step_s\", times = -1 }", "nudge a value up, or down where times is negative", form::NUDGE),
         row("push", "true, or { point = \"top\", force_N = [0, 0, -50], for_s = 2 }", "give the push to come, or one of one's own, from now on or from_s; force_N can be a size beside toward = \"down\"", form::PUSH),
         row("next_push", "{ point = \"top\", force_N = 50, toward = \"down\", for_s = 2 }", "choose the push to come, or a part of it", form::NEXT_PUSH),
@@ -156,7 +161,7 @@ fn own() -> Vec<CommandRow> {
         row("run", "true", "let the run go on", form::TRUE),
         row("pause", "true", "stop the run", form::TRUE),
         row("wait_s", "2.5", "let so many seconds pass on the clock before the next command", form::WAIT),
-        row("chapter", "\"one line\"", "say this line; a recording (gyrolab cast) has a marker there", Is(Kind::Line)),
+        row("chapter", "\"one line\"", "say this line; a recording (gyrolab cast) has a marker there", Is(ValueKind::Line)),
         row("undo", "1", "take back so many of the things done last", form::COUNT),
         row("redo", "1", "bring so many of them again", form::COUNT),
         row("export", "\"run.csv\", or { path = \"run.csv\", every = 10, force = true }", "write the run up to here, or to_step, as CSV; force replaces a file; columns, from_s, to_s, points and excel are those of gyrolab run", form::EXPORT),
@@ -167,7 +172,7 @@ fn own() -> Vec<CommandRow> {
         row("magnify", "4", "how many times the values of the traces are magnified, 1 to 1000000", form::MAGNIFY),
         row("cursor", "400, \"60 s\", \"next turn\", \"turn before\", \"mark\" or \"none\"", "the step at which the traces are read off; turns are those of the tilt; mark: mark this one, and from one that is marked count the swings", form::CURSOR),
         row("measured", "\"heidelberg-spin-decay\", \"data.csv\" or \"none\"", "put measured data beside the run: data that come with gyrolab, or a CSV file with a column t_s", View("measured")),
-        row("pin", "true or false", "pin the present run as the reference, which stays in view; false: none is pinned", Is(Kind::Flag)),
+        row("pin", "true or false", "pin the present run as the reference, which stays in view; false: none is pinned", Is(ValueKind::Flag)),
         row("take_advice", "true", "begin the run anew at the time step, or by the scheme, that mends doubtful numbers, up to the same time", form::TRUE),
         row("point_at", "\"above\"", "the pane that is pointed at, by a heavy frame, or \"none\"", View("fill")),
         row("camera", "{ yaw_deg = 30, pitch_deg = 20 }", "from where the 3-D view is seen", View("camera")),
@@ -194,7 +199,7 @@ pub struct Export {
 
 /// Draws the run up to a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Figure {
+pub struct FigureCommand {
     /// The file; its name's end says in which form.
     pub path: String,
     /// What it shows: traces, above, 3d, or columns.
@@ -252,7 +257,7 @@ pub enum Force {
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Choice", into = "Choice")]
-pub enum Place {
+pub enum SeekTarget {
     Step(u64),
     /// The one at this time, s.
     Time(f64),
@@ -275,7 +280,7 @@ pub enum CursorTo {
     Nowhere,
     /// To a step or a time that the run has reached.
     #[serde(untagged)]
-    Place(Place),
+    Place(SeekTarget),
 }
 
 /// The value of a command that takes none.
@@ -325,7 +330,7 @@ impl Command {
             return Err(vec![file::unknown(name, None)]);
         };
         let table = Table::from_iter([(name.to_owned(), row.form.check(value)?)]);
-        if Look::has(name) {
+        if ViewSettings::has(name) {
             return Ok(Self::Look(table));
         }
         let read = table.try_into();
@@ -357,7 +362,7 @@ impl Command {
     }
 }
 
-impl TryFrom<Choice> for Place {
+impl TryFrom<Choice> for SeekTarget {
     type Error = &'static str;
 
     fn try_from(choice: Choice) -> Result<Self, Self::Error> {
@@ -368,18 +373,18 @@ impl TryFrom<Choice> for Place {
     }
 }
 
-impl From<Place> for Choice {
-    fn from(place: Place) -> Self {
+impl From<SeekTarget> for Choice {
+    fn from(place: SeekTarget) -> Self {
         match place {
-            Place::Step(step) => Self::Number(step.min(i64::MAX as u64)), // TOML has no larger one
-            Place::Time(time_s) => Self::Word(format!("{time_s} s")),
-            Place::Start => Self::Word("start".to_owned()),
-            Place::End => Self::Word("end".to_owned()),
+            SeekTarget::Step(step) => Self::Number(step.min(i64::MAX as u64)), // TOML has no larger one
+            SeekTarget::Time(time_s) => Self::Word(format!("{time_s} s")),
+            SeekTarget::Start => Self::Word("start".to_owned()),
+            SeekTarget::End => Self::Word("end".to_owned()),
         }
     }
 }
 
-impl Place {
+impl SeekTarget {
     /// A step (421, 1e7), a time (12.5 s), start or end.
     pub fn parse(text: &str) -> Option<Self> {
         let text = text.trim();

@@ -3,14 +3,14 @@
 mod data;
 mod own_code;
 
-use super::answer::{Answer, Done};
-use super::command::{Command, Place};
+use super::answer::{ActionResult, Done};
+use super::command::{Command, SeekTarget};
 use super::files::Files;
-use super::player::{Change, Player, furthest_s};
+use super::player::{Player, RunChange, furthest_s};
 use super::runs::Reference;
 use super::view::{Pane, View};
 use crate::analysis::cost;
-use crate::data::{ColumnOptions, Measured, doubts, find_shipped};
+use crate::data::{ColumnOptions, MeasuredData, doubts, find_shipped};
 use crate::own_code::rows;
 use crate::playback::ghost::{Ghost, GhostToBe};
 use crate::playback::live::LiveRun;
@@ -50,7 +50,7 @@ impl Comparison {
         command: &Command,
         player: &mut Player,
         files: &Files,
-    ) -> Option<Answer> {
+    ) -> Option<ActionResult> {
         Some(match command {
             Command::Exact(shown) => Ok(show_exact(*shown, player)),
             Command::Pin(pinned) => Ok(self.pin(*pinned)),
@@ -61,21 +61,21 @@ impl Comparison {
 
     /// To be called before the run of `player` goes over to `scenario`: keeps its pictures as ghost or pinned run, and
     /// begins to compare the data with the other one.
-    pub(super) fn leave(&mut self, player: &Player, change: Change, scenario: &Arc<Scenario>) {
+    pub(super) fn leave(&mut self, player: &Player, change: RunChange, scenario: &Arc<Scenario>) {
         let run = player.run();
         match change {
-            Change::Described => {}
-            Change::GoesOn => self.keep_pinned(run),
-            Change::ContinuesAt(0) => self.leave_ghost(run, false),
-            Change::ContinuesAt(_) => self.keep_pinned(run),
-            Change::BeginsAnew { is_again, .. } => {
+            RunChange::Described => {}
+            RunChange::GoesOn => self.keep_pinned(run),
+            RunChange::ContinuesAt(0) => self.leave_ghost(run, false),
+            RunChange::ContinuesAt(_) => self.keep_pinned(run),
+            RunChange::BeginsAnew { is_again, .. } => {
                 self.leave_ghost(run, is_again && player.destination.is_of_edit());
             }
             _ if change.is_of_other_name() => {
                 self.keep_pinned(run);
                 self.ghost = None;
             }
-            Change::Returns { .. } | Change::Opens => {
+            RunChange::Returns { .. } | RunChange::Opens => {
                 self.ghost = None;
                 self.leave_ghost(run, false);
             }
@@ -84,9 +84,9 @@ impl Comparison {
         let is_ghost = self.ghost.as_ref().is_some_and(is_left);
         if let Some(data) = &mut self.data {
             match change {
-                Change::Described => {}
-                Change::GoesOn => data.go_on_in(scenario, player.playback.step_number()),
-                Change::ContinuesAt(step) => data.go_on_in(scenario, step),
+                RunChange::Described => {}
+                RunChange::GoesOn => data.go_on_in(scenario, player.playback.step_number()),
+                RunChange::ContinuesAt(step) => data.go_on_in(scenario, step),
                 _ if is_ghost => data.begin_after_ghost(scenario),
                 _ => data.begin(scenario),
             }
@@ -133,7 +133,7 @@ impl Comparison {
     }
 
     /// Puts the measured data `name` beside the run, or takes away those that are there.
-    fn measure(&mut self, name: Option<&str>, player: &Player, files: &Files) -> Answer {
+    fn measure(&mut self, name: Option<&str>, player: &Player, files: &Files) -> ActionResult {
         let Some(name) = name else {
             return Ok(Done::saying(if self.data.take().is_some() {
                 "the measured data are taken away"
@@ -266,7 +266,7 @@ impl Comparison {
         let first = own.verdict().and_then(|verdict| verdict.first_step);
         let first = first.ok_or_else(|| own.told(&data.name))?;
         let step = u64::try_from(first).unwrap_or(0);
-        let mut commands = vec![Command::GoTo(Place::Step(step))];
+        let mut commands = vec![Command::GoTo(SeekTarget::Step(step))];
         if !view.shows(Pane::STEP) {
             commands.extend(view.toggled(Pane::STEP));
         }
@@ -300,7 +300,7 @@ impl Comparison {
         self.data.as_ref()
     }
 
-    pub(super) fn measured(&self) -> Option<Arc<Measured>> {
+    pub(super) fn measured(&self) -> Option<Arc<MeasuredData>> {
         self.data.as_ref().map(|data| Arc::clone(&data.measured))
     }
 
@@ -384,7 +384,7 @@ mod tests {
             player.follow(change, &scenario, None);
             comparison.ghost().map(Ghost::end_s)
         };
-        let anew = Change::BeginsAnew {
+        let anew = RunChange::BeginsAnew {
             is_act: false,
             is_again: false,
         };
@@ -399,6 +399,6 @@ mod tests {
         player.playback.begin(scenario()); // a run that was stopped on its way there
         step(&mut player, 1);
         assert_eq!(go_over(&mut player, anew), end_s, "one step is no run");
-        assert_eq!(go_over(&mut player, Change::Opens), None);
+        assert_eq!(go_over(&mut player, RunChange::Opens), None);
     }
 }

@@ -2,21 +2,21 @@
 
 use super::action::{Ask, FieldEdit};
 use super::answer::Refusal;
-use super::command::{Command, Export, Figure, Place, Save};
+use super::command::{Command, Export, FigureCommand, Save, SeekTarget};
 use super::edits::Edits;
 use super::files::{Files, run_up_to};
-use super::form::{Field, Form};
+use super::form::{InputField, InputForm};
 use super::player::{Player, WHERE};
 use super::settings::SETTINGS;
 use super::values::Values;
 use super::values::list::Of;
 use super::view::{Pane, View};
-use crate::export::Layout;
+use crate::export::CsvLayout;
 use crate::journal::parameters::Parameter;
 use crate::scenario::Scenario;
 use crate::scenario::keys::Effect;
 use crate::storage::exporting::{self, Estimate};
-use crate::text::printable::Shown;
+use crate::text::printable::PrintablePath;
 use indicatif::{DecimalBytes, HumanCount};
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
@@ -30,14 +30,14 @@ const KEYS_OF_SETTINGS: &str = "Up and Down choose, Left and Right or Enter chan
 /// A form on top of the panes, and the question that it asks.
 #[derive(Clone, Debug)]
 pub struct Dialog {
-    pub(super) question: Question,
-    pub form: Form,
+    pub(super) question: DialogKind,
+    pub form: InputForm,
     /// The existing file that the user was last asked about: the next Enter replaces it.
     asked_to_replace: Option<PathBuf>,
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum Question {
+pub(super) enum DialogKind {
     /// The value of the selected line of the parameters pane.
     Value,
     GoTo,
@@ -60,7 +60,7 @@ impl Dialog {
     /// Asks for a step or a time to go to.
     pub(super) fn go_to() -> Self {
         let fields = [("to", String::new())];
-        Self::new(Question::GoTo, "go to a step or a time", &fields, [WHERE])
+        Self::new(DialogKind::GoTo, "go to a step or a time", &fields, [WHERE])
     }
 
     /// Asks for the selected one of `values`; `None` if none is shown.
@@ -82,7 +82,7 @@ impl Dialog {
             ],
         };
         let fields = [(label.as_str(), value.text.clone())];
-        Some(Self::new(Question::Value, &title, &fields, about))
+        Some(Self::new(DialogKind::Value, &title, &fields, about))
     }
 
     /// The dialog that asks for what `ask` says.
@@ -135,7 +135,7 @@ impl Dialog {
             "export steps 0 to {}, where x was pressed, as CSV",
             scenario.steps
         );
-        let mut dialog = Self::new(Question::Export(scenario), &title, &fields, [""; 0]);
+        let mut dialog = Self::new(DialogKind::Export(scenario), &title, &fields, [""; 0]);
         dialog.show_estimate();
         dialog
     }
@@ -153,7 +153,7 @@ impl Dialog {
             "kind: traces, above, 3d, or columns such as tilt_deg,energy_J",
         ];
         let title = format!("draw steps 0 to {step}");
-        Self::new(Question::Figure(step), &title, &fields, info)
+        Self::new(DialogKind::Figure(step), &title, &fields, info)
     }
 
     /// Asks for the run file of the run up to `step`, which leaves out `later` actions; it offers `path`.
@@ -163,29 +163,34 @@ impl Dialog {
         let up_to = format!("the run up to step {step}: gyrolab run FILE gives the same rows as x");
         let info = [up_to].into_iter().chain((later > 0).then_some(left_out));
         let fields = [("file", path)];
-        Self::new(Question::SaveRun(step), "save the run file", &fields, info)
+        Self::new(
+            DialogKind::SaveRun(step),
+            "save the run file",
+            &fields,
+            info,
+        )
     }
 
     /// Asks for the file of the scenario `content`; it offers `path`.
     fn save_present(content: String, path: String) -> Self {
         let info = "a scenario that starts from the state on the screen";
-        let question = Question::SavePresent(content);
+        let question = DialogKind::SavePresent(content);
         let title = "save the present state";
         Self::new(question, title, &[("file", path)], [info])
     }
 
     pub(super) fn number(title: &str, label: &str, about: &str) -> Self {
         let fields = [(label, String::new())];
-        Self::new(Question::Number, title, &fields, [about])
+        Self::new(DialogKind::Number, title, &fields, [about])
     }
 
     /// Lists the settings with the values that they have in `view`; the one of this number is selected.
     pub(super) fn settings(view: &View, selected: usize) -> Self {
         let info = "dots, colours, frames and mouse are remembered for the next time";
-        let mut dialog = Self::new(Question::Settings, "settings", &[], [info]);
+        let mut dialog = Self::new(DialogKind::Settings, "settings", &[], [info]);
         let fields = SETTINGS.iter();
         dialog.form.fields = fields
-            .map(|setting| Field::choice(setting.label, &(setting.value)(view)))
+            .map(|setting| InputField::choice(setting.label, &(setting.value)(view)))
             .collect();
         dialog.form.keys = KEYS_OF_SETTINGS;
         dialog.form.selected = selected;
@@ -194,14 +199,16 @@ impl Dialog {
 
     /// A dialog with `fields`, each with its label and the text that it offers, and the lines `info` below them.
     fn new(
-        question: Question,
+        question: DialogKind,
         title: &str,
         fields: &[(&str, String)],
         info: impl IntoIterator<Item: Into<String>>,
     ) -> Self {
         let keys = if fields.len() > 1 { KEYS_OF_TWO } else { KEYS };
-        let fields = fields.iter().map(|(label, text)| Field::new(label, text));
-        let mut form = Form::new(title, fields.collect(), keys);
+        let fields = fields
+            .iter()
+            .map(|(label, text)| InputField::new(label, text));
+        let mut form = InputForm::new(title, fields.collect(), keys);
         form.info = info.into_iter().map(Into::into).collect();
         Self {
             question,
@@ -211,7 +218,7 @@ impl Dialog {
     }
 
     pub fn is_of_settings(&self) -> bool {
-        matches!(self.question, Question::Settings)
+        matches!(self.question, DialogKind::Settings)
     }
 
     /// Whether the user has confirmed that the existing file `path` is to be replaced.
@@ -232,31 +239,33 @@ impl Dialog {
         let path = self.form.text(0).to_owned();
         let force = self.may_replace(&files.path_of(&path));
         Ok(Some(match &self.question {
-            Question::Value => {
+            DialogKind::Value => {
                 let time_step_s = player.motion().time_step_s;
                 return values.value_typed(&path, player.run().scenario(), time_step_s);
             }
-            Question::GoTo => Command::GoTo(Place::Step(player.step_meant(&path)?)),
-            Question::Export(scenario) => Command::Export(Export {
+            DialogKind::GoTo => Command::GoTo(SeekTarget::Step(player.step_meant(&path)?)),
+            DialogKind::Export(scenario) => Command::Export(Export {
                 path,
-                layout: Layout::every(self.every()?).file().clone(),
+                layout: CsvLayout::every(self.every()?).file().clone(),
                 to_step: Some(scenario.steps),
                 force,
             }),
-            Question::Figure(to_step) => Command::Figure(Figure {
+            DialogKind::Figure(to_step) => Command::Figure(FigureCommand {
                 path,
                 kind: self.form.text(1).trim().to_owned(),
                 exact: player.run().overlay().is_some(),
                 to_step: Some(*to_step),
                 force,
             }),
-            Question::SaveRun(to_step) => Command::Save(Save {
+            DialogKind::SaveRun(to_step) => Command::Save(Save {
                 path,
                 from_here: false,
                 to_step: Some(*to_step),
                 force,
             }),
-            Question::SavePresent(_) | Question::Number | Question::Settings => return Ok(None),
+            DialogKind::SavePresent(_) | DialogKind::Number | DialogKind::Settings => {
+                return Ok(None);
+            }
         }))
     }
 
@@ -280,7 +289,7 @@ impl Dialog {
     }
 
     /// Changes what is typed, where anything is.
-    fn edit(&mut self, change: impl FnOnce(&mut Form)) {
+    fn edit(&mut self, change: impl FnOnce(&mut InputForm)) {
         if !self.is_of_settings() {
             change(&mut self.form);
             self.show_estimate();
@@ -296,7 +305,7 @@ impl Dialog {
 
     /// Shows how many rows and bytes an export would write. Other dialogs stay as they are.
     fn show_estimate(&mut self) {
-        let Question::Export(scenario) = &self.question else {
+        let DialogKind::Export(scenario) = &self.question else {
             return;
         };
         self.form.info = match self.every() {
@@ -320,7 +329,7 @@ impl Dialog {
             }
             Refusal::Exists(path) => {
                 let path = self.asked_to_replace.insert(path);
-                format!("{} exists: Enter again replaces it", Shown(path))
+                format!("{} exists: Enter again replaces it", PrintablePath(path))
             }
         };
         self.form.info.retain(|line| *line != complaint); // it is said once

@@ -1,11 +1,11 @@
 //! What the user does to the run: values and pushes, undo and redo, and the opening of another scenario.
 
 use super::advice::{Adviser, Offer};
-use super::answer::{Done, Refusal, UnderWay};
+use super::answer::{Done, PendingAction, Refusal};
 use super::command::{Command, Force, PushChoice};
 use super::files::Files;
-use super::player::{Change, Player};
-use super::runs::{Runs, Way};
+use super::player::{Player, RunChange};
+use super::runs::{HistoryDirection, Runs};
 use super::values::Values;
 use crate::journal::history::{History, Reversal};
 use crate::journal::next_push::NextPush;
@@ -42,16 +42,16 @@ pub struct Edits {
 }
 
 /// What an edit has done: the run goes over to another scenario. The other parts of the lab follow.
-pub(super) struct Edit {
-    pub(super) change: Change,
+pub(super) struct ScenarioEdit {
+    pub(super) change: RunChange,
     pub(super) scenario: Arc<Scenario>,
     /// The time at which the run ends, s, where the edit has moved its end.
     pub(super) end_s: Option<f64>,
-    said: Said,
-    under_way: Option<UnderWay>,
+    said: EditMessage,
+    under_way: Option<PendingAction>,
 }
 
-enum Said {
+enum EditMessage {
     Nothing,
     Text(String),
     /// The value of this key, and from when on it acts.
@@ -59,19 +59,19 @@ enum Said {
 }
 
 /// What a command has come to.
-pub(super) enum Outcome {
+pub(super) enum EditOutcome {
     /// The run is as it was.
     Done(Done),
-    Edit(Edit),
+    Edit(ScenarioEdit),
 }
 
-impl Said {
+impl EditMessage {
     fn text(text: &str) -> Self {
         Self::Text(text.to_owned())
     }
 }
 
-type Edited = Result<Outcome, Refusal>;
+type Edited = Result<EditOutcome, Refusal>;
 
 impl Edits {
     pub(super) fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
@@ -107,17 +107,17 @@ impl Edits {
             Command::Open(name) => files
                 .open_scenario(name)
                 .map(|scenario| self.open(name, Arc::new(scenario), player))
-                .map(Outcome::Edit)
+                .map(EditOutcome::Edit)
                 .map_err(Refusal::from),
             Command::Set(table) => self.set(table, false, player),
             Command::Nudge { key, times } => self.nudge(key, *times, player, now),
             Command::Push(choice) => self.push(choice, player),
             Command::NextPush(choice) => self.choose_next_push(choice, player),
-            Command::Undo(_) => self.turn(Way::Undo, player),
-            Command::Redo(_) => self.turn(Way::Redo, player),
+            Command::Undo(_) => self.turn(HistoryDirection::Undo, player),
+            Command::Redo(_) => self.turn(HistoryDirection::Redo, player),
             Command::TakeAdvice => adviser
                 .take_offer(player)
-                .map(|offer| Outcome::Edit(self.take_offer(offer, player)))
+                .map(|offer| EditOutcome::Edit(self.take_offer(offer, player)))
                 .map_err(Refusal::from),
             _ => return None,
         })
@@ -131,15 +131,20 @@ impl Edits {
     }
 
     /// Leaves the present run for that of `scenario`, opened as `name`.
-    pub(super) fn open(&mut self, name: &str, scenario: Arc<Scenario>, player: &Player) -> Edit {
+    pub(super) fn open(
+        &mut self,
+        name: &str,
+        scenario: Arc<Scenario>,
+        player: &Player,
+    ) -> ScenarioEdit {
         self.leave(player);
         self.runs.open(name, &scenario);
         self.values.next_push = NextPush::of(&scenario);
-        Edit {
-            change: Change::Opens,
+        ScenarioEdit {
+            change: RunChange::Opens,
             scenario,
             end_s: None,
-            said: Said::Nothing,
+            said: EditMessage::Nothing,
             under_way: None,
         }
     }
@@ -155,12 +160,12 @@ impl Edits {
         let acts = acts(rest);
         if new.is_empty() {
             let said = match table.len() {
-                1 => Said::Value(table.keys().cloned().collect()),
-                more => Said::Text(format!("{more} values; u takes them back")),
+                1 => EditMessage::Value(table.keys().cloned().collect()),
+                more => EditMessage::Text(format!("{more} values; u takes them back")),
             };
             self.act(acts, is_again, said, player)
         } else {
-            Ok(Outcome::Edit(
+            Ok(EditOutcome::Edit(
                 self.begin_with(&new, acts, is_again, player)?,
             ))
         }
@@ -189,7 +194,12 @@ impl Edits {
             "pushed: {}; u takes it back, P chooses another",
             push.in_words()
         );
-        self.act(vec![Act::Push(given)], false, Said::Text(said), player)
+        self.act(
+            vec![Act::Push(given)],
+            false,
+            EditMessage::Text(said),
+            player,
+        )
     }
 
     /// The push that `choice` stands for, as the user chooses it and as it acts at the present step.
@@ -217,7 +227,7 @@ impl Edits {
     fn choose_next_push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
         self.values.next_push = self.chosen(choice, player)?;
         self.list_values(player);
-        Ok(Outcome::Done(Done::SILENT))
+        Ok(EditOutcome::Done(Done::SILENT))
     }
 
     fn chosen(&self, choice: &PushChoice, player: &Player) -> Result<NextPush, String> {
@@ -234,30 +244,30 @@ impl Edits {
         acts: Vec<Act>,
         is_again: bool,
         player: &Player,
-    ) -> Result<Edit, Refusal> {
+    ) -> Result<ScenarioEdit, Refusal> {
         let left_at = player.destination.step_to_leave_at(&player.playback);
         self.runs.leave_at(left_at, &self.values.next_push);
         let scenario = self.runs.begin_with(set, acts, is_again)?;
         self.values.suit(&scenario);
         let said = "a new run; the one before is dotted, and u goes back to it".to_owned();
-        Ok(Edit {
-            change: Change::BeginsAnew {
+        Ok(ScenarioEdit {
+            change: RunChange::BeginsAnew {
                 is_act: false,
                 is_again,
             },
             scenario,
             end_s: Some(self.runs.present().end_s),
             said: if left_at > 0 {
-                Said::Text(said)
+                EditMessage::Text(said)
             } else {
-                Said::Nothing
+                EditMessage::Nothing
             },
             under_way: None,
         })
     }
 
     /// Begins the run anew as the advice says.
-    fn take_offer(&mut self, offer: Offer, player: &Player) -> Edit {
+    fn take_offer(&mut self, offer: Offer, player: &Player) -> ScenarioEdit {
         let left_at = player.destination.step_to_leave_at(&player.playback);
         let replaced = replaced(player.run().scenario());
         let replaced = replaced.map_or(String::new(), |edits| format!(", in place of {edits}"));
@@ -265,14 +275,14 @@ impl Edits {
         self.runs.leave_at(left_at, &self.values.next_push);
         self.runs.begin_as_advised(&scenario);
         self.values.suit(&scenario);
-        Edit {
-            change: Change::BeginsAnew {
+        ScenarioEdit {
+            change: RunChange::BeginsAnew {
                 is_act: false,
                 is_again: false,
             },
             scenario,
             end_s: None,
-            said: Said::Text(format!(
+            said: EditMessage::Text(format!(
                 "{what} from the start{replaced}; the run before is dotted, u goes back to it"
             )),
             under_way: None,
@@ -281,7 +291,13 @@ impl Edits {
 
     /// Does `acts` at the present step as one act, all or none; with `is_again`, undo takes them back together with the
     /// act before. An edit at step 0 of a run that was played further plays it as far again.
-    fn act(&mut self, acts: Vec<Act>, is_again: bool, said: Said, player: &Player) -> Edited {
+    fn act(
+        &mut self,
+        acts: Vec<Act>,
+        is_again: bool,
+        said: EditMessage,
+        player: &Player,
+    ) -> Edited {
         let is_edited = acts.iter().any(|act| matches!(act, Act::Edit(_)));
         let (destination, playback) = (&player.destination, &player.playback);
         let acts_at_start_again = is_again && destination.acts_at_start_again();
@@ -293,26 +309,26 @@ impl Edits {
         let is_described = acts.iter().all(|act| matches!(act, Act::Describe(_)));
         let later = self.runs.journal().later_than(step);
         let Some(scenario) = self.runs.act(step, acts, is_again, steps)? else {
-            return Ok(Outcome::Done(Done::SILENT));
+            return Ok(EditOutcome::Done(Done::SILENT));
         };
-        Ok(Outcome::Edit(Edit {
+        Ok(EditOutcome::Edit(ScenarioEdit {
             change: if is_described {
-                Change::Described
+                RunChange::Described
             } else if from_start {
-                Change::BeginsAnew {
+                RunChange::BeginsAnew {
                     is_act: true,
                     is_again,
                 }
             } else {
-                Change::GoesOn
+                RunChange::GoesOn
             },
             end_s: (scenario.steps != steps).then_some(self.runs.present().end_s),
             scenario,
             said: match later {
                 0 => said,
                 _ if is_described => said,
-                1 => Said::text("a later action has made way for it; u brings it back"),
-                _ => Said::Text(format!(
+                1 => EditMessage::text("a later action has made way for it; u brings it back"),
+                _ => EditMessage::Text(format!(
                     "{later} later actions have made way for it; u brings them back"
                 )),
             },
@@ -321,14 +337,14 @@ impl Edits {
     }
 
     /// Undoes the last act, or does the last undone one again.
-    fn turn(&mut self, way: Way, player: &Player) -> Edited {
-        if way == Way::Undo && self.runs.is_at_floor() {
+    fn turn(&mut self, way: HistoryDirection, player: &Player) -> Edited {
+        if way == HistoryDirection::Undo && self.runs.is_at_floor() {
             return Err("nothing to undo: the page began here".into());
         }
         self.leave(player);
         let [nothing, done, run, other_way] = match way {
-            Way::Undo => UNDO,
-            Way::Redo => REDO,
+            HistoryDirection::Undo => UNDO,
+            HistoryDirection::Redo => REDO,
         };
         let turned = self.runs.turn(way, player.run().scenario().steps)?;
         let turned = turned.ok_or(nothing)?;
@@ -337,9 +353,9 @@ impl Edits {
                 let said = format!("{done}: {}, at step {step}; {other_way}", act.in_words());
                 let is_described = matches!(act, Act::Describe(_));
                 let change = if is_described {
-                    Change::Described
+                    RunChange::Described
                 } else {
-                    Change::ContinuesAt(step)
+                    RunChange::ContinuesAt(step)
                 };
                 (change, said)
             }
@@ -351,17 +367,17 @@ impl Edits {
                 )
             }
         };
-        Ok(Outcome::Edit(Edit {
+        Ok(EditOutcome::Edit(ScenarioEdit {
             change,
             scenario: turned.scenario,
             end_s: Some(self.runs.present().end_s),
-            said: Said::Text(said),
-            under_way: Some(UnderWay::Going),
+            said: EditMessage::Text(said),
+            under_way: Some(PendingAction::Going),
         }))
     }
 
     /// Prepares the push with which the run of `scenario`, the present one again, was left.
-    fn return_to_run(&mut self, is_of_same_name: bool, scenario: &Scenario) -> Change {
+    fn return_to_run(&mut self, is_of_same_name: bool, scenario: &Scenario) -> RunChange {
         if !is_of_same_name {
             self.values.next_push = NextPush::of(scenario);
         }
@@ -370,7 +386,7 @@ impl Edits {
             self.values.next_push = push;
         }
         self.values.suit(scenario);
-        Change::Returns {
+        RunChange::Returns {
             left_at: run.left_at,
             is_of_same_name,
         }
@@ -395,16 +411,18 @@ impl Edits {
     }
 
     /// The answer to the command that has made `edit`, which `player` has followed.
-    pub(super) fn answer(&self, edit: Edit, player: &Player) -> Done {
+    pub(super) fn answer(&self, edit: ScenarioEdit, player: &Player) -> Done {
         let said = match edit.said {
-            Said::Nothing => None,
-            Said::Text(text) => Some(text),
-            Said::Value(key) => Some(self.value_in_words(&key, player)),
+            EditMessage::Nothing => None,
+            EditMessage::Text(text) => Some(text),
+            EditMessage::Value(key) => Some(self.value_in_words(&key, player)),
         };
         let is_replaying = player.destination.is_replaying(&player.playback);
         Done {
             said,
-            under_way: edit.under_way.or(is_replaying.then_some(UnderWay::Going)),
+            under_way: edit
+                .under_way
+                .or(is_replaying.then_some(PendingAction::Going)),
             ..Done::SILENT
         }
     }

@@ -1,19 +1,19 @@
 //! The files of the lab: their folder, which of them may be read and written, and the export in progress.
 
-use super::answer::{Answer, Done, Refusal, UnderWay};
-use super::command::{Command, Export, Figure, Save};
+use super::answer::{ActionResult, Done, PendingAction, Refusal};
+use super::command::{Command, Export, FigureCommand, Save};
 use super::player::Player;
 use super::runs::Runs;
-use crate::data::{self, Measured};
+use crate::data::{self, MeasuredData};
 use crate::export::Destination;
 use crate::export::destination::DestinationError;
-use crate::figure::Format;
-use crate::figure::kind::Kind;
+use crate::figure::PageFormat;
+use crate::figure::kind::FigureKind;
 use crate::scenario::limits::{LONGEST, TOO_LONG, few_enough};
 use crate::scenario::{Document, Problem, Problems, Scenario, presets};
 use crate::storage::confined::Confined;
-use crate::storage::exporting::{self, Drawn, Exporting, Written};
-use crate::text::printable::{Shown, is_steering};
+use crate::storage::exporting::{self, Exporting, FigureInput, Written};
+use crate::text::printable::{PrintablePath, is_steering};
 use indicatif::{DecimalBytes, HumanCount};
 use std::borrow::Cow;
 use std::io::Write;
@@ -114,8 +114,8 @@ impl Files {
         command: &Command,
         runs: &Runs,
         player: &Player,
-        measured: Option<Arc<Measured>>,
-    ) -> Option<Answer> {
+        measured: Option<Arc<MeasuredData>>,
+    ) -> Option<ActionResult> {
         Some(match command {
             Command::Export(export) => self.export(export, runs, player),
             Command::Figure(figure) => self.draw(figure, runs, player, measured),
@@ -125,7 +125,7 @@ impl Files {
     }
 
     /// Begins to write the rows of the run.
-    fn export(&mut self, export: &Export, runs: &Runs, player: &Player) -> Answer {
+    fn export(&mut self, export: &Export, runs: &Runs, player: &Player) -> ActionResult {
         let mut layout = export.layout.clone();
         layout.note.clone_from(&self.note);
         let layout = layout.check().map_err(|error| error.to_string())?;
@@ -137,35 +137,35 @@ impl Files {
         self.begin(begun, "the export goes on in the background")
     }
 
-    fn begin(&mut self, begun: Result<Exporting, DestinationError>, said: &str) -> Answer {
+    fn begin(&mut self, begun: Result<Exporting, DestinationError>, said: &str) -> ActionResult {
         self.exporting = Some(begun.map_err(refusal)?);
         self.failure = None;
-        Ok(Done::saying(said).going_on(UnderWay::Exporting))
+        Ok(Done::saying(said).going_on(PendingAction::Exporting))
     }
 
     /// Begins to draw a figure of the run.
     fn draw(
         &mut self,
-        figure: &Figure,
+        figure: &FigureCommand,
         runs: &Runs,
         player: &Player,
-        measured: Option<Arc<Measured>>,
-    ) -> Answer {
+        measured: Option<Arc<MeasuredData>>,
+    ) -> ActionResult {
         let scenario = run_up_to(figure.to_step, "draw", runs, player)?;
         let path = self.path_of(&figure.path);
         self.may_export_to(&path)?;
         let kind = &figure.kind;
-        let drawn = Drawn {
-            kind: Kind::named(kind).map_err(|refusal| format!("kind {kind} {refusal}"))?,
+        let drawn = FigureInput {
+            kind: FigureKind::named(kind).map_err(|refusal| format!("kind {kind} {refusal}"))?,
             exact: figure.exact,
             measured,
-            format: Format::of(&path).map_err(|refusal| refusal.to_string())?,
+            format: PageFormat::of(&path).map_err(|refusal| refusal.to_string())?,
         };
         let begun = Exporting::begin_figure(scenario, &path, drawn, figure.force);
         self.begin(begun, "the figure is drawn in the background")
     }
 
-    fn save_run(&self, save: &Save, runs: &Runs, player: &Player) -> Answer {
+    fn save_run(&self, save: &Save, runs: &Runs, player: &Player) -> ActionResult {
         let path = self.path_of(&save.path);
         if save.from_here {
             let content = player.present_as_text()?;
@@ -231,7 +231,7 @@ impl Files {
     }
 
     /// Writes `content` to the file `path`; `what` names the content in the message.
-    pub(super) fn save(&self, what: &str, content: &str, path: &Path, force: bool) -> Answer {
+    pub(super) fn save(&self, what: &str, content: &str, path: &Path, force: bool) -> ActionResult {
         is_named(path)?;
         if content.len() as u64 > LONGEST {
             return Err(format!("{what} {TOO_LONG}").into());
@@ -240,13 +240,13 @@ impl Files {
         self.admit_writing(path)?;
         let mut destination = Destination::open_file(path, force).map_err(refusal)?;
         let written = destination.write_all(content.as_bytes());
-        written.map_err(|error| format!("cannot write {}: {error}", Shown(path)))?;
+        written.map_err(|error| format!("cannot write {}: {error}", PrintablePath(path)))?;
         destination.keep().map_err(refusal)?;
         let whole = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let place = if self.confined().is_some_and(Confined::is_seat) {
-            format!("{}: your teacher has it", Shown(path))
+            format!("{}: your teacher has it", PrintablePath(path))
         } else {
-            Shown(&whole).to_string()
+            PrintablePath(&whole).to_string()
         };
         Ok(Done {
             stays: true,
@@ -317,7 +317,7 @@ fn in_words(written: &Written, is_seat: bool) -> String {
     };
     if is_seat {
         let name = written.path.file_name().unwrap_or_default();
-        let (rows, name) = (rows.unwrap_or_default(), Shown(Path::new(name)));
+        let (rows, name) = (rows.unwrap_or_default(), PrintablePath(Path::new(name)));
         return format!("wrote {rows}{name}{end}{warnings}: your teacher has it");
     }
     let fetched = exporting::scp_line(&written.path).map(|line| format!(" · {line}"));
@@ -325,7 +325,7 @@ fn in_words(written: &Written, is_seat: bool) -> String {
         "wrote {}{}{end}: {}{warnings}{}",
         rows.unwrap_or_default(),
         DecimalBytes(written.bytes),
-        Shown(&written.path),
+        PrintablePath(&written.path),
         fetched.unwrap_or_default()
     )
 }

@@ -9,7 +9,7 @@ const MOST_TYPED: usize = 1000;
 
 /// One line to type into. The cursor moves by visible characters, each of which may consist of several code points.
 #[derive(Clone, Debug, Default)]
-pub struct Field {
+pub struct InputField {
     pub label: String,
     input: Input,
     /// Whether the whole text is marked: typing then replaces it.
@@ -18,10 +18,10 @@ pub struct Field {
 
 /// A few fields, with a title above and lines of text below.
 #[derive(Clone, Debug, Default)]
-pub struct Form {
+pub struct InputForm {
     pub title: String,
     /// Its fields, from top to bottom.
-    pub fields: Vec<Field>,
+    pub fields: Vec<InputField>,
     /// The number of the field that is typed into.
     pub selected: usize,
     /// The lines below the fields.
@@ -32,7 +32,7 @@ pub struct Form {
     pub keys: &'static str,
 }
 
-impl Field {
+impl InputField {
     pub fn new(label: &str, text: &str) -> Self {
         Self {
             label: label.to_owned(),
@@ -85,9 +85,9 @@ impl Field {
     }
 }
 
-impl Form {
+impl InputForm {
     /// A form with `title` and `fields`, the first of them selected; `keys` is the line about the keys that end it.
-    pub fn new(title: &str, fields: Vec<Field>, keys: &'static str) -> Self {
+    pub fn new(title: &str, fields: Vec<InputField>, keys: &'static str) -> Self {
         Self {
             title: title.to_owned(),
             fields,
@@ -98,7 +98,7 @@ impl Form {
 
     /// The text of the field `index`, from 0; empty if there is no such field.
     pub fn text(&self, index: usize) -> &str {
-        self.fields.get(index).map_or("", Field::text)
+        self.fields.get(index).map_or("", InputField::text)
     }
 
     /// Inserts the pasted `text` before the cursor as if it had been typed. If the field is too short for it, the end is
@@ -145,7 +145,7 @@ impl Form {
         }
     }
 
-    fn edit(&mut self, change: impl FnOnce(&mut Field)) {
+    fn edit(&mut self, change: impl FnOnce(&mut InputField)) {
         self.complaint = None;
         if let Some(field) = self.fields.get_mut(self.selected) {
             change(field);
@@ -194,9 +194,9 @@ mod tests {
     use FieldEdit::{Clear, Delete, End, Erase, Home, Left, Next, Previous, Right, Type};
     use proptest::prelude::*;
 
-    fn form(text: &str) -> Form {
-        let fields = vec![Field::new("a", text), Field::new("b", "")];
-        Form::new("test", fields, "Esc")
+    fn form(text: &str) -> InputForm {
+        let fields = vec![InputField::new("a", text), InputField::new("b", "")];
+        InputForm::new("test", fields, "Esc")
     }
 
     /// What a character of the tests stands for: a key that edits, or itself.
@@ -242,7 +242,7 @@ mod tests {
             assert_eq!(form.fields[form.selected].cursor(), cursor, "{text} {keys}");
             assert_eq!(form.text(7), "");
         }
-        let mut none = Form::default();
+        let mut none = InputForm::default();
         "↓↑a".chars().for_each(|key| none.edit_field(edit(key)));
         assert_eq!(none.text(0), "");
     }

@@ -1,10 +1,10 @@
 //! What the lab says: the message at the bottom of the screen, which goes away after a few seconds or at the next key; the
 //! line about what there is to see; and what to try next.
 
-use super::answer::{Answer, Done};
+use super::answer::{ActionResult, Done};
 use super::player::Player;
 use super::runs::Runs;
-use super::view::{Part, View};
+use super::view::{HideablePart, View};
 use crate::journal::changed;
 use crate::playback::Halt;
 use crate::scenario::presets;
@@ -25,7 +25,7 @@ const HAS_EXACT: &str = "the exact motion is drawn in dashes";
 /// The present message, if there is one, and the lasting trouble with the session.
 #[derive(Clone, Debug, Default)]
 pub struct Messages {
-    said: Option<Said>,
+    said: Option<ShownMessage>,
     /// Why the session cannot be saved, if it cannot.
     trouble: Option<String>,
     /// Whether the last key asked to leave while an export was in progress, and the user was warned.
@@ -43,7 +43,7 @@ pub struct Cleared {
 }
 
 #[derive(Clone, Debug)]
-struct Said {
+struct ShownMessage {
     text: String,
     /// The time at which it goes away; `None` where only a key removes it.
     until: Option<Duration>,
@@ -61,7 +61,7 @@ impl Messages {
     }
 
     /// Shows what a command says that was carried out, or why it was refused. Returns whether there is something to show.
-    pub(super) fn answer(&mut self, answer: Answer, now: Duration) -> bool {
+    pub(super) fn answer(&mut self, answer: ActionResult, now: Duration) -> bool {
         let done = answer.unwrap_or_else(|refusal| Done::saying(refusal.to_string()));
         match done.said {
             Some(text) if done.stays => self.keep_saying(text),
@@ -72,7 +72,7 @@ impl Messages {
     }
 
     fn show(&mut self, text: String, until: Option<Duration>) {
-        self.said = Some(Said { text, until });
+        self.said = Some(ShownMessage { text, until });
     }
 
     /// Shows `text` before the message, until the next key; alone it does without the "; " at its end.
@@ -182,7 +182,7 @@ pub(super) fn next<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Op
 
 /// The line about what there is to see in the run.
 pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Cow<'a, str> {
-    if view.hides(Part::LookAt) {
+    if view.hides(HideablePart::LookAt) {
         return "".into();
     }
     let file = || changed::look_at(player.run().scenario());

@@ -12,7 +12,7 @@
 //! | [`View`] | `[view]`, focus, window, cursor | every key of `[view]`, `since_s`, `magnify`, `cursor`, `fill`, `point_at` |
 //! | [`StepPane`] | workings of a time step | |
 //! | [`Files`] | folder, export under way | `export`, `figure`, `save` |
-//! | [`Script`] | commands to come | `wait_s`, `chapter` |
+//! | [`CommandScript`] | commands to come | `wait_s`, `chapter` |
 //! | [`Popups`] | browser, help, dialog, count | |
 //! | [`Messages`] | message, trouble with the session | |
 //! | [`Settings`] | what is remembered | |
@@ -49,9 +49,9 @@ pub mod step_pane;
 pub mod values;
 pub mod view;
 
-pub use action::Request;
+pub use action::LabRequest;
 pub use advice::Adviser;
-pub use answer::{Answer, Done, Refusal, UnderWay};
+pub use answer::{ActionResult, Done, PendingAction, Refusal};
 pub use comparison::Comparison;
 pub use edits::Edits;
 pub use files::Files;
@@ -60,8 +60,8 @@ pub use pasted::MOST_PASTED;
 pub use player::Player;
 pub use popups::{MOST_COUNTED, Mode, Popups};
 pub use runs::Runs;
-pub use script::Script;
-pub use session::{Summary, Unreadable, lessons_in};
+pub use script::CommandScript;
+pub use session::{SessionSummary, Unreadable, lessons_in};
 pub use settings::Settings;
 pub use step_pane::StepPane;
 pub use values::Values;
@@ -69,11 +69,11 @@ pub use values::Values;
 use crate::data::ColumnOptions;
 use crate::scenario::{Problems, Scenario};
 use crate::storage::confined::Confined;
-use crate::storage::session::Content;
+use crate::storage::session::SessionContent;
 use crate::text::printable::printable;
 use command::Command;
-use edits::{Edit, Outcome};
-use player::Change;
+use edits::{EditOutcome, ScenarioEdit};
+use player::RunChange;
 use session::{KeptPinned, KeptPlace};
 use sheet::Sheet;
 use std::borrow::Cow;
@@ -91,7 +91,7 @@ pub struct Lab {
     view: View,
     popups: Popups,
     messages: Messages,
-    script: Script,
+    script: CommandScript,
     pub settings: Settings,
     /// What the session keeps of the lessons.
     pub lessons: Option<toml::Table>,
@@ -114,7 +114,7 @@ impl Lab {
             view,
             popups: Popups::default(),
             messages: Messages::default(),
-            script: Script::default(),
+            script: CommandScript::default(),
             settings: Settings::default(),
             lessons: None,
             now: Duration::ZERO,
@@ -215,7 +215,7 @@ impl Lab {
     }
 
     /// What a session keeps.
-    pub fn content(&mut self) -> Content {
+    pub fn content(&mut self) -> SessionContent {
         let (player, comparison, edits) = (&self.player, &self.comparison, &self.edits);
         let (files, view) = (&self.files, &self.view);
         let place = KeptPlace {
@@ -224,7 +224,7 @@ impl Lab {
         };
         let place = toml::to_string(&place).unwrap_or_default();
         let reference = self.comparison.reference();
-        Content {
+        SessionContent {
             work: self.edits.runs.kept(reference, session::written),
             place,
         }
@@ -295,17 +295,17 @@ impl Lab {
         &self.messages
     }
 
-    pub fn script_mut(&mut self) -> &mut Script {
+    pub fn script_mut(&mut self) -> &mut CommandScript {
         &mut self.script
     }
 
-    pub fn script(&self) -> &Script {
+    pub fn script(&self) -> &CommandScript {
         &self.script
     }
 }
 
 /// The commands that a key means now, or why it means none.
-pub type Meant = Result<Vec<Command>, String>;
+pub type KeyCommands = Result<Vec<Command>, String>;
 
 /// Commands.
 impl Lab {
@@ -314,7 +314,7 @@ impl Lab {
     /// # Errors
     /// Why the command was refused. It has then changed nothing; but `undo` and `redo` of more acts than there are have
     /// undone or redone all.
-    pub fn carry_out(&mut self, command: &Command) -> Answer {
+    pub fn carry_out(&mut self, command: &Command) -> ActionResult {
         if !matches!(command, Command::Nudge { .. }) {
             self.edits.values.forget_nudge();
         }
@@ -325,7 +325,7 @@ impl Lab {
     }
 
     /// Offers `command` to one part after the other.
-    fn offer(&mut self, command: &Command) -> Answer {
+    fn offer(&mut self, command: &Command) -> ActionResult {
         let (player, comparison) = (&mut self.player, &mut self.comparison);
         let (runs, files, step_pane) = (&self.edits.runs, &mut self.files, &self.step_pane);
         let answer = player
@@ -337,7 +337,7 @@ impl Lab {
         answer.unwrap_or_else(|| self.edit(command))
     }
 
-    fn edit(&mut self, command: &Command) -> Answer {
+    fn edit(&mut self, command: &Command) -> ActionResult {
         // In a lesson, a push that is tried again replaces the one that was tried before.
         if self.view.sheet.is_some() && self.edits.is_push_tried_again(command, &self.player) {
             self.edit(&Command::Undo(1))?;
@@ -346,22 +346,22 @@ impl Lab {
             Command::Undo(times) | Command::Redo(times) => *times,
             _ => 1,
         };
-        let mut done = Done::SILENT.going_on(UnderWay::Going);
+        let mut done = Done::SILENT.going_on(PendingAction::Going);
         for _ in 0..times {
             let (player, files) = (&self.player, &self.files);
             let outcome = self
                 .edits
                 .carry_out(command, player, files, &mut self.adviser, self.now);
             done = match outcome.unwrap_or(Err("no part of the lab carries it out".into()))? {
-                Outcome::Done(done) => done,
-                Outcome::Edit(edit) => self.follow(edit),
+                EditOutcome::Done(done) => done,
+                EditOutcome::Edit(edit) => self.follow(edit),
             };
         }
         Ok(done)
     }
 
     /// Lets every part follow `edit`.
-    fn follow(&mut self, edit: Edit) -> Done {
+    fn follow(&mut self, edit: ScenarioEdit) -> Done {
         let (change, scenario) = (edit.change, &edit.scenario);
         let before = Arc::clone(self.player.run().scenario());
         self.adviser.forget();
@@ -373,7 +373,7 @@ impl Lab {
         self.view.keep_cursor(&self.player);
         self.edits.follow(&self.player);
         let named = |of: &Scenario| of.file.viewed_text("measured").map(str::to_owned);
-        if change == Change::Opens || named(&before) != named(self.player.run().scenario()) {
+        if change == RunChange::Opens || named(&before) != named(self.player.run().scenario()) {
             let (player, files) = (&self.player, &self.files);
             let measured = self.comparison.measure_as_opened(&before, player, files);
             if let Err(problems) = measured {
@@ -401,7 +401,7 @@ impl Lab {
     }
 
     /// Shows the message of a command, or why it was refused.
-    fn tell_answer(&mut self, answer: Answer) {
+    fn tell_answer(&mut self, answer: ActionResult) {
         self.changed |= self.messages.answer(answer, self.now);
     }
 
@@ -418,7 +418,7 @@ impl Lab {
 
     /// Carries out the commands that a key means: `meant` returns them for the count that was typed before it, or why it
     /// means none.
-    pub fn press(&mut self, meant: impl FnOnce(&Self, Option<u64>) -> Meant) {
+    pub fn press(&mut self, meant: impl FnOnce(&Self, Option<u64>) -> KeyCommands) {
         let count = self.clear().count;
         self.edits.values.forget_nudge();
         match meant(self, count) {
@@ -435,7 +435,7 @@ impl Lab {
     /// The lab with `content`: on its way to the step where it stood, and paused there. `view` returns how its run is
     /// shown on this screen. If `confined` is given, the lab reads and writes in that folder only.
     pub fn resumed(
-        content: &Content,
+        content: &SessionContent,
         confined: Option<&Confined>,
         view: impl FnOnce(&Scenario) -> View,
     ) -> Result<Self, Unreadable> {

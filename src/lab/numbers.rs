@@ -2,18 +2,18 @@
 
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{self, Readout};
-use crate::export::columns::{COLUMNS, Column};
+use crate::export::columns::{COLUMNS, CsvColumn};
 use crate::journal::parameters::table_at;
 use crate::playback::live::LiveRun;
 use crate::run::Sample;
-use crate::scenario::keys::{self, KEYS, Kind};
+use crate::scenario::keys::{self, KEYS, ValueKind};
 use crate::scenario::problem::nearest;
 use crate::scenario::{dotted, float};
 
 #[derive(Clone, Copy, Debug)]
-pub enum Source {
+pub enum NumberSource {
     /// The CSV row of the present step.
-    Column(&'static Column),
+    Column(&'static CsvColumn),
     /// A readout that is no column of the CSV.
     Readout(&'static Readout),
     /// Gravity in force, m/s².
@@ -25,25 +25,25 @@ pub enum Source {
 }
 
 /// The number called `name`, of `run` where there is one yet.
-pub fn find(name: &str, run: Option<&LiveRun>) -> Result<Source, String> {
-    if let Some(column) = Column::find(name) {
-        return Ok(Source::Column(column));
+pub fn find(name: &str, run: Option<&LiveRun>) -> Result<NumberSource, String> {
+    if let Some(column) = CsvColumn::find(name) {
+        return Ok(NumberSource::Column(column));
     }
     match (readouts::find(name), keys::find(name)) {
         (Some(readout), _) if readout.is_text => Err(format!(
             "{name} is a text ({}), and a condition compares numbers",
             readout.meaning
         )),
-        (Some(readout), _) if readout.source == readouts::Source::Clock => {
+        (Some(readout), _) if readout.source == readouts::ReadoutSource::Clock => {
             Err(format!("{name} is not counted in the lab"))
         }
-        (Some(readout), _) => Ok(Source::Readout(readout)),
+        (Some(readout), _) => Ok(NumberSource::Readout(readout)),
         (None, Ok((_, kind))) if holds_number(kind) => Ok(match name {
-            "motion.gravity_m_per_s2" => Source::Gravity,
-            "motion.time_step_s" => Source::TimeStep,
-            _ => Source::Fixed(run.and_then(|run| number_in(run, name))),
+            "motion.gravity_m_per_s2" => NumberSource::Gravity,
+            "motion.time_step_s" => NumberSource::TimeStep,
+            _ => NumberSource::Fixed(run.and_then(|run| number_in(run, name))),
         }),
-        (None, Ok((_, Kind::Vector))) => Err(format!(
+        (None, Ok((_, ValueKind::Vector))) => Err(format!(
             "{name} is a vector: its numbers are {name}.0, {name}.1 and {name}.2"
         )),
         (None, Ok(_)) => Err(format!(
@@ -56,8 +56,8 @@ pub fn find(name: &str, run: Option<&LiveRun>) -> Result<Source, String> {
     }
 }
 
-fn holds_number(kind: Kind) -> bool {
-    matches!(kind, Kind::Number(_) | Kind::Whole(..))
+fn holds_number(kind: ValueKind) -> bool {
+    matches!(kind, ValueKind::Number(_) | ValueKind::Whole(..))
 }
 
 /// Completes the refusal of `wrong`: the nearest name, or all names.
@@ -69,8 +69,8 @@ fn nearest_to(wrong: &str) -> String {
     let columns = COLUMNS.iter().map(|column| column.name);
     let readouts = readouts::READOUTS.iter().filter(|readout| {
         !readout.is_text
-            && readout.source != readouts::Source::Clock
-            && Column::find(readout.name).is_none()
+            && readout.source != readouts::ReadoutSource::Clock
+            && CsvColumn::find(readout.name).is_none()
     });
     let keys = KEYS.iter().filter(|key| holds_number(key.kind));
     let names = columns.chain(readouts.map(|readout| readout.name));
@@ -89,24 +89,24 @@ const ZERO_BY_ITSELF: [&str; 3] = ["start.tilt_deg", "start.turn_deg", "start.ro
 
 /// The numbers of a run at one step after the other. At each step only the numbers that are asked for are computed.
 #[derive(Debug, Default)]
-pub struct Numbers {
+pub struct RunNumbers {
     /// The readouts; those not in `read` are of an earlier step.
     readouts: Option<Readouts>,
     /// Which of the readouts have been computed at the present step.
-    read: Vec<readouts::Source>,
+    read: Vec<readouts::ReadoutSource>,
 }
 
 /// The numbers of a run at its present step.
-pub struct Now<'a> {
+pub struct PresentNumbers<'a> {
     run: &'a mut LiveRun,
-    numbers: &'a mut Numbers,
+    numbers: &'a mut RunNumbers,
     sample: Option<Sample>,
 }
 
-impl Numbers {
-    pub fn at<'a>(&'a mut self, run: &'a mut LiveRun) -> Now<'a> {
+impl RunNumbers {
+    pub fn at<'a>(&'a mut self, run: &'a mut LiveRun) -> PresentNumbers<'a> {
         self.read.clear();
-        Now {
+        PresentNumbers {
             run,
             numbers: self,
             sample: None,
@@ -114,24 +114,24 @@ impl Numbers {
     }
 }
 
-impl Now<'_> {
+impl PresentNumbers<'_> {
     /// The number of `source`; `None` if there is none at this step.
-    pub fn value(&mut self, source: &Source) -> Option<f64> {
+    pub fn value(&mut self, source: &NumberSource) -> Option<f64> {
         match source {
-            Source::Column(column) => {
+            NumberSource::Column(column) => {
                 let run = self.run.simulation();
                 let sample = self.sample.get_or_insert_with(|| run.sample());
                 Some(column.value(run.scenario(), sample))
             }
-            Source::Readout(readout) => readout.of(self.readouts(readout.source)).number(),
-            Source::Gravity => Some(self.run.simulation().motion().gravity),
-            Source::TimeStep => Some(self.run.simulation().motion().time_step_s),
-            Source::Fixed(value) => *value,
+            NumberSource::Readout(readout) => readout.of(self.readouts(readout.source)).number(),
+            NumberSource::Gravity => Some(self.run.simulation().motion().gravity),
+            NumberSource::TimeStep => Some(self.run.simulation().motion().time_step_s),
+            NumberSource::Fixed(value) => *value,
         }
     }
 
-    fn readouts(&mut self, source: readouts::Source) -> &Readouts {
-        let Numbers { readouts, read } = &mut *self.numbers;
+    fn readouts(&mut self, source: readouts::ReadoutSource) -> &Readouts {
+        let RunNumbers { readouts, read } = &mut *self.numbers;
         let readouts = readouts.get_or_insert_with(|| self.run.readouts());
         if !read.contains(&source) {
             self.run.read_again(readouts, source);

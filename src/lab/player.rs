@@ -3,9 +3,9 @@
 mod destination;
 mod fast_strip;
 
-use super::answer::{Answer, Done, UnderWay};
-use super::command::{Command, Place};
-use super::numbers::{self, Numbers, Source};
+use super::answer::{ActionResult, Done, PendingAction};
+use super::command::{Command, SeekTarget};
+use super::numbers::{self, NumberSource, RunNumbers};
 use super::view::View;
 use crate::journal::expression::Expression;
 use crate::journal::restart::{in_force, scenario_from};
@@ -30,7 +30,7 @@ const LONG_STEP_S: f64 = 3.0;
 
 /// How the run on the screen goes over to another scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Change {
+pub(super) enum RunChange {
     /// To one with the same numbers at every step: another title, length or `[view]`.
     Described,
     /// From the present step on.
@@ -46,10 +46,10 @@ pub(super) enum Change {
     Opens,
 }
 
-impl Change {
+impl RunChange {
     /// Whether the run was opened under another name than the one before.
     pub(super) fn is_of_other_name(self) -> bool {
-        use Change::{Opens, Returns};
+        use RunChange::{Opens, Returns};
         matches!(
             self,
             Opens
@@ -93,16 +93,21 @@ impl Player {
     }
 
     /// Goes over to the run of `scenario`, which ends at `end_s` where that is given.
-    pub(super) fn follow(&mut self, change: Change, scenario: &Arc<Scenario>, end_s: Option<f64>) {
+    pub(super) fn follow(
+        &mut self,
+        change: RunChange,
+        scenario: &Arc<Scenario>,
+        end_s: Option<f64>,
+    ) {
         let playback = &mut self.playback;
-        if !matches!(change, Change::Described | Change::BeginsAnew { .. }) {
+        if !matches!(change, RunChange::Described | RunChange::BeginsAnew { .. }) {
             self.destination = Destination::default();
         }
         match change {
-            Change::Described => playback.describe_as(scenario),
-            Change::GoesOn => playback.go_on_in(scenario),
-            Change::ContinuesAt(step) => playback.continue_at(step, scenario),
-            Change::BeginsAnew { is_act, is_again } => {
+            RunChange::Described => playback.describe_as(scenario),
+            RunChange::GoesOn => playback.go_on_in(scenario),
+            RunChange::ContinuesAt(step) => playback.continue_at(step, scenario),
+            RunChange::BeginsAnew { is_act, is_again } => {
                 let to = self.destination.replay_of(playback, is_act, is_again);
                 if is_act {
                     playback.continue_at(0, scenario);
@@ -119,12 +124,12 @@ impl Player {
                 playback.set_exact(begins_with_exact(scenario).unwrap_or(shown));
                 self.strip.forget();
             }
-            Change::Returns { .. } | Change::Opens => playback.begin(Arc::clone(scenario)),
+            RunChange::Returns { .. } | RunChange::Opens => playback.begin(Arc::clone(scenario)),
         }
         if let Some(end_s) = end_s {
             self.playback.set_end(end_s);
         }
-        if let Change::Returns { left_at, .. } = change {
+        if let RunChange::Returns { left_at, .. } = change {
             self.destination.return_to(left_at, &mut self.playback);
         }
     }
@@ -138,7 +143,7 @@ impl Player {
     }
 
     /// Carries out what concerns the course of the run; `None` for a command that does not.
-    pub(super) fn carry_out(&mut self, command: &Command) -> Option<Answer> {
+    pub(super) fn carry_out(&mut self, command: &Command) -> Option<ActionResult> {
         Some(match command {
             Command::Step(steps) => self.step(*steps),
             Command::GoTo(place) => self.go_to(*place),
@@ -150,7 +155,7 @@ impl Player {
         })
     }
 
-    fn step(&mut self, steps: i64) -> Answer {
+    fn step(&mut self, steps: i64) -> ActionResult {
         let here = self.playback.step_number();
         self.destination.heading = None;
         match steps {
@@ -165,10 +170,10 @@ impl Player {
                 .playback
                 .go_to(here.saturating_sub(steps.unsigned_abs())),
         }
-        Ok(Done::SILENT.going_on(UnderWay::Going))
+        Ok(Done::SILENT.going_on(PendingAction::Going))
     }
 
-    fn go_to(&mut self, place: Place) -> Answer {
+    fn go_to(&mut self, place: SeekTarget) -> ActionResult {
         let step = self.step_of(place)?;
         self.destination.heading = None;
         let end = self.playback.end_step();
@@ -180,15 +185,15 @@ impl Player {
                 "step {step} is beyond the end of the run, step {end}: it is played on to there"
             )
         });
-        Ok(Done::saying_any(said).going_on(UnderWay::Going))
+        Ok(Done::saying_any(said).going_on(PendingAction::Going))
     }
 
-    pub(super) fn step_of(&self, place: Place) -> Result<u64, String> {
+    pub(super) fn step_of(&self, place: SeekTarget) -> Result<u64, String> {
         match place {
-            Place::Step(step) => Ok(step),
-            Place::Time(time_s) => self.step_at(time_s),
-            Place::Start => Ok(0),
-            Place::End => Ok(self.playback.end_step()),
+            SeekTarget::Step(step) => Ok(step),
+            SeekTarget::Time(time_s) => self.step_at(time_s),
+            SeekTarget::Start => Ok(0),
+            SeekTarget::End => Ok(self.playback.end_step()),
         }
     }
 
@@ -205,14 +210,14 @@ impl Player {
         let text = text.trim();
         let (here, here_s) = (self.playback.step_number(), self.run().now().time_s);
         let sign = text.chars().next().filter(|sign| "+-".contains(*sign));
-        let size = Place::parse(&text[sign.map_or(0, char::len_utf8)..]);
+        let size = SeekTarget::parse(&text[sign.map_or(0, char::len_utf8)..]);
         // With a sign it counts from here.
         match (sign, size) {
             (None, Some(place)) => self.step_of(place),
-            (Some('+'), Some(Place::Step(steps))) => Ok(here.saturating_add(steps)),
-            (_, Some(Place::Step(steps))) => Ok(here.saturating_sub(steps)),
-            (Some('+'), Some(Place::Time(time_s))) => self.step_at(here_s + time_s),
-            (_, Some(Place::Time(time_s))) => self.step_at(here_s - time_s),
+            (Some('+'), Some(SeekTarget::Step(steps))) => Ok(here.saturating_add(steps)),
+            (_, Some(SeekTarget::Step(steps))) => Ok(here.saturating_sub(steps)),
+            (Some('+'), Some(SeekTarget::Time(time_s))) => self.step_at(here_s + time_s),
+            (_, Some(SeekTarget::Time(time_s))) => self.step_at(here_s - time_s),
             (None, None) if text.contains('.') && !text.ends_with('s') => {
                 Err("must be a whole number of steps, or a time such as 12.5 s".to_owned())
             }
@@ -220,21 +225,21 @@ impl Player {
         }
     }
 
-    fn run_until(&mut self, condition: &Expression) -> Answer {
+    fn run_until(&mut self, condition: &Expression) -> ActionResult {
         let run = self.run();
         let sources = condition
             .bind(|name| numbers::find(name, Some(run)))
             .map_err(|fault| fault.to_string())?;
         let condition = condition.clone();
         self.destination.heading = None;
-        let mut numbers = Numbers::default();
+        let mut numbers = RunNumbers::default();
         let holds = move |run: &mut LiveRun| {
             let mut now = numbers.at(run);
             let value = condition.value_at(|index| now.value(&sources[index]));
             value.is_some_and(|value| value != 0.0)
         };
         Ok(if self.playback.run_until(Box::new(holds)) {
-            Done::SILENT.going_on(UnderWay::Playing)
+            Done::SILENT.going_on(PendingAction::Playing)
         } else {
             Done::saying("it holds already, at this step")
         })
@@ -371,11 +376,13 @@ impl Player {
     pub fn number(&self, name: &str) -> Option<f64> {
         let readouts = &self.reading.readouts;
         match numbers::find(name, Some(self.run())).ok()? {
-            Source::Column(column) => Some(column.value(self.run().scenario(), &readouts.sample)),
-            Source::Readout(readout) => readout.of(readouts).number(),
-            Source::Gravity => Some(self.motion().gravity),
-            Source::TimeStep => Some(self.motion().time_step_s),
-            Source::Fixed(value) => value,
+            NumberSource::Column(column) => {
+                Some(column.value(self.run().scenario(), &readouts.sample))
+            }
+            NumberSource::Readout(readout) => readout.of(readouts).number(),
+            NumberSource::Gravity => Some(self.motion().gravity),
+            NumberSource::TimeStep => Some(self.motion().time_step_s),
+            NumberSource::Fixed(value) => value,
         }
         .filter(|number| number.is_finite())
     }

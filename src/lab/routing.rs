@@ -1,16 +1,16 @@
 //! Leads actions and time to the parts of the lab.
 
 use super::action::{
-    Action, Ask, Direction, FieldEdit, LessonKey, PAGE, Request, repeated, signed,
+    Action, Ask, Direction, FieldEdit, LabRequest, LessonKey, PAGE, repeated, signed,
 };
-use super::answer::{Answer, Done};
-use super::command::{Command, Commands, CursorTo, Place};
-use super::dialog::{Dialog, Question};
+use super::answer::{ActionResult, Done};
+use super::command::{Command, Commands, CursorTo, SeekTarget};
+use super::dialog::{Dialog, DialogKind};
 use super::form::{edit_line, type_into};
 use super::messages::{self, halt_in_words};
 use super::popups::Mode;
 use super::view::Pane;
-use super::{Cleared, Lab, Script, pasted};
+use super::{Cleared, CommandScript, Lab, pasted};
 use crate::playback::Halt;
 use crate::run::NotFinite;
 use crate::scenario::Scenario;
@@ -27,7 +27,7 @@ const PART: Duration = Duration::from_millis(100);
 /// Actions, and time.
 impl Lab {
     /// Carries out `action`. Returns what only the main loop can do.
-    pub fn update(&mut self, action: Action) -> Option<Request> {
+    pub fn update(&mut self, action: Action) -> Option<LabRequest> {
         let cleared = self.clear();
         if !action.keeps_nudge() {
             self.edits.values.forget_nudge();
@@ -44,17 +44,17 @@ impl Lab {
 
     /// # Errors
     /// Why the action does nothing now.
-    fn act(&mut self, action: Action, cleared: Cleared) -> Result<Option<Request>, String> {
+    fn act(&mut self, action: Action, cleared: Cleared) -> Result<Option<LabRequest>, String> {
         let count = cleared.count;
         let times = repeated(count);
         match action {
             Action::TogglePause => self.toggle_pause(),
             Action::GoTo => match count {
-                Some(step) => self.one(Command::GoTo(Place::Step(step))),
+                Some(step) => self.one(Command::GoTo(SeekTarget::Step(step))),
                 None => self.ask(Ask::Place)?,
             },
             Action::GoToCursor => match self.view.cursor {
-                Some(step) => self.one(Command::GoTo(Place::Step(step))),
+                Some(step) => self.one(Command::GoTo(SeekTarget::Step(step))),
                 None => self.turn_to_parameters(),
             },
             Action::ChoosePush => {
@@ -86,7 +86,11 @@ impl Lab {
     }
 
     /// Does what concerns popups, or what only the main loop can do.
-    fn act_on_top(&mut self, action: Action, cleared: &Cleared) -> Result<Option<Request>, String> {
+    fn act_on_top(
+        &mut self,
+        action: Action,
+        cleared: &Cleared,
+    ) -> Result<Option<LabRequest>, String> {
         match action {
             Action::Ask(ask) => self.ask(ask)?,
             Action::Digit(digit) => self.popups.add_digit(cleared.count, digit),
@@ -103,17 +107,17 @@ impl Lab {
             Action::Accept => return Ok(self.accept()),
             Action::Help => self.popups.toggle_help(),
             Action::Close => return Ok(self.close(cleared)),
-            Action::Class => return Ok(Some(Request::Class)),
-            Action::Lesson(key) => return Ok(Some(Request::Lesson(key))),
-            Action::Redraw => return Ok(Some(Request::Redraw)),
+            Action::Class => return Ok(Some(LabRequest::Class)),
+            Action::Lesson(key) => return Ok(Some(LabRequest::Lesson(key))),
+            Action::Redraw => return Ok(Some(LabRequest::Redraw)),
             Action::Suspend if self.files.confined().is_some() => {
                 return Err("there is no shell to go back to: q leaves".to_owned());
             }
-            Action::Suspend => return Ok(Some(Request::Suspend)),
+            Action::Suspend => return Ok(Some(LabRequest::Suspend)),
             Action::Quit if self.files.is_exporting() && !cleared.was_warned => {
                 self.messages.warn_of_export(self.now);
             }
-            Action::Quit => return Ok(Some(Request::Quit)),
+            Action::Quit => return Ok(Some(LabRequest::Quit)),
             _ => {} // tui has the entries of the help, and carries them out
         }
         Ok(None)
@@ -194,7 +198,7 @@ impl Lab {
     }
 
     /// Puts rows that were pasted beside the run; undo takes them back.
-    fn take_rows(&mut self, text: &str) -> Answer {
+    fn take_rows(&mut self, text: &str) -> ActionResult {
         let (words, command) = pasted::keep(text, &self.files, &self.comparison, &self.player)?;
         self.carry_out(&command)?;
         Ok(Done::saying(words))
@@ -215,14 +219,14 @@ impl Lab {
 
     /// Carries out the command that the open dialog asked for. If it is refused, the dialog stays and shows the reason.
     /// Returns the number that a room above asked for.
-    fn accept(&mut self) -> Option<Request> {
+    fn accept(&mut self) -> Option<LabRequest> {
         let dialog = self.popups.take_dialog()?;
         let answer = match &dialog.question {
-            Question::Number => match dialog.number_typed() {
-                Ok(number) => return Some(Request::Answer(number)),
+            DialogKind::Number => match dialog.number_typed() {
+                Ok(number) => return Some(LabRequest::Answer(number)),
                 Err(reason) => Err(reason.into()),
             },
-            Question::SavePresent(content) => {
+            DialogKind::SavePresent(content) => {
                 let path = self.files.path_of(dialog.form.text(0));
                 let force = dialog.may_replace(&path);
                 self.files.save("the scenario", content, &path, force)
@@ -243,7 +247,7 @@ impl Lab {
     /// Closes or stops the first of these that there is: a popup, the script, the steps asked for, the cursor, the pane that
     /// fills the screen, the focus on the parameters, the export, the pane in focus that was asked for. If there is none of
     /// these, it says how to leave, unless the key has already removed a message or a count.
-    fn close(&mut self, cleared: &Cleared) -> Option<Request> {
+    fn close(&mut self, cleared: &Cleared) -> Option<LabRequest> {
         // The focus returns from the values to the run even if the key has removed a message too.
         let is_done = self.close_popup()
             || self.stop()
@@ -258,7 +262,7 @@ impl Lab {
         } else if self.view.focus.is_on_request && self.view.shows(self.view.focus) {
             self.carry_out_all(&self.view.toggled(self.view.focus));
         } else if self.view.sheet.is_some() {
-            return Some(Request::Lesson(LessonKey::Leave));
+            return Some(LabRequest::Lesson(LessonKey::Leave));
         } else {
             self.say("nothing to close; q leaves");
         }
@@ -435,7 +439,7 @@ impl Lab {
 
     /// Carries out `commands` as time passes, in place of the present script.
     pub fn take_commands(&mut self, commands: Commands) {
-        self.script = Script::new(commands);
+        self.script = CommandScript::new(commands);
         self.go_on_with_script(None);
     }
 

@@ -7,7 +7,7 @@ use crate::journal::next_push::NextPush;
 use crate::journal::{Act, Journal};
 use crate::run::Clock;
 use crate::scenario::{Problems, Scenario};
-use crate::storage::session::Text;
+use crate::storage::session::SharedText;
 use std::sync::Arc;
 use toml::Table;
 
@@ -20,7 +20,7 @@ pub struct Runs {
     /// How the present run differs from that scenario, in words; `None` where it does not.
     changed_from_file: Option<String>,
     /// The history as the session keeps it; `None` where the history has changed since it was written.
-    kept: Option<Text>,
+    kept: Option<SharedText>,
     /// The pinned run that is kept with it.
     kept_reference: Option<Reference>,
     /// The depth of the history that undo does not go below: where the page of a lesson began.
@@ -45,13 +45,13 @@ impl PartialEq for Reference {
 
 /// The direction in the history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum HistoryDirection {
     Undo,
     Redo,
 }
 
 /// What an undo or a redo has changed, and the scenario of the present run afterwards.
-pub(super) struct Turned {
+pub(super) struct UndoResult {
     pub(super) what: Reversal,
     pub(super) scenario: Arc<Scenario>,
     /// Whether the run before was opened under the same name.
@@ -133,8 +133,8 @@ impl Runs {
     pub(super) fn kept(
         &mut self,
         reference: Option<Reference>,
-        written: fn(&History, Option<&Reference>) -> Text,
-    ) -> Text {
+        written: fn(&History, Option<&Reference>) -> SharedText,
+    ) -> SharedText {
         if self.kept_reference != reference {
             self.kept = None;
             self.kept_reference = reference;
@@ -243,12 +243,16 @@ impl Runs {
 
     /// Undoes the last act, or does it again; `steps` is the length of the present run until now. `None` where there is no
     /// such act.
-    pub(super) fn turn(&mut self, way: Way, steps: u64) -> Result<Option<Turned>, String> {
+    pub(super) fn turn(
+        &mut self,
+        way: HistoryDirection,
+        steps: u64,
+    ) -> Result<Option<UndoResult>, String> {
         let name = self.name().to_owned();
         let history = self.change();
         let turned = match way {
-            Way::Undo => history.undo(),
-            Way::Redo => history.redo(),
+            HistoryDirection::Undo => history.undo(),
+            HistoryDirection::Redo => history.redo(),
         };
         let Some(what) = turned else {
             return Ok(None);
@@ -266,7 +270,7 @@ impl Runs {
         if !is_of_same_name {
             self.original = Original::of(self.name(), &scenario);
         }
-        Ok(Some(Turned {
+        Ok(Some(UndoResult {
             what,
             scenario,
             is_of_same_name,
@@ -311,13 +315,13 @@ mod tests {
             Act::set("motion.gravity_m_per_s2", Value::Float(5.0)),
         ];
         assert!(runs.act(40, acts, false, 2300).unwrap().is_some());
-        assert!(runs.turn(Way::Undo, 2300).unwrap().is_some());
+        assert!(runs.turn(HistoryDirection::Undo, 2300).unwrap().is_some());
         assert_eq!(runs.journal().file(), before.file());
-        assert!(runs.turn(Way::Undo, 2300).unwrap().is_none());
+        assert!(runs.turn(HistoryDirection::Undo, 2300).unwrap().is_none());
         assert!(runs.act(40, Vec::new(), false, 2300).unwrap().is_none());
     }
 
-    fn kept(runs: &mut Runs) -> Text {
+    fn kept(runs: &mut Runs) -> SharedText {
         runs.kept(None, crate::lab::session::written)
     }
 
@@ -329,7 +333,7 @@ mod tests {
         runs.act(40, vec![time_step(0.05)], false, 2300).unwrap();
         let second = kept(&mut runs);
         assert_ne!(**first, **second);
-        runs.turn(Way::Undo, 2300).unwrap();
+        runs.turn(HistoryDirection::Undo, 2300).unwrap();
         assert_ne!(**second, **kept(&mut runs));
     }
 

@@ -1,8 +1,8 @@
 //! A script: commands that are carried out one after the other. Each waits until the action that the one before has
 //! started is complete.
 
-use super::answer::{Answer, Done, UnderWay};
-use super::command::{Command, Commands, Place, Placed};
+use super::answer::{ActionResult, Done, PendingAction};
+use super::command::{Command, Commands, LocatedCommand, SeekTarget};
 use super::files::Files;
 use super::player::Player;
 use crate::playback::{Halt, MOST_UNTIL};
@@ -14,12 +14,12 @@ use std::time::Duration;
 const STOPPED: &str = "stopped before it held";
 
 #[derive(Clone, Debug, Default)]
-pub struct Script {
+pub struct CommandScript {
     /// The file of the commands, as the user named it.
     pub origin: String,
-    left: VecDeque<Placed>,
+    left: VecDeque<LocatedCommand>,
     /// The command whose action takes time, and that action.
-    under_way: Option<(Placed, UnderWay)>,
+    under_way: Option<(LocatedCommand, PendingAction)>,
     /// The command that was refused, and why.
     failed: Option<String>,
     /// Whether its commands were dropped before they were complete.
@@ -32,7 +32,7 @@ pub struct Script {
     plays_again: bool,
 }
 
-impl Script {
+impl CommandScript {
     pub(super) fn new(commands: Commands) -> Self {
         Self {
             origin: commands.origin,
@@ -57,11 +57,11 @@ impl Script {
     }
 
     /// Carries out what concerns the script itself; `None` for a command that does not.
-    pub(super) fn carry_out(&mut self, command: &Command, now: Duration) -> Option<Answer> {
+    pub(super) fn carry_out(&mut self, command: &Command, now: Duration) -> Option<ActionResult> {
         Some(Ok(match command {
             Command::Wait(seconds) => {
                 let until = now + Duration::try_from_secs_f64(*seconds).unwrap_or_default();
-                Done::SILENT.going_on(UnderWay::Waiting(until))
+                Done::SILENT.going_on(PendingAction::Waiting(until))
             }
             Command::Chapter(title) => {
                 self.chapters.push(title.clone());
@@ -117,25 +117,25 @@ impl Script {
     /// The time until which the command under way waits.
     pub(super) fn waits_until(&self) -> Option<Duration> {
         match self.under_way {
-            Some((_, UnderWay::Waiting(until))) => Some(until),
+            Some((_, PendingAction::Waiting(until))) => Some(until),
             _ => None,
         }
     }
 
     /// The command under way as it is carried out again: a run goes to the same step or until the same condition holds, a
     /// wait lasts for what is left of it at `now`.
-    fn under_way_again(&self, player: &Player, now: Duration) -> Option<Placed> {
+    fn under_way_again(&self, player: &Player, now: Duration) -> Option<LocatedCommand> {
         let (playback, (placed, under_way)) = (&player.playback, self.under_way.as_ref()?);
         let command = match under_way {
-            UnderWay::Going => {
+            PendingAction::Going => {
                 let (here, to_go) = (playback.step_number(), playback.steps_to_go()?);
-                Command::GoTo(Place::Step(here.saturating_add(to_go)))
+                Command::GoTo(SeekTarget::Step(here.saturating_add(to_go)))
             }
-            UnderWay::Waiting(until) => Command::Wait(until.saturating_sub(now).as_secs_f64()),
+            PendingAction::Waiting(until) => Command::Wait(until.saturating_sub(now).as_secs_f64()),
             _ => placed.command.clone(),
         };
         let line = placed.line;
-        Some(Placed { command, line })
+        Some(LocatedCommand { command, line })
     }
 
     /// Pauses the script at `now`. When it goes on, the command under way is carried out again. An export goes on meanwhile.
@@ -143,7 +143,7 @@ impl Script {
         self.waits = true;
         let playback = &player.playback;
         self.plays_again = playback.is_running() && !playback.is_running_until();
-        if let Some((_, UnderWay::Exporting)) = self.under_way {
+        if let Some((_, PendingAction::Exporting)) = self.under_way {
             return;
         }
         if let Some(again) = self.under_way_again(player, now) {
@@ -171,7 +171,7 @@ impl Script {
         now: Duration,
         player: &Player,
         files: &mut Files,
-    ) -> Result<Option<Placed>, String> {
+    ) -> Result<Option<LocatedCommand>, String> {
         if self.waits {
             return Ok(None);
         }
@@ -194,8 +194,8 @@ impl Script {
     /// As [`next`](Self::next).
     pub(super) fn take_answer(
         &mut self,
-        placed: Placed,
-        answer: Answer,
+        placed: LocatedCommand,
+        answer: ActionResult,
         player: &mut Player,
     ) -> Result<Done, String> {
         let to_go = player.playback.steps_to_go();
@@ -234,7 +234,7 @@ impl Script {
     }
 
     /// Drops all commands because `placed` was refused for `reason`; returns the message about it.
-    fn fail(&mut self, placed: &Placed, reason: &str) -> String {
+    fn fail(&mut self, placed: &LocatedCommand, reason: &str) -> String {
         let rest = match self.left.len() {
             0 => String::new(),
             1 => "; the command after it is not carried out".to_owned(),
@@ -250,18 +250,18 @@ impl Script {
 }
 
 fn is_complete(
-    under_way: UnderWay,
+    under_way: PendingAction,
     halt: Option<Halt>,
     now: Duration,
     player: &Player,
     files: &mut Files,
 ) -> Result<bool, String> {
     let is_on = match under_way {
-        UnderWay::Going => player.playback.steps_to_go().is_some(),
-        UnderWay::Playing => player.playback.is_running_until(),
-        UnderWay::Waiting(until) => return Ok(now >= until),
-        UnderWay::Exporting if files.is_exporting() => return Ok(false),
-        UnderWay::Exporting => return files.take_failure().map_or(Ok(true), Err),
+        PendingAction::Going => player.playback.steps_to_go().is_some(),
+        PendingAction::Playing => player.playback.is_running_until(),
+        PendingAction::Waiting(until) => return Ok(now >= until),
+        PendingAction::Exporting if files.is_exporting() => return Ok(false),
+        PendingAction::Exporting => return files.take_failure().map_or(Ok(true), Err),
     };
     match (is_on, halt, under_way) {
         (true, ..) => Ok(false),
@@ -270,7 +270,7 @@ fn is_complete(
             "did not hold on any of {} steps",
             HumanCount(steps)
         )),
-        (false, None, UnderWay::Playing) => Err(STOPPED.to_owned()),
+        (false, None, PendingAction::Playing) => Err(STOPPED.to_owned()),
         (false, ..) => Ok(true),
     }
 }

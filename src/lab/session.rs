@@ -5,7 +5,7 @@ use super::edits::Edits;
 use super::files::Files;
 use super::player::Player;
 use super::runs::Reference;
-use super::view::{Look, View};
+use super::view::{View, ViewSettings};
 use crate::data::{ColumnOptions, ColumnSigma};
 use crate::journal::Journal;
 use crate::journal::history::History;
@@ -14,8 +14,8 @@ use crate::playback::pace::Speed;
 use crate::scenario::csv::Renaming;
 use crate::scenario::file::ScenarioFile;
 use crate::scenario::{Problems, Scenario, keys};
-use crate::storage::session::{Content, Text, later};
-use crate::text::printable::Shown;
+use crate::storage::session::{SessionContent, SharedText, later};
+use crate::text::printable::PrintablePath;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toml::Value;
@@ -65,7 +65,7 @@ pub(super) struct KeptPlace {
     pub(super) shows_exact: bool,
     pub(super) focus: String,
     pub(super) filled: bool,
-    pub(super) look: Look,
+    pub(super) look: ViewSettings,
     pub(super) exporting: Option<String>,
     /// The measured data beside the run.
     pub(super) measured: Option<String>,
@@ -82,15 +82,15 @@ pub(super) struct KeptPlace {
 
 /// What a list of sessions shows of a session.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Summary {
+pub struct SessionSummary {
     /// The name under which the user opened the scenario: a preset or a file.
     pub name: String,
     pub title: String,
     pub step: u64,
 }
 
-impl Summary {
-    pub fn of(content: &Content) -> Result<Self, Unreadable> {
+impl SessionSummary {
+    pub fn of(content: &SessionContent) -> Result<Self, Unreadable> {
         let runs: KeptRuns = read("the run", &content.work)?;
         let place: KeptPlace = read("the place in it", &content.place)?;
         let present = runs.history.present();
@@ -108,14 +108,14 @@ impl Summary {
 pub struct Unreadable(String);
 
 /// What is kept of the lessons in `content`; `None` where nothing is, or it cannot be read.
-pub fn lessons_in(content: &Content) -> Option<toml::Table> {
+pub fn lessons_in(content: &SessionContent) -> Option<toml::Table> {
     read::<KeptPlace>("the place in it", &content.place)
         .ok()?
         .lessons
 }
 
 /// `history` as a session keeps it, with the pinned run. The text is written by the thread that first reads it.
-pub(super) fn written(history: &History, reference: Option<&Reference>) -> Text {
+pub(super) fn written(history: &History, reference: Option<&Reference>) -> SharedText {
     let (history, reference) = (history.clone(), reference.cloned());
     later(move || {
         let runs = KeptRuns {
@@ -134,9 +134,9 @@ fn read<'a, T: Deserialize<'a>>(what: &str, text: &'a str) -> Result<T, Unreadab
 }
 
 /// What the content of a session holds: the history and its present scenario, the pinned run, the place.
-pub(super) type Kept = (History, Arc<Scenario>, Option<KeptPinned>, KeptPlace);
+pub(super) type KeptContent = (History, Arc<Scenario>, Option<KeptPinned>, KeptPlace);
 
-pub(super) fn kept(content: &Content) -> Result<Kept, Unreadable> {
+pub(super) fn kept(content: &SessionContent) -> Result<KeptContent, Unreadable> {
     let KeptRuns { history, pinned } = read("the run", &content.work)?;
     let place = read("the place in it", &content.place)?;
     let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
@@ -168,7 +168,7 @@ impl KeptPlace {
             focus: view.focus.id().to_owned(),
             filled: view.filled,
             look: view.look.clone(),
-            exporting: exported_to.map(|path| Shown(path).to_string()),
+            exporting: exported_to.map(|path| PrintablePath(path).to_string()),
             measured: comparison.data_to_keep(files),
             sigma: (comparison.data()).map_or_else(Vec::new, |data| data.options.sigma.clone()),
             map: comparison

@@ -3,7 +3,7 @@
 
 use super::command::Command;
 use super::view::theme::{Background, Marker};
-use super::view::{Part, View};
+use super::view::{HideablePart, View};
 use crate::storage::settings::remember;
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ pub struct Settings {
 }
 
 /// A setting: its label, its present value, and the change to its next value (`true`) or the one before.
-pub(super) struct Setting {
+pub(super) struct LabSetting {
     pub(super) label: &'static str,
     pub(super) value: fn(&View) -> String,
     change: fn(&mut View, bool) -> Changed,
@@ -39,8 +39,8 @@ const fn row(
     label: &'static str,
     value: fn(&View) -> String,
     change: fn(&mut View, bool) -> Changed,
-) -> Setting {
-    Setting {
+) -> LabSetting {
+    LabSetting {
         label,
         value,
         change,
@@ -49,9 +49,9 @@ const fn row(
 
 /// Every setting. The first three belong to the run and its lesson; the others are remembered for the next time.
 #[rustfmt::skip]
-pub(super) const SETTINGS: [Setting; 8] = [
-    row("line about the numbers", |view| shown(view, Part::Health), |view, _| hide_or_show(view, Part::Health)),
-    row("what theory predicts", |view| shown(view, Part::Predicted), |view, _| hide_or_show(view, Part::Predicted)),
+pub(super) const SETTINGS: [LabSetting; 8] = [
+    row("line about the numbers", |view| shown(view, HideablePart::Health), |view, _| hide_or_show(view, HideablePart::Health)),
+    row("what theory predicts", |view| shown(view, HideablePart::Predicted), |view, _| hide_or_show(view, HideablePart::Predicted)),
     row("screen", |view| if view.bare { "bare: two panes, title and time" } else { "everything" }.to_owned(), |view, _| {
         Changed::By(Command::look("bare", !view.bare))
     }),
@@ -120,7 +120,7 @@ impl Settings {
     }
 }
 
-fn hide_or_show(view: &View, part: Part) -> Changed {
+fn hide_or_show(view: &View, part: HideablePart) -> Changed {
     let mut hidden = view.hidden.clone();
     hidden.retain(|other| *other != part);
     if hidden.len() == view.hidden.len() {
@@ -129,7 +129,7 @@ fn hide_or_show(view: &View, part: Part) -> Changed {
     Changed::By(Command::look("hide", hidden))
 }
 
-fn shown(view: &View, part: Part) -> String {
+fn shown(view: &View, part: HideablePart) -> String {
     if view.hides(part) { "hidden" } else { "shown" }.to_owned()
 }
 

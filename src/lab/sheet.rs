@@ -24,12 +24,12 @@ pub struct Sheet {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Paragraph {
-    pub kind: Kind,
-    pub words: Vec<Words>,
+    pub kind: SheetLineKind,
+    pub words: Vec<StyledText>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum SheetLineKind {
     Heading,
     Text,
     /// An entry of a list.
@@ -58,7 +58,7 @@ pub enum Kind {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Words {
+pub struct StyledText {
     pub text: String,
     pub emphasis: Emphasis,
 }
@@ -73,9 +73,9 @@ pub enum Emphasis {
 }
 
 impl Paragraph {
-    pub fn new(kind: Kind, text: impl Into<String>) -> Self {
+    pub fn new(kind: SheetLineKind, text: impl Into<String>) -> Self {
         let text = text.into();
-        let words = vec![Words {
+        let words = vec![StyledText {
             text,
             emphasis: Emphasis::Plain,
         }];
@@ -84,7 +84,7 @@ impl Paragraph {
 
     /// The same for a terminal without UTF-8.
     pub fn in_ascii(&self) -> Self {
-        let words = self.words.iter().map(|words| Words {
+        let words = self.words.iter().map(|words| StyledText {
             text: in_ascii(&words.text),
             emphasis: words.emphasis,
         });

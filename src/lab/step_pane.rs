@@ -1,11 +1,11 @@
 //! The time step that the step pane takes apart, and the commands that its keys mean.
 
 use super::action::{Direction, PAGE};
-use super::command::{Command, Place};
+use super::command::{Command, SeekTarget};
 use super::player::Player;
-use super::view::step::Page;
+use super::view::step::StepPageChoice;
 use super::view::{Pane, View};
-use crate::physics::workings::{Phase, Sums, Table, Value};
+use crate::physics::workings::{ColumnSums, Phase, PointTable, WorkedValue};
 use crate::physics::{State, Workings};
 use crate::playback::dip::Dip;
 use crate::scenario::Scenario;
@@ -25,7 +25,7 @@ pub struct StepWorkings {
     pub workings: Arc<Workings>,
     pub scenario: Arc<Scenario>,
     /// The sums of the table on the page, if some of its rows are added up.
-    sums: Option<(usize, Sums)>,
+    sums: Option<(usize, ColumnSums)>,
     /// The first dip of the run up to this step; `None` where the page does not show it, and where the axle was upright.
     pub dip: Option<Dip>,
 }
@@ -47,7 +47,7 @@ impl StepWorkings {
     }
 
     /// The phase on `page` with its number, from 1, and how many there are; `None` for a page that shows none.
-    pub fn phase(&self, page: Page) -> Option<(&Phase, usize, usize)> {
+    pub fn phase(&self, page: StepPageChoice) -> Option<(&Phase, usize, usize)> {
         let index = page.index(&self.workings)?;
         let phase = self.workings.phases().nth(index)?;
         Some((phase, index + 1, self.workings.phases().count()))
@@ -55,7 +55,7 @@ impl StepWorkings {
 
     /// The sum of each column over the first `rows` rows of `table`, the one on `page`; `None` where nobody has
     /// asked for one.
-    pub fn sums(&self, page: Page, table: &Table, rows: usize) -> Option<Vec<f64>> {
+    pub fn sums(&self, page: StepPageChoice, table: &PointTable, rows: usize) -> Option<Vec<f64>> {
         let (of, sums) = self.sums.as_ref()?;
         (Some(*of) == page.index(&self.workings)).then(|| sums.first(table, rows))
     }
@@ -67,19 +67,19 @@ impl StepWorkings {
         if view.sum_to.is_some() && index.is_some() && known != index {
             let phase = self.phase(view.page);
             let table = phase.and_then(|(phase, ..)| table_of(phase));
-            self.sums = index.zip(table.map(Sums::of));
+            self.sums = index.zip(table.map(ColumnSums::of));
         }
-        if view.page == Page::Why && self.dip.is_none() {
+        if view.page == StepPageChoice::Why && self.dip.is_none() {
             self.dip = Dip::of(&self.scenario, self.step);
         }
     }
 }
 
 /// The table of `phase` whose rows are added up: its first, if it has rows.
-pub fn table_of(phase: &Phase) -> Option<&Table> {
+pub fn table_of(phase: &Phase) -> Option<&PointTable> {
     let mut values = phase.quantities.iter().map(|quantity| &quantity.value);
     let first = values.find_map(|value| match value {
-        Value::Table(table) => Some(table),
+        WorkedValue::Table(table) => Some(table),
         _ => None,
     });
     first.filter(|table| !table.points.is_empty())
@@ -119,8 +119,8 @@ impl StepPane {
     }
 
     /// Refuses a page that names a phase which the scheme of the present step does not have.
-    pub(super) fn may_show(&self, page: Page, player: &Player) -> Result<(), String> {
-        let (Page::Named(name), Some(shown)) = (page, &self.shown) else {
+    pub(super) fn may_show(&self, page: StepPageChoice, player: &Player) -> Result<(), String> {
+        let (StepPageChoice::Named(name), Some(shown)) = (page, &self.shown) else {
             return Ok(());
         };
         let phases = shown.workings.phases();
@@ -142,7 +142,7 @@ impl StepPane {
         view: &View,
         player: &Player,
     ) -> Result<Vec<Command>, String> {
-        let first = Command::look("phase", Page::default());
+        let first = Command::look("phase", StepPageChoice::default());
         if player.is_moving() {
             return Ok(vec![Command::Pause]);
         }
@@ -163,14 +163,14 @@ impl StepPane {
         let target = at + i64::from(times);
         let (steps, index) = (target.div_euclid(count), target.rem_euclid(count));
         let page = match (steps, index) {
-            (..0, index) if index == count - 1 => Page::Last,
-            _ => Page::Number(index as usize + 1),
+            (..0, index) if index == count - 1 => StepPageChoice::Last,
+            _ => StepPageChoice::Number(index as usize + 1),
         };
         if steps == 0 {
             return Ok(vec![Command::look("phase", page)]);
         }
         if steps < 0 && steps.unsigned_abs() >= here {
-            return Ok(vec![Command::GoTo(Place::Start), first]);
+            return Ok(vec![Command::GoTo(SeekTarget::Start), first]);
         }
         Ok(vec![Command::Step(steps), Command::look("phase", page)])
     }
@@ -209,8 +209,8 @@ impl View {
     /// The command that shows why the axle goes sideways, or the first phase again.
     pub fn why_toggled(&self) -> Command {
         let page = match self.page {
-            Page::Why => self.page_before,
-            _ => Page::Why,
+            StepPageChoice::Why => self.page_before,
+            _ => StepPageChoice::Why,
         };
         Command::look("phase", page)
     }

@@ -4,7 +4,7 @@
 pub mod list;
 
 use super::command::{Command, Force, PushChoice};
-use crate::journal::next_push::{Field, NextPush, Toward};
+use crate::journal::next_push::{NextPush, PushField, Toward};
 use crate::journal::parameters::{self, Parameter, parameters};
 use crate::journal::{Journal, number_of_push};
 use crate::playback::live::LiveRun;
@@ -70,7 +70,7 @@ impl Values {
 
     pub(super) fn select_next_push(&mut self) {
         self.list.filter_by(String::clear);
-        self.list.select(NEXT_PUSH, Field::Size.label().0);
+        self.list.select(NEXT_PUSH, PushField::Size.label().0);
     }
 
     /// The listed value of the scenario with the dotted `key`.
@@ -121,7 +121,7 @@ impl Values {
     ) -> Result<NextPush, String> {
         let mut push = self.next_push.clone();
         if let Some(point) = &choice.point {
-            push = push.typed(Field::Point, point, scenario, time_step_s)?;
+            push = push.typed(PushField::Point, point, scenario, time_step_s)?;
         }
         match choice.force_N {
             None => {}
@@ -183,13 +183,13 @@ impl Values {
 }
 
 impl PushChoice {
-    fn field(field: Field, push: &NextPush) -> Self {
+    fn field(field: PushField, push: &NextPush) -> Self {
         let mut choice = Self::default();
         match field {
-            Field::Point => choice.point = Some(push.point.clone()),
-            Field::Size => choice.force_N = Some(Force::Size(push.size_N)),
-            Field::Toward => choice.toward = Some(push.toward),
-            Field::Length => {
+            PushField::Point => choice.point = Some(push.point.clone()),
+            PushField::Size => choice.force_N = Some(Force::Size(push.size_N)),
+            PushField::Toward => choice.toward = Some(push.toward),
+            PushField::Length => {
                 (choice.for_s, choice.from_s) = (Some(push.for_s), Some(push.from_s));
             }
         }

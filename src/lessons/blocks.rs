@@ -2,15 +2,15 @@
 
 mod content;
 
-use super::lesson::{Asked, Block, Check, Compare, Keep, Predict, Right, Setup};
-use super::names::Names;
+use super::lesson::{AnswerKind, Check, Compare, Keep, LessonBlock, Predict, Right, Setup};
+use super::names::KeptNames;
 use crate::journal::expression::Expression;
-use crate::lab::command::{COMMANDS, Command, Placed};
+use crate::lab::command::{COMMANDS, Command, LocatedCommand};
 use crate::lab::view;
 use crate::scenario::Problem;
 use crate::scenario::dotted::join;
 use crate::text::printable::is_steering;
-use content::Content;
+use content::BlockContent;
 use toml::{Table, Value};
 
 /// The words behind a fence that mean something in a lesson.
@@ -28,10 +28,10 @@ const KEEP: &str = "keep";
 const MOST_CHOICES: usize = 9;
 const LONGEST_LESSON: u32 = 600;
 
-type Found<T> = Result<T, Vec<Problem>>;
+type BlockResult<T> = Result<T, Vec<Problem>>;
 
 /// A block of the file `origin`.
-pub(super) struct Reader<'a> {
+pub(super) struct BlockReader<'a> {
     pub origin: String,
     /// The word behind its fence.
     pub word: &'a str,
@@ -61,7 +61,7 @@ fn expression(
 }
 
 /// What the lesson is about, and how many minutes it takes.
-pub(super) fn head(reader: &Reader<'_>) -> Found<(String, Option<u32>)> {
+pub(super) fn head(reader: &BlockReader<'_>) -> BlockResult<(String, Option<u32>)> {
     let mut content = reader.content(&["about", "minutes"])?;
     let about = content.line("about", false);
     let stated = content.get("minutes");
@@ -78,11 +78,11 @@ pub(super) fn head(reader: &Reader<'_>) -> Found<(String, Option<u32>)> {
 
 /// What the lab does: a `lab` or `task` block of page `page`, whose kept numbers are known from the page `known_from` on.
 pub(super) fn setup(
-    reader: &Reader<'_>,
-    names: &mut Names,
+    reader: &BlockReader<'_>,
+    names: &mut KeptNames,
     page: usize,
     known_from: usize,
-) -> Found<Setup> {
+) -> BlockResult<Setup> {
     let rows = COMMANDS.iter().map(|row| row.name);
     let rows = rows.filter(|name| COMMON.contains(name) || view::is_key(name));
     let order: Vec<_> = rows.chain(LAST).chain([RUN_UNTIL]).collect();
@@ -94,7 +94,7 @@ pub(super) fn setup(
             continue;
         };
         match Command::new(name, &value) {
-            Ok(command) => commands.push(Placed {
+            Ok(command) => commands.push(LocatedCommand {
                 command,
                 line: Some(content.line_of(name)),
             }),
@@ -115,7 +115,12 @@ pub(super) fn setup(
     })
 }
 
-fn keep(content: &mut Content, names: &mut Names, page: usize, known_from: usize) -> Vec<Keep> {
+fn keep(
+    content: &mut BlockContent,
+    names: &mut KeptNames,
+    page: usize,
+    known_from: usize,
+) -> Vec<Keep> {
     let table = match content.get(KEEP) {
         None => return Vec::new(),
         Some(Value::Table(table)) => table,
@@ -148,17 +153,20 @@ fn keep(content: &mut Content, names: &mut Names, page: usize, known_from: usize
 
 /// A block that stands on a page as often as one likes.
 pub(super) fn block(
-    reader: &Reader<'_>,
+    reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
-) -> Found<Block> {
+) -> BlockResult<LessonBlock> {
     match reader.word {
-        "predict" => predict(reader, find).map(Block::Predict),
-        "compare" => compare(reader, find).map(Block::Compare),
-        _ => check(reader, find).map(Block::Check),
+        "predict" => predict(reader, find).map(LessonBlock::Predict),
+        "compare" => compare(reader, find).map(LessonBlock::Compare),
+        _ => check(reader, find).map(LessonBlock::Check),
     }
 }
 
-fn predict(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Found<Predict> {
+fn predict(
+    reader: &BlockReader<'_>,
+    find: impl Fn(&str) -> Result<(), String>,
+) -> BlockResult<Predict> {
     let mut content = reader.content(&["name", "ask", "choices", "unit", "right", "within"])?;
     let name = content.needed("name", false, "compare calls the prediction by it");
     let ask = content.text("ask", "the question", find);
@@ -166,18 +174,18 @@ fn predict(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Fo
         (Some(_), Some(_)) => {
             let rule = "has no place beside choices: a choice has no unit";
             content.refuse(Problem::at("unit", rule));
-            Asked::Choice(Vec::new())
+            AnswerKind::Choice(Vec::new())
         }
-        (Some(value), None) => Asked::Choice(choices(&mut content, &value)),
-        (None, Some(Value::String(unit))) if unit.is_empty() => Asked::Number { unit },
-        (None, Some(_)) => Asked::Number {
+        (Some(value), None) => AnswerKind::Choice(choices(&mut content, &value)),
+        (None, Some(Value::String(unit))) if unit.is_empty() => AnswerKind::Number { unit },
+        (None, Some(_)) => AnswerKind::Number {
             unit: content.line("unit", false),
         },
         (None, None) => {
             content.refuse_whole(
                 "lacks choices = [\"...\", \"...\"], or unit = \"deg\" where a number is asked for",
             );
-            Asked::Choice(Vec::new())
+            AnswerKind::Choice(Vec::new())
         }
     };
     let right = right(&mut content, &asked);
@@ -191,7 +199,7 @@ fn predict(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Fo
 }
 
 /// The number of the right choice; or the right number, and how far off an answer may be.
-fn right(content: &mut Content, asked: &Asked) -> Option<Right> {
+fn right(content: &mut BlockContent, asked: &AnswerKind) -> Option<Right> {
     let (right, within) = (content.get("right"), content.get("within"));
     let key = if right.is_some() { "right" } else { "within" };
     let value = right.as_ref().or(within.as_ref())?;
@@ -201,13 +209,13 @@ fn right(content: &mut Content, asked: &Asked) -> Option<Right> {
         value.as_float().or(whole).filter(|it| it.is_finite())
     };
     let (read, rule) = match asked {
-        Asked::Choice(choices) => {
+        AnswerKind::Choice(choices) => {
             let choice = (1..=choices.len()).find(|it| number(&right) == Some(*it as f64));
             let rule =
                 "must be the number of a choice, counted from 1, and within has no place there";
             (choice.filter(|_| within.is_none()).map(Right::Choice), rule)
         }
-        Asked::Number { .. } => {
+        AnswerKind::Number { .. } => {
             let within = number(&within).filter(|within| *within > 0.0);
             let number = number(&right).zip(within);
             let rule = "must come together: right is the number that comes out, within (above 0) how far off is right too";
@@ -224,7 +232,7 @@ fn right(content: &mut Content, asked: &Asked) -> Option<Right> {
     read
 }
 
-fn choices(content: &mut Content, value: &Value) -> Vec<String> {
+fn choices(content: &mut BlockContent, value: &Value) -> Vec<String> {
     let items = value.as_array().cloned().unwrap_or_default();
     let words: Vec<String> = items
         .iter()
@@ -246,7 +254,10 @@ fn choices(content: &mut Content, value: &Value) -> Vec<String> {
 }
 
 /// A prediction beside what happened.
-fn compare(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Found<Compare> {
+fn compare(
+    reader: &BlockReader<'_>,
+    find: impl Fn(&str) -> Result<(), String>,
+) -> BlockResult<Compare> {
     let mut content = reader.content(&["prediction", "with", "text"])?;
     let prediction = content.needed("prediction", false, "the name of a predict block");
     let has_with = content.get("with").is_some();
@@ -270,7 +281,10 @@ fn compare(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Fo
 }
 
 /// What holds once the student has done the task.
-fn check(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Found<Check> {
+fn check(
+    reader: &BlockReader<'_>,
+    find: impl Fn(&str) -> Result<(), String>,
+) -> BlockResult<Check> {
     let mut content = reader.content(&["that", "goal", "hint"])?;
     let hint = content.line("hint", true);
     let goals = goals(&mut content);
@@ -301,7 +315,7 @@ fn check(reader: &Reader<'_>, find: impl Fn(&str) -> Result<(), String>) -> Foun
 }
 
 /// What is to be reached: a line of text, or a list of them.
-fn goals(content: &mut Content) -> Vec<String> {
+fn goals(content: &mut BlockContent) -> Vec<String> {
     let Some(value) = content.get("goal") else {
         return Vec::new();
     };

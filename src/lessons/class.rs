@@ -1,8 +1,8 @@
 //! The lessons of a lab: the list of them, the one that is taken, and where the others were left.
 
-use super::page::Dress;
-use super::predictions::Place;
-use super::taken::{Followed, Taken};
+use super::page::ClassOverlay;
+use super::predictions::LessonProgress;
+use super::taken::{FollowedLesson, OpenLesson};
 use super::{page, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
@@ -15,10 +15,10 @@ use std::time::Duration;
 use toml::Table;
 
 #[derive(Debug, Default)]
-pub struct Class {
-    shown: Shown,
+pub struct Lessons {
+    shown: LessonDialog,
     /// Where the lessons were left that are not taken now, by their names.
-    left: BTreeMap<String, Place>,
+    left: BTreeMap<String, LessonProgress>,
     /// Which lesson was selected when the list was closed.
     selected: usize,
     /// The time since the lab was opened.
@@ -27,11 +27,11 @@ pub struct Class {
     has_changed: bool,
     /// The lessons of the folder that the lab is confined to, by the full paths of their files.
     own: Vec<String>,
-    dress: Dress,
+    dress: ClassOverlay,
 }
 
 #[derive(Debug, Default)]
-enum Shown {
+enum LessonDialog {
     #[default]
     Nothing,
     /// The list of lessons, of which one is selected.
@@ -41,7 +41,7 @@ enum Shown {
         /// The lesson that was open before.
         from: Option<String>,
     },
-    Lesson(Box<Taken>),
+    Lesson(Box<OpenLesson>),
 }
 
 #[derive(Debug, Default, Serialize, Deserialize)]
@@ -49,7 +49,7 @@ enum Shown {
 pub struct KeptLessons {
     pub open: Option<String>,
     #[serde(default)]
-    pub lessons: BTreeMap<String, Place>,
+    pub lessons: BTreeMap<String, LessonProgress>,
 }
 
 impl KeptLessons {
@@ -79,7 +79,7 @@ fn tell(opened: Result<(), String>, lab: &mut Lab) {
     }
 }
 
-impl Class {
+impl Lessons {
     /// The lessons as the session of `lab` has kept them. The one that was taken is taken again, on its page; the run is
     /// left where it is.
     ///
@@ -101,7 +101,7 @@ impl Class {
     /// Opens the lesson that NAME names, on the page `page` (from 1) or where it was left, and makes the lab stand there.
     pub fn open(&mut self, name: &str, page: Option<usize>, lab: &mut Lab) -> Result<(), String> {
         self.take(name, lab)?;
-        if let Shown::Lesson(taken) = &mut self.shown {
+        if let LessonDialog::Lesson(taken) = &mut self.shown {
             taken.go_to(page, lab)?;
         }
         self.show(lab);
@@ -109,9 +109,9 @@ impl Class {
         Ok(())
     }
 
-    pub fn taken(&self) -> Option<&Taken> {
+    pub fn taken(&self) -> Option<&OpenLesson> {
         match &self.shown {
-            Shown::Lesson(taken) => Some(taken),
+            LessonDialog::Lesson(taken) => Some(taken),
             _ => None,
         }
     }
@@ -126,15 +126,15 @@ impl Class {
         let lesson = lesson.map_err(|problems| problems.to_string())?;
         self.leave(lab);
         let place = self.left.remove(&lesson.name).unwrap_or_default();
-        let mut taken = Taken::new(lesson, place, self.now);
+        let mut taken = OpenLesson::new(lesson, place, self.now);
         taken.go_on(lab);
-        self.shown = Shown::Lesson(Box::new(taken));
+        self.shown = LessonDialog::Lesson(Box::new(taken));
         Ok(())
     }
 
     /// Keeps where the lesson stands, and takes it no longer.
     fn leave(&mut self, lab: &mut Lab) {
-        if let Shown::Lesson(taken) = std::mem::take(&mut self.shown) {
+        if let LessonDialog::Lesson(taken) = std::mem::take(&mut self.shown) {
             let name = taken.lesson.name.clone();
             self.left.insert(name, taken.into_place());
             lab.set_undo_floor(false);
@@ -147,17 +147,17 @@ impl Class {
         let mut scrolls = None;
         let names = self.names();
         match (&mut self.shown, key) {
-            (Shown::List { from, .. }, LessonKey::List) => {
+            (LessonDialog::List { from, .. }, LessonKey::List) => {
                 // Back to the page; the run was left as it was.
                 let from = from.take();
-                self.shown = Shown::Nothing;
+                self.shown = LessonDialog::Nothing;
                 let taken = from.map_or(Ok(()), |name| self.take(&name, lab));
                 tell(taken, lab);
             }
             (_, LessonKey::List) => self.open_list(lab),
-            (Shown::List { selected, .. }, LessonKey::Leave) => {
+            (LessonDialog::List { selected, .. }, LessonKey::Leave) => {
                 self.selected = *selected;
-                self.shown = Shown::Nothing;
+                self.shown = LessonDialog::Nothing;
                 let text =
                     "the lessons are closed: L lists them again, each stands where it was left";
                 lab.refuse(text);
@@ -165,19 +165,19 @@ impl Class {
             (_, LessonKey::Leave) => {
                 lab.refuse("nothing to close here");
             }
-            (Shown::List { selected, .. }, LessonKey::Move(direction)) => {
+            (LessonDialog::List { selected, .. }, LessonKey::Move(direction)) => {
                 let last = names.len().saturating_sub(1);
                 *selected = selected.saturating_add_signed(direction.rows(10)).min(last);
             }
-            (Shown::List { selected, .. }, LessonKey::Take) => {
+            (LessonDialog::List { selected, .. }, LessonKey::Take) => {
                 let name = names.get(*selected).cloned();
                 tell(name.map_or(Ok(()), |name| self.open(&name, None, lab)), lab);
             }
-            (Shown::List { .. }, _) => {
+            (LessonDialog::List { .. }, _) => {
                 lab.refuse("Enter opens the selected lesson, L goes back, Esc leaves the lessons");
             }
-            (Shown::Nothing, _) => lab.refuse("no lesson is open: L lists them"),
-            (Shown::Lesson(taken), key) => scrolls = taken.act(key, lab),
+            (LessonDialog::Nothing, _) => lab.refuse("no lesson is open: L lists them"),
+            (LessonDialog::Lesson(taken), key) => scrolls = taken.act(key, lab),
         }
         self.show(lab);
         if key == LessonKey::List {
@@ -196,7 +196,7 @@ impl Class {
         let selected = here
             .as_ref()
             .and_then(|here| names.iter().position(|name| name == here));
-        self.shown = Shown::List {
+        self.shown = LessonDialog::List {
             selected: selected.unwrap_or(self.selected),
             from: here,
         };
@@ -213,8 +213,8 @@ impl Class {
         own.chain(shipped).chain(files).collect()
     }
 
-    pub fn set_dress(&mut self, dress: Dress, lab: &mut Lab) {
-        if let Shown::Lesson(taken) = &mut self.shown {
+    pub fn set_dress(&mut self, dress: ClassOverlay, lab: &mut Lab) {
+        if let LessonDialog::Lesson(taken) = &mut self.shown {
             taken.was_asked |= dress.is_of_teacher;
             taken.rounds.clone_from(&dress.rounds);
             if !dress.is_followed {
@@ -228,14 +228,14 @@ impl Class {
     }
 
     /// Shows the page of `class`: the run is not touched, and the page's numbers are stated once the class has arrived.
-    pub fn follow(&mut self, class: &Followed<'_>, lab: &mut Lab) -> Result<(), String> {
+    pub fn follow(&mut self, class: &FollowedLesson<'_>, lab: &mut Lab) -> Result<(), String> {
         if self
             .taken()
             .is_none_or(|taken| taken.lesson.name != class.lesson)
         {
             self.take(class.lesson, lab)?;
         }
-        if let Shown::Lesson(taken) = &mut self.shown
+        if let LessonDialog::Lesson(taken) = &mut self.shown
             && taken.follow(class)
         {
             self.show(lab);
@@ -246,7 +246,7 @@ impl Class {
 
     /// Takes `number` as the answer to the question that was asked last.
     pub fn answer(&mut self, number: f64, lab: &mut Lab) {
-        if let Shown::Lesson(taken) = &mut self.shown {
+        if let LessonDialog::Lesson(taken) = &mut self.shown {
             taken.answer(number, lab);
         }
         self.show(lab);
@@ -256,7 +256,7 @@ impl Class {
     pub fn advance(&mut self, now: Duration, lab: &mut Lab) {
         let second = now.as_secs() != self.now.as_secs();
         self.now = now;
-        let Shown::Lesson(taken) = &mut self.shown else {
+        let LessonDialog::Lesson(taken) = &mut self.shown else {
             if self.has_changed {
                 self.show(lab);
             }
@@ -285,9 +285,9 @@ impl Class {
     fn sheet(&mut self, lab: &Lab) -> Option<Sheet> {
         let names = self.names();
         match &mut self.shown {
-            Shown::Nothing => None,
-            Shown::List { selected, .. } => Some(page::list(&names, *selected, &self.left)),
-            Shown::Lesson(taken) => Some(page::sheet(taken, &self.dress, self.now, lab)),
+            LessonDialog::Nothing => None,
+            LessonDialog::List { selected, .. } => Some(page::list(&names, *selected, &self.left)),
+            LessonDialog::Lesson(taken) => Some(page::sheet(taken, &self.dress, self.now, lab)),
         }
     }
 

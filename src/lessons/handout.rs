@@ -5,10 +5,13 @@
 //! from the screen, and the pages that show what came out have room in the place of their words. Notes are left out, and
 //! so is how a task is done.
 
-use super::lesson::{Asked, Block, Compare, Lesson, PREDICTION, Page, Predict, Right, Shown, WITH};
-use super::names::{self, Kept};
-use super::play::{GoOn, Walk};
-use super::predictions::{Place, Tried};
+use super::lesson::{
+    AnswerKind, CodeBlock, Compare, Lesson, LessonBlock, LessonPage, PREDICTION, Predict, Right,
+    WITH,
+};
+use super::names::{self, KeptNumbers};
+use super::play::{LessonProgressCallback, LessonWalk};
+use super::predictions::{LessonProgress, Tried};
 use crate::lab::Lab;
 use crate::scenario::Problem;
 
@@ -27,9 +30,9 @@ pub fn handout(
     paper: Paper,
     lab: Lab,
     picture: &dyn Fn(&Lab) -> String,
-    go_on: GoOn<'_>,
+    go_on: LessonProgressCallback<'_>,
 ) -> Result<String, Problem> {
-    let mut walk = Walk::new(lesson, lab);
+    let mut walk = LessonWalk::new(lesson, lab);
     let mut parts = head(lesson, &walk);
     let mut has_asked = false;
     for page in &lesson.pages {
@@ -40,7 +43,7 @@ pub fn handout(
             let end = match page
                 .blocks
                 .iter()
-                .position(|block| matches!(block, Block::Predict(_)))
+                .position(|block| matches!(block, LessonBlock::Predict(_)))
             {
                 Some(asked) if paper == Paper::Worksheet => asked + 1,
                 _ => page.blocks.len(),
@@ -62,10 +65,15 @@ pub fn handout(
 }
 
 /// A page of a worksheet after the first prediction: what is asked and what is to be done, and room for the rest.
-fn blank_page(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) -> Vec<String> {
+fn blank_page(
+    page: &LessonPage,
+    walk: &LessonWalk<'_>,
+    picture: &dyn Fn(&Lab) -> String,
+) -> Vec<String> {
     let mut parts = vec![format!("## {}", page.heading)];
     let asks = page.predicts().next().is_some();
-    let is_command = |block: &Block| matches!(block, Block::Shown(it) if it.language == "sh");
+    let is_command =
+        |block: &LessonBlock| matches!(block, LessonBlock::Shown(it) if it.language == "sh");
     // What is to be typed says what to do, unless the page compares it with a prediction.
     let is_typed = page.blocks.iter().any(is_command) && page.compares().next().is_none();
     let is_done = is_typed || page.task().is_some();
@@ -73,25 +81,25 @@ fn blank_page(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) ->
     let mut is_before = true;
     for block in &page.blocks {
         match block {
-            Block::Lab(_) if asks => parts.push(fenced("text", &picture(&walk.lab))),
-            Block::Lab(_) => is_before = false,
-            Block::Text(text) if is_before && (!tells || page.lab().is_some()) => {
+            LessonBlock::Lab(_) if asks => parts.push(fenced("text", &picture(&walk.lab))),
+            LessonBlock::Lab(_) => is_before = false,
+            LessonBlock::Text(text) if is_before && (!tells || page.lab().is_some()) => {
                 parts.push(text.filled(|_, _| BLANK.to_owned()));
             }
-            Block::Text(text) if is_done => {
+            LessonBlock::Text(text) if is_done => {
                 parts.push(text.filled(|_, _| BLANK.to_owned()));
             }
-            Block::Predict(predict) => {
+            LessonBlock::Predict(predict) => {
                 parts.push(room_for_blank(predict));
                 is_before = false;
             }
-            Block::Compare(_) => {
+            LessonBlock::Compare(_) => {
                 parts.push(format!("Predicted: {BLANK}\n\nCame out: {BLANK}{BLANK}"));
             }
-            Block::Check(check) => {
+            LessonBlock::Check(check) => {
                 parts.extend(check.goals.iter().map(|goal| format!("- [ ] {goal}")));
             }
-            Block::Shown(Shown { language, text }) if !tells || is_command(block) => {
+            LessonBlock::Shown(CodeBlock { language, text }) if !tells || is_command(block) => {
                 parts.push(fenced(language, text));
             }
             _ => {}
@@ -110,7 +118,7 @@ fn room_for_blank(predict: &Predict) -> String {
 
 /// One page, as in the handout, and with the picture even where the page itself makes the lab do nothing; `walk` stands on
 /// it.
-pub fn page(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) -> String {
+pub fn page(page: &LessonPage, walk: &LessonWalk<'_>, picture: &dyn Fn(&Lab) -> String) -> String {
     let mut parts = on_pages(page, page.blocks.len(), walk, picture);
     if page.lab().is_none() {
         parts.insert(1, fenced("text", &picture(&walk.lab)));
@@ -122,7 +130,7 @@ fn joined(parts: &[String]) -> String {
     parts.join("\n\n") + "\n"
 }
 
-fn head(lesson: &Lesson, walk: &Walk<'_>) -> Vec<String> {
+fn head(lesson: &Lesson, walk: &LessonWalk<'_>) -> Vec<String> {
     let mut parts = vec![format!("# {}", lesson.title)];
     let minutes = lesson
         .minutes
@@ -142,51 +150,53 @@ fn head(lesson: &Lesson, walk: &Walk<'_>) -> Vec<String> {
 
 /// The parts of a page up to its block `end`, with a blank line between each and the next.
 fn on_pages(
-    page: &Page,
+    page: &LessonPage,
     end: usize,
-    walk: &Walk<'_>,
+    walk: &LessonWalk<'_>,
     picture: &dyn Fn(&Lab) -> String,
 ) -> Vec<String> {
     let mut parts = vec![format!("## {}", page.heading)];
     for block in &page.blocks[..end] {
         match block {
-            Block::Lab(_) => parts.push(fenced("text", &picture(&walk.lab))),
+            LessonBlock::Lab(_) => parts.push(fenced("text", &picture(&walk.lab))),
             other => parts.extend(on_paper(other, walk)),
         }
     }
     parts
 }
 
-fn on_paper(block: &Block, walk: &Walk<'_>) -> Option<String> {
+fn on_paper(block: &LessonBlock, walk: &LessonWalk<'_>) -> Option<String> {
     let (lab, kept) = (&walk.lab, &walk.kept);
     match block {
-        Block::Text(text) => Some(text.with_numbers(lab, kept)),
-        Block::Predict(predict) => Some(room_for(predict, lab, kept)),
-        Block::Compare(compare) => Some(blanked(compare, lab, kept)),
-        Block::Check(check) if !check.hint.is_empty() => Some(format!("Hint: {}", check.hint)),
-        Block::Shown(Shown { language, text }) => Some(fenced(language, text)),
+        LessonBlock::Text(text) => Some(text.with_numbers(lab, kept)),
+        LessonBlock::Predict(predict) => Some(room_for(predict, lab, kept)),
+        LessonBlock::Compare(compare) => Some(blanked(compare, lab, kept)),
+        LessonBlock::Check(check) if !check.hint.is_empty() => {
+            Some(format!("Hint: {}", check.hint))
+        }
+        LessonBlock::Shown(CodeBlock { language, text }) => Some(fenced(language, text)),
         _ => None,
     }
 }
 
-fn room_for(predict: &Predict, lab: &Lab, kept: &Kept) -> String {
+fn room_for(predict: &Predict, lab: &Lab, kept: &KeptNumbers) -> String {
     asked(predict, &predict.ask.with_numbers(lab, kept))
 }
 
 /// The question `ask` with a box for each choice, or room for a number.
 fn asked(predict: &Predict, ask: &str) -> String {
     let room: Vec<_> = match &predict.asked {
-        Asked::Choice(choices) => (1..)
+        AnswerKind::Choice(choices) => (1..)
             .zip(choices)
             .map(|(number, choice)| format!("- [ ] {number} {choice}"))
             .collect(),
-        Asked::Number { unit } => vec![format!("{BLANK} {unit}").trim_end().to_owned()],
+        AnswerKind::Number { unit } => vec![format!("{BLANK} {unit}").trim_end().to_owned()],
     };
     format!("**Prediction.** {ask}\n\n{}", room.join("\n"))
 }
 
 /// The comparison with room for the prediction.
-fn blanked(compare: &Compare, lab: &Lab, kept: &Kept) -> String {
+fn blanked(compare: &Compare, lab: &Lab, kept: &KeptNumbers) -> String {
     let with = compare.came_out(lab, kept);
     compare.text.filled(|expression, format| {
         if expression.names().any(|name| name == PREDICTION) {
@@ -214,11 +224,11 @@ fn fenced(language: &str, text: &str) -> String {
 /// The predictions of `place` beside what came out of `lesson`, which is played in a new `lab`; as Markdown.
 pub fn answers(
     lesson: &Lesson,
-    place: &Place,
+    place: &LessonProgress,
     lab: Lab,
-    go_on: GoOn<'_>,
+    go_on: LessonProgressCallback<'_>,
 ) -> Result<String, Problem> {
-    let mut walk = Walk::new(lesson, lab);
+    let mut walk = LessonWalk::new(lesson, lab);
     let pages = lesson.pages.len();
     let mut parts = vec![
         format!("# {}", lesson.title),
@@ -235,10 +245,15 @@ pub fn answers(
 
 /// The heading of a page, with what was asked, what came out and what became of its task; nothing where it has none of
 /// these.
-fn answers_of(lesson: &Lesson, page: &Page, place: &Place, walk: &Walk<'_>) -> Vec<String> {
+fn answers_of(
+    lesson: &Lesson,
+    page: &LessonPage,
+    place: &LessonProgress,
+    walk: &LessonWalk<'_>,
+) -> Vec<String> {
     let told = page.blocks.iter().filter_map(|block| match block {
-        Block::Predict(predict) => predicted(predict, place, walk),
-        Block::Compare(compare) => came_out(lesson, compare, place, walk),
+        LessonBlock::Predict(predict) => predicted(predict, place, walk),
+        LessonBlock::Compare(compare) => came_out(lesson, compare, place, walk),
         _ => None,
     });
     let mut parts: Vec<_> = told.collect();
@@ -257,19 +272,24 @@ fn answers_of(lesson: &Lesson, page: &Page, place: &Place, walk: &Walk<'_>) -> V
 }
 
 /// The question with what was predicted; nothing where nothing was.
-fn predicted(predict: &Predict, place: &Place, walk: &Walk<'_>) -> Option<String> {
+fn predicted(predict: &Predict, place: &LessonProgress, walk: &LessonWalk<'_>) -> Option<String> {
     let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
     let answer = place.predictions.in_words(predict)?;
     Some(format!("**Question.** {ask}\n\n**Predicted.** {answer}"))
 }
 
 /// What came out; nothing where nothing was predicted: it would give the answer away.
-fn came_out(lesson: &Lesson, compare: &Compare, place: &Place, walk: &Walk<'_>) -> Option<String> {
+fn came_out(
+    lesson: &Lesson,
+    compare: &Compare,
+    place: &LessonProgress,
+    walk: &LessonWalk<'_>,
+) -> Option<String> {
     let predict = lesson.predict(&compare.prediction)?;
     place.predictions.to(predict).next()?;
     let text = compare.filled(lesson, &place.predictions, &walk.lab, &walk.kept);
     let choice = match (&predict.asked, &predict.right) {
-        (Asked::Choice(choices), Some(Right::Choice(right))) => choices.get(right - 1),
+        (AnswerKind::Choice(choices), Some(Right::Choice(right))) => choices.get(right - 1),
         _ => None,
     };
     let choice = choice.map_or(String::new(), |choice| format!("{choice}. "));

@@ -1,10 +1,10 @@
 //! A lesson as it was read: its pages, and the blocks of each in the order of the file.
 
-use super::names::Kept;
-use super::text::Text;
+use super::names::KeptNumbers;
+use super::text::LessonText;
 use crate::journal::expression::Expression;
-use crate::lab::command::{Command, Placed};
-use crate::lab::view::Part;
+use crate::lab::command::{Command, LocatedCommand};
+use crate::lab::view::HideablePart;
 use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,26 +19,26 @@ pub struct Lesson {
     pub about: String,
     pub minutes: Option<u32>,
     /// The blocks before the first page: text, code that is shown as it is, and notes.
-    pub introduction: Vec<Block>,
+    pub introduction: Vec<LessonBlock>,
     /// The pages; never empty. The page with the number N (from 1) is `pages[N - 1]`.
-    pub pages: Vec<Page>,
+    pub pages: Vec<LessonPage>,
 }
 
 /// A page: a level-2 heading and all that stands below it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Page {
+pub struct LessonPage {
     /// Its number, from 1.
     pub number: usize,
     pub heading: String,
     /// The heading's line in the file, from 1.
     pub line: usize,
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<LessonBlock>,
 }
 
 /// A part of a page.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Block {
-    Text(Text),
+pub enum LessonBlock {
+    Text(LessonText),
     /// What the lab does when the page is opened; at most one on a page.
     Lab(Setup),
     /// What the student is to do; the lab does it only when it is asked to show it. At most one on a page.
@@ -48,8 +48,8 @@ pub enum Block {
     Compare(Compare),
     /// What holds once the student has done the task.
     Check(Check),
-    Notes(Text),
-    Shown(Shown),
+    Notes(LessonText),
+    Shown(CodeBlock),
 }
 
 /// What a `lab` or `task` block makes the lab do.
@@ -58,7 +58,7 @@ pub struct Setup {
     pub line: usize,
     /// The commands in the order in which they are carried out, with their lines in the file: `open`, `set`, `push`, how
     /// the run is shown, then `go_to` or `run_until`.
-    pub commands: Vec<Placed>,
+    pub commands: Vec<LocatedCommand>,
     /// The numbers that are remembered once all of this is done.
     pub keep: Vec<Keep>,
 }
@@ -75,8 +75,8 @@ pub struct Predict {
     pub line: usize,
     /// Its name; no other prediction of the lesson has it.
     pub name: String,
-    pub ask: Text,
-    pub asked: Asked,
+    pub ask: LessonText,
+    pub asked: AnswerKind,
     /// What comes out, for the teacher; where the file says it.
     pub right: Option<Right>,
 }
@@ -100,7 +100,7 @@ impl Right {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Asked {
+pub enum AnswerKind {
     /// One of these; at least two.
     Choice(Vec<String>),
     /// A number in this unit, which is empty for a pure number.
@@ -109,7 +109,7 @@ pub enum Asked {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Answer {
+pub enum PredictionAnswer {
     Number(f64),
     Choice(String),
 }
@@ -125,7 +125,7 @@ pub struct Compare {
     pub prediction: String,
     pub with: Option<Expression>,
     /// What is said, in Markdown; `{with}` stands for that number and `{prediction}` for the prediction.
-    pub text: Text,
+    pub text: LessonText,
 }
 
 /// What holds once the student has done the task; where the page has no task, once its `lab` block is carried out.
@@ -141,7 +141,7 @@ pub struct Check {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shown {
+pub struct CodeBlock {
     /// The word behind its fence (`text`, `sh`, `toml`, `csv`, `python`, `matlab`), or none.
     pub language: String,
     /// Its lines, with a line end after each.
@@ -150,19 +150,19 @@ pub struct Shown {
 
 impl Lesson {
     /// The page with this number, from 1.
-    pub fn page(&self, number: usize) -> Option<&Page> {
+    pub fn page(&self, number: usize) -> Option<&LessonPage> {
         self.pages.get(number.checked_sub(1)?)
     }
 
     pub fn predict(&self, name: &str) -> Option<&Predict> {
-        let mut all = self.pages.iter().flat_map(Page::predicts);
+        let mut all = self.pages.iter().flat_map(LessonPage::predicts);
         all.find(|predict| predict.name == name)
     }
 }
 
-impl Block {
+impl LessonBlock {
     /// The text in it, which may hold numbers of the run.
-    pub fn text(&self) -> Option<&Text> {
+    pub fn text(&self) -> Option<&LessonText> {
         match self {
             Self::Text(text) | Self::Notes(text) => Some(text),
             Self::Predict(predict) => Some(&predict.ask),
@@ -172,11 +172,11 @@ impl Block {
     }
 }
 
-impl Page {
+impl LessonPage {
     /// What the lab does when the page is opened.
     pub fn lab(&self) -> Option<&Setup> {
         self.blocks.iter().find_map(|block| match block {
-            Block::Lab(setup) => Some(setup),
+            LessonBlock::Lab(setup) => Some(setup),
             _ => None,
         })
     }
@@ -184,14 +184,14 @@ impl Page {
     /// What the student is to do.
     pub fn task(&self) -> Option<&Setup> {
         self.blocks.iter().find_map(|block| match block {
-            Block::Task(setup) => Some(setup),
+            LessonBlock::Task(setup) => Some(setup),
             _ => None,
         })
     }
 
     pub fn predicts(&self) -> impl Iterator<Item = &Predict> {
         self.blocks.iter().filter_map(|block| match block {
-            Block::Predict(predict) => Some(predict),
+            LessonBlock::Predict(predict) => Some(predict),
             _ => None,
         })
     }
@@ -199,7 +199,7 @@ impl Page {
     /// What must hold once the student has done the task.
     pub fn checks(&self) -> impl Iterator<Item = &Check> {
         self.blocks.iter().filter_map(|block| match block {
-            Block::Check(check) => Some(check),
+            LessonBlock::Check(check) => Some(check),
             _ => None,
         })
     }
@@ -211,7 +211,7 @@ impl Page {
 
     pub fn compares(&self) -> impl Iterator<Item = &Compare> {
         self.blocks.iter().filter_map(|block| match block {
-            Block::Compare(compare) => Some(compare),
+            LessonBlock::Compare(compare) => Some(compare),
             _ => None,
         })
     }
@@ -222,17 +222,17 @@ impl Page {
     }
 
     /// Whether it states numbers of the run that a student has in hand: what `kept` names is known whatever that is.
-    pub fn states_numbers(&self, kept: &Kept) -> bool {
+    pub fn states_numbers(&self, kept: &KeptNumbers) -> bool {
         let is_of_run = |expression: &Expression| {
             let mut names = expression.names();
             names.any(|name| !kept.contains_key(name) && ![PREDICTION, WITH].contains(&name))
         };
         let shown = self.blocks.iter();
-        let mut shown = shown.filter(|block| !matches!(block, Block::Notes(_)));
+        let mut shown = shown.filter(|block| !matches!(block, LessonBlock::Notes(_)));
         shown.any(|block| {
-            let numbers = block.text().into_iter().flat_map(Text::numbers);
+            let numbers = block.text().into_iter().flat_map(LessonText::numbers);
             let with = match block {
-                Block::Compare(compare) => compare.with.as_ref(),
+                LessonBlock::Compare(compare) => compare.with.as_ref(),
                 _ => None,
             };
             let mut numbers = numbers.map(|(_, expression)| expression).chain(with);
@@ -240,9 +240,9 @@ impl Page {
         })
     }
 
-    pub fn notes(&self) -> impl Iterator<Item = &Text> {
+    pub fn notes(&self) -> impl Iterator<Item = &LessonText> {
         self.blocks.iter().filter_map(|block| match block {
-            Block::Notes(text) => Some(text),
+            LessonBlock::Notes(text) => Some(text),
             _ => None,
         })
     }
@@ -262,7 +262,7 @@ impl Setup {
     }
 
     /// The parts of the screen that its `hide` names.
-    pub fn hides(&self) -> Vec<Part> {
+    pub fn hides(&self) -> Vec<HideablePart> {
         let mut commands = self.commands.iter();
         let hidden = commands.find_map(|placed| placed.command.looked("hide"));
         let hidden = hidden.and_then(|hidden| hidden.clone().try_into().ok());
@@ -270,19 +270,19 @@ impl Setup {
     }
 }
 
-impl Asked {
+impl AnswerKind {
     /// `answer` as a number, such as that of its choice from 1; `None` where it is no answer to this.
-    pub fn number(&self, answer: &Answer) -> Option<f64> {
+    pub fn number(&self, answer: &PredictionAnswer) -> Option<f64> {
         match (self, answer) {
-            (Self::Number { .. }, Answer::Number(number)) => Some(*number),
-            (Self::Choice(all), Answer::Choice(words)) => {
+            (Self::Number { .. }, PredictionAnswer::Number(number)) => Some(*number),
+            (Self::Choice(all), PredictionAnswer::Choice(words)) => {
                 Some(all.iter().position(|choice| choice == words)? as f64 + 1.0)
             }
             _ => None,
         }
     }
 
-    pub fn takes(&self, answer: &Answer) -> bool {
+    pub fn takes(&self, answer: &PredictionAnswer) -> bool {
         self.number(answer).is_some_and(f64::is_finite)
     }
 }

@@ -1,11 +1,11 @@
 //! Markdown as paragraphs for the page beside the run.
 
-use crate::lab::sheet::{Emphasis, Kind, Paragraph, Words};
+use crate::lab::sheet::{Emphasis, Paragraph, SheetLineKind, StyledText};
 use pulldown_cmark::{Event, Parser, Tag, TagEnd};
 
 /// The paragraphs of `source`; plain ones become `kind`.
-pub fn paragraphs(source: &str, kind: &Kind) -> Vec<Paragraph> {
-    let mut pen = Pen {
+pub fn paragraphs(source: &str, kind: &SheetLineKind) -> Vec<Paragraph> {
+    let mut pen = MarkdownReader {
         kind,
         done: Vec::new(),
         words: Vec::new(),
@@ -22,20 +22,20 @@ pub fn paragraphs(source: &str, kind: &Kind) -> Vec<Paragraph> {
 }
 
 /// What has been read so far.
-struct Pen<'a> {
-    kind: &'a Kind,
+struct MarkdownReader<'a> {
+    kind: &'a SheetLineKind,
     done: Vec<Paragraph>,
-    words: Vec<Words>,
+    words: Vec<StyledText>,
     emphasis: Emphasis,
     /// The lists that are open, each with the number of its next entry where it is numbered.
     lists: Vec<Option<u64>>,
     /// The mark of the entry that is read; after its first paragraph a blank.
     mark: String,
     /// Code or a heading.
-    block: Option<Kind>,
+    block: Option<SheetLineKind>,
 }
 
-impl Pen<'_> {
+impl MarkdownReader<'_> {
     fn take(&mut self, event: Event<'_>) {
         match event {
             Event::Start(tag) => self.start(&tag),
@@ -63,8 +63,8 @@ impl Pen<'_> {
                     format!("{}.", *number - 1)
                 });
             }
-            Tag::CodeBlock(_) => self.begin(Some(Kind::Code)),
-            Tag::Heading { .. } => self.begin(Some(Kind::Heading)),
+            Tag::CodeBlock(_) => self.begin(Some(SheetLineKind::Code)),
+            Tag::Heading { .. } => self.begin(Some(SheetLineKind::Heading)),
             Tag::Paragraph => self.begin(None),
             _ => {}
         }
@@ -85,7 +85,7 @@ impl Pen<'_> {
     }
 
     /// Ends the paragraph that is being read, and begins one of this kind, or of the usual one.
-    fn begin(&mut self, block: Option<Kind>) {
+    fn begin(&mut self, block: Option<SheetLineKind>) {
         self.end();
         self.block = block;
     }
@@ -93,7 +93,7 @@ impl Pen<'_> {
     fn write(&mut self, text: &str, emphasis: Emphasis) {
         match self.words.last_mut() {
             Some(words) if words.emphasis == emphasis => words.text.push_str(text),
-            _ => self.words.push(Words {
+            _ => self.words.push(StyledText {
                 text: text.to_owned(),
                 emphasis,
             }),
@@ -110,7 +110,7 @@ impl Pen<'_> {
         let mark = std::mem::replace(&mut self.mark, " ".to_owned());
         let kind = match &self.block {
             Some(block) => block.clone(),
-            None if depth > 0 => Kind::Item { mark, depth },
+            None if depth > 0 => SheetLineKind::Item { mark, depth },
             None => self.kind.clone(),
         };
         self.done.push(Paragraph { kind, words });
@@ -125,18 +125,18 @@ mod tests {
     fn what_a_lesson_uses_of_markdown_is_kept() {
         let source =
             "The **fast** top\nturns `p`.\n\n1. one\n2. two\n   - deep\n\n```text\na  b\n```\n";
-        let read = paragraphs(source, &Kind::Text);
-        let item = |mark: &str, depth| Kind::Item {
+        let read = paragraphs(source, &SheetLineKind::Text);
+        let item = |mark: &str, depth| SheetLineKind::Item {
             mark: mark.to_owned(),
             depth,
         };
         let kinds_and_texts = read.iter().map(|read| (read.kind.clone(), read.text()));
         let expected = [
-            (Kind::Text, "The fast top turns p."),
+            (SheetLineKind::Text, "The fast top turns p."),
             (item("1.", 1), "one"),
             (item("2.", 1), "two"),
             (item("-", 2), "deep"),
-            (Kind::Code, "a  b\n"),
+            (SheetLineKind::Code, "a  b\n"),
         ];
         assert!(
             kinds_and_texts.eq(expected.map(|(kind, text)| (kind, text.to_owned()))),

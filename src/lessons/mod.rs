@@ -33,6 +33,9 @@ pub mod taken;
 pub mod text;
 pub mod watch;
 
-pub use class::Class;
-pub use lesson::{Answer, Asked, Block, Check, Compare, Keep, Lesson, Page, Predict, Setup, Shown};
-pub use names::Kept;
+pub use class::Lessons;
+pub use lesson::{
+    AnswerKind, Check, CodeBlock, Compare, Keep, Lesson, LessonBlock, LessonPage, Predict,
+    PredictionAnswer, Setup,
+};
+pub use names::KeptNumbers;

@@ -7,7 +7,7 @@ use crate::scenario::problem::nearest;
 use std::collections::BTreeMap;
 
 /// The numbers that were kept, by their names. One that could not be stated is NaN.
-pub type Kept = BTreeMap<String, f64>;
+pub type KeptNumbers = BTreeMap<String, f64>;
 
 /// Names that mean something else in a lesson.
 const RESERVED: [&str; 5] = ["with", "prediction", "and", "or", "abs"];
@@ -17,7 +17,7 @@ const MOST_KEPT: usize = 100;
 
 /// The names under which a lesson keeps numbers.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Names {
+pub(super) struct KeptNames {
     /// Each with the first page on which it is known.
     kept: Vec<(String, usize)>,
     /// The first page on which a run is open, once a block that opens one was read.
@@ -26,7 +26,7 @@ pub(super) struct Names {
     are_lost: bool,
 }
 
-impl Names {
+impl KeptNames {
     /// Adds `name`, which is known from the page `from` on.
     ///
     /// # Errors
@@ -99,7 +99,7 @@ impl Names {
 }
 
 /// The kept number called `name`, or else the run's number in `lab`; `None` if there is none now.
-pub fn number(name: &str, lab: &Lab, kept: &Kept) -> Option<f64> {
+pub fn number(name: &str, lab: &Lab, kept: &KeptNumbers) -> Option<f64> {
     match kept.get(name) {
         Some(number) => Some(*number).filter(|number| number.is_finite()),
         None => lab.player().number(name),
@@ -107,7 +107,7 @@ pub fn number(name: &str, lab: &Lab, kept: &Kept) -> Option<f64> {
 }
 
 /// The value of `expression` in `lab`; `None` where a number that it needs is not there.
-pub fn value(expression: &Expression, lab: &Lab, kept: &Kept) -> Option<f64> {
+pub fn value(expression: &Expression, lab: &Lab, kept: &KeptNumbers) -> Option<f64> {
     let value = expression.value(|name| number(name, lab, kept));
     value.filter(|value| value.is_finite())
 }

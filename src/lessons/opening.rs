@@ -1,6 +1,6 @@
 //! Opening a lesson: a shipped one, or a file.
 
-use super::lesson::{Block, Lesson};
+use super::lesson::{Lesson, LessonBlock};
 use super::reading::read;
 use super::shipped;
 use super::structure::on_line;
@@ -81,7 +81,7 @@ pub fn read_again(path: &Path) -> Result<Lesson, Problems> {
 fn look_in(folder: &Path, lesson: &mut Lesson) {
     let blocks = lesson.pages.iter_mut().flat_map(|page| &mut page.blocks);
     let setups = blocks.filter_map(|block| match block {
-        Block::Lab(setup) | Block::Task(setup) => Some(setup),
+        LessonBlock::Lab(setup) | LessonBlock::Task(setup) => Some(setup),
         _ => None,
     });
     for placed in setups.flat_map(|setup| &mut setup.commands) {

@@ -1,13 +1,13 @@
 //! The page of a lesson, and the list of lessons, as a sheet beside the panes.
 
-use super::lesson::{Asked, Block, Check, Compare, Lesson, Page, Predict};
+use super::lesson::{AnswerKind, Check, Compare, Lesson, LessonBlock, LessonPage, Predict};
 use super::markdown::paragraphs;
-use super::predictions::{Place, Tried, without};
-use super::taken::Taken;
-use super::text::Text;
+use super::predictions::{LessonProgress, Tried, without};
+use super::taken::OpenLesson;
+use super::text::LessonText;
 use super::{names, reading};
 use crate::lab::Lab;
-use crate::lab::sheet::{Kind, Paragraph, Sheet};
+use crate::lab::sheet::{Paragraph, Sheet, SheetLineKind};
 use crate::text::number;
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -17,7 +17,7 @@ const SOON: &str = "…";
 
 /// What the room of the class adds to the page.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Dress {
+pub struct ClassOverlay {
     /// What stands in the frame instead of the title; empty: the title. It has a form a line, the longest first.
     pub framed: String,
     /// What stands in the lower line of the frame, also a form a line.
@@ -36,7 +36,11 @@ pub struct Dress {
 }
 
 /// The list of the lessons called `names`, of which one is `selected`; `left` tells where some of them were left.
-pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Place>) -> Sheet {
+pub(super) fn list(
+    names: &[String],
+    selected: usize,
+    left: &BTreeMap<String, LessonProgress>,
+) -> Sheet {
     let mut sheet = Sheet {
         title: "lessons".to_owned(),
         enter: "open",
@@ -51,7 +55,7 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
         let place = left.get(name).map_or(String::new(), |place| {
             format!(" (page {} of {pages})", place.page)
         });
-        let kind = Kind::Choice {
+        let kind = SheetLineKind::Choice {
             is_selected: index == selected,
             is_given: left.get(name).is_some_and(|place| place.has_ended),
         };
@@ -59,7 +63,7 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
         sheet.paragraphs.push(Paragraph::new(kind, text));
         if index == selected {
             let about = lesson.map_or(String::new(), |lesson| lesson.about);
-            let kind = Kind::Item {
+            let kind = SheetLineKind::Item {
                 mark: "     ".to_owned(),
                 depth: 1,
             };
@@ -69,12 +73,14 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
         }
     }
     let keys = "Up, Down choose; Enter opens; L goes back.";
-    sheet.paragraphs.push(Paragraph::new(Kind::Hint, keys));
+    sheet
+        .paragraphs
+        .push(Paragraph::new(SheetLineKind::Hint, keys));
     sheet
 }
 
 /// The page that is open in `taken`; `now` is the time since the lab was opened.
-pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> Sheet {
+pub(super) fn sheet(taken: &OpenLesson, dress: &ClassOverlay, now: Duration, lab: &Lab) -> Sheet {
     let lesson = &taken.lesson;
     let (page, pages) = (taken.place.page, lesson.pages.len());
     let mut writer = Writer {
@@ -103,13 +109,13 @@ pub(super) fn sheet(taken: &Taken, dress: &Dress, now: Duration, lab: &Lab) -> S
 /// The page `number` in words for the one who teaches: its questions, each with what `after` says of it, its notes, and
 /// the next page.
 pub fn told(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> String) -> String {
-    let blank = |text: &Text| text.filled(|_, _| SOON.to_owned());
+    let blank = |text: &LessonText| text.filled(|_, _| SOON.to_owned());
     let mut text = format!("\n== {number} of {} · {}", lesson.pages.len(), lesson.title);
     if let Some(page) = lesson.page(number) {
         text += &format!("\n{}\n", page.heading);
         for predict in page.predicts() {
             text += &format!("\nasked: {}\n", blank(&predict.ask));
-            if let Asked::Choice(choices) = &predict.asked {
+            if let AnswerKind::Choice(choices) = &predict.asked {
                 for (number, choice) in (1..).zip(choices) {
                     text += &format!("  {number} {choice}\n");
                 }
@@ -127,8 +133,8 @@ pub fn told(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> String) 
 }
 
 struct Writer<'a> {
-    taken: &'a Taken,
-    dress: &'a Dress,
+    taken: &'a OpenLesson,
+    dress: &'a ClassOverlay,
     lab: &'a Lab,
     sheet: Sheet,
 }
@@ -138,14 +144,14 @@ impl Writer<'_> {
         let Some(page) = self.taken.page() else {
             return;
         };
-        self.add(Paragraph::new(Kind::Heading, page.heading.clone()));
+        self.add(Paragraph::new(SheetLineKind::Heading, page.heading.clone()));
         if page.number == 1 {
             self.blocks(&self.taken.lesson.introduction);
         }
         let blocks = match page
             .blocks
             .iter()
-            .position(|block| matches!(block, Block::Lab(_)))
+            .position(|block| matches!(block, LessonBlock::Lab(_)))
         {
             Some(lab) if self.taken.plays() => &page.blocks[..lab],
             _ => &page.blocks,
@@ -164,10 +170,10 @@ impl Writer<'_> {
     }
 
     /// Writes `blocks` up to the first question that is not answered; returns whether there is one.
-    fn blocks(&mut self, blocks: &[Block]) -> bool {
+    fn blocks(&mut self, blocks: &[LessonBlock]) -> bool {
         for block in blocks {
             match block {
-                Block::Text(text) => {
+                LessonBlock::Text(text) => {
                     let source = match self.taken.stated(text.line) {
                         Some(source) => source.to_owned(),
                         None if self.taken.is_under_way() => text.filled(|_, _| SOON.to_owned()),
@@ -179,9 +185,9 @@ impl Writer<'_> {
                     } else {
                         source
                     };
-                    self.extend(paragraphs(&source, &Kind::Text));
+                    self.extend(paragraphs(&source, &SheetLineKind::Text));
                 }
-                Block::Predict(predict) => {
+                LessonBlock::Predict(predict) => {
                     let first = self.sheet.paragraphs.len();
                     self.question(predict);
                     if let Some((name, votes)) = &self.dress.votes
@@ -195,12 +201,12 @@ impl Writer<'_> {
                         return true;
                     }
                 }
-                Block::Compare(compare) => self.comparison(compare),
-                Block::Check(check) => self.goals(check),
-                Block::Shown(shown) => {
-                    self.add(Paragraph::new(Kind::Code, shown.text.clone()));
+                LessonBlock::Compare(compare) => self.comparison(compare),
+                LessonBlock::Check(check) => self.goals(check),
+                LessonBlock::Shown(shown) => {
+                    self.add(Paragraph::new(SheetLineKind::Code, shown.text.clone()));
                 }
-                Block::Lab(_) | Block::Task(_) | Block::Notes(_) => {}
+                LessonBlock::Lab(_) | LessonBlock::Task(_) | LessonBlock::Notes(_) => {}
             }
         }
         false
@@ -223,7 +229,7 @@ impl Writer<'_> {
             let all = [&[state.to_owned()][..], &[check.goals.join(", ")]];
             let words = all.concat().into_iter().filter(|words| !words.is_empty());
             let text = words.collect::<Vec<_>>().join(": ");
-            self.add(Paragraph::new(Kind::Goal { is_reached }, text));
+            self.add(Paragraph::new(SheetLineKind::Goal { is_reached }, text));
         } else {
             let (lab, kept) = (self.lab, &self.taken.place.kept);
             let parts = check.that.conjuncts(|name| names::number(name, lab, kept));
@@ -232,11 +238,14 @@ impl Writer<'_> {
                 let now = now.map(|now| format!(" (now {})", number::significant(now, 4)));
                 let is_reached = part.holds;
                 let text = goal.clone() + &now.unwrap_or_default();
-                self.add(Paragraph::new(Kind::Goal { is_reached }, text));
+                self.add(Paragraph::new(SheetLineKind::Goal { is_reached }, text));
             }
         }
         if !is_reached && self.taken.shows_hints && !check.hint.is_empty() {
-            self.add(Paragraph::new(Kind::Hint, format!("Hint: {}", check.hint)));
+            self.add(Paragraph::new(
+                SheetLineKind::Hint,
+                format!("Hint: {}", check.hint),
+            ));
         }
         self.is_seen_from(first);
     }
@@ -245,21 +254,21 @@ impl Writer<'_> {
         let (lesson, place) = (&self.taken.lesson, &self.taken.place);
         let first = self.sheet.paragraphs.len();
         if self.taken.is_under_way() {
-            self.add(Paragraph::new(Kind::Result, SOON));
+            self.add(Paragraph::new(SheetLineKind::Result, SOON));
             return;
         }
         let source = match self.taken.stated(compare.line) {
             Some(source) => source.to_owned(),
             None => compare.filled(lesson, &place.predictions, self.lab, &place.kept),
         };
-        self.extend(paragraphs(&source, &Kind::Result));
+        self.extend(paragraphs(&source, &SheetLineKind::Result));
         let predict = lesson.predict(&compare.prediction);
         let is_missing = predict.is_some_and(|predict| !place.predictions.is_locked(predict));
         if is_missing && !self.dress.is_of_teacher && !self.dress.is_followed {
             let pages = &mut lesson.pages.iter();
             if let Some(page) = pages.find(|page| page.asks(&compare.prediction)) {
                 let text = format!("You predicted nothing: page {} asks for it.", page.number);
-                self.add(Paragraph::new(Kind::Hint, text));
+                self.add(Paragraph::new(SheetLineKind::Hint, text));
             }
         }
         self.is_seen_from(first);
@@ -270,17 +279,17 @@ impl Writer<'_> {
         let kept = &place.kept;
         let first = self.sheet.paragraphs.len();
         let ask = predict.ask.with_numbers(self.lab, kept);
-        self.extend(paragraphs(&ask, &Kind::Question));
+        self.extend(paragraphs(&ask, &SheetLineKind::Question));
         let is_open = self.taken.is_open(predict);
         let given = place.predictions.to(predict).next_back();
         let given = given.filter(|_| !is_open).map(|given| &given.answer);
         let pointed = self.taken.pointed.get(&predict.name);
         let (at, is_marked) = pointed.filter(|_| is_open).copied().unzip();
-        if let Asked::Choice(choices) = &predict.asked {
+        if let AnswerKind::Choice(choices) = &predict.asked {
             for (index, choice) in choices.iter().enumerate() {
                 let is_selected = at == Some(index);
                 let is_locked = given.is_some_and(|given| given.in_words(predict) == *choice);
-                let kind = Kind::Choice {
+                let kind = SheetLineKind::Choice {
                     is_selected,
                     is_given: is_locked || is_selected && is_marked == Some(true),
                 };
@@ -315,7 +324,7 @@ impl Writer<'_> {
             (Some(said), false) => format!("Locked: {said}."),
             _ => return,
         };
-        self.add(Paragraph::new(Kind::Hint, text));
+        self.add(Paragraph::new(SheetLineKind::Hint, text));
     }
 
     /// Says which keys answer `predict`.
@@ -323,11 +332,11 @@ impl Writer<'_> {
         self.sheet.enter = "answer";
         self.sheet.takes_digits = true;
         let keys = match &predict.asked {
-            Asked::Choice(_) if is_marked => "Enter locks it.",
-            Asked::Choice(_) => "A number marks, or Up, Down, Enter.",
-            Asked::Number { .. } => "Type your prediction.",
+            AnswerKind::Choice(_) if is_marked => "Enter locks it.",
+            AnswerKind::Choice(_) => "A number marks, or Up, Down, Enter.",
+            AnswerKind::Number { .. } => "Type your prediction.",
         };
-        self.add(Paragraph::new(Kind::Hint, keys));
+        self.add(Paragraph::new(SheetLineKind::Hint, keys));
     }
 
     fn next(&mut self, page: usize) {
@@ -347,7 +356,7 @@ impl Writer<'_> {
             (false, false, false) => return, // the line of keys names n
             (false, false, true) => "This is the end of the lesson. L: other lessons.",
         };
-        self.add(Paragraph::new(Kind::Hint, text));
+        self.add(Paragraph::new(SheetLineKind::Hint, text));
     }
 
     /// What the teacher sees: the clock, the notes, and the next page.
@@ -356,20 +365,20 @@ impl Writer<'_> {
             return;
         };
         self.add(Paragraph::new(
-            Kind::Heading,
+            SheetLineKind::Heading,
             format!("For the class: {time}"),
         ));
         let lesson = &self.taken.lesson;
         let page = self.taken.page();
-        for notes in page.into_iter().flat_map(Page::notes) {
+        for notes in page.into_iter().flat_map(LessonPage::notes) {
             let source = notes.with_numbers(self.lab, &self.taken.place.kept);
-            self.extend(paragraphs(&source, &Kind::Note));
+            self.extend(paragraphs(&source, &SheetLineKind::Note));
         }
         let next = lesson.page(self.taken.place.page + 1);
         let next = next.map_or("This is the last page.".to_owned(), |page| {
             format!("Next page: {}", page.heading)
         });
-        self.add(Paragraph::new(Kind::Note, next));
+        self.add(Paragraph::new(SheetLineKind::Note, next));
     }
 
     fn add(&mut self, paragraph: Paragraph) {

@@ -4,8 +4,8 @@ use super::markdown::paragraphs;
 use crate::figure::page::ink::{self, BLACK, circle};
 use crate::figure::page::letters::escape;
 use crate::figure::page::scene::at;
-use crate::figure::page::{Path, Point, Scene, Unwritable, format};
-use crate::lab::sheet::{Emphasis, Kind, Paragraph};
+use crate::figure::page::{PageScene, Point, Unwritable, VectorPath, format};
+use crate::lab::sheet::{Emphasis, Paragraph, SheetLineKind};
 
 /// A4, pt.
 const SHEET_PT: (f64, f64) = (595.28, 841.89);
@@ -25,7 +25,7 @@ const BELOW_HEADING_PT: f64 = 90.0;
 /// # Errors
 /// When there is more text than a page's numbers can place.
 pub fn pdf(markdown: &str) -> Result<Vec<u8>, Unwritable> {
-    let paragraphs = paragraphs(markdown, &Kind::Text);
+    let paragraphs = paragraphs(markdown, &SheetLineKind::Text);
     let title = paragraphs.first().map_or(String::new(), Paragraph::text);
     let mut sheets = Sheets::new(&title);
     for (index, paragraph) in paragraphs.iter().enumerate() {
@@ -42,7 +42,7 @@ pub fn pdf(markdown: &str) -> Result<Vec<u8>, Unwritable> {
 
 struct Sheets {
     title: String,
-    done: Vec<Scene>,
+    done: Vec<PageScene>,
     /// The lower edge of what stands on the last sheet, pt.
     y: f64,
 }
@@ -60,7 +60,7 @@ impl Sheets {
 
     fn turn(&mut self) {
         let (width, height) = SHEET_PT;
-        self.done.push(Scene::new(width, height, &self.title));
+        self.done.push(PageScene::new(width, height, &self.title));
         self.y = MARGIN_PT;
     }
 
@@ -72,7 +72,7 @@ impl Sheets {
     }
 
     /// Room for a line: its sheet, and its upper edge.
-    fn line(&mut self, height_pt: f64) -> (&mut Scene, f64) {
+    fn line(&mut self, height_pt: f64) -> (&mut PageScene, f64) {
         self.turn_unless(height_pt);
         let top = self.y;
         self.y += height_pt;
@@ -82,22 +82,22 @@ impl Sheets {
 
     fn put(&mut self, paragraph: &Paragraph, next: Option<&Paragraph>) {
         let is_first = self.y <= MARGIN_PT && self.done.len() == 1;
-        let is_item = |one: &Paragraph| matches!(one.kind, Kind::Item { .. });
+        let is_item = |one: &Paragraph| matches!(one.kind, SheetLineKind::Item { .. });
         if !is_item(paragraph) && next.is_some_and(is_item) {
             self.turn_unless(BELOW_HEADING_PT);
         }
         match &paragraph.kind {
-            Kind::Code => {
+            SheetLineKind::Code => {
                 self.turn_unless(code_height_pt(paragraph));
                 self.put_code(&paragraph.text());
             }
-            Kind::Heading => {
+            SheetLineKind::Heading => {
                 let size = if is_first { 18.0 } else { 13.0 };
                 self.turn_unless(BELOW_HEADING_PT + next.map_or(0.0, code_height_pt));
                 self.y += size * 0.5;
                 self.put_lines(paragraph, size, 0.0, "");
             }
-            Kind::Item { mark, depth } => {
+            SheetLineKind::Item { mark, depth } => {
                 self.put_lines(paragraph, TEXT_PT, f64::from(*depth) * INDENT_PT, mark);
             }
             _ => self.put_lines(paragraph, TEXT_PT, 0.0, ""),
@@ -160,7 +160,7 @@ fn words(paragraph: &Paragraph) -> Vec<String> {
 /// The room that code takes, at most half a sheet: what is longer goes on on the next; 0 for other paragraphs.
 fn code_height_pt(paragraph: &Paragraph) -> f64 {
     let lines = match paragraph.kind {
-        Kind::Code => paragraph.text().lines().count(),
+        SheetLineKind::Code => paragraph.text().lines().count(),
         _ => 0,
     };
     (lines as f64 * CELL_PT.1).min(SHEET_PT.1 / 2.0)
@@ -181,16 +181,17 @@ fn lines(words: &[String], size: f64, width_pt: f64) -> Vec<String> {
     lines
 }
 
-fn rectangle(corner: Point, (width, height): (f64, f64)) -> Path {
+fn rectangle(corner: Point, (width, height): (f64, f64)) -> VectorPath {
     let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
-    Path::polygon(corners.map(|(x, y)| at(corner.x + x, corner.y + y)))
+    VectorPath::polygon(corners.map(|(x, y)| at(corner.x + x, corner.y + y)))
 }
 
 /// Draws `c` in the cell whose upper left corner is `corner`: dots of Braille, lines and blocks as such, and else a letter.
-fn put_cell(sheet: &mut Scene, c: char, corner: Point) {
+fn put_cell(sheet: &mut PageScene, c: char, corner: Point) {
     let (width, height) = CELL_PT;
     let to = |x: f64, y: f64| at(corner.x + x * width, corner.y + y * height);
-    let polygon = |corners: &[(f64, f64)]| Path::polygon(corners.iter().map(|&(x, y)| to(x, y)));
+    let polygon =
+        |corners: &[(f64, f64)]| VectorPath::polygon(corners.iter().map(|&(x, y)| to(x, y)));
     match c {
         ' ' => {}
         '\u{2800}'..='\u{28ff}' => {
@@ -260,7 +261,10 @@ mod tests {
 
     #[test]
     fn words_stand_as_close_as_they_are_written() {
-        let read = paragraphs("`steps = 10`, and **two words**: r rᵀ ═", &Kind::Text);
+        let read = paragraphs(
+            "`steps = 10`, and **two words**: r rᵀ ═",
+            &SheetLineKind::Text,
+        );
         let expected = "steps = 10, and *two* *words*: r r^{T} =";
         assert_eq!(words(&read[0]).join(" "), expected);
     }

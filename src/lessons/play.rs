@@ -1,11 +1,11 @@
 //! A lesson played to its end without a screen: page after page, with every task done as the lesson shows it.
 
-use super::lesson::{Block, Check, Lesson, Page, Setup};
-use super::names::{self, Kept};
+use super::lesson::{Check, Lesson, LessonBlock, LessonPage, Setup};
+use super::names::{self, KeptNumbers};
 use super::predictions::Predictions;
 use super::stage::Stage;
 use super::structure::on_line;
-use super::text::Text;
+use super::text::LessonText;
 use crate::journal::expression::Expression;
 use crate::lab::Lab;
 use crate::lab::command::Command;
@@ -15,36 +15,40 @@ use indicatif::HumanCount;
 use std::ops::ControlFlow;
 
 /// Asked several times a second, with the step that the run is at and the one at which it stops, whether to go on.
-pub type GoOn<'a> = &'a mut dyn FnMut(u64, u64) -> ControlFlow<()>;
+pub type LessonProgressCallback<'a> = &'a mut dyn FnMut(u64, u64) -> ControlFlow<()>;
 
 /// The most steps of the run before a page that is played again when the page is turned to.
 const MOST_BEFORE: u64 = 1_000_000;
 
 /// A lab that goes through a lesson.
-pub struct Walk<'a> {
+pub struct LessonWalk<'a> {
     lesson: &'a Lesson,
     pub lab: Lab,
-    pub kept: Kept,
+    pub kept: KeptNumbers,
     /// Nothing is predicted: what a page hides until then is hidden as long as the page is open.
     predictions: Predictions,
     /// Whether a run of the lesson is open.
     is_open: bool,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> LessonWalk<'a> {
     /// Before the first page of `lesson`, in a new `lab`.
     pub fn new(lesson: &'a Lesson, lab: Lab) -> Self {
         Self {
             lesson,
             lab,
-            kept: Kept::new(),
+            kept: KeptNumbers::new(),
             predictions: Predictions::default(),
             is_open: false,
         }
     }
 
     /// Stands on `page` from nothing, without the pages before it that make no difference to it.
-    pub fn jump(&mut self, page: &'a Page, go_on: GoOn<'_>) -> Result<(), Problem> {
+    pub fn jump(
+        &mut self,
+        page: &'a LessonPage,
+        go_on: LessonProgressCallback<'_>,
+    ) -> Result<(), Problem> {
         let stages = self
             .lesson
             .stages_to(page.number, &self.kept, &self.predictions);
@@ -55,7 +59,11 @@ impl<'a> Walk<'a> {
     }
 
     /// Turns to `page` from the page before: carries out its `lab` block.
-    pub fn enter(&mut self, page: &'a Page, go_on: GoOn<'_>) -> Result<(), Problem> {
+    pub fn enter(
+        &mut self,
+        page: &'a LessonPage,
+        go_on: LessonProgressCallback<'_>,
+    ) -> Result<(), Problem> {
         match self.lesson.stage_of(page.number, &self.predictions) {
             Some(stage) => self.carry_out(&stage, go_on),
             None => Ok(()),
@@ -63,7 +71,11 @@ impl<'a> Walk<'a> {
     }
 
     /// Leaves `page`: does its task, and shows again what it hides until its prediction.
-    pub fn leave(&mut self, page: &'a Page, go_on: GoOn<'_>) -> Result<(), Problem> {
+    pub fn leave(
+        &mut self,
+        page: &'a LessonPage,
+        go_on: LessonProgressCallback<'_>,
+    ) -> Result<(), Problem> {
         if let Some(stage) = self.lesson.task_of(page.number, &self.predictions) {
             self.carry_out(&stage, go_on)?;
         }
@@ -75,7 +87,11 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    fn carry_out(&mut self, stage: &Stage<'_>, go_on: GoOn<'_>) -> Result<(), Problem> {
+    fn carry_out(
+        &mut self,
+        stage: &Stage<'_>,
+        go_on: LessonProgressCallback<'_>,
+    ) -> Result<(), Problem> {
         self.is_open = true;
         let done = stage.carry_out(&mut self.lab, &mut self.kept, go_on);
         done.map_err(|text| as_problem(&self.lesson.origin, stage.setup.line, &text))
@@ -99,7 +115,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The places of `text` for numbers that there are not now.
-    fn unstated_in(&self, text: &Text, found: &mut Problems) {
+    fn unstated_in(&self, text: &LessonText, found: &mut Problems) {
         for (line, expression) in text.numbers() {
             let names: Vec<_> = expression.names().collect();
             let is_of_compare = names.contains(&"with") || names.contains(&"prediction");
@@ -111,12 +127,12 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn unstated_on(&self, page: &Page, found: &mut Problems) {
+    fn unstated_on(&self, page: &LessonPage, found: &mut Problems) {
         for block in &page.blocks {
             if let Some(text) = block.text() {
                 self.unstated_in(text, found);
             }
-            if let Block::Compare(compare) = block
+            if let LessonBlock::Compare(compare) = block
                 && let Some(with) = &compare.with
                 && compare.came_out(&self.lab, &self.kept).is_none()
             {
@@ -134,8 +150,12 @@ impl<'a> Walk<'a> {
 /// # Errors
 /// What cannot be carried out, and every check that does not do what it should, with file and line. Where `go_on` broke
 /// off, the result means nothing.
-pub fn check(lesson: &Lesson, lab: Lab, go_on: GoOn<'_>) -> Result<Vec<Problem>, Problems> {
-    let mut walk = Walk::new(lesson, lab);
+pub fn check(
+    lesson: &Lesson,
+    lab: Lab,
+    go_on: LessonProgressCallback<'_>,
+) -> Result<Vec<Problem>, Problems> {
+    let mut walk = LessonWalk::new(lesson, lab);
     let (mut found, mut unstated) = (Problems::default(), Problems::default());
     for page in &lesson.pages {
         if let Err(problem) = walk.check_page(page, &mut found, &mut unstated, go_on) {
@@ -146,10 +166,10 @@ pub fn check(lesson: &Lesson, lab: Lab, go_on: GoOn<'_>) -> Result<Vec<Problem>,
     found.of(&lesson.origin).or(unstated.list)
 }
 
-impl<'a> Walk<'a> {
+impl<'a> LessonWalk<'a> {
     /// Refuses a page that states numbers of a run which it does not open, where that is too long to be played again
     /// each time somebody turns to the page from elsewhere.
-    fn refuse_far(&self, page: &Page, found: &mut Problems) {
+    fn refuse_far(&self, page: &LessonPage, found: &mut Problems) {
         let steps = self.lab.player().playback.step_number();
         let opens = page.lab().is_some_and(Setup::opens);
         if !opens && steps > MOST_BEFORE && page.states_numbers(&self.kept) {
@@ -164,10 +184,10 @@ impl<'a> Walk<'a> {
 
     fn check_page(
         &mut self,
-        page: &'a Page,
+        page: &'a LessonPage,
         found: &mut Problems,
         unstated: &mut Problems,
-        go_on: GoOn<'_>,
+        go_on: LessonProgressCallback<'_>,
     ) -> Result<(), Problem> {
         let has_task = page.task().is_some();
         let block = if has_task { "task" } else { "lab block" };

@@ -1,10 +1,12 @@
 //! What a student has predicted in a lesson. A prediction is locked: it is not changed any more.
 
-use super::lesson::{Answer, Compare, Lesson, PREDICTION, Page, Predict, Setup, WITH};
-use super::names::{Kept, value};
-use super::text::Format;
+use super::lesson::{
+    Compare, Lesson, LessonPage, PREDICTION, Predict, PredictionAnswer, Setup, WITH,
+};
+use super::names::{KeptNumbers, value};
+use super::text::TextFormat;
 use crate::lab::Lab;
-use crate::lab::view::Part;
+use crate::lab::view::HideablePart;
 use crate::text::number;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,15 +15,15 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Predictions {
-    locked: BTreeMap<String, Vec<Given>>,
+    locked: BTreeMap<String, Vec<LockedAnswer>>,
 }
 
 /// An answer that was locked: the vote of a round of a class, or the prediction of one who is in none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Given {
+pub struct LockedAnswer {
     /// From 1; without a class it is 1.
     pub round: u32,
-    pub answer: Answer,
+    pub answer: PredictionAnswer,
     /// Whether the outcome had been seen, or the question was closed.
     pub late: bool,
     /// The page that was open, from 1.
@@ -35,7 +37,7 @@ impl Predictions {
     ///
     /// # Errors
     /// When one is locked already in its round, or it is no answer to it; nothing has changed then.
-    pub fn lock(&mut self, predict: &Predict, given: Given) -> Result<(), String> {
+    pub fn lock(&mut self, predict: &Predict, given: LockedAnswer) -> Result<(), String> {
         if self.in_round(predict, given.round).is_some() {
             return Err("is locked already: a prediction is not changed".to_owned());
         }
@@ -53,18 +55,21 @@ impl Predictions {
     }
 
     /// All of them, each with the name of its question.
-    pub fn all(&self) -> impl Iterator<Item = (&String, &Given)> {
+    pub fn all(&self) -> impl Iterator<Item = (&String, &LockedAnswer)> {
         let locked = self.locked.iter();
         locked.flat_map(|(name, all)| all.iter().map(move |given| (name, given)))
     }
 
     /// The answers to `predict`. One that it no longer takes, as the file was changed, does not count.
-    pub fn to<'a>(&'a self, predict: &'a Predict) -> impl DoubleEndedIterator<Item = &'a Given> {
+    pub fn to<'a>(
+        &'a self,
+        predict: &'a Predict,
+    ) -> impl DoubleEndedIterator<Item = &'a LockedAnswer> {
         let all = self.locked.get(&predict.name).into_iter().flatten();
         all.filter(|given| predict.asked.takes(&given.answer))
     }
 
-    pub fn in_round<'a>(&'a self, predict: &'a Predict, round: u32) -> Option<&'a Given> {
+    pub fn in_round<'a>(&'a self, predict: &'a Predict, round: u32) -> Option<&'a LockedAnswer> {
         self.to(predict).find(|given| given.round == round)
     }
 
@@ -76,7 +81,7 @@ impl Predictions {
     /// The answers to `predict` in words, with their rounds where there are several; `None` where there is none.
     pub fn in_words(&self, predict: &Predict) -> Option<String> {
         let has_rounds = self.to(predict).any(|given| given.round > 1);
-        let said = |given: &Given| {
+        let said = |given: &LockedAnswer| {
             let late = given.late.then(|| LATE.to_owned());
             let round = has_rounds.then(|| format!("round {}", given.round));
             let about: Vec<_> = round.into_iter().chain(late).collect();
@@ -92,41 +97,41 @@ impl Predictions {
     }
 
     /// The predictions of `page` that are not locked yet.
-    pub fn open_on<'a>(&'a self, page: &'a Page) -> impl Iterator<Item = &'a Predict> {
+    pub fn open_on<'a>(&'a self, page: &'a LessonPage) -> impl Iterator<Item = &'a Predict> {
         page.predicts().filter(|predict| !self.is_locked(predict))
     }
 
     /// Whether `page` asks for predictions, and all of them are locked.
-    pub fn are_locked_on(&self, page: &Page) -> bool {
+    pub fn are_locked_on(&self, page: &LessonPage) -> bool {
         page.predicts().next().is_some() && self.open_on(page).next().is_none()
     }
 
     /// What is hidden once all predictions of `page` are locked, if `hidden` is hidden before: all of it but what the page
     /// has hidden itself.
-    pub fn hidden_after_lock(page: &Page, hidden: &[Part]) -> Vec<Part> {
+    pub fn hidden_after_lock(page: &LessonPage, hidden: &[HideablePart]) -> Vec<HideablePart> {
         let own = page.lab().map(Setup::hides).unwrap_or_default();
         let others = hidden.iter().copied().filter(|part| !own.contains(part));
         others.collect()
     }
 }
 
-impl Answer {
+impl PredictionAnswer {
     /// It in words: the choice, or the number with the unit that `predict` asks for.
     pub fn in_words(&self, predict: &Predict) -> String {
         match (self, &predict.asked) {
             (Self::Choice(words), _) => words.clone(),
-            (Self::Number(number), super::Asked::Number { unit }) => {
+            (Self::Number(number), super::AnswerKind::Number { unit }) => {
                 format!("{} {unit}", number::shortest(*number))
                     .trim_end()
                     .to_owned()
             }
-            (Self::Number(number), super::Asked::Choice(_)) => number::shortest(*number),
+            (Self::Number(number), super::AnswerKind::Choice(_)) => number::shortest(*number),
         }
     }
 }
 
 impl Compare {
-    pub fn came_out(&self, lab: &Lab, kept: &Kept) -> Option<f64> {
+    pub fn came_out(&self, lab: &Lab, kept: &KeptNumbers) -> Option<f64> {
         value(self.with.as_ref()?, lab, kept)
     }
 
@@ -137,12 +142,12 @@ impl Compare {
         lesson: &Lesson,
         predictions: &Predictions,
         lab: &Lab,
-        kept: &Kept,
+        kept: &KeptNumbers,
     ) -> String {
         let with = self.came_out(lab, kept);
         let predict = lesson.predict(&self.prediction);
         let predicted = predict.and_then(|predict| predictions.in_words(predict));
-        let text = self.text.filled(|expression, format: Format| {
+        let text = self.text.filled(|expression, format: TextFormat| {
             if expression.text().trim() == PREDICTION {
                 return predicted.clone().unwrap_or_else(|| NOTHING.to_owned());
             }
@@ -219,13 +224,13 @@ impl Tried {
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Place {
+pub struct LessonProgress {
     /// The number of the page, from 1.
     pub page: usize,
     #[serde(default)]
     pub predictions: Predictions,
     #[serde(default)]
-    pub kept: Kept,
+    pub kept: KeptNumbers,
     /// What the page states of the run that its lesson stands on, by lines of the file: it stays while the student plays.
     #[serde(default)]
     pub stated: Option<BTreeMap<String, String>>,

@@ -9,11 +9,11 @@ pub use super::opening::{
     LONGEST, full_name, is_file_name, open, open_again, read_again, read_file,
 };
 
-use super::blocks::{self, Reader};
-use super::lesson::{Block, Compare, Lesson, Page, Setup, Shown};
-use super::names::Names;
-use super::structure::{Element, Kind, LANGUAGES, Lines, on_line, structure};
-use super::text::Text;
+use super::blocks::{self, BlockReader};
+use super::lesson::{CodeBlock, Compare, Lesson, LessonBlock, LessonPage, Setup};
+use super::names::KeptNames;
+use super::structure::{Element, LANGUAGES, Lines, PieceKind, on_line, structure};
+use super::text::LessonText;
 use crate::scenario::problem::{listed, nearest};
 use crate::scenario::{Problem, Problems};
 use crate::text::printable::is_steering;
@@ -73,7 +73,7 @@ struct Assembly {
     /// The `lab` and `task` blocks by their lines. They were read before everything else, since they define the names
     /// of the numbers that are kept.
     setups: Vec<Setup>,
-    names: Names,
+    names: KeptNames,
     predictions: BTreeSet<String>,
     compares: Vec<Compare>,
     has_head: bool,
@@ -85,8 +85,8 @@ impl Assembly {
         self.found.add(|| on_line(line, problem));
     }
 
-    fn reader<'a>(&self, word: &'a str, inside: &'a str, line: usize) -> Reader<'a> {
-        Reader {
+    fn reader<'a>(&self, word: &'a str, inside: &'a str, line: usize) -> BlockReader<'a> {
+        BlockReader {
             origin: self.lesson.origin.clone(),
             word,
             inside,
@@ -105,11 +105,11 @@ impl Assembly {
         let mut is_opened = false;
         for element in elements {
             let (word, inside) = match element.kind {
-                Kind::Heading(_) => {
+                PieceKind::Heading(_) => {
                     page += 1;
                     continue;
                 }
-                Kind::Fenced(word @ ("lab" | "task"), inside) => (word, inside),
+                PieceKind::Fenced(word @ ("lab" | "task"), inside) => (word, inside),
                 _ => continue,
             };
             let known_from = page + usize::from(word == "task");
@@ -132,27 +132,27 @@ impl Assembly {
     fn add(&mut self, element: &Element<'_>) {
         let line = element.line;
         match &element.kind {
-            Kind::Title(words) => self.add_title(words, line),
-            Kind::Heading(words) => {
+            PieceKind::Title(words) => self.add_title(words, line),
+            PieceKind::Heading(words) => {
                 if words.is_empty() {
                     let rule = "is a page without a heading: write it behind ##";
                     self.refuse(line, Problem::at("##", rule));
                 }
                 self.need_title(line);
-                self.lesson.pages.push(Page {
+                self.lesson.pages.push(LessonPage {
                     number: self.lesson.pages.len() + 1,
                     heading: words.clone(),
                     line,
                     blocks: Vec::new(),
                 });
             }
-            Kind::Text(text) => {
+            PieceKind::Text(text) => {
                 self.need_title(line);
                 if let Some(text) = self.text(text, line) {
-                    self.place(Block::Text(text));
+                    self.place(LessonBlock::Text(text));
                 }
             }
-            Kind::Fenced(word, inside) => self.add_fenced(word, inside, line),
+            PieceKind::Fenced(word, inside) => self.add_fenced(word, inside, line),
         }
     }
 
@@ -178,13 +178,13 @@ impl Assembly {
         }
     }
 
-    fn text(&mut self, source: &str, line: usize) -> Option<Text> {
+    fn text(&mut self, source: &str, line: usize) -> Option<LessonText> {
         let page = self.lesson.pages.len();
-        let read = Text::read(source, line, |name| self.names.find(name, page));
+        let read = LessonText::read(source, line, |name| self.names.find(name, page));
         read.map_err(|problems| self.refuse_all(problems)).ok()
     }
 
-    fn place(&mut self, block: Block) {
+    fn place(&mut self, block: LessonBlock) {
         match self.lesson.pages.last_mut() {
             Some(page) => page.blocks.push(block),
             None => self.lesson.introduction.push(block),
@@ -194,7 +194,7 @@ impl Assembly {
     fn add_fenced(&mut self, word: &str, inside: &str, line: usize) {
         self.need_title(line);
         if word.is_empty() || LANGUAGES.contains(&word) {
-            return self.place(Block::Shown(Shown {
+            return self.place(LessonBlock::Shown(CodeBlock {
                 language: word.to_owned(),
                 text: inside.to_owned(),
             }));
@@ -212,7 +212,7 @@ impl Assembly {
         if word == "notes" {
             let text = inside.trim_end();
             if let Some(text) = self.text(text, line + 1) {
-                self.place(Block::Notes(text));
+                self.place(LessonBlock::Notes(text));
             }
             return;
         }
@@ -235,12 +235,14 @@ impl Assembly {
         match read {
             Ok(block) => {
                 match &block {
-                    Block::Predict(predict) if !self.predictions.insert(predict.name.clone()) => {
+                    LessonBlock::Predict(predict)
+                        if !self.predictions.insert(predict.name.clone()) =>
+                    {
                         let rule = "is the name of an earlier prediction: choose another";
                         let name = toml::Value::from(predict.name.as_str());
                         self.refuse(line, Problem::with_value("predict.name", &name, rule));
                     }
-                    Block::Compare(compare) => self.compares.push(compare.clone()),
+                    LessonBlock::Compare(compare) => self.compares.push(compare.clone()),
                     _ => {}
                 }
                 self.place(block);
@@ -249,7 +251,7 @@ impl Assembly {
         }
     }
 
-    fn add_head(&mut self, reader: &Reader<'_>) {
+    fn add_head(&mut self, reader: &BlockReader<'_>) {
         let line = reader.line;
         let misplaced = match (self.has_head, self.lesson.pages.is_empty()) {
             (true, _) => "stands twice: a lesson has one such block",
@@ -267,9 +269,9 @@ impl Assembly {
     }
 
     fn add_setup(&mut self, word: &str, line: usize) {
-        let is_same = |block: &Block| match block {
-            Block::Lab(_) => word == "lab",
-            Block::Task(_) => word == "task",
+        let is_same = |block: &LessonBlock| match block {
+            LessonBlock::Lab(_) => word == "lab",
+            LessonBlock::Task(_) => word == "task",
             _ => false,
         };
         let page = self.lesson.pages.last();
@@ -280,8 +282,8 @@ impl Assembly {
         let setup = self.setups.iter().find(|setup| setup.line == line);
         if let Some(setup) = setup.cloned() {
             self.place(match word {
-                "lab" => Block::Lab(setup),
-                _ => Block::Task(setup),
+                "lab" => LessonBlock::Lab(setup),
+                _ => LessonBlock::Task(setup),
             });
         }
     }
@@ -307,7 +309,7 @@ impl Assembly {
 
     /// Checks that the prediction of `compare` is asked for before it.
     fn check_compare(&mut self, compare: &Compare) {
-        let line_of = |page: &Page| {
+        let line_of = |page: &LessonPage| {
             let mut asked = page.predicts();
             let asked = asked.find(|predict| predict.name == compare.prediction)?;
             Some(asked.line)

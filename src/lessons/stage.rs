@@ -4,18 +4,18 @@
 //! leaves nothing of the runs before it, what stands before the last such block is carried out only where it keeps numbers
 //! that are not known yet.
 
-use super::lesson::{Lesson, Page, Setup};
-use super::names::{Kept, value};
+use super::lesson::{Lesson, LessonPage, Setup};
+use super::names::{KeptNumbers, value};
 use super::predictions::Predictions;
 use crate::lab::Lab;
-use crate::lab::command::{Command, Commands, Placed};
+use crate::lab::command::{Command, Commands, LocatedCommand};
 use crate::playback::camera::{Camera, Zoom};
 use std::ops::ControlFlow;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage<'a> {
     pub lesson: &'a Lesson,
-    pub page: &'a Page,
+    pub page: &'a LessonPage,
     pub setup: &'a Setup,
     /// Whether what its `hide` names is hidden.
     pub is_hiding: bool,
@@ -28,7 +28,7 @@ impl Lesson {
     pub fn stages_to<'a>(
         &'a self,
         number: usize,
-        kept: &Kept,
+        kept: &KeptNumbers,
         predictions: &Predictions,
     ) -> Vec<Stage<'a>> {
         let before = self.pages.iter().take(number.saturating_sub(1));
@@ -47,18 +47,18 @@ impl Lesson {
 
     /// What to carry out on turning to the page `number` from the page before: its own `lab` block, where it has one.
     pub fn stage_of<'a>(&'a self, number: usize, predictions: &Predictions) -> Option<Stage<'a>> {
-        self.stage(number, Page::lab, predictions)
+        self.stage(number, LessonPage::lab, predictions)
     }
 
     /// What to carry out on the page `number` to show how its task is done.
     pub fn task_of<'a>(&'a self, number: usize, predictions: &Predictions) -> Option<Stage<'a>> {
-        self.stage(number, Page::task, predictions)
+        self.stage(number, LessonPage::task, predictions)
     }
 
     fn stage(
         &self,
         number: usize,
-        setup: impl Fn(&Page) -> Option<&Setup>,
+        setup: impl Fn(&LessonPage) -> Option<&Setup>,
         predictions: &Predictions,
     ) -> Option<Stage<'_>> {
         let page = self.page(number)?;
@@ -72,7 +72,7 @@ impl Lesson {
 }
 
 /// Those of `stages` that are needed: the last run, and the runs that keep numbers which `kept` lacks.
-fn needed<'a>(stages: Vec<Stage<'a>>, kept: &Kept) -> Vec<Stage<'a>> {
+fn needed<'a>(stages: Vec<Stage<'a>>, kept: &KeptNumbers) -> Vec<Stage<'a>> {
     let mut runs: Vec<Vec<Stage<'a>>> = Vec::new();
     for stage in stages {
         match runs.last_mut() {
@@ -106,7 +106,9 @@ impl Stage<'_> {
             Vec::new()
         };
         let line = Some(self.setup.line);
-        let put_back = put_back.into_iter().map(|command| Placed { command, line });
+        let put_back = put_back
+            .into_iter()
+            .map(|command| LocatedCommand { command, line });
         let own = self.setup.commands.iter();
         let own = own.filter(|placed| self.is_hiding || placed.command.looked("hide").is_none());
         Commands {
@@ -116,7 +118,7 @@ impl Stage<'_> {
     }
 
     /// Remembers in `kept` the numbers that the block keeps, once it is carried out.
-    pub fn keep(&self, lab: &Lab, kept: &mut Kept) {
+    pub fn keep(&self, lab: &Lab, kept: &mut KeptNumbers) {
         for keep in &self.setup.keep {
             let number = value(&keep.expression, lab, kept);
             kept.insert(keep.name.clone(), number.unwrap_or(f64::NAN));
@@ -128,7 +130,7 @@ impl Stage<'_> {
     pub fn carry_out(
         &self,
         lab: &mut Lab,
-        kept: &mut Kept,
+        kept: &mut KeptNumbers,
         go_on: impl FnMut(u64, u64) -> ControlFlow<()>,
     ) -> Result<(), String> {
         let commands = self.commands(lab);

@@ -9,13 +9,13 @@ pub(super) const LANGUAGES: [&str; 6] = ["text", "sh", "toml", "csv", "python", 
 
 #[derive(Debug)]
 pub(super) struct Element<'a> {
-    pub(super) kind: Kind<'a>,
+    pub(super) kind: PieceKind<'a>,
     /// Its first line, from 1.
     pub(super) line: usize,
 }
 
 #[derive(Debug)]
-pub(super) enum Kind<'a> {
+pub(super) enum PieceKind<'a> {
     Title(String),
     Heading(String),
     /// A fenced block: the word behind the fence, and what stands between the fences.
@@ -47,7 +47,7 @@ pub(super) fn structure<'a>(
     lines: &Lines,
     words: &[&str],
 ) -> Result<Vec<Element<'a>>, Problem> {
-    let mut walk = Walk {
+    let mut walk = FileWalk {
         text,
         lines,
         words,
@@ -94,7 +94,7 @@ pub(super) fn structure<'a>(
 }
 
 /// The way through a file.
-struct Walk<'a, 'b> {
+struct FileWalk<'a, 'b> {
     text: &'a str,
     lines: &'b Lines,
     words: &'b [&'b str],
@@ -102,7 +102,7 @@ struct Walk<'a, 'b> {
     end: usize,
 }
 
-impl<'a> Walk<'a, '_> {
+impl<'a> FileWalk<'a, '_> {
     /// Takes what stands between the last element and `begin` as text.
     fn text_up_to(&mut self, begin: usize) {
         let between = &self.text[self.end.min(begin)..begin];
@@ -114,7 +114,7 @@ impl<'a> Walk<'a, '_> {
         let text = between[blank..].trim_end();
         if !text.is_empty() {
             self.elements.push(Element {
-                kind: Kind::Text(text),
+                kind: PieceKind::Text(text),
                 line: self.lines.at(self.end.min(begin) + blank),
             });
         }
@@ -127,7 +127,7 @@ impl<'a> Walk<'a, '_> {
         self.end = range.end;
     }
 
-    fn add(&mut self, kind: Kind<'a>, range: Range<usize>) {
+    fn add(&mut self, kind: PieceKind<'a>, range: Range<usize>) {
         let line = self.lines.at(range.start);
         self.leave_out(range);
         self.elements.push(Element { kind, line });
@@ -136,8 +136,8 @@ impl<'a> Walk<'a, '_> {
     fn heading(&mut self, level: HeadingLevel, range: Range<usize>, words: &str) {
         let words = words.trim().to_owned();
         match level {
-            HeadingLevel::H1 => self.add(Kind::Title(words), range),
-            HeadingLevel::H2 => self.add(Kind::Heading(words), range),
+            HeadingLevel::H1 => self.add(PieceKind::Title(words), range),
+            HeadingLevel::H2 => self.add(PieceKind::Heading(words), range),
             _ => {}
         }
     }
@@ -176,7 +176,7 @@ impl<'a> Walk<'a, '_> {
         }
         let word_at = block.find(word).unwrap_or_default();
         let word = &block[word_at..word_at + word.len()];
-        self.add(Kind::Fenced(word, inside), range);
+        self.add(PieceKind::Fenced(word, inside), range);
         Ok(())
     }
 }

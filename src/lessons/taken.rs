@@ -2,11 +2,11 @@
 
 mod keys;
 
-use super::Kept;
+use super::KeptNumbers;
 use super::clock;
-use super::lesson::{Block, Compare, Lesson, Page, Predict};
+use super::lesson::{Compare, Lesson, LessonBlock, LessonPage, Predict};
 use super::names::value;
-use super::predictions::{Place, Tried};
+use super::predictions::{LessonProgress, Tried};
 use super::stage::Stage;
 use super::watch::Watch;
 use super::{reading, shipped};
@@ -23,11 +23,11 @@ const TOO_LONG: &str =
     "the pages before this one take too long: its lab block should open a run of its own";
 
 #[derive(Debug)]
-pub struct Taken {
+pub struct OpenLesson {
     pub lesson: Arc<Lesson>,
     /// Its file, where it does not come with the program.
     watch: Option<Watch>,
-    pub place: Place,
+    pub place: LessonProgress,
     /// By the names of open questions: the choice that the keys point at, from 0, and whether it is marked, so that Enter
     /// locks it.
     pub pointed: BTreeMap<String, (usize, bool)>,
@@ -39,7 +39,7 @@ pub struct Taken {
     stands: Option<((usize, usize), u64)>,
     /// Whether the hints of the page's checks are shown.
     pub shows_hints: bool,
-    under_way: Option<UnderWay>,
+    under_way: Option<PendingBlock>,
     /// In a class that is followed: whether its run has arrived where the page wants it.
     pub(super) follows: Option<bool>,
     /// The present rounds of the class's questions, by their names, and whether they are closed.
@@ -57,25 +57,25 @@ pub struct Taken {
 /// What a class that is followed shows of a lesson: its name, the page, the numbers that were kept, and whether its run
 /// has arrived where the page wants it.
 #[derive(Clone, Copy, Debug)]
-pub struct Followed<'a> {
+pub struct FollowedLesson<'a> {
     pub lesson: &'a str,
     pub page: usize,
-    pub kept: &'a Kept,
+    pub kept: &'a KeptNumbers,
     pub has_arrived: bool,
 }
 
 /// A block of a page that the lab carries out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum UnderWay {
+enum PendingBlock {
     Lab(usize),
     Task(usize),
     /// The student has left it before it was complete.
     Left,
 }
 
-impl Taken {
+impl OpenLesson {
     /// `lesson` at `place`, opened at `now` on the clock of the lab.
-    pub(super) fn new(lesson: Lesson, mut place: Place, now: Duration) -> Self {
+    pub(super) fn new(lesson: Lesson, mut place: LessonProgress, now: Duration) -> Self {
         place.page = place.page.clamp(1, lesson.pages.len().max(1));
         let unix_s = clock::unix_s();
         if place.began_unix_s == 0 {
@@ -103,11 +103,11 @@ impl Taken {
         }
     }
 
-    pub(super) fn into_place(self) -> Place {
+    pub(super) fn into_place(self) -> LessonProgress {
         self.place
     }
 
-    pub fn page(&self) -> Option<&Page> {
+    pub fn page(&self) -> Option<&LessonPage> {
         self.lesson.page(self.place.page)
     }
 
@@ -135,7 +135,7 @@ impl Taken {
     }
 
     /// Shows the page of `class` without touching the run. Returns whether that is new.
-    pub(super) fn follow(&mut self, class: &Followed<'_>) -> bool {
+    pub(super) fn follow(&mut self, class: &FollowedLesson<'_>) -> bool {
         let page = class.page.clamp(1, self.lesson.pages.len().max(1));
         let before = self.follows.replace(class.has_arrived);
         let is_new = self.place.page != page || before.is_none();
@@ -149,7 +149,7 @@ impl Taken {
     /// Goes on without the class. Where its run had not arrived, the page is left as if its own run had been.
     pub(super) fn unfollow(&mut self) {
         let is_left = self.follows.take() == Some(false) && self.is_under_way();
-        self.under_way = is_left.then_some(UnderWay::Left).or(self.under_way);
+        self.under_way = is_left.then_some(PendingBlock::Left).or(self.under_way);
     }
 
     /// Whether the check at this line of the file has held since the page was opened.
@@ -164,20 +164,20 @@ impl Taken {
 
     /// Whether the page's run is played, and has not arrived yet.
     pub fn plays(&self) -> bool {
-        self.is_under_way() && self.page().is_some_and(Page::plays)
+        self.is_under_way() && self.page().is_some_and(LessonPage::plays)
     }
 
     /// Whether the student has left the page's run before it arrived.
     pub fn has_left(&self) -> bool {
-        self.under_way == Some(UnderWay::Left)
+        self.under_way == Some(PendingBlock::Left)
     }
 
     /// Goes on with a page whose run was on its way when the page was left, or had been left before it arrived.
     pub(super) fn go_on(&mut self, lab: &Lab) {
         if self.is_under_way() && !lab.script().is_done() {
-            self.under_way = Some(UnderWay::Lab(self.place.page));
+            self.under_way = Some(PendingBlock::Lab(self.place.page));
         } else if self.plays() {
-            self.under_way = Some(UnderWay::Left);
+            self.under_way = Some(PendingBlock::Left);
         }
     }
 
@@ -236,7 +236,7 @@ impl Taken {
             }
         }
         match last {
-            Some(stage) => self.begin(stage, UnderWay::Lab(page), lab),
+            Some(stage) => self.begin(stage, PendingBlock::Lab(page), lab),
             None => {
                 self.has_come(lab);
                 lab.view_mut().turn_to_sheet();
@@ -252,7 +252,7 @@ impl Taken {
         lab.set_undo_floor(true);
     }
 
-    fn begin(&mut self, stage: &Stage<'_>, block: UnderWay, lab: &mut Lab) {
+    fn begin(&mut self, stage: &Stage<'_>, block: PendingBlock, lab: &mut Lab) {
         let commands = stage.commands(lab);
         self.under_way = Some(block);
         lab.take_commands(commands);
@@ -266,24 +266,24 @@ impl Taken {
         let Some(block) = self.under_way else {
             return false;
         };
-        if !lab.script().is_done() || block == UnderWay::Left {
+        if !lab.script().is_done() || block == PendingBlock::Left {
             return false;
         }
         if lab.script().has_broken_off() {
-            self.under_way = Some(UnderWay::Left).filter(|_| self.is_under_way());
+            self.under_way = Some(PendingBlock::Left).filter(|_| self.is_under_way());
             if self.plays() && lab.script().was_stopped() {
                 lab.tell("you have left the page's run: b plays it again, n goes to its end");
             }
             return true;
         }
         self.has_come(lab);
-        lab.set_undo_floor(matches!(block, UnderWay::Lab(_)));
+        lab.set_undo_floor(matches!(block, PendingBlock::Lab(_)));
         lab.forget_message_of_script();
         let lesson = Arc::clone(&self.lesson);
         let stage = match block {
-            UnderWay::Lab(page) => lesson.stage_of(page, &self.place.predictions),
-            UnderWay::Task(page) => lesson.task_of(page, &self.place.predictions),
-            UnderWay::Left => None,
+            PendingBlock::Lab(page) => lesson.stage_of(page, &self.place.predictions),
+            PendingBlock::Task(page) => lesson.task_of(page, &self.place.predictions),
+            PendingBlock::Left => None,
         };
         if let Some(stage) = stage {
             stage.keep(lab, &mut self.place.kept);
@@ -335,7 +335,7 @@ impl Taken {
         self.place.stated = Some(stated(&self.lesson, &self.place, lab));
         let lesson = Arc::clone(&self.lesson);
         let page = lesson.page(self.place.page);
-        let compares = page.into_iter().flat_map(Page::compares);
+        let compares = page.into_iter().flat_map(LessonPage::compares);
         // What the page itself asks for comes out once it is answered.
         let names = compares.map(|compare| compare.prediction.clone());
         let told = names.filter(|name| !page.is_some_and(|page| page.asks(name)));
@@ -405,32 +405,38 @@ fn place_of(lab: &Lab) -> ((usize, usize), u64) {
     (lab.runs().depth(), lab.player().playback.step_number())
 }
 
-fn holds(check: &super::Check, lab: &Lab, kept: &super::Kept) -> bool {
+fn holds(check: &super::Check, lab: &Lab, kept: &super::KeptNumbers) -> bool {
     value(&check.that, lab, kept).is_some_and(|held| held != 0.0)
 }
 
 /// The texts of the page at `place` that the student's own run does not change, by their lines in the file. What stands
 /// behind a task or a check is not among them.
-fn stated(lesson: &Lesson, place: &Place, lab: &Lab) -> BTreeMap<String, String> {
+fn stated(lesson: &Lesson, place: &LessonProgress, lab: &Lab) -> BTreeMap<String, String> {
     let texts = before_task(lesson, place).filter_map(|block| match block {
-        Block::Text(text) => Some((text.line, text.with_numbers(lab, &place.kept))),
-        Block::Compare(compare) => Some((compare.line, compared(compare, lesson, place, lab))),
+        LessonBlock::Text(text) => Some((text.line, text.with_numbers(lab, &place.kept))),
+        LessonBlock::Compare(compare) => {
+            Some((compare.line, compared(compare, lesson, place, lab)))
+        }
         _ => None,
     });
     texts.map(|(line, text)| (line.to_string(), text)).collect()
 }
 
 /// The introduction's blocks, and those of the page up to its task or its first check.
-fn before_task<'a>(lesson: &'a Lesson, place: &Place) -> impl Iterator<Item = &'a Block> {
+fn before_task<'a>(
+    lesson: &'a Lesson,
+    place: &LessonProgress,
+) -> impl Iterator<Item = &'a LessonBlock> {
     let page = lesson.page(place.page);
     let blocks = page.into_iter().flat_map(|page| &page.blocks);
-    let is_before = |block: &&Block| !matches!(block, Block::Task(_) | Block::Check(_));
+    let is_before =
+        |block: &&LessonBlock| !matches!(block, LessonBlock::Task(_) | LessonBlock::Check(_));
     lesson
         .introduction
         .iter()
         .chain(blocks.take_while(is_before))
 }
 
-fn compared(compare: &Compare, lesson: &Lesson, place: &Place, lab: &Lab) -> String {
+fn compared(compare: &Compare, lesson: &Lesson, place: &LessonProgress, lab: &Lab) -> String {
     compare.filled(lesson, &place.predictions, lab, &place.kept)
 }

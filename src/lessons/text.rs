@@ -4,7 +4,7 @@
 //! exponent. Without that it has four significant digits. A brace that is meant as one is written `\{`, as Markdown has it;
 //! in code, braces are braces.
 
-use super::names::{Kept, value};
+use super::names::{KeptNumbers, value};
 use super::structure::on_line;
 use crate::journal::expression::Expression;
 use crate::lab::Lab;
@@ -21,7 +21,7 @@ const MOST_DIGITS: usize = 12;
 const MOST_TOLD: usize = 100;
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Text {
+pub struct LessonText {
     /// The line at which it begins in the file, from 1.
     pub line: usize,
     parts: Vec<Piece>,
@@ -30,11 +30,11 @@ pub struct Text {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Piece {
     Plain(String),
-    Number(Expression, Format),
+    Number(Expression, TextFormat),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum TextFormat {
     /// With four significant digits.
     Short,
     /// Digits after the point.
@@ -43,7 +43,7 @@ pub enum Format {
     Exponent(usize),
 }
 
-impl Format {
+impl TextFormat {
     /// `number` as it is written; "n/a" where there is none.
     pub fn written(self, number: Option<f64>) -> String {
         let Some(number) = number.filter(|number| number.is_finite()) else {
@@ -72,7 +72,7 @@ impl Format {
     }
 }
 
-impl Text {
+impl LessonText {
     /// Reads `source`, which begins at `line`. `find` says why a name in it stands for no number.
     pub(super) fn read(
         source: &str,
@@ -120,7 +120,7 @@ impl Text {
 
     /// The text in Markdown, with the numbers of `lab` and those that were `kept`; "n/a" stands for a number that there is
     /// not.
-    pub fn with_numbers(&self, lab: &Lab, kept: &Kept) -> String {
+    pub fn with_numbers(&self, lab: &Lab, kept: &KeptNumbers) -> String {
         self.filled(|expression, format| format.written(value(expression, lab, kept)))
     }
 
@@ -137,7 +137,7 @@ impl Text {
     }
 
     /// The text in Markdown, with what `written` makes of each place for a number.
-    pub fn filled(&self, mut written: impl FnMut(&Expression, Format) -> String) -> String {
+    pub fn filled(&self, mut written: impl FnMut(&Expression, TextFormat) -> String) -> String {
         let parts = self.parts.iter().map(|part| match part {
             Piece::Plain(text) => text.clone(),
             Piece::Number(expression, format) => written(expression, *format),
@@ -151,7 +151,7 @@ impl Text {
 fn place(
     text: &str,
     find: &impl Fn(&str) -> Result<(), String>,
-) -> Result<(Expression, Format, usize), (String, String)> {
+) -> Result<(Expression, TextFormat, usize), (String, String)> {
     // Where the line ends or another place begins first, this one has lost its end.
     let first = text.find(['\n', '{', '}']);
     let Some(end) = first.filter(|&end| text[end..].starts_with('}')) else {
@@ -162,8 +162,8 @@ fn place(
     let inside = &text[..end];
     let told = |rule: String| (format!("{{{inside}}}"), rule);
     let (written, format) = match inside.split_once(':') {
-        Some((written, format)) => (written, Format::read(format.trim()).map_err(told)?),
-        None => (inside, Format::Short),
+        Some((written, format)) => (written, TextFormat::read(format.trim()).map_err(told)?),
+        None => (inside, TextFormat::Short),
     };
     let expression = Expression::parse(written.trim()).map_err(|fault| told(fault.to_string()))?;
     expression

@@ -18,7 +18,7 @@ use std::fs::File as Opened;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
-use parted::{BROKEN, LONGEST_TEXT, NONE, Parted, packed};
+use parted::{BROKEN, Extracted, LONGEST_TEXT, NONE, packed};
 
 /// The longest file of a figure that is read, bytes.
 const LONGEST_FIGURE: u64 = 128 << 20;
@@ -47,7 +47,7 @@ pub struct Origin {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Holds {
+pub enum Payload {
     Run,
     Data,
     Table,
@@ -56,7 +56,7 @@ pub enum Holds {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct File {
-    pub holds: Holds,
+    pub holds: Payload,
     pub name: String,
     bytes: usize,
     /// Of a file that is too large to travel.
@@ -66,9 +66,9 @@ pub struct File {
 }
 
 impl File {
-    pub fn new(holds: Holds, name: &str, text: &str) -> Self {
+    pub fn new(holds: Payload, name: &str, text: &str) -> Self {
         let fits = || text.len() <= MOST_DATA || packed(text.as_bytes()).len() <= MOST_DATA;
-        let travels = holds == Holds::Run || fits();
+        let travels = holds == Payload::Run || fits();
         let carried = if travels { text } else { "" };
         Self {
             holds,
@@ -91,7 +91,7 @@ impl Origin {
     }
 
     /// The files that hold this.
-    pub fn all(&self, holds: Holds) -> impl Iterator<Item = &File> {
+    pub fn all(&self, holds: Payload) -> impl Iterator<Item = &File> {
         self.files.iter().filter(move |file| file.holds == holds)
     }
 
@@ -141,13 +141,13 @@ impl Origin {
 
 /// The forms of file that carry a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum FileFormat {
     Svg,
     Pdf,
     Png,
 }
 
-impl Form {
+impl FileFormat {
     /// The form of a file by its first bytes; `None` where it is no figure.
     pub fn of(bytes: &[u8]) -> Option<Self> {
         let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
@@ -182,7 +182,7 @@ impl Form {
         Some([before, &self.carrier(before, text)?, self.end()].concat())
     }
 
-    fn part(self, file: &[u8]) -> Result<Parted, &'static str> {
+    fn part(self, file: &[u8]) -> Result<Extracted, &'static str> {
         match self {
             Self::Svg => svg::part(file),
             Self::Pdf => pdf::part(file),
@@ -193,13 +193,13 @@ impl Form {
 
 /// The `picture`, a file that this program wrote, with its origin in it; `None` where that is too long.
 pub fn carry(picture: &[u8], origin: &Origin) -> Option<Vec<u8>> {
-    Form::of(picture)?.carry(picture, &origin.text(picture)?)
+    FileFormat::of(picture)?.carry(picture, &origin.text(picture)?)
 }
 
 /// A figure that was read.
 #[derive(Clone, Debug)]
-pub struct Figure {
-    pub form: Form,
+pub struct FigureFile {
+    pub form: FileFormat,
     pub origin: Origin,
     /// Its file without what it carries.
     pub picture: Vec<u8>,
@@ -207,13 +207,13 @@ pub struct Figure {
     pub changed: Option<&'static str>,
 }
 
-impl Figure {
+impl FigureFile {
     /// The figure whose file has these bytes; or why no run can be had of it.
     ///
     /// A file may be large: it is neither copied, nor are two copies of its text kept with it for longer than is needed.
     pub fn of(mut file: Vec<u8>) -> Result<Self, String> {
-        let form = Form::of(&file).ok_or(NONE)?;
-        let Parted { carrier, text } = form.part(&file)?;
+        let form = FileFormat::of(&file).ok_or(NONE)?;
+        let Extracted { carrier, text } = form.part(&file)?;
         let text = String::from_utf8(text).map_err(|_| BROKEN)?;
         let (before, rest) = file.split_at(carrier.start);
         let is_as_written = rest[carrier.len()..] == *form.end()
@@ -250,7 +250,7 @@ impl Figure {
     /// The same for what `reader` gives, of which only the first bytes are looked at where it is no figure.
     pub fn read(reader: &mut impl BufRead) -> Result<Option<Self>, String> {
         let first = reader.fill_buf().map_err(|error| unread(&error))?;
-        if Form::of(first).is_none() {
+        if FileFormat::of(first).is_none() {
             return Ok(None);
         }
         let mut file = Vec::new();

@@ -11,7 +11,7 @@ pub const TWO: &str = "holds the metadata of two figures: nothing says which one
 pub const BROKEN: &str = "its metadata is damaged";
 
 /// The text that a file carries, and which of its bytes carry it. The other bytes are the picture.
-pub struct Parted {
+pub struct Extracted {
     pub carrier: Range<usize>,
     pub text: Vec<u8>,
 }

@@ -1,6 +1,6 @@
 //! PNG: the text is the last chunk before the end, a compressed iTXt with the keyword `gyrolab`.
 
-use super::parted::{NONE, Parted, TWO, packed, unpacked};
+use super::parted::{Extracted, NONE, TWO, packed, unpacked};
 
 pub const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 const KEYWORD: &[u8] = b"iTXtgyrolab\0";
@@ -17,7 +17,7 @@ pub fn carrier(text: &str) -> Option<Vec<u8>> {
     Some([&length, chunk.as_slice(), &sum].concat())
 }
 
-pub fn part(file: &[u8]) -> Result<Parted, &'static str> {
+pub fn part(file: &[u8]) -> Result<Extracted, &'static str> {
     let (mut at, mut found) = (SIGNATURE.len(), None);
     while let Some((chunk, end)) = chunk(file, at) {
         if let Some(content) = chunk.strip_prefix(KEYWORD)
@@ -28,7 +28,7 @@ pub fn part(file: &[u8]) -> Result<Parted, &'static str> {
         at = end;
     }
     let (content, begin, end) = found.ok_or(NONE)?;
-    Ok(Parted {
+    Ok(Extracted {
         carrier: begin..end,
         text: unpacked(content.strip_prefix(COMPRESSED).ok_or(NONE)?)?,
     })

@@ -1,7 +1,7 @@
 //! SVG: the text is the last element, `<metadata>`. What XML does not take as it is, and `%`, is written as `%` and two
 //! hexadecimal digits for each byte, so that no other program has a reason to write it otherwise.
 
-use super::parted::{BROKEN, Parted, place};
+use super::parted::{BROKEN, Extracted, place};
 
 const BEGIN: &str = "<metadata>\n";
 /// The begin, with the first letters of the text.
@@ -17,13 +17,13 @@ pub fn carrier(text: &str) -> Vec<u8> {
     carrier.into_bytes()
 }
 
-pub fn part(file: &[u8]) -> Result<Parted, &'static str> {
+pub fn part(file: &[u8]) -> Result<Extracted, &'static str> {
     let begin = place(file, BEGIN_OF_TEXT)?;
     let rest = &file[begin + BEGIN.len()..];
     let end = rest.iter().position(|byte| *byte == b'<').ok_or(BROKEN)?;
     let (text, after) = rest.split_at(end.saturating_sub(1));
     let after = after.strip_prefix(END.as_bytes()).ok_or(BROKEN)?;
-    Ok(Parted {
+    Ok(Extracted {
         carrier: begin..file.len() - after.len(),
         text: unescaped(text).ok_or(BROKEN)?,
     })

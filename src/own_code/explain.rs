@@ -1,11 +1,11 @@
 //! Which slips make the rows of a file: each alone, then two together.
 
-use super::follow::{Followed, Rounding, Run, difference, follow};
+use super::follow::{ReferenceRun, Rounding, RowAgreement, difference, follow};
 use super::plan::{PARTS, Plan};
-use super::rows::Rows;
-use super::slips::{Changes, Other, SLIPS};
-use super::step::{Order, Program, Real};
-use super::times::Steps;
+use super::rows::ProgramRows;
+use super::slips::{Mutations, Other, SLIPS};
+use super::step::{MutantStepper, Order, Real};
+use super::times::RowSteps;
 use crate::cores;
 use crate::scenario::{Document, Scenario};
 use crate::text::number::shortest;
@@ -42,14 +42,14 @@ pub struct Variant {
     program: String,
     /// What the report does instead, a sentence.
     report: String,
-    change: Change,
+    change: SlipChange,
     /// Its place among all variants.
     place: usize,
 }
 
 #[derive(Clone, Debug)]
-enum Change {
-    Of(fn(&mut Changes)),
+enum SlipChange {
+    Of(fn(&mut Mutations)),
     /// The time step, s, and its place among the file's others.
     TimeStep(f64, usize),
     /// It begins so, with the values of another preset: whether with one of them.
@@ -62,7 +62,7 @@ pub struct Explanation {
     pub variants: Vec<Variant>,
     /// Other variants of the same slips with which the rows agree too.
     alternatives: Vec<Vec<Variant>>,
-    pub followed: Followed,
+    pub followed: RowAgreement,
     /// Whether the program computes in single precision.
     pub is_single: bool,
     /// By how much the rows differ from the runs without one of the slips, in units of what may be off.
@@ -75,7 +75,7 @@ impl Explanation {
     }
 
     /// The program with these slips; `None` where its time step is another one.
-    pub fn program(&self, plan: &Plan) -> Option<Program<f64>> {
+    pub fn program(&self, plan: &Plan) -> Option<MutantStepper<f64>> {
         let program = || program(plan, &self.variants, Order::Forward);
         (!self.names().contains(&ANOTHER_STEP)).then(program)
     }
@@ -102,33 +102,33 @@ impl Explanation {
     }
 }
 
-fn changes<'a>(variants: impl IntoIterator<Item = &'a Variant>) -> Changes {
-    let mut changes = Changes::default();
+fn changes<'a>(variants: impl IntoIterator<Item = &'a Variant>) -> Mutations {
+    let mut changes = Mutations::default();
     for variant in variants {
         match variant.change {
-            Change::Of(change) => change(&mut changes),
-            Change::TimeStep(time_step_s, _) => changes.time_step_s = Some(time_step_s),
-            Change::Start(..) => {}
+            SlipChange::Of(change) => change(&mut changes),
+            SlipChange::TimeStep(time_step_s, _) => changes.time_step_s = Some(time_step_s),
+            SlipChange::Start(..) => {}
         }
     }
     changes
 }
 
-fn program<T: Real>(plan: &Plan, variants: &[Variant], order: Order) -> Program<T> {
+fn program<T: Real>(plan: &Plan, variants: &[Variant], order: Order) -> MutantStepper<T> {
     let start = variants.iter().find_map(|variant| match &variant.change {
-        Change::Start(plan, _) => Some(&**plan),
+        SlipChange::Start(plan, _) => Some(&**plan),
         _ => None,
     });
-    Program::new(start.unwrap_or(plan), &changes(variants), order)
+    MutantStepper::new(start.unwrap_or(plan), &changes(variants), order)
 }
 
 /// The slips that explain rows, and the closest of the others, if one is close.
-type Came = (Vec<Explanation>, Option<Explanation>);
+type SearchOutcome = (Vec<Explanation>, Option<Explanation>);
 
 /// The search among programs of one plan for that which has made the rows.
 pub struct Search<'a> {
     pub plan: &'a Plan,
-    pub rows: &'a Rows,
+    pub rows: &'a ProgramRows,
     /// The first row that differs from the scheme, and its step.
     pub first: (usize, i64),
     /// Whether the programs compute in single precision.
@@ -139,11 +139,11 @@ pub struct Search<'a> {
 }
 
 impl Variant {
-    fn all(plan: &Plan, rows: &Rows) -> Vec<Self> {
+    fn all(plan: &Plan, rows: &ProgramRows) -> Vec<Self> {
         let mut all = Vec::new();
         for (name, program, report, variants) in SLIPS {
             for (note, change) in *variants {
-                let change = Change::Of(*change);
+                let change = SlipChange::Of(*change);
                 let Some(note) = Self::note(note, &change, plan) else {
                     continue;
                 };
@@ -162,7 +162,7 @@ impl Variant {
             name: ANOTHER_STEP,
             program: format!("its time step is {own} s"),
             report: format!("The scenario's is {dt} s."),
-            change: Change::TimeStep(*own, place),
+            change: SlipChange::TimeStep(*own, place),
             place: 0,
         }));
         all.extend(Self::other_starts(plan));
@@ -173,14 +173,14 @@ impl Variant {
     }
 
     /// Returns `note` in parentheses, with the name of the point that it is about; `None` if the plan has no such point.
-    fn note(note: &str, change: &Change, plan: &Plan) -> Option<String> {
+    fn note(note: &str, change: &SlipChange, plan: &Plan) -> Option<String> {
         let changes = match change {
-            Change::Of(change) => {
-                let mut changes = Changes::default();
+            SlipChange::Of(change) => {
+                let mut changes = Mutations::default();
                 change(&mut changes);
                 changes
             }
-            _ => Changes::default(),
+            _ => Mutations::default(),
         };
         if changes.hub_in_plane && plan.hub().is_none() {
             return None;
@@ -219,7 +219,7 @@ impl Variant {
                         name: ANOTHER_START,
                         program: format!("{has}, as {preset} has"),
                         report: format!("The scenario has {}.", own.join(", ")),
-                        change: Change::Start(Arc::new(start), parts.is_power_of_two()),
+                        change: SlipChange::Start(Arc::new(start), parts.is_power_of_two()),
                         place: 0,
                     });
                 }
@@ -230,7 +230,7 @@ impl Variant {
 }
 
 impl Search<'_> {
-    pub fn alone(&self) -> Came {
+    pub fn alone(&self) -> SearchOutcome {
         let variants = Variant::all(self.plan, self.rows);
         let candidates: Vec<_> = variants.into_iter().map(|variant| vec![variant]).collect();
         self.try_all(&candidates)
@@ -238,7 +238,7 @@ impl Search<'_> {
 
     /// Tries two slips together. A pair with one of those that explain the rows `alone` is no other explanation: its second slip
     /// changes nothing.
-    pub fn in_pairs(&self, alone: &[Explanation]) -> Came {
+    pub fn in_pairs(&self, alone: &[Explanation]) -> SearchOutcome {
         let has_own_step = self.rows.times.own_s.is_some();
         let all_alone = || {
             alone
@@ -247,9 +247,9 @@ impl Search<'_> {
         };
         let mut variants = Variant::all(self.plan, self.rows);
         variants.retain(|it| match it.change {
-            Change::Of(_) => true,
-            Change::TimeStep(..) => has_own_step,
-            Change::Start(_, is_one) => is_one,
+            SlipChange::Of(_) => true,
+            SlipChange::TimeStep(..) => has_own_step,
+            SlipChange::Start(_, is_one) => is_one,
         });
         variants.retain(|it| !all_alone().any(|known| known[0].place == it.place));
         let mut pairs = Vec::new();
@@ -293,7 +293,7 @@ impl Search<'_> {
 
     /// Returns those of `candidates` that explain the rows, each list of names once; and of the others the closest, if one is
     /// close.
-    fn try_all(&self, candidates: &[Vec<Variant>]) -> Came {
+    fn try_all(&self, candidates: &[Vec<Variant>]) -> SearchOutcome {
         let tried: Vec<Option<Explanation>> = cores::map(candidates, |variants| {
             let followed = (self.go_on)().then(|| self.followed(variants))?;
             Some(Explanation {
@@ -338,7 +338,7 @@ impl Search<'_> {
     }
 
     /// Returns how far the rows agree with the program that has the changes of `variants`.
-    fn followed(&self, variants: &[Variant]) -> Followed {
+    fn followed(&self, variants: &[Variant]) -> RowAgreement {
         let (rows, steps) = (self.rows, steps(self.rows, variants));
         if self.is_single {
             follow(rows, steps, single(self.plan, variants))
@@ -369,28 +369,34 @@ impl Search<'_> {
 }
 
 /// Returns the steps of the rows, by the time step of `variants`.
-fn steps<'a>(rows: &'a Rows, variants: &[Variant]) -> &'a Steps {
+fn steps<'a>(rows: &'a ProgramRows, variants: &[Variant]) -> &'a RowSteps {
     let others = variants.iter().find_map(|variant| match variant.change {
-        Change::TimeStep(_, place) => Some(&rows.times.others[place].1),
+        SlipChange::TimeStep(_, place) => Some(&rows.times.others[place].1),
         _ => None,
     });
     others.unwrap_or(&rows.times.steps)
 }
 
-fn double(plan: &Plan, variants: &[Variant]) -> Run<Program<f64>, Program<f64>> {
+fn double(
+    plan: &Plan,
+    variants: &[Variant],
+) -> ReferenceRun<MutantStepper<f64>, MutantStepper<f64>> {
     let [one, other] =
         [Order::Forward, Order::Backward].map(|order| program(plan, variants, order));
-    Run::of(one, vec![other], Rounding::Double)
+    ReferenceRun::of(one, vec![other], Rounding::Double)
 }
 
 /// Returns the run of the program with `variants`, with room for the errors of single precision.
-fn single(plan: &Plan, variants: &[Variant]) -> Run<Program<f64>, Program<f32>> {
+fn single(
+    plan: &Plan,
+    variants: &[Variant],
+) -> ReferenceRun<MutantStepper<f64>, MutantStepper<f32>> {
     let run = program(plan, variants, Order::Forward);
-    Run::of(run, in_single(plan, variants), Rounding::SingleOfSlip)
+    ReferenceRun::of(run, in_single(plan, variants), Rounding::SingleOfSlip)
 }
 
 /// Returns copies of the program with `variants` that compute in single precision, each in another order.
-pub fn in_single(plan: &Plan, variants: &[Variant]) -> Vec<Program<f32>> {
+pub fn in_single(plan: &Plan, variants: &[Variant]) -> Vec<MutantStepper<f32>> {
     let orders = [Order::Forward, Order::Backward, Order::EvenThenOdd];
     orders.map(|order| program(plan, variants, order)).into()
 }
@@ -399,12 +405,12 @@ pub fn in_single(plan: &Plan, variants: &[Variant]) -> Vec<Program<f32>> {
 /// `parted` is the step at which rounding decides about the scheme's own motion.
 pub fn hidden(
     plan: &Plan,
-    rows: &Rows,
+    rows: &ProgramRows,
     parted: Option<i64>,
     go_on: &(dyn Fn() -> bool + Sync),
 ) -> Vec<&'static str> {
     let mut variants = Variant::all(plan, rows);
-    variants.retain(|variant| matches!(variant.change, Change::Of(_)));
+    variants.retain(|variant| matches!(variant.change, SlipChange::Of(_)));
     let hides: Vec<bool> = cores::map(&variants, |variant| {
         if !go_on() {
             return false;

@@ -1,8 +1,8 @@
 //! Rows of a file beside a run: up to which of them they agree.
 
-use super::rows::{Rows, within};
-use super::step::{Program, Real};
-use super::times::Steps;
+use super::rows::{ProgramRows, within};
+use super::step::{MutantStepper, Real};
+use super::times::RowSteps;
 use crate::run::Simulation;
 use std::ops::Range;
 
@@ -32,7 +32,7 @@ pub trait Stepper {
     fn advance(&mut self);
 }
 
-impl<T: Real> Stepper for Program<T> {
+impl<T: Real> Stepper for MutantStepper<T> {
     fn row(&self) -> [f64; 6] {
         Self::row(self)
     }
@@ -72,7 +72,7 @@ pub enum Rounding {
 }
 
 /// A run that rows are compared with, from step 0 on, and copies of it that add up in other orders.
-pub struct Run<A, B> {
+pub struct ReferenceRun<A, B> {
     run: A,
     copies: Vec<B>,
     rounding: Rounding,
@@ -80,7 +80,7 @@ pub struct Run<A, B> {
     so_far: [[f64; 2]; 6],
 }
 
-impl<A: Stepper, B: Stepper> Run<A, B> {
+impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
     pub fn of(run: A, copies: Vec<B>, rounding: Rounding) -> Self {
         let so_far = [[0.0; 2]; 6];
         Self {
@@ -92,7 +92,7 @@ impl<A: Stepper, B: Stepper> Run<A, B> {
     }
 
     /// Returns its state now; `None` once rounding has grown so much that the digits of `rows` cannot be compared.
-    fn now(&mut self, rows: &Rows) -> Option<At> {
+    fn now(&mut self, rows: &ProgramRows) -> Option<At> {
         let values = self.run.row();
         let copies: Vec<_> = self.copies.iter().map(Stepper::row).collect();
         let is_finite = values.iter().all(|value| value.is_finite());
@@ -144,13 +144,13 @@ impl<A: Stepper, B: Stepper> Run<A, B> {
 
 /// How far rows agree with a run.
 #[derive(Clone, Debug, Default)]
-pub struct Followed {
+pub struct RowAgreement {
     /// By how many rows the file is late.
     pub offset: i64,
     /// How many rows were compared and agree.
     pub agreeing: usize,
     /// The first row that differs, with the step and what the run is there.
-    pub differs: Option<Difference>,
+    pub differs: Option<RowDifference>,
     /// The step from which on nothing could be compared, because rounding has grown too much.
     pub parted: Option<i64>,
     /// The largest difference in x, y, z, m, and that in L, J s, over the rows that were compared: each with column and step.
@@ -164,7 +164,7 @@ pub struct Followed {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Difference {
+pub struct RowDifference {
     pub row: usize,
     pub step: i64,
     pub scheme: [f64; 6],
@@ -177,7 +177,7 @@ pub struct Worst {
     pub step: i64,
 }
 
-impl Followed {
+impl RowAgreement {
     /// Whether every row that could be compared agrees, and row `row` is one of them.
     pub fn explains(&self, row: usize) -> bool {
         self.is_whole() && self.next > row
@@ -188,7 +188,7 @@ impl Followed {
     }
 
     /// Takes in what the run is at `step`.
-    fn take(&mut self, rows: &Rows, steps: &Steps, step: i64, at: &At) {
+    fn take(&mut self, rows: &ProgramRows, steps: &RowSteps, step: i64, at: &At) {
         let (offset, count) = (self.offset * steps.stride, rows.count);
         // A row before the start repeats the start, or the rows do not begin there.
         let is_due = |row: usize| steps.of_rows[row].saturating_add(offset) <= step;
@@ -198,7 +198,7 @@ impl Followed {
     }
 
     /// Compares a row. Returns whether it agrees.
-    fn compare(&mut self, rows: &Rows, row: usize, step: i64, at: &At) -> bool {
+    fn compare(&mut self, rows: &ProgramRows, row: usize, step: i64, at: &At) -> bool {
         let mut agrees = true;
         for column in &rows.columns {
             let (yours, scheme) = (column.values[row], at.values[column.place]);
@@ -216,7 +216,7 @@ impl Followed {
             self.moves |= step > 0;
         } else {
             let scheme = at.values;
-            self.differs = Some(Difference { row, step, scheme });
+            self.differs = Some(RowDifference { row, step, scheme });
         }
         agrees
     }
@@ -224,16 +224,20 @@ impl Followed {
 
 /// Follows `run` along the rows, which are the `steps` of it, at each offset at once, and gives the one at which the
 /// most rows agree.
-pub fn follow<A: Stepper, B: Stepper>(rows: &Rows, steps: &Steps, mut run: Run<A, B>) -> Followed {
-    let lane = |offset| Followed {
+pub fn follow<A: Stepper, B: Stepper>(
+    rows: &ProgramRows,
+    steps: &RowSteps,
+    mut run: ReferenceRun<A, B>,
+) -> RowAgreement {
+    let lane = |offset| RowAgreement {
         offset,
-        ..Followed::default()
+        ..RowAgreement::default()
     };
     let mut lanes = OFFSETS.map(lane);
     let count = rows.count;
-    let goes_on = |lane: &Followed| lane.next < count && lane.differs.is_none();
+    let goes_on = |lane: &RowAgreement| lane.next < count && lane.differs.is_none();
     let mut step = 0;
-    let is_found = |lanes: &[Followed]| lanes[0].is_whole() && !goes_on(&lanes[0]);
+    let is_found = |lanes: &[RowAgreement]| lanes[0].is_whole() && !goes_on(&lanes[0]);
     while lanes.iter().any(goes_on) && !is_found(&lanes) {
         let Some(at) = run.now(rows) else {
             let unfinished = lanes.iter_mut().filter(|lane| goes_on(lane));
@@ -246,14 +250,14 @@ pub fn follow<A: Stepper, B: Stepper>(rows: &Rows, steps: &Steps, mut run: Run<A
         step += 1;
     }
     // Of equals the first.
-    let best = |best: Followed, lane: Followed| match (best.is_whole(), lane.is_whole()) {
+    let best = |best: RowAgreement, lane: RowAgreement| match (best.is_whole(), lane.is_whole()) {
         (true, _) => best,
         (false, true) => lane,
         _ if lane.agreeing > best.agreeing => lane,
         _ => best,
     };
     // That the start stands there twice is no agreement with the run.
-    let says_more = |lane: &Followed| lane.offset >= 0 || lane.moves;
+    let says_more = |lane: &RowAgreement| lane.offset >= 0 || lane.moves;
     let lanes = lanes.into_iter().filter(says_more);
     lanes.reduce(best).unwrap_or_default()
 }
@@ -261,11 +265,11 @@ pub fn follow<A: Stepper, B: Stepper>(rows: &Rows, steps: &Steps, mut run: Run<A
 /// Returns the largest difference between `run` and the first `count` rows, which are the `steps` of it at `offset`, in units
 /// of what may be off. Rows at which rounding decides about the run are not counted.
 pub fn difference<A: Stepper, B: Stepper>(
-    rows: &Rows,
+    rows: &ProgramRows,
     count: usize,
-    steps: &Steps,
+    steps: &RowSteps,
     offset: i64,
-    mut run: Run<A, B>,
+    mut run: ReferenceRun<A, B>,
 ) -> f64 {
     let (mut most, mut step): (f64, i64) = (0.0, 0);
     let late = offset * steps.stride;

@@ -14,21 +14,21 @@ mod step;
 mod times;
 mod words;
 
-use crate::physics::workings::Quantity;
+use crate::physics::workings::WorkedQuantity;
 use crate::run::Simulation;
 use crate::scenario::presets::PRESETS;
 use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::verify::Unverified;
 use explain::{Explanation, MOST_FOR_PAIRS, Search};
-use follow::{Followed, Rounding, Run, follow};
+use follow::{ReferenceRun, Rounding, RowAgreement, follow};
 use plan::Plan;
-pub use rows::Rows;
-use rows::{Column, SINGLE_DIGITS};
+pub use rows::ProgramRows;
+use rows::{ProgramColumn, SINGLE_DIGITS};
 use serde::Serialize;
-use slips::Changes;
+use slips::Mutations;
 use std::sync::Arc;
 pub use step::TRACED;
-use step::{Order, Program};
+use step::{MutantStepper, Order};
 
 /// The precision in which a program computes, as far as its rows show it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -79,23 +79,23 @@ pub struct Verdict {
     #[serde(skip)]
     pub is_unexplained: bool,
     #[serde(skip)]
-    pub trial: Option<Trial>,
+    pub trial: Option<SlipTrial>,
 }
 
 /// The program with the slip that makes the rows, as it stands before the first step at which they differ.
 #[derive(Clone, Debug)]
-pub struct Trial {
+pub struct SlipTrial {
     /// The step that differs.
     pub first: u64,
-    program: Program<f64>,
+    program: MutantStepper<f64>,
     /// What the program does, and the slip's name.
     pub words: String,
 }
 
-impl Trial {
+impl SlipTrial {
     /// The numbers of its step `step`, phase by phase; `None` for the steps before the first that differs, and for those so
     /// much later that they take long to compute.
-    pub fn numbers(&self, step: u64) -> Option<Vec<(&'static str, Quantity)>> {
+    pub fn numbers(&self, step: u64) -> Option<Vec<(&'static str, WorkedQuantity)>> {
         const MOST: u64 = 1000;
         let later = step.checked_sub(self.first).filter(|later| *later < MOST)?;
         let mut program = self.program.clone();
@@ -107,12 +107,12 @@ impl Trial {
 }
 
 /// What was found, before it is put into words.
-struct Found<'a> {
+struct CheckOutcome<'a> {
     name: &'a str,
     scenario: &'a Arc<Scenario>,
-    rows: &'a Rows,
+    rows: &'a ProgramRows,
     /// The rows beside the scheme.
-    beside: Followed,
+    beside: RowAgreement,
     precision: Precision,
     /// Whether the rows agree only as far as single precision can, or as far as their few digits show.
     is_lenient: bool,
@@ -130,16 +130,16 @@ struct Found<'a> {
 
 /// Holds `rows` against the run of `scenario`, which is called `name`. `go_on` says whether to go on.
 pub fn compare(
-    rows: &Rows,
+    rows: &ProgramRows,
     name: &str,
     scenario: &Arc<Scenario>,
     go_on: &(dyn Fn() -> bool + Sync),
 ) -> Result<Verdict, Unverified> {
     let plan = Plan::of(scenario);
-    let copy = |plan| Program::<f64>::new(plan, &Changes::default(), Order::Forward);
+    let copy = |plan| MutantStepper::<f64>::new(plan, &Mutations::default(), Order::Forward);
     let copies = plan.iter().map(copy).collect();
     let run = Simulation::new(Arc::clone(scenario));
-    let run = Run::of(run, copies, Rounding::Double);
+    let run = ReferenceRun::of(run, copies, Rounding::Double);
     let beside = follow(rows, &rows.times.steps, run);
     if beside.differs.is_none() && beside.agreeing == 0 {
         let mut rule = "has no row of a step that there is: steps count from 0".to_owned();
@@ -148,7 +148,7 @@ pub fn compare(
         }
         return Err(Problems::one("", Problem::at("", rule)).into());
     }
-    let mut found = Found {
+    let mut found = CheckOutcome {
         name,
         scenario,
         rows,
@@ -179,7 +179,7 @@ pub fn compare(
     })
 }
 
-impl Found<'_> {
+impl CheckOutcome<'_> {
     /// Looks for what makes the rows, where they differ from the scheme: a slip, single precision, two slips.
     fn explain(&mut self, plan: &Plan, go_on: &(dyn Fn() -> bool + Sync)) {
         let rows = self.rows;
@@ -234,7 +234,7 @@ impl Found<'_> {
 
     /// Compares the rows with the scheme as far as single precision can, or as far as their few digits show; `None` where they
     /// cannot be of single precision.
-    fn single(&self, plan: &Plan) -> Option<Followed> {
+    fn single(&self, plan: &Plan) -> Option<RowAgreement> {
         let rounding = if self.has_few_digits() {
             Rounding::FewDigits
         } else if self.rows.may_be_single() {
@@ -243,7 +243,7 @@ impl Found<'_> {
             return None;
         };
         let scheme = Simulation::new(Arc::clone(self.scenario));
-        let run = Run::of(scheme, explain::in_single(plan, &[]), rounding);
+        let run = ReferenceRun::of(scheme, explain::in_single(plan, &[]), rounding);
         Some(follow(self.rows, &self.rows.times.steps, run))
     }
 
@@ -263,7 +263,7 @@ impl Found<'_> {
             return Precision::Unknown;
         }
         let single = explain::in_single(plan, &[]).swap_remove(0);
-        let alone = Run::of(single, Vec::<Program<f64>>::new(), Rounding::Double);
+        let alone = ReferenceRun::of(single, Vec::<MutantStepper<f64>>::new(), Rounding::Double);
         match follow(rows, &rows.times.steps, alone).differs {
             Some(_) => Precision::Double,
             None => Precision::Unknown,
@@ -271,17 +271,18 @@ impl Found<'_> {
     }
 
     /// Returns the column that has the fewest digits. Of constant columns only those count that agree by their few digits alone.
-    fn coarsest(&self) -> Option<&Column> {
+    fn coarsest(&self) -> Option<&ProgramColumn> {
         let agrees = self.beside.differs.is_none();
-        let counts =
-            |column: &&Column| column.varies() || agrees && self.beside.is_rounded[column.place];
+        let counts = |column: &&ProgramColumn| {
+            column.varies() || agrees && self.beside.is_rounded[column.place]
+        };
         let columns = &self.rows.columns;
         let fewest = columns.iter().filter(counts).min_by_key(|it| it.digits());
         fewest.or_else(|| columns.iter().min_by_key(|it| it.digits()))
     }
 
     fn digits(&self) -> i32 {
-        self.coarsest().map_or(0, Column::digits)
+        self.coarsest().map_or(0, ProgramColumn::digits)
     }
 
     /// Whether the digits are fewer than those of single precision.
@@ -300,8 +301,8 @@ impl Found<'_> {
             } else {
                 &others.find(|(own, _)| *own == dt)?.1
             };
-            let none = Vec::<Program<f64>>::new();
-            let run = Run::of(Simulation::new(scenario.into()), none, Rounding::Double);
+            let none = Vec::<MutantStepper<f64>>::new();
+            let run = ReferenceRun::of(Simulation::new(scenario.into()), none, Rounding::Double);
             Some(follow(self.rows, steps, run))
         };
         let names = PRESETS.iter().map(|preset| preset.name);
@@ -313,7 +314,7 @@ impl Found<'_> {
     }
 
     /// The program that makes the rows; `None` where that is not known, or where its steps are others than the run's.
-    fn trial(&self, plan: &Plan) -> Option<Trial> {
+    fn trial(&self, plan: &Plan) -> Option<SlipTrial> {
         let (explanation, differs) = (self.explanations.first()?, self.beside.differs?);
         if !self.is_proved {
             return None;
@@ -323,7 +324,7 @@ impl Found<'_> {
         for _ in 1..first {
             program.step();
         }
-        Some(Trial {
+        Some(SlipTrial {
             first,
             program,
             words: format!(

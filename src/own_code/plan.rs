@@ -1,8 +1,8 @@
 //! Body and start of a program of the report's step.
 
-use super::slips::Changes;
+use super::slips::Mutations;
 use crate::physics::rotation;
-use crate::scenario::file::Frame;
+use crate::scenario::file::VectorFrame;
 use crate::scenario::{Push, Scenario, Window};
 use crate::text::number::{rounded, shortest};
 use nalgebra::{Matrix3, Vector3};
@@ -17,14 +17,14 @@ pub struct Plan {
     /// The names of the axle's points, which follow.
     pub(super) axle: Vec<String>,
     pub(super) traced: usize,
-    start: Start,
+    start: ProgramStart,
     pub(super) gravity: f64,
     pub(super) time_step_s: f64,
     pub(super) pushes: Vec<Push>,
 }
 
 #[derive(Clone, Debug)]
-struct Start {
+struct ProgramStart {
     tilt_deg: f64,
     /// Whether the tilt alone makes the orientation.
     is_tilt: bool,
@@ -49,7 +49,8 @@ impl Plan {
             && scenario.edits.is_empty()
             && scenario.pushes.iter().all(in_steps);
         let (file, start) = (&scenario.file.body, &scenario.file.start);
-        let of_body = start.momentum_Js.is_none() || start.momentum_frame == Some(Frame::Body);
+        let of_body =
+            start.momentum_Js.is_none() || start.momentum_frame == Some(VectorFrame::Body);
         let (orientation, momentum) = (scenario.start.orientation, scenario.start.momentum);
         let is_zero = |deg: Option<f64>| deg.unwrap_or(0.0) == 0.0;
         let points = body.points().iter();
@@ -58,7 +59,7 @@ impl Plan {
             rim: file.rim_points(),
             axle: file.point.iter().map(|point| point.name.clone()).collect(),
             traced: scenario.trace,
-            start: Start {
+            start: ProgramStart {
                 tilt_deg: start.tilt_deg.unwrap_or(0.0),
                 is_tilt: is_zero(start.turn_deg) && is_zero(start.roll_deg),
                 momentum: if of_body {
@@ -116,7 +117,7 @@ impl Plan {
     }
 
     /// The points of the body with their masses, kg, in the upright pose, m.
-    pub(super) fn body(&self, changes: &Changes) -> Vec<([f64; 3], f64)> {
+    pub(super) fn body(&self, changes: &Mutations) -> Vec<([f64; 3], f64)> {
         let mut points = self.points.clone();
         let Some(&([x, _, height], mass)) = points.first().filter(|_| self.rim > 1) else {
             return points;
@@ -144,7 +145,7 @@ impl Plan {
     }
 
     /// Orientation and L at the start.
-    pub(super) fn start(&self, changes: &Changes) -> (Matrix3<f64>, Vector3<f64>) {
+    pub(super) fn start(&self, changes: &Mutations) -> (Matrix3<f64>, Vector3<f64>) {
         let start = &self.start;
         let angle = if changes.tilt_in_radians {
             start.tilt_deg

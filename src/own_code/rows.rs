@@ -24,7 +24,7 @@ const TELLING_DIGITS: i32 = 9;
 const WITHIN: [f64; 2] = [1e-8, 1e-6];
 
 #[derive(Clone, Debug)]
-pub struct Column {
+pub struct ProgramColumn {
     /// Its place among `NAMES`.
     pub place: usize,
     pub values: Vec<f64>,
@@ -36,9 +36,9 @@ pub struct Column {
 }
 
 #[derive(Clone, Debug)]
-pub struct Rows {
+pub struct ProgramRows {
     /// The columns that are compared.
-    pub columns: Vec<Column>,
+    pub columns: Vec<ProgramColumn>,
     pub count: usize,
     /// The names of the columns that are not compared.
     pub left_out: Vec<String>,
@@ -47,7 +47,7 @@ pub struct Rows {
     pub times: Times,
 }
 
-impl Column {
+impl ProgramColumn {
     /// Column `at` of `cells`.
     fn read(place: usize, at: usize, cells: &Csv, found: &mut Problems) -> Self {
         let mut column = Self {
@@ -137,7 +137,7 @@ pub fn within(place: usize, value: f64) -> f64 {
     WITHIN[place / 3] * value.abs().max(1.0)
 }
 
-impl Rows {
+impl ProgramRows {
     /// Whether the program may compute in single precision: whether one of the columns holds its numbers.
     pub fn may_be_single(&self) -> bool {
         let varying = || self.columns.iter().filter(|column| column.varies());
@@ -147,7 +147,7 @@ impl Rows {
         if telling.peek().is_none() {
             return varying().any(|column| column.significant >= SINGLE_DIGITS);
         }
-        telling.any(Column::is_of_single)
+        telling.any(ProgramColumn::is_of_single)
     }
 
     /// The rows as a CSV of measured data beside a run of this time step, each at the time of its step.
@@ -177,20 +177,20 @@ pub fn read(
     map: &[Renaming],
     every: Option<u64>,
     time_step_s: f64,
-) -> Result<Rows, Problems> {
+) -> Result<ProgramRows, Problems> {
     let cells = renamed(text, map)?;
     let mut found = Problems::default();
     let names = NAMES.iter().enumerate();
     let places = names.filter_map(|(place, name)| {
         let at = cells.names.iter().position(|own| own == name)?;
-        Some(Column::read(place, at, &cells, &mut found))
+        Some(ProgramColumn::read(place, at, &cells, &mut found))
     });
-    let mut columns: Vec<Column> = places.collect();
+    let mut columns: Vec<ProgramColumn> = places.collect();
     found.or(())?;
     let is_finite = |row: &usize| columns.iter().all(|it| it.values[*row].is_finite());
     let count = (0..cells.rows.len()).take_while(is_finite).count();
-    let is_broken = |it: &&Column| it.values.get(count).is_some_and(|it| !it.is_finite());
-    let broken = columns.iter().find(is_broken).map(Column::name);
+    let is_broken = |it: &&ProgramColumn| it.values.get(count).is_some_and(|it| !it.is_finite());
+    let broken = columns.iter().find(is_broken).map(ProgramColumn::name);
     let not_finite = broken.map(|name| (cells.rows[count].0, name));
     if let Some((line, name)) = not_finite.filter(|_| count == 0) {
         let rule = "is no finite number in the first row: there is nothing to compare";
@@ -207,7 +207,7 @@ pub fn read(
     let line = |row: usize| cells.rows[row].0;
     let times = times::of(count, step, time, every, time_step_s, &line)?;
     let left_out = cells.names.iter().filter(|name| !NAMES.contains(&&***name));
-    Ok(Rows {
+    Ok(ProgramRows {
         left_out: left_out.cloned().collect(),
         columns,
         count,

@@ -37,7 +37,7 @@ pub enum Along {
 
 /// Everything that a slip can change in the report's step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Changes {
+pub struct Mutations {
     pub(super) inertia_kept: bool,
     pub(super) inertia_sums_up: bool,
     /// Of the products of inertia: 1 adds them, 2 leaves them out.
@@ -115,7 +115,7 @@ type Slip = (
     &'static str,
     &'static str,
     &'static str,
-    &'static [(&'static str, fn(&mut Changes))],
+    &'static [(&'static str, fn(&mut Mutations))],
 );
 
 const DEGREES: f64 = std::f64::consts::PI / 180.0;

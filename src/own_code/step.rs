@@ -5,8 +5,8 @@
 //! rounding, and no fault of a program.
 
 use super::plan::Plan;
-use super::slips::{Along, Changes, FOREVER, Other, Sequence};
-use crate::physics::workings::{Quantity, Value};
+use super::slips::{Along, FOREVER, Mutations, Other, Sequence};
+use crate::physics::workings::{WorkedQuantity, WorkedValue};
 use crate::scenario::{Push, Window};
 use nalgebra::{Matrix3, RealField, Vector3, convert, convert_unchecked};
 
@@ -36,7 +36,7 @@ pub const TRACED: &str = "new X";
 
 /// How a step turns the points: about u by an angle, with the matrix R.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn<T> {
+pub struct StepRotation<T> {
     u: Vector3<T>,
     angle: T,
     rotation: Matrix3<T>,
@@ -44,8 +44,8 @@ pub struct Turn<T> {
 
 /// A run of the report's step with changes in it. It stands at step 0 at first.
 #[derive(Clone, Debug)]
-pub struct Program<T> {
-    changes: Changes,
+pub struct MutantStepper<T> {
+    changes: Mutations,
     order: Order,
     sequence: Vec<usize>,
     points: Vec<(Vector3<T>, T)>,
@@ -62,8 +62,8 @@ pub struct Program<T> {
     clock: u64,
 }
 
-impl<T: Real> Program<T> {
-    pub fn new(plan: &Plan, changes: &Changes, order: Order) -> Self {
+impl<T: Real> MutantStepper<T> {
+    pub fn new(plan: &Plan, changes: &Mutations, order: Order) -> Self {
         let (turned, momentum) = plan.start(changes);
         let points = plan.body(changes).into_iter();
         let points =
@@ -124,7 +124,7 @@ impl<T: Real> Program<T> {
     }
 
     /// One step of the report. Returns the angular velocity, the turn and the torque on its way.
-    pub fn step(&mut self) -> (Vector3<T>, Option<Turn<T>>, Vector3<T>) {
+    pub fn step(&mut self) -> (Vector3<T>, Option<StepRotation<T>>, Vector3<T>) {
         self.clock += 1;
         self.earlier = self.momentum;
         let mut early = None;
@@ -155,9 +155,9 @@ impl<T: Real> Program<T> {
     }
 
     /// Takes a step, and gives what each phase of it results in, with the phase's name.
-    pub fn numbers(&mut self) -> Vec<(&'static str, Quantity)> {
-        let vector = |of: &Vector3<T>| Value::from(of.map(T::f64));
-        let matrix = |of: &Matrix3<T>| Value::from(of.map(T::f64));
+    pub fn numbers(&mut self) -> Vec<(&'static str, WorkedQuantity)> {
+        let vector = |of: &Vector3<T>| WorkedValue::from(of.map(T::f64));
+        let matrix = |of: &Matrix3<T>| WorkedValue::from(of.map(T::f64));
         let (omega, turn, torque) = self.step();
         let mut numbers = vec![
             ("inertia", "I", "kg m²", matrix(&self.inertia)),
@@ -171,12 +171,13 @@ impl<T: Real> Program<T> {
             ("torque", "τ", "N m", vector(&torque)),
             ("new momentum", "new L", "J s", vector(&self.momentum)),
         ];
-        if let Some(Turn { u, angle, rotation }) = &turn {
+        if let Some(StepRotation { u, angle, rotation }) = &turn {
             numbers.push(("axis and angle", "u", "", vector(u)));
             numbers.push(("axis and angle", "angle", "rad", angle.f64().into()));
             numbers.push(("rotation", "R", "", matrix(rotation)));
         }
-        let quantity = |(phase, symbol, unit, value)| (phase, Quantity::new(symbol, unit, value));
+        let quantity =
+            |(phase, symbol, unit, value)| (phase, WorkedQuantity::new(symbol, unit, value));
         numbers.into_iter().map(quantity).collect()
     }
 
@@ -284,7 +285,7 @@ impl<T: Real> Program<T> {
     }
 
     /// R = P + cos(|Omega| dt)(E - P) + sin(|Omega| dt)[u]x; `None` where there is no Omega.
-    fn rotation(&self, omega: &Vector3<T>) -> Option<Turn<T>> {
+    fn rotation(&self, omega: &Vector3<T>) -> Option<StepRotation<T>> {
         let changes = &self.changes;
         let rate = T::of(self.dot(omega, omega).f64().sqrt());
         if rate.f64() == 0.0 || changes.first_order {
@@ -318,7 +319,7 @@ impl<T: Real> Program<T> {
             p
         };
         let rotation = along + (e - p) * T::of(cosine) + cross * T::of(sine);
-        Some(Turn { u, angle, rotation })
+        Some(StepRotation { u, angle, rotation })
     }
 
     fn turn(&mut self, omega: &Vector3<T>, rotation: Option<&Matrix3<T>>) {

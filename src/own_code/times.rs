@@ -17,7 +17,7 @@ const OTHERS: [f64; 8] = [0.1, 10.0, 0.01, 100.0, 0.5, 2.0, 0.2, 5.0];
 
 /// The steps of the rows.
 #[derive(Clone, Debug)]
-pub struct Steps {
+pub struct RowSteps {
     pub of_rows: Vec<i64>,
     /// From one row to the next: by so many steps a row may be off.
     pub stride: i64,
@@ -25,11 +25,11 @@ pub struct Steps {
 
 #[derive(Clone, Debug)]
 pub struct Times {
-    pub steps: Steps,
+    pub steps: RowSteps,
     /// The time step that the file itself states, s, where that is another one than the scenario's.
     pub own_s: Option<f64>,
     /// Other time steps, s, that the program may have used, and the steps that the rows are then.
-    pub others: Vec<(f64, Steps)>,
+    pub others: Vec<(f64, RowSteps)>,
 }
 
 /// The times of `count` rows. `time` has the times with the unit of their last digit.
@@ -45,7 +45,7 @@ pub(super) fn of(
     let times = match (step, time) {
         (Some(step), time) => by_step(step, time, time_step_s, line)?,
         (None, Some((times, unit))) => by_time(times, unit, every, time_step_s)?,
-        (None, None) => Times::at(Steps::evenly(count, 0, every.unwrap_or(1)), time_step_s),
+        (None, None) => Times::at(RowSteps::evenly(count, 0, every.unwrap_or(1)), time_step_s),
     };
     let last = times.steps.of_rows.last().copied().unwrap_or(0);
     if last as f64 > MOST_STEPS {
@@ -55,7 +55,7 @@ pub(super) fn of(
     Ok(times)
 }
 
-impl Steps {
+impl RowSteps {
     fn evenly(count: usize, first: i64, stride: i64) -> Self {
         let of_rows = (0..count as i64).map(|row| first.saturating_add(row.saturating_mul(stride)));
         let of_rows = of_rows.collect();
@@ -65,7 +65,7 @@ impl Steps {
 
 impl Times {
     /// The rows are these steps, at times that the file does not tell.
-    fn at(steps: Steps, time_step_s: f64) -> Self {
+    fn at(steps: RowSteps, time_step_s: f64) -> Self {
         let other = |factor: f64| (rounded(time_step_s * factor, 12), steps.clone());
         Self {
             others: OTHERS.into_iter().map(other).collect(),
@@ -95,7 +95,7 @@ fn by_step(
     let of_rows: Vec<i64> = numbers.iter().map(|number| *number as i64).collect();
     let gaps = of_rows.windows(2).map(|pair| pair[1] - pair[0]);
     let stride = gaps.min().unwrap_or(1);
-    let mut all = Times::at(Steps { of_rows, stride }, time_step_s);
+    let mut all = Times::at(RowSteps { of_rows, stride }, time_step_s);
     if let Some((times, unit)) = time {
         let last = numbers.len() - 1;
         let count = numbers[last] - numbers[0];
@@ -124,14 +124,14 @@ fn by_time(
     let first = |dt: f64| (times[0] / dt).round() as i64;
     let of_own = |steps: i64| {
         let own = plain(gap / steps as f64, off / steps as f64);
-        (own, Steps::evenly(times.len(), first(own), steps))
+        (own, RowSteps::evenly(times.len(), first(own), steps))
     };
     let counts = every.map_or(STEPS_A_ROW.to_vec(), |every| vec![every]);
     let mut others: Vec<_> = counts.into_iter().map(of_own).collect();
     others.retain(|(own, _)| !is_same(*own, time_step_s, 0.0));
     let begins = if is_own { first(time_step_s) } else { 0 };
     let own = others.first().map(|(own, _)| *own);
-    let steps = Steps::evenly(times.len(), begins, stride);
+    let steps = RowSteps::evenly(times.len(), begins, stride);
     if is_own {
         others.extend(Times::at(steps.clone(), time_step_s).others); // its times may not be those of its steps
     }

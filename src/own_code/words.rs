@@ -1,10 +1,10 @@
 //! What has come out of the comparison of own code with the scheme, as a verdict and in words.
 
 use super::explain::{COUNT, Explanation, MOST_FOR_PAIRS};
-use super::follow::{Difference, Worst};
-use super::rows::{COLUMNS, Column, SINGLE_DIGITS};
+use super::follow::{RowDifference, Worst};
+use super::rows::{COLUMNS, ProgramColumn, SINGLE_DIGITS};
 use super::slips::ANOTHER_READING;
-use super::{Explanations, Found, Precision, Verdict};
+use super::{CheckOutcome, Explanations, Precision, Verdict};
 use crate::run::pushes;
 use crate::text::number::{counted, short, shortest, significant};
 use crate::text::printable::brief;
@@ -18,12 +18,12 @@ const LENGTHENED: f64 = 1e-3;
 /// Digits of the values that differ.
 const DIGITS: usize = 12;
 
-impl Found<'_> {
+impl CheckOutcome<'_> {
     pub(super) fn verdict(&self) -> Verdict {
         let (rows, beside) = (self.rows, &self.beside);
         let agrees = beside.differs.is_none() && rows.not_finite.is_none();
         let differing = self.differing();
-        let named = |(column, ..): &(&Column, f64, f64)| column.name();
+        let named = |(column, ..): &(&ProgramColumn, f64, f64)| column.name();
         Verdict {
             agrees,
             precision: self.precision,
@@ -59,8 +59,8 @@ impl Found<'_> {
     }
 
     /// The columns that differ first, with the values of the file and of the scheme.
-    fn differing(&self) -> Vec<(&Column, f64, f64)> {
-        let differing = |differs: Difference| {
+    fn differing(&self) -> Vec<(&ProgramColumn, f64, f64)> {
+        let differing = |differs: RowDifference| {
             let values = self.rows.columns.iter().map(move |column| {
                 let (yours, scheme) = (column.values[differs.row], differs.scheme[column.place]);
                 (column, yours, scheme)

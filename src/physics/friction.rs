@@ -7,7 +7,7 @@
 //! feed one whose k1 dt/I3 is above 2. While the body does not turn, though, ω under a constant torque and friction is
 //! known in closed form: about the axle it is a Riccati equation, across it decays exponentially. Schemes take that.
 
-use super::workings::{Changes, Phase};
+use super::workings::{Phase, PhaseTarget};
 use super::{Body, Friction};
 use nalgebra::{Matrix3, Vector3};
 
@@ -40,7 +40,7 @@ pub(crate) struct FreeSpin {
 
 /// What friction does while the body stands at one orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Action {
+pub(crate) struct FrictionAction {
     /// Its part of the change of L, body frame, J s.
     pub impulse: Vector3<f64>,
     /// Its work, J: the impulse times the mean of ω before and after.
@@ -104,7 +104,7 @@ impl Damping {
         torque: &Vector3<f64>,
         time_s: f64,
         free_spin: Option<FreeSpin>,
-    ) -> Action {
+    ) -> FrictionAction {
         let half = 0.5 * time_s;
         let (gyration, lead_s) = free_spin.map_or((0.0, 0.0), |it| (it.gyration, it.lead_s));
         let met = |spin: f64, since_s: f64| spin + gyration * (lead_s + since_s) / self.along;
@@ -131,7 +131,7 @@ impl Damping {
         impulse.z += second;
         whole.z += second + torque.z * half;
         let work = 0.5 * impulse.dot(&(omega + turned(&whole)));
-        Action { impulse, work }
+        FrictionAction { impulse, work }
     }
 
     /// The impulse of friction about the axle, J s, beside a constant torque about it (N m).
@@ -179,7 +179,7 @@ pub(super) fn phase(
     momentum: &Vector3<f64>,
 ) -> Phase {
     Phase::of("friction", "L ← L + ΔL, ΔL of −(k₀ sgn ω₃ + k₁ ω₃ + k₂ |ω₃| ω₃) a − k₄ ω across a, in the time h at this orientation").with("h", "s", time_s).with("Ω seen from the body", "rad/s", *omega).with("ΔL", "J s", *impulse).with("new L", "J s", *momentum)
-    .changing(Changes::Momentum)
+    .changing(PhaseTarget::Momentum)
 }
 
 /// The two principal directions of the part of `matrix` (body frame) across the axle, each with its principal value.
@@ -200,7 +200,7 @@ fn spin_after(friction: &Friction, moment: f64, spin: f64, torque: f64, time_s: 
             return 0.0;
         }
         let sign = if spin == 0.0 { torque } else { spin }.signum();
-        let slowing = Slowing {
+        let slowing = SpinDecay {
             constant: (sign * torque - friction.spin_dry) / moment,
             linear: friction.spin_viscous / moment,
             square: friction.spin_quadratic / moment,
@@ -218,7 +218,7 @@ fn spin_after(friction: &Friction, moment: f64, spin: f64, torque: f64, time_s: 
 /// With D = b² + 4ac and T = tanh(√D t/2)/√D (of a negative D tan, of none t/2) its solution is
 /// ω(t) = (ω₀ (1 − b T) + 2 a T)/(1 + (b + 2 c ω₀) T).
 #[derive(Clone, Copy, Debug)]
-struct Slowing {
+struct SpinDecay {
     /// a, rad/s².
     constant: f64,
     /// b, 1/s.
@@ -227,7 +227,7 @@ struct Slowing {
     square: f64,
 }
 
-impl Slowing {
+impl SpinDecay {
     /// √|D|, 1/s, and whether D is not negative.
     fn root(&self) -> (f64, bool) {
         let product = 4.0 * self.constant * self.square;

@@ -1,6 +1,6 @@
 //! A rigid body that turns about a fixed point: its exact motion, and numerical schemes that step it.
 //!
-//! What turns is a [`Body`] of point masses; a solid [`Part`] stands for six of them. It has a [`State`] (time, orientation,
+//! What turns is a [`Body`] of point masses; a solid [`PlacedSolid`] stands for six of them. It has a [`State`] (time, orientation,
 //! angular momentum), and [`Loads`] act on it: gravity, constant forces on points, [`Friction`].
 //!
 //! - [`ExactMotion`] is the true motion: in closed form ([`LagrangeTop`]) where the body is symmetric about its axle and
@@ -96,7 +96,7 @@ pub use exact::{ExactMotion, LagrangeTop};
 pub use friction::Damping;
 pub use loads::{Friction, Loads, PointForce};
 pub use nalgebra;
-pub use part::Part;
+pub use part::PlacedSolid;
 pub use scheme::SchemeInfo;
 pub use state::State;
 pub use stepping::Scheme;

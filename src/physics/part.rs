@@ -178,7 +178,7 @@ fn distances(moments: &Vector3<f64>) -> Result<[f64; 3], PartError> {
 
 /// A part in its place in the upright body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
+pub struct PlacedSolid {
     /// What it is.
     pub shape: Shape,
     /// Its mass, kg.
@@ -192,7 +192,7 @@ pub struct Part {
     pub distances: [f64; 3],
 }
 
-impl Part {
+impl PlacedSolid {
     /// The part of this shape and `mass` (kg), which is above 0, whose centre is at `centre` (body frame, m) and whose axis
     /// has the direction `axis` (body frame, of any length but 0). Neither mass nor axis is checked.
     ///

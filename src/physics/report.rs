@@ -20,7 +20,7 @@ use super::rotation::AxisAngle;
 use super::workings::{Listener, Nobody, Phase};
 use super::{Body, Damping, Loads, PointForce, Scheme, State, friction};
 use nalgebra::{Matrix3, Vector3};
-use points::{Inertia, LANES, Moments, Pair, Turn};
+use points::{Inertia, LANES, LaneRotation, Moments, Pair};
 use wide::f64x2;
 
 mod phases;
@@ -28,7 +28,7 @@ mod points;
 
 /// The report's scheme, of order 1; see the [module's text](self).
 #[derive(Clone, Debug)]
-pub struct Report {
+pub struct ReportScheme {
     body: Body,
     points: Vec<Pair>,
     /// How many pairs there are up to the last one with mass. What those after it add to the sums is zero: [`Body`] has
@@ -43,7 +43,7 @@ pub struct Report {
     inertia: Inertia,
 }
 
-impl Report {
+impl ReportScheme {
     /// The scheme for `body`.
     pub fn new(body: &Body) -> Self {
         Self {
@@ -134,7 +134,7 @@ impl Report {
         listener.hear(|| phases::rotation_phase(&rotation));
         let before = L::LISTENS.then(|| self.points.clone());
         // What the next step waits for comes first: the points with mass, and their sums.
-        let turn = Turn::of(&rotation);
+        let turn = LaneRotation::of(&rotation);
         let (massive, massless) = self.points.split_at_mut(self.massive);
         turn.points(massive);
         let moments = Moments::of_all(massive);
@@ -151,7 +151,7 @@ impl Report {
     }
 }
 
-impl Scheme for Report {
+impl Scheme for ReportScheme {
     fn start(&mut self, state: &State) {
         self.points.clear();
         self.massive = pairs_up_to_the_last_mass(&self.body);

@@ -3,9 +3,9 @@
 mod rk4;
 
 use super::exact::Exact;
-use super::splitting::{Kind, SplittingScheme};
+use super::splitting::{SplittingMethod, SplittingScheme};
 use super::stepping::Scheme;
-use super::{Body, Friction, report::Report};
+use super::{Body, Friction, report::ReportScheme};
 use rk4::Rk4;
 
 /// One row of the table of schemes.
@@ -66,7 +66,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         continuous: false,
         turns_exactly: false,
         admits: Admits::Any,
-        make: |body| Box::new(Report::new(body)),
+        make: |body| Box::new(ReportScheme::new(body)),
     },
     SchemeInfo {
         name: "rk4",
@@ -86,7 +86,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         continuous: true,
         turns_exactly: true,
         admits: Admits::Any,
-        make: |body| Box::new(SplittingScheme::new(Kind::Strang, body)),
+        make: |body| Box::new(SplittingScheme::new(SplittingMethod::Strang, body)),
     },
     SchemeInfo {
         name: "srkn11b",
@@ -96,7 +96,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         continuous: true,
         turns_exactly: true,
         admits: Admits::None,
-        make: |body| Box::new(SplittingScheme::new(Kind::Srkn11b, body)),
+        make: |body| Box::new(SplittingScheme::new(SplittingMethod::Srkn11b, body)),
     },
     SchemeInfo {
         name: "exact",

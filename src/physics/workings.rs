@@ -41,12 +41,12 @@ const LANES: usize = 2;
 pub struct Workings {
     /// Its parts in the order of time. There is one where no force changes during the step; a scheme that follows time
     /// between steps takes a step in which a push begins or ends in several.
-    pub parts: Vec<Part>,
+    pub parts: Vec<LoadInterval>,
 }
 
 /// The part of a time step during which no force changes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct LoadInterval {
     /// Its length, s.
     pub length_s: f64,
     /// The forces that act during it.
@@ -63,14 +63,14 @@ pub struct Phase {
     /// What is computed, as a line of Unicode text.
     pub formula: &'static str,
     /// What of the state it changes.
-    pub changes: Changes,
+    pub changes: PhaseTarget,
     /// The numbers, those that are used first and the result last.
-    pub quantities: Vec<Quantity>,
+    pub quantities: Vec<WorkedQuantity>,
 }
 
 /// What of the state a phase changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Changes {
+pub enum PhaseTarget {
     /// Nothing: it computes what a later phase uses.
     Nothing,
     /// How the body stands.
@@ -83,18 +83,18 @@ pub enum Changes {
 
 /// A number, vector, matrix or table with its symbol.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Quantity {
+pub struct WorkedQuantity {
     /// As it stands in the formula; vectors and matrices are in the world frame.
     pub symbol: &'static str,
     /// Its unit; empty for a pure number, and for a table, whose columns have their own.
     pub unit: &'static str,
     /// Its value.
-    pub value: Value,
+    pub value: WorkedValue,
 }
 
 /// What a quantity is.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub enum WorkedValue {
     /// A number.
     Number(f64),
     /// A vector.
@@ -102,12 +102,12 @@ pub enum Value {
     /// A matrix.
     Matrix(Matrix3<f64>),
     /// Numbers of single points.
-    Table(Table),
+    Table(PointTable),
 }
 
 /// Numbers of points of the body, a row a point.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table {
+pub struct PointTable {
     /// Symbol and unit of each column.
     pub columns: &'static [(&'static str, &'static str)],
     /// The index of each row's point in the body.
@@ -154,7 +154,7 @@ impl Phase {
         Self {
             name,
             formula,
-            changes: Changes::Nothing,
+            changes: PhaseTarget::Nothing,
             quantities: Vec::new(),
         }
     }
@@ -164,27 +164,28 @@ impl Phase {
         mut self,
         symbol: &'static str,
         unit: &'static str,
-        value: impl Into<Value>,
+        value: impl Into<WorkedValue>,
     ) -> Self {
-        self.quantities.push(Quantity::new(symbol, unit, value));
+        self.quantities
+            .push(WorkedQuantity::new(symbol, unit, value));
         self
     }
 
-    pub(crate) fn changing(self, changes: Changes) -> Self {
+    pub(crate) fn changing(self, changes: PhaseTarget) -> Self {
         Self { changes, ..self }
     }
 
     /// The quantity with that symbol.
-    pub fn value(&self, symbol: &str) -> Option<&Value> {
+    pub fn value(&self, symbol: &str) -> Option<&WorkedValue> {
         let mut quantities = self.quantities.iter();
         let found = quantities.find(|quantity| quantity.symbol == symbol);
         found.map(|quantity| &quantity.value)
     }
 }
 
-impl Quantity {
+impl WorkedQuantity {
     /// `value` under its `symbol`, in `unit`.
-    pub fn new(symbol: &'static str, unit: &'static str, value: impl Into<Value>) -> Self {
+    pub fn new(symbol: &'static str, unit: &'static str, value: impl Into<WorkedValue>) -> Self {
         Self {
             symbol,
             unit,
@@ -193,7 +194,7 @@ impl Quantity {
     }
 }
 
-impl Table {
+impl PointTable {
     pub(crate) fn new(columns: &'static [(&'static str, &'static str)]) -> Self {
         Self {
             columns,
@@ -223,42 +224,42 @@ impl Table {
     }
 }
 
-impl From<f64> for Value {
+impl From<f64> for WorkedValue {
     fn from(number: f64) -> Self {
         Self::Number(number)
     }
 }
 
-impl From<Vector3<f64>> for Value {
+impl From<Vector3<f64>> for WorkedValue {
     fn from(vector: Vector3<f64>) -> Self {
         Self::Vector(vector)
     }
 }
 
-impl From<Matrix3<f64>> for Value {
+impl From<Matrix3<f64>> for WorkedValue {
     fn from(matrix: Matrix3<f64>) -> Self {
         Self::Matrix(matrix)
     }
 }
 
-impl From<Table> for Value {
-    fn from(table: Table) -> Self {
+impl From<PointTable> for WorkedValue {
+    fn from(table: PointTable) -> Self {
         Self::Table(table)
     }
 }
 
 /// Sums of the columns of a table, stored after every 256 rows: the sum of any number of rows is at most 255 rows away.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sums {
+pub struct ColumnSums {
     columns: usize,
     /// After 0, 256, 512 ... rows: the sums of every second row from the first, column by column, and then those of every
     /// second row from the second.
     stored: Vec<f64>,
 }
 
-impl Sums {
+impl ColumnSums {
     /// The sums of `table`; its rows are visited once.
-    pub fn of(table: &Table) -> Self {
+    pub fn of(table: &PointTable) -> Self {
         let columns = table.columns.len();
         let mut lanes = vec![0.0; LANES * columns];
         let mut stored = lanes.clone();
@@ -272,7 +273,7 @@ impl Sums {
     }
 
     /// The sum of each column over the first `rows` rows of `table`, which is the one they were made of.
-    pub fn first(&self, table: &Table, rows: usize) -> Vec<f64> {
+    pub fn first(&self, table: &PointTable, rows: usize) -> Vec<f64> {
         let rows = rows.min(table.points.len());
         let from = rows / EVERY;
         let width = LANES * self.columns;

@@ -1,7 +1,7 @@
 //! The age of each part of a path, measured in swings and turns of the motion: the last swings, the last turn, and all
 //! before.
 
-use crate::analysis::{Measured, Readouts};
+use crate::analysis::{MeasuredNumber, Readouts};
 use std::f64::consts::TAU;
 
 const RECENT_SWINGS: f64 = 10.0;
@@ -49,7 +49,7 @@ impl Ages {
 
     /// The ages of the motion that `readouts` tell of: by what was measured, or else by what theory predicts.
     pub fn of(readouts: &Readouts) -> Self {
-        let measured = readouts.precession.filter(Measured::is_settled);
+        let measured = readouts.precession.filter(MeasuredNumber::is_settled);
         let predicted = || readouts.theory_about_z()?.precession;
         let rate = measured.map(|measured| measured.value).or_else(predicted);
         let turn_s = rate.map(|rate| TAU / rate.abs());

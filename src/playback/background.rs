@@ -11,12 +11,12 @@ const DELAY: Duration = Duration::from_millis(200);
 
 /// Work in progress or finished. Dropping it ends the work: one that nobody waits for would take the processor from the
 /// run that is edited.
-pub struct Job<T> {
+pub struct BackgroundJob<T> {
     answer: Arc<OnceLock<T>>,
     is_reported: bool,
 }
 
-impl<T: Send + Sync + 'static> Job<T> {
+impl<T: Send + Sync + 'static> BackgroundJob<T> {
     /// Begins `work`, which can ask whether its answer is still wanted. If the system gives no thread, there is no answer.
     pub fn begin(
         name: &str,
@@ -49,8 +49,8 @@ impl<T: Send + Sync + 'static> Job<T> {
 }
 
 /// Searches for a change that makes an unreliable run reliable, by trial runs: it may take a second.
-pub fn advice(scenario: Arc<Scenario>) -> Job<Advice> {
-    Job::begin("advice", move |is_wanted| {
+pub fn advice(scenario: Arc<Scenario>) -> BackgroundJob<Advice> {
+    BackgroundJob::begin("advice", move |is_wanted| {
         thread::sleep(DELAY);
         is_wanted().then(|| advise_while(&scenario, is_wanted))?
     })

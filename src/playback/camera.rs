@@ -91,10 +91,10 @@ impl Camera {
     }
 
     /// Its sines and cosines: for many points in turn. The same on every machine.
-    pub fn view(&self) -> View {
+    pub fn view(&self) -> CameraView {
         let (sin_yaw, cos_yaw) = libm::sincos(self.yaw_deg.to_radians());
         let (sin_pitch, cos_pitch) = libm::sincos(self.pitch_deg.to_radians());
-        View {
+        CameraView {
             sin_yaw,
             cos_yaw,
             sin_pitch,
@@ -110,14 +110,14 @@ impl Camera {
 
 /// A camera whose angles are known by their sines and cosines.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub struct CameraView {
     sin_yaw: f64,
     cos_yaw: f64,
     sin_pitch: f64,
     cos_pitch: f64,
 }
 
-impl View {
+impl CameraView {
     pub fn project(&self, point: &Vector3<f64>) -> (f64, f64) {
         let right = self.cos_yaw * point.x + self.sin_yaw * point.y;
         let depth = self.cos_yaw * point.y - self.sin_yaw * point.x;

@@ -5,7 +5,7 @@
 //! one now and then; for a periodic motion the picture then stays the same.
 
 use super::live::LiveRun;
-use super::recording::{Curve, Recording};
+use super::recording::{RecordedCurve, Recording};
 use super::strip::{LEAST_SWING_DEG, Strip};
 use crate::analysis::Readouts;
 use crate::text::ladder;
@@ -28,7 +28,7 @@ const LEAST_STEPS: f64 = 10.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detail {
     /// What was chosen, or else the tilt, or x where the tilt does not swing and x does.
-    pub curve: Curve,
+    pub curve: RecordedCurve,
     pub begin_s: f64,
     pub window_s: f64,
     /// The period of the swings that its length was chosen by, s; `None` where it was chosen by hand or nothing swings.
@@ -38,9 +38,9 @@ pub struct Detail {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Wanted {
+pub struct DetailRequest {
     pub window_s: Option<f64>,
-    pub curve: Option<Curve>,
+    pub curve: Option<RecordedCurve>,
     /// Length of the long window, s: the longest that it may have.
     pub long_s: f64,
     pub place: Placement,
@@ -56,7 +56,7 @@ pub enum Placement {
     About(f64),
 }
 
-impl Wanted {
+impl DetailRequest {
     pub fn following(long_s: f64) -> Self {
         Self {
             window_s: None,
@@ -69,12 +69,17 @@ impl Wanted {
 
 impl Detail {
     /// The window for `run` with these `readouts`; `before` is the last one.
-    pub fn new(run: &LiveRun, readouts: &Readouts, wanted: &Wanted, before: Option<&Self>) -> Self {
+    pub fn new(
+        run: &LiveRun,
+        readouts: &Readouts,
+        wanted: &DetailRequest,
+        before: Option<&Self>,
+    ) -> Self {
         let swing_s = readouts.swing_s();
-        let was_x = before.is_some_and(|before| before.curve == Curve::X);
+        let was_x = before.is_some_and(|before| before.curve == RecordedCurve::X);
         let (chosen, swing_s) = match of_x(run.recording(), wanted.long_s, was_x) {
-            Some(of_x) if was_x || swing_s.is_none() => (Curve::X, Some(of_x)),
-            _ => (Curve::Tilt, swing_s),
+            Some(of_x) if was_x || swing_s.is_none() => (RecordedCurve::X, Some(of_x)),
+            _ => (RecordedCurve::Tilt, swing_s),
         };
         let swing_s = swing_s.or_else(|| of_tilt(run.recording(), wanted.long_s));
         let curve = wanted.curve.unwrap_or(chosen);
@@ -145,7 +150,7 @@ fn of_x(recording: &Recording, long_s: f64, was_x: bool) -> Option<f64> {
 /// The period of the tilt, s, as it was recorded in the last `long_s` (s); `None` where it changes by rounding alone.
 fn of_tilt(recording: &Recording, long_s: f64) -> Option<f64> {
     let (time_s, [_, tilt]) = turns(recording, long_s)?;
-    let extent = recording.whole()?.extent(Curve::Tilt);
+    let extent = recording.whole()?.extent(RecordedCurve::Tilt);
     (tilt > 2.0 && extent.max - extent.min > LEAST_SWING_DEG).then_some(2.0 * time_s / tilt)
 }
 
@@ -154,7 +159,10 @@ fn turns(recording: &Recording, long_s: f64) -> Option<(f64, [f64; 2])> {
     let end_s = recording.whole()?.end_s;
     let since_s = (end_s - long_s).max(0.0);
     let turns = recording.since(since_s).fold([0, 0], |[x, tilt], block| {
-        [x + block.turns(Curve::X), tilt + block.turns(Curve::Tilt)]
+        [
+            x + block.turns(RecordedCurve::X),
+            tilt + block.turns(RecordedCurve::Tilt),
+        ]
     });
     Some((end_s - since_s, turns.map(f64::from)))
 }
@@ -173,7 +181,7 @@ fn length_s(swing_s: Option<f64>, before_s: Option<f64>) -> Option<f64> {
 
 /// The time between `begin_s - swing_s` and `begin_s` (s) at which `curve` is highest; before the first swing the
 /// beginning.
-fn highest_s(recording: &Recording, curve: Curve, begin_s: f64, swing_s: f64) -> f64 {
+fn highest_s(recording: &Recording, curve: RecordedCurve, begin_s: f64, swing_s: f64) -> f64 {
     if begin_s <= swing_s || swing_s <= 0.0 {
         return begin_s;
     }
@@ -188,7 +196,7 @@ fn highest_s(recording: &Recording, curve: Curve, begin_s: f64, swing_s: f64) ->
 mod tests {
     use super::*;
 
-    fn detail(run: &mut LiveRun, wanted: &Wanted, before: Option<&Detail>) -> Detail {
+    fn detail(run: &mut LiveRun, wanted: &DetailRequest, before: Option<&Detail>) -> Detail {
         let readouts = run.readouts();
         Detail::new(run, &readouts, wanted, before)
     }
@@ -196,7 +204,7 @@ mod tests {
     /// A preset after this many steps, and its window in a long one of `long_s`.
     fn at(preset: &str, steps: u64, long_s: f64) -> (LiveRun, Detail) {
         let mut run = LiveRun::played(preset, steps);
-        let detail = detail(&mut run, &Wanted::following(long_s), None);
+        let detail = detail(&mut run, &DetailRequest::following(long_s), None);
         (run, detail)
     }
 
@@ -233,7 +241,8 @@ mod tests {
             for step in 0..run.scenario().steps.min(2500) {
                 run.step().unwrap();
                 if step.is_multiple_of(20) {
-                    let detail = detail(&mut run, &Wanted::following(end_s), before.as_ref());
+                    let detail =
+                        detail(&mut run, &DetailRequest::following(end_s), before.as_ref());
                     changes += u32::from(before.is_some_and(|before| before.curve != detail.curve));
                     before = Some(detail);
                 }

@@ -1,10 +1,10 @@
 //! The pictures of the previous run, kept when an edit restarts the run, so that both can be compared, and the making of
 //! such pictures anew, in the background.
 
-use super::background::Job;
+use super::background::BackgroundJob;
 use super::live::LiveRun;
 use super::marks::Marks;
-use super::path::Path;
+use super::path::PathFromAbove;
 use super::recording::Recording;
 use crate::scenario::Scenario;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Ghost {
     pub recording: Recording,
-    pub path: Path,
+    pub path: PathFromAbove,
     pub marks: Marks,
     pub scenario: Arc<Scenario>,
     pub furthest: u64,
@@ -40,14 +40,14 @@ impl Ghost {
 pub struct GhostToBe {
     pub scenario: Arc<Scenario>,
     pub furthest: u64,
-    job: Job<Ghost>,
+    job: BackgroundJob<Ghost>,
 }
 
 impl GhostToBe {
     /// Begins to play `scenario` up to the step `furthest`, or up to where its numbers stop being finite.
     pub fn begin(scenario: Arc<Scenario>, furthest: u64) -> Self {
         let played = Arc::clone(&scenario);
-        let job = Job::begin("pinned", move |is_wanted| {
+        let job = BackgroundJob::begin("pinned", move |is_wanted| {
             let mut run = LiveRun::new(played);
             run.play(f64::INFINITY, furthest, || !is_wanted(), |_| false);
             Some(Ghost::of(&run))

@@ -5,10 +5,10 @@
 
 mod pictures;
 
-use super::path::Path;
+use super::path::PathFromAbove;
 use super::recording::{Moment, Recording};
 use crate::analysis::cost::{has_closed_form, integration_rad_per_s, is_affordable};
-use crate::analysis::readouts::Source;
+use crate::analysis::readouts::ReadoutSource;
 use crate::analysis::{Health, Monitor, Readouts};
 use crate::journal::restart::in_force;
 use crate::physics::{State, Workings};
@@ -288,7 +288,7 @@ impl LiveRun {
     }
 
     /// Reads those of `source` off it again, of `readouts` that were read at an earlier step.
-    pub fn read_again(&mut self, readouts: &mut Readouts, source: Source) {
+    pub fn read_again(&mut self, readouts: &mut Readouts, source: ReadoutSource) {
         readouts.read_again(source, &self.simulation, &mut self.monitor);
     }
 
@@ -339,7 +339,7 @@ impl LiveRun {
         &self.pictures.now
     }
 
-    pub fn pictures(&self) -> (&Recording, &Path) {
+    pub fn pictures(&self) -> (&Recording, &PathFromAbove) {
         match &self.pictures.ahead {
             Some(ahead) => (&ahead.recording, &ahead.path),
             None => (&self.pictures.recording, &self.pictures.path),
@@ -350,7 +350,7 @@ impl LiveRun {
         &self.pictures.recording
     }
 
-    pub fn path(&self) -> &Path {
+    pub fn path(&self) -> &PathFromAbove {
         &self.pictures.path
     }
 }

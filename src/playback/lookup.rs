@@ -28,7 +28,7 @@ pub fn sample(run: &LiveRun, step: u64) -> Result<Sample, Missing> {
     if step > run.furthest() {
         return Err(Missing::NotReached);
     }
-    let mut steps = Steps::before(run, step);
+    let mut steps = LookupSteps::before(run, step);
     while steps.step_number() < step {
         steps.step()?;
     }
@@ -41,7 +41,7 @@ pub fn sample(run: &LiveRun, step: u64) -> Result<Sample, Missing> {
 /// Where there is none, or computing it would take too long.
 pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
     if forward {
-        let mut steps = Steps::before(run, from.saturating_sub(1));
+        let mut steps = LookupSteps::before(run, from.saturating_sub(1));
         while steps.step_number() < run.furthest() {
             if let Some(turn) = steps.step()?.filter(|turn| *turn > from) {
                 return Ok(turn);
@@ -52,7 +52,7 @@ pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
     // From stored states further and further back, until the tilt turns after one of them.
     let (mut begin, mut left) = (from, None);
     while begin > 0 {
-        let mut steps = Steps::before(run, begin - 1);
+        let mut steps = LookupSteps::before(run, begin - 1);
         steps.left = left.unwrap_or(steps.left);
         let end = from.min(begin + 1); // a turn is seen one step after it
         begin = steps.step_number();
@@ -70,7 +70,7 @@ pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
 
 /// The turns of the tilt of `run` from step `from` to step `to`: the time, s, and the tilt, degrees, of each.
 pub fn turns(run: &LiveRun, from: u64, to: u64) -> Result<Vec<(f64, f64)>, Missing> {
-    let mut steps = Steps::before(run, from.saturating_sub(1));
+    let mut steps = LookupSteps::before(run, from.saturating_sub(1));
     let mut turns = Vec::new();
     while steps.step_number() <= to && steps.step_number() < run.furthest() {
         let now = steps.simulation.now();
@@ -82,7 +82,7 @@ pub fn turns(run: &LiveRun, from: u64, to: u64) -> Result<Vec<(f64, f64)>, Missi
     Ok(turns)
 }
 
-struct Steps {
+struct LookupSteps {
     simulation: Simulation,
     /// The points of the steps that may still be taken.
     left: u64,
@@ -91,7 +91,7 @@ struct Steps {
     change: f64,
 }
 
-impl Steps {
+impl LookupSteps {
     fn before(run: &LiveRun, step: u64) -> Self {
         Self {
             simulation: run.again_before(step),

@@ -1,6 +1,6 @@
 //! Solid parts drawn as lines.
 
-use crate::physics::part::{Part, Shape};
+use crate::physics::part::{PlacedSolid, Shape};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -17,7 +17,7 @@ pub struct Polyline {
 }
 
 /// The lines of `part`. A part that is given by its moments is drawn as the thin ellipsoid that has them.
-pub fn lines(part: &Part) -> Vec<Polyline> {
+pub fn lines(part: &PlacedSolid) -> Vec<Polyline> {
     let mut lines = own_lines(part);
     for line in &mut lines {
         for point in &mut line.points {
@@ -27,7 +27,7 @@ pub fn lines(part: &Part) -> Vec<Polyline> {
     lines
 }
 
-fn own_lines(part: &Part) -> Vec<Polyline> {
+fn own_lines(part: &PlacedSolid) -> Vec<Polyline> {
     match part.shape {
         Shape::Ring { radius } => vec![circle(radius, 0.0), mark(0.0, radius, 0.0)],
         Shape::Cylinder { radius, length } => {
@@ -140,9 +140,9 @@ fn block(size: &Vector3<f64>) -> Vec<Polyline> {
 mod tests {
     use super::*;
 
-    fn part(shape: Shape) -> Part {
+    fn part(shape: Shape) -> PlacedSolid {
         let centre = Vector3::new(0.1, 0.2, 0.3);
-        Part::new(shape, 2.0, centre, &Vector3::new(1.0, 2.0, -2.0)).unwrap()
+        PlacedSolid::new(shape, 2.0, centre, &Vector3::new(1.0, 2.0, -2.0)).unwrap()
     }
 
     /// How far the lines of a solid reach along its own x, y and axis, from the least to the greatest.

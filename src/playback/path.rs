@@ -13,7 +13,7 @@ const SIDE: usize = 512;
 const LONGEST_LINE: f64 = 24.0;
 
 #[derive(Clone, Debug)]
-pub struct Path {
+pub struct PathFromAbove {
     half_width: f64,
     is_visited: Vec<bool>,
     visits: Vec<Visit>,
@@ -27,7 +27,7 @@ struct Visit {
     cell: u32,
 }
 
-impl Path {
+impl PathFromAbove {
     pub fn new(reach: f64) -> Self {
         let half_width = if reach > 0.0 { reach / 64.0 } else { 1.0 };
         Self {
@@ -136,7 +136,7 @@ mod tests {
         fn every_position_has_a_dot_within_half_a_cell(
             positions in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 1..40)
         ) {
-            let mut path = Path::new(2.0);
+            let mut path = PathFromAbove::new(2.0);
             for (&(x, y), step) in positions.iter().zip(0..) {
                 path.follow(step, &Vector3::new(x, y, 0.0));
             }
@@ -153,12 +153,12 @@ mod tests {
         fn cut_back_it_is_what_it_was(
             positions in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 2..60), share in 0.0..1.0f64
         ) {
-            let follow = |path: &mut Path, range: std::ops::Range<usize>| for step in range {
+            let follow = |path: &mut PathFromAbove, range: std::ops::Range<usize>| for step in range {
                 let (x, y) = positions[step];
                 path.follow(step as u64, &Vector3::new(x, y, 0.0));
             };
             let at = (share * positions.len() as f64) as usize;
-            let (mut short, mut long) = (Path::new(2.0), Path::new(2.0));
+            let (mut short, mut long) = (PathFromAbove::new(2.0), PathFromAbove::new(2.0));
             // Both rasters as wide as they will be: cells of another width are other cells.
             (short.half_width, long.half_width) = (2.0, 2.0);
             follow(&mut short, 0..at + 1);

@@ -4,7 +4,7 @@
 use super::live::LiveRun;
 use super::pace::{Pace, Speed};
 use super::recording::Moment;
-use crate::analysis::{Measured, Readouts};
+use crate::analysis::{MeasuredNumber, Readouts};
 use crate::physics::State;
 use crate::text::number::{exponent, fixed, rounded, shortest};
 use std::time::Duration;
@@ -38,7 +38,7 @@ impl Reading {
     pub fn precession_deg_per_s(&self) -> Option<f64> {
         self.readouts
             .precession
-            .filter(Measured::is_settled)
+            .filter(MeasuredNumber::is_settled)
             .map(|measured| measured.value.to_degrees())
     }
 }

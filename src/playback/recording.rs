@@ -10,7 +10,7 @@
 
 mod block;
 
-pub use block::{Block, Curve, Extent, Moment};
+pub use block::{Extent, Moment, RecordedCurve, RecordingBin};
 use std::collections::VecDeque;
 use std::ops::Range;
 
@@ -35,7 +35,7 @@ impl Recording {
     /// Appends the values of the curves at the next moment, `time_s`.
     #[inline]
     pub fn push_values(&mut self, time_s: f64, values: [f64; 4]) {
-        let mut block = Block::of(time_s, values, self.turned(values));
+        let mut block = RecordingBin::of(time_s, values, self.turned(values));
         for level in &mut self.levels {
             level.push(block);
             match level.completed() {
@@ -100,24 +100,24 @@ impl Recording {
     }
 
     /// The whole recording as one block; `None` while nothing is recorded.
-    pub fn whole(&self) -> Option<Block> {
-        self.newest(self.levels.len()).reduce(Block::and)
+    pub fn whole(&self) -> Option<RecordingBin> {
+        self.newest(self.levels.len()).reduce(RecordingBin::and)
     }
 
     /// The blocks smaller than those of `size` that are in no larger one yet, in order of time.
-    fn newest(&self, size: usize) -> impl Iterator<Item = Block> {
+    fn newest(&self, size: usize) -> impl Iterator<Item = RecordingBin> {
         let smaller = self.levels[..size].iter().rev();
         smaller.flat_map(Level::waiting).copied()
     }
 
     /// Blocks in order of time that cover everything from `since_s` (s) to now, as [`between`](Self::between) has them.
-    pub fn since(&self, since_s: f64) -> impl Iterator<Item = Block> {
+    pub fn since(&self, since_s: f64) -> impl Iterator<Item = RecordingBin> {
         self.between(since_s, f64::INFINITY)
     }
 
     /// Blocks in order of time that cover everything from `since_s` to `until_s` (s): those of the smallest size that
     /// reaches back so far and has not too many, followed by smaller ones for the newest moments.
-    pub fn between(&self, since_s: f64, until_s: f64) -> impl Iterator<Item = Block> {
+    pub fn between(&self, since_s: f64, until_s: f64) -> impl Iterator<Item = RecordingBin> {
         self.in_columns(since_s, until_s, None::<fn(f64) -> usize>)
     }
 
@@ -129,7 +129,7 @@ impl Recording {
         since_s: f64,
         until_s: f64,
         column: Option<impl Fn(f64) -> usize>,
-    ) -> impl Iterator<Item = Block> {
+    ) -> impl Iterator<Item = RecordingBin> {
         let (size, numbers) = self.stretch(since_s, until_s);
         let mut next = numbers.start;
         let covering = std::iter::from_fn(move || {
@@ -161,7 +161,7 @@ impl Recording {
         numbers: &Range<u64>,
         next: u64,
         column: Option<&impl Fn(f64) -> usize>,
-    ) -> Option<(Block, u64)> {
+    ) -> Option<(RecordingBin, u64)> {
         let level = self.levels.get(size).filter(|_| next < numbers.end)?;
         let mut largest = (*level.get(next)?, 1);
         let Some(column) = column.filter(|_| next > numbers.start) else {
@@ -183,7 +183,7 @@ impl Recording {
     }
 
     /// The smallest blocks that are stored of each part of the run, in order of time.
-    pub fn finest(&self) -> impl Iterator<Item = Block> {
+    pub fn finest(&self) -> impl Iterator<Item = RecordingBin> {
         let mut covered = 0;
         let levels = self.levels.iter().enumerate().rev();
         levels.flat_map(move |(size, level)| {
@@ -197,7 +197,12 @@ impl Recording {
     }
 
     /// The extremes of `curve` from `since_s` to `until_s` (s), in its unit; `None` where nothing is recorded.
-    pub fn extent_between(&self, since_s: f64, until_s: f64, curve: Curve) -> Option<Extent> {
+    pub fn extent_between(
+        &self,
+        since_s: f64,
+        until_s: f64,
+        curve: RecordedCurve,
+    ) -> Option<Extent> {
         let blocks = self.in_columns(since_s, until_s, Some(|_| 0));
         let stored = blocks.map(|block| block.stored(curve)).reduce(Extent::and);
         stored.map(|stored| curve.in_its_unit(stored))
@@ -212,7 +217,7 @@ const RECENT: usize = 1024;
 /// The blocks of one size, in order and without gaps. The first of the run has the number 0; the oldest may be dropped.
 #[derive(Clone, Debug)]
 struct Level {
-    blocks: VecDeque<Block>,
+    blocks: VecDeque<RecordingBin>,
     dropped: u64,
     pub moments: u64,
     /// How many of them make a block of the next size; a power of two.
@@ -230,7 +235,7 @@ impl Level {
     }
 
     #[inline]
-    pub fn push(&mut self, block: Block) {
+    pub fn push(&mut self, block: RecordingBin) {
         let recent = RECENT * self.in_next as usize;
         let stored = self.blocks.len();
         if self.dropped == 0 && stored == WHOLE {
@@ -253,21 +258,21 @@ impl Level {
 
     /// The block of the next size that the newest blocks make, where they just make one.
     #[inline]
-    pub fn completed(&self) -> Option<Block> {
+    pub fn completed(&self) -> Option<RecordingBin> {
         if self.count() & (self.in_next - 1) != 0 {
             return None;
         }
-        self.newest(self.in_next).copied().reduce(Block::and)
+        self.newest(self.in_next).copied().reduce(RecordingBin::and)
     }
 
     #[inline]
-    fn newest(&self, count: u64) -> impl Iterator<Item = &Block> {
+    fn newest(&self, count: u64) -> impl Iterator<Item = &RecordingBin> {
         let begin = self.blocks.len().saturating_sub(count as usize);
         self.blocks.range(begin..)
     }
 
     /// The newest blocks, which are in no block of the next size yet.
-    pub fn waiting(&self) -> impl Iterator<Item = &Block> {
+    pub fn waiting(&self) -> impl Iterator<Item = &RecordingBin> {
         self.newest(self.count() & (self.in_next - 1))
     }
 
@@ -307,7 +312,7 @@ impl Level {
         self.dropped + first as u64..self.dropped + end.max(first) as u64
     }
 
-    pub fn get(&self, number: u64) -> Option<&Block> {
+    pub fn get(&self, number: u64) -> Option<&RecordingBin> {
         self.blocks.get(number.checked_sub(self.dropped)? as usize)
     }
 }
@@ -329,7 +334,7 @@ mod tests {
     }
 
     /// Checks that `blocks` begin at `since` or before, and follow each other without a gap; the end of the last one.
-    fn end_of(blocks: &[Block], since: f64) -> f64 {
+    fn end_of(blocks: &[RecordingBin], since: f64) -> f64 {
         assert!(blocks[0].begin_s <= since);
         for pair in blocks.windows(2) {
             assert_eq!(pair[0].end_s + 1.0, pair[1].begin_s);
@@ -357,7 +362,7 @@ mod tests {
             let column = |time_s: f64| (time_s / length as f64 * columns as f64) as usize;
             let single: Vec<_> = recording.between(since, until).collect();
             let joined: Vec<_> = recording.in_columns(since, until, Some(column)).collect();
-            let is_inside = |block: &Block| column(block.begin_s) == column(block.end_s);
+            let is_inside = |block: &RecordingBin| column(block.begin_s) == column(block.end_s);
             let mut rest = single.iter();
             for block in &joined {
                 let parts: Vec<_> = rest.by_ref().take_while(|part| part.end_s < block.end_s).collect();
@@ -366,7 +371,7 @@ mod tests {
                 prop_assert!(parts.is_empty() || is_inside(block));
             }
             prop_assert_eq!(rest.count(), 0);
-            let moments = |blocks: &[Block]| blocks.iter().map(Block::moments).sum::<u64>();
+            let moments = |blocks: &[RecordingBin]| blocks.iter().map(RecordingBin::moments).sum::<u64>();
             prop_assert_eq!(moments(&single), moments(&joined));
             // The first and the last of every column are the same, so that lines from column to column are.
             for pair in joined.windows(2).filter(|pair| column(pair[0].end_s) != column(pair[1].begin_s)) {
@@ -374,8 +379,8 @@ mod tests {
             }
             let most = single.len().min(columns.min(single.len()) * 26 + 16);
             prop_assert!(joined.len() <= most, "{} of {} in {columns}", joined.len(), single.len());
-            let extent = single.iter().map(|block| block.extent(Curve::X)).reduce(Extent::and);
-            prop_assert_eq!(recording.extent_between(since, until, Curve::X), extent);
+            let extent = single.iter().map(|block| block.extent(RecordedCurve::X)).reduce(Extent::and);
+            prop_assert_eq!(recording.extent_between(since, until, RecordedCurve::X), extent);
         }
 
         #[test]
@@ -427,14 +432,16 @@ mod tests {
 
     #[test]
     fn a_block_knows_how_often_the_curve_turns() {
-        let turns = |recording: &Recording| recording.whole().unwrap().turns(Curve::X);
+        let turns = |recording: &Recording| recording.whole().unwrap().turns(RecordedCurve::X);
         // Ten swings of a triangle about 5, from 0 to 10 and back in 20 steps each.
         let triangle = |step: u64| (10.0 - (step % 20) as f64).abs();
         let values: Vec<f64> = (0..=200).map(triangle).collect();
         let recording = recorded(&values);
         assert_eq!(recording.whole().unwrap().moments(), 201);
         assert_eq!(turns(&recording), 19);
-        let blocks = recording.since(0.0).map(|block| block.turns(Curve::X));
+        let blocks = recording
+            .since(0.0)
+            .map(|block| block.turns(RecordedCurve::X));
         assert_eq!(blocks.sum::<u32>(), 19);
         // It stands still, and goes on in the same direction: no turn.
         assert_eq!(turns(&recorded(&[0.0, 1.0, 1.0, 2.0, 2.0, 1.0])), 1);

@@ -14,12 +14,12 @@ const UNSEEN: f64 = 0.025;
 const DIGITS: usize = 15;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
+pub struct StripScale {
     pub low: f64,
     pub high: f64,
 }
 
-impl Scale {
+impl StripScale {
     /// From `-reach` to `reach`, rounded up.
     pub fn about_zero(reach: f64) -> Self {
         let reach = nice_above(reach.max(1e-9));
@@ -149,7 +149,7 @@ mod tests {
             (30.0, 30.0, "29.99 .. 30.01"),
             (31.4, 57.2, "30 .. 60"),
         ] {
-            let scale = Scale::around(Extent::of(low).and(Extent::of(high)), 0.02);
+            let scale = StripScale::around(Extent::of(low).and(Extent::of(high)), 0.02);
             assert_eq!(scale.in_words_within(40).unwrap(), words);
         }
     }
@@ -168,7 +168,7 @@ mod tests {
             (0.6, 0.95, 10, "0.60..0.95"),
             (0.6, 0.95, 9, ""),
         ] {
-            let scale = Scale { low, high };
+            let scale = StripScale { low, high };
             let within = |width| scale.in_words_within(width).unwrap_or_default();
             assert_eq!(within(width), words, "{scale:?} within {width}");
             assert!((0..40).all(|width| within(width).chars().count() <= width));

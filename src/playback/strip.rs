@@ -4,7 +4,7 @@
 //! its length at once: between two such moves only the columns at the pen change, which a slow line can transmit, but
 //! not a scrolling picture.
 
-use super::recording::{Block, Curve, Extent, Recording};
+use super::recording::{Extent, RecordedCurve, Recording, RecordingBin};
 use std::ops::Range;
 
 /// A stretch shorter than this share of a column is rounding.
@@ -24,7 +24,7 @@ pub struct Strip {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Column {
+pub struct StripColumn {
     /// The extremes of all steps in the column, and of the straight lines to the steps before and after.
     pub extent: Extent,
     /// Where the curve swings too fast to be drawn swing by swing: from the lowest to the highest values of the swings
@@ -86,7 +86,7 @@ impl Strip {
     /// Where the blocks of `recording` are on the columns: for all its curves at once.
     pub fn blocks(&self, recording: &Recording) -> Blocks {
         let column = |time_s: f64| self.place(time_s.max(self.begin_s));
-        let place = |block: Block| {
+        let place = |block: RecordingBin| {
             let shown = self.column(block.end_s);
             let last = shown.unwrap_or_else(|| self.place(block.end_s));
             (block, column(block.begin_s).min(last), last)
@@ -101,14 +101,14 @@ impl Strip {
 
 pub struct Blocks {
     columns: usize,
-    placed: Vec<(Block, usize, usize)>,
+    placed: Vec<(RecordingBin, usize, usize)>,
 }
 
 impl Blocks {
     /// `curve` in each column; `None` where the recording has nothing. No line crosses a time of `cuts` (s).
-    pub fn columns(&self, curve: Curve, cuts: &[f64]) -> Vec<Option<Column>> {
-        let mut pen = Pen {
-            columns: vec![Drawn::default(); self.columns],
+    pub fn columns(&self, curve: RecordedCurve, cuts: &[f64]) -> Vec<Option<StripColumn>> {
+        let mut pen = StripPen {
+            columns: vec![DrawnColumn::default(); self.columns],
             curve,
             cuts,
             before: None,
@@ -130,8 +130,8 @@ const MOST_TURNS: f64 = 0.4;
 const MOST_CARRIED: f64 = 0.5;
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Drawn {
-    /// The extremes of the lines from block to block, in the curve's unit; [`Pen::finish`] adds those of the blocks.
+struct DrawnColumn {
+    /// The extremes of the lines from block to block, in the curve's unit; [`StripPen::finish`] adds those of the blocks.
     extent: Option<Extent>,
     stored: Option<Extent>,
     turns: f64,
@@ -145,17 +145,17 @@ fn include(all: &mut Option<Extent>, extent: Extent) {
     *all = Some(all.map_or(extent, |old| old.and(extent)));
 }
 
-struct Pen<'a> {
-    columns: Vec<Drawn>,
-    curve: Curve,
+struct StripPen<'a> {
+    columns: Vec<DrawnColumn>,
+    curve: RecordedCurve,
     cuts: &'a [f64],
     /// Of the previous block: its end, s, its last column and its stored extremes.
     before: Option<(f64, usize, Extent)>,
 }
 
-impl Pen<'_> {
+impl StripPen<'_> {
     /// Draws `block` from column `first` to `last`; columns beyond the right edge are left out.
-    pub fn draw(&mut self, block: &Block, first: usize, last: usize) {
+    pub fn draw(&mut self, block: &RecordingBin, first: usize, last: usize) {
         let stored = block.stored(self.curve);
         if let Some((end_s, column, from)) = self.before
             && column < first
@@ -166,8 +166,8 @@ impl Pen<'_> {
         }
         let share = 1.0 / (last + 1 - first) as f64;
         let turns = f64::from(block.turns(self.curve)) * share;
-        let turns_of_tilt = f64::from(block.turns(Curve::Tilt)) * share;
-        let tilt = block.stored(Curve::Tilt);
+        let turns_of_tilt = f64::from(block.turns(RecordedCurve::Tilt)) * share;
+        let tilt = block.stored(RecordedCurve::Tilt);
         for drawn in self.columns.iter_mut().take(last + 1).skip(first) {
             include(&mut drawn.stored, stored);
             drawn.turns += turns;
@@ -184,7 +184,7 @@ impl Pen<'_> {
     }
 
     /// The columns that have something, up to `reach` columns from the column `index`.
-    fn about(&self, index: usize, reach: usize) -> impl Iterator<Item = (usize, &Drawn)> {
+    fn about(&self, index: usize, reach: usize) -> impl Iterator<Item = (usize, &DrawnColumn)> {
         let first = index.saturating_sub(reach);
         let columns = self.columns.iter().enumerate();
         let columns = columns.take(index + reach + 1).skip(first);
@@ -199,7 +199,7 @@ impl Pen<'_> {
         let turns: f64 = about().map(|drawn| drawn.turns).sum();
         let turns_of_tilt: f64 = about().map(|drawn| drawn.turns_of_tilt).sum();
         let tilt = about().filter_map(|drawn| drawn.tilt).reduce(Extent::and);
-        match tilt.map(|stored| Curve::Tilt.in_its_unit(stored)) {
+        match tilt.map(|stored| RecordedCurve::Tilt.in_its_unit(stored)) {
             Some(tilt) if tilt.max - tilt.min > LEAST_SWING_DEG => {
                 turns.max(turns_of_tilt) / columns
             }
@@ -208,13 +208,13 @@ impl Pen<'_> {
     }
 
     /// The curve in each column; `None` where nothing was drawn.
-    pub fn finish(mut self) -> Vec<Option<Column>> {
+    pub fn finish(mut self) -> Vec<Option<StripColumn>> {
         for drawn in &mut self.columns {
             if let Some(stored) = drawn.stored {
                 include(&mut drawn.extent, self.curve.in_its_unit(stored));
             }
         }
-        let is_drawn = |drawn: &Drawn| drawn.extent.is_some();
+        let is_drawn = |drawn: &DrawnColumn| drawn.extent.is_some();
         let first = self.columns.iter().position(is_drawn).unwrap_or(0);
         let ends = (first, self.columns.iter().rposition(is_drawn).unwrap_or(0));
         let all = 0..self.columns.len();
@@ -231,7 +231,7 @@ impl Pen<'_> {
         let fast: Vec<_> = all
             .map(|index| is_fast(index, turns[index], &swings, ends))
             .collect();
-        let column = |(index, drawn): (usize, &Drawn)| {
+        let column = |(index, drawn): (usize, &DrawnColumn)| {
             let extent = drawn.extent?;
             // As most of the columns about it are, lest line and band take turns.
             let about = self.about(inside(index, NEIGHBOURS, ends), NEIGHBOURS);
@@ -241,7 +241,7 @@ impl Pen<'_> {
             // The mean of the extremes of all swings that have the column in them: it goes straight from one swing to the
             // next where they grow or shrink.
             let band = mean(&swings, index, reach(index)).filter(|_| 2 * bands > count);
-            Some(Column {
+            Some(StripColumn {
                 extent,
                 band: band.map(|band| band.and(extent)),
             })
@@ -301,7 +301,7 @@ fn mean(extents: &[Option<Extent>], index: usize, reach: usize) -> Option<Extent
 
 /// Draws the straight line from one block to the next: over the columns between them, and half a column in each of the
 /// blocks' own. It may lead beyond the right edge.
-fn join(columns: &mut [Drawn], from: (usize, Extent), to: (usize, Extent)) {
+fn join(columns: &mut [DrawnColumn], from: (usize, Extent), to: (usize, Extent)) {
     let ((begin, from), (end, to)) = (from, to);
     let (leave, arrive) = nearest(from, to);
     if !(leave.is_finite() && arrive.is_finite()) {
@@ -334,12 +334,12 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn drawn(strip: Strip, values: &[f64]) -> Vec<Option<Column>> {
+    fn drawn(strip: Strip, values: &[f64]) -> Vec<Option<StripColumn>> {
         let mut recording = Recording::default();
         for (step, &x) in values.iter().enumerate() {
             recording.push_values(step as f64, [x, 0.0, 0.0, -1.0]);
         }
-        strip.blocks(&recording).columns(Curve::X, &[])
+        strip.blocks(&recording).columns(RecordedCurve::X, &[])
     }
 
     /// On 100 columns the bands, where there are any, of 1000 steps of a sine of `period` steps.
@@ -363,7 +363,7 @@ mod tests {
             let whole = drawn.iter().flatten().map(|column| column.extent).reduce(Extent::and);
             prop_assert_eq!(whole, values.iter().copied().map(Extent::of).reduce(Extent::and));
             prop_assert!(drawn.iter().all(Option::is_some), "a gap in a whole run");
-            let has_all = |c: &Column| {
+            let has_all = |c: &StripColumn| {
                 let band = c.band.unwrap_or(c.extent);
                 band.min <= c.extent.min + 1e-12 && c.extent.max <= band.max + 1e-12
             };

@@ -4,7 +4,7 @@ use super::pushes::{self, Counting, Stretch};
 use super::step::{Derived, EnergyAccount};
 use super::{Clock, Sample, Step};
 use crate::physics::observables::{self, Azimuth};
-use crate::physics::workings::Part;
+use crate::physics::workings::LoadInterval;
 use crate::physics::{Loads, PointForce, Scheme, State, Workings};
 use crate::scenario::{Edit, Motion, Pushes, Scenario};
 use std::sync::Arc;
@@ -256,7 +256,7 @@ impl Simulation {
             Some(workings) => {
                 let mut phases = Vec::new();
                 self.scheme.explain(length_s, state, &mut phases);
-                workings.parts.push(Part {
+                workings.parts.push(LoadInterval {
                     length_s,
                     loads: self.now.loads.clone(),
                     phases,

@@ -5,7 +5,7 @@
 
 use super::Clock;
 use super::pushes::{self, Counting, Stretch};
-use crate::physics::exact::{AT_ONCE, Kind};
+use crate::physics::exact::{AT_ONCE, ExactMethod};
 use crate::physics::{ExactMotion, Loads, State};
 use crate::scenario::{Pushes, Scenario};
 use nalgebra::{Matrix3, Vector3};
@@ -132,7 +132,7 @@ impl Truth {
     }
 
     /// How it is found at the time asked for last.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> ExactMethod {
         self.piece.kind()
     }
 

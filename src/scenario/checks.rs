@@ -5,7 +5,7 @@ use super::dotted::{find, is_in, number_of_push, set_key};
 use super::file::{BodyFile, EditFile, MotionFile, PushFile, ScenarioFile};
 use super::keys::{self, EDITABLE_MOTION, Effect, KEYS, TOP};
 use super::limits::too_many;
-use super::model::{Body, Edit, Motion, Pushes, Scenario};
+use super::model::{Edit, Motion, NamedBody, Pushes, Scenario};
 use super::parts::{body, friction, motion, objects, push, pushes, spinning};
 use super::problem::{Problem, Problems, nearest};
 use super::start::start;
@@ -59,7 +59,7 @@ pub fn scenario(mut file: ScenarioFile) -> Result<Scenario, Problems> {
 /// What spins, its state at the start, and the friction on it.
 fn started(
     file: &ScenarioFile,
-    body: &Body,
+    body: &NamedBody,
     motion: &Motion,
 ) -> Result<(physics::Body, State, Friction), Problem> {
     let spinning = spinning(&file.start, body, &file.body.part)?;
@@ -96,7 +96,7 @@ pub fn names(table: &toml::Table, found: &mut Problems) {
 }
 
 /// Whether the first row of the run's CSV is made of finite numbers.
-fn is_readable(body: &Body, trace: usize, start: &State, gravity: f64) -> bool {
+fn is_readable(body: &NamedBody, trace: usize, start: &State, gravity: f64) -> bool {
     let body = &body.mechanics;
     let energy = observables::kinetic_energy(body, start)
         + gravity * observables::weight_height(body, start);
@@ -106,7 +106,7 @@ fn is_readable(body: &Body, trace: usize, start: &State, gravity: f64) -> bool {
 
 /// The point that is traced if the file names none: "top", else the named point farthest from the pivot, else the farthest
 /// point of all.
-fn traced(body: &Body) -> usize {
+fn traced(body: &NamedBody) -> usize {
     if let Some(top) = body.point(TOP) {
         return top;
     }
@@ -127,7 +127,7 @@ fn traced(body: &Body) -> usize {
 /// The edits of `file`, whose pushes are `pushes` and whose friction is `friction`.
 fn edits(
     file: &ScenarioFile,
-    body: &Body,
+    body: &NamedBody,
     pushes: &Pushes,
     friction: &Friction,
 ) -> Result<Vec<Edit>, Problems> {
@@ -174,7 +174,7 @@ fn tables(file: &ScenarioFile) -> Table {
 /// Motion and pushes as the edits so far have left them.
 struct Progress<'a> {
     file: &'a ScenarioFile,
-    body: &'a Body,
+    body: &'a NamedBody,
     friction: &'a Friction,
     /// `motion` and `push`, as a file would give them.
     written: Table,

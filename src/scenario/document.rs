@@ -19,11 +19,11 @@ pub struct Document {
     origin: String,
     text: String,
     table: toml::Table,
-    set: Vec<Setting>,
+    set: Vec<SetArgument>,
 }
 
 #[derive(Clone, Debug)]
-struct Setting {
+struct SetArgument {
     key: String,
     argument: String,
     /// Why an array or a table is no TOML, and was taken as text.
@@ -145,7 +145,7 @@ impl Document {
         if let Err(problem) = self.set_value(key.trim(), value) {
             return Err(self.refused(argument, problem));
         }
-        self.set.push(Setting {
+        self.set.push(SetArgument {
             key: key.trim().to_owned(),
             argument: argument.to_owned(),
             mistake,
@@ -216,7 +216,7 @@ impl Document {
 
     /// The last `--set` that wrote what a problem at `key` is about: the value, something in it or around it, or the
     /// table that lacks it where the file has none such.
-    fn setting_behind(&self, key: &str, written: &toml::Table) -> Option<&Setting> {
+    fn setting_behind(&self, key: &str, written: &toml::Table) -> Option<&SetArgument> {
         let last =
             |wanted: &dyn Fn(&str) -> bool| self.set.iter().rev().find(|set| wanted(&set.key));
         last(&|set| overlap(key, set)).or_else(|| {

@@ -1,7 +1,7 @@
 //! The shape of scenario and run files, as serde reads and writes them. What each key means is in [`super::keys`].
 
 use super::dotted::join;
-use super::keys::{self, Kind};
+use super::keys::{self, ValueKind};
 use super::kind::float;
 pub use super::solids::PartFile;
 use serde::ser::SerializeMap;
@@ -89,12 +89,12 @@ pub struct StartFile {
     pub turn_deg: Option<f64>,
     pub roll_deg: Option<f64>,
     pub momentum_Js: Option<[f64; 3]>,
-    pub momentum_frame: Option<Frame>,
+    pub momentum_frame: Option<VectorFrame>,
     pub spin_rpm: Option<f64>,
     pub spin_rad_per_s: Option<f64>,
     pub steady: Option<bool>,
     pub omega_rad_per_s: Option<[f64; 3]>,
-    pub omega_frame: Option<Frame>,
+    pub omega_frame: Option<VectorFrame>,
     pub precession_rad_per_s: Option<f64>,
     pub nutation_rad_per_s: Option<f64>,
     pub psi_dot_rad_per_s: Option<f64>,
@@ -104,7 +104,7 @@ pub struct StartFile {
 /// The frame in which the start's momentum or angular velocity is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Frame {
+pub enum VectorFrame {
     /// As it is: the report's Method 1.
     #[default]
     World,
@@ -112,7 +112,7 @@ pub enum Frame {
     Body,
 }
 
-impl Frame {
+impl VectorFrame {
     pub fn name(self) -> &'static str {
         match self {
             Self::World => "world",
@@ -168,7 +168,9 @@ fn make_floats(table: &mut Table, under: &str) {
         let path = join(under, name);
         if let Value::Table(inner) = value {
             make_floats(inner, &path);
-        } else if let (Some(number), Ok((_, Kind::Number(_)))) = (float(value), keys::find(&path)) {
+        } else if let (Some(number), Ok((_, ValueKind::Number(_)))) =
+            (float(value), keys::find(&path))
+        {
             *value = Value::Float(number);
         }
     }

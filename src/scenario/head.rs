@@ -2,7 +2,7 @@
 
 use super::limits::{self, LONGEST, LONGEST_HEADER};
 use super::problem::{Problem, at_line};
-use crate::origin::{Figure, Holds};
+use crate::origin::{FigureFile, Payload};
 use crate::text::advice::unread;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -105,7 +105,7 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
         return Err(whole("is a folder: name a file in it".to_owned()));
     }
     let mut reader = BufReader::new(File::open(path).map_err(cannot)?);
-    if let Some(figure) = Figure::read(&mut reader).map_err(whole)? {
+    if let Some(figure) = FigureFile::read(&mut reader).map_err(whole)? {
         return run_of_figure(&figure);
     }
     let head = Head::read(&mut reader).map_err(cannot)?;
@@ -122,7 +122,7 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
 }
 
 /// The run file in a figure: of several the first, of a table the one in its header.
-fn run_of_figure(figure: &Figure) -> Result<String, Problem> {
+fn run_of_figure(figure: &FigureFile) -> Result<String, Problem> {
     match figure.origin.files.first() {
         Some(file) if file.sha256.is_some() => {
             let rule = format!(
@@ -131,7 +131,7 @@ fn run_of_figure(figure: &Figure) -> Result<String, Problem> {
             );
             Err(Problem::at("", rule))
         }
-        Some(file) if file.holds == Holds::Table => {
+        Some(file) if file.holds == Payload::Table => {
             let head = Head::read(&mut file.text.as_bytes());
             head.map_err(|error| Problem::at("", unread(&error)))?
                 .run_file()

@@ -4,7 +4,7 @@
 //! words wherever it comes from. Rules that need more than one value are in `checks` and `parts`.
 
 use super::dotted::{is_in, join};
-pub use super::kind::{Kind, PITCH_DEG, Range, ZOOM};
+pub use super::kind::{PITCH_DEG, Range, ValueKind, ZOOM};
 use super::limits::MOST_POINTS;
 use super::problem::{Problem, Problems, nearest};
 use super::screen::{ALL_ROWS, DETAILS, HIDEABLE, PHASES};
@@ -14,10 +14,10 @@ use toml::Value;
 
 /// One key a scenario or run file may hold.
 #[derive(Debug, PartialEq)]
-pub struct Key {
+pub struct ScenarioKey {
     /// Dotted path; `*` stands for any place in an array.
     pub path: &'static str,
-    pub kind: Kind,
+    pub kind: ValueKind,
     /// Whether its table is incomplete without it.
     pub required: bool,
     /// Names in its table any of which stands for it: with one of them it is not required.
@@ -70,19 +70,21 @@ pub const GRAVITY: f64 = 9.8;
 /// Playback speed where a scenario gives none, simulated seconds a second.
 pub const SPEED: f64 = 1.0;
 
-use Kind::{Flag, Line, Number, OneOf, Pane, Panes, Paragraph, Settings, Vector, Whole, WholeOr};
 use Nudge::{By, Hundredth, Ladder, Turn, Typed, WholeHundredth};
 use Range::{Any, NotNegative, Positive};
+use ValueKind::{
+    Flag, Line, Number, OneOf, Pane, Panes, Paragraph, Settings, Vector, Whole, WholeOr,
+};
 
-const fn must(path: &'static str, kind: Kind, about: &'static str) -> Key {
-    Key {
+const fn must(path: &'static str, kind: ValueKind, about: &'static str) -> ScenarioKey {
+    ScenarioKey {
         required: true,
         ..may(path, kind, about)
     }
 }
 
-const fn may(path: &'static str, kind: Kind, about: &'static str) -> Key {
-    Key {
+const fn may(path: &'static str, kind: ValueKind, about: &'static str) -> ScenarioKey {
+    ScenarioKey {
         path,
         kind,
         required: false,
@@ -92,7 +94,7 @@ const fn may(path: &'static str, kind: Kind, about: &'static str) -> Key {
     }
 }
 
-impl Key {
+impl ScenarioKey {
     const fn lab(mut self, label: &'static str, unit: &'static str, nudge: Nudge) -> Self {
         self.lab = Some(InLab { label, unit, nudge });
         self
@@ -125,7 +127,7 @@ pub(super) const STATED: &str = "angular momentum L about the pivot, J s; or giv
 
 /// Every key there is, in the order in which files are written.
 #[rustfmt::skip]
-pub static KEYS: &[Key] = &[
+pub static KEYS: &[ScenarioKey] = &[
     may("gyrolab", Line, "version of gyrolab that wrote the run file"),
     must("title", Line, "name of the scenario").lab("title", "", Typed),
     may("about", Paragraph, "one paragraph for the list of presets").lab("about", "", Typed),
@@ -221,7 +223,7 @@ fn pattern(key: &str) -> String {
 
 /// The row of the dotted `key`, numbers for places in arrays, and what a value there may be: of a number in a vector any
 /// finite number.
-pub fn find(key: &str) -> Result<(&'static Key, Kind), String> {
+pub fn find(key: &str) -> Result<(&'static ScenarioKey, ValueKind), String> {
     let row = |pattern: &str| KEYS.iter().find(|known| known.path == pattern);
     if let Some(row) = row(&pattern(key)) {
         return Ok((row, row.kind));
@@ -421,7 +423,7 @@ pub(super) fn names(under: &str) -> Vec<&'static str> {
 }
 
 /// The keys below the pattern `under`, and what their paths have after it.
-fn below(under: &str) -> impl Iterator<Item = (&'static str, &'static Key)> {
+fn below(under: &str) -> impl Iterator<Item = (&'static str, &'static ScenarioKey)> {
     let under = if under.is_empty() {
         String::new()
     } else {

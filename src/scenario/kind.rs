@@ -3,8 +3,10 @@
 use super::problem::nearest;
 use super::screen;
 use crate::text::printable::is_steering;
-use Kind::{Flag, Line, Number, OneOf, Pane, Panes, Paragraph, Settings, Vector, Whole, WholeOr};
 use Range::{NotNegative, Positive, Within};
+use ValueKind::{
+    Flag, Line, Number, OneOf, Pane, Panes, Paragraph, Settings, Vector, Whole, WholeOr,
+};
 use nalgebra::Vector3;
 use toml::Value;
 
@@ -14,7 +16,7 @@ pub const LONGEST_PARAGRAPH: usize = 20_000;
 
 /// What a key may hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum ValueKind {
     /// Text on one line, not empty.
     Line,
     /// Text that may have several lines.
@@ -47,7 +49,7 @@ pub const ZOOM: (f64, f64) = (0.5, 100.0);
 /// The least and the greatest height of the eye above the horizontal, degrees.
 pub const PITCH_DEG: (f64, f64) = (-90.0, 90.0);
 
-impl Kind {
+impl ValueKind {
     /// Whether `value` is of this kind and in its range.
     pub fn check(self, value: &Value) -> Result<(), String> {
         match self {
@@ -69,7 +71,7 @@ impl Kind {
     }
 }
 
-impl Kind {
+impl ValueKind {
     /// The words that are of this kind.
     pub fn words(self) -> Vec<&'static str> {
         match self {

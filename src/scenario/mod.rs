@@ -27,7 +27,7 @@ pub mod start;
 pub use document::Document;
 pub use file::ScenarioFile;
 pub(crate) use kind::{float, vector};
-pub use model::{Body, Edit, Motion, Push, Pushes, Scenario, Window};
+pub use model::{Edit, Motion, NamedBody, Push, Pushes, Scenario, Window};
 pub use problem::{Problem, Problems};
 
 /// The scenario of the preset `name` in which these values are set, for tests.

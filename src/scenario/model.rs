@@ -3,7 +3,7 @@
 use super::file::ScenarioFile;
 use super::keys::TOP;
 use super::problem::{Problem, nearest};
-use crate::physics::{self, Friction, Part, SchemeInfo, State, observables, part};
+use crate::physics::{self, Friction, PlacedSolid, SchemeInfo, State, observables, part};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -15,7 +15,7 @@ pub struct Scenario {
     /// The file it came from, as it is written again.
     pub file: ScenarioFile,
     /// What turns, with the names of its points.
-    pub body: Arc<Body>,
+    pub body: Arc<NamedBody>,
     /// Index of the point whose path is shown.
     pub trace: usize,
     /// Orientation and momentum at t = 0.
@@ -32,10 +32,10 @@ pub struct Scenario {
 
 /// The body, its solid parts, and the names of its points.
 #[derive(Clone, Debug)]
-pub struct Body {
+pub struct NamedBody {
     /// The mechanics: the points of the rim, the points, and then those that stand for the parts.
     pub mechanics: physics::Body,
-    pub parts: Vec<Part>,
+    pub parts: Vec<PlacedSolid>,
     pub(crate) names: HashMap<String, usize>,
 }
 
@@ -95,7 +95,7 @@ impl Edit {
     }
 }
 
-impl Body {
+impl NamedBody {
     /// How many points stand before those of the parts.
     pub fn points_before_parts(&self) -> usize {
         self.mechanics.points().len() - part::POINTS * self.parts.len()

@@ -5,11 +5,11 @@ use super::dotted::join;
 use super::file::{BodyFile, FrictionFile, MotionFile, PartFile, PushFile, StartFile};
 use super::keys::GRAVITY;
 use super::limits::MOST_POINTS;
-use super::model::{Body, Motion, Push, Pushes, Window};
+use super::model::{Motion, NamedBody, Push, Pushes, Window};
 use super::problem::{Problem, Problems, listed, nearest};
 use super::solids;
 use crate::physics::{
-    self, BodyError, Damping, Friction, Part, PointMass, SchemeInfo, SymmetricTop, scheme,
+    self, BodyError, Damping, Friction, PlacedSolid, PointMass, SchemeInfo, SymmetricTop, scheme,
 };
 use nalgebra::Vector3;
 use std::collections::HashMap;
@@ -24,10 +24,10 @@ const MOST_RATE: f64 = 1e100;
 /// [`SymmetricTop`]: less is the rounding of a scenario's digits.
 const WITHIN: f64 = 1e-9;
 
-pub(super) fn body(file: &BodyFile) -> Result<Body, Problems> {
+pub(super) fn body(file: &BodyFile) -> Result<NamedBody, Problems> {
     few_enough(file)?;
     let mut points = rim_points(file);
-    let mut named = Named::default();
+    let mut named = PointNames::default();
     for (index, point) in file.point.iter().enumerate() {
         named.add(&point.name, points.len(), "point", index);
         points.push(PointMass {
@@ -56,7 +56,7 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Problems> {
         };
         Problem::at("body", format!("{error}{few}"))
     })?;
-    Ok(Body {
+    Ok(NamedBody {
         mechanics,
         parts,
         names: named.names,
@@ -76,12 +76,12 @@ fn few_enough(file: &BodyFile) -> Result<(), Problem> {
 
 /// The names of points and parts as they are found, each with the index of its point, and what is wrong with them.
 #[derive(Default)]
-struct Named {
+struct PointNames {
     names: HashMap<String, usize>,
     problems: Problems,
 }
 
-impl Named {
+impl PointNames {
     /// Names the point `point`; the name stands in the table of this kind, `point` or `part`, with this index.
     fn add(&mut self, name: &str, point: usize, kind: &str, index: usize) {
         if self.names.insert(name.to_owned(), point).is_some() {
@@ -131,7 +131,7 @@ pub(super) fn motion(file: &MotionFile) -> Motion {
     }
 }
 
-pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Problems> {
+pub(super) fn pushes(files: &[PushFile], body: &NamedBody) -> Result<Pushes, Problems> {
     let mut found = Problems::default();
     let pushes = files.iter().enumerate().filter_map(|(index, file)| {
         // The nearest name is sought for those that are told alone: there may be 100 000 points.
@@ -145,7 +145,7 @@ pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Problems
     found.or(pushes)
 }
 
-pub(super) fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Problems> {
+pub(super) fn push(file: &PushFile, body: &NamedBody, key: &str) -> Result<Push, Problems> {
     let mut problems = Problems::default();
     let point = problems.kept(body.find(&format!("{key}.point"), &file.point));
     let window = problems.kept(window(file, key));
@@ -235,7 +235,7 @@ pub(super) fn objects(scheme: &'static SchemeInfo, friction: &Friction) -> Resul
 /// is the rotor's: that is the body which is computed, and its spin, its energy and the work of friction are the rotor's.
 pub(super) fn spinning(
     file: &StartFile,
-    body: &Body,
+    body: &NamedBody,
     parts: &[PartFile],
 ) -> Result<physics::Body, Problem> {
     let whole = &body.mechanics;
@@ -264,7 +264,7 @@ pub(super) fn spinning(
 }
 
 /// The moment about the axle of a `part` that can spin alone about it, kg m².
-fn alone(part: &Part) -> Result<f64, &'static str> {
+fn alone(part: &PlacedSolid) -> Result<f64, &'static str> {
     let moments = part.moments();
     let axis = part.directions.column(2);
     let size = (moments.amax() / part.mass).sqrt();

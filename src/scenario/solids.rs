@@ -1,8 +1,8 @@
-//! The solid parts of a body: from `[[body.part]]` to [`Part`], with the dimensions that each shape has.
+//! The solid parts of a body: from `[[body.part]]` to [`PlacedSolid`], with the dimensions that each shape has.
 
 use super::kind::vector;
 use super::problem::{Problem, Problems};
-use crate::physics::part::{Part, PartError, Shape};
+use crate::physics::part::{PartError, PlacedSolid, Shape};
 use crate::text::ladder::at_or_below;
 use crate::text::number::{shortest, significant};
 use nalgebra::Vector3;
@@ -36,7 +36,7 @@ pub enum About {
 }
 
 /// A shape as a file names it, and its dimensions.
-pub(super) struct Form {
+pub(super) struct SolidShape {
     name: &'static str,
     /// The dimensions without which there is no such solid.
     needs: &'static [&'static str],
@@ -50,8 +50,8 @@ const fn form(
     needs: &'static [&'static str],
     may_have: &'static [&'static str],
     make: fn(&PartFile) -> Shape,
-) -> Form {
-    Form {
+) -> SolidShape {
+    SolidShape {
         name,
         needs,
         may_have,
@@ -62,7 +62,7 @@ const fn form(
 const TUBE: [&str; 3] = ["inner_radius_m", "outer_radius_m", "length_m"];
 
 #[rustfmt::skip]
-pub(super) static FORMS: [Form; 9] = [
+pub(super) static FORMS: [SolidShape; 9] = [
     form("ring", &["radius_m"], &[], |file| Shape::Ring { radius: of(file.radius_m) }),
     form("cylinder", &["radius_m"], &["length_m"], |file| Shape::Cylinder { radius: of(file.radius_m), length: of(file.length_m) }),
     form("tube", &TUBE, &[], |file| Shape::Tube { inner: of(file.inner_radius_m), outer: of(file.outer_radius_m), length: of(file.length_m) }),
@@ -107,7 +107,7 @@ pub(crate) fn has_dimension(shape: &str, name: &str) -> bool {
 
 /// The part that `file` describes.
 /// In a refusal the keys are those in the part's table.
-pub(super) fn part(file: &PartFile) -> Result<Part, Problems> {
+pub(super) fn part(file: &PartFile) -> Result<PlacedSolid, Problems> {
     // An unknown shape has been refused by the keys.
     let form = FORMS.iter().find(|form| form.name == file.shape);
     let form = form.unwrap_or(&FORMS[0]);
@@ -122,9 +122,11 @@ pub(super) fn part(file: &PartFile) -> Result<Part, Problems> {
     let part = match file.about {
         Some(About::Pivot) => {
             let moments = of(file.moments_kg_m2).into();
-            Part::about_pivot(&moments, file.mass_kg, centre, &axis)
+            PlacedSolid::about_pivot(&moments, file.mass_kg, centre, &axis)
         }
-        Some(About::Center) | None => Part::new((form.make)(file), file.mass_kg, centre, &axis),
+        Some(About::Center) | None => {
+            PlacedSolid::new((form.make)(file), file.mass_kg, centre, &axis)
+        }
     };
     Ok(part.map_err(|error| {
         let moments = vector(&Vector3::from(of(file.moments_kg_m2)));
@@ -155,7 +157,7 @@ fn moves_alike(file: &PartFile, nearer: f64) -> String {
 }
 
 /// The dimensions that are missing, and those that a solid of this form has not.
-fn wrong_dimensions(form: &Form, file: &PartFile) -> Vec<Problem> {
+fn wrong_dimensions(form: &SolidShape, file: &PartFile) -> Vec<Problem> {
     let written = Table::try_from(file).unwrap_or_default();
     let all = [form.needs, form.may_have].concat().join(", ");
     let wrong = |name: &'static str| match (written.get(name), has_dimension(form.name, name)) {
@@ -174,7 +176,7 @@ fn wrong_dimensions(form: &Form, file: &PartFile) -> Vec<Problem> {
 }
 
 /// Refuses dimensions that no solid of this form has.
-fn check_dimensions(form: &Form, file: &PartFile) -> Result<(), Problem> {
+fn check_dimensions(form: &SolidShape, file: &PartFile) -> Result<(), Problem> {
     let refused =
         |name: &str, value: Value, rule: &str| Err(Problem::with_value(name, &value, rule));
     if let (Some(length), "rod" | "cone") = (file.length_m, form.name)

@@ -2,7 +2,7 @@
 //! or the Euler rates.
 
 use super::dotted::find;
-use super::file::{Frame, StartFile};
+use super::file::{StartFile, VectorFrame};
 use super::keys::STATED;
 use super::kind::vector;
 use super::model::Scenario;
@@ -29,9 +29,9 @@ pub(super) fn start(
 ) -> Result<State, Problem> {
     is_told_once(file)?;
     let orientation = orientation(file);
-    let turned = |frame: Option<Frame>, vector: [f64; 3]| match frame.unwrap_or_default() {
-        Frame::World => Vector3::from(vector),
-        Frame::Body => orientation * Vector3::from(vector),
+    let turned = |frame: Option<VectorFrame>, vector: [f64; 3]| match frame.unwrap_or_default() {
+        VectorFrame::World => Vector3::from(vector),
+        VectorFrame::Body => orientation * Vector3::from(vector),
     };
     let momentum_of = |velocity: Vector3<f64>| orientation * (body.inertia() * velocity);
     let momentum = match (file.momentum_Js, file.omega_rad_per_s, spin(file)) {

@@ -1,7 +1,7 @@
 //! The only folder in which a lab may read and write, if the command line names one with `--folder`. It is meant for a
 //! login that several people share and that may run nothing but the lab.
 
-use crate::text::printable::{Shown, printable};
+use crate::text::printable::{PrintablePath, printable};
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
@@ -70,7 +70,7 @@ impl Confined {
         match fs::symlink_metadata(&self.sessions) {
             Ok(there) if !there.is_dir() => Err(format!(
                 "sessions cannot be kept in {}: it is not a folder",
-                Shown(&self.sessions)
+                PrintablePath(&self.sessions)
             )),
             _ => Ok(self.sessions.clone()),
         }

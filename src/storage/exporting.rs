@@ -2,13 +2,13 @@
 //! from this machine.
 
 use super::at_exit::{self, Registered, Release};
-use crate::data::Measured;
+use crate::data::MeasuredData;
 use crate::export::destination::{Destination, DestinationError};
 use crate::export::stream::{self, Ended};
-use crate::export::{COLUMNS, CsvWriter, Layout};
-use crate::figure::kind::Kind;
-use crate::figure::of_runs::{EXACT_BESIDE, Run};
-use crate::figure::{Asked, Format, Source};
+use crate::export::{COLUMNS, CsvLayout, CsvWriter};
+use crate::figure::kind::FigureKind;
+use crate::figure::of_runs::{EXACT_BESIDE, FigureRun};
+use crate::figure::{FigureOptions, FigureSource, PageFormat};
 use crate::playback::live::integration_cost;
 use crate::run::{Clock, NotFinite, Sample, Simulation};
 use crate::scenario::Scenario;
@@ -43,12 +43,12 @@ pub struct Written {
 
 /// What a figure shows of a run.
 #[derive(Clone, Debug)]
-pub struct Drawn {
-    pub kind: Kind,
+pub struct FigureInput {
+    pub kind: FigureKind,
     /// Whether the exact motion stands beside the run.
     pub exact: bool,
-    pub measured: Option<Arc<Measured>>,
-    pub format: Format,
+    pub measured: Option<Arc<MeasuredData>>,
+    pub format: PageFormat,
 }
 
 #[derive(Default)]
@@ -67,7 +67,7 @@ impl Exporting {
     pub fn begin(
         scenario: Arc<Scenario>,
         path: &Path,
-        layout: Layout,
+        layout: CsvLayout,
         replace: bool,
     ) -> Result<Self, DestinationError> {
         let refused = |error| DestinationError::refused(path, error);
@@ -85,7 +85,7 @@ impl Exporting {
     pub fn begin_figure(
         scenario: Arc<Scenario>,
         path: &Path,
-        drawn: Drawn,
+        drawn: FigureInput,
         replace: bool,
     ) -> Result<Self, DestinationError> {
         let refused = |error| DestinationError::refused(path, error);
@@ -222,16 +222,16 @@ fn draw(
     scenario: Arc<Scenario>,
     output: Destination,
     path: PathBuf,
-    drawn: Drawn,
+    drawn: FigureInput,
     shared: &Shared,
 ) -> Result<Written, String> {
-    let source = Source {
-        asked: Asked {
+    let source = FigureSource {
+        asked: FigureOptions {
             kind: Some(drawn.kind.name()),
             exact: drawn.exact,
-            ..Asked::default()
+            ..FigureOptions::default()
         },
-        runs: vec![Run {
+        runs: vec![FigureRun {
             named: scenario.file.title.clone(),
             scenario,
         }],

@@ -7,8 +7,8 @@
 use super::at_exit::{self, Registered};
 use super::own::make_folder;
 use super::slot::{self, Slot};
-pub use super::slot::{Content, Text, later};
-use crate::text::printable::Shown;
+pub use super::slot::{SessionContent, SharedText, later};
+use crate::text::printable::PrintablePath;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ const PERIOD: Duration = Duration::from_millis(500);
 #[derive(Debug)]
 pub struct Closed {
     /// The content that was saved last; `None` if none was.
-    pub kept: Option<Content>,
+    pub kept: Option<SessionContent>,
     /// Why that is not the content that was noted last.
     pub trouble: Option<String>,
 }
@@ -36,7 +36,7 @@ pub struct Closed {
 #[derive(Debug)]
 pub struct Session {
     name: String,
-    state: Arc<Mutex<State>>,
+    state: Arc<Mutex<SaveState>>,
     flushes: Flushes,
     writer: Option<JoinHandle<()>>,
     _at_end: Registered,
@@ -47,17 +47,17 @@ type Flushes = Sender<(Sender<()>, bool)>;
 
 /// The content to save, and what has been saved.
 #[derive(Debug, Default)]
-struct State {
-    noted: Option<Content>,
+struct SaveState {
+    noted: Option<SessionContent>,
     /// Whether what was noted last is still to be saved.
     is_news: bool,
-    kept: Option<Content>,
+    kept: Option<SessionContent>,
     trouble: Option<String>,
 }
 
 /// The result of looking for a session to resume.
 #[derive(Debug)]
-pub struct Found<T> {
+pub struct SessionSearch<T> {
     /// The newest session that is not in use and can be read, and what `read` made of its content.
     pub resumed: Option<(Session, T)>,
     /// Newer files that cannot be read or are another version's or user's; they are unchanged.
@@ -83,7 +83,7 @@ pub struct Listed {
     /// The number of that process, if known.
     pub owner: Option<u32>,
     /// What it holds, or why it cannot be read.
-    pub content: Result<Content, String>,
+    pub content: Result<SessionContent, String>,
 }
 
 /// The folder for sessions: `$XDG_STATE_HOME/gyrolab`, by default `~/.local/state/gyrolab`.
@@ -101,8 +101,8 @@ pub fn folder() -> Result<PathBuf, String> {
 pub fn resume<T>(
     folder: &Path,
     name: Option<&str>,
-    read: impl Fn(&Content) -> Result<T, String>,
-) -> io::Result<Found<T>> {
+    read: impl Fn(&SessionContent) -> Result<T, String>,
+) -> io::Result<SessionSearch<T>> {
     let mut names = sessions(folder)?;
     if let Some(name) = name {
         names.retain(|other| other == name);
@@ -111,7 +111,7 @@ pub fn resume<T>(
             return Err(io::Error::new(kind, "there is no such session"));
         }
     }
-    let mut found = Found {
+    let mut found = SessionSearch {
         resumed: None,
         left_alone: Vec::new(),
         in_use_by: Vec::new(),
@@ -169,7 +169,10 @@ fn sessions(folder: &Path) -> io::Result<Vec<String>> {
 }
 
 fn told(error: &io::Error, what: &str, folder: &Path) -> io::Error {
-    io::Error::new(error.kind(), format!("{what} {}: {error}", Shown(folder)))
+    io::Error::new(
+        error.kind(),
+        format!("{what} {}: {error}", PrintablePath(folder)),
+    )
 }
 
 impl Session {
@@ -185,11 +188,11 @@ impl Session {
     }
 
     /// The session of `slot`, of which the disk holds `kept`.
-    fn start(slot: Slot, kept: Option<Content>) -> io::Result<Self> {
+    fn start(slot: Slot, kept: Option<SessionContent>) -> io::Result<Self> {
         let name = slot.name().to_owned();
-        let state = Arc::new(Mutex::new(State {
+        let state = Arc::new(Mutex::new(SaveState {
             kept,
-            ..State::default()
+            ..SaveState::default()
         }));
         let (flushes, received) = channel();
         let (of_writer, at_end) = (Arc::clone(&state), flushes.clone());
@@ -208,7 +211,7 @@ impl Session {
     }
 
     /// Makes `content` the content to save. It is quick, and may be called in every round of the loop.
-    pub fn note(&self, content: Content) {
+    pub fn note(&self, content: SessionContent) {
         let mut state = locked(&self.state);
         let noted = state.noted.as_ref();
         if !noted.is_some_and(|noted| noted.is_same(&content)) {
@@ -262,7 +265,7 @@ impl Drop for Session {
     }
 }
 
-fn locked(state: &Mutex<State>) -> MutexGuard<'_, State> {
+fn locked(state: &Mutex<SaveState>) -> MutexGuard<'_, SaveState> {
     state.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -274,7 +277,7 @@ fn flush(flushes: &Flushes, patience: Duration, ends: bool) -> bool {
 }
 
 /// The body of the writer. It returns when the session is closed; one that was never saved leaves nothing.
-fn keep_writing(slot: Slot, state: &Mutex<State>, flushes: &Receiver<(Sender<()>, bool)>) {
+fn keep_writing(slot: Slot, state: &Mutex<SaveState>, flushes: &Receiver<(Sender<()>, bool)>) {
     loop {
         let flushed = flushes.recv_timeout(PERIOD);
         // A flush saves even what has not changed, so that the session left last has the newest file.
@@ -297,7 +300,7 @@ fn keep_writing(slot: Slot, state: &Mutex<State>, flushes: &Receiver<(Sender<()>
     }
 }
 
-fn save(slot: &Slot, state: &Mutex<State>) {
+fn save(slot: &Slot, state: &Mutex<SaveState>) {
     let noted = {
         let mut state = locked(state);
         state.is_news = false;

@@ -5,10 +5,10 @@
 //! scenario is, by the table [`KEYS`]; a setting that breaks a rule is not used, the others are.
 
 use super::own;
-use crate::scenario::keys::Kind::{self, Flag, OneOf, Whole};
+use crate::scenario::keys::ValueKind::{self, Flag, OneOf, Whole};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
-use crate::text::printable::Shown;
+use crate::text::printable::PrintablePath;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
@@ -22,7 +22,7 @@ const LONGEST: usize = 1 << 20;
 const HEAD: &str = "# What was chosen in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and wins.\n";
 
 /// A setting's key, what it may hold, and its meaning.
-pub const KEYS: [(&str, Kind, &str); 5] = [
+pub const KEYS: [(&str, ValueKind, &str); 5] = [
     (
         "marker",
         OneOf(&["braille", "half-block", "dot", "ascii"]),
@@ -140,7 +140,7 @@ pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
         own::replace(&path, &format!("{HEAD}{table}"))
     };
     remembered().map_err(|error| {
-        let path = Shown(&path);
+        let path = PrintablePath(&path);
         format!("the choice cannot be remembered in {path}: {error}")
     })
 }

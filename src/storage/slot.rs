@@ -42,22 +42,22 @@ const GLANCE: Duration = Duration::from_millis(10);
 const UNLOCKING: Duration = Duration::from_secs(1);
 
 /// A text that is written once, when it is first read; a clone shares it.
-pub type Text = Arc<LazyLock<String, Box<dyn FnOnce() -> String + Send>>>;
+pub type SharedText = Arc<LazyLock<String, Box<dyn FnOnce() -> String + Send>>>;
 
-pub fn later(write: impl FnOnce() -> String + Send + 'static) -> Text {
+pub fn later(write: impl FnOnce() -> String + Send + 'static) -> SharedText {
     Arc::new(LazyLock::new(Box::new(write)))
 }
 
 /// The content of a session.
 #[derive(Clone, Debug)]
-pub struct Content {
+pub struct SessionContent {
     /// What changes seldom, such as the runs and their journals.
-    pub work: Text,
+    pub work: SharedText,
     /// What changes all the time, such as the present step. It is short.
     pub place: String,
 }
 
-impl Content {
+impl SessionContent {
     pub(super) fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.work, &other.work) && self.place == other.place
     }
@@ -117,7 +117,7 @@ fn is_running(process: u32) -> bool {
 }
 
 /// Reads the session, whether or not a process holds it.
-pub(super) fn stored(folder: &Path, name: &str) -> Result<Content, String> {
+pub(super) fn stored(folder: &Path, name: &str) -> Result<SessionContent, String> {
     let bytes = own::read(&file(folder, name, "session"), LONGEST);
     let bytes = bytes.map_err(|error| error.to_string())?;
     let text = String::from_utf8(bytes).unwrap_or_default();
@@ -130,7 +130,7 @@ pub(super) fn stored(folder: &Path, name: &str) -> Result<Content, String> {
 }
 
 /// The content from the text of a session behind its first line; `None` if it is incomplete or changed.
-fn content(text: &str) -> Option<Content> {
+fn content(text: &str) -> Option<SessionContent> {
     let (sum, summed) = text.split_once('\n')?;
     if sum != sum_of(summed) {
         return None;
@@ -139,7 +139,7 @@ fn content(text: &str) -> Option<Content> {
     let length = length.strip_prefix("place ")?.parse().ok()?;
     let (place, work) = texts.split_at_checked(length)?;
     let work = work.to_owned();
-    Some(Content {
+    Some(SessionContent {
         work: later(move || work),
         place: place.to_owned(),
     })
@@ -225,9 +225,9 @@ impl Slot {
     }
 
     /// Writes `content`. If writing fails, the old file is unchanged.
-    pub(super) fn save(&self, content: &Content) -> io::Result<()> {
+    pub(super) fn save(&self, content: &SessionContent) -> io::Result<()> {
         own::make_folder(&self.folder)?; // somebody may have removed it
-        let Content { place, work } = content;
+        let SessionContent { place, work } = content;
         let texts = format!("place {}\n{place}{}", place.len(), work.as_str());
         let path = file(&self.folder, &self.name, "session");
         let text = format!("{FORMAT}\n{}\n{texts}", sum_of(&texts));

@@ -3,7 +3,7 @@
 use super::file::VaryFile;
 use crate::scenario::document::toml_or_text;
 use crate::scenario::dotted::{join, overlap};
-use crate::scenario::keys::{self, Kind};
+use crate::scenario::keys::{self, ValueKind};
 use crate::scenario::start::exclude_each_other;
 use crate::scenario::{Problem, Problems};
 use crate::text::number::rounded;
@@ -12,7 +12,7 @@ use toml::Value;
 
 /// A key that varies, and its values in their order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
+pub struct SweepAxis {
     pub key: String,
     pub values: Vec<Value>,
 }
@@ -22,7 +22,7 @@ const MOST: u64 = 10_000_000;
 /// Digits of a value between two ends: one less than rounding spoils.
 const DIGITS: usize = 15;
 
-impl Axis {
+impl SweepAxis {
     pub(super) fn new(vary: &VaryFile, place: &str) -> Result<Self, Vec<Problem>> {
         let at = |name: &str| join(place, name);
         let kind = kind(&vary.key).map_err(|rule| {
@@ -57,15 +57,15 @@ impl Axis {
     }
 }
 
-pub(super) fn axes(files: &[VaryFile], problems: &mut Vec<Problem>) -> Vec<Axis> {
-    let mut axes: Vec<Axis> = Vec::new();
+pub(super) fn axes(files: &[VaryFile], problems: &mut Vec<Problem>) -> Vec<SweepAxis> {
+    let mut axes: Vec<SweepAxis> = Vec::new();
     if files.is_empty() {
         let rule = "is missing: a sweep varies at least one key, by [[vary]] or --vary KEY=A..B:N";
         problems.push(Problem::at("vary", rule));
     }
     for (index, file) in files.iter().enumerate() {
         let place = format!("vary.{index}");
-        match Axis::new(file, &place) {
+        match SweepAxis::new(file, &place) {
             Ok(axis) => {
                 let clash = axes.iter().find_map(|other| clash(&axis.key, &other.key));
                 problems.extend(clash.map(|rule| Problem::at(axis.key.clone(), rule)));
@@ -91,7 +91,7 @@ fn clash(key: &str, other: &str) -> Option<String> {
 }
 
 /// What a value of the dotted `key` may be.
-fn kind(key: &str) -> Result<Kind, String> {
+fn kind(key: &str) -> Result<ValueKind, String> {
     if ["gyrolab", "expected", "edit"].contains(&key.split('.').next().unwrap_or_default()) {
         return Err("is no part of the set-up, and cannot vary".to_owned());
     }
@@ -99,7 +99,7 @@ fn kind(key: &str) -> Result<Kind, String> {
 }
 
 /// Whether `value` may stand at a key of this kind. (Whether the scenario takes it shows at its point.)
-fn fits(kind: Kind, value: &Value) -> Result<(), String> {
+fn fits(kind: ValueKind, value: &Value) -> Result<(), String> {
     kind.check(value)?;
     let is_steered = value
         .as_str()
@@ -133,11 +133,11 @@ fn range(from: f64, to: f64, count: u64) -> Result<Vec<Value>, String> {
 }
 
 /// A whole number where a number is wanted as that number, and a number without decimals where a whole one is.
-fn as_kind(kind: Kind, value: Value) -> Value {
+fn as_kind(kind: ValueKind, value: Value) -> Value {
     const EXACT: f64 = 9e15;
     match (kind, &value) {
-        (Kind::Number(_), Value::Integer(whole)) => Value::Float(*whole as f64),
-        (Kind::Whole(..) | Kind::WholeOr(..), Value::Float(number))
+        (ValueKind::Number(_), Value::Integer(whole)) => Value::Float(*whole as f64),
+        (ValueKind::Whole(..) | ValueKind::WholeOr(..), Value::Float(number))
             if number.fract() == 0.0 && number.abs() < EXACT =>
         {
             Value::Integer(*number as i64)
@@ -164,7 +164,10 @@ fn read(argument: &str) -> Result<VaryFile, String> {
         ..VaryFile::default()
     };
     let text = text.trim();
-    let is_number = matches!(kind(&vary.key), Ok(Kind::Number(_) | Kind::Whole(..)));
+    let is_number = matches!(
+        kind(&vary.key),
+        Ok(ValueKind::Number(_) | ValueKind::Whole(..))
+    );
     let Some((from, rest)) = text.split_once("..").filter(|_| is_number) else {
         vary.values = Some(listed(text)?);
         return Ok(vary);
@@ -217,7 +220,7 @@ mod tests {
 
     fn axis(argument: &str) -> Result<Vec<String>, String> {
         let axis = read(argument).and_then(|vary| {
-            Axis::new(&vary, "vary.0").map_err(|problems| problems[0].to_string())
+            SweepAxis::new(&vary, "vary.0").map_err(|problems| problems[0].to_string())
         })?;
         Ok(axis.values.iter().map(ToString::to_string).collect())
     }

@@ -3,7 +3,7 @@
 
 use crate::scenario::document::Document;
 use crate::scenario::dotted::join;
-use crate::scenario::keys::{Kind, Range};
+use crate::scenario::keys::{Range, ValueKind};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, Problems, ScenarioFile};
 use serde::{Deserialize, Serialize};
@@ -55,22 +55,22 @@ pub struct VaryFile {
 }
 
 /// The keys of a sweep file and of `[[vary]]`, with what each may hold; the others are checked one by one.
-const KEYS: [(&str, Option<Kind>); 8] = [
-    ("gyrolab", Some(Kind::Line)),
-    ("title", Some(Kind::Line)),
-    ("about", Some(Kind::Paragraph)),
-    ("source", Some(Kind::Paragraph)),
-    ("shard", Some(Kind::Line)),
+const KEYS: [(&str, Option<ValueKind>); 8] = [
+    ("gyrolab", Some(ValueKind::Line)),
+    ("title", Some(ValueKind::Line)),
+    ("about", Some(ValueKind::Paragraph)),
+    ("source", Some(ValueKind::Paragraph)),
+    ("shard", Some(ValueKind::Line)),
     ("measure", None),
     ("vary", None),
     ("scenario", None),
 ];
-const VARY_KEYS: [(&str, Option<Kind>); 5] = [
-    ("key", Some(Kind::Line)),
+const VARY_KEYS: [(&str, Option<ValueKind>); 5] = [
+    ("key", Some(ValueKind::Line)),
     ("values", None),
-    ("from", Some(Kind::Number(Range::Any))),
-    ("to", Some(Kind::Number(Range::Any))),
-    ("count", Some(Kind::Whole(0, i64::MAX))),
+    ("from", Some(ValueKind::Number(Range::Any))),
+    ("to", Some(ValueKind::Number(Range::Any))),
+    ("count", Some(ValueKind::Whole(0, i64::MAX))),
 ];
 
 impl Default for Base {
@@ -148,7 +148,7 @@ fn refused(table: &Table, path: &str, name: &str, rule: &str) -> Problem {
 }
 
 /// What is wrong with the names in `table`, which stands at `path`, and with the values of `known` kinds.
-fn check(table: &Table, path: &str, known: &[(&str, Option<Kind>)]) -> Vec<Problem> {
+fn check(table: &Table, path: &str, known: &[(&str, Option<ValueKind>)]) -> Vec<Problem> {
     let problem = |(name, value): (&String, &Value)| {
         let Some((_, kind)) = known.iter().find(|(known, _)| known == name) else {
             let near = nearest(name, known.iter().map(|(known, _)| *known));

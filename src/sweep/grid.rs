@@ -1,8 +1,8 @@
 //! A checked sweep: its points in their order, the scenario of each, and its row.
 
-use super::axis::{Axis, axes};
+use super::axis::{SweepAxis, axes};
 use super::file::{Base, Shard, SweepFile};
-use crate::analysis::readouts::{self, READOUTS, Readout, Source, Value as Readable};
+use crate::analysis::readouts::{self, READOUTS, Readout, ReadoutSource, ReadoutValue as Readable};
 use crate::export::layout::commented;
 use crate::run::{Clock, resampled};
 use crate::scenario::document::Document;
@@ -39,7 +39,7 @@ pub struct Sweep {
     file: SweepFile,
     base: Document,
     /// The keys that vary, the last fastest.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<SweepAxis>,
     pub measure: Vec<&'static Readout>,
     pub shard: Shard,
     points: u64,
@@ -265,11 +265,12 @@ impl Sweep {
 /// The readouts called `names`; without any, every number that is the same each time.
 fn measured(
     names: Option<&[String]>,
-    axes: &[Axis],
+    axes: &[SweepAxis],
     problems: &mut Vec<Problem>,
 ) -> Vec<&'static Readout> {
     let Some(names) = names else {
-        let is_number = |readout: &&Readout| readout.source != Source::Clock && !readout.is_text;
+        let is_number =
+            |readout: &&Readout| readout.source != ReadoutSource::Clock && !readout.is_text;
         return READOUTS.iter().filter(is_number).collect();
     };
     if names.is_empty() {
@@ -283,7 +284,7 @@ fn measured(
         };
         match readouts::find(name) {
             None => refuse(&format!("is no readout: {}", readouts::nearest(name))),
-            Some(readout) if readout.source == Source::Clock => {
+            Some(readout) if readout.source == ReadoutSource::Clock => {
                 refuse(
                     "is told by the clock: it is another number each time, and so would be the file",
                 );

@@ -7,7 +7,7 @@ use super::part::{
 };
 use crate::export::Destination;
 use crate::scenario::document::Document;
-use crate::text::printable::Shown;
+use crate::text::printable::PrintablePath;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
@@ -66,7 +66,7 @@ fn of_one_sweep(shards: &[(Sweep, &Path)]) -> Result<Sweep, SweepFileError> {
     let Some((first, first_path)) = shards.first() else {
         return Err(SweepFileError::Refused("there are no shards".to_owned()));
     };
-    let (of, first_path) = (first.shard.of, Shown(first_path));
+    let (of, first_path) = (first.shard.of, PrintablePath(first_path));
     let whole = first.clone().with_shard(Shard::WHOLE);
     let mut numbers = BTreeSet::new();
     for (sweep, path) in shards {

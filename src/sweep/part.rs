@@ -5,12 +5,12 @@
 //! a row: it drops what follows. When all are there the file gets its name.
 
 use super::grid::{Sweep, SweepRow};
-use crate::analysis::readouts::Value;
+use crate::analysis::readouts::ReadoutValue;
 use crate::export::Destination;
 use crate::export::destination::{DestinationError, is_workbook};
 use crate::scenario::Problems;
 use crate::text::advice::{unread, unwritten};
-use crate::text::printable::{Shown, brief};
+use crate::text::printable::{PrintablePath, brief};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -36,16 +36,16 @@ pub enum SweepFileError {
 }
 
 pub(super) fn refused(path: &Path, why: impl AsRef<str>) -> SweepFileError {
-    SweepFileError::Refused(format!("{}: {}", Shown(path), why.as_ref()))
+    SweepFileError::Refused(format!("{}: {}", PrintablePath(path), why.as_ref()))
 }
 
 pub(super) fn cannot_read(path: &Path, error: &io::Error) -> SweepFileError {
-    SweepFileError::Refused(format!("{}: {}", Shown(path), unread(error)))
+    SweepFileError::Refused(format!("{}: {}", PrintablePath(path), unread(error)))
 }
 
 pub(super) fn cannot_write(path: &Path, error: &io::Error) -> SweepFileError {
     let why = unwritten(error);
-    SweepFileError::Refused(format!("cannot write {}: {why}", Shown(path)))
+    SweepFileError::Refused(format!("cannot write {}: {why}", PrintablePath(path)))
 }
 
 /// Time for finding out why a row is empty: a file does not say it.
@@ -98,12 +98,12 @@ pub enum Opened {
     /// It is there, whole, and of this sweep.
     Whole(EmptyRows),
     /// Rows are to be added.
-    Part(PartFile),
+    Part(PartialSweep),
 }
 
 /// The rows of a sweep while they are not all there.
 #[derive(Debug)]
-pub struct PartFile {
+pub struct PartialSweep {
     file: File,
     pub path: PathBuf,
     /// The name that it gets when it is whole.
@@ -115,7 +115,7 @@ pub struct PartFile {
     synced: Instant,
 }
 
-impl PartFile {
+impl PartialSweep {
     /// Opens what is to become `path` with the rows of `sweep`; with `may_replace` even where the rows of something else are.
     ///
     /// # Errors
@@ -297,7 +297,10 @@ impl There {
             let Some(readouts) = parsed.flatten() else {
                 return Ok(there);
             };
-            if readouts.iter().all(|readout| *readout == Value::Nothing) {
+            if readouts
+                .iter()
+                .all(|readout| *readout == ReadoutValue::Nothing)
+            {
                 there.empty.add(there.rows, None);
             }
             there.rows += 1;

@@ -50,9 +50,9 @@ fn escaped(text: &str, is_allowed: impl Fn(char) -> bool) -> Cow<'_, str> {
 
 /// A path as it is printed: [`printable`], and with U+FFFD for what is not text.
 #[derive(Clone, Copy, Debug)]
-pub struct Shown<'a>(pub &'a Path);
+pub struct PrintablePath<'a>(pub &'a Path);
 
-impl fmt::Display for Shown<'_> {
+impl fmt::Display for PrintablePath<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(&printable(&self.0.to_string_lossy()))
     }
@@ -92,7 +92,7 @@ mod tests {
         for safe in [
             printable(nasty).into_owned(),
             brief(nasty, 80),
-            Shown(Path::new(nasty)).to_string(),
+            PrintablePath(Path::new(nasty)).to_string(),
         ] {
             assert!(!safe.chars().any(is_steering), "{safe}");
         }

@@ -8,14 +8,14 @@ pub struct Unit {
     /// The unit as it is written in text.
     pub name: &'static str,
     /// What it measures: two units of one kind can be converted.
-    pub kind: Kind,
+    pub kind: UnitKind,
     /// How many of the SI's unit one of it is.
     in_si: f64,
 }
 
 /// What a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum UnitKind {
     Time,
     Length,
     Mass,
@@ -31,7 +31,7 @@ pub enum Kind {
     Alone(u8),
 }
 
-const fn unit(end: &'static str, name: &'static str, kind: Kind, in_si: f64) -> Unit {
+const fn unit(end: &'static str, name: &'static str, kind: UnitKind, in_si: f64) -> Unit {
     Unit {
         end,
         name,
@@ -44,56 +44,56 @@ use std::f64::consts::TAU;
 
 /// The units of the names that gyrolab uses; where one end is the end of another, the longer one comes first.
 const OURS: [Unit; 16] = [
-    unit("_rad_per_s", "rad/s", Kind::Rate, 1.0),
-    unit("_m_per_s2", "m/s2", Kind::Acceleration, 1.0),
-    unit("_kg_m2", "kg m2", Kind::Moment, 1.0),
-    unit("_Nms2", "N m s2", Kind::Alone(0), 1.0),
-    unit("_Nms", "N m s", Kind::Alone(1), 1.0),
-    unit("_Nm", "N m", Kind::Torque, 1.0),
-    unit("_Js", "J s", Kind::Momentum, 1.0),
-    unit("_deg", "deg", Kind::Angle, TAU / 360.0),
-    unit("_rpm", "rpm", Kind::Rate, TAU / 60.0),
-    unit("_rad", "rad", Kind::Angle, 1.0),
-    unit("_kg", "kg", Kind::Mass, 1.0),
-    unit("_s", "s", Kind::Time, 1.0),
-    unit("_m", "m", Kind::Length, 1.0),
-    unit("_N", "N", Kind::Force, 1.0),
-    unit("_J", "J", Kind::Energy, 1.0),
-    unit("_ns", "ns", Kind::Time, 1e-9),
+    unit("_rad_per_s", "rad/s", UnitKind::Rate, 1.0),
+    unit("_m_per_s2", "m/s2", UnitKind::Acceleration, 1.0),
+    unit("_kg_m2", "kg m2", UnitKind::Moment, 1.0),
+    unit("_Nms2", "N m s2", UnitKind::Alone(0), 1.0),
+    unit("_Nms", "N m s", UnitKind::Alone(1), 1.0),
+    unit("_Nm", "N m", UnitKind::Torque, 1.0),
+    unit("_Js", "J s", UnitKind::Momentum, 1.0),
+    unit("_deg", "deg", UnitKind::Angle, TAU / 360.0),
+    unit("_rpm", "rpm", UnitKind::Rate, TAU / 60.0),
+    unit("_rad", "rad", UnitKind::Angle, 1.0),
+    unit("_kg", "kg", UnitKind::Mass, 1.0),
+    unit("_s", "s", UnitKind::Time, 1.0),
+    unit("_m", "m", UnitKind::Length, 1.0),
+    unit("_N", "N", UnitKind::Force, 1.0),
+    unit("_J", "J", UnitKind::Energy, 1.0),
+    unit("_ns", "ns", UnitKind::Time, 1e-9),
 ];
 
 /// Units in which people measure, and in which no name of gyrolab is.
 const OTHERS: [Unit; 30] = [
-    unit("_deg_per_s", "deg/s", Kind::Rate, TAU / 360.0),
-    unit("_dps", "deg/s", Kind::Rate, TAU / 360.0),
-    unit("_deg_s", "deg/s", Kind::Rate, TAU / 360.0),
-    unit("_rad_s", "rad/s", Kind::Rate, 1.0),
-    unit("_g_cm2", "g cm2", Kind::Moment, 1e-7),
-    unit("_kg_cm2", "kg cm2", Kind::Moment, 1e-4),
-    unit("_g_m2", "g m2", Kind::Moment, 1e-3),
-    unit("_cm_per_s2", "cm/s2", Kind::Acceleration, 1e-2),
-    unit("_per_s", "1/s", Kind::Rate, TAU),
-    unit("_per_min", "1/min", Kind::Rate, TAU / 60.0),
-    unit("_Hz", "Hz", Kind::Rate, TAU),
-    unit("_rps", "revolutions/s", Kind::Rate, TAU),
-    unit("_mNm", "mN m", Kind::Torque, 1e-3),
-    unit("_mJs", "mJ s", Kind::Momentum, 1e-3),
-    unit("_ms", "ms", Kind::Time, 1e-3),
-    unit("_us", "us", Kind::Time, 1e-6),
-    unit("_min", "min", Kind::Time, 60.0),
-    unit("_h", "h", Kind::Time, 3600.0),
-    unit("_sec", "s", Kind::Time, 1.0),
-    unit("_seconds", "s", Kind::Time, 1.0),
-    unit("_minutes", "min", Kind::Time, 60.0),
-    unit("_cm", "cm", Kind::Length, 1e-2),
-    unit("_mm", "mm", Kind::Length, 1e-3),
-    unit("_km", "km", Kind::Length, 1e3),
-    unit("_g", "g", Kind::Mass, 1e-3),
-    unit("_degrees", "deg", Kind::Angle, TAU / 360.0),
-    unit("_radians", "rad", Kind::Angle, 1.0),
-    unit("_mrad", "mrad", Kind::Angle, 1e-3),
-    unit("_mN", "mN", Kind::Force, 1e-3),
-    unit("_mJ", "mJ", Kind::Energy, 1e-3),
+    unit("_deg_per_s", "deg/s", UnitKind::Rate, TAU / 360.0),
+    unit("_dps", "deg/s", UnitKind::Rate, TAU / 360.0),
+    unit("_deg_s", "deg/s", UnitKind::Rate, TAU / 360.0),
+    unit("_rad_s", "rad/s", UnitKind::Rate, 1.0),
+    unit("_g_cm2", "g cm2", UnitKind::Moment, 1e-7),
+    unit("_kg_cm2", "kg cm2", UnitKind::Moment, 1e-4),
+    unit("_g_m2", "g m2", UnitKind::Moment, 1e-3),
+    unit("_cm_per_s2", "cm/s2", UnitKind::Acceleration, 1e-2),
+    unit("_per_s", "1/s", UnitKind::Rate, TAU),
+    unit("_per_min", "1/min", UnitKind::Rate, TAU / 60.0),
+    unit("_Hz", "Hz", UnitKind::Rate, TAU),
+    unit("_rps", "revolutions/s", UnitKind::Rate, TAU),
+    unit("_mNm", "mN m", UnitKind::Torque, 1e-3),
+    unit("_mJs", "mJ s", UnitKind::Momentum, 1e-3),
+    unit("_ms", "ms", UnitKind::Time, 1e-3),
+    unit("_us", "us", UnitKind::Time, 1e-6),
+    unit("_min", "min", UnitKind::Time, 60.0),
+    unit("_h", "h", UnitKind::Time, 3600.0),
+    unit("_sec", "s", UnitKind::Time, 1.0),
+    unit("_seconds", "s", UnitKind::Time, 1.0),
+    unit("_minutes", "min", UnitKind::Time, 60.0),
+    unit("_cm", "cm", UnitKind::Length, 1e-2),
+    unit("_mm", "mm", UnitKind::Length, 1e-3),
+    unit("_km", "km", UnitKind::Length, 1e3),
+    unit("_g", "g", UnitKind::Mass, 1e-3),
+    unit("_degrees", "deg", UnitKind::Angle, TAU / 360.0),
+    unit("_radians", "rad", UnitKind::Angle, 1.0),
+    unit("_mrad", "mrad", UnitKind::Angle, 1e-3),
+    unit("_mN", "mN", UnitKind::Force, 1e-3),
+    unit("_mJ", "mJ", UnitKind::Energy, 1e-3),
 ];
 
 impl Unit {

@@ -1,9 +1,9 @@
 //! The main loop: it carries out what keys mean, advances the run with time, and draws a frame when something has changed.
 
-use crate::class::Role;
+use crate::class::ClassRole;
 use crate::lab::action::{Direction, LessonKey};
-use crate::lab::{Lab, Request};
-use crate::lessons::Class as Lessons;
+use crate::lab::{Lab, LabRequest};
+use crate::lessons::Lessons;
 use crate::storage::session::Session;
 use crate::tui::decoder::Typed;
 use crate::tui::job_control::{NO_SHELL, can_be_resumed};
@@ -27,7 +27,7 @@ const ATTENTIVE: Duration = Duration::from_millis(100);
 pub fn run(
     lab: &mut Lab,
     lessons: &mut Lessons,
-    role: &mut dyn Role,
+    role: &mut dyn ClassRole,
     session: Option<&Session>,
 ) -> io::Result<()> {
     let (mut screen, mut pointer) = (Screen::enter()?, Pointer::default());
@@ -70,7 +70,7 @@ pub fn run(
 fn advance(
     lab: &mut Lab,
     lessons: &mut Lessons,
-    role: &mut dyn Role,
+    role: &mut dyn ClassRole,
     begin: Instant,
 ) -> (bool, bool) {
     let was_on_its_way = lab.player().playback.steps_to_go().is_some();
@@ -82,7 +82,7 @@ fn advance(
 }
 
 /// Saves the state of `lab` in `session`, and shows a message as long as saving fails.
-fn keep(lab: &mut Lab, role: &dyn Role, session: Option<&Session>) {
+fn keep(lab: &mut Lab, role: &dyn ClassRole, session: Option<&Session>) {
     let Some(session) = session else {
         return;
     };
@@ -128,33 +128,33 @@ fn handle(
     event: Event,
     lab: &mut Lab,
     lessons: &mut Lessons,
-    role: &mut dyn Role,
+    role: &mut dyn ClassRole,
     screen: &mut Screen,
     pointer: &mut Pointer,
     session: Option<&Session>,
 ) -> io::Result<ControlFlow<()>> {
     let is_signal = event == Event::Suspend;
     let request = request_of(event, lab, screen, pointer)?;
-    if matches!(request, Some(Request::Quit | Request::Suspend)) {
+    if matches!(request, Some(LabRequest::Quit | LabRequest::Suspend)) {
         keep(lab, role, session); // what was pressed just before it came with it
     }
     let size = screen.size()?;
     let request = match request {
-        Some(Request::Lesson(key)) if role.takes(key, lab, lessons) => None,
+        Some(LabRequest::Lesson(key)) if role.takes(key, lab, lessons) => None,
         request => request.and_then(|request| do_in_class(request, lab, lessons, size)),
     };
     match request {
-        None | Some(Request::Lesson(_) | Request::Answer(_)) => {
+        None | Some(LabRequest::Lesson(_) | LabRequest::Answer(_)) => {
             return Ok(ControlFlow::Continue(()));
         }
-        Some(Request::Class) => {
+        Some(LabRequest::Class) => {
             role.act(lab, lessons);
             return Ok(ControlFlow::Continue(()));
         }
-        Some(Request::Quit) => return Ok(ControlFlow::Break(())),
-        Some(Request::Redraw) => screen.forget()?,
-        Some(Request::Suspend) if !can_be_resumed() => lab.refuse(NO_SHELL),
-        Some(Request::Suspend) => screen.suspend(!is_signal)?,
+        Some(LabRequest::Quit) => return Ok(ControlFlow::Break(())),
+        Some(LabRequest::Redraw) => screen.forget()?,
+        Some(LabRequest::Suspend) if !can_be_resumed() => lab.refuse(NO_SHELL),
+        Some(LabRequest::Suspend) => screen.suspend(!is_signal)?,
     }
     screen::fit(lab, screen.size()?); // all of it is to be drawn, at the size there is now
     Ok(ControlFlow::Continue(()))
@@ -166,7 +166,7 @@ fn request_of(
     lab: &mut Lab,
     screen: &mut Screen,
     pointer: &mut Pointer,
-) -> io::Result<Option<Request>> {
+) -> io::Result<Option<LabRequest>> {
     Ok(match event {
         Event::Typed(Typed::Key(key)) => press(key, lab),
         Event::Typed(Typed::Paste(text)) => {
@@ -174,33 +174,33 @@ fn request_of(
             None
         }
         Event::Typed(Typed::Mouse(mouse)) => pointer.act(mouse, screen.size()?, lab),
-        Event::Suspend => Some(Request::Suspend),
+        Event::Suspend => Some(LabRequest::Suspend),
         // A screen that was smaller for a moment has lost a part of its content, even if it has its old size again.
-        Event::Resized => Some(Request::Redraw),
+        Event::Resized => Some(LabRequest::Redraw),
         Event::Resumed => {
             screen.resume()?;
-            Some(Request::Redraw)
+            Some(LabRequest::Redraw)
         }
     })
 }
 
 /// Does what `request` asks of the lessons, on a screen of this `size`; gives back any other request.
 pub fn do_in_class(
-    request: Request,
+    request: LabRequest,
     lab: &mut Lab,
     lessons: &mut Lessons,
     size: Rect,
-) -> Option<Request> {
+) -> Option<LabRequest> {
     match request {
-        Request::Lesson(LessonKey::Next) if screen::page_goes_on(lab, size) => {
+        LabRequest::Lesson(LessonKey::Next) if screen::page_goes_on(lab, size) => {
             screen::scroll_page(lab, Direction::PageDown, size);
         }
-        Request::Lesson(key) => {
+        LabRequest::Lesson(key) => {
             if let Some(direction) = lessons.act(key, lab) {
                 screen::scroll_page(lab, direction, size);
             }
         }
-        Request::Answer(number) => lessons.answer(number, lab),
+        LabRequest::Answer(number) => lessons.answer(number, lab),
         other => return Some(other),
     }
     None

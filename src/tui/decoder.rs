@@ -54,7 +54,7 @@ struct Paste {
 
 /// What the bytes of a sequence or of a character mean.
 #[derive(Debug, PartialEq, Eq)]
-enum Found {
+enum Decoded {
     Unfinished,
     Typed(Typed),
     /// Finished, but no key that the lab uses.
@@ -119,11 +119,11 @@ impl Decoder {
         }
         self.pending.push(byte);
         match found(&self.pending) {
-            Found::Unfinished => return,
-            Found::Typed(typed) => self.typed.push_back(typed),
-            Found::Nothing => {}
-            Found::Paste => self.paste = Some(Paste::default()),
-            Found::Broken => {
+            Decoded::Unfinished => return,
+            Decoded::Typed(typed) => self.typed.push_back(typed),
+            Decoded::Nothing => {}
+            Decoded::Paste => self.paste = Some(Paste::default()),
+            Decoded::Broken => {
                 self.pending.pop();
                 if self.pending.is_empty() {
                     return; // a byte that begins nothing
@@ -187,7 +187,7 @@ fn is_body(pending: &[u8], byte: u8) -> bool {
     }
 }
 
-fn found(bytes: &[u8]) -> Found {
+fn found(bytes: &[u8]) -> Decoded {
     match bytes {
         [ESC, rest @ ..] => after_escape(rest),
         [byte @ 0..0x80] => known(Some(key_of(*byte))),
@@ -196,17 +196,17 @@ fn found(bytes: &[u8]) -> Found {
 }
 
 /// A character of more than one byte.
-fn character(bytes: &[u8]) -> Found {
+fn character(bytes: &[u8]) -> Decoded {
     let length = match bytes.first() {
         Some(0xc2..=0xdf) => 2,
         Some(0xe0..=0xef) => 3,
         Some(0xf0..=0xf4) => 4,
-        _ => return Found::Broken,
+        _ => return Decoded::Broken,
     };
     match std::str::from_utf8(bytes) {
         Ok(text) => known(text.chars().next().map(Key::Char)),
-        Err(error) if error.error_len().is_none() && bytes.len() < length => Found::Unfinished,
-        Err(_) => Found::Broken,
+        Err(error) if error.error_len().is_none() && bytes.len() < length => Decoded::Unfinished,
+        Err(_) => Decoded::Broken,
     }
 }
 
@@ -223,44 +223,44 @@ fn key_of(byte: u8) -> Key {
     }
 }
 
-fn after_escape(rest: &[u8]) -> Found {
+fn after_escape(rest: &[u8]) -> Decoded {
     match rest {
-        [] | [b'O' | b'['] => Found::Unfinished,
+        [] | [b'O' | b'['] => Decoded::Unfinished,
         [b'O', letter @ 0x20..0x7f] => known(lettered(*letter, 1)),
         [b'[', rest @ ..] => control_sequence(rest),
         [b'P' | b']' | b'^' | b'_' | b'X', rest @ ..] => string(rest),
-        _ => Found::Broken, // Alt and a key look like Esc and a key, and are taken as that
+        _ => Decoded::Broken, // Alt and a key look like Esc and a key, and are taken as that
     }
 }
 
-fn known(key: Option<Key>) -> Found {
-    key.map_or(Found::Nothing, |key| Found::Typed(Typed::Key(key)))
+fn known(key: Option<Key>) -> Decoded {
+    key.map_or(Decoded::Nothing, |key| Decoded::Typed(Typed::Key(key)))
 }
 
 /// A string that a terminal sends unasked: it ends with `ESC \` or a bell, and is ignored.
-fn string(rest: &[u8]) -> Found {
+fn string(rest: &[u8]) -> Decoded {
     match rest {
-        [.., CTRL_C] => Found::Broken,
-        [.., BELL] | [.., ESC, b'\\'] => Found::Nothing,
-        [.., ESC, _] => Found::Broken,
-        _ => Found::Unfinished,
+        [.., CTRL_C] => Decoded::Broken,
+        [.., BELL] | [.., ESC, b'\\'] => Decoded::Nothing,
+        [.., ESC, _] => Decoded::Broken,
+        _ => Decoded::Unfinished,
     }
 }
 
 /// The bytes after `ESC [`: parameters, then a last byte from `@` to `~`.
-fn control_sequence(rest: &[u8]) -> Found {
+fn control_sequence(rest: &[u8]) -> Decoded {
     match rest {
-        [.., 0..0x20] => Found::Broken,
+        [.., 0..0x20] => Decoded::Broken,
         // The Linux console's F1 to F5, and old mouse reports, continue after a byte that looks like the last one.
-        [] | [b'['] | [b'M'] | [b'M', _] | [b'M', _, _] => Found::Unfinished,
-        [b'[', _] | [b'M', ..] => Found::Nothing,
-        [.., 0x20..0x40] => Found::Unfinished,
+        [] | [b'['] | [b'M'] | [b'M', _] | [b'M', _, _] => Decoded::Unfinished,
+        [b'[', _] | [b'M', ..] => Decoded::Nothing,
+        [.., 0x20..0x40] => Decoded::Unfinished,
         [b'<', parameters @ .., last @ (b'M' | b'm')] => {
             let mouse = mouse(parameters, *last == b'M').map(Typed::Mouse);
-            mouse.map_or(Found::Nothing, Found::Typed)
+            mouse.map_or(Decoded::Nothing, Decoded::Typed)
         }
         [parameters @ .., last @ 0x40..0x7f] => meaning(parameters, *last),
-        _ => Found::Broken,
+        _ => Decoded::Broken,
     }
 }
 
@@ -290,7 +290,7 @@ fn mouse(parameters: &[u8], is_down: bool) -> Option<Mouse> {
     Some(Mouse { did, x, y })
 }
 
-fn meaning(parameters: &[u8], last: u8) -> Found {
+fn meaning(parameters: &[u8], last: u8) -> Decoded {
     let text = std::str::from_utf8(parameters).unwrap_or("?");
     // A number may have sub-parameters after a colon.
     let number = |text: &str| text.split(':').next().and_then(|text| text.parse().ok());
@@ -298,10 +298,10 @@ fn meaning(parameters: &[u8], last: u8) -> Found {
     let first: Option<u32> = numbers.next().flatten();
     let modifiers = numbers.next().flatten().unwrap_or(1);
     match (first, last) {
-        (Some(200), b'~') => Found::Paste,
+        (Some(200), b'~') => Decoded::Paste,
         (Some(number), b'~') => known(numbered(number)),
         (Some(code), b'u') => known(coded(code, modifiers)),
-        (None, _) if !text.is_empty() => Found::Nothing, // the mouse, and other reports
+        (None, _) if !text.is_empty() => Decoded::Nothing, // the mouse, and other reports
         (_, letter) => known(lettered(letter, modifiers)),
     }
 }

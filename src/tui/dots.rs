@@ -143,7 +143,7 @@ pub fn line(
 
 /// The dots of a cell in each layer, strong, faint, under and ghost.
 #[derive(Clone, Copy, Debug, Default)]
-struct Cell {
+struct DotCell {
     bits: [u8; 4],
     roles: [Role; 4],
 }
@@ -151,12 +151,12 @@ struct Cell {
 pub struct Dots {
     area: Rect,
     marker: Marker,
-    cells: Vec<Cell>,
+    cells: Vec<DotCell>,
 }
 
 impl Dots {
     pub fn new(area: Rect, marker: Marker) -> Self {
-        let cells = vec![Cell::default(); area.width as usize * area.height as usize];
+        let cells = vec![DotCell::default(); area.width as usize * area.height as usize];
         Self {
             area,
             marker,
@@ -178,7 +178,7 @@ impl Dots {
     }
 
     /// The cell of the dot at column `x`, row `y`, and the dot's bit in it.
-    fn cell(&mut self, x: usize, y: usize) -> Option<(&mut Cell, u8)> {
+    fn cell(&mut self, x: usize, y: usize) -> Option<(&mut DotCell, u8)> {
         let (across, down) = self.marker.dots();
         let cell = y / down * self.area.width as usize + x / across;
         let bit = self.marker.bit(x % across, y % down);
@@ -210,7 +210,7 @@ impl Dots {
     /// Takes all dots of a cell away, in which the dot at column `x`, row `y` is.
     pub fn clear_cell(&mut self, x: usize, y: usize) {
         if let Some((cell, _)) = self.cell(x, y) {
-            *cell = Cell::default();
+            *cell = DotCell::default();
         }
     }
 

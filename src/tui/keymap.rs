@@ -3,9 +3,9 @@
 
 pub use crate::lab::Mode;
 use crate::lab::action::{Action, Ask, Direction, FAR, FieldEdit, LessonKey, repeated};
-use crate::lab::command::{Command, Place, PushChoice};
+use crate::lab::command::{Command, PushChoice, SeekTarget};
 use crate::lab::view::Pane;
-use crate::lab::{Lab as TheLab, Meant, Request};
+use crate::lab::{KeyCommands, Lab as TheLab, LabRequest};
 use crate::tui::panes::{self, Arrows};
 use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
@@ -43,7 +43,7 @@ pub struct Binding {
     pub modes: &'static [Mode],
     /// Which keys; the first is the one that is shown.
     pub keys: &'static [Key],
-    pub does: Does,
+    pub does: KeyEffect,
     /// What the footer says, empty where it says nothing.
     pub footer: &'static str,
     pub help: &'static str,
@@ -51,19 +51,19 @@ pub struct Binding {
     pub search: &'static str,
     /// The group of the help in which a key of the lab is listed.
     pub purpose: &'static str,
-    pub worth: Worth,
+    pub worth: FooterPriority,
 }
 
 /// What a key does.
 #[derive(Clone, Copy, Debug)]
-pub enum Does {
+pub enum KeyEffect {
     /// The commands that this function returns for the count that was typed before the key are carried out.
-    Commands(fn(&TheLab, Option<u64>) -> Meant),
+    Commands(fn(&TheLab, Option<u64>) -> KeyCommands),
     Action(Action),
 }
 
-impl Does {
-    pub fn carry_out(self, lab: &mut TheLab) -> Option<Request> {
+impl KeyEffect {
+    pub fn carry_out(self, lab: &mut TheLab) -> Option<LabRequest> {
         match (self, arrows(lab)) {
             (Self::Commands(meant), _) => lab.press(meant),
             (Self::Action(Action::Move(direction, times)), Some(arrows)) => {
@@ -83,7 +83,7 @@ fn arrows(lab: &TheLab) -> Option<Arrows> {
 
 /// How long the footer names a key where there is not room for all: the least go first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Worth {
+pub enum FooterPriority {
     Spare,
     Useful,
     Kept,
@@ -109,24 +109,24 @@ pub const ZOOM_KEYS: &[Binding] = &[
     does(&[Lab], &[Home], |lab, _| one(lab.view().zoom_to(1.0)?), "", "show the whole of it"),
 ];
 
-pub fn zoomed_in(lab: &TheLab, count: Option<u64>) -> Meant {
+pub fn zoomed_in(lab: &TheLab, count: Option<u64>) -> KeyCommands {
     one(lab.view().other_zoom(repeated(count))?)
 }
 
-pub fn zoomed_out(lab: &TheLab, count: Option<u64>) -> Meant {
+pub fn zoomed_out(lab: &TheLab, count: Option<u64>) -> KeyCommands {
     one(lab.view().other_zoom(-repeated(count))?)
 }
 
-pub fn wider(lab: &TheLab, _: Option<u64>) -> Meant {
+pub fn wider(lab: &TheLab, _: Option<u64>) -> KeyCommands {
     one(lab.view().other_window(true, lab.player())?)
 }
 
-pub fn narrower(lab: &TheLab, _: Option<u64>) -> Meant {
+pub fn narrower(lab: &TheLab, _: Option<u64>) -> KeyCommands {
     one(lab.view().other_window(false, lab.player())?)
 }
 
 /// One time step, or as many as the count says, on with 1 and back with -1.
-fn stepped(count: Option<u64>, sign: i64) -> Meant {
+fn stepped(count: Option<u64>, sign: i64) -> KeyCommands {
     let steps = i64::try_from(count.unwrap_or(1)).unwrap_or(i64::MAX);
     one(match steps {
         0 => Command::Pause,
@@ -134,14 +134,14 @@ fn stepped(count: Option<u64>, sign: i64) -> Meant {
     })
 }
 
-fn restarted(lab: &TheLab, _: Option<u64>) -> Meant {
+fn restarted(lab: &TheLab, _: Option<u64>) -> KeyCommands {
     let run = lab.player().playback.is_running().then_some(Command::Run);
-    let start = Command::GoTo(Place::Start);
+    let start = Command::GoTo(SeekTarget::Start);
     Ok([start].into_iter().chain(run).collect())
 }
 
 /// What a key means that means one command.
-pub fn one(command: Command) -> Meant {
+pub fn one(command: Command) -> KeyCommands {
     Ok(vec![command])
 }
 
@@ -156,12 +156,12 @@ pub const fn row(
     Binding {
         modes,
         keys,
-        does: Does::Action(action),
+        does: KeyEffect::Action(action),
         footer,
         help,
         search: "",
         purpose: LOOK,
-        worth: Worth::Spare,
+        worth: FooterPriority::Spare,
     }
 }
 
@@ -169,12 +169,12 @@ pub const fn row(
 pub const fn does(
     modes: &'static [Mode],
     keys: &'static [Key],
-    meant: fn(&TheLab, Option<u64>) -> Meant,
+    meant: fn(&TheLab, Option<u64>) -> KeyCommands,
     footer: &'static str,
     help: &'static str,
 ) -> Binding {
     Binding {
-        does: Does::Commands(meant),
+        does: KeyEffect::Commands(meant),
         ..row(modes, keys, Action::DoEntry, footer, help)
     }
 }
@@ -184,7 +184,7 @@ impl Binding {
         Self { purpose, ..self }
     }
 
-    const fn worth(self, worth: Worth) -> Self {
+    const fn worth(self, worth: FooterPriority) -> Self {
         Self { worth, ..self }
     }
 
@@ -200,15 +200,15 @@ impl Binding {
 /// Every binding but digits and typed text, in the order of footer and help.
 #[rustfmt::skip]
 pub static BINDINGS: &[Binding] = &[
-    row(&[Lab], &[Char(' ')], Action::TogglePause, "pause", "stop the run, or let it go on").to(PLAY).worth(Worth::Kept),
-    does(&[Lab], &[Char('.')], |_, count| stepped(count, 1), "step", "one time step on; 10. takes ten").to(PLAY).worth(Worth::Kept),
-    does(&[Lab], &[Char('p')], |_, _| one(Command::Push(PushChoice::default())), "push", "give the push that is chosen, now").found_by("kick force hit").to(PUSH).worth(Worth::Useful),
-    does(&[Lab], &[Char('t')], |lab, _| one(Command::Exact(!lab.player().run().shows_exact())), "exact", "the exact motion beside the run, and how far apart they are").found_by("compare truth true overlay dashed").worth(Worth::Useful),
-    row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change").to(CHANGE).worth(Worth::Useful),
+    row(&[Lab], &[Char(' ')], Action::TogglePause, "pause", "stop the run, or let it go on").to(PLAY).worth(FooterPriority::Kept),
+    does(&[Lab], &[Char('.')], |_, count| stepped(count, 1), "step", "one time step on; 10. takes ten").to(PLAY).worth(FooterPriority::Kept),
+    does(&[Lab], &[Char('p')], |_, _| one(Command::Push(PushChoice::default())), "push", "give the push that is chosen, now").found_by("kick force hit").to(PUSH).worth(FooterPriority::Useful),
+    does(&[Lab], &[Char('t')], |lab, _| one(Command::Exact(!lab.player().run().shows_exact())), "exact", "the exact motion beside the run, and how far apart they are").found_by("compare truth true overlay dashed").worth(FooterPriority::Useful),
+    row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change").to(CHANGE).worth(FooterPriority::Useful),
     row(&[Lab], &[Enter], Action::Edit, "", "type the value that is selected").to(CHANGE),
-    row(&[Lab], &[Char('x')], Action::Ask(Ask::Export), "export", "write the run up to here as CSV").to(KEEP).worth(Worth::Useful),
-    does(&[Lab], &[Char('f')], |lab, _| one(lab.view().fill_toggled()), "fill", "fill the screen with the pane, or show all panes again").worth(Worth::Useful),
-    row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file").to(OPEN).worth(Worth::Useful),
+    row(&[Lab], &[Char('x')], Action::Ask(Ask::Export), "export", "write the run up to here as CSV").to(KEEP).worth(FooterPriority::Useful),
+    does(&[Lab], &[Char('f')], |lab, _| one(lab.view().fill_toggled()), "fill", "fill the screen with the pane, or show all panes again").worth(FooterPriority::Useful),
+    row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file").to(OPEN).worth(FooterPriority::Useful),
     does(&[Lab], &[Char(',')], |_, count| stepped(count, -1), "back", "one time step back; 10, goes ten").to(PLAY),
     does(&[Lab], &[Char('+'), Char('='), PageUp], |lab, count| one(lab.player().other_speed(repeated(count))?), "faster", "play faster").found_by("speed").to(PLAY),
     does(&[Lab], &[Char('-'), PageDown], |lab, count| one(lab.player().other_speed(-repeated(count))?), "slower", "play slower; the time step stays as it is").found_by("speed").to(PLAY),
@@ -217,7 +217,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('P')], Action::ChoosePush, "", "choose the push: point, force, direction, length").to(PUSH),
     does(&[Lab], &[Char('u')], |_, count| one(Command::Undo(repeated(count).unsigned_abs())), "undo", "take back what was done last").to(CHANGE),
     does(&[Lab], &[Char('U'), Ctrl('r')], |_, count| one(Command::Redo(repeated(count).unsigned_abs())), "", "do it again").to(CHANGE),
-    does(&[Lab], &[Char('m')], |lab, _| one(Command::look("residuals", !lab.view().residuals)), "residuals", "residuals: measured data less the run, or both again; --measured FILE puts data beside a run").worth(Worth::Kept),
+    does(&[Lab], &[Char('m')], |lab, _| one(Command::look("residuals", !lab.view().residuals)), "residuals", "residuals: measured data less the run, or both again; --measured FILE puts data beside a run").worth(FooterPriority::Kept),
     does(&[Lab], &[Char('i')], |lab, _| one(Command::Pin(!lab.comparison().is_pinned())), "", "pin this run as the reference beside every other, or take it away").found_by("compare keep"),
     does(&[Lab], &[Char('a')], |lab, _| one(lab.adviser().followed(lab.player())?), "", "take the advice about the numbers: the run from the start with what mends them"),
     row(&[Lab], &[Char('X')], Action::Ask(Ask::Figure), "", "figure of the run up to here (a plot, a graph): SVG, PDF or PNG").found_by("screenshot picture image").to(KEEP),
@@ -244,14 +244,14 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Browser, Filter, Help], &[PageDown], Action::Move(Direction::PageDown, 1), "", "a page down"),
     does(&[Lab], &[Char('w')], wider, "", "traces: show twice the time"),
     does(&[Lab], &[Char('W')], narrower, "", "traces: show half the time"),
-    row(&[Browser, Filter], &[Enter], Action::Choose, "open", "open what is selected").worth(Worth::Kept),
+    row(&[Browser, Filter], &[Enter], Action::Choose, "open", "open what is selected").worth(FooterPriority::Kept),
     row(&[Browser], &[Char('/')], Action::Filter, "filter", "type a part of a name"),
     row(&[Find], &[Left], Action::Move(Direction::Left, 1), "nudge", "nudge the value down"),
     row(&[Find], &[Right], Action::Move(Direction::Right, 1), "", "nudge the value up"),
     row(&[Find], &[Enter], Action::Edit, "type it", "type the value that is found"),
     row(&[Help], &[Enter], Action::DoEntry, "do it", "do the entry that is selected"),
     row(&[Filter, Find, Help, Dialog], &[Backspace, Ctrl('h')], Action::InField(FieldEdit::Erase), "", "take the last character away"),
-    row(&[Dialog], &[Enter], Action::Accept, "take it", "take what is typed").worth(Worth::Kept),
+    row(&[Dialog], &[Enter], Action::Accept, "take it", "take what is typed").worth(FooterPriority::Kept),
     row(&[Dialog], &[Delete, Ctrl('d')], Action::InField(FieldEdit::Delete), "", "take the character at the cursor away"),
     row(&[Filter, Find, Help, Dialog], &[Ctrl('u')], Action::InField(FieldEdit::Clear), "", "take all of it away"),
     row(&[Dialog], &[Left, Ctrl('b')], Action::InField(FieldEdit::Left), "", "the cursor to the left"),
@@ -261,10 +261,10 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Dialog], &[Down, Tab], Action::InField(FieldEdit::Next), "", "the next line"),
     row(&[Dialog], &[Up, BackTab], Action::InField(FieldEdit::Previous), "", "the line before"),
     row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Esc], Action::Close, "", "close what lies on top; first it clears what is searched for").to(LEAVE),
-    row(&[Lab, Browser, Help], &[Char('?')], Action::Help, "help", "this list, and away again: type to search it").to(LEAVE).worth(Worth::Kept),
+    row(&[Lab, Browser, Help], &[Char('?')], Action::Help, "help", "this list, and away again: type to search it").to(LEAVE).worth(FooterPriority::Kept),
     row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('l')], Action::Redraw, "", "draw the whole screen again").to(LEAVE),
     row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('z')], Action::Suspend, "", "back to the shell; fg returns").to(LEAVE),
-    row(&[Lab, Browser], &[Char('q')], Action::Quit, "quit", "leave the lab: exit").to(LEAVE).worth(Worth::Kept),
+    row(&[Lab, Browser], &[Char('q')], Action::Quit, "quit", "leave the lab: exit").to(LEAVE).worth(FooterPriority::Kept),
     row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('c')], Action::Quit, "", "leave the lab").to(LEAVE),
 ];
 
@@ -273,7 +273,7 @@ pub fn meaning(
     keys: impl IntoIterator<Item = &'static Binding>,
     mode: Mode,
     key: Key,
-) -> Option<Does> {
+) -> Option<KeyEffect> {
     let bound = keys
         .into_iter()
         .chain(BINDINGS)
@@ -286,7 +286,7 @@ pub fn meaning(
         }
         _ => return None,
     };
-    Some(Does::Action(action))
+    Some(KeyEffect::Action(action))
 }
 
 /// What is to be said of `key`, which means nothing in `mode`.

@@ -6,7 +6,7 @@
 
 use super::panes::{PANES, PaneRow, Width};
 use super::split::{split_columns, split_rows};
-use crate::lab::view::{Pane, Part, View};
+use crate::lab::view::{HideablePart, Pane, View};
 use ratatui::layout::Rect;
 
 /// The width the whole lab wants.
@@ -34,7 +34,7 @@ const MOST_LINES: u16 = 3;
 
 /// What the lines below the panes have to say: what there is to see, and whether the numbers are to be believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Said {
+pub struct LinesBelow {
     /// Lines of the hint on a screen of this width.
     pub lines: u16,
     pub warns: bool,
@@ -42,7 +42,7 @@ pub struct Said {
 
 /// Where everything stands; what has no place has an empty area.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Layout {
+pub struct ScreenLayout {
     pub title: Rect,
     /// The panes that have a place, from left to right.
     pub panes: Vec<(Pane, Rect)>,
@@ -56,10 +56,10 @@ pub struct Layout {
     pub is_cramped: bool,
 }
 
-impl Layout {
+impl ScreenLayout {
     /// The layout of `area`; `keys` says whether there is a line of keys.
     pub fn new(area: Rect, view: &View, keys: bool) -> Self {
-        let said = Said {
+        let said = LinesBelow {
             lines: 1,
             warns: true,
         };
@@ -68,7 +68,7 @@ impl Layout {
 
     /// The same, with room for what is to be said: on a low screen a hint that is too long for one line has more, and the
     /// line about the numbers' health only where that warns.
-    pub fn saying(said: Said, area: Rect, view: &View, keys: bool) -> Self {
+    pub fn saying(said: LinesBelow, area: Rect, view: &View, keys: bool) -> Self {
         let mut rest = area;
         let title = cut_top(&mut rest, area.height >= 3);
         if view.bare {
@@ -85,11 +85,11 @@ impl Layout {
         let (lines, has_health) = if view.sheet.is_some() && area.height >= TWO_LINES_FROM {
             // What the lines below have not to say goes to the page.
             let most = 1 + u16::from(area.width < ONE_LINE_FROM);
-            (said.lines.clamp(1, most), !view.hides(Part::Health))
+            (said.lines.clamp(1, most), !view.hides(HideablePart::Health))
         } else if area.height >= TWO_LINES_FROM {
             (1 + u16::from(area.width < ONE_LINE_FROM), true)
         } else {
-            on_low_screen(said, area.height, view.hides(Part::Health))
+            on_low_screen(said, area.height, view.hides(HideablePart::Health))
         };
         let hint = (1..lines).fold(hint, |hint, _| hint.union(cut_bottom(&mut rest, true)));
         let health = cut_bottom(&mut rest, has_health);
@@ -126,7 +126,7 @@ impl Layout {
 }
 
 /// Lines of the hint on a screen of this `height` that is low, and whether the health of the numbers has a line.
-fn on_low_screen(said: Said, height: u16, hides_health: bool) -> (u16, bool) {
+fn on_low_screen(said: LinesBelow, height: u16, hides_health: bool) -> (u16, bool) {
     let below = height.saturating_sub(2 + ROWS_OF_PANES);
     let lines = below.saturating_sub(said.warns.into());
     let lines = lines.min(MOST_LINES).min(said.lines).max(1);

@@ -1,14 +1,14 @@
 //! The mouse: what a press, a drag or the wheel does where it points. Nothing needs it; every act has keys too.
 
-use super::keymap::{Does, Mode, narrower, wider, zoomed_in, zoomed_out};
-use super::layout::Layout;
-use super::panes::{Seen, browser, chrome, timeline::Timeline, traces::Traces};
+use super::keymap::{KeyEffect, Mode, narrower, wider, zoomed_in, zoomed_out};
+use super::layout::ScreenLayout;
+use super::panes::{PlotInputs, browser, chrome, timeline::Timeline, traces::Traces};
 use super::press::press;
 use super::screen;
 use crate::lab::action::{Action, Direction, LessonKey};
-use crate::lab::command::{Command, CursorTo, Place};
+use crate::lab::command::{Command, CursorTo, SeekTarget};
 use crate::lab::view::Pane;
-use crate::lab::{Lab, Request};
+use crate::lab::{Lab, LabRequest};
 use crate::run::Clock;
 use ratatui::layout::{Position, Rect};
 
@@ -54,7 +54,7 @@ pub struct Pointer {
 
 impl Pointer {
     /// Does in `lab`, on a screen of this `area`, what `mouse` stands for; outside the screen that is nothing.
-    pub fn act(&mut self, mouse: Mouse, area: Rect, lab: &mut Lab) -> Option<Request> {
+    pub fn act(&mut self, mouse: Mouse, area: Rect, lab: &mut Lab) -> Option<LabRequest> {
         let at = Position::new(mouse.x, mouse.y);
         if !lab.view().mouse || !area.contains(at) {
             return None;
@@ -70,7 +70,7 @@ impl Pointer {
         None
     }
 
-    fn press(&mut self, layout: &Layout, at: Position, lab: &mut Lab) -> Option<Request> {
+    fn press(&mut self, layout: &ScreenLayout, at: Position, lab: &mut Lab) -> Option<LabRequest> {
         self.held = None;
         if layout.keys.contains(at) {
             let key = chrome::key_at(lab, layout.keys, at.x)?;
@@ -84,7 +84,7 @@ impl Pointer {
         if layout.timeline.contains(at) {
             self.held = Some(Held::Place);
             let time_s = Timeline::of(lab).time_s(layout.timeline, at.x)?;
-            lab.carry_out_now(&Command::GoTo(Place::Time(time_s)));
+            lab.carry_out_now(&Command::GoTo(SeekTarget::Time(time_s)));
             return None;
         }
         let (pane, place) = pane_at(layout, at)?;
@@ -98,7 +98,7 @@ impl Pointer {
         None
     }
 
-    fn drag(&mut self, layout: &Layout, at: Position, lab: &mut Lab) {
+    fn drag(&mut self, layout: &ScreenLayout, at: Position, lab: &mut Lab) {
         if lab.popups().mode != Mode::Lab {
             return;
         }
@@ -116,7 +116,7 @@ impl Pointer {
                 let time_s = Timeline::of(lab).time_s(layout.timeline, at.x);
                 if let Some(time_s) = time_s {
                     // Time that the run has not reached would take long: a press goes there.
-                    lab.carry_out_now(&Command::GoTo(Place::Time(time_s.min(furthest_s))));
+                    lab.carry_out_now(&Command::GoTo(SeekTarget::Time(time_s.min(furthest_s))));
                 }
             }
             Some(Held::Camera(from)) => {
@@ -131,21 +131,21 @@ impl Pointer {
     }
 }
 
-fn pane_at(layout: &Layout, at: Position) -> Option<(Pane, Rect)> {
+fn pane_at(layout: &ScreenLayout, at: Position) -> Option<(Pane, Rect)> {
     let mut panes = layout.panes.iter().copied();
     panes.find(|(_, place)| place.contains(at))
 }
 
 /// Sets the cursor on the traces to the time at `at`, where there is one.
 fn read_off(place: Rect, at: Position, lab: &mut Lab) {
-    if let Some(time_s) = Traces(Seen::of(lab)).time_s(place, at) {
-        let to = CursorTo::Place(Place::Time(time_s));
+    if let Some(time_s) = Traces(PlotInputs::of(lab)).time_s(place, at) {
+        let to = CursorTo::Place(SeekTarget::Time(time_s));
         lab.carry_out_now(&Command::Cursor(to));
     }
 }
 
 /// Selects the entry at `at`, or opens it if it is selected already.
-fn press_in_browser(layout: &Layout, at: Position, lab: &mut Lab) -> Option<Request> {
+fn press_in_browser(layout: &ScreenLayout, at: Position, lab: &mut Lab) -> Option<LabRequest> {
     let row = browser::row_at(&lab.popups().browser, screen::popup_place(lab, layout), at)?;
     if lab.popups().browser.selected == row {
         return lab.update(Action::Choose);
@@ -155,10 +155,10 @@ fn press_in_browser(layout: &Layout, at: Position, lab: &mut Lab) -> Option<Requ
     None
 }
 
-fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) -> Option<Request> {
+fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option<LabRequest> {
     let choose = |if_up, if_down| if up { if_up } else { if_down };
     let lines = choose(Direction::Up, Direction::Down);
-    let lines = Does::Action(Action::Move(lines, 1));
+    let lines = KeyEffect::Action(Action::Move(lines, 1));
     if lab.popups().mode != Mode::Lab {
         for _ in 0..LINES {
             lines.carry_out(lab);
@@ -167,13 +167,13 @@ fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) -> Option<Reque
     }
     let (pane, _) = pane_at(layout, at)?;
     let does = match pane {
-        Pane::TRACES if up => Does::Commands(narrower),
-        Pane::TRACES => Does::Commands(wider),
-        Pane::FROM_ABOVE | Pane::THREE_D if up => Does::Commands(zoomed_in),
-        Pane::FROM_ABOVE | Pane::THREE_D => Does::Commands(zoomed_out),
+        Pane::TRACES if up => KeyEffect::Commands(narrower),
+        Pane::TRACES => KeyEffect::Commands(wider),
+        Pane::FROM_ABOVE | Pane::THREE_D if up => KeyEffect::Commands(zoomed_in),
+        Pane::FROM_ABOVE | Pane::THREE_D => KeyEffect::Commands(zoomed_out),
         Pane::LESSON => {
             let page = choose(Direction::PageUp, Direction::PageDown);
-            Does::Action(Action::Lesson(LessonKey::Move(page)))
+            KeyEffect::Action(Action::Lesson(LessonKey::Move(page)))
         }
         _ if lab.view().focus == pane => lines,
         _ => return None,

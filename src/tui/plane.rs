@@ -85,14 +85,14 @@ const ACROSS: u16 = 8;
 const DOWN: u16 = 2;
 
 /// The cells of a picture that are taken by labels and marks; counted from its upper left.
-pub struct Labels {
+pub struct LabelCells {
     width: u16,
     height: u16,
     /// Column and row, and how many columns.
     taken: Vec<((u16, u16), u16)>,
 }
 
-impl Labels {
+impl LabelCells {
     pub fn new(picture: Rect) -> Self {
         Self {
             width: picture.width,

@@ -33,7 +33,7 @@ const SEEN: u8 = 3;
 
 /// What stands in a cell, the least first: what comes later in this list covers what comes earlier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Sign {
+enum CellSign {
     Nothing,
     Bar(char),
     End(char),
@@ -43,7 +43,7 @@ enum Sign {
 pub struct Points {
     area: Rect,
     marker: Marker,
-    cells: Vec<(Sign, Role)>,
+    cells: Vec<(CellSign, Role)>,
 }
 
 /// The ends of a bar, in cells from the upper left, which may lie outside of the picture.
@@ -51,7 +51,7 @@ pub type Ends = (f64, f64);
 
 impl Points {
     pub fn new(area: Rect, marker: Marker) -> Self {
-        let nothing = (Sign::Nothing, Role::Measured);
+        let nothing = (CellSign::Nothing, Role::Measured);
         Self {
             area,
             marker,
@@ -75,7 +75,7 @@ impl Points {
         if let Some(ends) = level {
             self.bar(x, ends, self.area.width, across, |column| (column, y), role);
         }
-        self.set((x, y), Sign::Mark, role);
+        self.set((x, y), CellSign::Mark, role);
     }
 
     /// The cells of a bar about `middle` on a side of `cells` cells; `place` gives the place of each. A bar that ends in
@@ -98,9 +98,9 @@ impl Points {
         let mut cell = inside(begin);
         while cell <= inside(end) {
             let sign = match cell {
-                _ if cell == begin && begin < middle.floor() => Sign::End(first),
-                _ if cell == end && end > middle.floor() => Sign::End(last),
-                _ => Sign::Bar(between),
+                _ if cell == begin && begin < middle.floor() => CellSign::End(first),
+                _ if cell == end && end > middle.floor() => CellSign::End(last),
+                _ => CellSign::Bar(between),
             };
             if cell != middle.floor() {
                 self.set(place(cell), sign, role);
@@ -109,7 +109,7 @@ impl Points {
         }
     }
 
-    fn set(&mut self, (x, y): (f64, f64), sign: Sign, role: Role) {
+    fn set(&mut self, (x, y): (f64, f64), sign: CellSign, role: Role) {
         let size = (self.area.width.into(), self.area.height.into());
         let Some((x, y)) = on_sheet((x, y), size) else {
             return;
@@ -130,9 +130,9 @@ impl Points {
                 };
                 let is_free = target.symbol() == " ";
                 let (symbol, is_shown) = match sign {
-                    Sign::Nothing => (' ', false),
-                    Sign::Bar(symbol) | Sign::End(symbol) => (symbol, is_free),
-                    Sign::Mark => (self.marker.point(), is_free || to_be_seen == 0),
+                    CellSign::Nothing => (' ', false),
+                    CellSign::Bar(symbol) | CellSign::End(symbol) => (symbol, is_free),
+                    CellSign::Mark => (self.marker.point(), is_free || to_be_seen == 0),
                 };
                 if is_shown {
                     target.set_char(symbol).set_style(theme.style(role));

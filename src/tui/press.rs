@@ -1,19 +1,19 @@
 //! What a key that is pressed does in the lab.
 
-use super::keymap::{self, Does, Key};
+use super::keymap::{self, Key, KeyEffect};
 use super::panes::{self, help};
 use crate::lab::action::{Action, LessonKey};
-use crate::lab::{Lab, Request};
+use crate::lab::{Lab, LabRequest};
 
-pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
+pub fn press(key: Key, lab: &mut Lab) -> Option<LabRequest> {
     let mode = lab.popups().mode;
     let mut own = panes::keys(lab.view().focus).iter();
     if own.any(|row| row.modes.contains(&mode) && row.keys.contains(&key)) {
         lab.view_mut().is_touched = true;
     }
     match keymap::meaning(panes::keys_of(lab), mode, key) {
-        Some(Does::Action(Action::DoEntry)) => help::do_entry(lab),
-        Some(Does::Action(Action::Digit(digit))) if is_of_sheet(lab) => {
+        Some(KeyEffect::Action(Action::DoEntry)) => help::do_entry(lab),
+        Some(KeyEffect::Action(Action::Digit(digit))) if is_of_sheet(lab) => {
             lab.update(Action::Lesson(LessonKey::Digit(digit)))
         }
         Some(does) => {

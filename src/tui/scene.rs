@@ -2,7 +2,7 @@
 //! which of two crossing lines passes in front of the other.
 
 use crate::lab::view::theme::Marker;
-use crate::playback::camera::{Camera, View};
+use crate::playback::camera::{Camera, CameraView};
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::plane::Plane;
 use nalgebra::Vector3;
@@ -24,7 +24,7 @@ const SHORTEST: f64 = 4.0;
 const IN_FRONT: f64 = 0.15;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stroke {
+pub enum LineStroke {
     /// Every dot, and those on both of its sides. What passes in front leaves no gap beside itself.
     Heavy,
     /// Every dot, and those beside them.
@@ -34,7 +34,7 @@ pub enum Stroke {
     Dotted(u32),
 }
 
-struct Speck {
+struct Dot {
     at: (f64, f64),
     depth: f64,
     ink: Ink,
@@ -45,7 +45,7 @@ struct Speck {
 
 /// What an arrow is drawn over, where it is not seen as near as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Over {
+pub enum DepthBias {
     Farther,
     Arrow,
     /// Everything but what is farther than a rod that is nearly as near.
@@ -54,7 +54,7 @@ pub enum Over {
     Everything,
 }
 
-impl Over {
+impl DepthBias {
     /// What is taken off the depth of an arrow, of the scene's reach.
     fn nearer(self) -> f64 {
         match self {
@@ -67,14 +67,14 @@ impl Over {
 }
 
 /// The camera's eye on a sheet of dots.
-pub struct Scene {
-    camera: View,
+pub struct DotScene {
+    camera: CameraView,
     pub plane: Plane,
     reach: f64,
-    specks: Vec<Speck>,
+    specks: Vec<Dot>,
 }
 
-pub struct Shown {
+pub struct VisibleArea {
     /// What stands in the middle of the sheet, m to the right and up.
     pub middle: (f64, f64),
     /// How far that is to be seen to each side, and up and down, m.
@@ -83,9 +83,9 @@ pub struct Shown {
     pub reach: f64,
 }
 
-impl Scene {
+impl DotScene {
     /// An empty scene on `area`, as large as there is room for.
-    pub fn new(area: Rect, marker: Marker, camera: Camera, shown: &Shown) -> Self {
+    pub fn new(area: Rect, marker: Marker, camera: Camera, shown: &VisibleArea) -> Self {
         Self {
             camera: camera.view(),
             plane: Plane::new(area, marker, shown.middle, shown.half),
@@ -108,7 +108,7 @@ impl Scene {
         self.plane.shows(self.camera.project(point))
     }
 
-    pub fn line(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, stroke: Stroke, ink: Ink) {
+    pub fn line(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, stroke: LineStroke, ink: Ink) {
         self.line_of_dots(self.ends(from, to, 0.0), stroke, ink);
     }
 
@@ -118,18 +118,18 @@ impl Scene {
         [from, to].map(|end| (self.dot(end), depth(end)))
     }
 
-    fn line_of_dots(&mut self, ends: [((f64, f64), f64); 2], stroke: Stroke, ink: Ink) {
+    fn line_of_dots(&mut self, ends: [((f64, f64), f64); 2], stroke: LineStroke, ink: Ink) {
         let [(from, near), (to, far)] = ends;
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let every = match stroke {
-            Stroke::Dotted(every) => every.max(1),
-            Stroke::Heavy | Stroke::Thick | Stroke::Thin => 1,
+            LineStroke::Dotted(every) => every.max(1),
+            LineStroke::Heavy | LineStroke::Thick | LineStroke::Thin => 1,
         };
         // Where a dot is as wide as a cell, the dot beside it makes a heavy line.
         let beside: &[f64] = match stroke {
-            Stroke::Heavy if self.plane.in_cell.0 > 1 => &[0.0, -1.0, 1.0],
-            Stroke::Heavy | Stroke::Thick => &[0.0, 1.0],
-            Stroke::Thin | Stroke::Dotted(_) => &[0.0],
+            LineStroke::Heavy if self.plane.in_cell.0 > 1 => &[0.0, -1.0, 1.0],
+            LineStroke::Heavy | LineStroke::Thick => &[0.0, 1.0],
+            LineStroke::Thin | LineStroke::Dotted(_) => &[0.0],
         };
         let across = if dx.abs() > dy.abs() {
             (0.0, 1.0)
@@ -137,18 +137,18 @@ impl Scene {
             (1.0, 0.0)
         };
         for (share, at) in dots::line(from, to, self.plane.size).step_by(every as usize) {
-            self.specks.extend(beside.iter().map(|side| Speck {
+            self.specks.extend(beside.iter().map(|side| Dot {
                 at: (at.0 + side * across.0, at.1 + side * across.1),
                 depth: near + share * (far - near),
                 ink,
                 hides: every == 1,
-                is_parted: stroke != Stroke::Heavy,
+                is_parted: stroke != LineStroke::Heavy,
             }));
         }
     }
 
     /// A closed line through `points`; the stroke of each part goes by the depth of its middle.
-    pub fn ring(&mut self, points: &[Vector3<f64>], look: impl Fn(f64) -> (Stroke, Ink)) {
+    pub fn ring(&mut self, points: &[Vector3<f64>], look: impl Fn(f64) -> (LineStroke, Ink)) {
         for (index, from) in points.iter().enumerate() {
             let to = &points[(index + 1) % points.len()];
             let (stroke, ink) = look(self.camera.depth(&((from + to) * 0.5)));
@@ -161,9 +161,9 @@ impl Scene {
     }
 
     /// A line with a filled head at its tip, which is seen on a small sheet too.
-    pub fn arrow(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink, over: Over) {
+    pub fn arrow(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink, over: DepthBias) {
         let ends = self.ends(from, tip, over.nearer());
-        self.line_of_dots(ends, Stroke::Thin, ink);
+        self.line_of_dots(ends, LineStroke::Thin, ink);
         let [(begin, _), (end, depth)] = ends;
         let (x, y) = (begin.0 - end.0, begin.1 - end.1);
         let length = libm::hypot(x, y);
@@ -177,7 +177,7 @@ impl Scene {
             let (sin, cos) = libm::sincos(angle);
             let stroke = (x * cos - y * sin, x * sin + y * cos);
             let stroke_end = (end.0 + share * stroke.0, end.1 + share * stroke.1);
-            self.line_of_dots([(end, depth), (stroke_end, depth)], Stroke::Thin, ink);
+            self.line_of_dots([(end, depth), (stroke_end, depth)], LineStroke::Thin, ink);
         }
     }
 
@@ -207,7 +207,7 @@ impl Scene {
     /// A heavy line that is in front of what lies along it: arrows along the axle do not cover it. What crosses it in front
     /// leaves no gap in it, so that it is seen as one line.
     pub fn rod(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, ink: Ink) {
-        self.line_of_dots(self.ends(from, to, IN_FRONT), Stroke::Heavy, ink);
+        self.line_of_dots(self.ends(from, to, IN_FRONT), LineStroke::Heavy, ink);
     }
 
     /// Sets the dots that are to be seen, and takes away those beside and behind them that were set before: in a cell with a

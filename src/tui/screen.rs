@@ -5,11 +5,11 @@ use super::panes::{self, browser, chrome, form::FormPane, help, hint, lesson, me
 use crate::lab::Lab;
 use crate::lab::action::Direction;
 use crate::lab::view::theme::Marker;
-use crate::lab::view::{Pane, Part};
+use crate::lab::view::{HideablePart, Pane};
 use crate::text::wrap::columns;
 use crate::tui::dots;
 use crate::tui::keymap::Mode;
-use crate::tui::layout::{Layout, Said};
+use crate::tui::layout::{LinesBelow, ScreenLayout};
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
 use crossterm::style;
@@ -21,13 +21,13 @@ use std::{io, mem};
 
 /// Fits `lab` to a screen of this size; all of it is to be drawn again.
 pub fn fit(lab: &mut Lab, size: Rect) {
-    let panes = Layout::side_by_side(size, lab.view());
+    let panes = ScreenLayout::side_by_side(size, lab.view());
     lab.view_mut().set_side_by_side(panes);
 }
 
 /// Fits `lab` to a screen of this size again where other panes are shown than before.
 pub fn refit(lab: &mut Lab, size: Rect) {
-    if Layout::side_by_side(size, lab.view()) != lab.view().side_by_side {
+    if ScreenLayout::side_by_side(size, lab.view()) != lab.view().side_by_side {
         fit(lab, size);
     }
 }
@@ -47,12 +47,12 @@ pub fn page_goes_on(lab: &Lab, size: Rect) -> bool {
 }
 
 /// Where everything of `lab` stands on `area`; `keys` says whether there is a line of keys.
-pub fn layout(lab: &Lab, keys: bool, area: Rect) -> Layout {
-    let said = Said {
+pub fn layout(lab: &Lab, keys: bool, area: Rect) -> ScreenLayout {
+    let said = LinesBelow {
         lines: hint::lines_of_note(lab, area.width),
         warns: chrome::warns(lab),
     };
-    Layout::saying(said, area, lab.view(), keys)
+    ScreenLayout::saying(said, area, lab.view(), keys)
 }
 
 /// Draws `lab` on `area`; `keys` says whether with the line of keys.
@@ -68,7 +68,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     timeline::draw(lab, layout.timeline, buf);
     measured::draw(lab, layout.measured, buf);
     let place = hint::place(lab, &layout);
-    if !lab.view().hides(Part::Health) && place == layout.hint {
+    if !lab.view().hides(HideablePart::Health) && place == layout.hint {
         chrome::health(lab, layout.health, buf);
     }
     if !lab.view().bare || hint::has_message(lab) {
@@ -123,7 +123,7 @@ fn draw_popup(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 /// The area of what lies on top of the panes: all of theirs, without the lines that a message takes of it.
-pub(super) fn popup_place(lab: &Lab, layout: &Layout) -> Rect {
+pub(super) fn popup_place(lab: &Lab, layout: &ScreenLayout) -> Rect {
     let panes = layout.panes.iter().map(|(_, area)| *area);
     let body = panes.reduce(Rect::union).unwrap_or_default();
     let message = hint::place(lab, layout);
@@ -163,12 +163,12 @@ pub fn text(lab: &Lab, keys: bool, (width, height): (u16, u16)) -> String {
 }
 
 /// The lab drawn without a terminal, as the bytes that a terminal would be sent.
-pub struct Recorder {
+pub struct ScreenRecorder {
     sent: Vec<u8>,
     shown: Buffer,
 }
 
-impl Recorder {
+impl ScreenRecorder {
     /// A terminal of so many columns and lines, and what clears it and hides its cursor. `lab` is fitted to it.
     pub fn new(lab: &mut Lab, (columns, lines): (u16, u16)) -> io::Result<Self> {
         // The recording is the same whatever NO_COLOR says.

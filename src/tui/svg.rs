@@ -48,17 +48,17 @@ pub fn svg(lab: &Lab, (columns, lines): (u16, u16), background: Background) -> S
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Mark {
+enum CellMark {
     Blank,
     Dots,
     Letter,
 }
 
-fn mark(cell: &Cell) -> Mark {
+fn mark(cell: &Cell) -> CellMark {
     match cell.symbol().chars().next() {
-        None | Some(' ') => Mark::Blank,
-        Some('\u{2800}'..='\u{28ff}') => Mark::Dots,
-        Some(_) => Mark::Letter,
+        None | Some(' ') => CellMark::Blank,
+        Some('\u{2800}'..='\u{28ff}') => CellMark::Dots,
+        Some(_) => CellMark::Letter,
     }
 }
 
@@ -81,15 +81,15 @@ fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, paper: [&'static str;
     let dim = ["", " opacity=\".65\""][has(Modifier::DIM)];
     let bold = ["", " font-weight=\"bold\""][has(Modifier::BOLD)];
     match mark(first) {
-        Mark::Blank => {}
-        Mark::Dots => {
+        CellMark::Blank => {}
+        CellMark::Dots => {
             let dots: String = cells
                 .iter()
                 .map(|(left, cell)| dots(cell, *left, top))
                 .collect();
             let _ = writeln!(out, "<path fill=\"{ink}\"{dim} d=\"{dots}\"/>");
         }
-        Mark::Letter => {
+        CellMark::Letter => {
             let text: String = cells.iter().map(|(_, cell)| cell.symbol()).collect();
             let (y, text) = (top + BASE, xml(&text));
             let _ = writeln!(

@@ -18,12 +18,12 @@ const VERSION: &[u8] = b"# gyrolab = ";
 
 /// The first thing in a file that is not as it is computed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Difference {
+pub struct FileDifference {
     pub line: u64,
     text: String,
 }
 
-impl fmt::Display for Difference {
+impl fmt::Display for FileDifference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)
     }
@@ -44,7 +44,7 @@ pub struct Against {
     rows: u64,
     /// The first line that ends in CR LF.
     rewritten: Option<u64>,
-    difference: Rc<OnceCell<Difference>>,
+    difference: Rc<OnceCell<FileDifference>>,
 }
 
 impl Against {
@@ -76,12 +76,12 @@ impl Against {
     }
 
     /// The first difference, which is there as soon as it is found.
-    pub fn difference(&self) -> Rc<OnceCell<Difference>> {
+    pub fn difference(&self) -> Rc<OnceCell<FileDifference>> {
         Rc::clone(&self.difference)
     }
 
     /// How many rows are the same, and what differs first.
-    pub fn end(mut self) -> io::Result<(u64, Option<Difference>)> {
+    pub fn end(mut self) -> io::Result<(u64, Option<FileDifference>)> {
         if self.difference.get().is_none() {
             let more = self.next(MOST_BEYOND)?;
             if !more.is_empty() {
@@ -104,7 +104,8 @@ impl Against {
     /// This line of the file differs. Only the first difference counts.
     fn differ(&self, text: String) {
         let line = self.line;
-        self.difference.get_or_init(|| Difference { line, text });
+        self.difference
+            .get_or_init(|| FileDifference { line, text });
     }
 
     /// The next line of the file with its end, of which no more than `most` bytes are read; empty behind the last.

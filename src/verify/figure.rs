@@ -1,8 +1,8 @@
 //! A figure, drawn again from what its file carries.
 
 use super::unverified::{Unverified, other_version};
-use crate::figure::{Format, Source, write};
-use crate::origin::{Figure, Form, Holds, SCREEN};
+use crate::figure::{FigureSource, PageFormat, write};
+use crate::origin::{FigureFile, FileFormat, Payload, SCREEN};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -15,7 +15,7 @@ pub fn redraw(
     path: &Path,
     watch: impl Fn(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Redrawn>, Unverified> {
-    let Some(figure) = Figure::open(path)? else {
+    let Some(figure) = FigureFile::open(path)? else {
         return Ok(None);
     };
     let mut notes = Vec::from_iter(other_version(&figure.origin.gyrolab));
@@ -27,15 +27,15 @@ pub fn redraw(
         return Err(rule.to_owned().into());
     }
     let folder = path.parent().unwrap_or(Path::new(""));
-    let source = Source::of(&figure.origin, folder);
+    let source = FigureSource::of(&figure.origin, folder);
     let source = source.map_err(|problems| {
         let versions = notes.first().map(|note| format!(" ({note})"));
         problems.in_one_line() + &versions.unwrap_or_default()
     })?;
     let drawn = source.draw(watch)?.ok_or(Unverified::Stopped)?;
     let again = write(&drawn.scene, format(&figure, &source), Some(&figure.origin));
-    let again = Figure::of(again.map_err(|error| error.to_string())?)?;
-    if figure.origin.all(Holds::Table).next().is_some() {
+    let again = FigureFile::of(again.map_err(|error| error.to_string())?)?;
+    if figure.origin.all(Payload::Table).next().is_some() {
         notes.push("drawn from the table in it; gyrolab verify computes that where it has a file of its own".to_owned());
     }
     let (there, drawn) = (&figure.picture, &again.picture);
@@ -45,7 +45,7 @@ pub fn redraw(
             let drawn = pixels(drawn, MOST_PIXELS)?;
             Some(pixels(there, drawn.1.len())? == drawn)
         };
-        if figure.form == Form::Png && is_same() == Some(true) {
+        if figure.form == FileFormat::Png && is_same() == Some(true) {
             notes.push("its pixels are the same, compressed otherwise".to_owned());
         } else {
             difference = Some("its run, drawn again, gives another picture".to_owned());
@@ -54,12 +54,12 @@ pub fn redraw(
     Ok(Some((difference, notes)))
 }
 
-fn format(figure: &Figure, source: &Source) -> Format {
+fn format(figure: &FigureFile, source: &FigureSource) -> PageFormat {
     match figure.form {
-        Form::Svg if source.asked.text => Format::SvgText,
-        Form::Svg => Format::Svg,
-        Form::Pdf => Format::Pdf,
-        Form::Png => Format::Png,
+        FileFormat::Svg if source.asked.text => PageFormat::SvgText,
+        FileFormat::Svg => PageFormat::Svg,
+        FileFormat::Pdf => PageFormat::Pdf,
+        FileFormat::Png => PageFormat::Png,
     }
 }
 

@@ -1,14 +1,14 @@
 //! The figures of a write-up.
 
-use super::{Beside, RUN_FILE};
+use super::{MeasuredComparison, RUN_FILE};
 use crate::analysis::Readouts;
 use crate::analysis::cost::is_affordable;
-use crate::data::Series;
-use crate::figure::course::{Course, Recorder, Wanted};
-use crate::figure::kind::Kind;
-use crate::figure::labels::Labels;
-use crate::figure::of_runs::{self, Figure, Known, Request, Run};
-use crate::figure::{COLUMN_PT, Scene, Source};
+use crate::data::TimeSeries;
+use crate::figure::course::{RunSampler, SampleRequest, SampledRun};
+use crate::figure::kind::FigureKind;
+use crate::figure::labels::FigureLabels;
+use crate::figure::of_runs::{self, DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
+use crate::figure::{COLUMN_PT, FigureSource, PageScene};
 use crate::run::Clock;
 use crate::scenario::Scenario;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
@@ -17,14 +17,14 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 #[derive(Clone, Debug)]
-pub struct Drawing {
+pub struct WriteupFigure {
     /// The name of its files, without their endings.
     pub name: &'static str,
     pub caption: String,
     /// What its reader must know of it besides, as a sentence.
     pub remark: Option<String>,
-    pub scene: Scene,
-    pub source: Source,
+    pub scene: PageScene,
+    pub source: FigureSource,
 }
 
 /// The figures of what was measured, and of measured less run.
@@ -43,21 +43,24 @@ const BEYOND_DATA: f64 = 1.05;
 struct Planned {
     name: &'static str,
     caption: String,
-    request: Request,
+    request: FigureRequest,
 }
 
 /// What is to be shown the start and every step of the run of `scenario`, so that its figures need not play it once more.
-pub fn recorder(scenario: &Arc<Scenario>, beside: Option<&Beside>) -> Recorder {
+pub fn recorder(scenario: &Arc<Scenario>, beside: Option<&MeasuredComparison>) -> RunSampler {
     let measured = beside.and_then(|beside| beside.measured.series().ok());
-    let kinds = [Some(Kind::traces()), measured.map(Kind::measured)];
-    let columns = kinds.iter().flatten().flat_map(Kind::columns);
-    let wanted = Wanted {
+    let kinds = [
+        Some(FigureKind::traces()),
+        measured.map(FigureKind::measured),
+    ];
+    let columns = kinds.iter().flatten().flat_map(FigureKind::columns);
+    let wanted = SampleRequest {
         columns: columns.copied().collect(),
         path: true,
         from_s: 0.0,
         to_s: None,
     };
-    Recorder::new(scenario, wanted)
+    RunSampler::new(scenario, wanted)
 }
 
 /// The figures of the run of `scenario`, whose `readouts` were read at its end, and of which the [`recorder`] has `recorded`
@@ -69,38 +72,38 @@ pub fn recorder(scenario: &Arc<Scenario>, beside: Option<&Beside>) -> Recorder {
 pub fn figures(
     scenario: &Arc<Scenario>,
     readouts: &Readouts,
-    recorded: Course,
-    beside: Option<&Beside>,
+    recorded: SampledRun,
+    beside: Option<&MeasuredComparison>,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Result<Option<Vec<Drawing>>, String> {
-    let runs = [Run {
+) -> Result<Option<Vec<WriteupFigure>>, String> {
+    let runs = [FigureRun {
         scenario: Arc::clone(scenario),
         named: scenario.file.title.clone(),
     }];
     let is_exact = of_runs::is_exact(scenario);
     let exact = is_affordable(scenario) && !is_exact;
     let also = also(scenario, readouts, is_exact, exact);
-    let whole = Request {
-        kind: Kind::traces(),
+    let whole = FigureRequest {
+        kind: FigureKind::traces(),
         from_s: 0.0,
         to_s: None,
         // A run of the exact motion is drawn once, with the circles that bound it.
         exact: exact || is_exact,
         measured: None,
         width_pt: COLUMN_PT,
-        labels: Labels::default(),
+        labels: FigureLabels::default(),
     };
     let mut planned = beside.map_or(Vec::new(), |beside| of_data(beside, &whole, &also));
     planned.extend(of_run(scenario, readouts, beside, &whole, &also)?);
     let requests = planned.iter().map(|planned| planned.request.clone());
     let requests: Vec<_> = requests.collect();
-    let known = Known {
+    let known = KnownNumbers {
         recorded: Some(recorded),
         said: beside.map(|beside| beside.said.clone()),
     };
     let drawn = of_runs::figures(&runs, &requests, &known, watch)?;
-    let drawing = |(planned, figure): (Planned, Figure)| {
-        Drawing {
+    let drawing = |(planned, figure): (Planned, DrawnFigure)| {
+        WriteupFigure {
         name: planned.name,
         remark: figure.dense.map(|dense| {
             let exact = if exact { " --exact" } else { "" };
@@ -111,7 +114,7 @@ pub fn figures(
         }),
         caption: planned.caption,
         scene: figure.scene,
-        source: Source::new(&runs, &planned.request),
+        source: FigureSource::new(&runs, &planned.request),
     }
     };
     Ok(drawn.map(|drawn| planned.into_iter().zip(drawn).map(drawing).collect()))
@@ -134,9 +137,9 @@ fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -
 }
 
 /// The figures of what was measured, and of measured less run.
-fn of_data(beside: &Beside, whole: &Request, also: &str) -> Vec<Planned> {
+fn of_data(beside: &MeasuredComparison, whole: &FigureRequest, also: &str) -> Vec<Planned> {
     let measured = beside.reached();
-    let has_points = |it: &&Series| it.curves.iter().any(|curve| !curve.points.is_empty());
+    let has_points = |it: &&TimeSeries| it.curves.iter().any(|curve| !curve.points.is_empty());
     let Some(series) = measured.series().ok().filter(has_points) else {
         return Vec::new();
     };
@@ -144,7 +147,7 @@ fn of_data(beside: &Beside, whole: &Request, also: &str) -> Vec<Planned> {
     let of_data = |name, kind, caption| Planned {
         name,
         caption,
-        request: Request {
+        request: FigureRequest {
             kind,
             to_s: Some(beside.end_s.min(BEYOND_DATA * last_s)),
             measured: Some(Arc::clone(&measured)),
@@ -155,28 +158,28 @@ fn of_data(beside: &Beside, whole: &Request, also: &str) -> Vec<Planned> {
     let over_time = format!("What was measured, `{name}`, and the run{also}");
     let less = format!("What was measured, `{name}`, less what the run says");
     vec![
-        of_data(MEASURED, Kind::measured(series), over_time),
-        of_data(RESIDUALS, Kind::Residuals, less),
+        of_data(MEASURED, FigureKind::measured(series), over_time),
+        of_data(RESIDUALS, FigureKind::Residuals, less),
     ]
 }
 
 fn of_run(
     scenario: &Scenario,
     readouts: &Readouts,
-    beside: Option<&Beside>,
-    whole: &Request,
+    beside: Option<&MeasuredComparison>,
+    whole: &FigureRequest,
     also: &str,
 ) -> Result<Vec<Planned>, String> {
     let plan = |name, kind, caption: &str| Planned {
         name,
         caption: format!("{caption}{also}"),
-        request: Request {
+        request: FigureRequest {
             kind,
             ..whole.clone()
         },
     };
     let over_time = "x, y and z of the traced point over time";
-    let mut planned = vec![plan(TRACES, Kind::traces(), over_time)];
+    let mut planned = vec![plan(TRACES, FigureKind::traces(), over_time)];
     if let Some((from_s, to_s)) = few_swings_s(scenario, readouts) {
         let to = significant(to_s, 9);
         let tilt = if from_s > 0.0 {
@@ -185,16 +188,20 @@ fn of_run(
         } else {
             format!("Tilt in the first {to} s")
         };
-        let mut swings = plan(SWINGS, Kind::named("tilt_deg")?, &tilt);
+        let mut swings = plan(SWINGS, FigureKind::named("tilt_deg")?, &tilt);
         (swings.request.from_s, swings.request.to_s) = (from_s, Some(to_s));
         planned.push(swings);
     }
-    let mut above = plan(ABOVE, Kind::Above, "Path of the traced point from above");
+    let mut above = plan(
+        ABOVE,
+        FigureKind::Above,
+        "Path of the traced point from above",
+    );
     let beside = beside.filter(|beside| !beside.compared.places.is_empty());
-    above.request.measured = beside.map(Beside::reached);
+    above.request.measured = beside.map(MeasuredComparison::reached);
     planned.push(above);
     let in_space = "Path of the traced point in space";
-    planned.push(plan(THREE_D, Kind::ThreeD, in_space));
+    planned.push(plan(THREE_D, FigureKind::ThreeD, in_space));
     Ok(planned)
 }
 

@@ -2,7 +2,7 @@
 
 use super::{AGAIN, CSV, PAGE, READOUTS_FILE, RUN_FILE};
 use crate::data::compared::{Compared, Sum};
-use crate::data::{Measured, Quantity, at_times};
+use crate::data::{MeasuredData, RunQuantity, at_times};
 use crate::fit::solution::too_large;
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, counted, shortest, significant};
@@ -12,20 +12,20 @@ use std::path::Path;
 use std::sync::Arc;
 
 #[derive(Clone, Debug)]
-pub struct Beside {
+pub struct MeasuredComparison {
     /// The data; their origin is the name of their copy in the folder.
-    pub measured: Arc<Measured>,
+    pub measured: Arc<MeasuredData>,
     /// What the run says of those that it reached: of each column a value for every point.
     pub said: Vec<Vec<f64>>,
     pub compared: Compared,
     pub end_s: f64,
 }
 
-impl Beside {
+impl MeasuredComparison {
     /// `measured` before the comparison with a run.
-    pub fn new(measured: Measured) -> Self {
+    pub fn new(measured: MeasuredData) -> Self {
         Self {
-            measured: Arc::new(Measured {
+            measured: Arc::new(MeasuredData {
                 origin: name_of_copy(&measured.origin),
                 ..measured
             }),
@@ -65,8 +65,8 @@ impl Beside {
     }
 
     /// The data that were measured before the end of the run.
-    pub(super) fn reached(&self) -> Arc<Measured> {
-        Arc::new(Measured::clone(&self.measured).until(Some(self.end_s)))
+    pub(super) fn reached(&self) -> Arc<MeasuredData> {
+        Arc::new(MeasuredData::clone(&self.measured).until(Some(self.end_s)))
     }
 
     /// What was measured, with how far the run is from it, one row a column.
@@ -118,7 +118,7 @@ impl Beside {
         let columns = self.rows().map(|(name, sum)| {
             let mut column = of(sum);
             column["name"] = json!(name);
-            column["unit"] = json!(Quantity::find(name).map_or("", Quantity::unit));
+            column["unit"] = json!(RunQuantity::find(name).map_or("", RunQuantity::unit));
             column["rms_without_uncertainty"] =
                 json!(sum.scatter.first().map(|(_, scatter)| scatter));
             column

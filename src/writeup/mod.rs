@@ -9,12 +9,12 @@ mod page;
 mod quantities;
 
 use crate::analysis::Readouts;
-use crate::analysis::readouts::{READOUTS, Source};
-use crate::figure::{Format, Unwritable};
+use crate::analysis::readouts::{READOUTS, ReadoutSource};
+use crate::figure::{PageFormat, Unwritable};
 use crate::run::{Clock, NotFinite};
 use crate::scenario::Scenario;
-pub use figures::Drawing;
-pub use measured::Beside;
+pub use figures::WriteupFigure;
+pub use measured::MeasuredComparison;
 use serde_json::{Map, Value};
 use std::sync::Arc;
 
@@ -39,8 +39,8 @@ pub struct Writeup {
     /// Why it ended before its last step, where it did.
     pub broken: Option<NotFinite>,
     /// Measured data beside the run, where there are some.
-    pub beside: Option<Beside>,
-    pub drawings: Vec<Drawing>,
+    pub beside: Option<MeasuredComparison>,
+    pub drawings: Vec<WriteupFigure>,
 }
 
 impl Writeup {
@@ -60,7 +60,7 @@ impl Writeup {
         let texts = texts.map(|(name, text)| (name.to_owned(), text.into_bytes()));
         let mut files: Vec<_> = texts.collect();
         for drawing in &self.drawings {
-            for (ending, format) in [("svg", Format::Svg), ("pdf", Format::Pdf)] {
+            for (ending, format) in [("svg", PageFormat::Svg), ("pdf", PageFormat::Pdf)] {
                 let bytes = drawing.source.write(&drawing.scene, format)?;
                 files.push((format!("{}.{ending}", drawing.name), bytes));
             }
@@ -89,7 +89,7 @@ impl Writeup {
     /// The readouts without the times by the clock, one object.
     pub fn readouts_json(&self) -> String {
         let lasting = READOUTS.iter();
-        let lasting = lasting.filter(|readout| readout.source != Source::Clock);
+        let lasting = lasting.filter(|readout| readout.source != ReadoutSource::Clock);
         let named = lasting.map(|readout| {
             let value = serde_json::to_value(readout.of(&self.readouts));
             (readout.name.to_owned(), value.unwrap_or(Value::Null))

@@ -1,7 +1,10 @@
 //! The first page of a write-up, `README.md`: what was run, what came out, whether to believe it, how to make it again.
 
 use super::quantities::rows;
-use super::{AGAIN, Beside, CSV, Drawing, PREDICTED_SINCE, READOUTS_FILE, RUN_FILE, Writeup};
+use super::{
+    AGAIN, CSV, MeasuredComparison, PREDICTED_SINCE, READOUTS_FILE, RUN_FILE, Writeup,
+    WriteupFigure,
+};
 use crate::analysis::Theory;
 use crate::export::summary::steps_in_words;
 use crate::physics::{SchemeInfo, SymmetricTop};
@@ -165,7 +168,7 @@ fn write_quantities(page: &mut String, writeup: &Writeup) -> fmt::Result {
     )
 }
 
-fn write_drawings(page: &mut String, drawings: &[Drawing]) -> fmt::Result {
+fn write_drawings(page: &mut String, drawings: &[WriteupFigure]) -> fmt::Result {
     if drawings.is_empty() {
         return writeln!(page, "None.\n");
     }
@@ -182,7 +185,7 @@ fn write_drawings(page: &mut String, drawings: &[Drawing]) -> fmt::Result {
     Ok(())
 }
 
-fn write_again(page: &mut String, beside: Option<&Beside>) -> fmt::Result {
+fn write_again(page: &mut String, beside: Option<&MeasuredComparison>) -> fmt::Result {
     let measured = beside.map(|beside| format!(" --measured {}", beside.name()));
     let measured = measured.unwrap_or_default();
     let same = format!("the same bytes as {CSV}");

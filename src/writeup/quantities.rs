@@ -1,12 +1,12 @@
 //! The numbers that were read off a run beside the numbers of theory.
 
 use crate::analysis::Readouts;
-use crate::analysis::readouts::{READOUTS, Readout, Source};
+use crate::analysis::readouts::{READOUTS, Readout, ReadoutSource};
 use crate::text::number::{NONE, fixed, short, significant, uncertain};
 use crate::text::unit::Unit;
 
 /// A measured number beside what theory says of it.
-pub struct Row {
+pub struct QuantityRow {
     /// What was measured, measured, theory, difference, the same in errors, unit.
     pub cells: [String; 6],
     pub meaning: String,
@@ -27,13 +27,13 @@ const DECIMALS: usize = 6;
 
 /// Every number of the table that was read off the run and has a value in `readouts`, or theory.
 /// `since_s` is when the forces last changed, where that is not the start.
-pub fn rows(readouts: &Readouts, since_s: Option<f64>) -> Vec<Row> {
+pub fn rows(readouts: &Readouts, since_s: Option<f64>) -> Vec<QuantityRow> {
     let measured = READOUTS
         .iter()
         .filter(|readout| readout.name.starts_with(MEASURED) && !readout.is_uncertainty());
     let rows = measured.filter_map(|readout| {
         let predicted = predicted(readout, readouts, since_s);
-        let since_s = since_s.filter(|_| readout.source == Source::Measured);
+        let since_s = since_s.filter(|_| readout.source == ReadoutSource::Measured);
         row(readout, readouts, predicted, since_s)
     });
     rows.collect()
@@ -46,7 +46,9 @@ fn number(readout: Option<&Readout>, readouts: &Readouts) -> Option<f64> {
 
 /// The readout with the theory of the exact motion. (The swing that the report's scheme makes has a formula, which is none.)
 fn theory(readout: &Readout) -> Option<&'static Readout> {
-    readout.predicted().filter(|it| it.source == Source::Theory)
+    readout
+        .predicted()
+        .filter(|it| it.source == ReadoutSource::Theory)
 }
 
 /// What theory says of `readout`; `since_s` is when the forces last changed.
@@ -56,7 +58,7 @@ fn predicted(readout: &Readout, readouts: &Readouts, since_s: Option<f64>) -> Op
         return range_deg.map(|(low, high)| high - low);
     }
     // What theory says of the motion since the forces last changed says nothing of the run before.
-    let is_of_it = readout.source != Source::EveryStep || since_s.is_none();
+    let is_of_it = readout.source != ReadoutSource::EveryStep || since_s.is_none();
     number(theory(readout), readouts).filter(|_| is_of_it)
 }
 
@@ -66,7 +68,7 @@ fn row(
     readouts: &Readouts,
     predicted: Option<f64>,
     since_s: Option<f64>,
-) -> Option<Row> {
+) -> Option<QuantityRow> {
     let measured = number(Some(readout), readouts);
     measured.or(predicted)?;
     let error = theory(readout).and(number(readout.uncertainty(), readouts));
@@ -85,7 +87,7 @@ fn row(
     let none = || NONE.to_owned();
     let plain = |number: Option<f64>| number.map_or_else(none, |number| fixed(number, DECIMALS));
     let to_its_digit = stated.as_ref().zip(predicted);
-    Some(Row {
+    Some(QuantityRow {
         cells: [
             label,
             stated

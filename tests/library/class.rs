@@ -1,14 +1,14 @@
 //! The folder of a class: seats, wrong codes, votes by round, and what the two accounts write in it.
 
 use gyrolab::class::board;
-use gyrolab::class::folder::{Stage, State};
+use gyrolab::class::folder::{ClassState, VoteStage};
 use gyrolab::class::seat::{Presence, Record, all_seats};
 use gyrolab::class::student::Student;
 use gyrolab::class::votes::{self, Tally, sittings};
-use gyrolab::class::{Folder, Role, Seat, login};
+use gyrolab::class::{ClassFolder, ClassRole, Seat, login};
 use gyrolab::lessons::class::KeptLessons;
-use gyrolab::lessons::predictions::{Given, Place};
-use gyrolab::lessons::{Answer, Asked, Lesson, reading};
+use gyrolab::lessons::predictions::{LessonProgress, LockedAnswer};
+use gyrolab::lessons::{AnswerKind, Lesson, PredictionAnswer, reading};
 use std::fs::{self, File, Permissions};
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
@@ -17,9 +17,9 @@ use tempfile::TempDir;
 
 const LESSON: &str = "is-the-wobble-real";
 
-fn class() -> (TempDir, Folder) {
+fn class() -> (TempDir, ClassFolder) {
     let dir = tempfile::tempdir().unwrap();
-    let folder = Folder::open(dir.path()).unwrap();
+    let folder = ClassFolder::open(dir.path()).unwrap();
     folder.make_teacher().unwrap();
     (dir, folder)
 }
@@ -28,7 +28,7 @@ fn mode(path: &Path) -> u32 {
     fs::metadata(path).unwrap().permissions().mode() & 0o7777
 }
 
-fn new_seat(folder: &Folder, name: &str) -> Seat {
+fn new_seat(folder: &ClassFolder, name: &str) -> Seat {
     let (seat, is_new) = login::take(folder, name, 0).unwrap();
     assert!(is_new);
     seat
@@ -37,13 +37,13 @@ fn new_seat(folder: &Folder, name: &str) -> Seat {
 /// Keeps in `seat` these votes on the question `name` of `lesson`: round, number, and whether it is late.
 fn keep(seat: &Seat, lesson: &Lesson, name: &str, votes: &[(u32, f64, bool)]) {
     let predict = lesson.predict(name).unwrap();
-    let mut place = Place::default();
+    let mut place = LessonProgress::default();
     for &(round, number, late) in votes {
         let answer = match &predict.asked {
-            Asked::Choice(all) => Answer::Choice(all[number as usize - 1].clone()),
-            Asked::Number { .. } => Answer::Number(number),
+            AnswerKind::Choice(all) => PredictionAnswer::Choice(all[number as usize - 1].clone()),
+            AnswerKind::Number { .. } => PredictionAnswer::Number(number),
         };
-        let given = Given {
+        let given = LockedAnswer {
             round,
             answer,
             late,
@@ -74,7 +74,7 @@ fn a_seat_is_found_by_its_word_alone_and_its_modes_are_set() {
     seat.save(&Record::default()).unwrap();
     seat.hold().unwrap();
     assert_eq!(seat.presence(), Presence::Here);
-    folder.publish(&State::default()).unwrap();
+    folder.publish(&ClassState::default()).unwrap();
     assert_eq!(mode(&folder.teacher()), 0o2750);
     assert_eq!(mode(&folder.seats()), 0o2770);
     assert_eq!(mode(&seat.folder), 0o2770);
@@ -122,7 +122,7 @@ fn wrong_word(name: &str, seats: &[&Seat]) -> String {
 }
 
 #[track_caller]
-fn refused(folder: &Folder, word: &str, at_s: u64, reason: &str) -> String {
+fn refused(folder: &ClassFolder, word: &str, at_s: u64, reason: &str) -> String {
     let refused = login::take(folder, word, at_s).unwrap_err();
     assert!(refused.contains(reason), "{word} at {at_s} s: {refused}");
     refused
@@ -199,7 +199,7 @@ fn a_code_that_cannot_be_counted_is_not_compared() {
     assert_eq!(to_right, refused(&folder, &wrong, 0, uncounted));
 }
 
-fn wrong_codes(folder: &Folder, seat: &Seat) -> PathBuf {
+fn wrong_codes(folder: &ClassFolder, seat: &Seat) -> PathBuf {
     folder.root.join(".gyrolab/wrong").join(&seat.word)
 }
 
@@ -398,15 +398,15 @@ fn rustix_is_root() -> bool {
 #[test]
 fn a_question_closes_and_the_state_comes_back() {
     let (_dir, folder) = class();
-    let mut state = State {
+    let mut state = ClassState {
         gyrolab: env!("CARGO_PKG_VERSION").to_owned(),
         lesson: LESSON.to_owned(),
         page: 4,
-        ..State::default()
+        ..ClassState::default()
     };
     let questions = state.questions.entry(LESSON.to_owned()).or_default();
     let question = questions.entry("finer".to_owned()).or_default();
-    (question.earlier_rounds, question.stage) = (1, Stage::Closed);
+    (question.earlier_rounds, question.stage) = (1, VoteStage::Closed);
     folder.publish(&state).unwrap();
     let back = folder.state().unwrap().unwrap();
     assert_eq!(back, state);

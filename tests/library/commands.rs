@@ -9,15 +9,15 @@ use gyrolab::export::layout::LayoutFile;
 use gyrolab::journal::expression::Expression;
 use gyrolab::journal::next_push::Toward;
 use gyrolab::lab::Refusal;
-use gyrolab::lab::command::{self, COMMANDS, Command, Export, Force, Place, PushChoice, Save};
-use gyrolab::lab::view::step::Page;
-use gyrolab::lab::view::{Look, Pane, Part};
+use gyrolab::lab::command::{self, COMMANDS, Command, Export, Force, PushChoice, Save, SeekTarget};
+use gyrolab::lab::view::step::StepPageChoice;
+use gyrolab::lab::view::{HideablePart, Pane, ViewSettings};
 use gyrolab::physics::workings::NAMES;
 use gyrolab::playback::camera::Camera;
 use gyrolab::playback::pace::Speed;
 use gyrolab::scenario::Document;
 use gyrolab::tui::keymap::Key;
-use gyrolab::tui::{layout::Layout, panes, screen};
+use gyrolab::tui::{layout::ScreenLayout, panes, screen};
 use proptest::prelude::*;
 use std::time::Duration;
 use toml::{Table, Value};
@@ -102,22 +102,22 @@ fn a_set() -> impl Strategy<Value = Table> {
     prop::collection::vec(entry, 1..4).prop_map(table)
 }
 
-fn a_page() -> impl Strategy<Value = Page> {
+fn a_page() -> impl Strategy<Value = StepPageChoice> {
     prop_oneof![
-        (1..1000usize).prop_map(Page::Number),
-        prop::sample::select(&NAMES[..]).prop_map(Page::Named),
-        Just(Page::Last),
-        Just(Page::Why),
+        (1..1000usize).prop_map(StepPageChoice::Number),
+        prop::sample::select(&NAMES[..]).prop_map(StepPageChoice::Named),
+        Just(StepPageChoice::Last),
+        Just(StepPageChoice::Why),
     ]
 }
 
 /// A command of every kind.
 fn a_command() -> impl Strategy<Value = Command> {
     let place = prop_oneof![
-        (0..u64::MAX / 2).prop_map(Place::Step),
-        a_number().prop_map(Place::Time),
-        Just(Place::Start),
-        Just(Place::End),
+        (0..u64::MAX / 2).prop_map(SeekTarget::Step),
+        a_number().prop_map(SeekTarget::Time),
+        Just(SeekTarget::Start),
+        Just(SeekTarget::End),
     ];
     let layout = (1..1000u64, any::<[bool; 4]>(), a_number()).prop_map(
         |(every, [cut, chosen, points, excel], from_s)| {
@@ -158,10 +158,14 @@ fn a_command() -> impl Strategy<Value = Command> {
         "abs(tilt_deg - 3) < 1e-3 or step > motion.steps",
     ]);
     let pane = || prop::sample::select(named_panes());
-    let parts = named_panes().into_iter().map(Part::Pane);
+    let parts = named_panes().into_iter().map(HideablePart::Pane);
     let part = prop::sample::select(
         parts
-            .chain([Part::Health, Part::Predicted, Part::LookAt])
+            .chain([
+                HideablePart::Health,
+                HideablePart::Predicted,
+                HideablePart::LookAt,
+            ])
             .collect::<Vec<_>>(),
     );
     let looks = prop_oneof![
@@ -278,7 +282,10 @@ fn every_row_of_the_table_is_written_under_its_name() {
     let refused = nothing.try_into::<Command>().unwrap_err();
     let (_, known) = refused.message().split_once("expected one of ").unwrap();
     let known = known.split(", ").map(|name| name.trim_matches('`'));
-    let looks = rows.iter().map(String::as_str).filter(|row| Look::has(row));
+    let looks = rows
+        .iter()
+        .map(String::as_str)
+        .filter(|row| ViewSettings::has(row));
     let mut all: Vec<_> = known.chain(looks).collect();
     let mut rows: Vec<_> = rows.iter().map(String::as_str).collect();
     all.sort_unstable();
@@ -729,7 +736,7 @@ fn shown_panes_share_the_screen_at_every_width() {
     desk.commands("show = ['above', '3d']");
     for (width, height) in [(80, 24), (120, 30), (200, 50), (60, 20)] {
         let area = ratatui::layout::Rect::new(0, 0, width, height);
-        let layout = Layout::new(area, desk.lab.view(), true);
+        let layout = ScreenLayout::new(area, desk.lab.view(), true);
         let panes: Vec<_> = layout.panes.iter().map(|(pane, _)| *pane).collect();
         assert_eq!(panes, [Pane::FROM_ABOVE, Pane::THREE_D], "{width}");
         let widths: u16 = layout.panes.iter().map(|(_, place)| place.width).sum();
@@ -772,9 +779,9 @@ fn a_pane_has_the_name_that_files_give_it() {
             panes::row(Pane::named(id).unwrap()).is_some(),
             "{id} has no row"
         );
-        assert!(Value::from(id).try_into::<Part>().is_ok());
+        assert!(Value::from(id).try_into::<HideablePart>().is_ok());
     }
-    let part = |id: &str| Value::from(id).try_into::<Part>();
+    let part = |id: &str| Value::from(id).try_into::<HideablePart>();
     assert!(
         gyrolab::scenario::screen::HIDEABLE
             .iter()

@@ -5,7 +5,7 @@ mod others;
 
 use crate::support::dice::Dice;
 use crate::support::scenarios;
-use gyrolab::analysis::{Instruments, Measured, Monitor};
+use gyrolab::analysis::{Instruments, MeasuredNumber, Monitor};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ fn preset(name: &str, set: &[&str]) -> Arc<Scenario> {
     Arc::new(scenarios::preset(name, set))
 }
 
-fn measured(scenario: &Arc<Scenario>) -> [Option<Measured>; 2] {
+fn measured(scenario: &Arc<Scenario>) -> [Option<MeasuredNumber>; 2] {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut instruments = Instruments::new(simulation.now());
     while simulation.step_number() < scenario.steps {

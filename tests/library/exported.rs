@@ -6,7 +6,7 @@ use gyrolab::analysis::compare;
 use gyrolab::export::columns::COLUMNS;
 use gyrolab::export::layout::LayoutFile;
 use gyrolab::export::layout::commented;
-use gyrolab::export::{CsvWriter, Layout, stream};
+use gyrolab::export::{CsvLayout, CsvWriter, stream};
 use gyrolab::physics::SchemeInfo;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
@@ -50,7 +50,7 @@ fn no_fit(_: &str) -> Result<Vec<u8>, Unverified> {
 }
 
 #[track_caller]
-fn difference(bytes: &[u8]) -> gyrolab::verify::Difference {
+fn difference(bytes: &[u8]) -> gyrolab::verify::FileDifference {
     verified(bytes).unwrap().difference.expect("it is the same")
 }
 
@@ -207,7 +207,7 @@ fn what_is_asked_for_stands_above_the_run_file_and_is_read_again() {
     std::fs::write(&path, &bytes).unwrap();
     let again = Document::read(&path).unwrap().scenario().unwrap();
     assert_eq!(again.to_toml(), scenario.to_toml(), "it runs again");
-    let layout = Layout::read(&header.replace("\n# ", "\n")[2..]).unwrap();
+    let layout = CsvLayout::read(&header.replace("\n# ", "\n")[2..]).unwrap();
     assert_eq!(*layout.file(), file);
     let plain = csv(&scenario, whole());
     assert!(plain.starts_with(format!("{run_file}step,t_s,").as_bytes()));

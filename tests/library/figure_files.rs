@@ -3,7 +3,8 @@
 use crate::support::words::{has, has_all};
 use gyrolab::figure::page::ink::{BLACK, at, circle, pen};
 use gyrolab::figure::{
-    Color, Format, Item, Paint, Path, Pen, Point, Scene, Segment, page::letters, write,
+    Color, PageFormat, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath,
+    page::letters, write,
 };
 
 const HOSTILE: &str =
@@ -11,27 +12,27 @@ const HOSTILE: &str =
 const RED: Color = Color([200, 30, 30]);
 
 /// A page of 100 pt x 60 pt: a red disk, a dashed line that is cut off, a black square, a label.
-fn page(title: &str, words: &str) -> Scene {
-    let mut scene = Scene::new(100.0, 60.0, title);
+fn page(title: &str, words: &str) -> PageScene {
+    let mut scene = PageScene::new(100.0, 60.0, title);
     scene.fill(circle(at(20.0, 20.0), 10.0), RED);
-    let dashed = Pen {
+    let dashed = StrokeStyle {
         dash_pt: vec![4.0, 2.0],
         ..pen(2.0, BLACK)
     };
-    scene.items.push(Item {
-        path: Path::polyline([at(0.0, 45.0), at(90.0, 45.0)]),
+    scene.items.push(SceneItem {
+        path: VectorPath::polyline([at(0.0, 45.0), at(90.0, 45.0)]),
         paint: Paint::Stroke(dashed),
         clip: Some([at(10.0, 40.0), at(60.0, 50.0)]),
         words: None,
     });
     let corners = [(70.0, 10.0), (80.0, 10.0), (80.0, 20.0), (70.0, 20.0)];
-    scene.fill(Path::polygon(corners.map(|(x, y)| at(x, y))), BLACK);
+    scene.fill(VectorPath::polygon(corners.map(|(x, y)| at(x, y))), BLACK);
     scene.write(&letters::escape(words), 8.0, at(50.0, 58.0), 0.5);
     scene
 }
 
-fn svg(scene: &Scene) -> String {
-    String::from_utf8(write(scene, Format::Svg, None).unwrap()).unwrap()
+fn svg(scene: &PageScene) -> String {
+    String::from_utf8(write(scene, PageFormat::Svg, None).unwrap()).unwrap()
 }
 
 /// The words of a PDF's drawing, not compressed.
@@ -172,7 +173,7 @@ fn the_places_in_svg_are_those_of_the_page() {
         at(-3.25, 7.4),
         at(1e4, -1e4),
     ];
-    let mut path = Path::polygon(corners);
+    let mut path = VectorPath::polygon(corners);
     path.0.push(Segment::Line(at(1.0, 1.0)));
     let quadratic = Segment::Quadratic(at(5.0, 5.125), at(-6.07, 0.5));
     let cubic = Segment::Cubic(at(5.0, 5.12), at(-6.0, 0.0), at(0.0, 0.0));
@@ -180,7 +181,7 @@ fn the_places_in_svg_are_those_of_the_page() {
     let rounded = |x: f64| (x * 100.0).round() / 100.0;
     let expected = path.points().map(|p| (rounded(p.x), rounded(p.y)));
     let expected: Vec<_> = expected.collect();
-    let mut scene = Scene::new(10.0, 10.0, "");
+    let mut scene = PageScene::new(10.0, 10.0, "");
     scene.fill(path, RED);
     let text = svg(&scene);
     let (_, data) = text.rsplit_once("d=\"").unwrap();
@@ -195,7 +196,7 @@ fn the_places_in_svg_are_those_of_the_page() {
 
 #[test]
 fn pdf_strokes_and_cuts_off_and_has_its_own_font() {
-    let pdf = write(&page("A title", "ab"), Format::Pdf, None).unwrap();
+    let pdf = write(&page("A title", "ab"), PageFormat::Pdf, None).unwrap();
     let text = String::from_utf8_lossy(&pdf);
     assert!(text.starts_with("%PDF-1.4"));
     assert!(text.contains("/MediaBox [0 0 100 60]"));
@@ -226,7 +227,7 @@ fn pdf_strokes_and_cuts_off_and_has_its_own_font() {
 
 #[test]
 fn png_has_the_dots_of_the_page() {
-    let picture = Picture::of(&write(&page("A title", "ab"), Format::Png, None).unwrap());
+    let picture = Picture::of(&write(&page("A title", "ab"), PageFormat::Png, None).unwrap());
     // 100 pt x 60 pt at 600 dots an inch.
     assert_eq!((picture.width, picture.height), (834, 500));
     assert_eq!(picture.dots_per_metre, 23622);
@@ -250,8 +251,8 @@ fn png_has_the_dots_of_the_page() {
         .flat_map(|x| (540..600).map(move |y| (f64::from(x) / 10.0 - 10.0, f64::from(y) / 10.0)));
     let is_black = |(x, y): &(f64, f64)| picture.at(*x, *y) == black;
     assert!(in_label.filter(is_black).count() > 100);
-    let grey = Scene::new(10.0, 10.0, "");
-    let bytes = write(&grey, Format::Png, None).unwrap();
+    let grey = PageScene::new(10.0, 10.0, "");
+    let bytes = write(&grey, PageFormat::Png, None).unwrap();
     assert_eq!(bytes[25], 0, "a page without colour is in grey");
     assert!(Picture::of(&bytes).dots.iter().all(|dot| *dot == white));
 }
@@ -271,11 +272,11 @@ fn words_cannot_break_a_file() {
             let shown = "</title><script>x</script> & \"q\" 'a' ]]> \\u{0}\\u{1b}[2J\\u{202e}\u{fffd} 速い \\) (";
             assert_eq!(title.text(), Some(shown));
         }
-        let pdf = write(&scene, Format::Pdf, None).unwrap();
+        let pdf = write(&scene, PageFormat::Pdf, None).unwrap();
         let drawing = content(&pdf);
         let is_whole = hostile.is_empty() || drawing.ends_with("EMC\nQ");
         assert!(is_whole, "{}", &drawing[drawing.len() - 40..]);
-        let picture = Picture::of(&write(&scene, Format::Png, None).unwrap());
+        let picture = Picture::of(&write(&scene, PageFormat::Png, None).unwrap());
         assert_eq!(picture.at(75.0, 15.0), [0; 3]);
     }
 }
@@ -284,21 +285,24 @@ fn words_cannot_break_a_file() {
 /// change with its crate, what they hold may not.
 #[test]
 fn a_file_is_the_same_each_time_and_everywhere() {
-    let known = [(Format::Svg, 2_219_561_319), (Format::Pdf, 1_146_029_640)];
+    let known = [
+        (PageFormat::Svg, 2_219_561_319),
+        (PageFormat::Pdf, 1_146_029_640),
+    ];
     for (format, crc) in known {
         let bytes = write(&page("A title", "Äß Ω"), format, None).unwrap();
         assert_eq!(
             bytes,
             write(&page("A title", "Äß Ω"), format, None).unwrap()
         );
-        let stable = if format == Format::Pdf {
+        let stable = if format == PageFormat::Pdf {
             content(&bytes).into_bytes()
         } else {
             bytes
         };
         assert_eq!(crc32fast::hash(&stable), crc, "{format:?}");
     }
-    let picture = Picture::of(&write(&page("A title", "Äß Ω"), Format::Png, None).unwrap());
+    let picture = Picture::of(&write(&page("A title", "Äß Ω"), PageFormat::Png, None).unwrap());
     let pixels = crc32fast::hash(picture.dots.as_flattened());
     assert_eq!(pixels, 2_315_199_443);
 }
@@ -306,14 +310,14 @@ fn a_file_is_the_same_each_time_and_everywhere() {
 #[test]
 fn dashes_of_an_odd_number_and_of_no_length_are_drawn() {
     for dash_pt in [vec![5.0], vec![5.0, 0.0, 5.0], vec![0.0, 0.0], vec![0.001]] {
-        let mut scene = Scene::new(100.0, 20.0, "");
-        let dashed = Pen {
+        let mut scene = PageScene::new(100.0, 20.0, "");
+        let dashed = StrokeStyle {
             dash_pt: dash_pt.clone(),
             ..pen(4.0, BLACK)
         };
-        let line = Path::polyline([at(0.0, 10.0), at(100.0, 10.0)]);
+        let line = VectorPath::polyline([at(0.0, 10.0), at(100.0, 10.0)]);
         scene.stroke(line, dashed, None);
-        let picture = Picture::of(&write(&scene, Format::Png, None).unwrap());
+        let picture = Picture::of(&write(&scene, PageFormat::Png, None).unwrap());
         assert_eq!(picture.at(2.0, 10.0), [0; 3], "{dash_pt:?}");
         let is_gap = dash_pt == [5.0];
         assert_eq!(picture.at(7.0, 10.0) == [255; 3], is_gap, "{dash_pt:?}");
@@ -322,15 +326,19 @@ fn dashes_of_an_odd_number_and_of_no_length_are_drawn() {
 
 #[test]
 fn empty_paths_and_points_alone_break_nothing() {
-    let mut scene = Scene::new(10.0, 10.0, "");
+    let mut scene = PageScene::new(10.0, 10.0, "");
     let alone: [Point; 1] = [at(5.0, 5.0)];
-    for path in [Path::default(), Path::polyline(alone), Path::polygon(alone)] {
+    for path in [
+        VectorPath::default(),
+        VectorPath::polyline(alone),
+        VectorPath::polygon(alone),
+    ] {
         scene.fill(path.clone(), BLACK);
         scene.stroke(path, pen(1.0, BLACK), None);
     }
-    for format in [Format::Svg, Format::Pdf, Format::Png] {
+    for format in [PageFormat::Svg, PageFormat::Pdf, PageFormat::Png] {
         write(&scene, format, None).unwrap();
     }
     roxmltree::Document::parse(&svg(&scene)).unwrap();
-    assert!(!content(&write(&scene, Format::Pdf, None).unwrap()).contains("\nf\nf\n"));
+    assert!(!content(&write(&scene, PageFormat::Pdf, None).unwrap()).contains("\nf\nf\n"));
 }

@@ -2,14 +2,14 @@
 
 use crate::support::scenarios::preset;
 use crate::support::words::has;
-use gyrolab::figure::chart::{Axis, Chart, Panel, Series, Style};
-use gyrolab::figure::course::{Course, Recorder, Wanted};
-use gyrolab::figure::kind::Kind;
-use gyrolab::figure::labels::Labels;
-use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
+use gyrolab::figure::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
+use gyrolab::figure::course::{RunSampler, SampleRequest, SampledRun};
+use gyrolab::figure::kind::FigureKind;
+use gyrolab::figure::labels::FigureLabels;
+use gyrolab::figure::of_runs::{self, DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
 use gyrolab::figure::page::ink::WHITE;
-use gyrolab::figure::table::Table;
-use gyrolab::figure::{Format, Item, Paint, Point, Scene, of_table, write};
+use gyrolab::figure::table::TableSource;
+use gyrolab::figure::{PageFormat, PageScene, Paint, Point, SceneItem, of_table, write};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use gyrolab::scenario::presets::PRESETS;
@@ -29,28 +29,28 @@ fn scenario(name: &str, set: &[&str]) -> Arc<Scenario> {
     Arc::new(preset(name, set))
 }
 
-fn run(preset: &str, set: &[&str]) -> Run {
-    Run {
+fn run(preset: &str, set: &[&str]) -> FigureRun {
+    FigureRun {
         scenario: scenario(preset, set),
         named: preset.to_owned(),
     }
 }
 
-fn request(kind: &str) -> Request {
-    Request {
-        kind: Kind::named(kind).unwrap(),
+fn request(kind: &str) -> FigureRequest {
+    FigureRequest {
+        kind: FigureKind::named(kind).unwrap(),
         from_s: 0.0,
         to_s: None,
         exact: false,
         measured: None,
         width_pt: COLUMN_PT,
-        labels: Labels::default(),
+        labels: FigureLabels::default(),
     }
 }
 
 /// A figure of this kind with the exact motion.
-fn with_exact(kind: &str) -> Request {
-    Request {
+fn with_exact(kind: &str) -> FigureRequest {
+    FigureRequest {
         exact: true,
         ..request(kind)
     }
@@ -60,16 +60,16 @@ fn go_on(_: u64, _: u64) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-fn drawn(runs: &[Run], request: &Request) -> Figure {
+fn drawn(runs: &[FigureRun], request: &FigureRequest) -> DrawnFigure {
     of_runs::figure(runs, request, go_on).unwrap().unwrap()
 }
 
-fn refusal(runs: &[Run], request: &Request) -> String {
+fn refusal(runs: &[FigureRun], request: &FigureRequest) -> String {
     of_runs::figure(runs, request, go_on).unwrap_err()
 }
 
 /// All that is said of a figure.
-fn told(figure: &Figure) -> Vec<String> {
+fn told(figure: &DrawnFigure) -> Vec<String> {
     figure.told().map(|told| told.to_string()).collect()
 }
 
@@ -82,14 +82,14 @@ pub(crate) fn most(numbers: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Left, upper, right and lower end of all lines in a panel.
-fn extent_of_lines(scene: &Scene, panel: [Point; 2]) -> [f64; 4] {
+fn extent_of_lines(scene: &PageScene, panel: [Point; 2]) -> [f64; 4] {
     let ends: Vec<_> = lines(scene, panel).into_iter().map(extent).collect();
     let side = |side: usize| ends.iter().map(move |end| end[side]);
     [least(side(0)), least(side(1)), most(side(2)), most(side(3))]
 }
 
 /// The place of the traced point after each step of the run.
-fn places(run: &Run) -> Vec<Vector3<f64>> {
+fn places(run: &FigureRun) -> Vec<Vector3<f64>> {
     let mut simulation = Simulation::new(Arc::clone(&run.scenario));
     let mut seen = vec![*simulation.now().position()];
     while simulation.step_number() < run.scenario.steps {
@@ -98,13 +98,13 @@ fn places(run: &Run) -> Vec<Vector3<f64>> {
     seen
 }
 
-pub(crate) fn words(scene: &Scene) -> Vec<&str> {
+pub(crate) fn words(scene: &PageScene) -> Vec<&str> {
     let words = scene.items.iter().filter_map(|item| item.words.as_ref());
     words.map(|words| words.text.as_str()).collect()
 }
 
 #[track_caller]
-pub(crate) fn says(scene: &Scene, wanted: &[&str]) {
+pub(crate) fn says(scene: &PageScene, wanted: &[&str]) {
     let words = words(scene);
     for wanted in wanted {
         assert!(words.contains(wanted), "{wanted} is not among {words:?}");
@@ -112,7 +112,7 @@ pub(crate) fn says(scene: &Scene, wanted: &[&str]) {
 }
 
 /// Left, upper, right and lower end of what an item shows.
-fn extent(item: &Item) -> [f64; 4] {
+fn extent(item: &SceneItem) -> [f64; 4] {
     let x = || item.path.points().map(|p| p.x);
     let y = || item.path.points().map(|p| p.y);
     let all = [least(x()), least(y()), most(x()), most(y())];
@@ -128,7 +128,7 @@ fn extent(item: &Item) -> [f64; 4] {
 }
 
 /// Nothing leaves the page, and no two words stand upon each other.
-pub(crate) fn is_tidy(scene: &Scene) -> Result<(), String> {
+pub(crate) fn is_tidy(scene: &PageScene) -> Result<(), String> {
     let mut texts: Vec<(&str, [f64; 4])> = Vec::new();
     for item in &scene.items {
         let here = extent(item);
@@ -158,7 +158,7 @@ pub(crate) fn is_tidy(scene: &Scene) -> Result<(), String> {
 }
 
 /// The frames in which something is cut off: one a panel.
-fn panels(scene: &Scene) -> Vec<[Point; 2]> {
+fn panels(scene: &PageScene) -> Vec<[Point; 2]> {
     let mut clips: Vec<[Point; 2]> = Vec::new();
     for clip in scene.items.iter().filter_map(|item| item.clip) {
         if !clips.contains(&clip) {
@@ -169,14 +169,15 @@ fn panels(scene: &Scene) -> Vec<[Point; 2]> {
 }
 
 /// The lines in a panel.
-fn lines(scene: &Scene, panel: [Point; 2]) -> Vec<&Item> {
-    let is_line = |item: &&Item| item.clip == Some(panel) && matches!(item.paint, Paint::Stroke(_));
+fn lines(scene: &PageScene, panel: [Point; 2]) -> Vec<&SceneItem> {
+    let is_line =
+        |item: &&SceneItem| item.clip == Some(panel) && matches!(item.paint, Paint::Stroke(_));
     scene.items.iter().filter(is_line).collect()
 }
 
 /// The wide lines in panels beneath the first run.
-fn wide(scene: &Scene) -> Vec<usize> {
-    let is_wide = |item: &Item| match &item.paint {
+fn wide(scene: &PageScene) -> Vec<usize> {
+    let is_wide = |item: &SceneItem| match &item.paint {
         Paint::Stroke(pen) => item.clip.is_some() && pen.width_pt > 1.0,
         Paint::Fill(_) => false,
     };
@@ -198,7 +199,7 @@ fn every_preset_has_a_tidy_figure_of_every_kind() {
             "energy_J,Lx_Js,azimuth_deg,step,segment",
         ] {
             for (width_mm, exact) in [(178.0, true), (40.0, false)] {
-                let request = Request {
+                let request = FigureRequest {
                     exact,
                     width_pt: width_mm * 72.0 / 25.4,
                     ..request(kind)
@@ -206,7 +207,11 @@ fn every_preset_has_a_tidy_figure_of_every_kind() {
                 let figure = drawn(&runs, &request);
                 is_tidy(&figure.scene)
                     .unwrap_or_else(|why| panic!("{name} {kind} {width_mm}: {why}"));
-                assert!(!write(&figure.scene, Format::Svg, None).unwrap().is_empty());
+                assert!(
+                    !write(&figure.scene, PageFormat::Svg, None)
+                        .unwrap()
+                        .is_empty()
+                );
             }
         }
     }
@@ -228,7 +233,7 @@ fn traces_show_x_y_and_z_with_units_and_every_extreme() {
     for (axis, [top_left, bottom_right]) in panels.into_iter().enumerate() {
         let values = || seen.iter().map(|position| position[axis]);
         let (least, most) = (least(values()), most(values()));
-        let (low, high) = Axis::default().range_of(values());
+        let (low, high) = ChartAxis::default().range_of(values());
         let place = |value: f64| {
             bottom_right.y - (value - low) / (high - low) * (bottom_right.y - top_left.y)
         };
@@ -262,7 +267,7 @@ fn a_path_from_above_is_true_to_scale() {
 fn a_path_in_space_has_three_axes_and_a_shadow() {
     let figure = drawn(&[run("cusps", &[])], &request("3d"));
     says(&figure.scene, &["x (m)", "y (m)", "z (m)"]);
-    let grey = |item: &Item| match &item.paint {
+    let grey = |item: &SceneItem| match &item.paint {
         Paint::Stroke(pen) if item.path.0.len() > 20 => Some(pen.color.0[0]),
         _ => None,
     };
@@ -302,7 +307,7 @@ fn a_path_of_few_steps_a_turn_is_drawn_as_points() {
         let words = "about 10 time steps for a turn";
         has(told(&coarse).join("; "), words);
         // Nothing is drawn from one step to the next.
-        let is_dot = |item: &&Item| matches!(&item.paint, Paint::Stroke(pen) if pen.width_pt >= 0.5 && pen.dash_pt.is_empty());
+        let is_dot = |item: &&SceneItem| matches!(&item.paint, Paint::Stroke(pen) if pen.width_pt >= 0.5 && pen.dash_pt.is_empty());
         let dots = coarse.scene.items.iter().filter(is_dot).map(extent);
         let dots =
             dots.filter(|[left, top, right, bottom]| right - left < 0.03 && bottom - top < 0.03);
@@ -319,11 +324,11 @@ fn the_circles_of_the_exact_motion_have_a_name_that_hides_none_of_them() {
         let runs = [run(preset, &["motion.steps=300"])];
         let figure = drawn(&runs, &with_exact("above"));
         says(&figure.scene, &["limits of exact motion"]);
-        let circle = |item: &&Item| {
+        let circle = |item: &&SceneItem| {
             item.clip.is_some()
                 && matches!(item.paint, Paint::Stroke(ref pen) if pen.width_pt == 0.4)
         };
-        let white = |item: &&Item| matches!(item.paint, Paint::Fill(color) if color == WHITE);
+        let white = |item: &&SceneItem| matches!(item.paint, Paint::Fill(color) if color == WHITE);
         let circles: Vec<_> = figure.scene.items.iter().filter(circle).collect();
         assert!(!circles.is_empty(), "{preset}");
         for legend in figure.scene.items.iter().filter(white).map(extent) {
@@ -368,7 +373,7 @@ fn z_says_in_space_how_far_it_is_stretched() {
 
 #[test]
 fn runs_beside_each_other_are_named_by_what_differs() {
-    let figure = |runs: &[Run]| drawn(runs, &request("z_m")).scene;
+    let figure = |runs: &[FigureRun]| drawn(runs, &request("z_m")).scene;
     let cusps = |set: &str| run("cusps", &[set, "motion.steps=300"]);
     let schemes = ["report", "rk4"].map(|name| cusps(&format!("motion.scheme={name}")));
     let schemes = figure(&schemes);
@@ -389,7 +394,7 @@ fn runs_beside_each_other_are_named_by_what_differs() {
 #[test]
 fn a_stretch_of_time_is_cut_out_and_one_beyond_the_run_is_refused() {
     let runs = [run("wobble-push", &[])];
-    let part = |from_s: f64, to_s: Option<f64>| Request {
+    let part = |from_s: f64, to_s: Option<f64>| FigureRequest {
         from_s,
         to_s,
         ..request("z_m")
@@ -416,7 +421,7 @@ fn a_run_of_one_step_has_a_figure() {
     for kind in ["traces", "above", "3d"] {
         let figure = drawn(&runs, &request(kind));
         is_tidy(&figure.scene).unwrap();
-        write(&figure.scene, Format::Svg, None).unwrap();
+        write(&figure.scene, PageFormat::Svg, None).unwrap();
     }
 }
 
@@ -458,7 +463,7 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
     ] {
         let runs = [run(name, &[])];
         let figure = drawn(&runs, &request(kind));
-        let told = |figure: &Figure| -> Vec<String> {
+        let told = |figure: &DrawnFigure| -> Vec<String> {
             let mut told = told(figure);
             told.retain(|told| !told.contains("drawn as points"));
             told
@@ -469,7 +474,7 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
         has(&warning, "told apart");
         let (_, proposed) = warning.split_once("--to ").unwrap();
         let to_s: f64 = proposed.split(' ').next().unwrap().parse().unwrap();
-        let part = Request {
+        let part = FigureRequest {
             to_s: Some(to_s),
             ..request(kind)
         };
@@ -501,11 +506,12 @@ fn curves_that_are_not_told_apart_are_bands_beside_a_magnified_stretch() {
     let seen = places(&runs[0]);
     for (axis, panel) in panels[..3].iter().enumerate() {
         // The edges of the band are the extremes, however long it is.
-        let band = |item: &&Item| item.clip == Some(*panel) && matches!(item.paint, Paint::Fill(_));
+        let band =
+            |item: &&SceneItem| item.clip == Some(*panel) && matches!(item.paint, Paint::Fill(_));
         let bands: Vec<_> = scene.items.iter().filter(band).collect();
         assert_eq!(bands.len(), 2);
         let values = || seen.iter().map(|place| place[axis]);
-        let (low, high) = Axis::default().range_of(values());
+        let (low, high) = ChartAxis::default().range_of(values());
         let [_, top, _, bottom] = extent(bands[1]);
         let is_whole = (bottom - top) / (panel[1].y - panel[0].y);
         let share = (most(values()) - least(values())) / (high - low);
@@ -534,7 +540,7 @@ fn words_and_axes_are_those_that_were_asked_for() {
         run("cusps", &["motion.steps=300"]),
         run("loops", &["motion.steps=300"]),
     ];
-    let own = Labels {
+    let own = FigureLabels {
         title: Some("Two tops_1".to_owned()),
         names: ["first", "second"].map(str::to_owned).to_vec(),
         x: Some("time in s".to_owned()),
@@ -542,7 +548,7 @@ fn words_and_axes_are_those_that_were_asked_for() {
         is_log: [true, true],
         y_range: Some((0.5, 2.0)),
     };
-    let asked = |kind: &str, labels: &Labels| Request {
+    let asked = |kind: &str, labels: &FigureLabels| FigureRequest {
         labels: labels.clone(),
         ..request(kind)
     };
@@ -559,17 +565,17 @@ fn words_and_axes_are_those_that_were_asked_for() {
     says(&figure.scene, &labels);
     assert_eq!(figure.scene.title, "Two tops_1");
     has(told(&figure).join(""), "no place on a logarithmic axis");
-    let text = String::from_utf8(write(&figure.scene, Format::SvgText, None).unwrap()).unwrap();
+    let text = String::from_utf8(write(&figure.scene, PageFormat::SvgText, None).unwrap()).unwrap();
     assert!(text.contains(">height in m</tspan>") && text.contains("serif"));
-    let many = Labels {
+    let many = FigureLabels {
         y: vec![String::new(); 2],
-        ..Labels::default()
+        ..FigureLabels::default()
     };
-    let log = Labels {
+    let log = FigureLabels {
         is_log: [false, true],
-        ..Labels::default()
+        ..FigureLabels::default()
     };
-    let below = Labels {
+    let below = FigureLabels {
         y_range: Some((-1.0, 1.0)),
         ..log.clone()
     };
@@ -619,7 +625,7 @@ fn lines_between_too_few_steps_of_a_nutation_are_told() {
 fn more_curves_than_kinds_of_line_are_told() {
     let names = "cusps loops waves steady-slow steady-fast falling sleeping";
     let runs = names.split(' ').map(|name| run(name, &["motion.steps=20"]));
-    let runs: Vec<Run> = runs.collect();
+    let runs: Vec<FigureRun> = runs.collect();
     let told = |count: usize| told(&drawn(&runs[..count], &request("tilt_deg")));
     assert!(told(6).is_empty());
     let [only] = &told(7)[..] else {
@@ -641,7 +647,7 @@ fn an_error_in_the_last_digits_is_drawn_flat() {
 
 #[test]
 fn the_exact_motion_is_a_smooth_curve_beside_few_steps() {
-    let asked = Request {
+    let asked = FigureRequest {
         from_s: 0.5,
         to_s: Some(0.52),
         ..with_exact("z_m")
@@ -657,7 +663,7 @@ fn the_exact_motion_is_a_smooth_curve_beside_few_steps() {
 #[test]
 fn figures_that_are_drawn_together_are_those_drawn_alone() {
     let runs = [run("wobble-push", &[]), run("method-2", &[])];
-    let part = Request {
+    let part = FigureRequest {
         to_s: Some(20.0),
         ..request("tilt_deg")
     };
@@ -668,7 +674,7 @@ fn figures_that_are_drawn_together_are_those_drawn_alone() {
         ends += u32::from(step == last);
         ControlFlow::Continue(())
     };
-    let together = of_runs::figures(&runs, &requests, &Known::default(), watch);
+    let together = of_runs::figures(&runs, &requests, &KnownNumbers::default(), watch);
     let together = together.unwrap().unwrap();
     // Each run once for the whole of it, and once for its beginning.
     assert!(ends <= 4, "{ends}");
@@ -688,7 +694,7 @@ fn a_run_that_breaks_is_drawn_up_to_there() {
     assert!(broke.contains("no longer finite at step 25"), "{broke}");
     says(&figure.scene, &["x (m)", "2.0"]);
     // Where it breaks before the stretch that is asked for, there is no picture.
-    let late = Request {
+    let late = FigureRequest {
         from_s: 10.0,
         ..request("traces")
     };
@@ -697,16 +703,20 @@ fn a_run_that_breaks_is_drawn_up_to_there() {
 }
 
 /// What a recorder of traces, tilt and path has written down of `run`.
-fn recorded(run: &Run) -> Course {
-    let kinds = [Kind::traces(), Kind::named("tilt_deg").unwrap()];
-    let wanted = Wanted {
-        columns: kinds.iter().flat_map(Kind::columns).copied().collect(),
+fn recorded(run: &FigureRun) -> SampledRun {
+    let kinds = [FigureKind::traces(), FigureKind::named("tilt_deg").unwrap()];
+    let wanted = SampleRequest {
+        columns: kinds
+            .iter()
+            .flat_map(FigureKind::columns)
+            .copied()
+            .collect(),
         path: true,
         from_s: 0.0,
         to_s: None,
     };
     let mut simulation = Simulation::new(Arc::clone(&run.scenario));
-    let mut recorder = Recorder::new(&run.scenario, wanted);
+    let mut recorder = RunSampler::new(&run.scenario, wanted);
     recorder.follow(simulation.now());
     for _ in 0..run.scenario.steps {
         match simulation.step() {
@@ -725,7 +735,7 @@ fn what_was_recorded_of_a_run_is_not_played_again() {
         ("method-2", breaks, 2.4),
     ] {
         let runs = [run(name, &[set])];
-        let known = Known {
+        let known = KnownNumbers {
             recorded: Some(recorded(&runs[0])),
             said: None,
         };
@@ -736,7 +746,7 @@ fn what_was_recorded_of_a_run_is_not_played_again() {
             ("3d", Some(end_s)),
             ("x_m", Some(end_s)),
         ] {
-            let request = Request {
+            let request = FigureRequest {
                 to_s,
                 ..request(kind)
             };
@@ -751,11 +761,11 @@ fn what_was_recorded_of_a_run_is_not_played_again() {
             assert_eq!(asked, 0, "{name}: {kind} was played");
         }
         // What was not recorded is played.
-        let begins_later = Request {
+        let begins_later = FigureRequest {
             from_s: 1.0,
             ..request("z_m")
         };
-        let ends_earlier = Request {
+        let ends_earlier = FigureRequest {
             to_s: Some(2.0),
             ..request("z_m")
         };
@@ -781,11 +791,11 @@ fn a_watcher_can_stop_it() {
     assert!(figure.is_ok_and(|figure| figure.is_none()));
 }
 
-pub(crate) fn table(text: &str) -> Table {
+pub(crate) fn table(text: &str) -> TableSource {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("table.csv");
     fs::write(&file, text).unwrap();
-    Table::read(&file).unwrap().unwrap()
+    TableSource::read(&file).unwrap().unwrap()
 }
 
 const COMPARISON: &str = "\
@@ -833,10 +843,10 @@ fn a_run_is_no_table() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.csv");
     fs::write(&file, "# title = \"x\"\nstep,t_s,x_m\n0,0,0\n").unwrap();
-    assert!(Table::read(&file).unwrap().is_none());
+    assert!(TableSource::read(&file).unwrap().is_none());
     for (rows, words) in [("1\n", ":4: this row"), ("", "no rows")] {
         fs::write(&file, format!("# [[vary]]\n# key = \"a\"\na,b\n{rows}")).unwrap();
-        has(Table::read(&file).unwrap_err().to_string(), words);
+        has(TableSource::read(&file).unwrap_err().to_string(), words);
     }
 }
 
@@ -862,18 +872,18 @@ proptest! {
         names in (0_usize..5, "\\PC{0,60}"),
         width_mm in 40.0..200.0_f64,
     ) {
-        let series = (0..names.0).map(|index| Series {
+        let series = (0..names.0).map(|index| ChartSeries {
             name: gyrolab::figure::page::letters::shortened(&names.1, 7.0, gyrolab::figure::chart::legend::longest_name(width_mm * 72.0 / 25.4) - 6.0) + &index.to_string(),
             points: points.clone(),
             errors: [Vec::new(), errors.iter().map(|error| error.abs()).collect()],
             band: Vec::new(),
-            style: if index % 2 == 0 { Style::curve(index) } else { Style::marked_line(index) },
+            style: if index % 2 == 0 { SeriesStyle::curve(index) } else { SeriesStyle::marked_line(index) },
         });
         let chart = Chart {
             title: names.1.clone(),
             width_pt: width_mm * 72.0 / 25.4,
-            x: Axis { is_log: logs.0, ..Axis::new("*t*", "s") },
-            panels: vec![Panel { y: Axis { is_log: logs.1, ..Axis::new("*x*", "m") }, series: series.collect() }],
+            x: ChartAxis { is_log: logs.0, ..ChartAxis::new("*t*", "s") },
+            panels: vec![Panel { y: ChartAxis { is_log: logs.1, ..ChartAxis::new("*x*", "m") }, series: series.collect() }],
             is_true_to_scale: false,
             magnified: None,
             are_read_off: true,
@@ -882,6 +892,6 @@ proptest! {
         if let Err(why) = is_tidy(&scene) {
             prop_assert!(false, "{why}");
         }
-        prop_assert!(write(&scene, Format::Svg, None).is_ok());
+        prop_assert!(write(&scene, PageFormat::Svg, None).is_ok());
     }
 }

@@ -1,7 +1,7 @@
 //! Keys, words and values are found by typing: the help, and the filter of the values.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
-use gyrolab::lab::{Mode, Request};
+use gyrolab::lab::{LabRequest, Mode};
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::panes::PANES;
 use ratatui::layout::Rect;
@@ -31,7 +31,7 @@ fn the_help_does_the_entry_that_is_found() {
     for key in "?quit".chars() {
         stage.key(Key::Char(key));
     }
-    assert_eq!(stage.key(Key::Enter), Some(Request::Quit));
+    assert_eq!(stage.key(Key::Enter), Some(LabRequest::Quit));
 }
 
 #[test]
@@ -204,7 +204,7 @@ fn the_frame_of_l_stands_beside_it_and_is_kept() {
     let file = stage.lab.player().run().scenario().file.clone();
     assert_eq!(
         file.start.momentum_frame,
-        Some(gyrolab::scenario::file::Frame::Body)
+        Some(gyrolab::scenario::file::VectorFrame::Body)
     );
     assert_eq!(file.start.momentum_Js, Some([0.0, 0.0, 500.0]));
     Stage::open("method-1", &[], SMALL)

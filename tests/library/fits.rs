@@ -2,8 +2,8 @@
 
 use crate::support::dice::Dice;
 use crate::support::words::{has, has_all, has_no};
-use gyrolab::data::{Data, Measured, at_times, open, read};
-use gyrolab::fit::report::Report;
+use gyrolab::data::{DataKind, MeasuredData, at_times, open, read};
+use gyrolab::fit::report::FitReport;
 use gyrolab::fit::{Fit, Free, Model, NoFit, fit};
 use gyrolab::scenario::{Document, Problems};
 use rayon::prelude::*;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// The model of the preset `name` with these settings, under `exact`, with these keys free.
 #[track_caller]
-fn model(name: &str, set: &[&str], free: &[&str], measured: Measured) -> Model {
+fn model(name: &str, set: &[&str], free: &[&str], measured: MeasuredData) -> Model {
     let mut document = Document::open(name).unwrap();
     document.set("motion.scheme=exact").unwrap();
     set.iter().for_each(|set| document.set(set).unwrap());
@@ -19,11 +19,15 @@ fn model(name: &str, set: &[&str], free: &[&str], measured: Measured) -> Model {
 }
 
 #[track_caller]
-fn model_of(document: &Document, free: &[&str], measured: Measured) -> Model {
+fn model_of(document: &Document, free: &[&str], measured: MeasuredData) -> Model {
     try_model(document, free, measured).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
-fn try_model(document: &Document, free: &[&str], measured: Measured) -> Result<Model, Problems> {
+fn try_model(
+    document: &Document,
+    free: &[&str],
+    measured: MeasuredData,
+) -> Result<Model, Problems> {
     let free = free.iter().map(|key| Free::parse(key, document).unwrap());
     Model::new(document, free.collect(), measured)
 }
@@ -113,7 +117,7 @@ fn truth() -> &'static Vec<Vec<f64>> {
         let times = "0,0.03,0.07,0.1,0.14,0.21,0.3,0.33,0.41,0.52,0.6,0.77";
         let rows = times.split(',').map(|time| format!("{time},0,0\n"));
         let text = format!("t_s,tilt_deg,x_m\n{}", rows.collect::<String>());
-        let Data::Series(series) = read("lab.csv", &text).unwrap().data else {
+        let DataKind::Series(series) = read("lab.csv", &text).unwrap().data else {
             panic!("no series")
         };
         let scenario = top_with(&[]).scenario().unwrap();
@@ -337,7 +341,7 @@ fn a_key_at_its_bound_is_said_to_be() {
     let (model, fit) = heidelberg("heidelberg-precession", &[&bounded], &|_| true);
     let key = &fit.keys[0];
     assert_eq!((key.value, key.is_held, key.sigma), (0.0038, true, None));
-    let report = Report {
+    let report = FitReport {
         fit: &fit,
         model: &model,
         instead_of: Some("rk4"),
@@ -454,7 +458,7 @@ fn another_valley_of_an_azimuth_at_even_times_is_named() {
         let text = format!("t_s,azimuth_deg\n{}", rows.concat());
         let model = top(&[], &["start.spin_rpm"], &text);
         let fit = fitted(&model);
-        let report = Report {
+        let report = FitReport {
             fit: &fit,
             model: &model,
             instead_of: None,
@@ -497,14 +501,14 @@ fn a_key_that_moves_nothing_leads_nowhere() {
 
 #[test]
 fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
-    use gyrolab::fit::report::{self, Asked};
+    use gyrolab::fit::report::{self, FitCommand};
     let (model, fit) = heidelberg("heidelberg-precession", &[MOMENT], &|_| true);
-    let report = Report {
+    let report = FitReport {
         fit: &fit,
         model: &model,
         instead_of: None,
     };
-    let asked = Asked {
+    let asked = FitCommand {
         scheme: report.model.scheme.to_owned(),
         command: "gyrolab fit".to_owned(),
         measured: "heidelberg-precession".to_owned(),
@@ -531,7 +535,9 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     assert_eq!(header.key[0].uncertainty, fit.keys[0].sigma);
     assert_eq!(header.fit.chi_squared, fit.quality.chi_squared);
     // Its figure has the values with their errors on the model, and below what is left of them.
-    let table = gyrolab::figure::table::Table::read(&path).unwrap().unwrap();
+    let table = gyrolab::figure::table::TableSource::read(&path)
+        .unwrap()
+        .unwrap();
     let chart = gyrolab::figure::of_table::chart(&table, &[], 240.0).unwrap();
     let [values, residuals] = &chart.panels[..] else {
         panic!("{} panels", chart.panels.len())

@@ -3,8 +3,8 @@
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
 use crate::support::words::{has, has_no};
-use gyrolab::data::{Data, Measured, at_times, read};
-use gyrolab::fit::report::Report;
+use gyrolab::data::{DataKind, MeasuredData, at_times, read};
+use gyrolab::fit::report::FitReport;
 use gyrolab::fit::{Fit, Free, Model, fit};
 use gyrolab::scenario::Document;
 use rayon::prelude::*;
@@ -35,7 +35,7 @@ fn thrown(
     times: (u32, f64),
     noise: f64,
     seed: u64,
-) -> Measured {
+) -> MeasuredData {
     let (rows, rate) = times;
     let mut dice = Dice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
     (0..20).for_each(|_| {
@@ -53,7 +53,7 @@ fn thrown(
         format!("start.omega_rad_per_s={omega:?}"),
     ];
     let scenario = preset("thrown-phone", &set.each_ref().map(|set| &**set));
-    let Data::Series(series) = &mut measured.data else {
+    let DataKind::Series(series) = &mut measured.data else {
         panic!("no series")
     };
     let values = at_times(series, &Arc::new(scenario), &|| true);
@@ -65,7 +65,7 @@ fn thrown(
     measured
 }
 
-fn fitted(measured: Measured, free: &[&str]) -> (Model, Fit) {
+fn fitted(measured: MeasuredData, free: &[&str]) -> (Model, Fit) {
     let document = Document::open("thrown-phone").unwrap();
     let keys = free.iter().flat_map(|free| free.split(','));
     let keys = keys.map(|key| Free::parse(key, &document).unwrap());
@@ -75,7 +75,7 @@ fn fitted(measured: Measured, free: &[&str]) -> (Model, Fit) {
 }
 
 fn told(model: &Model, fit: &Fit) -> (String, serde_json::Value) {
-    let report = Report {
+    let report = FitReport {
         fit,
         model,
         instead_of: None,
@@ -129,7 +129,7 @@ fn a_flat_body_without_noise_is_found_to_all_its_digits() {
 }
 
 /// The second moments of mass of a body from flat to cubic, and its throw.
-fn any_throw(seed: u64) -> ([f64; 3], [f64; 3], Measured) {
+fn any_throw(seed: u64) -> ([f64; 3], [f64; 3], MeasuredData) {
     let mut dice = Dice(seed.wrapping_mul(0xD134_2543_DE82_EF95) | 1);
     (0..20).for_each(|_| {
         dice.unit();

@@ -2,7 +2,7 @@
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
-use gyrolab::data::{Data, Series, at_times, read};
+use gyrolab::data::{DataKind, TimeSeries, at_times, read};
 use gyrolab::fit::flights::{Flight, Found, find};
 use std::fmt::Write;
 use std::sync::Arc;
@@ -10,10 +10,10 @@ use std::sync::Arc;
 const RATE: f64 = 200.0;
 const NOISE: f64 = 0.02;
 
-fn series(text: &str) -> Series {
+fn series(text: &str) -> TimeSeries {
     match read("recording.csv", text).unwrap().data {
-        Data::Series(series) => series,
-        Data::Table(_) => panic!("no series"),
+        DataKind::Series(series) => series,
+        DataKind::Table(_) => panic!("no series"),
     }
 }
 

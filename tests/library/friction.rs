@@ -1,7 +1,7 @@
 //! The laws of friction: how spin and swing die, where the spin stops, what the work is, and that no time step explodes.
 
 use crate::support::words::has;
-use gyrolab::analysis::readouts::{Value, find};
+use gyrolab::analysis::readouts::{ReadoutValue, find};
 use gyrolab::analysis::{Monitor, Readouts};
 use gyrolab::physics::{
     Body, Friction, Loads, PointForce, PointMass, Scheme, SchemeInfo, State, observables, rotation,
@@ -554,8 +554,8 @@ fn theory_under_friction_is_of_the_moment_and_predicts_no_motion() {
         "measured_nutation_period_s",
     ] {
         let of = |readouts: &Readouts| find(name).unwrap().of(readouts);
-        assert_eq!(of(&rubbed), Value::Nothing, "{name}");
-        assert_ne!(of(&spared), Value::Nothing, "{name}");
+        assert_eq!(of(&rubbed), ReadoutValue::Nothing, "{name}");
+        assert_ne!(of(&spared), ReadoutValue::Nothing, "{name}");
     }
     // M g c/L3 at this moment, whatever follows.
     let fast_top = rubbed.number("fast_top_precession_rad_per_s").unwrap();

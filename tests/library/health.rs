@@ -7,7 +7,9 @@ use crate::support::words::{has, has_all, has_no};
 use gyrolab::analysis::Monitor;
 use gyrolab::analysis::compare::{ComparisonRow, compare};
 use gyrolab::analysis::cost::is_affordable;
-use gyrolab::analysis::health::{Advice, BELIEVED_WITHIN, Health, Picture, advise, advise_while};
+use gyrolab::analysis::health::{
+    Advice, BELIEVED_WITHIN, Health, WheelPicture, advise, advise_while,
+};
 use gyrolab::analysis::remarks::remarks;
 use gyrolab::physics::SchemeInfo;
 use gyrolab::physics::scheme::true_to;
@@ -338,12 +340,16 @@ fn turning(height: f64, psi: f64, aside: f64, steps: u64) -> Scenario {
 fn the_picture_changes_at_its_thresholds() {
     let picture = |psi: f64| health_at(turning(1.0, psi, 0.0, 1), 0).picture;
     for (at, below, above) in [
-        (PI / 10.0, Picture::Right, Picture::Strobed),
-        (PI, Picture::Strobed, Picture::Backwards),
-        (TAU, Picture::Backwards, Picture::TooSlow),
-        (3.0 * PI, Picture::TooSlow, Picture::Backwards),
-        (4.0 * TAU, Picture::Backwards, Picture::TooSlow),
-        (4.0 * TAU + PI, Picture::TooSlow, Picture::Backwards),
+        (PI / 10.0, WheelPicture::Right, WheelPicture::Strobed),
+        (PI, WheelPicture::Strobed, WheelPicture::Backwards),
+        (TAU, WheelPicture::Backwards, WheelPicture::TooSlow),
+        (3.0 * PI, WheelPicture::TooSlow, WheelPicture::Backwards),
+        (4.0 * TAU, WheelPicture::Backwards, WheelPicture::TooSlow),
+        (
+            4.0 * TAU + PI,
+            WheelPicture::TooSlow,
+            WheelPicture::Backwards,
+        ),
     ] {
         assert_eq!(picture(at - 1e-9), below, "below {at}");
         assert_eq!(picture(at + 1e-9), above, "above {at}");
@@ -362,10 +368,10 @@ fn the_picture_is_what_one_step_shows() {
         let mut monitor = Monitor::new(simulation.now());
         let shown = monitor.health(simulation.now()).picture;
         let expected = match seems {
-            _ if seems < 0.0 => Picture::Backwards,
-            _ if (seems - psi).abs() > 1e-9 => Picture::TooSlow,
-            _ if seems > PI / 10.0 => Picture::Strobed,
-            _ => Picture::Right,
+            _ if seems < 0.0 => WheelPicture::Backwards,
+            _ if (seems - psi).abs() > 1e-9 => WheelPicture::TooSlow,
+            _ if seems > PI / 10.0 => WheelPicture::Strobed,
+            _ => WheelPicture::Right,
         };
         assert_eq!(shown, expected, "{psi}");
     }

@@ -1,8 +1,8 @@
 //! A run is a scenario and its journal: what an edit at a step changes, from which step on, and what it does not change.
 
 use crate::support::scenarios::{parse, preset};
-use gyrolab::export::{CsvWriter, Layout, stream};
-use gyrolab::physics::workings::Value;
+use gyrolab::export::{CsvLayout, CsvWriter, stream};
+use gyrolab::physics::workings::WorkedValue;
 use gyrolab::physics::{Loads, SchemeInfo};
 use gyrolab::run::{Sample, Simulation};
 use std::fmt::Write;
@@ -193,7 +193,7 @@ fn pushed_steps(motion: &str, edits: &[(u64, &str)]) -> Vec<(u64, f64)> {
     while simulation.step_number() < simulation.scenario().steps {
         let workings = simulation.step().unwrap().workings().unwrap();
         let phase = workings.phases().find(|phase| phase.name == "torque");
-        let Some(&Value::Vector(torque)) = phase.unwrap().value("τ") else {
+        let Some(&WorkedValue::Vector(torque)) = phase.unwrap().value("τ") else {
             panic!("a torque is a vector");
         };
         let torque = torque.norm();
@@ -300,7 +300,7 @@ fn the_energy_drift_leaves_out_the_work_of_pushes_and_of_edits_of_gravity() {
 fn the_azimuth_counts_every_turn_however_few_rows_there_are() {
     let azimuths = |every: u64| -> Vec<(u64, f64)> {
         let mut simulation = Simulation::new(Arc::new(preset("torque-free", &[])));
-        let layout = Layout::every(NonZeroU64::new(every).unwrap());
+        let layout = CsvLayout::every(NonZeroU64::new(every).unwrap());
         let scenario = Arc::clone(simulation.scenario());
         let mut csv = CsvWriter::with_layout(Vec::new(), &scenario, layout).unwrap();
         let watch = |_, _| ControlFlow::Continue(());

@@ -3,13 +3,13 @@
 use crate::support::desk::Desk;
 use crate::support::scenarios::{self, preset};
 use gyrolab::lab::command::Command;
-use gyrolab::storage::session::Content;
+use gyrolab::storage::session::SessionContent;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
 
 /// The lab as `content` has it, arrived where it was left.
 #[track_caller]
-fn resumed(content: &Content) -> Desk {
+fn resumed(content: &SessionContent) -> Desk {
     let mut desk = Desk::of(scenarios::resumed(content));
     desk.wait(2);
     desk
@@ -97,7 +97,7 @@ fn the_pinned_run_comes_back_with_what_was_done_to_it() {
     let content = desk.lab.content();
     let mut back = resumed(&content);
     assert!(back.lab.comparison().is_pinned());
-    let is_same = |now: Content| now.place == content.place && **now.work == **content.work;
+    let is_same = |now: SessionContent| now.place == content.place && **now.work == **content.work;
     let made_again = back.lab.content();
     assert!(is_same(made_again), "it is kept while it is made again");
     await_pinned(&mut back);

@@ -1,6 +1,6 @@
 //! Laws that the schemes keep, or break in a way that is known.
 
-use gyrolab::physics::report::Report;
+use gyrolab::physics::report::ReportScheme;
 use gyrolab::physics::{Body, Loads, PointForce, PointMass, Scheme, SchemeInfo, State, rotation};
 use nalgebra::{Complex, Matrix3, Vector3};
 use std::f64::consts::TAU;
@@ -85,7 +85,7 @@ fn vertical_forces_conserve_the_bits_of_lz() {
 fn the_body_stays_rigid_over_a_million_steps() {
     let body = wheel(0.8 / 2f64.sqrt());
     let mut state = tilted(0.7, [3.0, -20.0, 1000.0]);
-    let mut report = Report::new(&body);
+    let mut report = ReportScheme::new(&body);
     report.load(&weight());
     report.start(&state);
     (0..1_000_000).for_each(|_| report.step(0.01, &mut state));

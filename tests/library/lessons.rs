@@ -4,12 +4,14 @@ use crate::support::desk::Desk;
 use crate::support::scenarios::{preset, view};
 use crate::support::words::{has, has_all};
 use gyrolab::lab::Lab;
-use gyrolab::lab::view::Part;
+use gyrolab::lab::view::HideablePart;
 use gyrolab::lab::view::theme::Marker;
 use gyrolab::lessons::handout::{self, Paper};
-use gyrolab::lessons::play::{self, Walk};
-use gyrolab::lessons::predictions::{Given, Predictions};
-use gyrolab::lessons::{Answer, Block, Kept, Lesson, Page, reading, shipped};
+use gyrolab::lessons::play::{self, LessonWalk};
+use gyrolab::lessons::predictions::{LockedAnswer, Predictions};
+use gyrolab::lessons::{
+    KeptNumbers, Lesson, LessonBlock, LessonPage, PredictionAnswer, reading, shipped,
+};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Problem, Problems};
 use gyrolab::text::printable::is_steering;
@@ -136,16 +138,16 @@ fn a_whole_lesson_is_read() {
     assert_eq!(lines[..2], of_keys);
 }
 
-fn kind(block: &Block) -> &'static str {
+fn kind(block: &LessonBlock) -> &'static str {
     match block {
-        Block::Text(_) => "text",
-        Block::Lab(_) => "lab",
-        Block::Task(_) => "task",
-        Block::Predict(_) => "predict",
-        Block::Compare(_) => "compare",
-        Block::Check(_) => "check",
-        Block::Notes(_) => "notes",
-        Block::Shown(_) => "shown",
+        LessonBlock::Text(_) => "text",
+        LessonBlock::Lab(_) => "lab",
+        LessonBlock::Task(_) => "task",
+        LessonBlock::Predict(_) => "predict",
+        LessonBlock::Compare(_) => "compare",
+        LessonBlock::Check(_) => "check",
+        LessonBlock::Notes(_) => "notes",
+        LessonBlock::Shown(_) => "shown",
     }
 }
 
@@ -428,7 +430,7 @@ fn a_check_without_a_task_is_about_the_lab_block() {
 fn set_beside_open_holds_the_seconds_of_the_run_and_its_pushes() {
     let text = "# A\n\n## B\n\n```lab\nopen = \"wobble-push\"\nset = { \"motion.time_step_s\" = 0.02 }\ngo_to = \"end\"\n```\n";
     let lesson = read(text);
-    let mut walk = Walk::new(&lesson, lab());
+    let mut walk = LessonWalk::new(&lesson, lab());
     walk.enter(&lesson.pages[0], &mut on).unwrap();
     let mut document = Document::open("wobble-push").unwrap();
     let end_s = document.scenario().unwrap().steps as f64 * 0.1;
@@ -471,7 +473,7 @@ fn a_file_that_a_lesson_opens_is_looked_for_beside_the_lesson() {
     let pages = "# A\n\n## B\n\n```lab\nopen = \"mine.toml\"\n```\n\n## C\n\n```lab\nopen = \"cusps\"\n```\n";
     fs::write(&path, pages).unwrap();
     let lesson = reading::read_file(&path).unwrap();
-    let mut walk = Walk::new(&lesson, lab());
+    let mut walk = LessonWalk::new(&lesson, lab());
     for (page, title) in lesson.pages.iter().zip(["Mine", "Cusps"]) {
         walk.enter(page, &mut on)
             .unwrap_or_else(|problem| panic!("{problem}"));
@@ -523,13 +525,17 @@ fn every_lesson_plays_and_its_checks_fail_without_their_blocks() {
 #[test]
 fn a_jump_carries_out_what_the_page_stands_on_and_no_more() {
     let lesson = read(WHOLE);
-    let lines = |page: usize, kept: &Kept| -> Vec<usize> {
+    let lines = |page: usize, kept: &KeptNumbers| -> Vec<usize> {
         let stages = lesson.stages_to(page, kept, &Predictions::default());
         stages.iter().map(|stage| stage.page.number).collect()
     };
-    assert_eq!(lines(1, &Kept::new()), [1]);
-    assert_eq!(lines(2, &Kept::new()), [1, 2], "page 1 keeps a number");
-    let kept = Kept::from([("coarse".to_owned(), 1.5)]);
+    assert_eq!(lines(1, &KeptNumbers::new()), [1]);
+    assert_eq!(
+        lines(2, &KeptNumbers::new()),
+        [1, 2],
+        "page 1 keeps a number"
+    );
+    let kept = KeptNumbers::from([("coarse".to_owned(), 1.5)]);
     assert_eq!(lines(2, &kept), [2]);
     assert_eq!(
         lines(3, &kept),
@@ -546,19 +552,19 @@ fn a_locked_prediction_stays_and_shows_what_the_page_hides() {
     let page = &lesson.pages[0];
     let finer = lesson.predict("finer").unwrap();
     let mut predictions = Predictions::default();
-    let hidden = [Part::Health, Part::Predicted];
+    let hidden = [HideablePart::Health, HideablePart::Predicted];
     assert_eq!(page.lab().unwrap().hides(), hidden);
-    let given = |round, answer| Given {
+    let given = |round, answer| LockedAnswer {
         round,
         answer,
         late: round == 2,
         page: 1,
         time_unix_s: 0,
     };
-    let choice = |round, words: &str| given(round, Answer::Choice(words.to_owned()));
+    let choice = |round, words: &str| given(round, PredictionAnswer::Choice(words.to_owned()));
     assert!(
         predictions
-            .lock(finer, given(1, Answer::Number(3.0)))
+            .lock(finer, given(1, PredictionAnswer::Number(3.0)))
             .is_err()
     );
     assert!(predictions.lock(finer, choice(1, "whatever")).is_err());
@@ -593,7 +599,7 @@ fn a_worksheet_asks_everything_and_answers_nothing() {
                 has(own, ask.split('@').next().unwrap());
             }
             for block in &page.blocks {
-                if let Block::Shown(shown) = block
+                if let LessonBlock::Shown(shown) = block
                     && shown.language == "sh"
                 {
                     has(own, &shown.text);
@@ -604,7 +610,7 @@ fn a_worksheet_asks_everything_and_answers_nothing() {
                 "{own}"
             );
         }
-        for text in lesson.pages.iter().flat_map(Page::compares) {
+        for text in lesson.pages.iter().flat_map(LessonPage::compares) {
             let words = text.text.filled(|_, _| "@".to_owned());
             let first = words.split('@').max_by_key(|words| words.len()).unwrap();
             assert!(

@@ -2,10 +2,10 @@
 
 use crate::support::scenarios::resumed;
 use crate::support::stage::{LARGE, SMALL, Stage};
-use gyrolab::lab::sheet::Kind;
-use gyrolab::lab::view::Part;
+use gyrolab::lab::sheet::SheetLineKind;
+use gyrolab::lab::view::HideablePart;
 use gyrolab::lessons::predictions::Tried;
-use gyrolab::lessons::{Answer, Class, reading, shipped};
+use gyrolab::lessons::{Lessons, PredictionAnswer, reading, shipped};
 use std::fs;
 
 /// A lesson with a question of each kind, a task with a check, and notes.
@@ -100,7 +100,7 @@ fn with(text: &str) -> (Stage, tempfile::TempDir, String) {
 }
 
 /// The answer to the question "finer".
-fn answer_in(class: &Class) -> Answer {
+fn answer_in(class: &Lessons) -> PredictionAnswer {
     let mut all = class.taken().unwrap().place.predictions.all();
     all.find(|(name, _)| *name == "finer")
         .unwrap()
@@ -116,7 +116,7 @@ fn a_page_opens_its_run_and_tells_its_numbers() {
     stage.shows("strong words").shows_no("**");
     assert_eq!(stage.focus(), "lesson");
     assert_eq!(stage.lab.runs().name(), "cusps");
-    assert!(stage.lab.view().hides(Part::Health));
+    assert!(stage.lab.view().hides(HideablePart::Health));
 }
 
 #[test]
@@ -140,12 +140,15 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
         .shows("  [x] 2 grows")
         .shows("Locked: grows.");
     stage.shows("It goes on here").shows("How large is it?");
-    assert!(stage.lab.view().hides(Part::Health), "one is still open");
+    assert!(
+        stage.lab.view().hides(HideablePart::Health),
+        "one is still open"
+    );
     stage.press("\n").shows("your prediction").shows("deg");
     stage.press("much\n").shows("must be a number");
     stage.press("\u{1b}3,5\n").shows("Locked: 3.5 deg");
-    assert!(!stage.lab.view().hides(Part::Health));
-    assert!(!stage.lab.view().hides(Part::Predicted));
+    assert!(!stage.lab.view().hides(HideablePart::Health));
+    assert!(!stage.lab.view().hides(HideablePart::Predicted));
     stage.press("n").arrive().shows("2 of 4");
     stage.shows("It is 5.0. You said: it grows.");
     stage.shows("You said: 3.5 deg.");
@@ -155,7 +158,10 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
         .arrive()
         .shows("1 of 4")
         .shows("[x] 2 grows");
-    assert_eq!(answer_in(&stage.class), Answer::Choice("grows".to_owned()));
+    assert_eq!(
+        answer_in(&stage.class),
+        PredictionAnswer::Choice("grows".to_owned())
+    );
     stage.press("\n").shows("your answer is locked");
 }
 
@@ -211,11 +217,14 @@ fn the_session_keeps_page_and_predictions() {
     stage.press("↓↓\n\n").press("nn").arrive();
     let content = stage.lab.content();
     let mut lab = resumed(&content);
-    let (class, taken) = Class::resumed(&mut lab);
+    let (class, taken) = Lessons::resumed(&mut lab);
     taken.unwrap();
     let place = &class.taken().unwrap().place;
     assert_eq!(place.page, 2);
-    assert_eq!(answer_in(&class), Answer::Choice("grows".to_owned()));
+    assert_eq!(
+        answer_in(&class),
+        PredictionAnswer::Choice("grows".to_owned())
+    );
     assert_eq!(place.kept["first"], 2.0);
 }
 
@@ -226,7 +235,7 @@ fn a_lesson_that_is_gone_leaves_the_lab_and_what_was_predicted() {
     let content = stage.lab.content();
     drop(folder);
     let mut lab = resumed(&content);
-    let (_, taken) = Class::resumed(&mut lab);
+    let (_, taken) = Lessons::resumed(&mut lab);
     assert!(taken.unwrap_err().contains("swing.md"));
     let kept = lab.lessons.as_ref().unwrap();
     let place = &kept["lessons"][name.as_str()];
@@ -273,10 +282,13 @@ fn page_on_screen(stage: &Stage) -> String {
 }
 
 /// What must be whole on the screen when a page opens.
-fn is_needed(kind: &Kind) -> bool {
+fn is_needed(kind: &SheetLineKind) -> bool {
     matches!(
         kind,
-        Kind::Question | Kind::Choice { .. } | Kind::Result | Kind::Goal { .. }
+        SheetLineKind::Question
+            | SheetLineKind::Choice { .. }
+            | SheetLineKind::Result
+            | SheetLineKind::Goal { .. }
     )
 }
 

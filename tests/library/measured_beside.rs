@@ -6,11 +6,11 @@ use crate::support::scenarios::{preset, resumed};
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::{has, has_all};
 use gyrolab::data::compared::Sum;
-use gyrolab::data::{self, ColumnOptions, Measured, Quantity};
-use gyrolab::figure::kind::Kind;
-use gyrolab::figure::labels::Labels;
-use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
-use gyrolab::figure::{Item, Paint, Point};
+use gyrolab::data::{self, ColumnOptions, MeasuredData, RunQuantity};
+use gyrolab::figure::kind::FigureKind;
+use gyrolab::figure::labels::FigureLabels;
+use gyrolab::figure::of_runs::{self, DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
+use gyrolab::figure::{Paint, Point, SceneItem};
 use gyrolab::lab::Lab;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
@@ -35,7 +35,7 @@ fn data(scenario: &Scenario, columns: &[(&str, f64)], off: impl Fn(usize) -> f64
     for number in 0..20 {
         write!(text, "{:?}", simulation.now().time_s()).unwrap();
         for (name, sigma) in columns {
-            let value = Quantity::find(name).unwrap().of(simulation.now());
+            let value = RunQuantity::find(name).unwrap().of(simulation.now());
             write!(text, ",{:?},{sigma}", value + off(number) * sigma).unwrap();
         }
         text.push('\n');
@@ -213,26 +213,26 @@ fn a_scenario_names_the_data_beside_its_run() {
     assert!(desk.lab.comparison().data().is_some());
 }
 
-fn figure(kind: Option<&str>, text: &str) -> Figure {
-    figure_with(kind, text, &Known::default())
+fn figure(kind: Option<&str>, text: &str) -> DrawnFigure {
+    figure_with(kind, text, &KnownNumbers::default())
 }
 
-fn figure_with(kind: Option<&str>, text: &str, known: &Known) -> Figure {
-    let measured: Measured = data::read("bench.csv", text).unwrap();
+fn figure_with(kind: Option<&str>, text: &str, known: &KnownNumbers) -> DrawnFigure {
+    let measured: MeasuredData = data::read("bench.csv", text).unwrap();
     let kind = match kind {
-        Some(kind) => Kind::named(kind).unwrap(),
-        None => Kind::measured(measured.series().unwrap()),
+        Some(kind) => FigureKind::named(kind).unwrap(),
+        None => FigureKind::measured(measured.series().unwrap()),
     };
-    let request = Request {
+    let request = FigureRequest {
         kind,
         from_s: 0.0,
         to_s: None,
         exact: false,
         measured: Some(Arc::new(measured)),
         width_pt: 250.0,
-        labels: Labels::default(),
+        labels: FigureLabels::default(),
     };
-    let run = Run {
+    let run = FigureRun {
         scenario: Arc::new(preset("method-2", &["motion.steps=200"])),
         named: "method-2".to_owned(),
     };
@@ -248,7 +248,7 @@ fn what_the_run_is_known_to_say_is_not_computed_again() {
     let run = Arc::new(preset("method-2", &["motion.steps=200"]));
     let said = data::at_times(measured.series().unwrap(), &run, &|| true);
     let said = said.unwrap().unwrap();
-    let knowing = |said: &[Vec<f64>]| Known {
+    let knowing = |said: &[Vec<f64>]| KnownNumbers {
         recorded: None,
         said: Some(said.to_vec()),
     };
@@ -266,8 +266,8 @@ fn what_the_run_is_known_to_say_is_not_computed_again() {
 }
 
 /// The middles of the empty circles, without that of the legend.
-fn rings(figure: &Figure) -> Vec<[f64; 2]> {
-    let middle = |item: &Item| {
+fn rings(figure: &DrawnFigure) -> Vec<[f64; 2]> {
+    let middle = |item: &SceneItem| {
         let points: Vec<_> = item.path.points().collect();
         let ends = |part: fn(&Point) -> f64| {
             let all = || points.iter().map(part);
@@ -328,8 +328,8 @@ fn is_in_proportion(values: &[f64], places: &[[f64; 2]], part: usize) {
 #[test]
 fn a_point_without_uncertainty_has_no_bar() {
     // The ends of a bar are 3.4 pt long, and no tick is.
-    let ends = |figure: &Figure| {
-        let is_end = |item: &&Item| {
+    let ends = |figure: &DrawnFigure| {
+        let is_end = |item: &&SceneItem| {
             let points: Vec<_> = item.path.points().collect();
             matches!(points[..], [a, b] if a.y == b.y && ((a.x - b.x).abs() - 3.4).abs() < 1e-6)
         };

@@ -2,7 +2,7 @@
 
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::playback::camera::Camera;
-use gyrolab::tui::layout::Layout;
+use gyrolab::tui::layout::ScreenLayout;
 use gyrolab::tui::mouse::Pointer;
 use gyrolab::tui::mouse::{Did, Mouse};
 use ratatui::layout::Rect;
@@ -30,8 +30,8 @@ impl Desk {
         self
     }
 
-    fn layout(&self) -> Layout {
-        Layout::new(self.stage.size, self.stage.lab.view(), true)
+    fn layout(&self) -> ScreenLayout {
+        ScreenLayout::new(self.stage.size, self.stage.lab.view(), true)
     }
 
     fn pane(&self, id: &str) -> Rect {

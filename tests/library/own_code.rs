@@ -6,8 +6,8 @@ use crate::support::desk::Desk;
 use crate::support::ground::names;
 use crate::support::scenarios::preset;
 use crate::support::words::has_all;
-use gyrolab::own_code::{self, Explanations, Precision, Rows, Verdict, rows};
-use gyrolab::physics::workings::Value;
+use gyrolab::own_code::{self, Explanations, Precision, ProgramRows, Verdict, rows};
+use gyrolab::physics::workings::WorkedValue;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
 use std::fs;
@@ -34,7 +34,7 @@ fn files(name: &str) -> Vec<(String, String)> {
     all
 }
 
-fn read(text: &str, map: &str, every: Option<u64>, dt: f64) -> Result<Rows, String> {
+fn read(text: &str, map: &str, every: Option<u64>, dt: f64) -> Result<ProgramRows, String> {
     let pairs = map.split(',').filter_map(|pair| pair.split_once('='));
     let map: Vec<_> = pairs
         .map(|(own, ours)| (own.to_owned(), ours.to_owned()))
@@ -343,7 +343,7 @@ fn beside_a_run_the_step_that_differs_has_the_slips_own_numbers() {
     let own = desk.lab.comparison().own_code().unwrap();
     let numbers = own.trial().unwrap().numbers(first).unwrap();
     let momentum = numbers.iter().find(|(_, it)| it.symbol == "new L").unwrap();
-    let Value::Vector(momentum) = momentum.1.value else {
+    let WorkedValue::Vector(momentum) = momentum.1.value else {
         panic!("{momentum:?}")
     };
     let row = text

@@ -7,7 +7,7 @@ use crate::support::stage::{SMALL, Stage};
 use crate::support::words::has;
 use gyrolab::journal::parameters::{Parameter, parameters, table_of};
 use gyrolab::physics::SymmetricTop;
-use gyrolab::physics::exact::{ExactMotion, Kind};
+use gyrolab::physics::exact::{ExactMethod, ExactMotion};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::file::ScenarioFile;
 use gyrolab::scenario::{Document, Scenario};
@@ -150,7 +150,7 @@ proptest! {
         prop_assert!(SymmetricTop::of(mechanics).is_some());
         let loads = Simulation::new(Arc::new(scenario.clone())).loads().clone();
         let exact = ExactMotion::new(mechanics, &loads, &scenario.start);
-        prop_assert_eq!(exact.kind(), Kind::Closed);
+        prop_assert_eq!(exact.kind(), ExactMethod::Closed);
     }
 }
 

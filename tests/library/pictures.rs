@@ -4,21 +4,21 @@ use crate::support::scenarios::{preset, view as seen};
 use crate::support::words::has_all;
 use gyrolab::journal::parameters::{parameters, table_of};
 use gyrolab::lab::action::FieldEdit;
-use gyrolab::lab::form::{Field, Form};
+use gyrolab::lab::form::{InputField, InputForm};
 use gyrolab::lab::values::list::ListedValue;
 use gyrolab::lab::values::list::ValueList;
 use gyrolab::lab::view::theme::Marker;
 use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::lab::view::{Pane, View};
-use gyrolab::playback::detail::{Detail, Wanted};
+use gyrolab::playback::detail::{Detail, DetailRequest};
 use gyrolab::playback::ghost::Ghost;
 use gyrolab::playback::live::LiveRun;
 use gyrolab::playback::pace::Pace;
 use gyrolab::playback::reading::Reading;
-use gyrolab::playback::recording::Curve;
+use gyrolab::playback::recording::RecordedCurve;
 use gyrolab::playback::strip::Strip;
 use gyrolab::scenario::{Document, presets};
-use gyrolab::tui::panes::Seen;
+use gyrolab::tui::panes::PlotInputs;
 use gyrolab::tui::panes::form::FormPane;
 use gyrolab::tui::panes::from_above::FromAbove;
 use gyrolab::tui::panes::parameters::Parameters;
@@ -73,12 +73,12 @@ fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: M
     let mut view = view(run, marker);
     view.look.window_s = window_s.unwrap_or(view.window_s);
     let alone = seen_alone(run, &view);
-    drawn(Traces(Seen { ghost, ..alone }), STRIPS)
+    drawn(Traces(PlotInputs { ghost, ..alone }), STRIPS)
 }
 
 /// `run` alone.
-fn seen_alone<'a>(run: &'a LiveRun, view: &'a View) -> Seen<'a> {
-    Seen {
+fn seen_alone<'a>(run: &'a LiveRun, view: &'a View) -> PlotInputs<'a> {
+    PlotInputs {
         view,
         run,
         ghost: None,
@@ -95,7 +95,7 @@ fn seen_alone<'a>(run: &'a LiveRun, view: &'a View) -> Seen<'a> {
 fn undivided(run: &LiveRun, view: &View) -> Detail {
     let long = Strip::following(run.now().time_s, view.window_s, 1);
     Detail {
-        curve: Curve::Tilt,
+        curve: RecordedCurve::Tilt,
         begin_s: long.begin_s,
         window_s: long.window_s,
         swing_s: None,
@@ -106,7 +106,7 @@ fn undivided(run: &LiveRun, view: &View) -> Detail {
 fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
     let view = view(run, marker);
     let alone = seen_alone(run, &view);
-    drawn(FromAbove(Seen { ghost, ..alone }), ROUND)
+    drawn(FromAbove(PlotInputs { ghost, ..alone }), ROUND)
 }
 
 /// An edited run after `steps`, and the previous run, which had less tilt and lasted 7 s.
@@ -249,14 +249,14 @@ fn fast_and_slow_motion_are_both_seen() {
     let now = run("wobble-push", &[], "", 460);
     let view = &view(&now, Marker::Braille);
     let detail = Detail {
-        curve: Curve::Tilt,
+        curve: RecordedCurve::Tilt,
         begin_s: 20.0,
         window_s: 20.0,
         swing_s: None,
         is_snapshot: false,
     };
     let alone = seen_alone(&now, view);
-    let panes = |size| drawn(Traces(Seen { detail, ..alone }), size);
+    let panes = |size| drawn(Traces(PlotInputs { detail, ..alone }), size);
     insta::assert_snapshot!("fast_and_slow_27x19", panes((27, 19)));
     insta::assert_snapshot!("fast_and_slow_100x45", panes((100, 45)));
 }
@@ -265,7 +265,7 @@ fn fast_and_slow_motion_are_both_seen() {
 fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
     let now = run("wobble-push", &[], "", 2300);
     let strip = Strip::new(0.0, 230.0, 50);
-    let columns = strip.blocks(now.recording()).columns(Curve::Z, &[]);
+    let columns = strip.blocks(now.recording()).columns(RecordedCurve::Z, &[]);
     let mut steps = run("wobble-push", &[], "", 0);
     let mut extremes = vec![(f64::INFINITY, f64::NEG_INFINITY); 50];
     for _ in 0..=2300 {
@@ -284,11 +284,11 @@ fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
 /// The traces of `now` on the pane of an 80x24 screen, with the fast motion above.
 fn divided(now: &LiveRun, marker: Marker, buf: &mut Buffer) {
     let view = &view(now, marker);
-    let wanted = Wanted::following(view.window_s);
+    let wanted = DetailRequest::following(view.window_s);
     let readouts = LiveRun::new(Arc::clone(now.scenario())).readouts();
     let detail = Detail::new(now, &readouts, &wanted, None);
     let alone = seen_alone(now, view);
-    Traces(Seen { detail, ..alone }).render(buf.area, buf);
+    Traces(PlotInputs { detail, ..alone }).render(buf.area, buf);
 }
 
 #[test]
@@ -568,17 +568,19 @@ fn the_selected_line_is_seen_at_every_place_and_size() {
     }
 }
 
-fn question() -> Form {
+fn question() -> InputForm {
     let fields = [("time step", "0.05 s"), ("steps", "4600")];
-    let fields = fields.map(|(label, text)| Field::new(label, text)).into();
+    let fields = fields
+        .map(|(label, text)| InputField::new(label, text))
+        .into();
     let keys = "Enter takes it, Esc leaves it";
-    let mut form = Form::new("motion.time_step_s", fields, keys);
+    let mut form = InputForm::new("motion.time_step_s", fields, keys);
     let info = ["now 0.1 s", "a hundredth up or down: Left, Right"];
     form.info = info.map(str::to_owned).into();
     form
 }
 
-fn asked(form: &Form, size: (u16, u16)) -> String {
+fn asked(form: &InputForm, size: (u16, u16)) -> String {
     let theme = &COLOURS;
     drawn(FormPane { form, theme }, size)
 }
@@ -598,11 +600,11 @@ fn a_form_asks_at_the_bottom() {
 
 #[test]
 fn a_long_text_scrolls_in_its_field() {
-    let mut form = Form::new("title", vec![Field::new("title", "")], "");
+    let mut form = InputForm::new("title", vec![InputField::new("title", "")], "");
     "0123456789速い独楽abcdef"
         .chars()
         .for_each(|c| form.edit_field(FieldEdit::Type(c)));
-    let field = |form: &Form| {
+    let field = |form: &InputForm| {
         let picture = asked(form, (20, 4));
         let line = picture.lines().nth(1).unwrap().to_owned();
         line.trim_matches('│').to_owned()
@@ -633,14 +635,14 @@ proptest! {
         let read = Reading::new(&mut now, &Pace::new(1.0, false));
         let (ghost, reading) = (Some(&ghost), Some(&read));
         let window = share * window_s;
-        let detail = Detail { curve: Curve::Tilt, begin_s, window_s: window, swing_s: None, is_snapshot: false };
+        let detail = Detail { curve: RecordedCurve::Tilt, begin_s, window_s: window, swing_s: None, is_snapshot: false };
         let alone = seen_alone(&now, &view);
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {
-                0 => Traces(Seen { ghost, detail, ..alone }).render(inside, &mut buf),
-                1 => FromAbove(Seen { ghost, reading, ..alone }).render(inside, &mut buf),
-                _ => ThreeD(Seen { reading, ..alone }).render(inside, &mut buf),
+                0 => Traces(PlotInputs { ghost, detail, ..alone }).render(inside, &mut buf),
+                1 => FromAbove(PlotInputs { ghost, reading, ..alone }).render(inside, &mut buf),
+                _ => ThreeD(PlotInputs { reading, ..alone }).render(inside, &mut buf),
             }
             for position in around.positions().filter(|position| !inside.contains(*position)) {
                 prop_assert_eq!(buf[position].symbol(), "#", "{:?} of pane {}", position, pane);
@@ -655,7 +657,7 @@ proptest! {
     ) {
         let around = Rect::new(0, 0, width + 6, height + 6);
         let inside = Rect::new(3, 3, width, height);
-        let mut form = Form::new(&typed, vec![Field::new(&typed, ""); fields], "Esc");
+        let mut form = InputForm::new(&typed, vec![InputField::new(&typed, ""); fields], "Esc");
         typed.chars().for_each(|c| form.edit_field(FieldEdit::Type(c)));
         (0..left).for_each(|_| form.edit_field(FieldEdit::Left));
         (form.complaint, form.info) = (complaint, vec![typed.clone(); infos]);

@@ -4,10 +4,10 @@ use crate::support::scenarios::{find_scheme, parse, preset};
 use crate::support::stage::{LARGE, Stage};
 use crate::support::words::{has, has_all, has_no};
 use gyrolab::analysis::Monitor;
-use gyrolab::analysis::compare::{Table, compare};
+use gyrolab::analysis::compare::{ComparisonTable, compare};
 use gyrolab::analysis::health::{Advice, Health, advise};
 use gyrolab::analysis::predictability::{Equilibrium, predictability};
-use gyrolab::analysis::readouts::{Value, at_end, find};
+use gyrolab::analysis::readouts::{ReadoutValue, at_end, find};
 use gyrolab::analysis::remarks::remarks;
 use gyrolab::run::{Clock, Simulation, resampled};
 use gyrolab::scenario::Scenario;
@@ -250,14 +250,14 @@ fn the_readouts_say_until_when_a_run_is_reliable() {
     };
     let until_s = read(&scenario, "predictable_until_s").number().unwrap();
     assert!(until_s > 1.0 && until_s < 200.0, "{until_s}");
-    assert_eq!(read(&scenario, "reliable"), Value::Flag(false));
-    assert_eq!(read(&scenario, "distance_m"), Value::Nothing);
+    assert_eq!(read(&scenario, "reliable"), ReadoutValue::Flag(false));
+    assert_eq!(read(&scenario, "distance_m"), ReadoutValue::Nothing);
     let short = Scenario {
         steps: 10,
         ..scenario
     };
-    assert_eq!(read(&short, "predictable_until_s"), Value::Nothing);
-    assert_eq!(read(&short, "reliable"), Value::Flag(true));
+    assert_eq!(read(&short, "predictable_until_s"), ReadoutValue::Nothing);
+    assert_eq!(read(&short, "reliable"), ReadoutValue::Flag(true));
 }
 
 #[test]
@@ -269,7 +269,7 @@ fn a_comparison_has_the_errors_up_to_the_time() {
         rows[0].error_m.unwrap() < 0.01 * scenario.arm_m(),
         "{rows:?}"
     );
-    let table = Table {
+    let table = ComparisonTable {
         rows: &rows,
         energy_unit: None,
         predictability: predictability(&Arc::new(scenario.clone()), Clock::end_s(&scenario)),

@@ -5,7 +5,7 @@ use crate::support::scenarios::preset as preset_named;
 use gyrolab::analysis::compare::compare;
 use gyrolab::analysis::health::{Advice, advise};
 use gyrolab::analysis::{Monitor, Readouts};
-use gyrolab::export::Column;
+use gyrolab::export::CsvColumn;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::file::ExpectedFile;
 use gyrolab::scenario::presets::{PRESETS, Preset};
@@ -58,7 +58,7 @@ fn every_preset_does_what_it_expects() {
         let mut simulation = Simulation::new(Arc::new(scenario));
         for entry in expected {
             simulation.step_to(entry.at_step).expect("finite");
-            let column = Column::find(&entry.readout).expect("a column");
+            let column = CsvColumn::find(&entry.readout).expect("a column");
             let value = column.value(simulation.scenario(), &simulation.sample());
             let off = (value - entry.value).abs();
             let name = preset.name;

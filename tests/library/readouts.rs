@@ -5,11 +5,11 @@ use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
 use crate::support::words::{has, has_no};
 use gyrolab::analysis::Predictability;
-use gyrolab::analysis::compare::{Table, compare};
-use gyrolab::analysis::readouts::{READOUTS, Value, find, names, nearest};
-use gyrolab::analysis::theory::Axis;
+use gyrolab::analysis::compare::{ComparisonTable, compare};
+use gyrolab::analysis::readouts::{READOUTS, ReadoutValue, find, names, nearest};
+use gyrolab::analysis::theory::TheoryAxis;
 use gyrolab::analysis::{Monitor, Readouts};
-use gyrolab::export::{COLUMNS, Summary};
+use gyrolab::export::{COLUMNS, RunSummary};
 use gyrolab::physics::scheme::{SCHEMES, true_to};
 use gyrolab::run::{EnergyScale, EnergyUnit, Simulation};
 use gyrolab::scenario::presets::PRESETS;
@@ -40,8 +40,8 @@ fn readouts(scenario: &Scenario) -> Readouts {
     played(scenario).0
 }
 
-fn summary(readouts: Readouts) -> Summary {
-    Summary::new(readouts, Duration::from_secs(1))
+fn summary(readouts: Readouts) -> RunSummary {
+    RunSummary::new(readouts, Duration::from_secs(1))
 }
 
 fn json(readouts: &Readouts) -> serde_json::Value {
@@ -90,7 +90,9 @@ fn a_column_of_the_csv_is_the_readout_of_its_name() {
     let object = json(&readouts);
     for readout in READOUTS {
         match readout.of(&readouts) {
-            Value::Nothing => assert!(object[readout.name].is_null(), "{}: {object}", readout.name),
+            ReadoutValue::Nothing => {
+                assert!(object[readout.name].is_null(), "{}: {object}", readout.name)
+            }
             value => assert_eq!(object[readout.name], serde_json::to_value(value).unwrap()),
         }
     }
@@ -203,7 +205,7 @@ fn theory_names_its_axis() {
     }
     // Without gravity, but with L along +z, it is +z that the axle goes round.
     let free = readouts(&preset("torque-free", &[]));
-    assert_eq!(free.theory.unwrap().axis, Axis::Z);
+    assert_eq!(free.theory.unwrap().axis, TheoryAxis::Z);
     assert!((free.number("predicted_precession_rad_per_s").unwrap() - 60.0 / 6.6).abs() < 1e-9);
 }
 
@@ -273,7 +275,7 @@ fn the_drift_of_a_balanced_body_is_measured_by_its_kinetic_energy() {
         let rk4 = gyrolab::physics::SchemeInfo::find("rk4").unwrap();
         let rows = compare(&scenario, &[rk4], &[0.01], |_, _| ControlFlow::Continue(())).unwrap();
         assert!(rows[0].energy_drift.unwrap() < 1e-2);
-        let table = Table {
+        let table = ComparisonTable {
             rows: &rows,
             energy_unit: Some(scale.unit),
             predictability: Predictability::default(),
@@ -309,7 +311,7 @@ fn theory_of_a_top_that_is_pulled_up_is_about_z_as_what_is_measured() {
     let hanging = preset("loops", &set);
     for (scenario, names) in [(preset("earth", &[]), &names[..1]), (hanging, &names)] {
         let readouts = readouts(&scenario);
-        assert_eq!(readouts.theory.unwrap().axis, Axis::Z);
+        assert_eq!(readouts.theory.unwrap().axis, TheoryAxis::Z);
         for name in names {
             let [predicted, measured] = ["predicted", "measured"].map(|by| {
                 let number = readouts.number(&format!("{by}_{name}"));
@@ -427,7 +429,7 @@ fn no_table_shows_what_is_no_number() {
         let go_on = |_, _| ControlFlow::Continue(());
         let rows = compare(&scenario, &schemes, &[step, step / 2.0], go_on).unwrap();
         let energy_unit = EnergyScale::of(&scenario).map(|scale| scale.unit);
-        let table = Table {
+        let table = ComparisonTable {
             rows: &rows,
             energy_unit,
             predictability: Predictability::default(),

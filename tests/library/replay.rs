@@ -4,7 +4,7 @@
 use crate::support::desk::{Desk, commands};
 use crate::support::scenarios::preset;
 use gyrolab::playback::Playback;
-use gyrolab::playback::recording::Curve;
+use gyrolab::playback::recording::RecordedCurve;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use proptest::prelude::*;
@@ -129,7 +129,7 @@ proptest! {
             let mut straight = Playback::new(Arc::clone(desk.lab.player().run().scenario()), false);
             let _ = straight.begin_at(reached);
             let (whole, known) = (recording.whole().unwrap(), straight.run().recording().whole().unwrap());
-            for curve in Curve::ALL {
+            for curve in RecordedCurve::ALL {
                 prop_assert_eq!(whole.extent(curve), known.extent(curve), "{:?} at step {}", curve, reached);
             }
             let (radius, known) = (path.radius, straight.run().path().radius);

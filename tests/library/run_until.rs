@@ -2,8 +2,8 @@
 
 use crate::support::desk::{Desk, commands};
 use crate::support::scenarios::preset;
-use gyrolab::analysis::readouts::{READOUTS, Value};
-use gyrolab::export::columns::Column;
+use gyrolab::analysis::readouts::{READOUTS, ReadoutValue};
+use gyrolab::export::columns::CsvColumn;
 use gyrolab::lab::command;
 use gyrolab::playback::live::LiveRun;
 use gyrolab::run::Simulation;
@@ -33,7 +33,7 @@ fn refusal(condition: &str) -> String {
 fn the_first_row_whose_running_maximum_is_above_the_limit() {
     let (desk, end) = played("wobble-push", "measured_highest_tilt_deg > 50");
     assert_eq!(end, Ok(()));
-    let tilt = Column::find("tilt_deg").unwrap();
+    let tilt = CsvColumn::find("tilt_deg").unwrap();
     let mut run = Simulation::new(Arc::new(preset("wobble-push", &[])));
     let mut highest = f64::NEG_INFINITY;
     let first = loop {
@@ -119,7 +119,7 @@ fn what_is_read_again_alone_is_what_is_read_with_everything() {
             }
             let whole = run.readouts();
             for readout in READOUTS {
-                let is_text = matches!(readout.of(&whole), Value::Text(_));
+                let is_text = matches!(readout.of(&whole), ReadoutValue::Text(_));
                 assert!(readout.is_text || !is_text, "{}", readout.name);
                 let mut again = first.clone();
                 run.read_again(&mut again, readout.source);

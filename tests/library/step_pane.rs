@@ -3,9 +3,9 @@
 use crate::support::scenarios::{parse, preset, resumed};
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::{has, has_all, has_no};
-use gyrolab::lab::view::step::Page;
+use gyrolab::lab::view::step::StepPageChoice;
 use gyrolab::physics::scheme::SCHEMES;
-use gyrolab::physics::workings::{NAMES, Phase, Sums, Value};
+use gyrolab::physics::workings::{ColumnSums, NAMES, Phase, WorkedValue};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Document;
 use gyrolab::tui::keymap::Key;
@@ -24,10 +24,10 @@ fn first_step() -> Vec<Phase> {
 /// Every number of `phase` under `symbol`, row by row.
 fn numbers(phase: &Phase, symbol: &str) -> Vec<f64> {
     match phase.value(symbol).unwrap() {
-        Value::Number(number) => vec![*number],
-        Value::Vector(vector) => vector.iter().copied().collect(),
-        Value::Matrix(matrix) => matrix.transpose().iter().copied().collect(),
-        Value::Table(table) => table.cells.clone(),
+        WorkedValue::Number(number) => vec![*number],
+        WorkedValue::Vector(vector) => vector.iter().copied().collect(),
+        WorkedValue::Matrix(matrix) => matrix.transpose().iter().copied().collect(),
+        WorkedValue::Table(table) => table.cells.clone(),
     }
 }
 
@@ -73,17 +73,17 @@ fn the_numbers_printed_are_the_records() {
 #[test]
 fn all_rows_add_up_to_the_schemes_own_sums() {
     let phases = first_step();
-    let Some(Value::Table(points)) = phases[0].value("X") else {
+    let Some(WorkedValue::Table(points)) = phases[0].value("X") else {
         panic!("a table")
     };
-    let sums = Sums::of(points).first(points, 14);
+    let sums = ColumnSums::of(points).first(points, 14);
     let s = numbers(&phases[0], "S");
     // xx, yy, zz, xy, xz, yz
     assert_eq!(sums[4..], [s[0], s[4], s[8], s[1], s[2], s[5]]);
-    let Some(Value::Table(points)) = phases[5].value("m X") else {
+    let Some(WorkedValue::Table(points)) = phases[5].value("m X") else {
         panic!("a table")
     };
-    let sums = Sums::of(points).first(points, 14);
+    let sums = ColumnSums::of(points).first(points, 14);
     assert_eq!(sums, numbers(&phases[5], "Σ m X"));
 }
 
@@ -205,7 +205,7 @@ fn why_comes_back_to_where_it_was_asked() {
     let mut stage = Stage::open("cusps", &[], SMALL);
     stage.commands("pause = true\nstep = 300").press("v...");
     let place = stage.lab.view().page;
-    assert!(matches!(place, Page::Number(2..)));
+    assert!(matches!(place, StepPageChoice::Number(2..)));
     stage.shows(". next phase").shows("y why sideways");
     stage.press("y").shows("not down?").shows("first dip");
     stage.shows(". next step").shows("y phases");
@@ -290,9 +290,9 @@ fn no_size_is_too_small() {
 
 #[test]
 fn its_place_is_as_wide_as_its_numbers() {
-    use gyrolab::tui::layout::Layout;
+    use gyrolab::tui::layout::ScreenLayout;
     let widths = |stage: &Stage| -> Vec<(&'static str, u16)> {
-        let panes = Layout::new(stage.size, stage.lab.view(), true).panes;
+        let panes = ScreenLayout::new(stage.size, stage.lab.view(), true).panes;
         let widths = panes.iter().map(|(pane, place)| (pane.id(), place.width));
         widths.collect()
     };

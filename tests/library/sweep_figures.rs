@@ -2,9 +2,9 @@
 
 use crate::figures::{is_tidy, says, table, words};
 use gyrolab::figure::COLUMN_PT;
-use gyrolab::figure::chart::{Chart, Series};
+use gyrolab::figure::chart::{Chart, ChartSeries};
 use gyrolab::figure::of_table;
-use gyrolab::figure::page::ink::Mark;
+use gyrolab::figure::page::ink::PointMark;
 
 #[test]
 fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
@@ -36,7 +36,10 @@ fn two_theories_of_one_quantity_have_two_marks() {
     let chart = chart(&both);
     let series = chart.panels[0].series.iter();
     let marks: Vec<_> = series.map(|series| series.style.mark).collect();
-    assert_eq!(marks, [Mark::Cross, Mark::Plus, Mark::Dot].map(Some));
+    assert_eq!(
+        marks,
+        [PointMark::Cross, PointMark::Plus, PointMark::Dot].map(Some)
+    );
 }
 
 const SWEEP: &str = "\
@@ -59,7 +62,7 @@ fn a_sweep_shows_measured_points_with_bars_on_the_predicted_line() {
         panic!("{chart:?}")
     };
     assert_eq!(panel.series.len(), 2);
-    assert_eq!(panel.series[0].style.mark, Some(Mark::Cross));
+    assert_eq!(panel.series[0].style.mark, Some(PointMark::Cross));
     assert_eq!(panel.series[1].style.width_pt, 0.0);
     assert_eq!(panel.series[1].errors[1][..2], [0.01, 0.02]);
     let scene = chart.scene();
@@ -81,7 +84,7 @@ fn chart(text: &str) -> Chart {
     chart
 }
 
-fn names(series: &[Series]) -> Vec<&str> {
+fn names(series: &[ChartSeries]) -> Vec<&str> {
     series.iter().map(|series| series.name.as_str()).collect()
 }
 
@@ -107,14 +110,14 @@ fn theory_is_drawn_once_with_what_was_measured() {
         names(&precession.series),
         ["*M* *g* *h*/*L*_{3}", "simulated, report", "simulated, rk4"]
     );
-    assert_eq!(precession.series[0].style.mark, Some(Mark::Cross));
-    assert_eq!(precession.series[1].style.mark, Some(Mark::Dot));
+    assert_eq!(precession.series[0].style.mark, Some(PointMark::Cross));
+    assert_eq!(precession.series[1].style.mark, Some(PointMark::Dot));
     // What is neither has no mark of what was measured, and a name of its own.
     assert_eq!(
         names(&turns.series),
         ["simulated, without error", "simulated, without error"]
     );
-    assert_eq!(turns.series[0].style.mark, Some(Mark::Speck));
+    assert_eq!(turns.series[0].style.mark, Some(PointMark::Speck));
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 use crate::support::scenarios::preset as opened;
 use crate::support::words::{has, has_all, has_no};
-use gyrolab::analysis::theory::Path;
-use gyrolab::analysis::{Health, Measured, Monitor, Readouts, Theory};
-use gyrolab::export::Summary;
+use gyrolab::analysis::theory::AxlePath;
+use gyrolab::analysis::{Health, MeasuredNumber, Monitor, Readouts, Theory};
+use gyrolab::export::RunSummary;
 use gyrolab::physics::SchemeInfo;
 use gyrolab::run::resampled;
 use gyrolab::run::{Simulation, Truth};
@@ -43,7 +43,7 @@ struct Row {
     /// Mean precession, rad/s.
     precession: f64,
     cusp_deg: Option<f64>,
-    path: Path,
+    path: AxlePath,
 }
 
 /// Preset, tilt range (degrees), L3 (J s), nutation period (s), mean precession (rad/s), cusp tilt (degrees), path.
@@ -70,10 +70,10 @@ fn table() -> impl Iterator<Item = Row> {
             precession,
             cusp_deg: (cells[6] != "-").then(|| number(cells[6])),
             path: match cells[7] {
-                "Cusps" => Path::Cusps,
-                "Loops" => Path::Loops,
-                "Waves" => Path::Waves,
-                "Circle" => Path::Circle,
+                "Cusps" => AxlePath::Cusps,
+                "Loops" => AxlePath::Loops,
+                "Waves" => AxlePath::Waves,
+                "Circle" => AxlePath::Circle,
                 other => panic!("{other}"),
             },
         }
@@ -164,7 +164,10 @@ fn steady_roots_are_those_of_the_present_tilt() {
 fn words_for_paths_are_what_the_azimuth_does() {
     for Row { name, path, .. } in table() {
         let theory = theory(&preset(name, &[]), 0.0).unwrap();
-        let Some(period) = theory.nutation_period_s.filter(|_| path != Path::Circle) else {
+        let Some(period) = theory
+            .nutation_period_s
+            .filter(|_| path != AxlePath::Circle)
+        else {
             continue;
         };
         let mut truth = Truth::new(preset(name, &[]));
@@ -183,8 +186,8 @@ fn words_for_paths_are_what_the_azimuth_does() {
         let most = rates.iter().copied().fold(f64::MIN, f64::max);
         let least = rates.iter().copied().fold(f64::MAX, f64::min) / most;
         match path {
-            Path::Loops => assert!(least < -0.1, "{name}: {least}"),
-            Path::Cusps => assert!(least.abs() < 2e-3, "{name}: {least}"),
+            AxlePath::Loops => assert!(least < -0.1, "{name}: {least}"),
+            AxlePath::Cusps => assert!(least.abs() < 2e-3, "{name}: {least}"),
             _ => assert!(least > 0.1, "{name}: {least}"),
         }
     }
@@ -216,7 +219,7 @@ fn special_motions_have_their_words() {
     let free = theory(&preset("torque-free", &[]), 1.0).unwrap();
     assert_eq!(
         (free.path, free.nutation_period_s, free.cusp_tilt_deg),
-        (Path::Circle, None, None)
+        (AxlePath::Circle, None, None)
     );
     close("about L", free.precession.unwrap(), 60.0 / 6.6, 1e-12);
     close("steadily", free.fast_precession.unwrap(), 60.0 / 6.6, 1e-12);
@@ -229,12 +232,12 @@ fn special_motions_have_their_words() {
     ] {
         let through = theory(&preset(name, &[set]), time_s).unwrap();
         let seen = (through.path, through.precession);
-        assert_eq!(seen, (Path::ThroughVertical, None), "{name} {set}");
+        assert_eq!(seen, (AxlePath::ThroughVertical, None), "{name} {set}");
     }
     let pendulum = preset("cusps", &["start.momentum_Js=[0,0,0]", "start.tilt_deg=80"]);
     let pendulum = theory(&pendulum, 1.0).unwrap();
     let seen = (pendulum.path, pendulum.fast_top_precession);
-    assert_eq!(seen, (Path::ThroughVertical, None));
+    assert_eq!(seen, (AxlePath::ThroughVertical, None));
 }
 
 const LOPSIDED: [&str; 2] = ["body.point.2.at_m=[0.3,0,0]", "body.point.2.mass_kg=0.5"];
@@ -275,11 +278,11 @@ fn under_a_sideways_push_theory_is_about_the_tilted_vertical() {
     }
 }
 
-fn summary(scenario: &Arc<Scenario>) -> Summary {
+fn summary(scenario: &Arc<Scenario>) -> RunSummary {
     let (simulation, mut monitor) = followed(scenario);
     let health: Health = monitor.health(simulation.now());
     let readouts = Readouts::new(&simulation, &mut monitor, &health, None);
-    Summary::new(readouts, Duration::from_secs(1))
+    RunSummary::new(readouts, Duration::from_secs(1))
 }
 
 #[test]
@@ -328,7 +331,7 @@ fn where_the_theory_does_not_hold_it_says_nothing_or_lopsided() {
 }
 
 /// Difference from theory, and what is allowed for it.
-fn off(measured: Option<Measured>, theory: f64, scheme: f64) -> (f64, f64) {
+fn off(measured: Option<MeasuredNumber>, theory: f64, scheme: f64) -> (f64, f64) {
     let measured = measured.unwrap();
     let allowed = 5.0 * measured.uncertainty + scheme * theory.abs();
     ((measured.value - theory).abs(), allowed)
@@ -339,7 +342,7 @@ fn measurement_is_theory(name: &str, scenario: &Arc<Scenario>, scheme: f64) {
     let (_, monitor) = followed(scenario);
     let instruments = monitor.instruments;
     let period = theory.nutation_period_s;
-    let Some(period) = period.filter(|_| theory.path != Path::Circle) else {
+    let Some(period) = period.filter(|_| theory.path != AxlePath::Circle) else {
         assert!(instruments.nutation_period_s().is_err(), "{name}");
         let measured = instruments.precession_rad_per_s().unwrap();
         let (off, rate) = (measured.value - theory.precession.unwrap(), measured.value);

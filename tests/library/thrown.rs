@@ -2,7 +2,7 @@
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
-use gyrolab::data::{Data, Measured, Point, at_times, read};
+use gyrolab::data::{DataKind, MeasuredData, MeasuredPoint, at_times, read};
 use gyrolab::fit::{Fit, Free, Model, fit};
 use gyrolab::scenario::Document;
 use rayon::prelude::*;
@@ -20,8 +20,8 @@ const MOMENTS: [f64; 3] = [3.0e-4, 8.5e-5, 3.7957e-4];
 const NOISE: f64 = 0.01;
 
 /// The rates without noise, 100 a second for 4 s.
-fn flight() -> &'static Measured {
-    static FLIGHT: OnceLock<Measured> = OnceLock::new();
+fn flight() -> &'static MeasuredData {
+    static FLIGHT: OnceLock<MeasuredData> = OnceLock::new();
     FLIGHT.get_or_init(|| {
         let head = "t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s\n".to_owned();
         let rows = (0..400).map(|row| format!("{},0,0,0\n", f64::from(row) / 100.0));
@@ -31,7 +31,7 @@ fn flight() -> &'static Measured {
             "thrown-phone",
             &[&moments, "start.omega_rad_per_s=[-9,1.1,0.6]"],
         );
-        let Data::Series(series) = &mut measured.data else {
+        let DataKind::Series(series) = &mut measured.data else {
             panic!("no series")
         };
         let values = at_times(series, &Arc::new(scenario), &|| true)
@@ -39,7 +39,7 @@ fn flight() -> &'static Measured {
             .unwrap();
         for (curve, values) in series.curves.iter_mut().zip(values) {
             let points = curve.points.iter_mut().zip(values);
-            points.for_each(|(point, value)| *point = Point { value, ..*point });
+            points.for_each(|(point, value)| *point = MeasuredPoint { value, ..*point });
         }
         measured
     })
@@ -56,7 +56,7 @@ fn thrown(seed: u64) -> Fit {
         (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
     };
     let mut measured = flight().clone();
-    if let Data::Series(series) = &mut measured.data {
+    if let DataKind::Series(series) = &mut measured.data {
         let points = series.curves.iter_mut().flat_map(|curve| &mut curve.points);
         points.for_each(|point| point.value += NOISE * normal());
     }

@@ -5,7 +5,7 @@ use crate::support::dice::Dice;
 use crate::support::scenarios::{find_scheme, parse, preset};
 use differential_equations::prelude::*;
 use gyrolab::physics::State;
-use gyrolab::physics::exact::Kind;
+use gyrolab::physics::exact::ExactMethod;
 use gyrolab::run::resampled;
 use gyrolab::run::{Simulation, Truth};
 use gyrolab::scenario::file::{EditFile, PushFile, ScenarioFile};
@@ -585,7 +585,7 @@ fn degenerate_scenarios_agree_with_an_independent_integration() {
         assert!(error < WITHIN, "{name}: {error:e}");
         let mut truth = Truth::new(told.scenario("report"));
         truth.state_at(10.0);
-        assert_eq!(truth.kind(), Kind::Closed, "{name}");
+        assert_eq!(truth.kind(), ExactMethod::Closed, "{name}");
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::support::stage::{LARGE, SMALL, Stage, picture};
 use crate::support::words::has_all;
-use gyrolab::lab::Request;
+use gyrolab::lab::LabRequest;
 use gyrolab::scenario::presets::PRESETS;
 use gyrolab::tui::keymap::{BINDINGS, Key, Mode};
 use gyrolab::tui::screen;
@@ -326,7 +326,7 @@ fn esc_closes_one_thing_at_a_time_and_never_leaves() {
     }
     assert_eq!(stage.lab.popups().mode, Mode::Lab);
     stage.shows("q leaves");
-    assert_eq!(stage.key(Key::Char('q')), Some(Request::Quit));
+    assert_eq!(stage.key(Key::Char('q')), Some(LabRequest::Quit));
 }
 
 #[test]

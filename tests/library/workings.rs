@@ -2,7 +2,7 @@
 
 use crate::support::scenarios::parse;
 use gyrolab::physics::scheme::SCHEMES;
-use gyrolab::physics::workings::{Changes, Phase, Table, Value};
+use gyrolab::physics::workings::{Phase, PhaseTarget, PointTable, WorkedValue};
 use gyrolab::physics::{observables, rotation};
 use gyrolab::playback::live::LiveRun;
 use gyrolab::run::{Simulation, Step};
@@ -76,35 +76,35 @@ fn both(scheme: &str) -> [Arc<Scenario>; 2] {
 
 fn number(phase: &Phase, symbol: &str) -> f64 {
     match phase.value(symbol) {
-        Some(&Value::Number(number)) => number,
+        Some(&WorkedValue::Number(number)) => number,
         other => panic!("{} {symbol}: {other:?}", phase.name),
     }
 }
 
 fn vector(phase: &Phase, symbol: &str) -> Vector3<f64> {
     match phase.value(symbol) {
-        Some(&Value::Vector(vector)) => vector,
+        Some(&WorkedValue::Vector(vector)) => vector,
         other => panic!("{} {symbol}: {other:?}", phase.name),
     }
 }
 
 fn matrix(phase: &Phase, symbol: &str) -> Matrix3<f64> {
     match phase.value(symbol) {
-        Some(&Value::Matrix(matrix)) => matrix,
+        Some(&WorkedValue::Matrix(matrix)) => matrix,
         other => panic!("{} {symbol}: {other:?}", phase.name),
     }
 }
 
-fn table<'a>(phase: &'a Phase, symbol: &str) -> &'a Table {
+fn table<'a>(phase: &'a Phase, symbol: &str) -> &'a PointTable {
     match phase.value(symbol) {
-        Some(Value::Table(table)) => table,
+        Some(WorkedValue::Table(table)) => table,
         other => panic!("{} {symbol}: {other:?}", phase.name),
     }
 }
 
 /// The sum of one column as the report's scheme adds it up: every second point from the first, every second from the
 /// second, and both.
-fn column_sum(table: &Table, column: usize) -> f64 {
+fn column_sum(table: &PointTable, column: usize) -> f64 {
     let half = |first: usize| {
         let rows = table.rows().skip(first).step_by(2);
         rows.fold(0.0, |sum, (_, row)| sum + row[column])
@@ -234,15 +234,15 @@ fn what_the_phases_say_they_change_is_what_changes() {
             each_step(&scenario, |step| {
                 let workings = step.workings().unwrap();
                 let phases = || workings.phases().rev();
-                let last = |changes: Changes| {
-                    move |phase: &&Phase| [changes, Changes::Both].contains(&phase.changes)
+                let last = |changes: PhaseTarget| {
+                    move |phase: &&Phase| [changes, PhaseTarget::Both].contains(&phase.changes)
                 };
-                let turned = phases().find(last(Changes::Orientation)).unwrap();
+                let turned = phases().find(last(PhaseTarget::Orientation)).unwrap();
                 match turned.value("new Q") {
-                    Some(Value::Matrix(q)) => assert_eq!(*q, step.after().orientation),
+                    Some(WorkedValue::Matrix(q)) => assert_eq!(*q, step.after().orientation),
                     _ => assert_eq!(turned.name, "new positions"),
                 }
-                let kicked = phases().find(last(Changes::Momentum)).unwrap();
+                let kicked = phases().find(last(PhaseTarget::Momentum)).unwrap();
                 let known = step.after().momentum;
                 assert_eq!(vector(kicked, "new L"), known, "{}", scheme.name);
             });
@@ -292,7 +292,7 @@ fn the_splitting_step_follows_from_its_kicks() {
                             "kick" => {
                                 let h = number(phase, "h");
                                 momentum += match phase.value("τ") {
-                                    Some(Value::Vector(torque)) => torque * h,
+                                    Some(WorkedValue::Vector(torque)) => torque * h,
                                     _ => {
                                         axle = vector(phase, "a");
                                         axle.cross(&(vector(phase, "Σ s F") * h))

@@ -4,7 +4,7 @@ use crate::support::ground::names;
 use crate::support::scenarios::preset;
 use gyrolab::export::destination::DestinationError;
 use gyrolab::export::stream;
-use gyrolab::export::{CsvWriter, Layout};
+use gyrolab::export::{CsvLayout, CsvWriter};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use gyrolab::scenario::presets::PRESETS;
@@ -28,7 +28,7 @@ fn every(every: u64) -> NonZeroU64 {
 }
 
 fn bytes(scenario: &Arc<Scenario>, every: u64) -> Vec<u8> {
-    let layout = Layout::every(NonZeroU64::new(every).unwrap());
+    let layout = CsvLayout::every(NonZeroU64::new(every).unwrap());
     let mut csv = CsvWriter::with_layout(Vec::new(), scenario, layout).unwrap();
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let go_on = |_, _| ControlFlow::Continue(());
@@ -48,7 +48,12 @@ fn wait(exporting: &mut Exporting) -> Result<Written, String> {
 }
 
 fn export(scenario: &Arc<Scenario>, path: &Path, n: u64, replace: bool) -> Result<Written, String> {
-    let begun = Exporting::begin(Arc::clone(scenario), path, Layout::every(every(n)), replace);
+    let begun = Exporting::begin(
+        Arc::clone(scenario),
+        path,
+        CsvLayout::every(every(n)),
+        replace,
+    );
     wait(&mut begun.map_err(|error| error.fact())?)
 }
 
@@ -109,7 +114,7 @@ fn it_reports_progress_and_leaves_no_file_when_cancelled() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     let mut exporting =
-        Exporting::begin(endless(), &path, Layout::every(every(1000)), false).unwrap();
+        Exporting::begin(endless(), &path, CsvLayout::every(every(1000)), false).unwrap();
     while exporting.progress().0 == 0 {
         thread::sleep(Duration::from_millis(1));
     }
@@ -125,7 +130,7 @@ fn it_reports_progress_and_leaves_no_file_when_cancelled() {
 fn dropping_it_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
-    drop(Exporting::begin(endless(), &path, Layout::every(every(1000)), false).unwrap());
+    drop(Exporting::begin(endless(), &path, CsvLayout::every(every(1000)), false).unwrap());
     assert!(names(folder.path()).is_empty());
 }
 
@@ -135,7 +140,12 @@ fn a_file_that_is_there_is_told_of_and_replaced_only_when_asked() {
     let path = folder.path().join("run.csv");
     fs::write(&path, "old").unwrap();
     let scenario = scenario("cusps", &[]);
-    let refused = Exporting::begin(Arc::clone(&scenario), &path, Layout::every(every(1)), false);
+    let refused = Exporting::begin(
+        Arc::clone(&scenario),
+        &path,
+        CsvLayout::every(every(1)),
+        false,
+    );
     let error = refused.err().unwrap();
     assert!(matches!(error, DestinationError::Exists(_)));
     assert_eq!(error.fact(), format!("{} exists", path.display()));
@@ -149,7 +159,8 @@ fn one_that_comes_up_meanwhile_is_not_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     let scenario = scenario("method-2", &["motion.steps=300000"]);
-    let mut exporting = Exporting::begin(scenario, &path, Layout::every(every(1)), false).unwrap();
+    let mut exporting =
+        Exporting::begin(scenario, &path, CsvLayout::every(every(1)), false).unwrap();
     fs::write(&path, "other").unwrap();
     let error = wait(&mut exporting).unwrap_err();
     assert_eq!(error, format!("{} exists", path.display()));
@@ -184,7 +195,7 @@ fn what_cannot_be_written_is_refused_at_once_in_words() {
             let refused = Exporting::begin(
                 scenario("cusps", &[]),
                 path,
-                Layout::every(every(1)),
+                CsvLayout::every(every(1)),
                 replace,
             );
             let fact = refused.err().unwrap().fact();
@@ -217,8 +228,13 @@ fn the_rows_before_numbers_that_are_not_finite_are_kept() {
 
 #[test]
 fn a_dash_is_a_file_in_the_lab() {
-    let exporting =
-        Exporting::begin(endless(), Path::new("-"), Layout::every(every(1000)), false).unwrap();
+    let exporting = Exporting::begin(
+        endless(),
+        Path::new("-"),
+        CsvLayout::every(every(1000)),
+        false,
+    )
+    .unwrap();
     let is_part = |name: &String| name.starts_with(".gyrolab-") && name.ends_with(".part");
     assert!(names(Path::new(".")).iter().any(is_part));
     drop(exporting);
@@ -237,7 +253,7 @@ fn child() {
     let exporting = Exporting::begin(
         endless(),
         &folder.join("run.csv"),
-        Layout::every(every(1000)),
+        CsvLayout::every(every(1000)),
         false,
     );
     let mut exporting = exporting.unwrap();

@@ -3,7 +3,7 @@
 use crate::support::ground;
 use crate::support::words::has;
 use gyrolab::storage::at_exit::{self, Release};
-use gyrolab::storage::session::{Content, Found, Session, later, list, resume};
+use gyrolab::storage::session::{Session, SessionContent, SessionSearch, later, list, resume};
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::fs::PermissionsExt;
@@ -19,16 +19,16 @@ const END: &str = "end";
 /// Environment variable that names the sessions' folder for the child process.
 const CHILD: &str = "GYROLAB_TEST_SESSION";
 
-pub(crate) fn content(work: &str, place: &str) -> Content {
+pub(crate) fn content(work: &str, place: &str) -> SessionContent {
     let work = work.to_owned();
-    Content {
+    SessionContent {
         work: later(move || work),
         place: place.to_owned(),
     }
 }
 
 /// The work and the place.
-pub(crate) fn texts(content: &Content) -> (String, String) {
+pub(crate) fn texts(content: &SessionContent) -> (String, String) {
     (content.work.to_string(), content.place.clone())
 }
 
@@ -43,7 +43,7 @@ pub(crate) fn folder() -> (TempDir, PathBuf) {
     (outer, folder)
 }
 
-fn any(folder: &Path) -> Found<(String, String)> {
+fn any(folder: &Path) -> SessionSearch<(String, String)> {
     resume(folder, None, |content| Ok(texts(content))).unwrap()
 }
 
@@ -131,7 +131,7 @@ fn the_last_content_is_resumed_and_the_session_continues() {
     let work = content(text, "").work;
     for step in 0..1000 {
         let (work, place) = (work.clone(), format!("step {step}"));
-        session.note(Content { work, place });
+        session.note(SessionContent { work, place });
     }
     closed(session);
     let (session, what) = any(&folder).resumed.unwrap();

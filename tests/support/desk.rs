@@ -5,7 +5,7 @@
 use super::scenarios::{preset, view};
 use gyrolab::lab::command::{self, Command};
 use gyrolab::lab::view::theme::Marker;
-use gyrolab::lab::{Answer, Lab};
+use gyrolab::lab::{ActionResult, Lab};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
 use gyrolab::tui::keymap::Key;
@@ -70,7 +70,7 @@ impl Desk {
     }
 
     /// Carries `command` out, and waits until the lab has finished the steps that it requests.
-    pub fn carry_out(&mut self, command: &Command) -> Answer {
+    pub fn carry_out(&mut self, command: &Command) -> ActionResult {
         let answer = self.lab.carry_out(command);
         self.wait(2);
         answer

@@ -8,7 +8,7 @@ use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::physics::SchemeInfo;
 use gyrolab::scenario::file::ScenarioFile;
 use gyrolab::scenario::{Document, Problems, Scenario};
-use gyrolab::storage::session::Content;
+use gyrolab::storage::session::SessionContent;
 use toml::{Table, Value};
 
 /// The preset `name`, with each of `set` (`key=value`) set.
@@ -39,7 +39,7 @@ pub fn find_scheme(name: &str) -> &'static SchemeInfo {
 
 /// The lab of the session `content`.
 #[track_caller]
-pub fn resumed(content: &Content) -> Lab {
+pub fn resumed(content: &SessionContent) -> Lab {
     Lab::resumed(content, None, |scenario| {
         view(scenario, Marker::Braille, false)
     })

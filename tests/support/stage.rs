@@ -3,8 +3,8 @@
 use super::desk::commands;
 use super::scenarios::{preset, view};
 use gyrolab::lab::view::theme::Marker;
-use gyrolab::lab::{Lab, Request};
-use gyrolab::lessons::Class;
+use gyrolab::lab::{Lab, LabRequest};
+use gyrolab::lessons::Lessons;
 use gyrolab::tui::app;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::press::press;
@@ -30,7 +30,7 @@ pub const FRAME: Duration = Duration::from_millis(100);
 /// A lab with its screen, and a clock that only the test advances.
 pub struct Stage {
     pub lab: Lab,
-    pub class: Class,
+    pub class: Lessons,
     pub now: Duration,
     pub size: Rect,
     /// The folder of its files.
@@ -48,14 +48,14 @@ impl Stage {
         screen::fit(&mut lab, size);
         Self {
             lab,
-            class: Class::default(),
+            class: Lessons::default(),
             now: Duration::ZERO,
             size,
             _folder: folder,
         }
     }
 
-    pub fn key(&mut self, key: Key) -> Option<Request> {
+    pub fn key(&mut self, key: Key) -> Option<LabRequest> {
         let request = press(key, &mut self.lab)?;
         app::do_in_class(request, &mut self.lab, &mut self.class, self.size)
     }

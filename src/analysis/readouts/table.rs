@@ -1,8 +1,8 @@
 //! The table: a row for every readout, with its name, unit, source, meaning and formula.
 
-use super::{Readouts, Value};
-use crate::analysis::theory::Path;
-use crate::analysis::{Measured, Theory};
+use super::{ReadoutValue, Readouts};
+use crate::analysis::theory::AxlePath;
+use crate::analysis::{MeasuredNumber, Theory};
 use crate::physics::SchemeInfo;
 use crate::scenario::{problem, start};
 use std::time::Duration;
@@ -14,20 +14,20 @@ pub struct Readout {
     /// The unit; empty for a pure number and for a text.
     pub unit: &'static str,
     pub meaning: &'static str,
-    pub source: Source,
+    pub source: ReadoutSource,
     /// Whether it is a text, never a number.
     pub is_text: bool,
     kind: ValueKind,
     /// Its symbol in figures, as their markup; empty where it has none.
     pub symbol: &'static str,
-    get: fn(&Readouts) -> Value,
+    get: fn(&Readouts) -> ReadoutValue,
 }
 
 /// In the name of a readout that is the standard error of another.
 const ERROR: &str = "_uncertainty";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum ReadoutSource {
     /// From the scenario and its edits.
     Scenario,
     /// From the state at the last step.
@@ -46,7 +46,7 @@ pub enum Source {
     Clock,
 }
 
-impl Source {
+impl ReadoutSource {
     pub fn words(self) -> &'static str {
         match self {
             Self::Scenario => "the scenario",
@@ -87,21 +87,21 @@ impl Readout {
         find(&format!("predicted_{what}"))
     }
 
-    pub fn of(&self, readouts: &Readouts) -> Value {
+    pub fn of(&self, readouts: &Readouts) -> ReadoutValue {
         (self.get)(readouts)
     }
 
     /// Parses `cell` of a CSV as a value of this readout; `None` where it is no such value.
-    pub fn parse(&self, cell: &str) -> Option<Value> {
+    pub fn parse(&self, cell: &str) -> Option<ReadoutValue> {
         match self.kind {
-            _ if cell.is_empty() => Some(Value::Nothing),
+            _ if cell.is_empty() => Some(ReadoutValue::Nothing),
             ValueKind::Number => {
                 let number = cell.parse().ok().filter(|number: &f64| number.is_finite());
-                number.map(Value::Number)
+                number.map(ReadoutValue::Number)
             }
-            ValueKind::Whole => cell.parse().ok().map(Value::Whole),
-            ValueKind::Flag => cell.parse().ok().map(Value::Flag),
-            ValueKind::Text => may_be(self.name, cell).then(|| Value::Text(cell.to_owned())),
+            ValueKind::Whole => cell.parse().ok().map(ReadoutValue::Whole),
+            ValueKind::Flag => cell.parse().ok().map(ReadoutValue::Flag),
+            ValueKind::Text => may_be(self.name, cell).then(|| ReadoutValue::Text(cell.to_owned())),
         }
     }
 }
@@ -127,18 +127,18 @@ pub fn nearest(wrong: &str) -> String {
     }
 }
 
-fn value(measured: Option<Measured>) -> Option<f64> {
+fn value(measured: Option<MeasuredNumber>) -> Option<f64> {
     measured.map(|measured| measured.value)
 }
 
-fn uncertainty(measured: Option<Measured>) -> Option<f64> {
+fn uncertainty(measured: Option<MeasuredNumber>) -> Option<f64> {
     measured.map(|measured| measured.uncertainty)
 }
 
 /// Whether the text readout `name` may have the value `text`.
 fn may_be(name: &str, text: &str) -> bool {
     match name {
-        "path" => Path::ALL.iter().any(|path| path.to_string() == text),
+        "path" => AxlePath::ALL.iter().any(|path| path.to_string() == text),
         "scheme" => SchemeInfo::find(text).is_some(),
         _ => true,
     }
@@ -154,56 +154,56 @@ enum ValueKind {
 }
 
 /// What a row's formula gives: a number, yes or no, or a text.
-trait Given {
+trait IntoValue {
     const KIND: ValueKind;
 
-    fn value(self) -> Value;
+    fn value(self) -> ReadoutValue;
 }
 
-impl Given for f64 {
+impl IntoValue for f64 {
     const KIND: ValueKind = ValueKind::Number;
 
-    fn value(self) -> Value {
+    fn value(self) -> ReadoutValue {
         Some(self)
             .filter(|number| number.is_finite())
-            .map_or(Value::Nothing, Value::Number)
+            .map_or(ReadoutValue::Nothing, ReadoutValue::Number)
     }
 }
 
-impl Given for u64 {
+impl IntoValue for u64 {
     const KIND: ValueKind = ValueKind::Whole;
 
-    fn value(self) -> Value {
-        Value::Whole(self)
+    fn value(self) -> ReadoutValue {
+        ReadoutValue::Whole(self)
     }
 }
 
-impl Given for bool {
+impl IntoValue for bool {
     const KIND: ValueKind = ValueKind::Flag;
 
-    fn value(self) -> Value {
-        Value::Flag(self)
+    fn value(self) -> ReadoutValue {
+        ReadoutValue::Flag(self)
     }
 }
 
-impl Given for String {
+impl IntoValue for String {
     const KIND: ValueKind = ValueKind::Text;
 
-    fn value(self) -> Value {
-        Value::Text(self)
+    fn value(self) -> ReadoutValue {
+        ReadoutValue::Text(self)
     }
 }
 
-impl<T: Given> Given for Option<T> {
+impl<T: IntoValue> IntoValue for Option<T> {
     const KIND: ValueKind = T::KIND;
 
-    fn value(self) -> Value {
-        self.map_or(Value::Nothing, T::value)
+    fn value(self) -> ReadoutValue {
+        self.map_or(ReadoutValue::Nothing, T::value)
     }
 }
 
 /// Returns the kind of value that this formula gives.
-const fn kind<T: Given>(_: &impl Fn(&Readouts) -> T) -> ValueKind {
+const fn kind<T: IntoValue>(_: &impl Fn(&Readouts) -> T) -> ValueKind {
     T::KIND
 }
 
@@ -215,7 +215,7 @@ macro_rules! readouts {
                 name: $name,
                 unit: $unit,
                 meaning: $meaning,
-                source: Source::$source,
+                source: ReadoutSource::$source,
                 is_text: matches!(kind(&|$r: &Readouts| $get), ValueKind::Text),
                 kind: kind(&|$r: &Readouts| $get),
                 symbol: concat!($($symbol)?),

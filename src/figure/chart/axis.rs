@@ -1,6 +1,6 @@
 //! An axis in its place: where a value stands on the page, and the ticks that have room there.
 
-use super::Axis;
+use super::ChartAxis;
 use super::ticks::{Tick, Ticks};
 use crate::figure::page::ink::{self, LABEL_PT};
 
@@ -9,14 +9,14 @@ pub const BESIDE: f64 = 6.0;
 const ABOVE: f64 = 7.5;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
+pub struct AxisScale {
     pub range: (f64, f64),
     pub is_log: bool,
     pub places: (f64, f64),
 }
 
-impl Scale {
-    pub fn of(axis: &Axis, range: (f64, f64), places: (f64, f64)) -> Self {
+impl AxisScale {
+    pub fn of(axis: &ChartAxis, range: (f64, f64), places: (f64, f64)) -> Self {
         Self {
             range,
             is_log: axis.is_log,
@@ -46,7 +46,7 @@ impl Scale {
     }
 
     /// The ticks of an axis below the picture, whose labels stand beside each other.
-    pub fn ticks_below(&self, axis: &Axis) -> Ticks {
+    pub fn ticks_below(&self, axis: &ChartAxis) -> Ticks {
         self.ticks(axis, |ticks| {
             ticks.windows(2).all(|pair| {
                 let apart = (self.place(pair[1].at) - self.place(pair[0].at)).abs();
@@ -57,7 +57,7 @@ impl Scale {
     }
 
     /// The ticks of an axis at the left, whose labels stand above each other.
-    pub fn ticks_beside(&self, axis: &Axis) -> Ticks {
+    pub fn ticks_beside(&self, axis: &ChartAxis) -> Ticks {
         let apart = ink::height(LABEL_PT) + ABOVE;
         self.ticks(axis, |ticks| {
             let is_apart =
@@ -66,7 +66,7 @@ impl Scale {
         })
     }
 
-    fn ticks(&self, axis: &Axis, fits: impl Fn(&[Tick]) -> bool) -> Ticks {
+    fn ticks(&self, axis: &ChartAxis, fits: impl Fn(&[Tick]) -> bool) -> Ticks {
         let (low, high) = self.range;
         let mut ticks = if axis.is_log {
             Ticks::log(low, high, fits)

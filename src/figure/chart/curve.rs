@@ -1,11 +1,11 @@
 //! The line of a series on the page, without the points that nobody could see.
 
-use super::layout::Placed;
-use super::{Panel, Series, Style};
+use super::layout::PlacedPanel;
+use super::{ChartSeries, Panel, SeriesStyle};
 use crate::figure::page::cover;
-use crate::figure::page::ink::{Frame, at, paler};
+use crate::figure::page::ink::{PageRectangle, at, paler};
 use crate::figure::page::line::{clipped, simplified};
-use crate::figure::page::scene::{Path, Pen, Point, Scene};
+use crate::figure::page::scene::{PageScene, Point, StrokeStyle, VectorPath};
 use std::collections::{HashMap, HashSet};
 
 /// How far a line may leave its points, of its width: a tenth of a dot at 600 an inch for a line of 0.7 pt.
@@ -19,13 +19,13 @@ pub const BAND_WHITE: f64 = 0.72;
 /// How far outside of its panel a line is followed, pt: half its width, which is cut off at the edge.
 const BEYOND_PT: f64 = 2.0;
 
-impl Placed {
+impl PlacedPanel {
     pub fn place(&self, point: &[f64; 2]) -> Point {
         at(self.x.place(point[0]), self.y.place(point[1]))
     }
 
     /// Draws the line of `series`, if it has one; of a band its two edges.
-    pub fn draw_line(&self, series: &Series, scene: &mut Scene) {
+    pub fn draw_line(&self, series: &ChartSeries, scene: &mut PageScene) {
         if series.style.width_pt == 0.0 {
             return;
         }
@@ -44,19 +44,19 @@ impl Placed {
     }
 
     /// Draws the core of the line of `series`, if it has one.
-    pub fn draw_core(&self, series: &Series, scene: &mut Scene) {
+    pub fn draw_core(&self, series: &ChartSeries, scene: &mut PageScene) {
         if let Some(pen) = series.style.core_pen() {
             draw_curve(&self.pieces(series), &pen, Some(&self.frame), scene);
         }
     }
 
-    pub fn pieces(&self, series: &Series) -> Vec<Vec<Point>> {
+    pub fn pieces(&self, series: &ChartSeries) -> Vec<Vec<Point>> {
         let places = series.points.iter().map(|point| self.place(point));
         clipped(places, &self.frame.grown(BEYOND_PT))
     }
 
     /// Fills the band of `series`, if it has one.
-    pub fn fill_band(&self, series: &Series, scene: &mut Scene) {
+    pub fn fill_band(&self, series: &ChartSeries, scene: &mut PageScene) {
         let [least, greatest] = self.edges(&series.band);
         let outline = least.into_iter().chain(greatest.into_iter().rev());
         let outline: Vec<_> = outline
@@ -64,7 +64,7 @@ impl Placed {
             .collect();
         if !outline.is_empty() {
             let color = paler(series.style.color, BAND_WHITE);
-            scene.fill_in(Path::polygon(outline), color, Some(&self.frame));
+            scene.fill_in(VectorPath::polygon(outline), color, Some(&self.frame));
         }
     }
 
@@ -78,13 +78,13 @@ impl Placed {
     }
 
     /// Whether nothing of `panel` is in `frame`.
-    pub fn is_clear(&self, frame: &Frame, panel: &Panel) -> bool {
+    pub fn is_clear(&self, frame: &PageRectangle, panel: &Panel) -> bool {
         let mut series = panel.series.iter();
         series.all(|series| !self.has_in(frame, series))
     }
 
     /// Whether something of `series` is in `frame`.
-    fn has_in(&self, frame: &Frame, series: &Series) -> bool {
+    fn has_in(&self, frame: &PageRectangle, series: &ChartSeries) -> bool {
         let is_in = |points: &[[f64; 2]]| {
             let places = points.iter().map(|point| self.place(point));
             !clipped(places, frame).is_empty()
@@ -103,7 +103,12 @@ pub fn dots(places: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
 }
 
 /// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
-pub fn draw_curve(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
+pub fn draw_curve(
+    pieces: &[Vec<Point>],
+    pen: &StrokeStyle,
+    clip: Option<&PageRectangle>,
+    scene: &mut PageScene,
+) {
     let lines = pieces.iter();
     let within_pt = (TOLERANCE * pen.width_pt).min(UNSEEN_PT);
     let lines = lines.map(|piece| simplified(piece, within_pt));
@@ -117,7 +122,7 @@ pub fn draw_curve(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene:
         }
     }
     for line in lines {
-        scene.stroke(Path::polyline(line), pen.clone(), clip);
+        scene.stroke(VectorPath::polyline(line), pen.clone(), clip);
     }
 }
 
@@ -150,7 +155,7 @@ impl Above {
 
     /// Takes note of a line that consists of `pieces`, and makes its `style` one in which it is seen: wide where other lines
     /// cover it for most of its length, thin where they do not, with its core on top where the first line hides it.
-    pub fn add(&mut self, pieces: &[Vec<Point>], style: &mut Style) {
+    pub fn add(&mut self, pieces: &[Vec<Point>], style: &mut SeriesStyle) {
         let way_pt = way_pt(pieces);
         let is_hidden = self
             .first_pt
@@ -230,13 +235,13 @@ mod tests {
     #[test]
     fn a_line_is_wide_where_it_lies_on_another() {
         let mut above = Above::default();
-        above.add(&zigzag(0.5, 0.0, 0.0), &mut Style::curve(0));
+        above.add(&zigzag(0.5, 0.0, 0.0), &mut SeriesStyle::curve(0));
         let mut width_at = |height: f64| {
-            let mut style = Style::exact(1);
+            let mut style = SeriesStyle::exact(1);
             above.add(&zigzag(0.5, 0.0, height), &mut style);
             style.width_pt
         };
-        let thin = Style::curve(0).width_pt;
+        let thin = SeriesStyle::curve(0).width_pt;
         assert_eq!(width_at(0.2), thin + Above::WIDER_PT);
         assert_eq!(width_at(5.0), thin);
         // It lies on the line before it, which is not the first.

@@ -1,13 +1,13 @@
 //! A chart drawn on its page.
 
 use super::curve;
-use super::layout::{self, EDGE, GAP, Layout, Placed};
+use super::layout::{self, ChartLayout, EDGE, GAP, PlacedPanel};
 use super::legend::Legend;
 use super::ticks::{Ticks, with_minus};
-use super::{Chart, Panel, Series};
+use super::{Chart, ChartSeries, Panel};
 use crate::figure::page::ink::{self, BLACK, LABEL_PT, MARK_PT, at, pen};
 use crate::figure::page::letters;
-use crate::figure::page::scene::{Point, Scene};
+use crate::figure::page::scene::{PageScene, Point};
 use crate::text::number::significant;
 use std::collections::HashSet;
 
@@ -22,13 +22,13 @@ const BAR_END: f64 = 1.7;
 const COVERED_PT: f64 = 2.8;
 
 impl Chart {
-    pub fn scene(&self) -> Scene {
-        let bare = Layout::new(self, 0.0);
+    pub fn scene(&self) -> PageScene {
+        let bare = ChartLayout::new(self, 0.0);
         self.as_seen(&bare).placed(bare)
     }
 
     /// The chart in the places of `layout`, without points that stand upon each other, and with lines that are seen beside each other.
-    fn as_seen(&self, layout: &Layout) -> Self {
+    fn as_seen(&self, layout: &ChartLayout) -> Self {
         let mut seen = self.clone();
         seen.x.range = layout.panels.first().map(|placed| placed.x.range);
         let magnified = seen.magnified.iter_mut();
@@ -48,15 +48,15 @@ impl Chart {
     }
 
     /// The chart in its places; `bare` leaves no room for a legend above the panels.
-    fn placed(&self, bare: Layout) -> Scene {
+    fn placed(&self, bare: ChartLayout) -> PageScene {
         let remarks = self.remark(&bare).into_iter().chain(self.magnified());
         let legend = Legend::of(self, remarks);
         let corner = legend.free_corner(self, &bare);
         let layout = match corner {
             Some(_) => bare,
-            None => Layout::new(self, legend.height_above(self.width_pt)),
+            None => ChartLayout::new(self, legend.height_above(self.width_pt)),
         };
-        let mut scene = Scene::new(self.width_pt, layout.height_pt, &self.title);
+        let mut scene = PageScene::new(self.width_pt, layout.height_pt, &self.title);
         for (panel, placed) in self.panels.iter().zip(&layout.panels) {
             panel.draw(placed, &mut scene);
             panel.write_beside(placed, &layout, &mut scene);
@@ -101,7 +101,7 @@ impl Chart {
     }
 
     /// What the legend says of error bars that are too small to be drawn.
-    fn remark(&self, layout: &Layout) -> Option<String> {
+    fn remark(&self, layout: &ChartLayout) -> Option<String> {
         let panels = self.panels.iter().zip(&layout.panels);
         let bars = panels.flat_map(|(panel, placed)| {
             let bars = move |series| [0, 1].map(|axis| placed.bars(series, axis));
@@ -133,10 +133,10 @@ fn is_covered(&[a, b]: &[Point; 2]) -> bool {
     (a.x - b.x).abs() + (a.y - b.y).abs() < COVERED_PT
 }
 
-impl Placed {
+impl PlacedPanel {
     /// Leaves out those points of `series`, which are marks, that stand where another one does: marks that are nearer to each
     /// other than half of their width cannot be told apart.
-    fn thin_marks(&self, series: &mut Series) {
+    fn thin_marks(&self, series: &mut ChartSeries) {
         let area = self.frame.width() * self.frame.height();
         let cell_pt = MARK_PT.max((area / MOST_MARKS).sqrt());
         if series.style.mark.is_none() || (series.points.len() as f64) <= MOST_MARKS {
@@ -161,7 +161,7 @@ impl Placed {
     /// The ends of the error bars along an axis of those points of `series` that are in the panel, cut off at its frame.
     fn bars<'a>(
         &'a self,
-        series: &'a Series,
+        series: &'a ChartSeries,
         axis: usize,
     ) -> impl Iterator<Item = [Point; 2]> + 'a {
         let points = series.points.iter().zip(&series.errors[axis]).enumerate();
@@ -175,7 +175,7 @@ impl Placed {
 }
 
 /// Writes labels and title below `panels`, a column of `layout` that shows `chart`.
-fn write_below(chart: &Chart, panels: &[Placed], layout: &Layout, scene: &mut Scene) {
+fn write_below(chart: &Chart, panels: &[PlacedPanel], layout: &ChartLayout, scene: &mut PageScene) {
     let Some(last) = panels.last() else {
         return;
     };
@@ -197,7 +197,7 @@ fn write_below(chart: &Chart, panels: &[Placed], layout: &Layout, scene: &mut Sc
 }
 
 impl Panel {
-    fn draw(&self, placed: &Placed, scene: &mut Scene) {
+    fn draw(&self, placed: &PlacedPanel, scene: &mut PageScene) {
         let part = |is_behind: bool| {
             let series = self.series.iter();
             series.filter(move |series| series.style.is_behind == is_behind)
@@ -217,7 +217,7 @@ impl Panel {
         part(false).for_each(|series| draw_points(series, placed, scene));
     }
 
-    fn write_beside(&self, placed: &Placed, layout: &Layout, scene: &mut Scene) {
+    fn write_beside(&self, placed: &PlacedPanel, layout: &ChartLayout, scene: &mut PageScene) {
         let frame = &placed.frame;
         let (title, size) = &placed.title;
         let middle = at(layout.titles_at, 0.5 * (frame.top + frame.bottom));
@@ -231,7 +231,7 @@ impl Panel {
 }
 
 /// The frame and its ticks, on all four sides, inwards.
-fn draw_frame(placed: &Placed, scene: &mut Scene) {
+fn draw_frame(placed: &PlacedPanel, scene: &mut PageScene) {
     let frame = &placed.frame;
     scene.stroke(frame.outline(), pen(FRAME_PT, BLACK), None);
     for (value, length) in lengths(&placed.below) {
@@ -254,7 +254,7 @@ fn lengths(ticks: &Ticks) -> impl Iterator<Item = (f64, f64)> {
     major.chain(ticks.minor.iter().map(|&at| (at, MINOR_TICK)))
 }
 
-fn draw_points(series: &Series, placed: &Placed, scene: &mut Scene) {
+fn draw_points(series: &ChartSeries, placed: &PlacedPanel, scene: &mut PageScene) {
     let Some(mark) = series.style.mark else {
         return;
     };

@@ -1,10 +1,10 @@
 //! Where the parts of a chart stand on the page. Every label is measured, so that none is cut and none overlaps another.
 
-use super::axis::{BESIDE, Scale, widest};
+use super::axis::{AxisScale, BESIDE, widest};
 use super::ticks::{Tick, Ticks};
 use super::{Chart, Panel};
 use crate::figure::COLUMN_PT;
-use crate::figure::page::ink::{self, Frame, LABEL_PT, TITLE_PT};
+use crate::figure::page::ink::{self, LABEL_PT, PageRectangle, TITLE_PT};
 
 /// Between anything and the edge of the page, pt.
 pub const EDGE: f64 = 2.0;
@@ -24,10 +24,10 @@ const HEIGHTS: [f64; 3] = [140.0, 88.0, 66.0];
 const LOG: f64 = 1.25;
 
 #[derive(Clone, Debug)]
-pub struct Placed {
-    pub frame: Frame,
-    pub x: Scale,
-    pub y: Scale,
+pub struct PlacedPanel {
+    pub frame: PageRectangle,
+    pub x: AxisScale,
+    pub y: AxisScale,
     /// The ticks of the axis y and of the axis x.
     pub ticks: Ticks,
     pub below: Ticks,
@@ -38,19 +38,19 @@ pub struct Placed {
 /// A chart with everything but its legend in its place. The legend is put in afterwards, and where it stands above the panels
 /// these move down.
 #[derive(Clone, Debug)]
-pub struct Layout {
-    pub panels: Vec<Placed>,
+pub struct ChartLayout {
+    pub panels: Vec<PlacedPanel>,
     /// The same panels with the stretch that is magnified; empty without one.
-    pub magnified: Vec<Placed>,
+    pub magnified: Vec<PlacedPanel>,
     /// Where the titles of the axes at the left have their baseline, pt.
     pub titles_at: f64,
     pub height_pt: f64,
 }
 
-impl Placed {
-    fn new(chart: &Chart, x: Scale, y: Scale, ticks: Ticks, title: (String, f64)) -> Self {
+impl PlacedPanel {
+    fn new(chart: &Chart, x: AxisScale, y: AxisScale, ticks: Ticks, title: (String, f64)) -> Self {
         Self {
-            frame: Frame {
+            frame: PageRectangle {
                 left: x.places.0,
                 top: y.places.1,
                 right: x.places.1,
@@ -65,21 +65,21 @@ impl Placed {
     }
 }
 
-impl Layout {
+impl ChartLayout {
     /// The places of the parts of `chart`, `above` pt below the upper edge of the page.
     pub fn new(chart: &Chart, above: f64) -> Self {
         let label = ink::height(LABEL_PT);
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
         let (left, right, height) = sides(chart, x_range(chart), &y_ranges);
         let top = above + EDGE + 0.5 * label;
-        let place = |chart: &Chart, x: Scale| {
+        let place = |chart: &Chart, x: AxisScale| {
             let ticks = ticks_of(chart, &y_ranges, height);
             let panels = chart.panels.iter().zip(&y_ranges).zip(ticks).enumerate();
             let panels = panels.map(|(index, ((panel, range), ticks))| {
                 let top = top + index as f64 * (height + label + PANEL_GAP);
-                let y = Scale::of(&panel.y, *range, (top + height, top));
+                let y = AxisScale::of(&panel.y, *range, (top + height, top));
                 let title = fitted(panel.y.title(&ticks), height + 0.7 * (label + PANEL_GAP));
-                Placed::new(chart, x, y, ticks, title)
+                PlacedPanel::new(chart, x, y, ticks, title)
             });
             panels.collect::<Vec<_>>()
         };
@@ -111,14 +111,14 @@ fn x_range(chart: &Chart) -> (f64, f64) {
 }
 
 /// The axes x of `chart` and of what it magnifies, from `left` to `right`: so far apart that their labels do not touch.
-fn columns(chart: &Chart, left: f64, right: f64) -> [Scale; 2] {
-    let scale = |chart: &Chart, places| Scale::of(&chart.x, x_range(chart), places);
+fn columns(chart: &Chart, left: f64, right: f64) -> [AxisScale; 2] {
+    let scale = |chart: &Chart, places| AxisScale::of(&chart.x, x_range(chart), places);
     let Some(magnified) = &chart.magnified else {
         return [scale(chart, (left, right)); 2];
     };
     let half = 0.5 * (left + right);
     let [from, to] = [scale(chart, (left, half)), scale(magnified, (half, right))];
-    let over = |scale: &Scale, axis, tick: fn(&[Tick]) -> Option<&Tick>, edge: f64| {
+    let over = |scale: &AxisScale, axis, tick: fn(&[Tick]) -> Option<&Tick>, edge: f64| {
         let ticks = scale.ticks_below(axis);
         let label = tick(&ticks.major);
         label.map_or(0.0, |tick| {
@@ -191,14 +191,15 @@ fn y_range(panel: &Panel) -> (f64, f64) {
 
 fn ticks_of(chart: &Chart, ranges: &[(f64, f64)], height: f64) -> Vec<Ticks> {
     let panels = chart.panels.iter().zip(ranges);
-    let ticks = panels
-        .map(|(panel, &range)| Scale::of(&panel.y, range, (height, 0.0)).ticks_beside(&panel.y));
+    let ticks = panels.map(|(panel, &range)| {
+        AxisScale::of(&panel.y, range, (height, 0.0)).ticks_beside(&panel.y)
+    });
     ticks.collect()
 }
 
 /// Where the panels end at the right, so that half of the last label has room.
 fn right_edge(chart: &Chart, range: (f64, f64), left: f64, right: f64) -> f64 {
-    let scale = Scale::of(&chart.x, range, (left, right));
+    let scale = AxisScale::of(&chart.x, range, (left, right));
     let ticks = scale.ticks_below(&chart.x);
     let over = ticks.major.last().map_or(0.0, |tick| {
         let end = scale.place(tick.at) + 0.5 * ink::width(&tick.label, LABEL_PT);

@@ -1,10 +1,10 @@
 //! Which line is what: in a corner of the panel where nothing is drawn, or above the panels.
 
 use super::curve::BAND_WHITE;
-use super::layout::{EDGE, Layout};
-use super::{Chart, Style};
-use crate::figure::page::ink::{self, Frame, LABEL_PT, WHITE, at, paler};
-use crate::figure::page::scene::{Path, Pen, Point, Scene};
+use super::layout::{ChartLayout, EDGE};
+use super::{Chart, SeriesStyle};
+use crate::figure::page::ink::{self, LABEL_PT, PageRectangle, WHITE, at, paler};
+use crate::figure::page::scene::{PageScene, Point, StrokeStyle, VectorPath};
 
 /// Length of the line of an entry, and its distance from the name, pt.
 const KEY: f64 = 17.0;
@@ -21,13 +21,13 @@ const SHARE: f64 = 0.62;
 
 #[derive(Clone, Debug)]
 pub struct Legend {
-    entries: Vec<Entry>,
+    entries: Vec<LegendEntry>,
 }
 
 #[derive(Clone, Debug)]
-struct Entry {
+struct LegendEntry {
     /// How the series is drawn; `None` for a remark.
-    style: Option<Style>,
+    style: Option<SeriesStyle>,
     name: String,
     width_pt: f64,
 }
@@ -40,21 +40,21 @@ pub fn longest_name(width_pt: f64) -> f64 {
 impl Legend {
     /// The legend of `series`, by name and style: every name once, and what there is to remark.
     pub fn new<'a>(
-        series: impl Iterator<Item = (&'a str, &'a Style)>,
+        series: impl Iterator<Item = (&'a str, &'a SeriesStyle)>,
         remarks: impl IntoIterator<Item = String>,
     ) -> Self {
-        let mut entries: Vec<Entry> = Vec::new();
+        let mut entries: Vec<LegendEntry> = Vec::new();
         for (name, style) in series.filter(|(name, _)| !name.is_empty()) {
             if entries.iter().any(|entry| entry.name == name) {
                 continue;
             }
-            entries.push(Entry {
+            entries.push(LegendEntry {
                 style: Some(style.clone()),
                 width_pt: KEY + AFTER_KEY + ink::width(name, LABEL_PT),
                 name: name.to_owned(),
             });
         }
-        entries.extend(remarks.into_iter().map(|remark| Entry {
+        entries.extend(remarks.into_iter().map(|remark| LegendEntry {
             style: None,
             width_pt: ink::width(&remark, LABEL_PT),
             name: remark,
@@ -69,8 +69,8 @@ impl Legend {
     }
 
     /// The rows in which it stands above the panels, within `room` pt.
-    fn rows(&self, room: f64) -> Vec<Vec<&Entry>> {
-        let mut rows: Vec<Vec<&Entry>> = Vec::new();
+    fn rows(&self, room: f64) -> Vec<Vec<&LegendEntry>> {
+        let mut rows: Vec<Vec<&LegendEntry>> = Vec::new();
         let mut used = 0.0;
         for entry in &self.entries {
             match rows.last_mut() {
@@ -94,7 +94,7 @@ impl Legend {
     }
 
     /// A corner of the panel, where there is one panel, in which nothing is drawn.
-    pub fn free_corner(&self, chart: &Chart, layout: &Layout) -> Option<Frame> {
+    pub fn free_corner(&self, chart: &Chart, layout: &ChartLayout) -> Option<PageRectangle> {
         let ([panel], [placed], []) =
             (&chart.panels[..], &layout.panels[..], &layout.magnified[..])
         else {
@@ -111,18 +111,18 @@ impl Legend {
         let lefts = [frame.right - width, frame.left];
         let tops = [frame.top, frame.bottom - height];
         let corners = tops.iter().flat_map(|&top| {
-            lefts.map(|left| Frame {
+            lefts.map(|left| PageRectangle {
                 left,
                 top,
                 right: left + width,
                 bottom: top + height,
             })
         });
-        let is_free = |corner: &Frame| placed.is_clear(&corner.grown(FREE), panel);
+        let is_free = |corner: &PageRectangle| placed.is_clear(&corner.grown(FREE), panel);
         corners.into_iter().find(is_free)
     }
 
-    pub fn draw_in(&self, corner: &Frame, scene: &mut Scene) {
+    pub fn draw_in(&self, corner: &PageRectangle, scene: &mut PageScene) {
         scene.fill(corner.outline(), WHITE);
         let label = ink::height(LABEL_PT);
         for (row, entry) in self.entries.iter().enumerate() {
@@ -132,7 +132,7 @@ impl Legend {
     }
 
     /// Draws it above the picture on a page of that width, from `left` on where there is room, pt.
-    pub fn draw_above(&self, width_pt: f64, left: f64, scene: &mut Scene) {
+    pub fn draw_above(&self, width_pt: f64, left: f64, scene: &mut PageScene) {
         let label = ink::height(LABEL_PT);
         for (index, row) in self.rows(width_pt - 2.0 * EDGE).iter().enumerate() {
             let width: f64 = row.iter().map(|entry| entry.width_pt).sum::<f64>()
@@ -147,9 +147,9 @@ impl Legend {
     }
 }
 
-impl Entry {
+impl LegendEntry {
     /// Draws it with its name's baseline at the height of `place`.
-    fn draw(&self, place: Point, scene: &mut Scene) {
+    fn draw(&self, place: Point, scene: &mut PageScene) {
         let Some(style) = &self.style else {
             scene.write(&self.name, LABEL_PT, place, 0.0);
             return;
@@ -158,11 +158,11 @@ impl Entry {
         if style.is_band {
             let (from, to) = (at(place.x, y - BAND), at(place.x + KEY, y + BAND));
             let corners = [from, at(to.x, from.y), to, at(from.x, to.y)];
-            scene.fill(Path::polygon(corners), paler(style.color, BAND_WHITE));
+            scene.fill(VectorPath::polygon(corners), paler(style.color, BAND_WHITE));
         }
         if style.width_pt > 0.0 {
             let ends = [at(place.x, y), at(place.x + KEY, y)];
-            let pen = Pen {
+            let pen = StrokeStyle {
                 is_round: false,
                 dash_pt: if style.is_dots {
                     vec![style.width_pt, 2.0 * style.width_pt]
@@ -171,9 +171,9 @@ impl Entry {
                 },
                 ..style.pen()
             };
-            scene.stroke(Path::polyline(ends), pen, None);
+            scene.stroke(VectorPath::polyline(ends), pen, None);
             if let Some(core) = style.core_pen() {
-                scene.stroke(Path::polyline(ends), core, None);
+                scene.stroke(VectorPath::polyline(ends), core, None);
             }
         }
         if let Some(mark) = style.mark {

@@ -11,15 +11,15 @@ pub mod legend;
 pub mod ticks;
 
 use crate::figure::extent;
-use crate::figure::page::ink::{BLACK, Mark, grey, paler};
-use crate::figure::page::scene::{Color, Pen};
+use crate::figure::page::ink::{BLACK, PointMark, grey, paler};
+use crate::figure::page::scene::{Color, StrokeStyle};
 use ticks::{Ticks, power_of_ten};
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
     pub title: String,
     pub width_pt: f64,
-    pub x: Axis,
+    pub x: ChartAxis,
     /// The panels, from the top; one at least.
     pub panels: Vec<Panel>,
     /// Whether a unit is as long on both axes; then there is one panel.
@@ -31,7 +31,7 @@ pub struct Chart {
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Axis {
+pub struct ChartAxis {
     /// What is measured on it, as markup.
     pub name: String,
     /// Its unit, as markup; empty for a pure number.
@@ -47,18 +47,18 @@ pub struct Axis {
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
-    pub y: Axis,
-    pub series: Vec<Series>,
+    pub y: ChartAxis,
+    pub series: Vec<ChartSeries>,
 }
 
 impl Panel {
-    pub fn new(y: Axis, series: Vec<Series>) -> Self {
+    pub fn new(y: ChartAxis, series: Vec<ChartSeries>) -> Self {
         Self { y, series }
     }
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Series {
+pub struct ChartSeries {
     /// Its name in the legend, as markup; empty for none.
     pub name: String,
     /// Its points in order; the line is interrupted where one is not finite.
@@ -68,11 +68,11 @@ pub struct Series {
     pub errors: [Vec<f64>; 2],
     /// Where its line turns too often to be told apart: along the axis x, from where to where it goes.
     pub band: Vec<[f64; 3]>,
-    pub style: Style,
+    pub style: SeriesStyle,
 }
 
-impl Series {
-    pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>, style: Style) -> Self {
+impl ChartSeries {
+    pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>, style: SeriesStyle) -> Self {
         Self {
             name: name.into(),
             points,
@@ -83,9 +83,9 @@ impl Series {
 
     /// A line of the legend without a curve.
     pub fn named(name: String) -> Self {
-        let style = Style {
+        let style = SeriesStyle {
             width_pt: 0.0,
-            ..Style::default()
+            ..SeriesStyle::default()
         };
         Self::new(name, Vec::new(), style)
     }
@@ -93,7 +93,7 @@ impl Series {
     /// The line of zero across `range`.
     pub fn level((begin, end): (f64, f64)) -> Self {
         let points = vec![[begin, 0.0], [end, 0.0]];
-        Self::new("", points, Style::theory(0, 0))
+        Self::new("", points, SeriesStyle::theory(0, 0))
     }
 
     /// The ends of the error bar of a point along the axis x (0) or y (1); without an error, the point.
@@ -117,13 +117,13 @@ impl Series {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Style {
+pub struct SeriesStyle {
     pub color: Color,
     /// Width of its line, pt; 0 for points alone.
     pub width_pt: f64,
     /// Lengths of strokes and gaps, pt; empty for a solid line.
     pub dash_pt: &'static [f64],
-    pub mark: Option<Mark>,
+    pub mark: Option<PointMark>,
     /// Whether it is drawn behind the others, and behind those of its kind that come before it.
     pub is_behind: bool,
     /// Whether its line is a dot at each of its points, which are not joined.
@@ -134,7 +134,7 @@ pub struct Style {
     pub core: Option<Color>,
 }
 
-impl Default for Style {
+impl Default for SeriesStyle {
     fn default() -> Self {
         Self {
             color: BLACK,
@@ -170,19 +170,19 @@ const DASHES: [&[f64]; KINDS_OF_LINE] = [
     &[6.5, 2.0],
     &[2.0, 1.0, 2.0, 3.0],
 ];
-const MARKS: [Mark; KINDS_OF_LINE] = [
-    Mark::Dot,
-    Mark::Square,
-    Mark::Triangle,
-    Mark::Diamond,
-    Mark::Ring,
-    Mark::Tip,
+const MARKS: [PointMark; KINDS_OF_LINE] = [
+    PointMark::Dot,
+    PointMark::Square,
+    PointMark::Triangle,
+    PointMark::Diamond,
+    PointMark::Ring,
+    PointMark::Tip,
 ];
 
 /// Width of the dots of a path whose points are not joined, pt.
 const DOT_PT: f64 = 1.1;
 
-impl Style {
+impl SeriesStyle {
     /// The line of the curve `index` of several: the first is on top, each other one beneath those before it, and made wide
     /// where they cover it (`curve::Above`).
     pub fn curve(index: usize) -> Self {
@@ -229,7 +229,7 @@ impl Style {
         Self {
             color: if are_many { grey(160) } else { BLACK },
             width_pt: 0.0,
-            mark: Some(Mark::Ring),
+            mark: Some(PointMark::Ring),
             is_behind: are_many,
             ..Self::default()
         }
@@ -262,7 +262,7 @@ impl Style {
     pub fn theory_marked(index: usize, place: usize) -> Self {
         Self {
             width_pt: 0.35,
-            mark: Some([Mark::Cross, Mark::Plus][place % 2]),
+            mark: Some([PointMark::Cross, PointMark::Plus][place % 2]),
             ..Self::theory(index, 2 + place)
         }
     }
@@ -270,7 +270,7 @@ impl Style {
     /// Small points of what was neither measured nor is theory, for the series `index` of several.
     pub fn specks(index: usize) -> Self {
         Self {
-            mark: Some(Mark::Speck),
+            mark: Some(PointMark::Speck),
             ..Self::points(index)
         }
     }
@@ -287,16 +287,16 @@ impl Style {
     }
 
     /// The pen of its core.
-    pub fn core_pen(&self) -> Option<Pen> {
-        Some(Pen {
+    pub fn core_pen(&self) -> Option<StrokeStyle> {
+        Some(StrokeStyle {
             width_pt: Self::default().width_pt,
             color: self.core?,
             ..self.pen()
         })
     }
 
-    pub fn pen(&self) -> Pen {
-        Pen {
+    pub fn pen(&self) -> StrokeStyle {
+        StrokeStyle {
             width_pt: self.width_pt,
             color: self.color,
             dash_pt: self.dash_pt.to_vec(),
@@ -311,7 +311,7 @@ const FARTHEST: f64 = 1e306;
 const MARGIN: f64 = 0.045;
 const AROUND: f64 = 0.1;
 
-impl Axis {
+impl ChartAxis {
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
             name: name.into(),

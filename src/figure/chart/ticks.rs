@@ -82,7 +82,7 @@ impl Ticks {
     /// The ticks whose step is the number on that rung of the ladder.
     fn with_step(low: f64, high: f64, rung: i64) -> Self {
         let step = ladder::rung(rung);
-        let numbers = Numbers::of_rung(rung);
+        let numbers = RoundMultiples::of_rung(rung);
         let largest = low.abs().max(high.abs());
         let counts = between(low / step, high / step);
         let is_offset = step < OFFSET * largest;
@@ -159,7 +159,7 @@ impl Ticks {
         let power = leading_power(high);
         let major = rungs.iter().map(|&(rung, at)| Tick {
             at,
-            label: Numbers::of_rung(rung).label(1, power),
+            label: RoundMultiples::of_rung(rung).label(1, power),
         });
         let minor = (floor(libm::log10(low))..=floor(libm::log10(high))).flat_map(parts_of_decade);
         let is_inside = |at: &f64| (low..=high).contains(at);
@@ -221,12 +221,12 @@ pub fn with_minus(number: &str) -> String {
 
 /// The whole multiples of 1, 2 or 5 (`digit`) times ten to the power `decade`.
 #[derive(Clone, Copy)]
-struct Numbers {
+struct RoundMultiples {
     digit: i64,
     decade: i32,
 }
 
-impl Numbers {
+impl RoundMultiples {
     /// The multiples of the number on that rung of the ladder.
     fn of_rung(rung: i64) -> Self {
         Self {

@@ -1,30 +1,34 @@
 //! The charts of runs: their curves over time, their paths from above.
 
-use crate::export::Column;
-use crate::figure::chart::layout::Layout;
-use crate::figure::chart::{Chart, Panel, Series, Style};
-use crate::figure::request::{Dense, Drawn, Job, Request, Run};
+use crate::export::CsvColumn;
+use crate::figure::chart::layout::ChartLayout;
+use crate::figure::chart::{Chart, ChartSeries, Panel, SeriesStyle};
+use crate::figure::request::{Dense, FigureJob, FigureRequest, FigureRun, SampledRunNumbers};
 use crate::figure::{chords, dense, quantity, size};
 use crate::run::Truth;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Columns of the runs over time, a panel each.
-pub(super) fn over_time(job: &Job<'_>, columns: &[&'static Column], drawn: &[Drawn]) -> Chart {
+pub(super) fn over_time(
+    job: &FigureJob<'_>,
+    columns: &[&'static CsvColumn],
+    drawn: &[SampledRunNumbers],
+) -> Chart {
     let from_s = job.request.from_s;
     let ends = drawn.iter().map(|drawn| drawn.course.end_s);
     let end_s = ends.fold(0.0, f64::max);
     let mut x = quantity::axis("t_s");
     x.range = (end_s > from_s).then_some((from_s, end_s));
-    let panel = |column: &&Column| {
-        let curve = |drawn: &Drawn| {
+    let panel = |column: &&CsvColumn| {
+        let curve = |drawn: &SampledRunNumbers| {
             let points = drawn.course.points(column);
             let mut style = drawn.style.clone();
             // Only thin lines show many swings beside each other.
             if points.len() > 600 && columns.len() > 1 {
                 style.width_pt *= 0.75;
             }
-            Series::new(&drawn.name, points, style)
+            ChartSeries::new(&drawn.name, points, style)
         };
         let y = size::axis(job.runs, column.name);
         Panel::new(y, drawn.iter().map(curve).collect())
@@ -33,12 +37,16 @@ pub(super) fn over_time(job: &Job<'_>, columns: &[&'static Column], drawn: &[Dra
 }
 
 /// The paths of the runs from above, and the places that were `measured`.
-pub(super) fn above(job: &Job<'_>, drawn: &[Drawn], measured: Option<Series>) -> Chart {
-    let path = |drawn: &Drawn| {
+pub(super) fn above(
+    job: &FigureJob<'_>,
+    drawn: &[SampledRunNumbers],
+    measured: Option<ChartSeries>,
+) -> Chart {
+    let path = |drawn: &SampledRunNumbers| {
         let path = &drawn.course.above;
         let (name, style) = chords::as_drawn(drawn, path);
         let points = path.points.iter().map(|at| [at[0], at[1]]);
-        Series::new(name, points.collect(), style)
+        ChartSeries::new(name, points.collect(), style)
     };
     let mut series: Vec<_> = drawn.iter().map(path).chain(measured).collect();
     let [x, y] = both_ranges(&series, job.runs);
@@ -52,8 +60,12 @@ pub(super) fn above(job: &Job<'_>, drawn: &[Drawn], measured: Option<Series>) ->
     }
 }
 
-pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<Dense> {
-    let layout = Layout::new(chart, 0.0);
+pub(super) fn path_warning(
+    chart: &Chart,
+    drawn: &[SampledRunNumbers],
+    request: &FigureRequest,
+) -> Option<Dense> {
+    let layout = ChartLayout::new(chart, 0.0);
     let placed = layout.panels.first()?;
     let place = |at: &[f64; 3]| placed.place(&[at[0], at[1]]);
     dense::of_paths(drawn, request, |course| &course.above, place)
@@ -61,7 +73,7 @@ pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) ->
 
 /// The circles between which the exact motion of the traced point stays, from above; none where it is one circle, pushes or
 /// edits change it, or it has no closed form. A metre is `pt_per_m` long on the page.
-fn limits(run: &Run, pt_per_m: f64) -> Vec<Series> {
+fn limits(run: &FigureRun, pt_per_m: f64) -> Vec<ChartSeries> {
     const SAME: f64 = 0.01;
     let scenario = &run.scenario;
     let at = scenario.body.mechanics.points()[scenario.trace].at;
@@ -81,7 +93,7 @@ fn limits(run: &Run, pt_per_m: f64) -> Vec<Series> {
     }
     let circle = |radius| {
         let points = circle(radius, pt_per_m);
-        Series::new("limits of exact motion", points, Style::limit())
+        ChartSeries::new("limits of exact motion", points, SeriesStyle::limit())
     };
     [inner, outer].map(circle).into()
 }
@@ -102,7 +114,7 @@ fn circle(radius_m: f64, pt_per_m: f64) -> Vec<[f64; 2]> {
 
 /// The stretches of both axes of paths: one is never less than half of the other, so that a path along a line has a picture
 /// too.
-fn both_ranges(series: &[Series], runs: &[Run]) -> [(f64, f64); 2] {
+fn both_ranges(series: &[ChartSeries], runs: &[FigureRun]) -> [(f64, f64); 2] {
     const LEAST: f64 = 0.5;
     let size = size::axis(runs, "x_m");
     let ranges = [0, 1].map(|axis| {

@@ -1,27 +1,27 @@
 //! Errors of schemes over their time steps, with their slopes.
 
-use super::{Rows, grouped, numbers, points};
+use super::{RowIndices, grouped, numbers, points};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::ticks;
-use crate::figure::chart::{Axis, Panel, Series, Style};
+use crate::figure::chart::{ChartAxis, ChartSeries, Panel, SeriesStyle};
 use crate::figure::page::ink::{self, LABEL_PT};
 use crate::figure::page::letters;
 use crate::figure::quantity;
-use crate::figure::table::Table;
+use crate::figure::table::TableSource;
 use crate::text::number::significant;
 
 /// The axis of the time step, and a panel for each column.
 pub(super) fn drawn(
-    table: &Table,
+    table: &TableSource,
     columns: &[&str],
     width_pt: f64,
-) -> Result<(Axis, Vec<Panel>), String> {
+) -> Result<(ChartAxis, Vec<Panel>), String> {
     let steps = numbers(table, "time_step_s")?;
     let groups = grouped(&table.texts("scheme").unwrap_or_default());
     let columns = or_error(columns);
     let panel = |name: &&str| -> Result<Panel, String> {
         let values = numbers(table, name)?;
-        let curve = |(index, (scheme, rows)): (usize, &(String, Rows))| {
+        let curve = |(index, (scheme, rows)): (usize, &(String, RowIndices))| {
             let points = points(rows, &steps, &values);
             let slope = slope(&points);
             let name = if points.iter().any(|point| point[1] > 0.0) {
@@ -30,7 +30,7 @@ pub(super) fn drawn(
             } else {
                 String::new()
             };
-            Series::new(name, points, Style::marked_line(index))
+            ChartSeries::new(name, points, SeriesStyle::marked_line(index))
         };
         let series = groups.iter().enumerate().map(curve).collect();
         Ok(Panel::new(logarithmic(of_comparison(name)), series))
@@ -39,8 +39,8 @@ pub(super) fn drawn(
     Ok((logarithmic(quantity::axis("time_step_s")), panels))
 }
 
-fn logarithmic(axis: Axis) -> Axis {
-    Axis {
+fn logarithmic(axis: ChartAxis) -> ChartAxis {
+    ChartAxis {
         is_log: true,
         ..axis
     }
@@ -63,13 +63,13 @@ fn or_error<'a>(columns: &'a [&'a str]) -> &'a [&'a str] {
     }
 }
 
-fn of_comparison(name: &str) -> Axis {
+fn of_comparison(name: &str) -> ChartAxis {
     match name {
-        "error_m" => Axis::new("largest error", "m"),
-        "energy_drift" => Axis::new("relative energy drift", ""),
-        "L_axle_drift" => Axis::new("relative drift of *L*_{3}", ""),
-        "Lz_drift" => Axis::new("relative drift of *L*_{*z*}", ""),
-        "ns_per_step" => Axis::new("cost of a step", "ns"),
+        "error_m" => ChartAxis::new("largest error", "m"),
+        "energy_drift" => ChartAxis::new("relative energy drift", ""),
+        "L_axle_drift" => ChartAxis::new("relative drift of *L*_{3}", ""),
+        "Lz_drift" => ChartAxis::new("relative drift of *L*_{*z*}", ""),
+        "ns_per_step" => ChartAxis::new("cost of a step", "ns"),
         name => quantity::axis(name),
     }
 }

@@ -1,15 +1,15 @@
 //! What was measured, on the model that was fitted to it; below, what is left of it.
 
-use super::{Rows, grouped, numbers, points, within_room};
+use super::{RowIndices, grouped, numbers, points, within_room};
 use crate::data::quantity::TIME;
-use crate::data::{self, Curve, Point, Quantity};
+use crate::data::{self, MeasuredCurve, MeasuredPoint, RunQuantity};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::ticks::{power_of_ten, with_minus};
-use crate::figure::chart::{Axis, Panel, Series, Style};
+use crate::figure::chart::{ChartAxis, ChartSeries, Panel, SeriesStyle};
 use crate::figure::extent;
 use crate::figure::page::letters;
 use crate::figure::quantity;
-use crate::figure::table::{Fit, Found, Table};
+use crate::figure::table::{FitTable, FittedKey, TableSource};
 use crate::scenario::Document;
 use crate::text::number::{significant, uncertain};
 use std::sync::Arc;
@@ -20,9 +20,9 @@ const POINTS: u32 = 1500;
 const MOST_GROUPS: usize = 6;
 
 /// What is drawn.
-struct Drawing<'a> {
-    table: &'a Table,
-    fit: &'a Fit,
+struct FitFigure<'a> {
+    table: &'a TableSource,
+    fit: &'a FitTable,
     /// The run file, in which the keys have their names.
     scenario: toml::Table,
     /// The longest name in the legend, pt.
@@ -34,13 +34,13 @@ struct Drawing<'a> {
 
 /// The axis of the time or of a setting, and for each quantity a panel with its values and one with what is left of them.
 pub(super) fn drawn(
-    table: &Table,
-    fit: &Fit,
+    table: &TableSource,
+    fit: &FitTable,
     columns: &[&str],
     width_pt: f64,
-) -> Result<(Axis, Vec<Panel>), String> {
+) -> Result<(ChartAxis, Vec<Panel>), String> {
     let (along, x) = along(table, &fit.settings)?;
-    let drawing = Drawing {
+    let drawing = FitFigure {
         table,
         fit,
         scenario: fit.run_file.parse().unwrap_or_default(),
@@ -63,7 +63,7 @@ pub(super) fn drawn(
     }
 }
 
-impl Drawing<'_> {
+impl FitFigure<'_> {
     /// `key` with what stands for its value, such as "*z* of weight = 0.1555 m".
     fn said(&self, key: &str, value: &str) -> String {
         let axes = key
@@ -101,7 +101,7 @@ impl Drawing<'_> {
 const DIGITS: usize = 6;
 
 /// The value with its uncertainty, as markup.
-fn stated(found: &Found) -> String {
+fn stated(found: &FittedKey) -> String {
     let stated = found
         .uncertainty
         .and_then(|sigma| uncertain(found.value, sigma));
@@ -116,7 +116,7 @@ fn stated(found: &Found) -> String {
 }
 
 /// The column over which a fit is drawn, the one with the most different numbers, and these.
-fn along<'a>(table: &Table, settings: &'a [String]) -> Result<(&'a str, Vec<f64>), String> {
+fn along<'a>(table: &TableSource, settings: &'a [String]) -> Result<(&'a str, Vec<f64>), String> {
     let count = |numbers: &[f64]| {
         let mut sorted = numbers.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -136,17 +136,17 @@ fn along<'a>(table: &Table, settings: &'a [String]) -> Result<(&'a str, Vec<f64>
 /// The fitted run's own curve of the quantity `name` over the times that `x` spans.
 fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
     let scenario = Document::parse_header("", run_file).ok()?.scenario().ok()?;
-    let quantity = Quantity::find(name)?;
+    let quantity = RunQuantity::find(name)?;
     let (begin, end) = extent(x.iter().copied())?;
     let time = |index: u32| begin + (end - begin) * (f64::from(index) / f64::from(POINTS));
     let times_s: Vec<f64> = (0..=POINTS).map(time).collect();
-    let point = |row| Point {
+    let point = |row| MeasuredPoint {
         row,
         value: 0.0,
         sigma: None,
     };
-    let series = data::Series {
-        curves: vec![Curve {
+    let series = data::TimeSeries {
+        curves: vec![MeasuredCurve {
             quantity,
             points: (0..times_s.len()).map(point).collect(),
         }],
@@ -158,9 +158,9 @@ fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
     Some(pairs.map(|(&time_s, value)| [time_s, value]).collect())
 }
 
-impl Drawing<'_> {
+impl FitFigure<'_> {
     /// `rows` by what else was set, each with its values as its name; all of them where that are too many.
-    fn groups(&self, rows: Rows) -> Vec<(String, Rows)> {
+    fn groups(&self, rows: RowIndices) -> Vec<(String, RowIndices)> {
         let others = self.fit.settings.iter().filter(|name| *name != self.along);
         let columns: Vec<(&str, Vec<&str>)> = others
             .filter_map(|name| Some((name.as_str(), self.table.texts(name)?)))
@@ -188,39 +188,43 @@ impl Drawing<'_> {
     }
 
     /// The numbers of `column` in `rows`, from left to right, with the errors of what was measured.
-    fn series(&self, column: &str, rows: &Rows) -> Result<Series, String> {
+    fn series(&self, column: &str, rows: &RowIndices) -> Result<ChartSeries, String> {
         let values = numbers(self.table, column)?;
         let errors = numbers(self.table, "uncertainty")?;
         let errors = points(rows, &self.x, &errors).into_iter();
-        Ok(Series {
+        Ok(ChartSeries {
             points: points(rows, &self.x, &values),
             errors: [Vec::new(), errors.map(|[_, error]| error).collect()],
-            ..Series::default()
+            ..ChartSeries::default()
         })
     }
 
     /// The panel of the values on the model.
-    fn values(&self, name: &str, groups: &[(String, Rows)]) -> Result<Panel, String> {
+    fn values(&self, name: &str, groups: &[(String, RowIndices)]) -> Result<Panel, String> {
         let curve = (self.along == TIME).then(|| curve(&self.fit.run_file, name, &self.x));
         let curve = curve.flatten();
         let mut series = Vec::new();
         let mut said = self.model().into_iter();
         for (index, (group, rows)) in groups.iter().enumerate() {
             let points = self.series("model", rows)?.points;
-            let style = Style {
+            let style = SeriesStyle {
                 dash_pt: &[],
-                ..Style::theory(index, 0)
+                ..SeriesStyle::theory(index, 0)
             };
             let model = curve.clone().unwrap_or(points);
-            series.push(Series::new(said.next().unwrap_or_default(), model, style));
+            series.push(ChartSeries::new(
+                said.next().unwrap_or_default(),
+                model,
+                style,
+            ));
             // The values of further keys, each on a line of the legend without a curve.
-            series.extend(said.by_ref().map(Series::named));
-            series.push(Series {
+            series.extend(said.by_ref().map(ChartSeries::named));
+            series.push(ChartSeries {
                 name: match groups {
                     [_] => "measured".to_owned(),
                     _ => group.clone(),
                 },
-                style: Style::points(index),
+                style: SeriesStyle::points(index),
                 ..self.series("measured", rows)?
             });
         }
@@ -228,7 +232,7 @@ impl Drawing<'_> {
     }
 
     /// The panel of what is left, in units of the uncertainties where all are stated.
-    fn residuals(&self, name: &str, groups: &[(String, Rows)]) -> Result<Panel, String> {
+    fn residuals(&self, name: &str, groups: &[(String, RowIndices)]) -> Result<Panel, String> {
         let all = || groups.iter().flat_map(|(_, rows)| rows);
         let errors = numbers(self.table, "uncertainty")?;
         let are_stated = all().all(|&row| errors[row].is_finite());
@@ -238,15 +242,15 @@ impl Drawing<'_> {
             ("residual", quantity::axis(name).unit)
         };
         let ends = extent(all().map(|&row| self.x[row]));
-        let mut series: Vec<_> = ends.map(Series::level).into_iter().collect();
+        let mut series: Vec<_> = ends.map(ChartSeries::level).into_iter().collect();
         for (index, (_, rows)) in groups.iter().enumerate() {
             let mut left = self.series(column, rows)?;
             if are_stated {
                 left.errors[1].fill(1.0);
             }
-            left.style = Style::points(index);
+            left.style = SeriesStyle::points(index);
             series.push(left);
         }
-        Ok(Panel::new(Axis::new("residual", unit), series))
+        Ok(Panel::new(ChartAxis::new("residual", unit), series))
     }
 }

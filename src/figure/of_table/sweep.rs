@@ -5,12 +5,12 @@ mod curves;
 
 use super::{numbers, points, within_room};
 use crate::figure::chart::legend::longest_name;
-use crate::figure::chart::{Axis, Panel, Series, Style};
+use crate::figure::chart::{ChartAxis, ChartSeries, Panel, SeriesStyle};
 use crate::figure::extent;
 use crate::figure::quantity;
-use crate::figure::table::{Sweep, Table};
-use columns::{Part, Quantity, Role};
-use curves::{Curve, Setting};
+use crate::figure::table::{SweepTable, TableSource};
+use columns::{QuantityColumn, QuantityColumns, QuantityOwner};
+use curves::{CurveSetting, SweepCurve};
 
 /// Panels on a page where none was asked for by name.
 const MOST_PANELS: usize = 7;
@@ -19,11 +19,11 @@ const MOST_SERIES: usize = 12;
 
 /// The axis of what was varied, and a panel for each quantity.
 pub(super) fn drawn(
-    table: &Table,
-    swept: &Sweep,
+    table: &TableSource,
+    swept: &SweepTable,
     columns: &[&str],
     width_pt: f64,
-) -> Result<(Axis, Vec<Panel>), String> {
+) -> Result<(ChartAxis, Vec<Panel>), String> {
     let varied = &swept.varied[..];
     // The key that runs fastest and is a number goes to the right; the others make curves.
     let along = varied.iter().rev().find_map(|key| {
@@ -41,15 +41,15 @@ pub(super) fn drawn(
         return Err(too_many(&quantities));
     }
     let has = |role| quantities.iter().flatten().any(|part| part.role == role);
-    let drawing = Drawing {
+    let drawing = SweepFigure {
         table,
         along: &along,
         curves: &curves,
         room_pt: longest_name(width_pt),
         width_pt,
-        has_theory: has(Role::Theory),
-        has_measured: has(Role::Measured),
-        has_points: has(Role::Measured) || has(Role::Value),
+        has_theory: has(QuantityOwner::Theory),
+        has_measured: has(QuantityOwner::Measured),
+        has_points: has(QuantityOwner::Measured) || has(QuantityOwner::Value),
         has_gaps: has_gaps(table, columns, varied),
     };
     let panels = quantities.iter().map(|quantity| drawing.panel(quantity));
@@ -58,7 +58,7 @@ pub(super) fn drawn(
         return Err("no column of this sweep is a number that can be drawn".to_owned());
     };
     first.series.extend(drawing.failed(&quantities)?);
-    let x = Axis {
+    let x = ChartAxis {
         is_log: spans_decades(along.iter().copied(), 30.0) && is_geometric(&along),
         ..quantity::axis_in(&swept.scenario, key)
     };
@@ -73,7 +73,7 @@ fn too_many_curves(count: usize, varied: &[String], along: &str) -> String {
     )
 }
 
-fn too_many(quantities: &[Quantity]) -> String {
+fn too_many(quantities: &[QuantityColumns]) -> String {
     let names = quantities.iter().flatten();
     let names: Vec<_> = names.map(|part| part.name.as_str()).collect();
     format!(
@@ -93,7 +93,7 @@ const IN_GAPS: &str = " (gaps: no prediction)";
 const OTHER: &str = "simulated, without error";
 
 /// The rows of `table` whose runs did not fail.
-fn rows_run(table: &Table, varied: &[String]) -> Vec<usize> {
+fn rows_run(table: &TableSource, varied: &[String]) -> Vec<usize> {
     let readouts = table.names().iter().filter(|name| !varied.contains(name));
     let readouts: Vec<_> = readouts.filter_map(|name| table.texts(name)).collect();
     let has_run = |row: &usize| readouts.iter().any(|texts| !texts[*row].is_empty());
@@ -101,7 +101,7 @@ fn rows_run(table: &Table, varied: &[String]) -> Vec<usize> {
 }
 
 /// Whether a line of theory lacks a value where the run gave numbers.
-fn has_gaps(table: &Table, columns: &[&str], varied: &[String]) -> bool {
+fn has_gaps(table: &TableSource, columns: &[&str], varied: &[String]) -> bool {
     let rows = rows_run(table, varied);
     let mut lines = columns::theory(table, columns).filter_map(|name| table.numbers(name));
     lines.any(|values| {
@@ -111,10 +111,10 @@ fn has_gaps(table: &Table, columns: &[&str], varied: &[String]) -> bool {
 }
 
 /// What is drawn, and over what.
-struct Drawing<'a> {
-    table: &'a Table,
+struct SweepFigure<'a> {
+    table: &'a TableSource,
     along: &'a [f64],
-    curves: &'a [Curve],
+    curves: &'a [SweepCurve],
     /// The longest name in the legend, pt.
     room_pt: f64,
     width_pt: f64,
@@ -126,19 +126,19 @@ struct Drawing<'a> {
     has_gaps: bool,
 }
 
-impl Drawing<'_> {
-    fn panel(&self, quantity: &Quantity) -> Result<Panel, String> {
+impl SweepFigure<'_> {
+    fn panel(&self, quantity: &QuantityColumns) -> Result<Panel, String> {
         let mut series = Vec::new();
         for (place, part) in quantity.iter().enumerate() {
             let values = numbers(self.table, &part.name)?;
-            if part.role == Role::Theory {
+            if part.role == QuantityOwner::Theory {
                 series.extend(self.theory(part, &values, place, quantity.len() == 1));
             } else {
                 series.extend(self.points(part, &values)?);
             }
         }
         let values = series.iter().flat_map(|series| &series.points);
-        let y = Axis {
+        let y = ChartAxis {
             is_log: spans_decades(values.map(|point| point[1]), DECADES),
             ..columns::axis(quantity)
         };
@@ -146,23 +146,23 @@ impl Drawing<'_> {
     }
 
     /// What a curve with these `settings` is called in the legend.
-    fn name(&self, word: &str, settings: &[Setting]) -> String {
+    fn name(&self, word: &str, settings: &[CurveSetting]) -> String {
         curves::name(word, settings, self.room_pt)
     }
 
     /// The points of `part`, which has these `values`, a series for each curve that has some.
-    fn points(&self, part: &Part, values: &[f64]) -> Result<Vec<Series>, String> {
+    fn points(&self, part: &QuantityColumn, values: &[f64]) -> Result<Vec<ChartSeries>, String> {
         let errors = part.uncertainty.as_ref();
         let errors = errors.map(|name| numbers(self.table, name)).transpose()?;
-        let is_other = part.role == Role::Value && self.has_measured;
+        let is_other = part.role == QuantityOwner::Value && self.has_measured;
         let curves = self.curves.iter().map(|curve| {
             let (name, style) = match part.role {
-                _ if is_other => (self.name(OTHER, &[]), Style::specks(curve.index)),
+                _ if is_other => (self.name(OTHER, &[]), SeriesStyle::specks(curve.index)),
                 role => {
                     let word = self.has_theory.then(|| part.word(false));
                     let style = match role {
-                        Role::Measured => Style::points(curve.index),
-                        _ => Style::marked_line(curve.index),
+                        QuantityOwner::Measured => SeriesStyle::points(curve.index),
+                        _ => SeriesStyle::marked_line(curve.index),
                     };
                     let name = self.name(&word.unwrap_or_default(), &curve.settings);
                     (name, style)
@@ -170,18 +170,25 @@ impl Drawing<'_> {
             };
             let errors = errors.iter();
             let errors = errors.flat_map(|errors| points(&curve.rows, self.along, errors));
-            Series {
+            ChartSeries {
                 errors: [Vec::new(), errors.map(|[_, error]| error.abs()).collect()],
-                ..Series::new(name, points(&curve.rows, self.along, values), style)
+                ..ChartSeries::new(name, points(&curve.rows, self.along, values), style)
             }
         });
-        let has_some = |series: &Series| series.points.iter().any(|point| point[1].is_finite());
+        let has_some =
+            |series: &ChartSeries| series.points.iter().any(|point| point[1].is_finite());
         Ok(curves.filter(has_some).collect())
     }
 
     /// The lines of the theory `part`, the one at `place` of its panel: one for all curves for which it says the same.
-    fn theory(&self, part: &Part, values: &[f64], place: usize, is_alone: bool) -> Vec<Series> {
-        let points = |curve: &Curve| points(&curve.rows, self.along, values);
+    fn theory(
+        &self,
+        part: &QuantityColumn,
+        values: &[f64],
+        place: usize,
+        is_alone: bool,
+    ) -> Vec<ChartSeries> {
+        let points = |curve: &SweepCurve| points(&curve.rows, self.along, values);
         let each = self.curves.iter().map(|curve| (curve, points(curve)));
         let gaps = if self.has_gaps { IN_GAPS } else { "" };
         let lines = curves::lines(each).into_iter().map(|line| {
@@ -192,19 +199,19 @@ impl Drawing<'_> {
                 self.name("", &line.settings)
             };
             let style = line.style(place, self.width_pt);
-            Series::new(name, line.points, style)
+            ChartSeries::new(name, line.points, style)
         });
         lines.collect()
     }
 
     /// What the legend says of each curve that has no point: the names of those curves whose runs all failed.
-    fn failed(&self, quantities: &[Quantity]) -> Result<Vec<Series>, String> {
+    fn failed(&self, quantities: &[QuantityColumns]) -> Result<Vec<ChartSeries>, String> {
         const FAILED: &str = "no run gave a number";
         let parts = quantities.iter().flatten();
-        let parts = parts.filter(|part| part.role != Role::Theory);
+        let parts = parts.filter(|part| part.role != QuantityOwner::Theory);
         let columns = parts.map(|part| numbers(self.table, &part.name));
         let columns = columns.collect::<Result<Vec<_>, _>>()?;
-        let has_point = |curve: &&Curve| {
+        let has_point = |curve: &&SweepCurve| {
             let mut rows = curve.rows.iter();
             columns.is_empty()
                 || rows.any(|&row| columns.iter().any(|column| column[row].is_finite()))
@@ -213,7 +220,7 @@ impl Drawing<'_> {
         let failed = failed.map(|curve| {
             let markup = format!("{}: {FAILED}", self.name("", &curve.settings));
             let plain = self.name(FAILED, &curve.settings);
-            Series::named(within_room(markup, &plain, self.room_pt))
+            ChartSeries::named(within_room(markup, &plain, self.room_pt))
         });
         Ok(failed.collect())
     }

@@ -4,7 +4,7 @@
 //! again. The grid is finer than the dots of a printer, and what it cannot tell apart is one area.
 
 use super::line::simplified;
-use super::scene::{Path, Point, Segment, at};
+use super::scene::{Point, Segment, VectorPath, at};
 use crate::figure::extent;
 
 /// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one where the finer one gives too many points.
@@ -18,8 +18,8 @@ const SMOOTH: f64 = 1.0;
 const SMALLEST: usize = 8;
 
 /// The outline of the ink of lines with round corners and ends, `width_pt` wide; inked is what it winds about.
-pub fn area(lines: &[Vec<Point>], width_pt: f64) -> Path {
-    let mut area = Path::default();
+pub fn area(lines: &[Vec<Point>], width_pt: f64) -> VectorPath {
+    let mut area = VectorPath::default();
     for cell_pt in CELLS_PT {
         let Some(mut grid) = Grid::inked(lines, cell_pt, width_pt) else {
             continue;
@@ -152,8 +152,8 @@ impl Grid {
 
     /// All outlines, with the ink to their right. Each runs to the right somewhere, along the upper side of an inked cell. The
     /// uppermost row is empty.
-    fn outlines(&self) -> Path {
-        let mut path = Path::default();
+    fn outlines(&self) -> VectorPath {
+        let mut path = VectorPath::default();
         let mut is_done = vec![false; self.is_inked.len()];
         for start in self.columns..self.is_inked.len() {
             let begins = self.is_inked[start] && !self.is_inked[start - self.columns];
@@ -169,7 +169,7 @@ impl Grid {
             let cells = |count: f64| count * self.cell_pt;
             let place = |p: &Point| at(self.origin.x + cells(p.x), self.origin.y + cells(p.y));
             let corners = corners[..corners.len() - 1].iter().map(place);
-            path.0.extend(Path::polyline(corners).0);
+            path.0.extend(VectorPath::polyline(corners).0);
             path.0.push(Segment::Close);
         }
         path
@@ -220,7 +220,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// How often the outlines wind about a place; whether to the right or to the left does not matter.
-    fn winding(area: &Path, x: f64, y: f64) -> i32 {
+    fn winding(area: &VectorPath, x: f64, y: f64) -> i32 {
         let (mut count, mut start) = (0, at(0.0, 0.0));
         let mut at = start;
         for segment in &area.0 {
@@ -281,7 +281,7 @@ mod tests {
         let far = |x: f64| vec![at(0.0, 0.0), at(x, 1.0)];
         let nowhere = far(f64::NAN)[1..].to_vec();
         for line in [vec![], nowhere, far(f64::INFINITY), far(1e12)] {
-            assert_eq!(area(&[line], 0.7), Path::default());
+            assert_eq!(area(&[line], 0.7), VectorPath::default());
         }
         assert!(!area(&[far(f64::NAN), far(3.0)], 0.7).0.is_empty());
     }

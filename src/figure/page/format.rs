@@ -3,15 +3,15 @@
 use std::path::Path as FilePath;
 
 use super::scene::{LARGEST_PT, Unwritable, at, hundredths};
-use super::{Item, Paint, Point, Scene};
+use super::{PageScene, Paint, Point, SceneItem};
 use super::{pdf, png, svg};
 use crate::origin::{self, Origin};
-use crate::text::printable::Shown;
+use crate::text::printable::PrintablePath;
 
 /// Dots per inch of a PNG: what journals ask of drawings with lines and letters.
 pub const DOTS_PER_INCH: f64 = 600.0;
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Format {
+pub enum PageFormat {
     Svg,
     /// SVG with text as text, which can be selected and takes a font of its reader.
     SvgText,
@@ -20,7 +20,7 @@ pub enum Format {
     Png,
 }
 
-impl Format {
+impl PageFormat {
     /// The form that the end of a file's name asks for; large and small letters are the same.
     ///
     /// # Errors
@@ -31,7 +31,7 @@ impl Format {
             Some("svg") => Ok(Self::Svg),
             Some("pdf") => Ok(Self::Pdf),
             Some("png") => Ok(Self::Png),
-            _ => Err(Unwritable::Ending(Shown(file).to_string())),
+            _ => Err(Unwritable::Ending(PrintablePath(file).to_string())),
         }
     }
 }
@@ -44,17 +44,17 @@ impl Format {
 /// # Errors
 /// When the page has no size, is too large for the form, or holds a place that is no number; when the origin is too long.
 pub fn write(
-    scene: &Scene,
-    format: Format,
+    scene: &PageScene,
+    format: PageFormat,
     origin: Option<&Origin>,
 ) -> Result<Vec<u8>, Unwritable> {
     let scene = rounded(scene)?;
     let version = origin.map_or(env!("CARGO_PKG_VERSION"), |origin| &origin.gyrolab);
     let picture = match format {
-        Format::Svg => svg::written(&scene, false).into_bytes(),
-        Format::SvgText => svg::written(&scene, true).into_bytes(),
-        Format::Pdf => pdf::written(&[scene], version),
-        Format::Png => png::written(&scene, DOTS_PER_INCH)?,
+        PageFormat::Svg => svg::written(&scene, false).into_bytes(),
+        PageFormat::SvgText => svg::written(&scene, true).into_bytes(),
+        PageFormat::Pdf => pdf::written(&[scene], version),
+        PageFormat::Png => png::written(&scene, DOTS_PER_INCH)?,
     };
     match origin {
         Some(origin) => origin::carry(&picture, origin).ok_or(Unwritable::Origin),
@@ -66,8 +66,8 @@ pub fn write(
 ///
 /// # Errors
 /// When a place on one of them is no number, or too far away.
-pub fn write_sheets(scenes: &[Scene]) -> Result<Vec<u8>, Unwritable> {
-    let scenes: Vec<Scene> = scenes.iter().map(rounded).collect::<Result<_, _>>()?;
+pub fn write_sheets(scenes: &[PageScene]) -> Result<Vec<u8>, Unwritable> {
+    let scenes: Vec<PageScene> = scenes.iter().map(rounded).collect::<Result<_, _>>()?;
     Ok(pdf::written(&scenes, env!("CARGO_PKG_VERSION")))
 }
 
@@ -75,7 +75,7 @@ pub fn write_sheets(scenes: &[Scene]) -> Result<Vec<u8>, Unwritable> {
 ///
 /// # Errors
 /// When the page has no size, is too large, or holds a place that is no number.
-pub fn rounded(scene: &Scene) -> Result<Scene, Unwritable> {
+pub fn rounded(scene: &PageScene) -> Result<PageScene, Unwritable> {
     let (width_pt, height_pt) = (scene.width_pt, scene.height_pt);
     let is_side = |pt: f64| hundredths(pt) > 0.0 && pt <= LARGEST_PT;
     if !(is_side(width_pt) && is_side(height_pt)) {
@@ -84,10 +84,10 @@ pub fn rounded(scene: &Scene) -> Result<Scene, Unwritable> {
             height_pt,
         });
     }
-    let is_drawn = |(_, item): &(usize, &Item)| !item.path.0.is_empty();
+    let is_drawn = |(_, item): &(usize, &SceneItem)| !item.path.0.is_empty();
     let numbered = scene.items.iter().enumerate().filter(is_drawn);
     let item = |(index, item)| rounded_item(item).ok_or(Unwritable::Place(index));
-    Ok(Scene {
+    Ok(PageScene {
         width_pt: hundredths(width_pt),
         height_pt: hundredths(height_pt),
         title: scene.title.clone(),
@@ -95,7 +95,7 @@ pub fn rounded(scene: &Scene) -> Result<Scene, Unwritable> {
     })
 }
 
-fn rounded_item(item: &Item) -> Option<Item> {
+fn rounded_item(item: &SceneItem) -> Option<SceneItem> {
     let is_length = |length: &f64| (0.0..=LARGEST_PT).contains(length);
     let is_place = |p: Point| p.x.abs() <= LARGEST_PT && p.y.abs() <= LARGEST_PT;
     let mut item = item.clone().mapped(hundredths_of);
@@ -125,10 +125,10 @@ fn hundredths_of(point: Point) -> Point {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Color, Path, Pen};
+    use crate::figure::{Color, StrokeStyle, VectorPath};
 
-    fn page(items: Vec<Item>) -> Scene {
-        Scene {
+    fn page(items: Vec<SceneItem>) -> PageScene {
+        PageScene {
             width_pt: 100.0,
             height_pt: 50.0,
             title: String::new(),
@@ -136,17 +136,17 @@ mod tests {
         }
     }
 
-    fn line(x: f64, y: f64, pen: Pen) -> Item {
-        Item {
-            path: Path::polyline([at(0.0, 0.0), at(x, y)]),
+    fn line(x: f64, y: f64, pen: StrokeStyle) -> SceneItem {
+        SceneItem {
+            path: VectorPath::polyline([at(0.0, 0.0), at(x, y)]),
             paint: Paint::Stroke(pen),
             clip: None,
             words: None,
         }
     }
 
-    fn pen(width_pt: f64, dash_pt: &[f64]) -> Pen {
-        Pen {
+    fn pen(width_pt: f64, dash_pt: &[f64]) -> StrokeStyle {
+        StrokeStyle {
             width_pt,
             color: Color([0; 3]),
             dash_pt: dash_pt.to_vec(),
@@ -156,10 +156,10 @@ mod tests {
 
     #[test]
     fn the_ending_says_the_form() {
-        let of = |name: &str| Format::of(FilePath::new(name));
-        assert_eq!(of("a.svg"), Ok(Format::Svg));
-        assert_eq!(of("dir.png/A.B.PDF"), Ok(Format::Pdf));
-        assert_eq!(of("x.Png"), Ok(Format::Png));
+        let of = |name: &str| PageFormat::of(FilePath::new(name));
+        assert_eq!(of("a.svg"), Ok(PageFormat::Svg));
+        assert_eq!(of("dir.png/A.B.PDF"), Ok(PageFormat::Pdf));
+        assert_eq!(of("x.Png"), Ok(PageFormat::Png));
         for wrong in ["", "svg", ".svg", "a.jpg", "a.svg.gz", "a.png/b"] {
             let message = of(wrong).unwrap_err().to_string();
             assert!(
@@ -174,7 +174,7 @@ mod tests {
         for bad in [f64::NAN, f64::INFINITY, -1e300, 20_001.0] {
             let lines = [1.0, bad].map(|x| line(x, 1.0, pen(1.0, &[])));
             let scene = page(lines.to_vec());
-            for format in [Format::Svg, Format::Pdf, Format::Png] {
+            for format in [PageFormat::Svg, PageFormat::Pdf, PageFormat::Png] {
                 assert_eq!(write(&scene, format, None), Err(Unwritable::Place(1)));
             }
             for pen in [pen(bad, &[]), pen(1.0, &[1.0, bad])] {
@@ -189,7 +189,7 @@ mod tests {
             (1.0, 1e9),
             (0.004, 1.0),
         ] {
-            let scene = Scene {
+            let scene = PageScene {
                 width_pt,
                 height_pt,
                 ..page(vec![])

@@ -1,8 +1,10 @@
 //! Lines, marks and words, put on a page.
 
-use super::letters::{self, Label};
+use super::letters::{self, SetLabel};
 pub use super::scene::at;
-use super::scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment, Words};
+use super::scene::{
+    Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, TextItem, VectorPath,
+};
 
 pub const TITLE_PT: f64 = 8.0;
 pub const LABEL_PT: f64 = 7.0;
@@ -22,14 +24,14 @@ pub fn paler(Color(parts): Color, white: f64) -> Color {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct PageRectangle {
     pub left: f64,
     pub top: f64,
     pub right: f64,
     pub bottom: f64,
 }
 
-impl Frame {
+impl PageRectangle {
     pub fn width(&self) -> f64 {
         self.right - self.left
     }
@@ -63,23 +65,23 @@ impl Frame {
         [at(self.left, self.top), at(self.right, self.bottom)]
     }
 
-    pub fn outline(&self) -> Path {
+    pub fn outline(&self) -> VectorPath {
         let corners = [
             at(self.left, self.top),
             at(self.right, self.top),
             at(self.right, self.bottom),
             at(self.left, self.bottom),
         ];
-        Path::polygon(corners)
+        VectorPath::polygon(corners)
     }
 }
 
-pub fn circle(middle: Point, radius_pt: f64) -> Path {
+pub fn circle(middle: Point, radius_pt: f64) -> VectorPath {
     /// Distance of the control points of a quarter of a circle, in radii.
     const BEND: f64 = 0.552_285;
     let (r, b) = (radius_pt, BEND * radius_pt);
     let to = |x: f64, y: f64| at(middle.x + x, middle.y + y);
-    Path(vec![
+    VectorPath(vec![
         Segment::Move(to(r, 0.0)),
         Segment::Cubic(to(r, b), to(b, r), to(0.0, r)),
         Segment::Cubic(to(-b, r), to(-r, b), to(-r, 0.0)),
@@ -89,8 +91,8 @@ pub fn circle(middle: Point, radius_pt: f64) -> Path {
     ])
 }
 
-pub fn pen(width_pt: f64, color: Color) -> Pen {
-    Pen {
+pub fn pen(width_pt: f64, color: Color) -> StrokeStyle {
+    StrokeStyle {
         width_pt,
         color,
         dash_pt: Vec::new(),
@@ -99,7 +101,7 @@ pub fn pen(width_pt: f64, color: Color) -> Pen {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mark {
+pub enum PointMark {
     Dot,
     Square,
     Triangle,
@@ -111,7 +113,7 @@ pub enum Mark {
     Speck,
 }
 
-impl Mark {
+impl PointMark {
     /// Whether it marks what can have an error: neither theory nor a number that is known exactly.
     pub fn is_of_measured(self) -> bool {
         !matches!(self, Self::Cross | Self::Plus | Self::Speck)
@@ -127,7 +129,7 @@ pub fn height(size_pt: f64) -> f64 {
     letters::label("0", size_pt).ascent_pt
 }
 
-impl Scene {
+impl PageScene {
     pub fn new(width_pt: f64, height_pt: f64, title: &str) -> Self {
         Self {
             width_pt,
@@ -137,20 +139,20 @@ impl Scene {
         }
     }
 
-    pub fn fill(&mut self, path: Path, color: Color) {
+    pub fn fill(&mut self, path: VectorPath, color: Color) {
         self.fill_in(path, color, None);
     }
 
-    pub fn fill_in(&mut self, path: Path, color: Color, clip: Option<&Frame>) {
+    pub fn fill_in(&mut self, path: VectorPath, color: Color, clip: Option<&PageRectangle>) {
         self.put(path, Paint::Fill(color), clip, None);
     }
 
-    pub fn stroke(&mut self, path: Path, pen: Pen, clip: Option<&Frame>) {
+    pub fn stroke(&mut self, path: VectorPath, pen: StrokeStyle, clip: Option<&PageRectangle>) {
         self.put(path, Paint::Stroke(pen), clip, None);
     }
 
     pub fn line(&mut self, ends: [Point; 2], width_pt: f64, color: Color) {
-        self.stroke(Path::polyline(ends), pen(width_pt, color), None);
+        self.stroke(VectorPath::polyline(ends), pen(width_pt, color), None);
     }
 
     /// Writes `markup` with `share` of its length to the left of `place`, which is on its baseline.
@@ -167,13 +169,13 @@ impl Scene {
         self.letters(label, true, |p| at(middle.x + p.y, bottom - p.x));
     }
 
-    fn letters(&mut self, label: Label, is_upward: bool, to: impl Fn(Point) -> Point) {
-        let words = Words {
+    fn letters(&mut self, label: SetLabel, is_upward: bool, to: impl Fn(Point) -> Point) {
+        let words = TextItem {
             text: label.words,
             letters: label.letters,
             is_upward,
         };
-        let item = Item {
+        let item = SceneItem {
             path: label.path,
             paint: Paint::Fill(BLACK),
             clip: None,
@@ -182,7 +184,7 @@ impl Scene {
         self.items.push(item.mapped(to));
     }
 
-    pub fn mark(&mut self, mark: Mark, middle: Point, color: Color) {
+    pub fn mark(&mut self, mark: PointMark, middle: Point, color: Color) {
         let r = MARK_PT;
         let place = |(x, y): (f64, f64)| at(middle.x + x, middle.y + y);
         let mut lines = |ends: [[(f64, f64); 2]; 2]| {
@@ -190,27 +192,28 @@ impl Scene {
             ends.into_iter()
                 .for_each(|ends| self.line(ends, 0.5, color));
         };
-        let polygon = |corners: &[(f64, f64)]| Path::polygon(corners.iter().copied().map(place));
+        let polygon =
+            |corners: &[(f64, f64)]| VectorPath::polygon(corners.iter().copied().map(place));
         let (x, y) = (1.2 * r, 0.9 * r);
         let (path, is_filled) = match mark {
-            Mark::Cross => {
+            PointMark::Cross => {
                 let d = 1.1 * r;
                 return lines([[(-d, d), (d, -d)], [(-d, -d), (d, d)]]);
             }
-            Mark::Plus => {
+            PointMark::Plus => {
                 let d = 1.4 * r;
                 return lines([[(-d, 0.0), (d, 0.0)], [(0.0, -d), (0.0, d)]]);
             }
-            Mark::Speck => (circle(middle, 0.5 * r), true),
-            Mark::Dot => (circle(middle, r), true),
-            Mark::Ring => (circle(middle, r), false),
-            Mark::Square => {
+            PointMark::Speck => (circle(middle, 0.5 * r), true),
+            PointMark::Dot => (circle(middle, r), true),
+            PointMark::Ring => (circle(middle, r), false),
+            PointMark::Square => {
                 let r = 0.92 * r;
                 (polygon(&[(-r, -r), (r, -r), (r, r), (-r, r)]), true)
             }
-            Mark::Triangle => (polygon(&[(0.0, -1.3 * r), (x, y), (-x, y)]), true),
-            Mark::Tip => (polygon(&[(0.0, 1.3 * r), (x, -y), (-x, -y)]), false),
-            Mark::Diamond => {
+            PointMark::Triangle => (polygon(&[(0.0, -1.3 * r), (x, y), (-x, y)]), true),
+            PointMark::Tip => (polygon(&[(0.0, 1.3 * r), (x, -y), (-x, -y)]), false),
+            PointMark::Diamond => {
                 let r = 1.35 * r;
                 (polygon(&[(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)]), false)
             }
@@ -222,11 +225,17 @@ impl Scene {
         self.stroke(path, pen(0.6, color), None);
     }
 
-    fn put(&mut self, path: Path, paint: Paint, clip: Option<&Frame>, words: Option<Words>) {
-        self.items.push(Item {
+    fn put(
+        &mut self,
+        path: VectorPath,
+        paint: Paint,
+        clip: Option<&PageRectangle>,
+        words: Option<TextItem>,
+    ) {
+        self.items.push(SceneItem {
             path,
             paint,
-            clip: clip.map(Frame::corners),
+            clip: clip.map(PageRectangle::corners),
             words,
         });
     }

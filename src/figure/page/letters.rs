@@ -9,7 +9,7 @@ mod setter;
 pub mod table;
 
 use self::setter::Setter;
-use super::scene::{Path, Placed};
+use super::scene::{PlacedLetter, VectorPath};
 use crate::text::printable::printable;
 
 /// Height of capital letters and digits, as a share of their size.
@@ -19,21 +19,21 @@ pub const CAP_HEIGHT: f64 = 0.656;
 const LONGEST: usize = 2000;
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Label {
+pub struct SetLabel {
     /// Its outline, to be filled by the non-zero rule, pt; the origin is the left end of its baseline, y down.
-    pub path: Path,
+    pub path: VectorPath,
     /// From the origin to where a text behind it would begin, pt.
     pub width_pt: f64,
     pub ascent_pt: f64,
     pub descent_pt: f64,
     /// The text without markup: superscripts as characters or behind `^`, subscripts behind `_`.
     pub words: String,
-    pub letters: Vec<Placed>,
+    pub letters: Vec<PlacedLetter>,
 }
 
 /// A text in markup as outlines. A character that the table does not have is drawn as a box. What is not closed ends with
 /// the text; a brace that closes nothing is a brace.
-pub fn label(markup: &str, size_pt: f64) -> Label {
+pub fn label(markup: &str, size_pt: f64) -> SetLabel {
     let mut setter = Setter::new(size_pt);
     let mut rest = markup.chars().peekable();
     while let Some(c) = rest.next() {

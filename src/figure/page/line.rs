@@ -1,6 +1,6 @@
 //! A line on the page: what of it lies in a rectangle, and the same line through fewer points.
 
-use super::ink::{Frame, at};
+use super::ink::{PageRectangle, at};
 use super::scene::Point;
 use std::cmp::Ordering;
 
@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 const TOGETHER: usize = 512;
 
 /// The parts of the line through `points` that lie in `frame`; it is interrupted where a point is not finite.
-pub fn clipped(points: impl Iterator<Item = Point>, frame: &Frame) -> Vec<Vec<Point>> {
+pub fn clipped(points: impl Iterator<Item = Point>, frame: &PageRectangle) -> Vec<Vec<Point>> {
     let mut parts: Vec<Vec<Point>> = Vec::new();
     let mut part: Vec<Point> = Vec::new();
     let mut before: Option<Point> = None;
@@ -45,7 +45,7 @@ fn keep(parts: &mut Vec<Vec<Point>>, part: &mut Vec<Point>) {
 
 /// The part of a straight line that lies in `frame` (Liang and Barsky, 1984); its ends are those of the line where they
 /// are inside.
-fn inside(from: Point, to: Point, frame: &Frame) -> Option<[Point; 2]> {
+fn inside(from: Point, to: Point, frame: &PageRectangle) -> Option<[Point; 2]> {
     let (dx, dy) = (to.x - from.x, to.y - from.y);
     let edges = [
         (-dx, from.x - frame.left),
@@ -133,7 +133,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn parts(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
-        let frame = Frame {
+        let frame = PageRectangle {
             left: 0.0,
             top: 0.0,
             right: 10.0,

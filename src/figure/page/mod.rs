@@ -16,5 +16,7 @@ pub mod png;
 pub mod scene;
 pub mod svg;
 
-pub use format::{Format, write};
-pub use scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment, Unwritable};
+pub use format::{PageFormat, write};
+pub use scene::{
+    Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, Unwritable, VectorPath,
+};

@@ -7,7 +7,7 @@ use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 
 use super::scene::{at, hundredths};
 use super::svg::MITER_LIMIT;
-use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+use super::{Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath};
 use crate::text::printable::printable;
 use words::{FREE, Fonts};
 
@@ -24,7 +24,7 @@ fn refs(page: i32) -> (Ref, Ref) {
 
 /// Pages whose places are whole hundredths of a point, written by this `version` of the program; the first one's title is
 /// the file's.
-pub fn written(scenes: &[Scene], version: &str) -> Vec<u8> {
+pub fn written(scenes: &[PageScene], version: &str) -> Vec<u8> {
     let fonts = Fonts::of(scenes);
     let packed = |bytes: &[u8]| miniz_oxide::deflate::compress_to_vec_zlib(bytes, COMPRESSION);
     let mut pdf = Pdf::new();
@@ -52,7 +52,7 @@ pub fn written(scenes: &[Scene], version: &str) -> Vec<u8> {
     pdf.finish()
 }
 
-fn content(scene: &Scene, fonts: &Fonts) -> Vec<u8> {
+fn content(scene: &PageScene, fonts: &Fonts) -> Vec<u8> {
     let mut content = Content::new();
     // The origin goes to the upper left corner, y down.
     content.transform([1.0, 0.0, 0.0, -1.0, 0.0, scene.height_pt as f32]);
@@ -64,7 +64,7 @@ fn content(scene: &Scene, fonts: &Fonts) -> Vec<u8> {
 }
 
 /// Items that are drawn and cut off alike.
-fn put_group(content: &mut Content, items: &[Item], fonts: &Fonts) {
+fn put_group(content: &mut Content, items: &[SceneItem], fonts: &Fonts) {
     let Some(first) = items.first() else {
         return;
     };
@@ -109,7 +109,7 @@ fn put_color(content: &mut Content, paint: &Paint) {
     };
 }
 
-fn put_pen(content: &mut Content, pen: &Pen) {
+fn put_pen(content: &mut Content, pen: &StrokeStyle) {
     content.set_line_width(pen.width_pt as f32);
     if !pen.dash_pt.is_empty() {
         content.set_dash_pattern(pen.dash_pt.iter().map(|length| *length as f32), 0.0);
@@ -127,7 +127,7 @@ fn shares(Color(parts): Color) -> [f32; 3] {
     parts.map(|part| (libm::round(f64::from(part) / 0.255) / 1000.0) as f32)
 }
 
-fn put_path(content: &mut Content, path: &Path) {
+fn put_path(content: &mut Content, path: &VectorPath) {
     let mut at = at(0.0, 0.0);
     for segment in &path.0 {
         match *segment {

@@ -8,7 +8,9 @@ use tiny_skia::{
 
 use super::ink::at;
 use super::svg::MITER_LIMIT;
-use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment, Unwritable};
+use super::{
+    Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, Unwritable, VectorPath,
+};
 use crate::text::printable::printable;
 
 const MOST_DOTS: f64 = 1e8;
@@ -19,7 +21,7 @@ const DOTS_OF_BAND: u32 = 8_000_000;
 ///
 /// # Errors
 /// Where the picture is too large.
-pub fn written(scene: &Scene, dots_per_inch: f64) -> Result<Vec<u8>, Unwritable> {
+pub fn written(scene: &PageScene, dots_per_inch: f64) -> Result<Vec<u8>, Unwritable> {
     let dots = |pt: f64| {
         libm::ceil(pt * dots_per_inch / 72.0 - 1e-6).clamp(1.0, f64::from(u32::MAX)) as u32
     };
@@ -38,7 +40,7 @@ pub fn written(scene: &Scene, dots_per_inch: f64) -> Result<Vec<u8>, Unwritable>
 
 /// The file: in grey where all is grey.
 fn in_bands(
-    scene: &Scene,
+    scene: &PageScene,
     (width, height): (u32, u32),
     dots_per_inch: f64,
 ) -> Result<Vec<u8>, ::png::EncodingError> {
@@ -78,7 +80,7 @@ fn in_bands(
 }
 
 /// `sheet` with its part of the page, `top` dots below the page's upper edge.
-fn drawn(scene: &Scene, sheet: Pixmap, top: u32, dots_per_inch: f64) -> Pixmap {
+fn drawn(scene: &PageScene, sheet: Pixmap, top: u32, dots_per_inch: f64) -> Pixmap {
     let scale = (dots_per_inch / 72.0) as f32;
     let mut easel = Easel {
         sheet,
@@ -99,7 +101,7 @@ struct Easel {
 }
 
 impl Easel {
-    fn draw(&mut self, item: &Item) {
+    fn draw(&mut self, item: &SceneItem) {
         let Some(path) = outline(&item.path) else {
             return;
         };
@@ -123,7 +125,7 @@ impl Easel {
         let rectangle = [from, at(to.x, from.y), to, at(from.x, to.y)];
         let mask = Mask::new(self.sheet.width(), self.sheet.height());
         self.clip = mask.map(|mut mask| {
-            if let Some(path) = outline(&Path::polygon(rectangle)) {
+            if let Some(path) = outline(&VectorPath::polygon(rectangle)) {
                 mask.fill_path(&path, FillRule::Winding, true, self.transform);
             }
             ([from, to], mask)
@@ -132,7 +134,7 @@ impl Easel {
 }
 
 /// `None` for a path without a line.
-fn outline(path: &Path) -> Option<tiny_skia::Path> {
+fn outline(path: &VectorPath) -> Option<tiny_skia::Path> {
     let mut builder = PathBuilder::new();
     for segment in &path.0 {
         match *segment {
@@ -159,7 +161,7 @@ fn ink(Color([red, green, blue]): Color) -> Ink<'static> {
     }
 }
 
-fn stroke(pen: &Pen) -> Stroke {
+fn stroke(pen: &StrokeStyle) -> Stroke {
     // An odd number of lengths is gone through twice, as in SVG and PDF.
     let twice = 1 + pen.dash_pt.len() % 2;
     let dash = pen.dash_pt.repeat(twice).into_iter();

@@ -57,7 +57,7 @@ pub fn hundredths(pt: f64) -> f64 {
 
 /// A letter in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
+pub struct PlacedLetter {
     pub letter: char,
     pub is_italic: bool,
     pub origin: Point,
@@ -90,9 +90,9 @@ impl Segment {
 
 /// Lines and curves that are filled or stroked together.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Path(pub Vec<Segment>);
+pub struct VectorPath(pub Vec<Segment>);
 
-impl Path {
+impl VectorPath {
     /// Straight lines from corner to corner, and back to the first.
     pub fn polygon(corners: impl IntoIterator<Item = Point>) -> Self {
         let mut path = Self::polyline(corners);
@@ -143,7 +143,7 @@ impl Color {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pen {
+pub struct StrokeStyle {
     pub width_pt: f64,
     pub color: Color,
     /// Lengths of strokes and gaps in turn, pt; empty for a solid line.
@@ -152,7 +152,7 @@ pub struct Pen {
     pub is_round: bool,
 }
 
-impl Pen {
+impl StrokeStyle {
     /// Whether the ends of lines are round: those of dashes are flat, so that they are as long as they are said to be.
     pub fn has_round_ends(&self) -> bool {
         self.is_round && self.dash_pt.is_empty()
@@ -163,34 +163,34 @@ impl Pen {
 pub enum Paint {
     /// Its inside, by the non-zero rule.
     Fill(Color),
-    Stroke(Pen),
+    Stroke(StrokeStyle),
 }
 
 impl Paint {
     pub fn color(&self) -> Color {
         match self {
-            Self::Fill(color) | Self::Stroke(Pen { color, .. }) => *color,
+            Self::Fill(color) | Self::Stroke(StrokeStyle { color, .. }) => *color,
         }
     }
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Item {
-    pub path: Path,
+pub struct SceneItem {
+    pub path: VectorPath,
     pub paint: Paint,
     /// What it is cut off at: upper left and lower right corner; `None` for the page.
     pub clip: Option<[Point; 2]>,
-    pub words: Option<Words>,
+    pub words: Option<TextItem>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Words {
+pub struct TextItem {
     pub text: String,
-    pub letters: Vec<Placed>,
+    pub letters: Vec<PlacedLetter>,
     pub is_upward: bool,
 }
 
-impl Item {
+impl SceneItem {
     /// The item with each of its points moved to where `to` says; what it is cut off at stays.
     #[must_use]
     pub fn mapped(mut self, to: impl Fn(Point) -> Point) -> Self {
@@ -203,18 +203,18 @@ impl Item {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scene {
+pub struct PageScene {
     pub width_pt: f64,
     pub height_pt: f64,
     /// Its title, for readers of the file; it is not drawn.
     pub title: String,
-    pub items: Vec<Item>,
+    pub items: Vec<SceneItem>,
 }
 
-impl Scene {
+impl PageScene {
     /// The items in their order; those of one slice are drawn and cut off alike.
-    pub fn groups(&self) -> impl Iterator<Item = &[Item]> {
-        let is_alike = |a: &Item, b: &Item| a.paint == b.paint && a.clip == b.clip;
+    pub fn groups(&self) -> impl Iterator<Item = &[SceneItem]> {
+        let is_alike = |a: &SceneItem, b: &SceneItem| a.paint == b.paint && a.clip == b.clip;
         self.items.chunk_by(is_alike)
     }
 }

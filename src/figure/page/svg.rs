@@ -2,8 +2,8 @@
 
 use std::fmt::Write; // which cannot fail on a `String`
 
-use super::scene::{Placed, Words};
-use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+use super::scene::{PlacedLetter, TextItem};
+use super::{Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath};
 use crate::figure::PT_PER_MM;
 use crate::text::printable::xml;
 
@@ -12,7 +12,7 @@ pub const MITER_LIMIT: f64 = 4.0;
 
 /// A page whose places are whole hundredths of a point. The words of a text are its label for readers of the screen; with
 /// `has_text` they are text.
-pub fn written(scene: &Scene, has_text: bool) -> String {
+pub fn written(scene: &PageScene, has_text: bool) -> String {
     let mut out = String::new();
     let (width, height) = (number(scene.width_pt), number(scene.height_pt));
     let sides_mm = [scene.width_pt, scene.height_pt].map(|pt| number(pt / PT_PER_MM));
@@ -39,7 +39,7 @@ pub fn written(scene: &Scene, has_text: bool) -> String {
 }
 
 /// The rectangles that something is cut off at, each once.
-fn clips(scene: &Scene) -> Vec<[Point; 2]> {
+fn clips(scene: &PageScene) -> Vec<[Point; 2]> {
     let mut clips: Vec<[Point; 2]> = Vec::new();
     for clip in scene.items.iter().filter_map(|item| item.clip) {
         if !clips.contains(&clip) {
@@ -56,7 +56,7 @@ fn name(clip: &[Point; 2]) -> String {
 }
 
 /// Items that are drawn and cut off alike.
-fn put_group(out: &mut String, items: &[Item], has_text: bool) {
+fn put_group(out: &mut String, items: &[SceneItem], has_text: bool) {
     let Some(first) = items.first() else {
         return;
     };
@@ -88,7 +88,7 @@ fn put_group(out: &mut String, items: &[Item], has_text: bool) {
 const FONTS: &str = "STIX Two Text,STIXTwoText,Times New Roman,Times,Liberation Serif,serif";
 
 /// Words as text: a part of one style and height begins where its outlines do.
-fn put_text(out: &mut String, words: &Words) {
+fn put_text(out: &mut String, words: &TextItem) {
     let turned = if words.is_upward {
         " transform=\"rotate(-90)\""
     } else {
@@ -98,11 +98,11 @@ fn put_text(out: &mut String, words: &Words) {
         out,
         "<text xml:space=\"preserve\" font-family=\"{FONTS}\"{turned}>"
     );
-    let place = |letter: &Placed| {
+    let place = |letter: &PlacedLetter| {
         let Point { x, y } = letter.origin;
         if words.is_upward { (-y, x) } else { (x, y) }
     };
-    let look = |letter: &Placed| {
+    let look = |letter: &PlacedLetter| {
         (
             letter.is_italic,
             letter.size_pt,
@@ -126,7 +126,7 @@ fn put_text(out: &mut String, words: &Words) {
     *out += "</text>\n";
 }
 
-fn put_pen(out: &mut String, pen: &Pen) {
+fn put_pen(out: &mut String, pen: &StrokeStyle) {
     let (color, width) = (hex(pen.color), number(pen.width_pt));
     let _ = write!(
         out,
@@ -145,8 +145,8 @@ fn put_pen(out: &mut String, pen: &Pen) {
 }
 
 /// The data of a path. Each line begins at its place on the page and goes on by steps, which are short numbers.
-fn data(path: &Path) -> String {
-    let mut data = Data::default();
+fn data(path: &VectorPath) -> String {
+    let mut data = PathData::default();
     for segment in &path.0 {
         match *segment {
             Segment::Move(to) => {
@@ -169,7 +169,7 @@ fn data(path: &Path) -> String {
 }
 
 #[derive(Default)]
-struct Data {
+struct PathData {
     text: String,
     /// The command that is repeated where only numbers follow.
     command: char,
@@ -178,7 +178,7 @@ struct Data {
     start: [i64; 2],
 }
 
-impl Data {
+impl PathData {
     /// A command with the steps from where the line is to `points`, of which the last is where it goes; `axes` are those
     /// of x (0) and y (1) that the command takes.
     fn step(&mut self, command: char, points: &[Point], axes: &[usize]) {

@@ -1,13 +1,13 @@
 //! The paths in the box: what is near is wide and dark.
 
 use super::{Space, TALL, round_pen};
-use crate::figure::chart::Style;
-use crate::figure::chart::axis::Scale;
+use crate::figure::chart::SeriesStyle;
+use crate::figure::chart::axis::AxisScale;
 use crate::figure::chart::curve;
 use crate::figure::extent;
 use crate::figure::page::ink::{grey, paler};
-use crate::figure::page::scene::{Pen, Point, Scene};
-use crate::figure::request::Drawn;
+use crate::figure::page::scene::{PageScene, Point, StrokeStyle};
+use crate::figure::request::SampledRunNumbers;
 use nalgebra::Vector3;
 
 const DEPTHS: usize = 6;
@@ -16,11 +16,16 @@ const WIDTHS: (f64, f64) = (0.95, 0.5);
 const FARTHEST_WHITE: f64 = 0.58;
 
 /// A path, or its shadow on the floor: places on the page and their depths, in pieces.
-type Pieces = Vec<Vec<(Point, f64)>>;
+type PathPieces = Vec<Vec<(Point, f64)>>;
 
 impl Space {
     /// The paths, the farthest parts first, and their shadows behind them.
-    pub(super) fn paths(&self, drawn: &[Drawn], styles: &[Style], scene: &mut Scene) {
+    pub(super) fn paths(
+        &self,
+        drawn: &[SampledRunNumbers],
+        styles: &[SeriesStyle],
+        scene: &mut PageScene,
+    ) {
         for (drawn, style) in drawn.iter().zip(styles).rev() {
             let on_floor = |at: &[f64; 3]| {
                 let boxed = self.boxed(at);
@@ -34,10 +39,10 @@ impl Space {
             (self.place(&boxed), self.view.depth(&boxed))
         };
         let paths = drawn.iter().map(|drawn| drawn.course.path.lines(placed));
-        let paths: Vec<Pieces> = paths.collect();
+        let paths: Vec<PathPieces> = paths.collect();
         let depths = paths.iter().flatten().flatten().map(|(_, depth)| *depth);
         let (near, far) = extent(depths).unwrap_or_default();
-        let share = Scale {
+        let share = AxisScale {
             range: (far, near),
             is_log: false,
             places: (0.0, DEPTHS as f64),
@@ -45,7 +50,8 @@ impl Space {
         let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
         let by_degree: Vec<_> = paths.iter().map(|path| by_degree(path, degree)).collect();
         // The first run is on top of all others.
-        let pens: [fn(&Style) -> Option<Pen>; 2] = [|style| Some(style.pen()), Style::core_pen];
+        let pens: [fn(&SeriesStyle) -> Option<StrokeStyle>; 2] =
+            [|style| Some(style.pen()), SeriesStyle::core_pen];
         for pen in pens {
             for (by_degree, style) in by_degree.iter().zip(styles).rev() {
                 for (nearness, pieces) in by_degree.iter().enumerate() {
@@ -59,18 +65,24 @@ impl Space {
 }
 
 /// Draws pieces of that nearness: what is near is wide and dark.
-fn draw_at(nearness: usize, pieces: &[Vec<Point>], pen: Pen, style: &Style, scene: &mut Scene) {
+fn draw_at(
+    nearness: usize,
+    pieces: &[Vec<Point>],
+    pen: StrokeStyle,
+    style: &SeriesStyle,
+    scene: &mut PageScene,
+) {
     let part = nearness as f64 / (DEPTHS - 1) as f64;
     let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
-    let pen = Pen {
-        width_pt: pen.width_pt * width / Style::default().width_pt,
+    let pen = StrokeStyle {
+        width_pt: pen.width_pt * width / SeriesStyle::default().width_pt,
         color: paler(pen.color, FARTHEST_WHITE * (1.0 - part)),
         ..pen
     };
     draw(pieces, &pen, style, scene);
 }
 
-fn draw(pieces: &[Vec<Point>], pen: &Pen, style: &Style, scene: &mut Scene) {
+fn draw(pieces: &[Vec<Point>], pen: &StrokeStyle, style: &SeriesStyle, scene: &mut PageScene) {
     if style.is_dots {
         let dots = curve::dots(pieces.iter().flatten().copied());
         curve::draw_curve(&dots, pen, None, scene);

@@ -8,7 +8,7 @@ use std::path::Path;
 use toml::Value;
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Placed {
+pub struct LocatedCommand {
     pub command: Command,
     /// Its line, from 1; `None` where that is not known.
     pub line: Option<usize>,
@@ -18,7 +18,7 @@ pub struct Placed {
 pub struct Commands {
     /// The file, as the user named it.
     pub origin: String,
-    pub list: Vec<Placed>,
+    pub list: Vec<LocatedCommand>,
 }
 
 /// Whether `document` is a file of commands, by its `[[do]]`.
@@ -48,7 +48,7 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
             let lines = document.lines_of(keys);
             for ((index, value), line) in tables.iter().enumerate().zip(lines) {
                 match one(index, value) {
-                    Ok(command) => list.push(Placed { command, line }),
+                    Ok(command) => list.push(LocatedCommand { command, line }),
                     Err(found) => problems.add_all(found),
                 }
             }

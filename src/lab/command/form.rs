@@ -1,15 +1,15 @@
 //! What the value of a command may be, and how another one is refused.
 
-use super::{CursorTo, Place};
+use super::{CursorTo, SeekTarget};
 use crate::export::layout::LayoutFile;
-use crate::figure::Format;
-use crate::figure::kind::Kind as FigureKind;
+use crate::figure::PageFormat;
+use crate::figure::kind::FigureKind;
 use crate::journal::expression::Expression;
 use crate::journal::next_push::Toward;
 use crate::lab::numbers;
 use crate::scenario::dotted::join;
 use crate::scenario::head::is_file;
-use crate::scenario::keys::{self, Kind, Range};
+use crate::scenario::keys::{self, Range, ValueKind};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, presets};
 use serde::de::DeserializeOwned;
@@ -21,8 +21,8 @@ const MOST_STEPS: i64 = 1_000_000_000;
 const LONGEST_WAIT: f64 = 86_400.0;
 pub const MOST_MAGNIFIED: f64 = 1e6;
 
-pub(super) enum Form {
-    Is(Kind),
+pub(super) enum ValueSchema {
+    Is(ValueKind),
     /// As the key or table of this name in `[view]`.
     View(&'static str),
     /// What this function takes; otherwise this is the rule.
@@ -37,14 +37,14 @@ pub(super) enum Form {
 }
 
 pub(super) struct Fields {
-    known: &'static [(&'static str, Form)],
-    alone: Alone,
+    known: &'static [(&'static str, ValueSchema)],
+    alone: Shorthand,
     /// What several fields must fulfil: the field that is refused, and why.
     rule: fn(&Table) -> Result<(), Problem>,
 }
 
 /// What may stand in the place of a table.
-enum Alone {
+enum Shorthand {
     Nothing,
     /// `true` stands for the empty table.
     True,
@@ -52,59 +52,59 @@ enum Alone {
     First(&'static str),
 }
 
-use Form::{As, By, Is, Text, View};
-use Kind::{Flag, Line, Number, Whole};
+use ValueKind::{Flag, Line, Number, Whole};
+use ValueSchema::{As, By, Is, Text, View};
 
-const LATER: Form = Is(Whole(1, i64::MAX));
-const TIME: Form = Is(Number(Range::NotNegative));
-const PATH: (&str, Form) = ("path", Is(Line));
-const TO_STEP: (&str, Form) = ("to_step", LATER);
-const FORCE: (&str, Form) = ("force", Is(Flag));
+const LATER: ValueSchema = Is(Whole(1, i64::MAX));
+const TIME: ValueSchema = Is(Number(Range::NotNegative));
+const PATH: (&str, ValueSchema) = ("path", Is(Line));
+const TO_STEP: (&str, ValueSchema) = ("to_step", LATER);
+const FORCE: (&str, ValueSchema) = ("force", Is(Flag));
 
-pub(super) const TRUE: Form = As(|value| value.as_bool() == Some(true), "must be true");
-pub(super) const COUNT: Form = Is(Whole(1, MOST_TIMES));
-pub(super) const STEPS: Form = By(|value| not_zero(value, MOST_STEPS));
-pub(super) const OPEN: Form = Text(is_scenario);
-pub(super) const PLACE: Form = As(
-    is::<Place>,
+pub(super) const TRUE: ValueSchema = As(|value| value.as_bool() == Some(true), "must be true");
+pub(super) const COUNT: ValueSchema = Is(Whole(1, MOST_TIMES));
+pub(super) const STEPS: ValueSchema = By(|value| not_zero(value, MOST_STEPS));
+pub(super) const OPEN: ValueSchema = Text(is_scenario);
+pub(super) const PLACE: ValueSchema = As(
+    is::<SeekTarget>,
     "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\" or \"end\"",
 );
-pub(super) const CURSOR: Form = As(
+pub(super) const CURSOR: ValueSchema = As(
     is::<CursorTo>,
     "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\", \"end\", \"next turn\", \"turn before\", \"mark\" or \"none\"",
 );
-pub(super) const CONDITION: Form = Text(|text| {
+pub(super) const CONDITION: ValueSchema = Text(|text| {
     let condition = Expression::condition(text);
     let bound = condition.and_then(|condition| condition.bind(|name| numbers::find(name, None)));
     bound.map_or_else(|fault| Err(fault.to_string()), |_| Ok(()))
 });
-pub(super) const WAIT: Form = Is(Number(Range::Within((0.0, LONGEST_WAIT))));
-pub(super) const SPEED: Form = By(|value| match value.as_str() {
+pub(super) const WAIT: ValueSchema = Is(Number(Range::Within((0.0, LONGEST_WAIT))));
+pub(super) const SPEED: ValueSchema = By(|value| match value.as_str() {
     Some("top") => Ok(()),
     Some(_) => Err("must be a number greater than zero, or \"top\"".to_owned()),
     None => Number(Range::Positive).check(value),
 });
-pub(super) const SINCE: Form = By(|value| match value.as_str() {
+pub(super) const SINCE: ValueSchema = By(|value| match value.as_str() {
     Some("none") => Ok(()),
     _ => Number(Range::NotNegative).check(value),
 });
-pub(super) const MAGNIFY: Form = Is(Number(Range::Within((1.0, MOST_MAGNIFIED))));
-pub(super) const NUDGE: Form = Form::Fields(Fields {
+pub(super) const MAGNIFY: ValueSchema = Is(Number(Range::Within((1.0, MOST_MAGNIFIED))));
+pub(super) const NUDGE: ValueSchema = ValueSchema::Fields(Fields {
     known: &[
         ("key", Text(can_be_nudged)),
         ("times", By(|value| not_zero(value, MOST_TIMES))),
     ],
-    alone: Alone::First("the dotted key that is nudged"),
+    alone: Shorthand::First("the dotted key that is nudged"),
     rule: |_| Ok(()),
 });
-pub(super) const PUSH: Form = Form::Fields(Fields {
+pub(super) const PUSH: ValueSchema = ValueSchema::Fields(Fields {
     known: &OF_PUSH,
-    alone: Alone::True,
+    alone: Shorthand::True,
     rule: has_one_direction,
 });
-pub(super) const NEXT_PUSH: Form = Form::Fields(Fields {
+pub(super) const NEXT_PUSH: ValueSchema = ValueSchema::Fields(Fields {
     known: &OF_PUSH,
-    alone: Alone::Nothing,
+    alone: Shorthand::Nothing,
     rule: |table| {
         if table.is_empty() {
             let rule = "must hold one of point, force_N, toward, from_s, for_s";
@@ -113,12 +113,12 @@ pub(super) const NEXT_PUSH: Form = Form::Fields(Fields {
         has_one_direction(table)
     },
 });
-const OF_PUSH: [(&str, Form); 5] = [
+const OF_PUSH: [(&str, ValueSchema); 5] = [
     ("point", Is(Line)),
     (
         "force_N",
         By(|value| match value {
-            Value::Array(_) => Kind::Vector.check(value),
+            Value::Array(_) => ValueKind::Vector.check(value),
             _ => Number(Range::Positive).check(value),
         }),
     ),
@@ -126,7 +126,7 @@ const OF_PUSH: [(&str, Form); 5] = [
     ("from_s", Is(Number(Range::NotNegative))),
     ("for_s", Is(Number(Range::Positive))),
 ];
-pub(super) const EXPORT: Form = Form::Fields(Fields {
+pub(super) const EXPORT: ValueSchema = ValueSchema::Fields(Fields {
     known: &[
         PATH,
         ("every", LATER),
@@ -138,7 +138,7 @@ pub(super) const EXPORT: Form = Form::Fields(Fields {
         TO_STEP,
         FORCE,
     ],
-    alone: Alone::First("the file"),
+    alone: Shorthand::First("the file"),
     rule: |table| {
         let mut layout = table.clone();
         layout.retain(|key, _| !["path", "to_step", "force"].contains(&key));
@@ -146,7 +146,7 @@ pub(super) const EXPORT: Form = Form::Fields(Fields {
         layout.check().map(drop)
     },
 });
-pub(super) const FIGURE: Form = Form::Fields(Fields {
+pub(super) const FIGURE: ValueSchema = ValueSchema::Fields(Fields {
     known: &[
         PATH,
         ("kind", Text(|name| FigureKind::named(name).map(|_| ()))),
@@ -154,18 +154,18 @@ pub(super) const FIGURE: Form = Form::Fields(Fields {
         TO_STEP,
         FORCE,
     ],
-    alone: Alone::First("the file"),
+    alone: Shorthand::First("the file"),
     rule: |table| {
         let path = table.get("path").and_then(Value::as_str);
-        let format = Format::of(Path::new(path.unwrap_or_default()));
+        let format = PageFormat::of(Path::new(path.unwrap_or_default()));
         format
             .map(drop)
             .map_err(|refusal| Problem::at("", refusal.to_string()))
     },
 });
-pub(super) const SAVE: Form = Form::Fields(Fields {
+pub(super) const SAVE: ValueSchema = ValueSchema::Fields(Fields {
     known: &[PATH, ("from_here", Is(Flag)), TO_STEP, FORCE],
-    alone: Alone::First("the file"),
+    alone: Shorthand::First("the file"),
     rule: |table| {
         let is_from_here = table.get("from_here").and_then(Value::as_bool);
         if is_from_here == Some(true) && table.contains_key("to_step") {
@@ -175,7 +175,7 @@ pub(super) const SAVE: Form = Form::Fields(Fields {
         Ok(())
     },
 });
-impl Form {
+impl ValueSchema {
     /// `value` as serde reads it: what stands alone for a table is one.
     ///
     /// # Errors
@@ -215,7 +215,7 @@ impl Fields {
             }
         }
         let first = self.known[0].0;
-        if let Alone::First(meaning) = self.alone
+        if let Shorthand::First(meaning) = self.alone
             && problems.is_empty()
             && !table.contains_key(first)
         {
@@ -239,14 +239,14 @@ impl Fields {
         let (first, form) = &self.known[0];
         match (&self.alone, value) {
             (_, Value::Table(table)) => Ok(table.clone()),
-            (Alone::True, Value::Boolean(true)) => Ok(Table::new()),
-            (Alone::First(_), Value::String(_)) => Ok(Table::from_iter([(
+            (Shorthand::True, Value::Boolean(true)) => Ok(Table::new()),
+            (Shorthand::First(_), Value::String(_)) => Ok(Table::from_iter([(
                 (*first).to_owned(),
                 form.check(value)?,
             )])),
             _ => {
                 let or_true = match self.alone {
-                    Alone::True => "true, or ",
+                    Shorthand::True => "true, or ",
                     _ => "",
                 };
                 let names = self.names().collect::<Vec<_>>().join(", ");
@@ -298,7 +298,7 @@ fn is_scenario(name: &str) -> Result<(), String> {
 
 fn can_be_nudged(key: &str) -> Result<(), String> {
     match keys::find(key)? {
-        (_, Kind::Vector) => Err(format!("is a vector: nudge {key}.0, .1 or .2")),
+        (_, ValueKind::Vector) => Err(format!("is a vector: nudge {key}.0, .1 or .2")),
         (row, _) if row.lab.is_some() => Ok(()),
         _ => Err("cannot be nudged".to_owned()),
     }

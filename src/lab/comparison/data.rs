@@ -6,26 +6,26 @@
 
 use super::OwnCode;
 use crate::data::compared::Compared;
-use crate::data::{ColumnOptions, Measured, Quantity, Reader, Series};
-use crate::playback::recording::{Curve, Moment, Recording};
+use crate::data::{ColumnOptions, MeasuredData, RunQuantity, RunReader, TimeSeries};
+use crate::playback::recording::{Moment, RecordedCurve, Recording};
 use crate::run::Simulation;
 use crate::scenario::{Problems, Scenario};
 use nalgebra::Vector3;
 use std::sync::Arc;
 
 /// Quantities that a recording holds beside the tilt: in the places of x, y and z.
-const IN_A_RECORDING: usize = Curve::OF_POINT.len();
+const IN_A_RECORDING: usize = RecordedCurve::OF_POINT.len();
 
 /// Measured data, and the run's values for them so far.
 pub struct DataComparison {
     pub name: String,
     /// What the user says of its columns.
     pub(in crate::lab) options: ColumnOptions,
-    pub measured: Arc<Measured>,
+    pub measured: Arc<MeasuredData>,
     pub own: Option<OwnCode>,
-    series: Arc<Series>,
+    series: Arc<TimeSeries>,
     simulation: Simulation,
-    reader: Reader<Arc<Series>>,
+    reader: RunReader<Arc<TimeSeries>>,
     recorded: Vec<Recording>,
     before: Vec<Recording>,
     /// Whether the run's numbers stopped being finite on the way.
@@ -38,7 +38,7 @@ impl DataComparison {
     pub(super) fn new(
         name: &str,
         options: &ColumnOptions,
-        measured: Measured,
+        measured: MeasuredData,
         scenario: &Arc<Scenario>,
     ) -> Result<Self, Problems> {
         let series = Arc::new(measured.series()?.clone());
@@ -47,7 +47,7 @@ impl DataComparison {
             options: options.clone(),
             own: None,
             simulation: Simulation::new(Arc::clone(scenario)),
-            reader: Reader::new(Arc::clone(&series)),
+            reader: RunReader::new(Arc::clone(&series)),
             recorded: Vec::new(),
             before: Vec::new(),
             has_broken: false,
@@ -59,7 +59,7 @@ impl DataComparison {
         Ok(comparison)
     }
 
-    pub fn quantities(&self) -> impl Iterator<Item = &'static Quantity> + Clone + '_ {
+    pub fn quantities(&self) -> impl Iterator<Item = &'static RunQuantity> + Clone + '_ {
         self.series.curves.iter().map(|curve| curve.quantity)
     }
 
@@ -68,11 +68,11 @@ impl DataComparison {
     }
 
     /// The recording that has the quantity of this index, and its curve there; `None` where it is not recorded here.
-    pub fn recorded(&self, index: usize) -> Option<(&Recording, Curve)> {
+    pub fn recorded(&self, index: usize) -> Option<(&Recording, RecordedCurve)> {
         self.place_of(index, &self.recorded)
     }
 
-    pub fn recorded_before(&self, index: usize) -> Option<(&Recording, Curve)> {
+    pub fn recorded_before(&self, index: usize) -> Option<(&Recording, RecordedCurve)> {
         self.place_of(index, &self.before)
     }
 
@@ -80,17 +80,17 @@ impl DataComparison {
         &self,
         index: usize,
         recordings: &'a [Recording],
-    ) -> Option<(&'a Recording, Curve)> {
+    ) -> Option<(&'a Recording, RecordedCurve)> {
         let place = self.recorded_here().position(|(other, _)| other == index)?;
         let recording = recordings.get(place / IN_A_RECORDING)?;
-        Some((recording, Curve::OF_POINT[place % IN_A_RECORDING]))
+        Some((recording, RecordedCurve::OF_POINT[place % IN_A_RECORDING]))
     }
 
     /// The quantities that the run's own recording does not have, each with its index.
-    fn recorded_here(&self) -> impl Iterator<Item = (usize, &'static Quantity)> + '_ {
+    fn recorded_here(&self) -> impl Iterator<Item = (usize, &'static RunQuantity)> + '_ {
         let quantities = self.quantities().enumerate();
         quantities.filter(|(_, quantity)| {
-            Curve::ALL
+            RecordedCurve::ALL
                 .iter()
                 .all(|curve| curve.column() != quantity.name)
         })
@@ -98,7 +98,7 @@ impl DataComparison {
 
     pub(super) fn begin(&mut self, scenario: &Arc<Scenario>) {
         self.simulation = Simulation::new(Arc::clone(scenario));
-        self.reader = Reader::new(Arc::clone(&self.series));
+        self.reader = RunReader::new(Arc::clone(&self.series));
         let recordings = self.recorded_here().count().div_ceil(IN_A_RECORDING);
         self.recorded = vec![Recording::default(); recordings];
         self.has_broken = false;

@@ -2,9 +2,9 @@
 //! about the run as it stands, found in the background.
 
 use crate::data::quantity::TIME;
-use crate::data::{self, ColumnOptions, Measured};
-use crate::own_code::{self, Trial, Verdict, rows};
-use crate::playback::background::Job;
+use crate::data::{self, ColumnOptions, MeasuredData};
+use crate::own_code::{self, SlipTrial, Verdict, rows};
+use crate::playback::background::BackgroundJob;
 use crate::scenario::csv::Renaming;
 use crate::scenario::{Problems, Scenario};
 use crate::text::printable::printable_lines;
@@ -12,14 +12,14 @@ use crate::verify::Unverified;
 use std::path::Path;
 use std::sync::Arc;
 
-type Outcome = Result<Verdict, String>;
+type VerdictResult = Result<Verdict, String>;
 
 /// The rows of a program, and what is found out about them.
 pub struct OwnCode {
     text: Arc<str>,
     map: Arc<[Renaming]>,
     /// The run that they are held against, and the search for its verdict.
-    judged: Option<(Arc<Scenario>, Job<Outcome>)>,
+    judged: Option<(Arc<Scenario>, BackgroundJob<VerdictResult>)>,
     /// Whether the first verdict was found; further ones, about edited runs, are not told.
     is_told: bool,
 }
@@ -32,7 +32,7 @@ impl OwnCode {
         text: &str,
         options: &ColumnOptions,
         scenario: &Scenario,
-    ) -> Result<(Measured, Option<Self>), Problems> {
+    ) -> Result<(MeasuredData, Option<Self>), Problems> {
         let time_step_s = scenario.motion.time_step_s;
         let (measured, map) = (data::read_with(name, text, options), &options.map);
         let has_times = measured.as_ref().is_ok_and(|it| it.series().is_ok());
@@ -62,7 +62,7 @@ impl OwnCode {
         let measured = measured.ok().filter(|_| has_times);
         let measured = match measured {
             Some(measured) => measured,
-            None => Measured {
+            None => MeasuredData {
                 left_out: rows.left_out.clone(),
                 ..data::read(name, &rows.to_csv(time_step_s))?
             },
@@ -80,7 +80,7 @@ impl OwnCode {
         }
         let (text, map) = (Arc::clone(&self.text), Arc::clone(&self.map));
         let (name, against) = (name.to_owned(), Arc::clone(scenario));
-        let job = Job::begin("own code", move |is_wanted| {
+        let job = BackgroundJob::begin("own code", move |is_wanted| {
             let rows = rows::read(&text, &map, None, against.motion.time_step_s);
             let compared = rows.map_err(Unverified::from);
             match compared.and_then(|rows| own_code::compare(&rows, &name, &against, is_wanted)) {
@@ -93,7 +93,7 @@ impl OwnCode {
         false
     }
 
-    fn outcome(&self) -> Option<&Outcome> {
+    fn outcome(&self) -> Option<&VerdictResult> {
         self.judged.as_ref()?.1.answer()
     }
 
@@ -101,7 +101,7 @@ impl OwnCode {
         self.outcome()?.as_ref().ok()
     }
 
-    pub fn trial(&self) -> Option<&Trial> {
+    pub fn trial(&self) -> Option<&SlipTrial> {
         self.verdict()?.trial.as_ref()
     }
 
@@ -119,7 +119,7 @@ impl OwnCode {
             None => format!("{name} is being held against the run"),
             Some(Err(why)) => format!("{name}: {why}"),
             Some(Ok(verdict)) => match (verdict.first_step, &verdict.trial) {
-                (Some(step), Some(Trial { words, .. })) => {
+                (Some(step), Some(SlipTrial { words, .. })) => {
                     format!("{name} differs at step {step}, M goes there. It has {words}")
                 }
                 (Some(step), None) => {

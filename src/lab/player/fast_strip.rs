@@ -3,10 +3,10 @@
 use crate::analysis::Readouts;
 use crate::lab::view::View;
 use crate::playback::Playback;
-use crate::playback::detail::{Detail, Placement, Wanted};
+use crate::playback::detail::{Detail, DetailRequest, Placement};
 use crate::playback::pace::Speed;
 use crate::playback::reading::Reading;
-use crate::playback::recording::Curve;
+use crate::playback::recording::RecordedCurve;
 use crate::run::Clock;
 use std::time::Duration;
 
@@ -24,7 +24,7 @@ pub(super) struct FastStrip {
 
 impl FastStrip {
     pub(super) fn of(playback: &Playback, reading: &Reading) -> Self {
-        let following = Wanted::following(Clock::end_s(playback.run().scenario()));
+        let following = DetailRequest::following(Clock::end_s(playback.run().scenario()));
         Self {
             detail: Detail::new(playback.run(), &reading.readouts, &following, None),
             chosen_at: Duration::ZERO,
@@ -64,7 +64,7 @@ impl FastStrip {
             None if playback.is_at_end() => Placement::UpToNow,
             None => Placement::Following,
         };
-        let wanted = Wanted {
+        let wanted = DetailRequest {
             window_s: view.detail_s,
             curve: view.detail_of,
             long_s: view.window_s,
@@ -77,7 +77,7 @@ impl FastStrip {
         // After a jump in time the strip's label says it; only one who watches the run sees the strip change.
         let is_watched = playback.is_running() && view.detail_of.is_none();
         (is_other && is_watched).then_some(match self.detail.curve {
-            Curve::Tilt => "the upper strip shows the tilt again",
+            RecordedCurve::Tilt => "the upper strip shows the tilt again",
             _ => "the upper strip shows x now: it swings more often than the tilt",
         })
     }

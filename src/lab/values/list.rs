@@ -1,6 +1,6 @@
 //! The list of the values that can be edited, with the selected one.
 
-use crate::journal::next_push::{Field, NextPush};
+use crate::journal::next_push::{NextPush, PushField};
 use crate::journal::parameters::Parameter;
 
 /// The heading over the values of the push to come.
@@ -116,7 +116,7 @@ pub struct ListedValue {
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::lab) enum Of {
     Scenario(Box<Parameter>),
-    NextPush(Field),
+    NextPush(PushField),
 }
 
 impl From<Parameter> for ListedValue {
@@ -137,7 +137,7 @@ impl From<Parameter> for ListedValue {
 
 impl ListedValue {
     pub(super) fn all_of(push: &NextPush) -> [Self; 4] {
-        Field::ALL.map(|field| Self {
+        PushField::ALL.map(|field| Self {
             key: None,
             group: NEXT_PUSH.to_owned(),
             label: field.label().0.to_owned(),

@@ -3,13 +3,13 @@
 use super::swings;
 use super::{Pane, View};
 use crate::lab::action::{Direction, signed};
-use crate::lab::answer::{Answer, Done};
-use crate::lab::command::{Command, CursorTo, MOST_MAGNIFIED, Place};
+use crate::lab::answer::{ActionResult, Done};
+use crate::lab::command::{Command, CursorTo, MOST_MAGNIFIED, SeekTarget};
 use crate::lab::player::Player;
 use crate::lab::step_pane::StepPane;
 use crate::playback::camera::Zoom;
 use crate::playback::lookup;
-use crate::playback::recording::Curve;
+use crate::playback::recording::RecordedCurve;
 use crate::playback::strip::Strip;
 use crate::run::Simulation;
 use crate::scenario::screen::AUTO;
@@ -30,7 +30,7 @@ impl View {
         command: &Command,
         player: &Player,
         step_pane: &StepPane,
-    ) -> Option<Answer> {
+    ) -> Option<ActionResult> {
         Some(match command {
             Command::Since(since_s) => Ok(self.set_since(*since_s)),
             Command::Magnify(times) => Ok(self.magnify(*times)),
@@ -49,7 +49,7 @@ impl View {
     }
 
     /// Shows the run as `patch`, keys of `[view]` and their values, says.
-    fn look(&mut self, patch: &Table, player: &Player, step_pane: &StepPane) -> Answer {
+    fn look(&mut self, patch: &Table, player: &Player, step_pane: &StepPane) -> ActionResult {
         let look = self.look.patched(patch)?;
         let least_s = 2.0 * player.motion().time_step_s;
         let short = |what| Err(format!("the {what} two time steps at least: {least_s} s").into());
@@ -101,7 +101,7 @@ impl View {
         })
     }
 
-    fn set_cursor(&mut self, to: CursorTo, player: &Player) -> Answer {
+    fn set_cursor(&mut self, to: CursorTo, player: &Player) -> ActionResult {
         let run = player.run();
         let here = self.cursor_or_here(player);
         let turn = |forward| {
@@ -111,7 +111,7 @@ impl View {
         let step = match to {
             CursorTo::Mark => return self.mark_turn(player),
             CursorTo::Nowhere => None,
-            CursorTo::Place(Place::End) => Some(run.furthest()),
+            CursorTo::Place(SeekTarget::End) => Some(run.furthest()),
             CursorTo::Place(place) => Some(player.step_of(place)?),
             CursorTo::NextTurn => turn(true)?,
             CursorTo::TurnBefore => turn(false)?,
@@ -129,7 +129,7 @@ impl View {
     }
 
     /// Marks the step of the cursor; where another is marked, says what the swings of the tilt between are.
-    fn mark_turn(&mut self, player: &Player) -> Answer {
+    fn mark_turn(&mut self, player: &Player) -> ActionResult {
         let none = "the cursor is nowhere: ) and ( put it on a turn of the tilt";
         let here = self.cursor.ok_or(none)?;
         let Some(mark) = self.mark.take().filter(|mark| *mark != here) else {
@@ -192,7 +192,12 @@ impl View {
     /// The command that shows another curve in the strip of the fast motion than it shows now.
     pub fn other_detail(&self, direction: Direction, times: i32, player: &Player) -> Command {
         let shown = self.detail_of.unwrap_or(player.detail().curve);
-        let curves = [Curve::X, Curve::Y, Curve::Z, Curve::Tilt];
+        let curves = [
+            RecordedCurve::X,
+            RecordedCurve::Y,
+            RecordedCurve::Z,
+            RecordedCurve::Tilt,
+        ];
         let now = curves.iter().position(|curve| *curve == shown).unwrap_or(0) as i32;
         let by = match direction {
             Direction::Up | Direction::PageUp => -times,
@@ -209,7 +214,7 @@ impl View {
 
     pub fn stepped_cursor(&self, steps: i64, player: &Player) -> Command {
         let step = self.cursor_or_here(player).saturating_add_signed(steps);
-        Command::Cursor(CursorTo::Place(Place::Step(step)))
+        Command::Cursor(CursorTo::Place(SeekTarget::Step(step)))
     }
 
     /// The command that moves the window to later times, `times` halves of its length, or to earlier ones.

@@ -13,15 +13,15 @@ pub mod theme;
 
 use super::sheet::Sheet;
 use crate::playback::camera::{Camera, Zoom};
-use crate::playback::recording::Curve;
+use crate::playback::recording::RecordedCurve;
 use crate::run::Clock;
 use crate::scenario::{Scenario, keys};
-pub use pane::{Pane, Part};
+pub use pane::{HideablePart, Pane};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::ops::Deref;
 use std::sync::Arc;
-use step::Page;
+use step::StepPageChoice;
 use theme::{Marker, Theme};
 use toml::{Table, Value};
 
@@ -36,14 +36,14 @@ pub const FPS: u32 = 15;
 /// under the keys of `[view]`, and [`patched`](Self::patched) with some of them makes another one.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Look {
+pub struct ViewSettings {
     /// Length of time the traces show, s.
     pub window_s: f64,
     /// Length of time that the strip of the fast motion shows, s; `None`: about ten swings.
     pub detail_s: Option<f64>,
     /// What that strip shows; `None`: the tilt, or x where the tilt does not swing.
     #[serde(deserialize_with = "where_known")]
-    pub detail_of: Option<Curve>,
+    pub detail_of: Option<RecordedCurve>,
     /// Where the 3-D view is looked at from, if that was chosen. Otherwise it is turned so that the axle is seen aslant.
     pub camera: Option<Camera>,
     /// How much larger than the whole the round pictures are shown.
@@ -52,10 +52,10 @@ pub struct Look {
     #[serde(rename = "show")]
     pub shown: Vec<Pane>,
     #[serde(rename = "hide")]
-    pub hidden: Vec<Part>,
+    pub hidden: Vec<HideablePart>,
     /// The page that the step pane shows.
     #[serde(rename = "phase")]
-    pub page: Page,
+    pub page: StepPageChoice,
     /// How many rows of a table the step pane adds up; `None`: all.
     #[serde(deserialize_with = "where_known")]
     pub sum_to: Option<usize>,
@@ -82,7 +82,7 @@ pub fn is_key(name: &str) -> bool {
     keys::find(&path).is_ok() || keys::is_table(&path)
 }
 
-impl Look {
+impl ViewSettings {
     /// Whether `key` of `[view]` is of a look. Speed, measured data, exact motion and the pane that fills the screen are
     /// not.
     pub fn has(key: &str) -> bool {
@@ -104,7 +104,7 @@ impl Look {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    pub look: Look,
+    pub look: ViewSettings,
     /// Every pane there is, in the order in which the focus goes through them.
     pub panes: &'static [Pane],
     pub focus: Pane,
@@ -125,7 +125,7 @@ pub struct View {
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
     /// The phase to which the step pane returns from its last page.
-    pub page_before: Page,
+    pub page_before: StepPageChoice,
     pub pointed_at: Option<Pane>,
     /// The pane beside the text where there is room for one: the last that had the focus, or the first that was chosen.
     pub beside: Option<Pane>,
@@ -145,9 +145,9 @@ pub struct View {
 
 /// What is drawn reads `view.zoom` as it reads `view.cursor`.
 impl Deref for View {
-    type Target = Look;
+    type Target = ViewSettings;
 
-    fn deref(&self) -> &Look {
+    fn deref(&self) -> &ViewSettings {
         &self.look
     }
 }
@@ -156,7 +156,7 @@ impl View {
     /// The view with which a lab of these `panes` starts: the first has the focus, and the traces show the run of `scenario`.
     pub fn new(scenario: &Scenario, marker: Marker, theme: Theme, panes: &'static [Pane]) -> Self {
         let mut view = Self {
-            look: Look::default(),
+            look: ViewSettings::default(),
             panes,
             focus: panes.first().copied().unwrap_or(Pane::TRACES),
             is_touched: false,
@@ -168,7 +168,7 @@ impl View {
             cursor: None,
             mark: None,
             camera: Camera::default(),
-            page_before: Page::default(),
+            page_before: StepPageChoice::default(),
             pointed_at: None,
             beside: None,
             sheet: None,
@@ -230,14 +230,14 @@ impl View {
     pub fn fit(&mut self, scenario: &Scenario) {
         let mut patch = scenario.file.view.clone().unwrap_or_default();
         patch.retain(|key, _| !["look_at", "next"].contains(&key)); // the scenario's, which may be edited
-        let usual = Look {
+        let usual = ViewSettings {
             window_s: self.usual_window_s(scenario),
             // What of these was chosen suits any run.
             camera: self.look.camera,
             zoom: self.look.zoom,
             bare: self.look.bare,
             residuals: self.look.residuals,
-            ..Look::default()
+            ..ViewSettings::default()
         };
         (self.since_s, self.magnified, self.cursor, self.mark) = (None, 1.0, None, None);
         if self.look.camera.is_none() {
@@ -253,7 +253,7 @@ impl View {
     }
 
     /// Shows the run as `look` says. A pane that is shown on request has the focus when it comes.
-    pub fn take(&mut self, look: Look) {
+    pub fn take(&mut self, look: ViewSettings) {
         let before = std::mem::replace(&mut self.look, look);
         if before.shown != self.shown {
             self.beside = self.shown.first().copied();
@@ -269,7 +269,7 @@ impl View {
         {
             self.focus = pane;
         }
-        if before.page != Page::Why {
+        if before.page != StepPageChoice::Why {
             self.page_before = before.page;
         }
         self.camera = self.look.camera.unwrap_or(self.camera);
@@ -291,20 +291,20 @@ impl View {
         number("window_s").unwrap_or_else(first_s)
     }
 
-    pub fn hides(&self, part: Part) -> bool {
+    pub fn hides(&self, part: HideablePart) -> bool {
         self.hidden.contains(&part)
     }
 
     pub fn may_show(&self, pane: Pane) -> bool {
         if pane == Pane::LESSON {
-            return self.sheet.is_some() && !self.hides(Part::Pane(pane));
+            return self.sheet.is_some() && !self.hides(HideablePart::Pane(pane));
         }
         let is_shown = match (self.shown.is_empty(), self.bare) {
             (true, true) => BARE.contains(&pane),
             (true, false) => !pane.is_on_request,
             (false, _) => self.shown.contains(&pane),
         };
-        is_shown && !self.hides(Part::Pane(pane))
+        is_shown && !self.hides(HideablePart::Pane(pane))
     }
 
     /// Whether `pane` is on the screen, if that has room for it.

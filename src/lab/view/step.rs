@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(into = "Choice")]
-pub enum Page {
+pub enum StepPageChoice {
     /// The phase of this number, from 1; the last one where there are fewer.
     Number(usize),
     /// The first phase of this name; the first phase of all if no phase has it.
@@ -19,13 +19,13 @@ pub enum Page {
     Why,
 }
 
-impl Default for Page {
+impl Default for StepPageChoice {
     fn default() -> Self {
         Self::Number(1)
     }
 }
 
-impl<'de> Deserialize<'de> for Page {
+impl<'de> Deserialize<'de> for StepPageChoice {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         match Choice::deserialize(deserializer)? {
             Choice::Number(number) => Ok(Self::Number(number as usize)),
@@ -40,18 +40,18 @@ impl<'de> Deserialize<'de> for Page {
     }
 }
 
-impl From<Page> for Choice {
-    fn from(page: Page) -> Self {
+impl From<StepPageChoice> for Choice {
+    fn from(page: StepPageChoice) -> Self {
         match page {
-            Page::Number(number) => Self::Number(number as u64),
-            Page::Named(name) => Self::Word(name.to_owned()),
-            Page::Last => Self::Word(LAST.to_owned()),
-            Page::Why => Self::Word(WHY.to_owned()),
+            StepPageChoice::Number(number) => Self::Number(number as u64),
+            StepPageChoice::Named(name) => Self::Word(name.to_owned()),
+            StepPageChoice::Last => Self::Word(LAST.to_owned()),
+            StepPageChoice::Why => Self::Word(WHY.to_owned()),
         }
     }
 }
 
-impl Page {
+impl StepPageChoice {
     /// The index of its phase in `workings`; `None` for the page that shows no phase, and where there are no phases.
     pub fn index(self, workings: &Workings) -> Option<usize> {
         let last = workings.phases().count().checked_sub(1)?;

@@ -1,10 +1,10 @@
 //! The TOML of a block, and what is wrong with it.
 
-use super::{Found, Reader, expression};
+use super::{BlockReader, BlockResult, expression};
 use crate::journal::expression::Expression;
 use crate::lab::command::COMMANDS;
 use crate::lessons::structure::on_line;
-use crate::lessons::text::Text;
+use crate::lessons::text::LessonText;
 use crate::scenario::dotted::join;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem};
@@ -15,20 +15,20 @@ use toml::Value;
 const LONGEST_LINE: usize = 500;
 const MOST_TOLD: usize = 20;
 
-pub(super) struct Content {
+pub(super) struct BlockContent {
     document: Document,
     word: String,
     pub(super) line: usize,
     pub(super) problems: Vec<Problem>,
 }
 
-impl Reader<'_> {
+impl BlockReader<'_> {
     /// The TOML of the block, of which only the keys `known` may be there.
-    pub(super) fn content(&self, known: &[&str]) -> Found<Content> {
+    pub(super) fn content(&self, known: &[&str]) -> BlockResult<BlockContent> {
         // As many empty lines before it as there are lines before it in the file: every line has its number there.
         let text = "\n".repeat(self.line) + self.inside;
         let document = Document::parse(&self.origin, &text).map_err(|problems| problems.list)?;
-        let mut content = Content {
+        let mut content = BlockContent {
             document,
             word: self.word.to_owned(),
             line: self.line,
@@ -51,7 +51,7 @@ impl Reader<'_> {
     }
 }
 
-impl Content {
+impl BlockContent {
     /// Notes that `problem` was found; its key is that of the TOML.
     pub(super) fn refuse(&mut self, problem: Problem) {
         if self.problems.len() >= MOST_TOLD {
@@ -118,17 +118,17 @@ impl Content {
         key: &str,
         meaning: &str,
         find: impl Fn(&str) -> Result<(), String>,
-    ) -> Text {
+    ) -> LessonText {
         let source = self.needed(key, true, meaning);
         let line = self.line_of(key);
-        let read = Text::read(&source, line, find);
+        let read = LessonText::read(&source, line, find);
         read.unwrap_or_else(|problems| {
             let inside = |problem: Problem| Problem {
                 key: format!("{}.{key} {}", self.word, problem.key),
                 ..on_line(line, problem)
             };
             self.problems.extend(problems.into_iter().map(inside));
-            Text::default()
+            LessonText::default()
         })
     }
 
@@ -150,7 +150,7 @@ impl Content {
     }
 
     /// `made`, unless something was refused.
-    pub(super) fn finish<T>(self, made: T) -> Found<T> {
+    pub(super) fn finish<T>(self, made: T) -> BlockResult<T> {
         if self.problems.is_empty() {
             Ok(made)
         } else {

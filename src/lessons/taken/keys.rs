@@ -1,19 +1,19 @@
 //! The keys of a lesson: turning its pages, predicting, and asking for help.
 
-use super::{Taken, UnderWay, before_task, compared, holds};
+use super::{OpenLesson, PendingBlock, before_task, compared, holds};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::command::Command;
 use crate::lessons::clock;
-use crate::lessons::lesson::{Answer, Asked, Block, Predict};
-use crate::lessons::predictions::{Given, Predictions, Tried};
+use crate::lessons::lesson::{AnswerKind, LessonBlock, Predict, PredictionAnswer};
+use crate::lessons::predictions::{LockedAnswer, Predictions, Tried};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 const MARKED: &str = "Enter locks it: a prediction is not changed";
 const LOCKED: &str = "your answer is locked: a prediction is not changed";
 
-impl Taken {
+impl OpenLesson {
     pub(in crate::lessons) fn act(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
         match key {
             LessonKey::Next => self.next(lab),
@@ -117,7 +117,7 @@ impl Taken {
         match lesson.task_of(page, &self.place.predictions) {
             Some(stage) => {
                 self.note_tried(Tried::Shown);
-                self.begin(&stage, UnderWay::Task(page), lab);
+                self.begin(&stage, PendingBlock::Task(page), lab);
             }
             None => lab.refuse("this page has no task"),
         }
@@ -129,7 +129,7 @@ impl Taken {
         let Some(predict) = self.asked().cloned() else {
             return Some(direction);
         };
-        let Asked::Choice(choices) = &predict.asked else {
+        let AnswerKind::Choice(choices) = &predict.asked else {
             return Some(direction);
         };
         let last = choices.len().saturating_sub(1);
@@ -155,7 +155,7 @@ impl Taken {
                 "nothing is asked here"
             });
         };
-        let Asked::Choice(choices) = &predict.asked else {
+        let AnswerKind::Choice(choices) = &predict.asked else {
             return self.ask_number(None, lab);
         };
         let at = self.pointed.get_mut(&predict.name);
@@ -167,7 +167,7 @@ impl Taken {
                 *is_marked = true;
                 lab.refuse(MARKED);
             }
-            Some((choice, _)) => self.lock(&predict, Answer::Choice(choice.clone()), lab),
+            Some((choice, _)) => self.lock(&predict, PredictionAnswer::Choice(choice.clone()), lab),
         }
     }
 
@@ -177,17 +177,19 @@ impl Taken {
             return;
         };
         match (&predict.asked, usize::from(digit)) {
-            (Asked::Number { .. }, _) => self.ask_number(Some(digit), lab),
-            (Asked::Choice(all), number) if (1..=all.len()).contains(&number) => {
+            (AnswerKind::Number { .. }, _) => self.ask_number(Some(digit), lab),
+            (AnswerKind::Choice(all), number) if (1..=all.len()).contains(&number) => {
                 self.pointed.insert(predict.name, (number - 1, true));
                 lab.refuse(MARKED);
             }
-            (Asked::Choice(all), _) => lab.refuse(format!("the answers are 1 to {}", all.len())),
+            (AnswerKind::Choice(all), _) => {
+                lab.refuse(format!("the answers are 1 to {}", all.len()))
+            }
         }
     }
 
     fn ask_number(&self, typed: Option<u8>, lab: &mut Lab) {
-        if let Some(Asked::Number { unit }) = self.asked().map(|predict| &predict.asked) {
+        if let Some(AnswerKind::Number { unit }) = self.asked().map(|predict| &predict.asked) {
             let label = if unit.is_empty() { "number" } else { unit };
             let about = "Enter locks it: a prediction is not changed";
             lab.popups_mut()
@@ -198,15 +200,15 @@ impl Taken {
     /// Locks `number` as the answer to the open question.
     pub(in crate::lessons) fn answer(&mut self, number: f64, lab: &mut Lab) {
         if let Some(predict) = self.asked().cloned() {
-            self.lock(&predict, Answer::Number(number), lab);
+            self.lock(&predict, PredictionAnswer::Number(number), lab);
         }
     }
 
     /// Locks `answer`. Once nothing on the page is open, what it hides is shown.
-    fn lock(&mut self, predict: &Predict, answer: Answer, lab: &mut Lab) {
+    fn lock(&mut self, predict: &Predict, answer: PredictionAnswer, lab: &mut Lab) {
         let round = self.rounds.get(&predict.name);
         let (round, is_closed) = round.copied().unwrap_or((1, false));
-        let given = Given {
+        let given = LockedAnswer {
             round,
             answer,
             late: is_closed || self.place.seen.contains(&predict.name),
@@ -232,11 +234,11 @@ impl Taken {
     }
 }
 
-impl Taken {
+impl OpenLesson {
     /// Puts the prediction called `name`, which has just been locked, into what the page states about it.
     fn state_again(&mut self, name: &str, lab: &Lab) {
         let about = before_task(&self.lesson, &self.place).filter_map(|block| match block {
-            Block::Compare(compare) if compare.prediction == name => Some(compare),
+            LessonBlock::Compare(compare) if compare.prediction == name => Some(compare),
             _ => None,
         });
         let texts = about.map(|compare| {

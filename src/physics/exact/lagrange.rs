@@ -36,7 +36,7 @@ mod start;
 
 use super::phases;
 use super::theta::{Harmonics, Lattice, Parity, Wave, Zero};
-use super::turning::{Start, Turning};
+use super::turning::{Turning, TurningStart};
 use crate::trig::round;
 use crate::workings::{Listener, Nobody};
 use core::f64::consts::TAU;
@@ -45,7 +45,7 @@ use start::{InFrame, cayley_klein, frame_along, quaternion, start, up};
 
 /// One Cayley-Klein parameter as a function of time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct CayleyKleinParameter {
     pub wave: Wave,
     /// Value of the whole at the start divided by that of its sum.
     pub amplitude: Complex<f64>,
@@ -54,7 +54,7 @@ pub(super) struct Part {
 }
 
 /// The sums of alpha and of beta at one moment.
-pub(super) struct Sums {
+pub(super) struct CayleyKleinSums {
     /// Amplitude and rotation of each.
     pub turns: [Complex<f64>; 2],
     /// The sum of each without them.
@@ -62,7 +62,7 @@ pub(super) struct Sums {
     pub harmonics: [Harmonics; 2],
 }
 
-impl Part {
+impl CayleyKleinParameter {
     pub fn new(wave: Wave, extra_spin: f64) -> Self {
         Self {
             wave,
@@ -80,7 +80,7 @@ impl Part {
     }
 }
 
-impl Sums {
+impl CayleyKleinSums {
     /// alpha and beta, short of one common real factor.
     #[inline]
     pub fn parameters(&self) -> (Complex<f64>, Complex<f64>) {
@@ -107,8 +107,8 @@ pub struct LagrangeTop {
     /// Time between the start and the turning point the sums are centred on, s.
     pub(super) since_origin: f64,
     starts_low: bool,
-    pub(super) alpha: Part,
-    pub(super) beta: Part,
+    pub(super) alpha: CayleyKleinParameter,
+    pub(super) beta: CayleyKleinParameter,
     loaded: bool,
 }
 
@@ -145,8 +145,8 @@ impl LagrangeTop {
             lattice,
             since_origin,
             starts_low,
-            alpha: Part::new(lattice.wave(alpha_zero), extra_spin),
-            beta: Part::new(lattice.wave(beta_zero), -extra_spin),
+            alpha: CayleyKleinParameter::new(lattice.wave(alpha_zero), extra_spin),
+            beta: CayleyKleinParameter::new(lattice.wave(beta_zero), -extra_spin),
             loaded: start.pull > 0.0,
         };
         top.fit(&start, vertical.inverse() * quaternion(orientation));
@@ -217,7 +217,7 @@ impl LagrangeTop {
 
     /// Both sums at `t` s after the start. Always inlined: what a caller does not use of them need not be stored.
     #[inline(always)]
-    fn sums_at(&self, t: f64) -> Sums {
+    fn sums_at(&self, t: f64) -> CayleyKleinSums {
         let since = t + self.since_origin;
         let cells = round(since * self.lattice.per_period);
         // A motion without a period has one cell, and its length must not enter: 0 * infinity is no number.
@@ -228,7 +228,7 @@ impl LagrangeTop {
         };
         let (a, b) = self.ordered(self.lattice.harmonics(local));
         let fraction = local * self.lattice.per_period;
-        Sums {
+        CayleyKleinSums {
             turns: [&self.alpha, &self.beta].map(|part| part.turned(t, fraction)),
             values: [self.alpha.wave.value(&a), self.beta.wave.value(&b)],
             harmonics: [a, b],
@@ -236,7 +236,7 @@ impl LagrangeTop {
     }
 
     /// alpha beta' - beta alpha' (of the body without extra spin), short of the square of the common real factor.
-    fn bracket(&self, sums: &Sums) -> Complex<f64> {
+    fn bracket(&self, sums: &CayleyKleinSums) -> Complex<f64> {
         let ([turn_a, turn_b], [value_a, value_b]) = (sums.turns, sums.values);
         let [a, b] = &sums.harmonics;
         let (slope_a, slope_b) = (
@@ -259,7 +259,7 @@ impl LagrangeTop {
     ///
     /// The even one never vanishes near the origin, so its value decides. The odd one may be zero at the start, and a small
     /// one may be known better by its rate: both its value and L decide, each by the weight it has (least squares).
-    fn fit(&mut self, start: &Start, turn: UnitQuaternion<f64>) {
+    fn fit(&mut self, start: &TurningStart, turn: UnitQuaternion<f64>) {
         let (alpha, beta) = cayley_klein(start, turn);
         let (low, one) = (self.starts_low, Complex::new(1.0, 0.0));
         (self.alpha.amplitude, self.beta.amplitude) = (one, one);
@@ -290,7 +290,12 @@ impl LagrangeTop {
 }
 
 /// Time from the turning point nearer to the start (negative before it), s, and whether that is the lower one.
-fn origin(turning: &Turning, lattice: &Lattice, start: &Start, one_minus_m: f64) -> (f64, bool) {
+fn origin(
+    turning: &Turning,
+    lattice: &Lattice,
+    start: &TurningStart,
+    one_minus_m: f64,
+) -> (f64, bool) {
     let (above, below) = (turning.start_above, turning.start_below);
     let direction = if start.climb() < 0.0 { -1.0 } else { 1.0 };
     if turning.swing <= 0.0 {
@@ -308,7 +313,7 @@ fn origin(turning: &Turning, lattice: &Lattice, start: &Start, one_minus_m: f64)
 }
 
 /// Where alpha and beta vanish off the real axis; both from the gaps between the roots of the cubic.
-fn zeros(start: &Start, t: &Turning, starts_low: bool) -> (Zero, Zero) {
+fn zeros(start: &TurningStart, t: &Turning, starts_low: bool) -> (Zero, Zero) {
     let two_c = 2.0 * start.pull;
     let parity = |low: bool| {
         if low == starts_low {

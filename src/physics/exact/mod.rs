@@ -31,11 +31,11 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Clone, Debug)]
 pub struct ExactMotion {
     begin: State,
-    solution: Solution,
+    solution: ExactSolution,
 }
 
 #[derive(Clone, Debug)]
-enum Solution {
+enum ExactSolution {
     Closed(Box<LagrangeTop>),
     Integrated(Box<AccurateMotion>),
     /// Of numbers that are not finite.
@@ -44,7 +44,7 @@ enum Solution {
 
 /// How exact motion is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ExactMethod {
     /// By elliptic functions: the body is symmetric about its axle and every force acts on it.
     Closed,
     /// By an integration held to rounding: any body, any forces.
@@ -64,14 +64,14 @@ impl ExactMotion {
         let damping = Damping::new(body, &loads.friction);
         let force = top.and_then(|top| Some((top, loads.on_axle(body, &top)?)));
         let solution = match force.filter(|_| damping.is_none()) {
-            Some((top, force)) => Solution::Closed(Box::new(LagrangeTop::new(
+            Some((top, force)) => ExactSolution::Closed(Box::new(LagrangeTop::new(
                 top.across, top.along, force, turn, momentum,
             ))),
             None => {
                 let moment = loads.moment(body);
                 AccurateMotion::damped(body.inertia(), moment, turn, momentum, damping)
-                    .map_or(Solution::None, |motion| {
-                        Solution::Integrated(Box::new(motion))
+                    .map_or(ExactSolution::None, |motion| {
+                        ExactSolution::Integrated(Box::new(motion))
                     })
             }
         };
@@ -91,13 +91,13 @@ impl ExactMotion {
     pub(crate) fn at_heard<L: Listener>(&mut self, time_s: f64, listener: &mut L) -> State {
         let t = time_s - self.begin.time_s;
         let (orientation, momentum) = match &mut self.solution {
-            Solution::Closed(top) => top.at_heard(t, listener),
-            Solution::Integrated(motion) => {
+            ExactSolution::Closed(top) => top.at_heard(t, listener),
+            ExactSolution::Integrated(motion) => {
                 let now = motion.advance(t);
                 listener.hear(|| phases::integrated(t, motion.time, &now));
                 now
             }
-            Solution::None => (
+            ExactSolution::None => (
                 Matrix3::from_element(f64::NAN),
                 Vector3::from_element(f64::NAN),
             ),
@@ -113,8 +113,8 @@ impl ExactMotion {
     #[inline]
     pub fn orientation_at(&mut self, time_s: f64) -> Matrix3<f64> {
         match &self.solution {
-            Solution::Closed(top) => top.orientation_at(time_s - self.begin.time_s),
-            Solution::Integrated(_) | Solution::None => self.at(time_s).orientation,
+            ExactSolution::Closed(top) => top.orientation_at(time_s - self.begin.time_s),
+            ExactSolution::Integrated(_) | ExactSolution::None => self.at(time_s).orientation,
         }
     }
 
@@ -139,37 +139,37 @@ impl ExactMotion {
     }
 
     /// How it is found.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> ExactMethod {
         match &self.solution {
-            Solution::Closed(_) => Kind::Closed,
-            Solution::Integrated(motion) if motion.friction.is_some() => Kind::Rubbing,
-            Solution::Integrated(_) | Solution::None => Kind::Integrated,
+            ExactSolution::Closed(_) => ExactMethod::Closed,
+            ExactSolution::Integrated(motion) if motion.friction.is_some() => ExactMethod::Rubbing,
+            ExactSolution::Integrated(_) | ExactSolution::None => ExactMethod::Integrated,
         }
     }
 
     /// Whether a time was asked for to which the integration would have taken too long: from there on it is no number.
     pub fn has_given_up(&self) -> bool {
-        matches!(&self.solution, Solution::Integrated(motion) if motion.gave_up)
+        matches!(&self.solution, ExactSolution::Integrated(motion) if motion.gave_up)
     }
 
     /// The work of friction from where it began to the time asked for last, J.
     pub fn friction_work(&self) -> f64 {
         match &self.solution {
-            Solution::Integrated(motion) => motion.friction_work(),
-            Solution::Closed(_) | Solution::None => 0.0,
+            ExactSolution::Integrated(motion) => motion.friction_work(),
+            ExactSolution::Closed(_) | ExactSolution::None => 0.0,
         }
     }
 
     /// The closed form, where there is one.
     pub fn closed_form(&self) -> Option<&LagrangeTop> {
         match &self.solution {
-            Solution::Closed(top) => Some(top),
-            Solution::Integrated(_) | Solution::None => None,
+            ExactSolution::Closed(top) => Some(top),
+            ExactSolution::Integrated(_) | ExactSolution::None => None,
         }
     }
 }
 
-impl std::fmt::Display for Kind {
+impl std::fmt::Display for ExactMethod {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Closed => "closed form",

@@ -4,7 +4,7 @@
 //! Here every time goes through the same operations, without a choice: angles are reduced to one turn, their fourth part
 //! lies where the polynomials hold, and two doublings lead back. So the processor takes several times together.
 
-use super::lagrange::{LagrangeTop, Part};
+use super::lagrange::{CayleyKleinParameter, LagrangeTop};
 use crate::trig::kernels;
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::{Complex, Matrix3, Vector3};
@@ -74,7 +74,7 @@ impl LagrangeTop {
 /// Alpha or beta short of a common real factor, after so many turns, where twice the argument of its sum has this sine and
 /// cosine. A sum of harmonics has no [lag](super::theta::Wave::lag).
 #[inline(always)]
-fn parameter(part: &Part, turns: f64, sin: f64, cos: f64) -> Complex<f64> {
+fn parameter(part: &CayleyKleinParameter, turns: f64, sin: f64, cos: f64) -> Complex<f64> {
     let (turn_sin, turn_cos) = doubled_twice(FRAC_PI_2 * (turns - whole(turns)));
     part.amplitude * Complex::new(turn_cos, turn_sin) * part.wave.value_at(sin, cos)
 }

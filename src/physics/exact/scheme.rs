@@ -1,6 +1,6 @@
 //! The exact motion as a scheme: the time step only says where the rows stand.
 
-use super::{ExactMotion, Kind};
+use super::{ExactMethod, ExactMotion};
 use crate::workings::{Listener, Nobody, Phase};
 use crate::{Body, Loads, Scheme, State};
 
@@ -11,7 +11,7 @@ pub struct Exact {
     loads: Loads,
     /// The motion since the loads changed, its times counted from there; none before the first step under them.
     motion: Option<ExactMotion>,
-    pace: Pace,
+    pace: LoadClock,
     kinds: (bool, bool),
     /// Work of friction since the loads changed, and in the step taken last, J.
     work: f64,
@@ -20,13 +20,13 @@ pub struct Exact {
 
 /// Time since the loads changed, counted in steps and not summed.
 #[derive(Clone, Copy, Debug, Default)]
-struct Pace {
+struct LoadClock {
     before_s: f64,
     time_step_s: f64,
     steps: u64,
 }
 
-impl Pace {
+impl LoadClock {
     fn advance(&mut self, time_step_s: f64) -> f64 {
         if time_step_s != self.time_step_s {
             *self = Self {
@@ -46,7 +46,7 @@ impl Pace {
 
 impl Exact {
     pub fn new(body: &Body) -> Self {
-        let (loads, pace) = (Loads::default(), Pace::default());
+        let (loads, pace) = (Loads::default(), LoadClock::default());
         Self {
             body: body.clone(),
             loads,
@@ -61,7 +61,7 @@ impl Exact {
     #[inline]
     fn advance<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
         let motion = self.motion.get_or_insert_with(|| {
-            self.pace = Pace::default();
+            self.pace = LoadClock::default();
             self.work = 0.0;
             ExactMotion::new(
                 &self.body,
@@ -73,8 +73,8 @@ impl Exact {
             )
         });
         match motion.kind() {
-            Kind::Closed => self.kinds.0 = true,
-            Kind::Integrated | Kind::Rubbing => self.kinds.1 = true,
+            ExactMethod::Closed => self.kinds.0 = true,
+            ExactMethod::Integrated | ExactMethod::Rubbing => self.kinds.1 = true,
         }
         let now = motion.at_heard(self.pace.advance(dt), listener);
         (state.orientation, state.momentum) = (now.orientation, now.momentum);
@@ -113,16 +113,16 @@ impl Scheme for Exact {
 
     fn remark(&self) -> Option<String> {
         if !self.loads.friction.is_none() {
-            return Some(Kind::Rubbing.to_string());
+            return Some(ExactMethod::Rubbing.to_string());
         }
         match self.kinds {
             (true, true) => Some(format!(
                 "{}, and off the axle {}",
-                Kind::Closed,
-                Kind::Integrated
+                ExactMethod::Closed,
+                ExactMethod::Integrated
             )),
-            (true, false) => Some(Kind::Closed.to_string()),
-            (false, true) => Some(Kind::Integrated.to_string()),
+            (true, false) => Some(ExactMethod::Closed.to_string()),
+            (false, true) => Some(ExactMethod::Integrated.to_string()),
             (false, false) => None,
         }
     }

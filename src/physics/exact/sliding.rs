@@ -48,14 +48,14 @@ pub(super) struct Sliding {
 
 /// How the body rubbed, and the work of friction, where a series begins.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Before {
+pub(super) struct FrictionStart {
     contact: Contact,
     ends: bool,
     work: f64,
 }
 
 /// The coefficients found so far of what friction depends on: up to that of the order asked for.
-pub(super) struct Known<'a> {
+pub(super) struct FrictionCoefficients<'a> {
     /// Of the orientation.
     pub matrix: &'a [Matrix3<f64>],
     /// Of ω, body frame, rad/s.
@@ -110,8 +110,8 @@ impl Sliding {
     }
 
     /// What [`begin`](Self::begin) depends on beside the state.
-    pub fn before(&self) -> Before {
-        Before {
+    pub fn before(&self) -> FrictionStart {
+        FrictionStart {
             contact: self.contact,
             ends: self.ends,
             work: self.work[0],
@@ -119,13 +119,13 @@ impl Sliding {
     }
 
     /// Goes back to where it was so.
-    pub fn go_back(&mut self, before: Before) {
+    pub fn go_back(&mut self, before: FrictionStart) {
         (self.contact, self.ends) = (before.contact, before.ends);
         self.work[0] = before.work;
     }
 
     /// Coefficient `k` of friction's torque, world frame, N m; those below it must have been asked for.
-    pub fn coefficient(&mut self, k: usize, known: &Known<'_>) -> Vector3<f64> {
+    pub fn coefficient(&mut self, k: usize, known: &FrictionCoefficients<'_>) -> Vector3<f64> {
         let omega = known.omega[k];
         self.spin[k] = omega.z;
         self.load[k] = axial(&(known.matrix[k] * self.moment));

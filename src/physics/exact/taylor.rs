@@ -16,7 +16,7 @@
 //! methods, Experimental Mathematics 14 (2005) 99-117.
 
 use super::series::{ORDER, convolve};
-use super::sliding::{Before, Known, Sliding};
+use super::sliding::{FrictionCoefficients, FrictionStart, Sliding};
 use crate::Damping;
 use crate::loads::axial;
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
@@ -69,7 +69,7 @@ struct Centre {
     turn: Quaternion<f64>,
     momentum: Vector3<f64>,
     carry: Vector3<f64>,
-    friction: Before,
+    friction: FrictionStart,
 }
 
 /// The most centres that are kept.
@@ -231,7 +231,10 @@ impl AccurateMotion {
                 None => torque,
                 Some(rubbing) => {
                     let (matrix, omega) = (&matrix[..=k], &spin[..=k]);
-                    torque + rubbing.sliding.coefficient(k, &Known { matrix, omega })
+                    torque
+                        + rubbing
+                            .sliding
+                            .coefficient(k, &FrictionCoefficients { matrix, omega })
                 }
             };
             self.momentum[k + 1] = torque / next;

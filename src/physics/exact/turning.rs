@@ -16,7 +16,7 @@ use nalgebra::Complex;
 
 /// The state at the start, in a frame with its third axis along the vertical. Horizontal vectors are complex, x + i y.
 #[derive(Clone, Copy, Debug)]
-pub struct Start {
+pub struct TurningStart {
     /// |p| / I1, 1/s^2: how hard the load pulls the axle down.
     pub pull: f64,
     /// Horizontal part of the axle, a unit vector.
@@ -29,7 +29,7 @@ pub struct Start {
     pub spin_vertical: f64,
 }
 
-impl Start {
+impl TurningStart {
     /// 1 - u0, without cancellation near the top.
     pub fn below_top(&self) -> f64 {
         if self.height > 0.0 {
@@ -104,7 +104,7 @@ pub struct Turning {
 }
 
 impl Turning {
-    pub fn new(start: &Start) -> Self {
+    pub fn new(start: &TurningStart) -> Self {
         let cubic = about_start(start);
         let lowest = lowest_root(cubic, -start.above_bottom());
         let reach = start.below_top() - lowest;
@@ -126,7 +126,7 @@ impl Turning {
     }
 
     /// The parameter m = (u2 - u1)/(u3 - u1) of the elliptic functions, and 1 - m, both to full relative accuracy.
-    pub fn parameters(&self, start: &Start) -> (f64, f64) {
+    pub fn parameters(&self, start: &TurningStart) -> (f64, f64) {
         if self.whole <= 0.0 {
             return (0.0, 1.0);
         }
@@ -139,7 +139,7 @@ impl Turning {
 }
 
 /// F as a polynomial in x = u - u0, lowest power first.
-fn about_start(start: &Start) -> [f64; 4] {
+fn about_start(start: &TurningStart) -> [f64; 4] {
     let (c, u, s2) = (start.pull, start.height, start.axle.norm_sqr());
     let (along, n2) = (start.spin_along(), start.tip_speed_squared());
     let twist = start.spin_vertical * s2 - u * start.horizontal_product();
@@ -170,7 +170,7 @@ fn lowest_root([f0, f1, f2, f3]: [f64; 4], left_end: f64) -> f64 {
 }
 
 /// 1 - u2 and 2c (u3 - 1): the two roots next to the top, of opposite signs as seen from u = 1, from their sum and product.
-fn gaps_at_top(start: &Start, reach: f64) -> (f64, f64) {
+fn gaps_at_top(start: &TurningStart, reach: f64) -> (f64, f64) {
     let (c, along, difference) = (start.pull, start.spin_along(), start.spin_difference());
     let energy = start.tip_speed_squared() - 2.0 * c * start.below_top();
     if reach <= 0.0 {
@@ -192,7 +192,7 @@ fn gaps_at_top(start: &Start, reach: f64) -> (f64, f64) {
 
 /// u0 - u1, u2 - u0 and u2 - u1, with the root u3 divided out of the cubic.
 fn turning_points(
-    start: &Start,
+    start: &TurningStart,
     [f0, f1, ..]: [f64; 4],
     lowest: f64,
     beyond_top: f64,
@@ -213,7 +213,7 @@ fn turning_points(
 }
 
 /// 1 + u1, from F(-1) = -(l + s)^2.
-fn gap_at_bottom(start: &Start, start_above: f64, rise: f64, beyond_top: f64) -> f64 {
+fn gap_at_bottom(start: &TurningStart, start_above: f64, rise: f64, beyond_top: f64) -> f64 {
     let scale = rise * (beyond_top + 4.0 * start.pull);
     if scale <= 0.0 {
         // At rest: hanging, or without a load.

@@ -1,13 +1,13 @@
 //! The phases of a step of the report's scheme, with their numbers.
 
-use super::Report;
+use super::ReportScheme;
 use super::points::{Inertia, LANES, Moments, Pair};
 use crate::rotation::AxisAngle;
-use crate::workings::{Changes, Phase, Table};
+use crate::workings::{Phase, PhaseTarget, PointTable};
 use nalgebra::{Matrix3, Vector3};
 use wide::f64x2;
 
-impl Report {
+impl ReportScheme {
     /// Every point as (its index, its mass in kg, where it is), of `points`.
     fn each<'a>(
         &self,
@@ -25,7 +25,7 @@ impl Report {
     }
 
     pub(super) fn inertia_phase(&self) -> Phase {
-        let mut table = Table::new(&[
+        let mut table = PointTable::new(&[
             ("m", "kg"),
             ("x", "m"),
             ("y", "m"),
@@ -60,7 +60,7 @@ impl Report {
     }
 
     pub(super) fn positions_phase(&self, before: &[Pair]) -> Phase {
-        let mut table = Table::new(&[
+        let mut table = PointTable::new(&[
             ("x", "m"),
             ("y", "m"),
             ("z", "m"),
@@ -74,15 +74,15 @@ impl Report {
         }
         Phase::of("new positions", "X ← R X, point by point")
             .with("X", "", table)
-            .changing(Changes::Orientation)
+            .changing(PhaseTarget::Orientation)
     }
 
     pub(super) fn torque_phase(&self, first_moment: &Vector3<f64>, torque: &Vector3<f64>) -> Phase {
-        let mut points = Table::new(&[("m x", "kg m"), ("m y", "kg m"), ("m z", "kg m")]);
+        let mut points = PointTable::new(&[("m x", "kg m"), ("m y", "kg m"), ("m z", "kg m")]);
         for (point, _, _, [x, y, z, ..]) in self.each(&self.points) {
             points.add(point, [x, y, z]);
         }
-        let mut pushes = Table::new(&[
+        let mut pushes = PointTable::new(&[
             ("Fx", "N"),
             ("Fy", "N"),
             ("Fz", "N"),
@@ -143,5 +143,5 @@ pub(super) fn momentum_phase(
         .with("τ", "N m", *torque)
         .with("dL", "J s", dt * torque)
         .with("new L", "J s", *to)
-        .changing(Changes::Momentum)
+        .changing(PhaseTarget::Momentum)
 }

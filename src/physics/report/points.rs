@@ -42,7 +42,7 @@ pub(super) struct Inertia {
 
 /// A rotation matrix, each element in both lanes.
 #[derive(Clone, Copy)]
-pub(super) struct Turn([[f64x2; 3]; 3]);
+pub(super) struct LaneRotation([[f64x2; 3]; 3]);
 
 impl Moments {
     const NONE: Self = {
@@ -159,7 +159,7 @@ impl Inertia {
     }
 }
 
-impl Turn {
+impl LaneRotation {
     #[inline]
     pub fn of(rotation: &Matrix3<f64>) -> Self {
         let element = |row, column| f64x2::splat(rotation[(row, column)]);

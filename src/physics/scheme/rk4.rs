@@ -5,7 +5,7 @@
 //! equation is smooth off the rotations too, and pulls it back to a rotation once, at the end of the step: that
 //! changes the result by no more than the step's own error.
 
-use crate::workings::{Changes, Listener, Nobody, Phase};
+use crate::workings::{Listener, Nobody, Phase, PhaseTarget};
 use crate::{Body, Damping, Loads, Scheme, State, loads::torque, rotation};
 use nalgebra::{Matrix3, Vector3};
 
@@ -13,16 +13,16 @@ use nalgebra::{Matrix3, Vector3};
 const FIRST: &str = "slope 1: at the beginning";
 const SMOOTH: &str = "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q)";
 const RUBBED: &str = "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q) + friction's torque at Ω₁";
-type Named = (&'static str, &'static str);
-const SECOND: Named = (
+type PhaseText = (&'static str, &'static str);
+const SECOND: PhaseText = (
     "slope 2: half way by slope 1",
     "the same at Q + ½ dt Q₁′, L + ½ dt L₁′",
 );
-const THIRD: Named = (
+const THIRD: PhaseText = (
     "slope 3: half way by slope 2",
     "the same at Q + ½ dt Q₂′, L + ½ dt L₂′",
 );
-const FOURTH: Named = (
+const FOURTH: PhaseText = (
     "slope 4: at the end by slope 3",
     "the same at Q + dt Q₃′, L + dt L₃′",
 );
@@ -132,7 +132,7 @@ fn orientation_phase(
     .with("dt", "s", dt)
     .with("Q + dt/6 (...)", "", *bent)
     .with("new Q", "", *to)
-    .changing(Changes::Orientation)
+    .changing(PhaseTarget::Orientation)
 }
 
 fn momentum_phase(dt: f64, from: &Vector3<f64>, to: &Vector3<f64>) -> Phase {
@@ -140,7 +140,7 @@ fn momentum_phase(dt: f64, from: &Vector3<f64>, to: &Vector3<f64>) -> Phase {
         .with("L", "J s", *from)
         .with("dt", "s", dt)
         .with("new L", "J s", *to)
-        .changing(Changes::Momentum)
+        .changing(PhaseTarget::Momentum)
 }
 
 impl Scheme for Rk4 {

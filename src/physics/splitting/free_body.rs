@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::jacobi::{Jacobi, carlson_rj};
 use super::principal::{ROUNDING, principal_axes};
-use super::turn::Turn;
+use super::turn::RotationByVector;
 use crate::trig::sin_cos;
 
 /// A rigid body that turns about a fixed point without torque.
@@ -93,8 +93,8 @@ impl SymmetricBody {
     fn advance(&self, orientation: &mut Matrix3<f64>, momentum: &Vector3<f64>, duration_s: f64) {
         let axis = *orientation * self.axis;
         // L.axis from world vectors, as |L|: taken from body components the errors of a carried matrix would feed on themselves.
-        let spin = Turn::new(axis * (self.excess * axis.dot(momentum) * duration_s));
-        let precession = Turn::new(momentum * (self.across * duration_s));
+        let spin = RotationByVector::new(axis * (self.excess * axis.dot(momentum) * duration_s));
+        let precession = RotationByVector::new(momentum * (self.across * duration_s));
         *orientation = precession.of_columns(&spin.of_columns(orientation));
     }
 }
@@ -172,7 +172,7 @@ impl LopsidedBody {
 }
 
 /// The principal axis (0 or 2) whose projection across L is followed about L.
-type Node = usize;
+type PrincipalAxis = usize;
 
 /// The constants of one polhode, the curve on which L moves in the body.
 struct Polhode {
@@ -180,7 +180,7 @@ struct Polhode {
     p: f64,
     q: f64,
     difference: f64,
-    node: Node,
+    node: PrincipalAxis,
     /// The node's characteristic: from the crossing on, L^2 - m_node^2 is 1 + nu S^2 times what it was there.
     nu: f64,
 }
@@ -275,7 +275,7 @@ fn cube_rj(s: f64, c2: f64, d2: f64, nu: f64) -> f64 {
 }
 
 /// The frame of L, the node's direction across it, and the third, in principal components.
-fn frame(m: &Vector3<f64>, node: Node) -> Matrix3<f64> {
+fn frame(m: &Vector3<f64>, node: PrincipalAxis) -> Matrix3<f64> {
     let first = m / m.norm();
     let across = Vector3::ith_axis(node).cross(&first);
     let second = across / across.norm();
@@ -313,7 +313,7 @@ mod tests {
             Vector3::from_fn(|_, _| self.number())
         }
         fn rotation(&mut self) -> Matrix3<f64> {
-            Turn::new(self.vector() * 3.0).of_columns(&Matrix3::identity())
+            RotationByVector::new(self.vector() * 3.0).of_columns(&Matrix3::identity())
         }
         /// From 0.1 to 10, evenly in the logarithm.
         fn size(&mut self) -> f64 {
@@ -323,9 +323,9 @@ mod tests {
 
     /// Inertia, start, angular momentum and time.
     #[derive(Debug)]
-    struct Motion(Matrix3<f64>, Matrix3<f64>, Vector3<f64>, f64);
+    struct FreeMotion(Matrix3<f64>, Matrix3<f64>, Vector3<f64>, f64);
 
-    impl Motion {
+    impl FreeMotion {
         /// Euler's equations and the quaternion's, by Taylor series of the order 50 in steps of a radian at the most: more steps of the
         /// same kind would add up their rounding. The terms are kept with their powers of the step, so that none is too large.
         fn integrated(&self) -> Matrix3<f64> {
@@ -392,7 +392,7 @@ mod tests {
             let inertia = Matrix3::from_diagonal(&moments.into());
             let (start, momentum) = (random.rotation(), random.vector() * random.size());
             let t = 20.0 * random.number() * inertia.diagonal().min() / momentum.norm();
-            Motion(inertia, start, momentum, t).is_as_integrated(1e-13);
+            FreeMotion(inertia, start, momentum, t).is_as_integrated(1e-13);
         }
     }
 
@@ -408,7 +408,7 @@ mod tests {
             let t = 5.0 * random.number() * moments.min() / momentum.norm();
             // The matrix is rounded in parts of its largest moment; the smallest turns the body fastest.
             let condition = moments.max() / moments.min();
-            Motion(inertia, start, momentum, t).is_as_integrated(2e-14 + 5e-16 * condition);
+            FreeMotion(inertia, start, momentum, t).is_as_integrated(2e-14 + 5e-16 * condition);
         }
     }
 
@@ -427,7 +427,7 @@ mod tests {
                 diagonal(1.0, 1.0 + delta, 1.0 - delta),
             ] {
                 for _ in 0..10 {
-                    let motion = Motion(
+                    let motion = FreeMotion(
                         inertia,
                         random.rotation(),
                         random.vector(),
@@ -449,7 +449,7 @@ mod tests {
                 let m = Vector3::new(1.0 + off, 0.7, 3.0_f64.sqrt());
                 // Neighbours part by up to e^(lambda t).
                 let growth = libm::exp(m.norm() * (0.5 * (0.5 - 1.0 / 3.0_f64)).sqrt() * t.abs());
-                Motion(diagonal(1.0, 2.0, 3.0), start, start * m, t)
+                FreeMotion(diagonal(1.0, 2.0, 3.0), start, start * m, t)
                     .is_as_integrated(4e-15 * (growth + 20.0 * t.abs()));
             }
         }
@@ -468,11 +468,13 @@ mod tests {
                     let mut m = Vector3::from_element(offset);
                     m[i] = -1.5;
                     let axis: Vector3<f64> = start.column(i).into();
-                    let expected = Turn::new(axis * (-1.5 / moment * t)).of_columns(&start);
+                    let expected =
+                        RotationByVector::new(axis * (-1.5 / moment * t)).of_columns(&start);
                     let rate = if is_unstable { 0.5 } else { 0.0 };
                     let growth = libm::exp(rate * t.abs());
                     let bound = 4e-15 * (growth + t.abs()) + 10.0 * offset * growth;
-                    Motion(diagonal(1.0, 2.0, 3.0), start, start * m, t).is_near(&expected, bound);
+                    FreeMotion(diagonal(1.0, 2.0, 3.0), start, start * m, t)
+                        .is_near(&expected, bound);
                 }
             }
         }
@@ -491,7 +493,7 @@ mod tests {
             (0..8).for_each(|_| body.advance(&mut in_parts, &momentum, 256.0));
             // Each part begins with a rounded L in the body, and keeps its slightly different rates to the end.
             let phase = 2048.0 * momentum.norm() / inertia.diagonal().min();
-            Motion(inertia, start, momentum, 2048.0).is_near(&in_parts, 1e-14 * phase);
+            FreeMotion(inertia, start, momentum, 2048.0).is_near(&in_parts, 1e-14 * phase);
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::{Body, Loads, Scheme, State};
 use damped::DampedStrang;
 use free_body::{FreeBody, SymmetricBody, orthonormal};
 use principal::ROUNDING;
-use turn::Turn;
+use turn::RotationByVector;
 
 mod damped;
 mod free_body;
@@ -28,14 +28,14 @@ mod principal;
 mod turn;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum SplittingMethod {
     /// Kick, free motion, kick: order 2 (G. Strang, SIAM J. Numer. Anal. 5, 506, 1968).
     Strang,
     /// Order 6 with 11 free motions: SRKN_11^b of Blanes & Moan.
     Srkn11b,
 }
 
-impl Kind {
+impl SplittingMethod {
     /// Pairs (kick, free motion) in parts of the step; the last kick, which follows them, is the first once more.
     fn stages(self) -> &'static [(f64, f64)] {
         match self {
@@ -83,7 +83,7 @@ mod srkn11b {
 #[derive(Clone, Debug)]
 pub struct SplittingScheme {
     body: Body,
-    kind: Kind,
+    kind: SplittingMethod,
     splitting: Splitting,
     /// Takes the steps where there is friction.
     damped: Option<DampedStrang>,
@@ -92,7 +92,7 @@ pub struct SplittingScheme {
 }
 
 impl SplittingScheme {
-    pub fn new(kind: Kind, body: &Body) -> Self {
+    pub fn new(kind: SplittingMethod, body: &Body) -> Self {
         let splitting = Splitting::new(kind, &body.inertia(), &Loads::default().moment(body));
         Self {
             body: body.clone(),
@@ -117,7 +117,8 @@ impl Scheme for SplittingScheme {
 
     fn load(&mut self, loads: &Loads) {
         self.splitting = Splitting::new(self.kind, &self.body.inertia(), &loads.moment(&self.body));
-        self.damped = DampedStrang::new(&self.body, loads).filter(|_| self.kind == Kind::Strang);
+        self.damped =
+            DampedStrang::new(&self.body, loads).filter(|_| self.kind == SplittingMethod::Strang);
         self.work = 0.0;
     }
 
@@ -153,7 +154,7 @@ enum Top {
 
 impl Splitting {
     /// `inertia` as for `FreeBody::new`, `moment` as of [`Loads::moment`].
-    fn new(kind: Kind, inertia: &Matrix3<f64>, moment: &Matrix3<f64>) -> Self {
+    fn new(kind: SplittingMethod, inertia: &Matrix3<f64>, moment: &Matrix3<f64>) -> Self {
         let top = match (FreeBody::new(inertia), force_on_axle(moment)) {
             (FreeBody::Symmetric(body), Some(force)) if body.axis == Vector3::z() => {
                 Top::Axle(AxleTop { body, force })
@@ -219,7 +220,7 @@ impl AxleTop {
             let change = axle.cross(&(self.force * (kick * h)));
             momentum += change;
             listener.hear(|| phases::axle_kick(kick * h, &self.force, &axle, &change, &momentum));
-            let turn = Turn::new(momentum * (self.body.across * (free * h)));
+            let turn = RotationByVector::new(momentum * (self.body.across * (free * h)));
             axle = turn.of(axle);
             side = turn.of(side);
             listener.hear(|| phases::axle_turn(free * h, &turn, &axle, &side));
@@ -295,7 +296,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    const KINDS: [Kind; 2] = [Kind::Strang, Kind::Srkn11b];
+    const KINDS: [SplittingMethod; 2] = [SplittingMethod::Strang, SplittingMethod::Srkn11b];
 
     /// Inertia and moment.
     type Loaded = (Matrix3<f64>, Matrix3<f64>);
@@ -360,7 +361,7 @@ mod tests {
     }
 
     fn run(
-        kind: Kind,
+        kind: SplittingMethod,
         (inertia, moment): Loaded,
         mut state: State,
         seconds: f64,
@@ -380,7 +381,10 @@ mod tests {
     #[test]
     fn the_order_is_as_named() {
         for (name, top) in tops() {
-            for (kind, named, coarse) in [(Kind::Strang, 2.0, 400), (Kind::Srkn11b, 6.0, 40)] {
+            for (kind, named, coarse) in [
+                (SplittingMethod::Strang, 2.0, 400),
+                (SplittingMethod::Srkn11b, 6.0, 40),
+            ] {
                 let end = |steps| run(kind, top, general_start(), 2.0, steps);
                 let [a, b, c] = [coarse, 2 * coarse, 4 * coarse].map(end);
                 let order: f64 = libm::log2(distance(&a, &b) / distance(&b, &c));

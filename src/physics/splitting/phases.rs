@@ -1,7 +1,7 @@
 //! The phases of a step of a splitting scheme, with their numbers.
 
-use super::turn::Turn;
-use crate::workings::{Changes, Phase};
+use super::turn::RotationByVector;
+use crate::workings::{Phase, PhaseTarget};
 use nalgebra::{Matrix3, Vector3};
 
 /// Of a symmetric body: the spin that it has more than its turning about L, done once a step.
@@ -12,7 +12,7 @@ pub(super) fn spin(angle: f64, side: &Vector3<f64>) -> Phase {
     )
     .with("angle", "rad", angle)
     .with("e", "", *side)
-    .changing(Changes::Orientation)
+    .changing(PhaseTarget::Orientation)
 }
 
 /// Of a body whose forces all act on the axle `a`.
@@ -32,13 +32,13 @@ pub(super) fn axle_kick(
     .with("a", "", *axle)
     .with("ΔL", "J s", *change)
     .with("new L", "J s", *momentum)
-    .changing(Changes::Momentum)
+    .changing(PhaseTarget::Momentum)
 }
 
 /// The free motion of a symmetric body but for its spin: a turn about L.
 pub(super) fn axle_turn(
     duration_s: f64,
-    turn: &Turn,
+    turn: &RotationByVector,
     axle: &Vector3<f64>,
     side: &Vector3<f64>,
 ) -> Phase {
@@ -50,7 +50,7 @@ pub(super) fn axle_turn(
     .with("w", "rad", turn.vector)
     .with("new a", "", *axle)
     .with("new e", "", *side)
-    .changing(Changes::Orientation)
+    .changing(PhaseTarget::Orientation)
 }
 
 /// The orientation from the axle and a vector that is square to it but for rounding.
@@ -66,7 +66,7 @@ pub(super) fn put_together(
     .with("a", "", *axle)
     .with("e", "", *side)
     .with("new Q", "", *orientation)
-    .changing(Changes::Orientation)
+    .changing(PhaseTarget::Orientation)
 }
 
 /// Of any body under any forces.
@@ -75,7 +75,7 @@ pub(super) fn kick(duration_s: f64, torque: &Vector3<f64>, momentum: &Vector3<f6
         .with("h", "s", duration_s)
         .with("τ", "N m", *torque)
         .with("new L", "J s", *momentum)
-        .changing(Changes::Momentum)
+        .changing(PhaseTarget::Momentum)
 }
 
 /// The free motion of any body.
@@ -91,12 +91,12 @@ pub(super) fn free_motion(
     .with("h", "s", duration_s)
     .with("L", "J s", *momentum)
     .with("new Q", "", *orientation)
-    .changing(Changes::Orientation)
+    .changing(PhaseTarget::Orientation)
 }
 
 /// What rounding has added to the orientation is taken away.
 pub(super) fn orthonormal(orientation: &Matrix3<f64>) -> Phase {
     Phase::of("rounding taken out", "Q ← 3/2 Q − 1/2 Q Qᵀ Q")
         .with("new Q", "", *orientation)
-        .changing(Changes::Orientation)
+        .changing(PhaseTarget::Orientation)
 }

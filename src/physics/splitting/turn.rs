@@ -9,14 +9,14 @@ const SERIES_END: f64 = 2.0;
 
 /// The rotation by a rotation vector w: v + s w x v + c w x (w x v), s = sin|w| / |w|, c = (1 - cos|w|) / |w|^2.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn {
+pub struct RotationByVector {
     /// Axis times angle, rad.
     pub vector: Vector3<f64>,
     sine: f64,
     versine: f64,
 }
 
-impl Turn {
+impl RotationByVector {
     /// `vector`: axis times angle, rad.
     #[inline]
     pub fn new(vector: Vector3<f64>) -> Self {

@@ -1,7 +1,7 @@
 //! What the pictures of a run are drawn from: its curves over time, its path, where it stands, and the
 //! exact motion beside it.
 
-use super::Path;
+use super::PathFromAbove;
 use crate::physics::State;
 use crate::playback::recording::{Moment, Recording};
 use crate::run::{Step, Truth};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub(super) struct Pictures {
     pub now: Moment,
     pub recording: Recording,
-    pub path: Path,
+    pub path: PathFromAbove,
     /// The last step in the path. It is later than the present step while the run is still stepping towards it.
     pub followed_to: u64,
     pub ahead: Option<Ahead>,
@@ -26,7 +26,7 @@ pub(super) struct Pictures {
 pub(super) struct Ahead {
     pub step: u64,
     pub recording: Recording,
-    pub path: Path,
+    pub path: PathFromAbove,
 }
 
 impl Pictures {
@@ -34,7 +34,7 @@ impl Pictures {
         let mut pictures = Self {
             now: moment(step),
             recording: Recording::default(),
-            path: Path::new(reach),
+            path: PathFromAbove::new(reach),
             followed_to: 0,
             ahead: None,
             last_whole: None,
@@ -141,7 +141,7 @@ pub struct Overlay {
     time_step_s: f64,
     pub now: Moment,
     pub recording: Recording,
-    pub path: Path,
+    pub path: PathFromAbove,
     has_ended: bool,
 }
 
@@ -155,7 +155,7 @@ impl Overlay {
             time_step_s: scenario.motion.time_step_s,
             now,
             recording: Recording::default(),
-            path: Path::new(traced.norm()),
+            path: PathFromAbove::new(traced.norm()),
             has_ended: false,
         };
         overlay.record(now);

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Curve {
+pub enum RecordedCurve {
     /// x of the traced point, world frame, m.
     X,
     /// y of the traced point, world frame, m.
@@ -18,7 +18,7 @@ pub enum Curve {
     Tilt,
 }
 
-impl Curve {
+impl RecordedCurve {
     pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::Z, Self::Tilt];
 
     pub const OF_POINT: [Self; 3] = [Self::X, Self::Y, Self::Z];
@@ -92,7 +92,7 @@ impl Moment {
         self.values().iter().all(|value| value.is_finite())
     }
 
-    pub fn value(&self, curve: Curve) -> f64 {
+    pub fn value(&self, curve: RecordedCurve) -> f64 {
         curve.of_stored(self.values()[curve as usize])
     }
 
@@ -131,7 +131,7 @@ impl Extent {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Block {
+pub struct RecordingBin {
     /// Time of its first moment, s.
     pub begin_s: f64,
     /// Time of its last moment, s.
@@ -143,13 +143,13 @@ pub struct Block {
     pub last: [f64; 4],
 }
 
-impl Block {
-    pub fn extent(&self, curve: Curve) -> Extent {
+impl RecordingBin {
+    pub fn extent(&self, curve: RecordedCurve) -> Extent {
         curve.in_its_unit(self.stored(curve))
     }
 
     /// The extremes of the stored value of `curve`: of many blocks only what is drawn in the end is worth an arc cosine.
-    pub(in crate::playback) fn stored(&self, curve: Curve) -> Extent {
+    pub(in crate::playback) fn stored(&self, curve: RecordedCurve) -> Extent {
         self.extents[curve as usize]
     }
 
@@ -158,7 +158,7 @@ impl Block {
     }
 
     /// How often `curve` turns in it, up or down: twice in a swing.
-    pub fn turns(&self, curve: Curve) -> u32 {
+    pub fn turns(&self, curve: RecordedCurve) -> u32 {
         self.turned[curve as usize]
     }
 

@@ -4,12 +4,12 @@ use super::{longest, shortened, write};
 use crate::analysis::remarks::{Remark, remarks};
 use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
-use crate::lab::view::step::Page;
-use crate::lab::view::{Pane, Part};
+use crate::lab::view::step::StepPageChoice;
+use crate::lab::view::{HideablePart, Pane};
 use crate::playback::reading::Reading;
 use crate::text::number::{fixed, significant};
 use crate::text::wrap::columns;
-use crate::tui::keymap::{BINDINGS, Binding, Does, Key, Mode, Worth};
+use crate::tui::keymap::{BINDINGS, Binding, FooterPriority, Key, KeyEffect, Mode};
 use crate::tui::screen::page_goes_on;
 use crate::tui::split::split_columns;
 use crate::tui::theme::Role;
@@ -126,7 +126,7 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
 /// Whether the line about the numbers' health warns of something.
 pub fn warns(lab: &Lab) -> bool {
     let remarks = remarks(&lab.player().reading.readouts.health, None);
-    remarks.iter().any(|remark| remark.warns) && !lab.view().hides(Part::Health)
+    remarks.iter().any(|remark| remark.warns) && !lab.view().hides(HideablePart::Health)
 }
 
 /// The keys of the mode, as many as fit; help and quit always.
@@ -148,13 +148,13 @@ pub fn key_at(lab: &Lab, area: Rect, x: u16) -> Option<Key> {
 }
 
 #[derive(Clone, Copy)]
-struct Item {
+struct FooterItem {
     key: Key,
     word: &'static str,
-    worth: Worth,
+    worth: FooterPriority,
 }
 
-impl Item {
+impl FooterItem {
     /// Columns of the key and its word.
     fn length(&self) -> u16 {
         let blank = usize::from(!self.word.is_empty());
@@ -162,11 +162,11 @@ impl Item {
     }
 }
 
-fn placed(lab: &Lab, area: Rect) -> Vec<(u16, Item)> {
+fn placed(lab: &Lab, area: Rect) -> Vec<(u16, FooterItem)> {
     let screen = Rect::new(0, 0, area.width, area.bottom());
     let (items, gap) = fitted(footer(lab, page_goes_on(lab, screen)), area.width);
     let mut x = 1;
-    let place = |item: Item| {
+    let place = |item: FooterItem| {
         let at = x;
         x += item.length() + gap;
         (at, item)
@@ -176,7 +176,7 @@ fn placed(lab: &Lab, area: Rect) -> Vec<(u16, Item)> {
 
 /// As many of `items` as `width` has room for, and the columns between two of them. The spare keys give way first, then
 /// every second blank, then the words of the keys that every pane has, and last keys; help and quit stay.
-fn fitted(mut items: Vec<Item>, width: u16) -> (Vec<Item>, u16) {
+fn fitted(mut items: Vec<FooterItem>, width: u16) -> (Vec<FooterItem>, u16) {
     let mut gap = 2;
     loop {
         let whole: u16 = items.iter().map(|item| item.length() + gap).sum();
@@ -185,11 +185,14 @@ fn fitted(mut items: Vec<Item>, width: u16) -> (Vec<Item>, u16) {
         }
         let others = &items[..items.len() - 2]; // the last two are help and quit
         let least = others.iter().map(|item| item.worth).min();
-        let last = |is_it: &dyn Fn(&Item) -> bool| others.iter().rposition(is_it);
-        let has_spare_word = |item: &Item| item.worth < Worth::Own && !item.word.is_empty();
-        if gap > 1 && least > Some(Worth::Spare) {
+        let last = |is_it: &dyn Fn(&FooterItem) -> bool| others.iter().rposition(is_it);
+        let has_spare_word =
+            |item: &FooterItem| item.worth < FooterPriority::Own && !item.word.is_empty();
+        if gap > 1 && least > Some(FooterPriority::Spare) {
             gap = 1;
-        } else if let Some(word) = last(&has_spare_word).filter(|_| least > Some(Worth::Spare)) {
+        } else if let Some(word) =
+            last(&has_spare_word).filter(|_| least > Some(FooterPriority::Spare))
+        {
             items[word].word = "";
         } else if let Some(key) = last(&|item| Some(item.worth) == least) {
             items.remove(key);
@@ -198,7 +201,7 @@ fn fitted(mut items: Vec<Item>, width: u16) -> (Vec<Item>, u16) {
 }
 
 /// The keys that the footer names where there is room for all; `goes_on` says whether the page has more to be scrolled to.
-fn footer(lab: &Lab, goes_on: bool) -> Vec<Item> {
+fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
     let mode = lab.popups().mode;
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
@@ -209,12 +212,14 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<Item> {
     let of_touched = of_pane.filter(|_| lab.view().is_touched || always);
     let of_lab = BINDINGS.iter().filter(is_new);
     let of_lab = of_lab.map(|row| (row, row.worth));
-    let rows = of_touched.map(|row| (row, Worth::Own)).chain(of_lab);
+    let rows = of_touched
+        .map(|row| (row, FooterPriority::Own))
+        .chain(of_lab);
     let rows = rows.filter(|(row, _)| row.modes.contains(&mode) && !row.footer.is_empty());
     let items = rows.filter_map(|(row, worth)| {
         let word = word(lab, goes_on, row)?;
         let key = row.keys[0];
-        Some(Item { key, word, worth })
+        Some(FooterItem { key, word, worth })
     });
     let esc = match mode {
         Mode::Lab if lab.view().filled && lab.view().sheet.is_some() => Some("to the page"),
@@ -223,22 +228,22 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<Item> {
         Mode::Help | Mode::Filter | Mode::Find => Some("clear"),
         Mode::Browser | Mode::Dialog => Some("close"),
     };
-    let esc = esc.map(|word| Item {
+    let esc = esc.map(|word| FooterItem {
         key: Key::Esc,
         word,
-        worth: Worth::Own,
+        worth: FooterPriority::Own,
     });
     esc.into_iter().chain(items).collect()
 }
 
 /// What the footer says of a key now; `None` where the key does nothing.
 fn word(lab: &Lab, goes_on: bool, row: &Binding) -> Option<&'static str> {
-    let is_why = lab.view().page == Page::Why;
+    let is_why = lab.view().page == StepPageChoice::Why;
     let sheet = lab.view().sheet.as_ref();
     let enter = sheet.map_or("", |sheet| sheet.enter);
     let action = match row.does {
-        Does::Action(action) => Some(action),
-        Does::Commands(_) => None,
+        KeyEffect::Action(action) => Some(action),
+        KeyEffect::Commands(_) => None,
     };
     let is_of_use = match (row.footer, action) {
         ("residuals", _) => lab.comparison().data().is_some(),

@@ -1,7 +1,7 @@
 //! A form, over the bottom of the panes.
 
 use super::{popup_frame, wrapped_to, write};
-use crate::lab::form::{Field, Form};
+use crate::lab::form::{InputField, InputForm};
 use crate::lab::view::theme::Theme;
 use crate::text::wrap::{columns, wrapped};
 use crate::tui::split::{split_columns, split_rows};
@@ -17,12 +17,12 @@ const MOST_COMPLAINT: usize = 3;
 
 /// A form on top of the panes, as high as it needs to be, at the bottom of the area it is drawn on.
 pub struct FormPane<'a> {
-    pub form: &'a Form,
+    pub form: &'a InputForm,
     pub theme: &'a Theme,
 }
 
-enum Line<'a> {
-    Field(usize, &'a Field),
+enum FormLine<'a> {
+    Field(usize, &'a InputField),
     Text(String, Role),
 }
 
@@ -49,10 +49,10 @@ impl Widget for FormPane<'_> {
         };
         for (line, place) in lines.iter().zip(inside.rows()) {
             match line {
-                Line::Text(text, role) => {
+                FormLine::Text(text, role) => {
                     write(place, (0, 0), text, self.theme.style(*role), buf);
                 }
-                Line::Field(index, field) => {
+                FormLine::Field(index, field) => {
                     self.field(*index == self.form.selected, field, place, buf);
                 }
             }
@@ -63,7 +63,7 @@ impl Widget for FormPane<'_> {
 impl FormPane<'_> {
     /// The lines that fit in `height`: first the selected field and a line of the complaint, then the other fields, the
     /// rest of the complaint, the keys and the information.
-    fn lines(&self, width: u16, height: usize) -> Vec<Line<'_>> {
+    fn lines(&self, width: u16, height: usize) -> Vec<FormLine<'_>> {
         let (form, width) = (self.form, usize::from(width));
         let mut room = height;
         let reserved = usize::from(form.complaint.is_some() && height > 1);
@@ -83,17 +83,19 @@ impl FormPane<'_> {
         // The selected field is among those that are shown.
         let first = (form.selected + 1).saturating_sub(fields);
         let fields = form.fields.iter().enumerate().skip(first).take(fields);
-        let mut lines: Vec<_> = fields.map(|(at, field)| Line::Field(at, field)).collect();
-        let quiet = |text: &str| Line::Text(text.to_owned(), Role::Quiet);
+        let mut lines: Vec<_> = fields
+            .map(|(at, field)| FormLine::Field(at, field))
+            .collect();
+        let quiet = |text: &str| FormLine::Text(text.to_owned(), Role::Quiet);
         lines.extend(info.iter().map(|text| quiet(text)));
-        let warning = |text| Line::Text(text, Role::Warning);
+        let warning = |text| FormLine::Text(text, Role::Warning);
         lines.extend(complaint.into_iter().map(warning));
         lines.extend(keys.iter().map(|text| quiet(text)));
         lines
     }
 
     /// The labels in one column, and the texts beside it.
-    fn field(&self, is_selected: bool, field: &Field, area: Rect, buf: &mut Buffer) {
+    fn field(&self, is_selected: bool, field: &InputField, area: Rect, buf: &mut Buffer) {
         let labels = self.form.fields.iter().map(|field| columns(&field.label));
         let widest = labels.max().unwrap_or(0) as u16 + 1;
         let [label, room] = split_columns(area, widest.min(area.width / 2));
@@ -108,7 +110,7 @@ impl FormPane<'_> {
     }
 
     /// As much of the text as there is room for, with the cursor if the field is selected.
-    fn text(&self, is_selected: bool, field: &Field, area: Rect, buf: &mut Buffer) {
+    fn text(&self, is_selected: bool, field: &InputField, area: Rect, buf: &mut Buffer) {
         if area.is_empty() {
             return;
         }

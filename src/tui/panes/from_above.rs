@@ -3,19 +3,19 @@
 //! It shows where the point is, and the shape of its last swings behind it, as a line. The turn before them and all
 //! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
 
-use super::{MOST_PUSHES, PaneRow, ROWS_A_LINE, Seen, Width, round_frame, write};
-use crate::data::Place;
+use super::{MOST_PUSHES, PaneRow, PlotInputs, ROWS_A_LINE, Width, round_frame, write};
+use crate::data::MeasuredPlace;
 use crate::lab::view::Pane;
 use crate::lab::view::theme::Marker;
 use crate::playback::ages::{Age, Ages};
 use crate::playback::camera::Zoom;
-use crate::playback::path::Path;
+use crate::playback::path::PathFromAbove;
 use crate::playback::recording::Moment;
 use crate::run::Clock;
 use crate::text::wrap::columns;
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
-use crate::tui::plane::{Labels, Plane};
+use crate::tui::plane::{LabelCells, Plane};
 use crate::tui::points::{Ends, Points};
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
@@ -59,13 +59,13 @@ pub const ROW: PaneRow = PaneRow {
     rank: 1,
     least: (27, 17),
     draw: |lab, area, buf| {
-        FromAbove(Seen::of(lab)).render(area, buf);
+        FromAbove(PlotInputs::of(lab)).render(area, buf);
     },
     keys: ZOOM_KEYS,
     arrows: None,
 };
 
-pub struct FromAbove<'a>(pub Seen<'a>);
+pub struct FromAbove<'a>(pub PlotInputs<'a>);
 
 impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
@@ -104,7 +104,7 @@ impl FromAbove<'_> {
         let before = self.0.ghost.map(|ghost| &ghost.path);
         let pinned = self.0.pinned.map(|ghost| &ghost.path);
         let paths = [Some(self.0.run.path()), exact, before, pinned];
-        let about = |path: &Path| {
+        let about = |path: &PathFromAbove| {
             if middle == Vector2::zeros() {
                 path.radius
             } else {
@@ -206,7 +206,7 @@ impl FromAbove<'_> {
     }
 
     /// The measured places; none where the columns of the data do not say them.
-    fn places(&self) -> &[Place] {
+    fn places(&self) -> &[MeasuredPlace] {
         self.0
             .measured
             .map_or(&[], |beside| &beside.compared.places)
@@ -270,8 +270,8 @@ impl FromAbove<'_> {
     }
 
     /// The pivot, the axes' names, and where the point is now. Returns which places are left for words.
-    fn marks(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) -> Labels {
-        let mut places = Labels::new(picture);
+    fn marks(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) -> LabelCells {
+        let mut places = LabelCells::new(picture);
         let mut mark = |cell, sign: &str, role| {
             write(picture, cell, sign, self.0.view.theme.style(role), buf);
             places.take(cell);

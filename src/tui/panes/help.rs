@@ -5,9 +5,9 @@ use super::{PANES, popup_frame, write};
 use crate::lab::action::Action;
 use crate::lab::values::list::Match;
 use crate::lab::view::Pane;
-use crate::lab::{Lab, Mode, Request};
+use crate::lab::{Lab, LabRequest, Mode};
 use crate::text::wrap::{columns, wrapped};
-use crate::tui::keymap::{BINDINGS, Binding, Does, PURPOSES};
+use crate::tui::keymap::{BINDINGS, Binding, KeyEffect, PURPOSES};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -19,7 +19,7 @@ const GAP: usize = 2;
 const LEAST_TEXT: usize = 40;
 const SELECTED: &str = "►";
 
-fn selected(lab: &Lab) -> Option<Entry> {
+fn selected(lab: &Lab) -> Option<HelpEntry> {
     let found = found(&lab.popups().help.text);
     found.get(lab.popups().help.selected).copied()
 }
@@ -34,7 +34,7 @@ pub fn limit(lab: &mut Lab) {
 
 /// Closes the help and does what the key of the selected entry does. For a key of a pane it moves the focus to that
 /// pane first. Where nothing can be done it says why.
-pub fn do_entry(lab: &mut Lab) -> Option<Request> {
+pub fn do_entry(lab: &mut Lab) -> Option<LabRequest> {
     let Some(entry) = selected(lab) else {
         lab.refuse("nothing is selected: Esc clears the search");
         return None;
@@ -56,7 +56,7 @@ pub fn do_entry(lab: &mut Lab) -> Option<Request> {
         lab.turn_to(pane);
     }
     match binding.does {
-        Does::Action(Action::Help) => None,
+        KeyEffect::Action(Action::Help) => None,
         does => does.carry_out(lab),
     }
 }
@@ -92,7 +92,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 /// One line of the screen: texts, and the columns where they begin.
-struct Line {
+struct HelpLine {
     /// The number of its entry; none for a heading.
     entry: Option<usize>,
     /// Whether it is the first line of its entry.
@@ -102,8 +102,8 @@ struct Line {
 
 /// The first of `lines` that is shown on `height` lines, so that the entry `selected` is in the middle where it can be,
 /// and its first line is always shown.
-fn first_shown(lines: &[Line], selected: usize, height: usize) -> usize {
-    let of_it = |line: &Line| line.entry == Some(selected);
+fn first_shown(lines: &[HelpLine], selected: usize, height: usize) -> usize {
+    let of_it = |line: &HelpLine| line.entry == Some(selected);
     let begin = lines.iter().position(of_it).unwrap_or(0);
     let length = lines.iter().filter(|line| of_it(line)).count();
     let above = height.saturating_sub(length) / 2;
@@ -112,7 +112,7 @@ fn first_shown(lines: &[Line], selected: usize, height: usize) -> usize {
 }
 
 /// `entries` in lines of `width` columns; `grouped` says whether under the headings of their groups.
-fn lines(entries: &[Entry], grouped: bool, width: usize) -> Vec<Line> {
+fn lines(entries: &[HelpEntry], grouped: bool, width: usize) -> Vec<HelpLine> {
     let longest = entries.iter().map(|entry| columns(&entry.name())).max();
     let column = NAMES + longest.unwrap_or(0) + GAP;
     let column = Some(column).filter(|column| width >= column + LEAST_TEXT);
@@ -126,22 +126,27 @@ fn lines(entries: &[Entry], grouped: bool, width: usize) -> Vec<Line> {
             Some(column) => beside(entry, &text_of(entry, grouped), column, width),
             None => below(entry, &text_of(entry, grouped), width),
         };
-        lines.extend(of_entry.into_iter().enumerate().map(|(at, pieces)| Line {
-            entry: Some(index),
-            is_first: at == 0,
-            pieces,
-        }));
+        lines.extend(
+            of_entry
+                .into_iter()
+                .enumerate()
+                .map(|(at, pieces)| HelpLine {
+                    entry: Some(index),
+                    is_first: at == 0,
+                    pieces,
+                }),
+        );
     }
     lines
 }
 
-fn heading(entry: &Entry, width: usize) -> Vec<Line> {
+fn heading(entry: &HelpEntry, width: usize) -> Vec<HelpLine> {
     let text = match entry.pane {
         Some(_) => format!("{}: keys of this pane, Tab turns to it", entry.group),
         None => entry.group.to_owned(),
     };
     let lines = wrapped(&text, width.saturating_sub(1)).into_iter();
-    let line = |text| Line {
+    let line = |text| HelpLine {
         entry: None,
         is_first: false,
         pieces: vec![(1, text, Role::Heading)],
@@ -149,10 +154,10 @@ fn heading(entry: &Entry, width: usize) -> Vec<Line> {
     lines.map(line).collect()
 }
 
-type Pieces = Vec<(usize, String, Role)>;
+type HelpPieces = Vec<(usize, String, Role)>;
 
 /// The text of `entry`. For a key of a pane it names the pane, unless a heading does.
-fn text_of(entry: &Entry, grouped: bool) -> String {
+fn text_of(entry: &HelpEntry, grouped: bool) -> String {
     match entry.pane {
         Some(_) if !grouped => format!("{} ({})", entry.text, entry.group),
         _ => entry.text.to_owned(),
@@ -160,10 +165,10 @@ fn text_of(entry: &Entry, grouped: bool) -> String {
 }
 
 /// The name of `entry`, and its `text` in lines that begin in `column`.
-fn beside(entry: &Entry, text: &str, column: usize, width: usize) -> Vec<Pieces> {
+fn beside(entry: &HelpEntry, text: &str, column: usize, width: usize) -> Vec<HelpPieces> {
     let text = wrapped(text, width.saturating_sub(column)).into_iter();
     let text = text.map(|text| vec![(column, text, Role::Text)]);
-    let mut lines: Vec<Pieces> = text.collect();
+    let mut lines: Vec<HelpPieces> = text.collect();
     if let Some(first) = lines.first_mut() {
         first.push((NAMES, entry.name(), Role::Focus));
     }
@@ -171,7 +176,7 @@ fn beside(entry: &Entry, text: &str, column: usize, width: usize) -> Vec<Pieces>
 }
 
 /// The name of `entry`, and its `text` below it.
-fn below(entry: &Entry, text: &str, width: usize) -> Vec<Pieces> {
+fn below(entry: &HelpEntry, text: &str, width: usize) -> Vec<HelpPieces> {
     const INDENT: usize = NAMES + GAP - 1;
     let text = wrapped(text, width.saturating_sub(INDENT)).into_iter();
     let text = text.map(|text| vec![(INDENT, text, Role::Text)]);
@@ -184,7 +189,7 @@ const GLOSSARY: &str = include_str!("help/glossary.txt");
 
 /// A key, or several that mean the same; or a word of the glossary.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry {
+pub struct HelpEntry {
     /// The heading under which it stands.
     pub group: &'static str,
     /// The pane whose key it is; `None` for a key that every pane has, and for a word.
@@ -207,7 +212,7 @@ const PLACES: [(Mode, &str); 5] = [
 ];
 const WORDS: &str = "words";
 
-impl Entry {
+impl HelpEntry {
     pub fn name(&self) -> String {
         self.binding.map_or(self.short.to_owned(), |binding| {
             let keys: Vec<_> = binding.keys.iter().map(ToString::to_string).collect();
@@ -246,7 +251,7 @@ fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
     lines.filter_map(|line| line.split_once(" = "))
 }
 
-pub fn entries() -> Vec<Entry> {
+pub fn entries() -> Vec<HelpEntry> {
     let of_mode = |(mode, group)| {
         let rows = BINDINGS.iter().filter(move |row| row.modes[0] == mode);
         let rows = rows.filter(move |row| mode != Mode::Lab || row.purpose == group);
@@ -257,7 +262,7 @@ pub fn entries() -> Vec<Entry> {
         let rows = pane.keys.iter();
         rows.map(|row| key(pane.title, Some(pane.id), row))
     });
-    let words = glossary().map(|(word, meaning)| Entry {
+    let words = glossary().map(|(word, meaning)| HelpEntry {
         group: WORDS,
         pane: None,
         binding: None,
@@ -271,20 +276,20 @@ pub fn entries() -> Vec<Entry> {
 }
 
 /// The entries that match `search`, the best match first; if it is empty, all entries, group by group.
-pub fn found(search: &str) -> Vec<Entry> {
+pub fn found(search: &str) -> Vec<HelpEntry> {
     let (search, mut found) = (search.trim(), entries());
     if search.is_empty() {
         return found;
     }
     let lower = search.to_lowercase();
-    let rank = |entry: &Entry| entry.answers(search, &lower);
+    let rank = |entry: &HelpEntry| entry.answers(search, &lower);
     found.retain(|entry| rank(entry).is_some());
     found.sort_by_key(rank); // stable: among equals the order of the groups
     found
 }
 
-fn key(group: &'static str, pane: Option<Pane>, binding: &'static Binding) -> Entry {
-    Entry {
+fn key(group: &'static str, pane: Option<Pane>, binding: &'static Binding) -> HelpEntry {
+    HelpEntry {
         group,
         pane,
         binding: Some(binding),

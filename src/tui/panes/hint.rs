@@ -4,7 +4,7 @@ use super::chrome::SEPARATOR;
 use super::{wrapped_to, write};
 use crate::lab::{Lab, MOST_COUNTED};
 use crate::text::wrap::wrapped;
-use crate::tui::layout::Layout;
+use crate::tui::layout::ScreenLayout;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -27,7 +27,7 @@ fn lines_of(text: &str, width: u16) -> u16 {
 
 /// Where the hint of `lab` stands. A message that needs more lines takes lines above as long as it stays: the line about
 /// the numbers, and on a small or a bare screen the last of a pane.
-pub fn place(lab: &Lab, layout: &Layout) -> Rect {
+pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
     let place = layout.hint;
     let needed = if has_message(lab) {
         lines_of(&said(lab).0, place.width)

@@ -3,7 +3,7 @@
 use super::{PaneRow, Width, frame, longest, write};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
-use crate::lab::sheet::{Emphasis, Kind, Paragraph, Sheet};
+use crate::lab::sheet::{Emphasis, Paragraph, Sheet, SheetLineKind};
 use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
@@ -46,7 +46,7 @@ const KEYS: &[Binding] = &[
 ];
 
 /// A line of the page: its first column, and its pieces.
-struct Line {
+struct LessonLine {
     x: u16,
     pieces: Vec<(String, Style)>,
 }
@@ -67,7 +67,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     if inside.is_empty() {
         return;
     }
-    let page = Page::new(sheet, inside, view);
+    let page = ScrolledPage::new(sheet, inside, view);
     let shown = page.lines.iter().skip(page.first).zip(0..inside.height);
     for (line, y) in shown {
         let mut x = line.x;
@@ -109,7 +109,7 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
     };
     let inside = place.inner(ratatui::layout::Margin::new(1, 1));
     let shown = inside.height as usize;
-    let page = Page::new(&sheet, inside, lab.view());
+    let page = ScrolledPage::new(&sheet, inside, lab.view());
     let (first, all) = (page.first, page.lines.len());
     let page = shown.saturating_sub(1).max(1) as isize;
     lab.view_mut()
@@ -120,25 +120,25 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
 pub fn has_more(lab: &Lab, place: Rect) -> bool {
     let inside = place.inner(ratatui::layout::Margin::new(1, 1));
     lab.view().sheet.as_ref().is_some_and(|sheet| {
-        let page = Page::new(sheet, inside, lab.view());
+        let page = ScrolledPage::new(sheet, inside, lab.view());
         page.lines.len() > page.first + inside.height as usize
     })
 }
 
-struct Page {
-    lines: Vec<Line>,
+struct ScrolledPage {
+    lines: Vec<LessonLine>,
     first: usize,
 }
 
-impl Page {
+impl ScrolledPage {
     /// `sheet` in lines for the area `inside`, scrolled as `view` says, or else so far that what is to be seen is in view.
     fn new(sheet: &Sheet, inside: Rect, view: &View) -> Self {
-        let mut lines: Vec<Line> = Vec::new();
+        let mut lines: Vec<LessonLine> = Vec::new();
         let mut seen = (0, 0);
-        let mut before: Option<&Kind> = None;
+        let mut before: Option<&SheetLineKind> = None;
         for (index, paragraph) in sheet.paragraphs.iter().enumerate() {
             if before.is_some_and(|before| are_apart(before, &paragraph.kind)) {
-                lines.push(Line {
+                lines.push(LessonLine {
                     x: 0,
                     pieces: Vec::new(),
                 });
@@ -165,24 +165,32 @@ impl Page {
 }
 
 /// Whether an empty line stands between two paragraphs.
-fn are_apart(before: &Kind, after: &Kind) -> bool {
-    let is_list = |kind: &Kind| matches!(kind, Kind::Item { .. } | Kind::Choice { .. });
+fn are_apart(before: &SheetLineKind, after: &SheetLineKind) -> bool {
+    let is_list = |kind: &SheetLineKind| {
+        matches!(
+            kind,
+            SheetLineKind::Item { .. } | SheetLineKind::Choice { .. }
+        )
+    };
     match (before, after) {
-        (Kind::Goal { .. }, Kind::Goal { .. }) | (Kind::Question, Kind::Choice { .. }) => false,
+        (SheetLineKind::Goal { .. }, SheetLineKind::Goal { .. })
+        | (SheetLineKind::Question, SheetLineKind::Choice { .. }) => false,
         _ => !is_list(before) || !is_list(after),
     }
 }
 
 /// What stands before a paragraph's first line, and the look of its words.
-fn dressed(kind: &Kind) -> (String, u16, Role) {
+fn dressed(kind: &SheetLineKind) -> (String, u16, Role) {
     let plain = |mark: &str, role| (mark.to_owned(), 0, role);
     match kind {
-        Kind::Heading => plain("", Role::Heading),
-        Kind::Text => plain("", Role::Text),
-        Kind::Item { mark, depth } => (format!("{mark} "), 2 * depth.saturating_sub(1), Role::Text),
-        Kind::Code => (String::new(), 2, Role::Text),
-        Kind::Question => plain("? ", Role::Heading),
-        Kind::Choice {
+        SheetLineKind::Heading => plain("", Role::Heading),
+        SheetLineKind::Text => plain("", Role::Text),
+        SheetLineKind::Item { mark, depth } => {
+            (format!("{mark} "), 2 * depth.saturating_sub(1), Role::Text)
+        }
+        SheetLineKind::Code => (String::new(), 2, Role::Text),
+        SheetLineKind::Question => plain("? ", Role::Heading),
+        SheetLineKind::Choice {
             is_selected,
             is_given,
         } => {
@@ -195,33 +203,33 @@ fn dressed(kind: &Kind) -> (String, u16, Role) {
             };
             (format!("{pointer}{mark}"), 0, role)
         }
-        Kind::Result => plain("= ", Role::Heading),
-        Kind::Goal { is_reached: true } => plain("[x] ", Role::Text),
-        Kind::Goal { is_reached: false } => plain("[ ] ", Role::Text),
-        Kind::Hint => plain("", Role::Quiet),
-        Kind::Note => plain("| ", Role::Text),
+        SheetLineKind::Result => plain("= ", Role::Heading),
+        SheetLineKind::Goal { is_reached: true } => plain("[x] ", Role::Text),
+        SheetLineKind::Goal { is_reached: false } => plain("[ ] ", Role::Text),
+        SheetLineKind::Hint => plain("", Role::Quiet),
+        SheetLineKind::Note => plain("| ", Role::Text),
     }
 }
 
-fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<Line> {
+fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<LessonLine> {
     let (mark, indent, role) = dressed(&paragraph.kind);
     let style = theme.style(role);
     let hanging = indent + columns(&mark) as u16;
     let room = width.saturating_sub(hanging).max(1) as usize;
     let text = paragraph.text();
     let texts: Vec<String> = match paragraph.kind {
-        Kind::Code => text.lines().flat_map(|line| in_room(line, room)).collect(),
+        SheetLineKind::Code => text.lines().flat_map(|line| in_room(line, room)).collect(),
         _ => wrapped(&text, room),
     };
     let mut letters = letters(paragraph).peekable();
     let mut lines = Vec::with_capacity(texts.len());
     for (index, text) in texts.iter().enumerate() {
         let mut pieces = pieces(text, &mut letters, style, theme);
-        let is_marked = index == 0 || paragraph.kind == Kind::Note;
+        let is_marked = index == 0 || paragraph.kind == SheetLineKind::Note;
         if is_marked && !mark.is_empty() {
             pieces.insert(0, (mark.clone(), style));
         }
-        lines.push(Line {
+        lines.push(LessonLine {
             x: if is_marked { indent } else { hanging },
             pieces,
         });
@@ -281,11 +289,11 @@ fn styled(emphasis: Emphasis, theme: &Theme) -> Style {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::sheet::Words;
+    use crate::lab::sheet::StyledText;
 
     fn texts(paragraph: &Paragraph, width: u16) -> Vec<String> {
         let lines = lines_of(paragraph, width, &Theme::PLAIN);
-        let text = |line: &Line| {
+        let text = |line: &LessonLine| {
             let pieces = line.pieces.iter().map(|(text, _)| text.as_str());
             " ".repeat(line.x as usize) + &pieces.collect::<String>()
         };
@@ -294,11 +302,11 @@ mod tests {
 
     #[test]
     fn paragraphs_hang_on_their_marks() {
-        let choice = Kind::Choice {
+        let choice = SheetLineKind::Choice {
             is_selected: true,
             is_given: false,
         };
-        let item = Kind::Item {
+        let item = SheetLineKind::Item {
             mark: "-".to_owned(),
             depth: 2,
         };
@@ -306,7 +314,7 @@ mod tests {
         for (kind, text, width, wanted) in [
             (choice, "is ten times smaller", 16, &choices[..]),
             (item, "one two", 8, &["  - one", "    two"]),
-            (Kind::Code, "a   b\nc", 8, &["  a   b", "  c"]),
+            (SheetLineKind::Code, "a   b\nc", 8, &["  a   b", "  c"]),
         ] {
             assert_eq!(texts(&Paragraph::new(kind, text), width), wanted);
         }
@@ -314,12 +322,12 @@ mod tests {
 
     #[test]
     fn words_keep_their_looks_over_line_ends() {
-        let words = |text: &str, emphasis| Words {
+        let words = |text: &str, emphasis| StyledText {
             text: text.to_owned(),
             emphasis,
         };
         let paragraph = Paragraph {
-            kind: Kind::Text,
+            kind: SheetLineKind::Text,
             words: vec![
                 words("the ", Emphasis::Plain),
                 words("fast top", Emphasis::Strong),

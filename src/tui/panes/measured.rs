@@ -2,7 +2,7 @@
 
 use super::chrome::SEPARATOR;
 use super::{shortened, write};
-use crate::data::Quantity;
+use crate::data::RunQuantity;
 use crate::data::compared::Sum;
 use crate::lab::Lab;
 use crate::lab::comparison::DataComparison;
@@ -77,7 +77,7 @@ fn file_name(name: &str) -> String {
 /// What was measured, how many values there are, and how many of them the run has reached: at length and in short.
 /// Where data go on after `end_s`, the end of the run, it says so, and the key that plays the run up to there.
 fn reached(beside: &DataComparison, sum: &Sum, end_s: f64) -> [String; 2] {
-    let names: Vec<_> = beside.quantities().map(Quantity::words).collect();
+    let names: Vec<_> = beside.quantities().map(RunQuantity::words).collect();
     let (names, all, reached) = (
         names.join(", "),
         counted(sum.points as u64, "point"),

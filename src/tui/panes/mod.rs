@@ -22,7 +22,7 @@ use crate::lab::comparison::DataComparison;
 use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
-use crate::lab::{Lab, Meant};
+use crate::lab::{KeyCommands, Lab};
 use crate::playback::detail::Detail;
 use crate::playback::ghost::Ghost;
 use crate::playback::live::LiveRun;
@@ -57,7 +57,7 @@ pub struct PaneRow {
     pub arrows: Option<Arrows>,
 }
 
-pub type Arrows = fn(&Lab, Direction, i32) -> Meant;
+pub type Arrows = fn(&Lab, Direction, i32) -> KeyCommands;
 
 /// How wide a pane is where panes stand side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +125,7 @@ pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
 
 /// What the panes of the motion draw: a run, the runs and data beside it, and how they are looked at.
 #[derive(Clone, Copy)]
-pub struct Seen<'a> {
+pub struct PlotInputs<'a> {
     pub view: &'a View,
     pub run: &'a LiveRun,
     /// The run before.
@@ -142,7 +142,7 @@ pub struct Seen<'a> {
     pub cursor: Option<&'a Sample>,
 }
 
-impl<'a> Seen<'a> {
+impl<'a> PlotInputs<'a> {
     pub fn of(lab: &'a Lab) -> Self {
         let (player, comparison) = (lab.player(), lab.comparison());
         Self {
@@ -181,7 +181,7 @@ pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &m
 fn round_frame(
     row: &PaneRow,
     zoom: f64,
-    seen: &Seen<'_>,
+    seen: &PlotInputs<'_>,
     area: Rect,
     buf: &mut Buffer,
 ) -> Option<Rect> {

@@ -9,7 +9,7 @@ use super::{PaneRow, Width, frame, leave_one_out, shortened, write};
 use crate::lab::action::Action;
 use crate::lab::values::list::ValueList;
 use crate::lab::values::list::{ListedValue, Match};
-use crate::lab::view::{Pane, Part, View};
+use crate::lab::view::{HideablePart, Pane, View};
 use crate::playback::reading::Reading;
 use crate::scenario::{Motion, Scenario};
 use crate::text::printable::printable;
@@ -18,8 +18,8 @@ use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use lines::{
-    COLUMN, Line, PREDICTED, VALUE_END, body_lines, derived_lines, fewer_digits, further_lines,
-    heading, in_pane, motion_lines, now_lines, start_lines, watched_lines,
+    COLUMN, PREDICTED, ParameterLine, VALUE_END, body_lines, derived_lines, fewer_digits,
+    further_lines, heading, in_pane, motion_lines, now_lines, start_lines, watched_lines,
 };
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -94,7 +94,7 @@ impl Parameters<'_> {
     /// Draws columns of lines side by side, each `wide` columns of the screen.
     fn columns<'r>(
         &self,
-        columns: impl Iterator<Item = &'r [Line]>,
+        columns: impl Iterator<Item = &'r [ParameterLine]>,
         wide: u16,
         area: Rect,
         buf: &mut Buffer,
@@ -167,11 +167,12 @@ impl Parameters<'_> {
     }
 
     /// The numbers that cannot be edited and have `name` in theirs, with what theory predicts for them, in `room` lines.
-    fn found(&self, name: &str, room: usize) -> Vec<Line> {
+    fn found(&self, name: &str, room: usize) -> Vec<ParameterLine> {
         let mut lines = derived_lines(self.scenario);
         lines.extend(shown(self.view, now_lines(self.reading)));
         lines.extend(shown(self.view, further_lines(self.reading)));
-        let answer = |line: &Line| Match::of(&line.label, name).filter(|_| !line.is_heading());
+        let answer =
+            |line: &ParameterLine| Match::of(&line.label, name).filter(|_| !line.is_heading());
         let best = lines.iter().filter_map(answer).min();
         let mut is_found = false;
         lines.retain(|line| {
@@ -190,7 +191,7 @@ impl Parameters<'_> {
     /// selected one, and below them what `--set` takes for it, with all its digits.
     fn edited(
         &self,
-        lines: &[Line],
+        lines: &[ParameterLine],
         list: &ValueList,
         area: Rect,
         (count, wide): (u16, u16),
@@ -238,14 +239,14 @@ impl Parameters<'_> {
     }
 
     /// Draws `lines` one below the other, each `wide` columns of the screen.
-    fn draw(&self, lines: &[Line], wide: u16, area: Rect, buf: &mut Buffer) {
+    fn draw(&self, lines: &[ParameterLine], wide: u16, area: Rect, buf: &mut Buffer) {
         for (line, place) in lines.iter().zip(area.rows()) {
             self.draw_line(line, VALUE_END + wide - COLUMN, place, buf);
         }
     }
 
     /// One line; `value_end` is the column of the last character of its value.
-    fn draw_line(&self, line: &Line, value_end: u16, area: Rect, buf: &mut Buffer) {
+    fn draw_line(&self, line: &ParameterLine, value_end: u16, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
         let indent = u16::from(!line.is_heading());
         let label = theme.style(line.label_role);
@@ -269,7 +270,7 @@ impl Parameters<'_> {
         }
     }
 
-    fn lines(&self) -> Vec<Line> {
+    fn lines(&self) -> Vec<ParameterLine> {
         let mut lines = body_lines(self.scenario);
         lines.extend(start_lines(self.scenario));
         lines.extend(motion_lines(self.scenario, self.motion));
@@ -296,7 +297,7 @@ fn title(list: Option<&ValueList>, is_searched: bool) -> String {
 }
 
 /// The lines of the values of `list` that are shown, each group under its heading.
-fn edited_lines(list: &ValueList) -> Vec<Line> {
+fn edited_lines(list: &ValueList) -> Vec<ParameterLine> {
     let shown = list.shown();
     let mut lines = Vec::with_capacity(2 * shown.len());
     for group in shown.chunk_by(|(_, a), (_, b)| a.group == b.group) {
@@ -312,7 +313,7 @@ fn edited_lines(list: &ValueList) -> Vec<Line> {
     lines
 }
 
-fn edited_line(value: &ListedValue, is_selected: bool) -> Line {
+fn edited_line(value: &ListedValue, is_selected: bool) -> ParameterLine {
     let value_role = if value.is_default {
         Role::Quiet
     } else {
@@ -321,7 +322,7 @@ fn edited_line(value: &ListedValue, is_selected: bool) -> Line {
     let text = on_one_line(&value.text);
     let number = text.parse().ok().filter(|_| text.contains(['.', 'e']));
     let text = number.map_or(text, in_pane);
-    Line {
+    ParameterLine {
         rank: 0,
         label: on_one_line(&value.label).into(),
         label_role: Role::Quiet,
@@ -355,7 +356,7 @@ fn key_lines(value: &ListedValue, width: usize) -> Vec<String> {
 }
 
 /// Columns that `line` needs to show its number with all its digits.
-fn needed(line: &Line) -> u16 {
+fn needed(line: &ParameterLine) -> u16 {
     let is_number = line.value.parse::<f64>().is_ok();
     let words = columns(&line.label) + columns(&line.value) + 2;
     let behind = COLUMN - VALUE_END;
@@ -363,7 +364,7 @@ fn needed(line: &Line) -> u16 {
 }
 
 /// The `room` lines around the selected one, its group's heading kept on top; whether there are more above and below.
-fn around_selected(lines: &[Line], room: usize) -> (Vec<Line>, bool, bool) {
+fn around_selected(lines: &[ParameterLine], room: usize) -> (Vec<ParameterLine>, bool, bool) {
     let selected = lines.iter().position(|line| line.is_selected).unwrap_or(0);
     let most = lines.len().saturating_sub(room);
     let first = selected.saturating_sub(room / 2).min(most);
@@ -380,7 +381,7 @@ fn around_selected(lines: &[Line], room: usize) -> (Vec<Line>, bool, bool) {
 }
 
 /// The readouts for `room` lines: all of them, or those to watch.
-fn read_lines(view: &View, reading: &Reading, room: usize) -> Vec<Line> {
+fn read_lines(view: &View, reading: &Reading, room: usize) -> Vec<ParameterLine> {
     let all = shown(view, now_lines(reading));
     if all.len() <= room {
         return all;
@@ -392,15 +393,15 @@ fn read_lines(view: &View, reading: &Reading, room: usize) -> Vec<Line> {
     lines
 }
 
-fn shown(view: &View, mut lines: Vec<Line>) -> Vec<Line> {
-    if view.hides(Part::Predicted) {
+fn shown(view: &View, mut lines: Vec<ParameterLine>) -> Vec<ParameterLine> {
+    if view.hides(HideablePart::Predicted) {
         lines.retain(|line| line.label != PREDICTED);
     }
     lines
 }
 
 /// `lines` in columns of at most `height` that begin with a heading; `None` where a group is higher than that.
-fn by_group(lines: &[Line], height: usize) -> Option<Vec<&[Line]>> {
+fn by_group(lines: &[ParameterLine], height: usize) -> Option<Vec<&[ParameterLine]>> {
     let mut columns = Vec::new();
     let (mut begin, mut end) = (0, 0);
     for group in lines.chunk_by(|_, next| !next.is_heading()) {
@@ -416,7 +417,7 @@ fn by_group(lines: &[Line], height: usize) -> Option<Vec<&[Line]>> {
 }
 
 /// The lines for which there is room, the least important left out.
-fn fitting(mut lines: Vec<Line>, room: usize) -> Vec<Line> {
+fn fitting(mut lines: Vec<ParameterLine>, room: usize) -> Vec<ParameterLine> {
     // Where all of it matters, the rest is cut off.
     while lines.len() > room && leave_one_out(&mut lines, |line| line.rank) {
         lines = without_empty_groups(lines);
@@ -425,15 +426,15 @@ fn fitting(mut lines: Vec<Line>, room: usize) -> Vec<Line> {
 }
 
 /// `lines` without those that have no value, the headings kept.
-fn without_dashes(mut lines: Vec<Line>) -> Vec<Line> {
+fn without_dashes(mut lines: Vec<ParameterLine>) -> Vec<ParameterLine> {
     lines.retain(|line| line.is_heading() || line.value != "-");
     without_empty_groups(lines)
 }
 
 /// No heading stands alone.
-fn without_empty_groups(lines: Vec<Line>) -> Vec<Line> {
+fn without_empty_groups(lines: Vec<ParameterLine>) -> Vec<ParameterLine> {
     let alone = |index: usize| {
-        lines[index].is_heading() && lines.get(index + 1).is_none_or(Line::is_heading)
+        lines[index].is_heading() && lines.get(index + 1).is_none_or(ParameterLine::is_heading)
     };
     let keep: Vec<bool> = (0..lines.len()).map(|index| !alone(index)).collect();
     let kept = lines.into_iter().zip(keep).filter(|&(_, keep)| keep);

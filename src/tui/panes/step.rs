@@ -9,18 +9,18 @@ use super::{PaneRow, Width, frame};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, repeated};
 use crate::lab::step_pane::{StepWorkings, table_of};
-use crate::lab::view::step::Page;
+use crate::lab::view::step::StepPageChoice;
 use crate::lab::view::{Pane, View};
-use crate::own_code::{TRACED, Trial};
+use crate::own_code::{SlipTrial, TRACED};
 use crate::physics::observables::position;
-use crate::physics::workings::{Phase, Quantity, Value};
+use crate::physics::workings::{Phase, WorkedQuantity, WorkedValue};
 use crate::scenario::Scenario;
 use crate::text::number::{rounded, shortest, significant};
 use crate::text::wrap::columns;
 use crate::tui::keymap::{Binding, Key, Mode, does, one, row};
 use crate::tui::theme::Role;
-use numbers::{Format, TableView, is_summed};
-use page::{Line, Section};
+use numbers::{CellFormat, TableView, is_summed};
+use page::{StepPageLine, StepPageSection};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
@@ -70,7 +70,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
     match lab.step_pane().shown() {
         None => nothing_yet(lab, inside, buf),
-        Some(_) if view.page == Page::Why => why::draw(lab, inside, buf),
+        Some(_) if view.page == StepPageChoice::Why => why::draw(lab, inside, buf),
         Some(explained) => {
             if let Some((phase, number, _)) = explained.phase(view.page) {
                 let own = lab.comparison().own_code();
@@ -121,7 +121,8 @@ fn nothing_yet(lab: &Lab, area: Rect, buf: &mut Buffer) {
             "Press . to take the next: it is then shown here phase by phase.",
         ]
     };
-    let sections = texts.map(|text| Section::text(0, text, area.width.into(), 0, Role::Text));
+    let sections =
+        texts.map(|text| StepPageSection::text(0, text, area.width.into(), 0, Role::Text));
     page::draw(&sections, area, &lab.view().theme, buf);
 }
 
@@ -130,23 +131,24 @@ struct PhasePage<'a> {
     phase: &'a Phase,
     number: usize,
     /// What the user's program does otherwise, in words, and its numbers of the phase.
-    trial: Option<(&'a str, Vec<Quantity>)>,
+    trial: Option<(&'a str, Vec<WorkedQuantity>)>,
     view: &'a View,
     width: usize,
 }
 
 impl PhasePage<'_> {
     /// Its sections, for `room` lines.
-    fn sections(&self, room: usize) -> Vec<Section> {
+    fn sections(&self, room: usize) -> Vec<StepPageSection> {
         let [happens, changes, seen] = words_of(self.phase.name);
-        let text = |rank, text, indent, role| Section::text(rank, text, self.width, indent, role);
+        let text =
+            |rank, text, indent, role| StepPageSection::text(rank, text, self.width, indent, role);
         let mut sections = Vec::new();
         if room >= LISTED_FROM.into() {
             sections.push(self.list());
         }
         if let Some((words, _)) = &self.trial {
             let words = format!("yours has {words}");
-            let section = Section::text(1, &words, self.width, 2, Role::Measured);
+            let section = StepPageSection::text(1, &words, self.width, 2, Role::Measured);
             sections.push(section);
         }
         let part = self.part();
@@ -164,8 +166,8 @@ impl PhasePage<'_> {
     }
 
     /// The names of all phases, the present one marked.
-    fn list(&self) -> Section {
-        let mut lines = vec![Line::default()];
+    fn list(&self) -> StepPageSection {
+        let mut lines = vec![StepPageLine::default()];
         let mut at = 0;
         for (phase, number) in self.explained.workings.phases().zip(1..) {
             let (mark, role) = if number == self.number {
@@ -176,7 +178,7 @@ impl PhasePage<'_> {
             let text = format!("{mark}{number} {}  ", phase.name);
             let width = columns(&text);
             if at + width > self.width + 2 {
-                lines.push(Line::default());
+                lines.push(StepPageLine::default());
                 at = 0;
             }
             if let Some(line) = lines.last_mut() {
@@ -184,7 +186,7 @@ impl PhasePage<'_> {
             }
             at += width;
         }
-        Section::new(9, lines)
+        StepPageSection::new(9, lines)
     }
 
     /// The times of the step, and the part of it to which the phase belongs.
@@ -207,10 +209,10 @@ impl PhasePage<'_> {
     }
 
     /// A section of `text` after `label`.
-    fn labelled(&self, rank: u8, label: &str, text: &str) -> Section {
+    fn labelled(&self, rank: u8, label: &str, text: &str) -> StepPageSection {
         let column = label.len() + 2;
         let mut section =
-            Section::text(rank, text, self.width.saturating_sub(column), 0, Role::Text);
+            StepPageSection::text(rank, text, self.width.saturating_sub(column), 0, Role::Text);
         for piece in section.lines.iter_mut().flat_map(|line| &mut line.pieces) {
             piece.0 = column;
         }
@@ -222,22 +224,26 @@ impl PhasePage<'_> {
     }
 
     /// The numbers of the phase. Tables have their fewest lines.
-    fn quantities(&self) -> Vec<Section> {
+    fn quantities(&self) -> Vec<StepPageSection> {
         let all = &self.phase.quantities;
-        let format = Format::of_vectors(self.width);
+        let format = CellFormat::of_vectors(self.width);
         let adds_up = self.sum().is_some();
         // While points are added up, the quantities that are made of the full sums are less important.
-        let is_aside = |quantity: &Quantity| adds_up && is_made_of_sums(self.phase, quantity);
-        let has_heads =
-            |quantity: &&Quantity| matches!(quantity.value, Value::Vector(_) | Value::Matrix(_));
+        let is_aside = |quantity: &WorkedQuantity| adds_up && is_made_of_sums(self.phase, quantity);
+        let has_heads = |quantity: &&WorkedQuantity| {
+            matches!(
+                quantity.value,
+                WorkedValue::Vector(_) | WorkedValue::Matrix(_)
+            )
+        };
         let is_headed = all.iter().filter(has_heads).all(is_aside);
         let mut heads = Some(numbers::heads(if is_headed { ASIDE } else { 5 }, format).apart());
         let mut sections = Vec::new();
         for (index, quantity) in all.iter().enumerate() {
-            if let Value::Table(table) = &quantity.value {
-                sections.extend((!table.points.is_empty()).then(|| Section {
+            if let WorkedValue::Table(table) = &quantity.value {
+                sections.extend((!table.points.is_empty()).then(|| StepPageSection {
                     table: Some(index),
-                    ..Section::new(0, self.table(index, 0)).apart()
+                    ..StepPageSection::new(0, self.table(index, 0)).apart()
                 }));
                 continue;
             }
@@ -251,7 +257,7 @@ impl PhasePage<'_> {
                 "S" => 7,
                 _ => 3,
             };
-            sections.push(Section::new(
+            sections.push(StepPageSection::new(
                 rank,
                 numbers::lines(quantity, format, is_last),
             ));
@@ -262,24 +268,28 @@ impl PhasePage<'_> {
     }
 
     /// Where the step takes the traced point, in the run and in the user's program, where that has a slip.
-    fn traced(&self, heads: Option<Section>, format: Format) -> Vec<Section> {
+    fn traced(&self, heads: Option<StepPageSection>, format: CellFormat) -> Vec<StepPageSection> {
         let (scenario, (_, after)) = (&self.explained.scenario, &self.explained.states);
         let at = position(&scenario.body.mechanics, after, scenario.trace);
-        let traced = Quantity::new(TRACED, "m", at);
+        let traced = WorkedQuantity::new(TRACED, "m", at);
         let Some(yours) = self.yours(&traced, format) else {
             return Vec::new();
         };
-        let own = Section::new(3, numbers::lines(&traced, format, false));
+        let own = StepPageSection::new(3, numbers::lines(&traced, format, false));
         heads.into_iter().chain([own, yours]).collect()
     }
 
     /// The numbers of the user's program in place of `quantity`, or that they are the same.
-    fn yours(&self, quantity: &Quantity, format: Format) -> Option<Section> {
+    fn yours(&self, quantity: &WorkedQuantity, format: CellFormat) -> Option<StepPageSection> {
         let (_, numbers) = self.trial.as_ref()?;
         let yours = numbers.iter().find(|it| it.symbol == quantity.symbol)?;
         let mut lines = numbers::lines(yours, format, false);
         if lines == numbers::lines(quantity, format, false) {
-            lines = vec![Line::of(numbers::SYMBOL + 1, "the same", Role::Measured)];
+            lines = vec![StepPageLine::of(
+                numbers::SYMBOL + 1,
+                "the same",
+                Role::Measured,
+            )];
         }
         let pieces = lines.iter_mut().flat_map(|line| &mut line.pieces);
         pieces.for_each(|piece| piece.2 = Role::Measured);
@@ -287,7 +297,7 @@ impl PhasePage<'_> {
         lines[0]
             .pieces
             .push((0, "yours".to_owned(), Role::Measured));
-        Some(Section::new(1, lines))
+        Some(StepPageSection::new(1, lines))
     }
 
     /// How many rows are added up, and their sums.
@@ -298,8 +308,8 @@ impl PhasePage<'_> {
     }
 
     /// The lines of the table that is the quantity of this index: `room` lines, or its fewest where that is more.
-    fn table(&self, index: usize, room: usize) -> Vec<Line> {
-        let Value::Table(table) = &self.phase.quantities[index].value else {
+    fn table(&self, index: usize, room: usize) -> Vec<StepPageLine> {
+        let WorkedValue::Table(table) = &self.phase.quantities[index].value else {
             return Vec::new();
         };
         let is_first = table_of(self.phase).is_some_and(|first| std::ptr::eq(first, table));
@@ -314,7 +324,7 @@ impl PhasePage<'_> {
     }
 
     /// Gives the tables the lines that are left.
-    fn fill_tables(&self, sections: &mut [Section], room: usize) {
+    fn fill_tables(&self, sections: &mut [StepPageSection], room: usize) {
         let mut left = room.saturating_sub(page::height(sections));
         for section in sections {
             if let Some(index) = section.table {
@@ -327,14 +337,18 @@ impl PhasePage<'_> {
 }
 
 /// What the program of `trial` does otherwise, in words, and its numbers of `phase` in its step `step`.
-fn trial_of<'a>(trial: &'a Trial, step: u64, phase: &Phase) -> Option<(&'a str, Vec<Quantity>)> {
+fn trial_of<'a>(
+    trial: &'a SlipTrial,
+    step: u64,
+    phase: &Phase,
+) -> Option<(&'a str, Vec<WorkedQuantity>)> {
     let numbers = trial.numbers(step)?.into_iter();
     let of_phase = numbers.filter(|(name, _)| *name == phase.name);
     Some((&trial.words, of_phase.map(|(_, it)| it).collect()))
 }
 
 /// Whether `quantity` of `phase` is made of the sums over the table's rows.
-fn is_made_of_sums(phase: &Phase, quantity: &Quantity) -> bool {
+fn is_made_of_sums(phase: &Phase, quantity: &WorkedQuantity) -> bool {
     let table = table_of(phase);
     table.is_some_and(is_summed) && matches!(quantity.symbol, "S" | "I" | "Σ m X")
 }

@@ -6,24 +6,24 @@
 mod arrows;
 mod body;
 
-use super::{PaneRow, ROWS_A_LINE, Seen, Width, round_frame, write};
+use super::{PaneRow, PlotInputs, ROWS_A_LINE, Width, round_frame, write};
 use crate::lab::view::Pane;
 use crate::physics::friction::Damping;
 use crate::physics::{State, loads, observables};
 use crate::playback::ages::{Age, Ages};
 use crate::playback::camera::Zoom;
 use crate::playback::live::LiveRun;
-use crate::playback::recording::Curve;
+use crate::playback::recording::RecordedCurve;
 use crate::text::wrap::columns;
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::keymap::{ZOOM_KEYS, one};
-use crate::tui::plane::Labels;
-use crate::tui::scene::{self, Scene, Stroke};
+use crate::tui::plane::LabelCells;
+use crate::tui::scene::{self, DotScene, LineStroke};
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
 use crate::tui::trail::{self, Around, Trail};
-use arrows::Shown;
-use body::{Shape, Sign};
+use arrows::StepArrows;
+use body::{BodySign, DrawnBody};
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -57,15 +57,15 @@ pub const ROW: PaneRow = PaneRow {
     rank: 3,
     least: (40, 17),
     draw: |lab, area, buf| {
-        ThreeD(Seen::of(lab)).render(area, buf);
+        ThreeD(PlotInputs::of(lab)).render(area, buf);
     },
     keys: ZOOM_KEYS,
     arrows: Some(|lab, direction, times| one(lab.view().turned(direction, times))),
 };
 
-pub struct ThreeD<'a>(pub Seen<'a>);
+pub struct ThreeD<'a>(pub PlotInputs<'a>);
 
-type Label = (&'static str, Role, Vector3<f64>);
+type SpaceLabel = (&'static str, Role, Vector3<f64>);
 
 impl Widget for ThreeD<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
@@ -73,7 +73,7 @@ impl Widget for ThreeD<'_> {
         let Some(inside) = round_frame(&ROW, zoom, &self.0, area, buf) else {
             return;
         };
-        let subject = Subject::of(self.0);
+        let subject = SceneSubject::of(self.0);
         let most = (inside.height / ROWS_A_LINE).max(1) as usize;
         let lines = subject.legend_lines(inside.width as usize, most) as u16;
         let [picture, legend] = split_rows(inside, inside.height - lines);
@@ -83,12 +83,12 @@ impl Widget for ThreeD<'_> {
 }
 
 /// The run at the time of the picture, and what several parts of the picture need of it.
-struct Subject<'a> {
-    seen: Seen<'a>,
+struct SceneSubject<'a> {
+    seen: PlotInputs<'a>,
     ages: Ages,
     state: &'a State,
     position: Vector3<f64>,
-    shape: Shape,
+    shape: DrawnBody,
     /// The size of the body, m: the unit of the arrows' lengths.
     reach: f64,
     /// The length of the axle, m: the unit of the arrows along it.
@@ -98,11 +98,11 @@ struct Subject<'a> {
     /// That of this torque and friction's together: the direction of dL.
     change: Option<Vector3<f64>>,
     /// The phase that the step pane is at, where that is on the screen.
-    shown_phase: Option<Shown<'a>>,
+    shown_phase: Option<StepArrows<'a>>,
 }
 
-impl<'a> Subject<'a> {
-    fn of(seen: Seen<'a>) -> Self {
+impl<'a> SceneSubject<'a> {
+    fn of(seen: PlotInputs<'a>) -> Self {
         let run = seen.run;
         let mechanics = &run.scenario().body.mechanics;
         let state = match seen.reading {
@@ -110,7 +110,7 @@ impl<'a> Subject<'a> {
             None => run.simulation().state(),
         };
         let ages = seen.reading.map(|reading| Ages::of(&reading.readouts));
-        let shape = Shape::of(run);
+        let shape = DrawnBody::of(run);
         let reach = shape.reach();
         let [torque, change] = torques(run, state);
         Self {
@@ -123,14 +123,14 @@ impl<'a> Subject<'a> {
             shape,
             torque,
             change,
-            shown_phase: Shown::of(seen.explained, seen.view),
+            shown_phase: StepArrows::of(seen.explained, seen.view),
         }
     }
 
     fn draw(&self, picture: Rect, buf: &mut Buffer) {
         let (theme, marker) = (&self.seen.view.theme, self.seen.view.marker);
         let mut dots = Dots::new(picture, marker);
-        let mut scene = Scene::new(picture, marker, self.seen.view.camera, &self.shown());
+        let mut scene = DotScene::new(picture, marker, self.seen.view.camera, &self.shown());
         let mut labels = self.ground(&mut scene);
         self.other_runs(&mut scene, &mut dots);
         self.path(&scene, &mut dots);
@@ -145,7 +145,7 @@ impl<'a> Subject<'a> {
         scene.draw(&mut dots);
         way.join(&mut dots);
         dots.render(theme, buf);
-        let mut places = Labels::new(picture);
+        let mut places = LabelCells::new(picture);
         for (sign, role, cell) in signs {
             write(picture, cell, sign, theme.style(role), buf);
             places.take(cell);
@@ -157,7 +157,7 @@ impl<'a> Subject<'a> {
     }
 
     /// The signs that no letter covers, the most important last.
-    fn signs(&self, way: &Way, scene: &Scene) -> Vec<Sign> {
+    fn signs(&self, way: &ScreenPath, scene: &DotScene) -> Vec<BodySign> {
         let mut signs: Vec<_> = way.head.into_iter().collect();
         signs.extend(self.signs_of_phase(scene));
         signs.extend(self.masses(scene));
@@ -171,7 +171,7 @@ impl<'a> Subject<'a> {
     }
 
     /// What the scene needs to show: the body as it precesses at the tilts that it has had, L, and the ground.
-    fn shown(&self) -> scene::Shown {
+    fn shown(&self) -> scene::VisibleArea {
         let circles = self.circles();
         let (sin, cos) = libm::sincos(self.seen.view.camera.pitch_deg.to_radians());
         let end = |side: f64| move |&(radius, z): &(f64, f64)| z * cos + side * radius * sin.abs();
@@ -186,7 +186,7 @@ impl<'a> Subject<'a> {
         } else {
             (0.0, 0.5 * (lowest + highest))
         };
-        scene::Shown {
+        scene::VisibleArea {
             middle,
             half: half.into(),
             reach: self.reach,
@@ -197,7 +197,7 @@ impl<'a> Subject<'a> {
     fn circles(&self) -> Vec<(f64, f64)> {
         let tilts = self.seen.run.recording().whole();
         let tilts = tilts.map_or((0.0, 0.0), |whole| {
-            let tilt = whole.extent(Curve::Tilt);
+            let tilt = whole.extent(RecordedCurve::Tilt);
             (tilt.min, tilt.max)
         });
         let (first, last) = ((tilts.0 / TILT_DEG).floor(), (tilts.1 / TILT_DEG).ceil());
@@ -218,7 +218,7 @@ impl<'a> Subject<'a> {
         }
         for other in [self.seen.ghost, self.seen.pinned].into_iter().flatten() {
             if let Some(whole) = other.recording.whole() {
-                let z = whole.extent(Curve::Z);
+                let z = whole.extent(RecordedCurve::Z);
                 circles.extend([z.min, z.max].map(|z| (other.path.radius, z)));
             }
         }
@@ -235,7 +235,7 @@ impl<'a> Subject<'a> {
 
     /// The stand on which the axle rests, or a level circle about a pivot that carries no weight; and the directions of x,
     /// y and z. Where there is a stand, z has no letter, which would lie over the hub: the stand shows what is up.
-    fn ground(&self, scene: &mut Scene) -> Vec<Label> {
+    fn ground(&self, scene: &mut DotScene) -> Vec<SpaceLabel> {
         let stands = self.stands();
         let floor = Vector3::z() * if stands { -STAND * self.reach } else { 0.0 };
         let radius = self.reach * if stands { FOOT } else { GROUND };
@@ -246,12 +246,12 @@ impl<'a> Subject<'a> {
         let ink = Ink::Faint(Role::Quiet);
         let circle: Vec<_> = (0..PARTS).map(around).collect();
         if stands {
-            scene.ring(&circle, |_| (Stroke::Thin, ink));
-            scene.line(&Vector3::zeros(), &floor, Stroke::Thin, ink);
+            scene.ring(&circle, |_| (LineStroke::Thin, ink));
+            scene.line(&Vector3::zeros(), &floor, LineStroke::Thin, ink);
         } else {
             for pair in circle.chunks(2) {
                 if let [from, to] = pair {
-                    scene.line(from, to, Stroke::Thin, ink);
+                    scene.line(from, to, LineStroke::Thin, ink);
                 }
             }
         }
@@ -264,7 +264,7 @@ impl<'a> Subject<'a> {
         let drawn = &axes[..if stands { 2 } else { 3 }];
         let label = |(name, from, axis): &(&'static str, Vector3<f64>, Vector3<f64>)| {
             let tip = from + axis * length;
-            scene.line(from, &tip, Stroke::Dotted(3), ink);
+            scene.line(from, &tip, LineStroke::Dotted(3), ink);
             // The colours of the traces of x, y and z are those of arrows here.
             (*name, Role::Quiet, tip)
         };
@@ -278,7 +278,7 @@ impl<'a> Subject<'a> {
         weight > 0.0
     }
 
-    fn path(&self, scene: &Scene, dots: &mut Dots) {
+    fn path(&self, scene: &DotScene, dots: &mut Dots) {
         let mut trail = Trail::new(dots, Around::Body);
         let now = (self.state.time_s, &self.position);
         let ages = self
@@ -296,7 +296,7 @@ impl<'a> Subject<'a> {
     }
 
     /// The paths of the run before and of the pinned one, and a line from the pivot to where each is at this time.
-    fn other_runs(&self, scene: &mut Scene, dots: &mut Dots) {
+    fn other_runs(&self, scene: &mut DotScene, dots: &mut Dots) {
         let before = (Ink::Ghost, dots::of_run_before(self.seen.view.marker), 3);
         let pinned = (Ink::Faint(Role::Pinned), dots::PINNED, 2);
         for (run, (ink, path, axle)) in [(self.seen.ghost, before), (self.seen.pinned, pinned)] {
@@ -307,7 +307,7 @@ impl<'a> Subject<'a> {
             dots.dashed(places.map(|block| scene.dot(&block.end())), path, ink);
             let mut until_now = recording.between(self.state.time_s, self.state.time_s);
             if let Some(now) = until_now.next() {
-                scene.line(&Vector3::zeros(), &now.end(), Stroke::Dotted(axle), ink);
+                scene.line(&Vector3::zeros(), &now.end(), LineStroke::Dotted(axle), ink);
             }
         }
     }
@@ -334,18 +334,18 @@ const HEAD: f64 = 7.0;
 const STRETCH: f64 = 1.5;
 
 /// A place on the sheet, dots across and down.
-type Place = (f64, f64);
+type DotPosition = (f64, f64);
 
-pub struct Way {
+pub struct ScreenPath {
     /// From the point backwards.
-    dots: Vec<Place>,
+    dots: Vec<DotPosition>,
     /// The sign that shows where the point goes, if the path is long enough.
     pub head: Option<(&'static str, Role, (u16, u16))>,
 }
 
-impl Subject<'_> {
+impl SceneSubject<'_> {
     /// The way on which the point has come.
-    pub(super) fn way(&self, scene: &Scene) -> Way {
+    pub(super) fn way(&self, scene: &DotScene) -> ScreenPath {
         let until = self.state.time_s;
         let [turn, recent] = [Age::Turn, Age::Recent].map(|age| self.ages.since(age, until));
         let blocks = self.seen.run.recording().since(turn);
@@ -356,8 +356,9 @@ impl Subject<'_> {
             scene.plane.in_cell.0 as f64,
             0.5 * scene.plane.in_cell.1 as f64,
         );
-        let columns =
-            |from: Place, to: Place| libm::hypot((to.0 - from.0) / across, (to.1 - from.1) / down);
+        let columns = |from: DotPosition, to: DotPosition| {
+            libm::hypot((to.0 - from.0) / across, (to.1 - from.1) / down)
+        };
         let (mut way, mut joined) = (vec![now], 0);
         let mut head = None;
         for block in blocks.iter().rev() {
@@ -382,12 +383,12 @@ impl Subject<'_> {
             break;
         }
         way.truncate(joined + 1);
-        Way { dots: way, head }
+        ScreenPath { dots: way, head }
     }
 }
 
 /// The sign that points most nearly along `right`, `down`.
-fn sign((right, down): Place) -> &'static str {
+fn sign((right, down): DotPosition) -> &'static str {
     match (right.abs() >= down.abs(), right >= 0.0, down >= 0.0) {
         (true, true, _) => "►",
         (true, false, _) => "◄",
@@ -396,7 +397,7 @@ fn sign((right, down): Place) -> &'static str {
     }
 }
 
-impl Way {
+impl ScreenPath {
     pub fn join(&self, dots: &mut Dots) {
         for pair in self.dots.windows(2) {
             if let [from, to] = pair {

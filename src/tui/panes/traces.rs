@@ -6,7 +6,7 @@ mod border;
 mod groups;
 mod plot;
 
-use super::{PaneRow, Seen, Width, frame, longest, write};
+use super::{PaneRow, PlotInputs, Width, frame, longest, write};
 use crate::lab::action::{Action, Direction, repeated, signed};
 use crate::lab::command::{Command, CursorTo};
 use crate::lab::view::Pane;
@@ -48,7 +48,7 @@ pub const ROW: PaneRow = PaneRow {
     rank: 0,
     least: (27, 0),
     draw: |lab, area, buf| {
-        Traces(Seen::of(lab)).render(area, buf);
+        Traces(PlotInputs::of(lab)).render(area, buf);
     },
     keys: KEYS,
     arrows: Some(|lab, direction, times| {
@@ -84,7 +84,7 @@ const KEYS: &[Binding] = &[
     does(&[Mode::Lab], &[Key::Home], |lab, _| Ok(lab.view().whole(lab.player())), "whole", "show the run again as at first: no cursor, no zoom"),
 ];
 
-pub struct Traces<'a>(pub Seen<'a>);
+pub struct Traces<'a>(pub PlotInputs<'a>);
 
 impl Widget for Traces<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {

@@ -2,14 +2,14 @@
 
 use super::{Case, preset, random};
 use crate::support::scenarios;
-use gyrolab::analysis::{Measured, Monitor};
+use gyrolab::analysis::{MeasuredNumber, Monitor};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The mean of a whole run, and what it should be, N.
-fn mean_of(scenario: &Arc<Scenario>) -> (Option<Measured>, f64) {
+fn mean_of(scenario: &Arc<Scenario>) -> (Option<MeasuredNumber>, f64) {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut monitor = Monitor::new(simulation.now());
     while simulation.step_number() < scenario.steps {

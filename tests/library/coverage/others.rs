@@ -9,7 +9,7 @@
 use super::{Case, between, log_between, preset, random};
 use crate::support::dice::Dice;
 use crate::support::scenarios::parse;
-use gyrolab::analysis::{Instruments, Measured, WithoutNutation};
+use gyrolab::analysis::{Instruments, MeasuredNumber, WithoutNutation};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Precession (rad/s) and nutation (s).
-type Both = [Option<Measured>; 2];
+type Both = [Option<MeasuredNumber>; 2];
 
 /// What a short run says, and what a longer one does: the whole of it, and each half.
 struct Pair {
@@ -285,7 +285,7 @@ fn a_nutation_that_depends_on_which_swings_count_is_not_stated() {
 }
 
 /// The nutation of a tumbling block as its rows show it, and in finer rows of the same stretch.
-fn tumbling(seed: u64) -> Option<[Measured; 2]> {
+fn tumbling(seed: u64) -> Option<[MeasuredNumber; 2]> {
     let mut dice = dice(seed);
     let dice = &mut dice;
     let size = [(); 3].map(|()| log_between(dice, 0.05, 0.4));

@@ -1,23 +1,23 @@
 //! What a run says at the measured times.
 
 use crate::support::scenarios::preset;
-use gyrolab::data::{Data, Series, at_times, read};
+use gyrolab::data::{DataKind, TimeSeries, at_times, read};
 use gyrolab::run::{Simulation, Truth};
 use std::sync::Arc;
 
 /// A series of these columns with a row at each of these times.
-fn series(columns: &[&str], times_s: &[f64]) -> Series {
+fn series(columns: &[&str], times_s: &[f64]) -> TimeSeries {
     let mut text = format!("t_s,{}\n", columns.join(","));
     for time_s in times_s {
         text += &format!("{time_s}{}\n", ",0".repeat(columns.len()));
     }
     match read("lab.csv", &text).unwrap().data {
-        Data::Series(series) => series,
-        Data::Table(_) => unreachable!(),
+        DataKind::Series(series) => series,
+        DataKind::Table(_) => unreachable!(),
     }
 }
 
-fn values(series: &Series, preset_name: &str, set: &[&str]) -> Vec<Vec<f64>> {
+fn values(series: &TimeSeries, preset_name: &str, set: &[&str]) -> Vec<Vec<f64>> {
     let scenario = Arc::new(preset(preset_name, set));
     at_times(series, &scenario, &|| true).unwrap().unwrap()
 }

@@ -1,27 +1,27 @@
 //! Files of measured data as they are read.
 
 use gyrolab::data::SHIPPED;
-use gyrolab::data::{Data, Measured, Series, Table, open, read};
+use gyrolab::data::{DataKind, MeasuredData, RunTable, TimeSeries, open, read};
 use toml::Value;
 
 #[track_caller]
-fn measured(text: &str) -> Measured {
+fn measured(text: &str) -> MeasuredData {
     read("lab.csv", text).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 #[track_caller]
-fn series(text: &str) -> Series {
+fn series(text: &str) -> TimeSeries {
     match measured(text).data {
-        Data::Series(series) => series,
-        Data::Table(_) => panic!("is a table of runs: {text}"),
+        DataKind::Series(series) => series,
+        DataKind::Table(_) => panic!("is a table of runs: {text}"),
     }
 }
 
 #[track_caller]
-fn table(text: &str) -> Table {
+fn table(text: &str) -> RunTable {
     match measured(text).data {
-        Data::Table(table) => table,
-        Data::Series(_) => panic!("is a time series: {text}"),
+        DataKind::Table(table) => table,
+        DataKind::Series(_) => panic!("is a time series: {text}"),
     }
 }
 
@@ -38,7 +38,7 @@ fn a_time_series_has_curves_with_gaps_and_uncertainties() {
     let [tilt, spin] = &series.curves[..] else {
         panic!("{series:?}")
     };
-    let points = |curve: &gyrolab::data::Curve| -> Vec<(usize, f64, Option<f64>)> {
+    let points = |curve: &gyrolab::data::MeasuredCurve| -> Vec<(usize, f64, Option<f64>)> {
         let points = curve.points.iter();
         points
             .map(|point| (point.row, point.value, point.sigma))

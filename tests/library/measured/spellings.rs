@@ -1,6 +1,6 @@
 //! Files as other programs write them: names, units, columns and rows that are not read.
 
-use gyrolab::data::{ColumnOptions, ColumnSigma, Measured, doubts, read, read_with};
+use gyrolab::data::{ColumnOptions, ColumnSigma, MeasuredData, doubts, read, read_with};
 use gyrolab::scenario::Document;
 use gyrolab::scenario::csv::renaming;
 use gyrolab::text::printable::is_steering;
@@ -16,7 +16,7 @@ fn options(map: &str, sigma: &str) -> ColumnOptions {
 }
 
 #[track_caller]
-fn mapped(text: &str, map: &str) -> Measured {
+fn mapped(text: &str, map: &str) -> MeasuredData {
     let read = read_with("lab.csv", text, &options(map, ""));
     read.unwrap_or_else(|problems| panic!("{text}{problems}"))
 }
@@ -31,7 +31,7 @@ fn refusal(origin: &str, text: &str, map: &str) -> String {
 
 /// The names of the curves, and the times and values of the last row.
 #[track_caller]
-fn last(measured: &Measured) -> (f64, Vec<(&'static str, f64)>) {
+fn last(measured: &MeasuredData) -> (f64, Vec<(&'static str, f64)>) {
     let series = measured.series().unwrap();
     let curves = series.curves.iter();
     let values = curves.map(|curve| {
@@ -299,7 +299,7 @@ fn one_column_of_a_number_of_the_run_is_a_table() {
         "predicted_nutation_period_s\n0,11\n0,12\n",
     ] {
         let measured = mapped(text, "");
-        let gyrolab::data::Data::Table(table) = measured.data else {
+        let gyrolab::data::DataKind::Table(table) = measured.data else {
             panic!("no table")
         };
         let values = table.readouts[0].points.iter().map(|point| point.value);

@@ -1,9 +1,9 @@
 //! The columns of a sweep: whose number each is, and which of them are the same quantity.
 
-use crate::analysis::readouts::{self, Source};
-use crate::figure::chart::Axis;
+use crate::analysis::readouts::{self, ReadoutSource};
+use crate::figure::chart::ChartAxis;
 use crate::figure::quantity::{self, MEASURED, SIMULATED};
-use crate::figure::table::Table;
+use crate::figure::table::TableSource;
 use crate::text::unit::Unit;
 
 const PREDICTED: &str = "predicted_";
@@ -11,7 +11,7 @@ const UNCERTAINTY: &str = "_uncertainty";
 
 /// Whose number a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Role {
+pub(super) enum QuantityOwner {
     /// What theory says, of the exact motion or of the scheme.
     Theory,
     /// What was measured on the run.
@@ -20,12 +20,12 @@ pub(super) enum Role {
     Value,
 }
 
-impl Role {
+impl QuantityOwner {
     fn of(name: &str) -> Self {
         let source = readouts::find(name).map(|readout| readout.source);
         match source {
             _ if name.starts_with(MEASURED) => Self::Measured,
-            Some(Source::Theory | Source::Scheme) => Self::Theory,
+            Some(ReadoutSource::Theory | ReadoutSource::Scheme) => Self::Theory,
             _ if name.starts_with(PREDICTED) => Self::Theory,
             _ => Self::Value,
         }
@@ -34,12 +34,12 @@ impl Role {
 
 /// A quantity of a sweep, by its columns: what was measured of it, and what theory says. Theory comes first: the points stand
 /// on it.
-pub(super) type Quantity = Vec<Part>;
+pub(super) type QuantityColumns = Vec<QuantityColumn>;
 
 /// A column.
-pub(super) struct Part {
+pub(super) struct QuantityColumn {
     pub name: String,
-    pub role: Role,
+    pub role: QuantityOwner,
     /// The column of its standard errors.
     pub uncertainty: Option<String>,
 }
@@ -51,7 +51,11 @@ fn bare(name: &str) -> &str {
 }
 
 /// The quantities of a sweep in the order of its columns: all of them, or those that are asked for.
-pub(super) fn quantities(table: &Table, varied: &[String], columns: &[&str]) -> Vec<Quantity> {
+pub(super) fn quantities(
+    table: &TableSource,
+    varied: &[String],
+    columns: &[&str],
+) -> Vec<QuantityColumns> {
     let is_asked = |name: &str| columns.is_empty() || columns.contains(&name);
     let is_number = |name: &str| {
         let numbers = table.numbers(name);
@@ -61,11 +65,11 @@ pub(super) fn quantities(table: &Table, varied: &[String], columns: &[&str]) -> 
         !varied.contains(name) && is_asked(name) && is_number(name) && !name.contains(UNCERTAINTY)
     });
     let names: Vec<&String> = names.collect();
-    let mut quantities: Vec<(&str, Quantity)> = Vec::new();
+    let mut quantities: Vec<(&str, QuantityColumns)> = Vec::new();
     for name in &names {
-        let part = Part {
+        let part = QuantityColumn {
             name: (*name).clone(),
-            role: Role::of(name),
+            role: QuantityOwner::of(name),
             uncertainty: uncertainty_of(table, name),
         };
         let what = what(name, &names);
@@ -76,7 +80,7 @@ pub(super) fn quantities(table: &Table, varied: &[String], columns: &[&str]) -> 
     }
     let mut quantities: Vec<_> = quantities.into_iter().map(|(_, it)| it).collect();
     for quantity in &mut quantities {
-        quantity.sort_by_key(|part| part.role != Role::Theory);
+        quantity.sort_by_key(|part| part.role != QuantityOwner::Theory);
     }
     quantities
 }
@@ -85,7 +89,7 @@ pub(super) fn quantities(table: &Table, varied: &[String], columns: &[&str]) -> 
 /// of the quantity that was measured beside it, `measured_precession_rad_per_s`.
 fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
     let own = bare(name);
-    if Role::of(name) != Role::Theory {
+    if QuantityOwner::of(name) != QuantityOwner::Theory {
         return own;
     }
     let mut measured = names
@@ -99,7 +103,7 @@ fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
 }
 
 /// The column of the standard errors of `name`: measured_precession_uncertainty_rad_per_s of measured_precession_rad_per_s.
-fn uncertainty_of(table: &Table, name: &str) -> Option<String> {
+fn uncertainty_of(table: &TableSource, name: &str) -> Option<String> {
     let of_name = |other: &&String| {
         let parts = other.split_once(UNCERTAINTY);
         parts.is_some_and(|(begin, unit)| name.starts_with(begin) && name.ends_with(unit))
@@ -108,12 +112,12 @@ fn uncertainty_of(table: &Table, name: &str) -> Option<String> {
 }
 
 /// The axis of a quantity: named by what was measured where theory stands beside it, else by the column.
-pub(super) fn axis(parts: &[Part]) -> Axis {
-    let is_theory = |part: &&Part| part.role == Role::Theory;
+pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
+    let is_theory = |part: &&QuantityColumn| part.role == QuantityOwner::Theory;
     let named = parts.iter().find(|part| !is_theory(part));
     let named = named.or_else(|| parts.iter().find(|part| bare(&part.name) != part.name));
     let Some(part) = named.or(parts.first()) else {
-        return Axis::default();
+        return ChartAxis::default();
     };
     let own = quantity::axis(&part.name);
     // Words say whose number it is; the legend says so already where both stand beside each other.
@@ -123,44 +127,46 @@ pub(super) fn axis(parts: &[Part]) -> Axis {
     let words = [SIMULATED, PREDICTED.trim_end_matches('_')];
     let without = |word: &&str| own.name.strip_prefix(&format!("{word} "));
     let name = words.iter().find_map(without).map(str::to_owned);
-    Axis {
+    ChartAxis {
         name: name.unwrap_or(own.name),
         ..own
     }
 }
 
-impl Part {
+impl QuantityColumn {
     /// What the legend calls it, as markup; `is_alone`: the axis says which theory it is.
     pub fn word(&self, is_alone: bool) -> String {
         let source = readouts::find(&self.name).map(|readout| readout.source);
         match self.role {
-            Role::Value => String::new(),
-            Role::Measured => SIMULATED.to_owned(),
-            Role::Theory if !is_alone && !self.name.starts_with(PREDICTED) => {
+            QuantityOwner::Value => String::new(),
+            QuantityOwner::Measured => SIMULATED.to_owned(),
+            QuantityOwner::Theory if !is_alone && !self.name.starts_with(PREDICTED) => {
                 quantity::axis(&self.name).name
             }
-            Role::Theory if source == Some(Source::Scheme) => "theory of the scheme".to_owned(),
-            Role::Theory => "theory".to_owned(),
+            QuantityOwner::Theory if source == Some(ReadoutSource::Scheme) => {
+                "theory of the scheme".to_owned()
+            }
+            QuantityOwner::Theory => "theory".to_owned(),
         }
     }
 }
 
 /// The names of theory among the columns that are drawn.
 pub(super) fn theory<'a>(
-    table: &'a Table,
+    table: &'a TableSource,
     columns: &'a [&str],
 ) -> impl Iterator<Item = &'a str> + 'a {
     let names = table.names().iter().map(String::as_str);
     names.filter(|name| {
         let is_drawn = columns.is_empty() || columns.contains(name);
-        is_drawn && Role::of(name) == Role::Theory && !name.contains(UNCERTAINTY)
+        is_drawn && QuantityOwner::of(name) == QuantityOwner::Theory && !name.contains(UNCERTAINTY)
     })
 }
 
 /// Two of the columns as an example of a choice, those that were measured before others.
-pub(super) fn example(quantities: &[Quantity]) -> String {
+pub(super) fn example(quantities: &[QuantityColumns]) -> String {
     let parts = || quantities.iter().flatten();
-    let is_measured = |part: &&Part| part.role == Role::Measured;
+    let is_measured = |part: &&QuantityColumn| part.role == QuantityOwner::Measured;
     let measured = parts().filter(is_measured);
     let others = parts().filter(|part| !is_measured(part) && Unit::of(&part.name).is_some());
     let names = measured.chain(others).map(|part| part.name.as_str());

@@ -2,12 +2,12 @@
 //! curves of which it says the same.
 
 use crate::figure::COLUMN_PT;
-use crate::figure::chart::Style;
+use crate::figure::chart::SeriesStyle;
 use crate::figure::chart::ticks::with_minus;
-use crate::figure::of_table::{Rows, grouped, within_room};
+use crate::figure::of_table::{RowIndices, grouped, within_room};
 use crate::figure::page::letters;
 use crate::figure::quantity;
-use crate::figure::table::{Sweep, Table};
+use crate::figure::table::{SweepTable, TableSource};
 use crate::text::number::shortest;
 
 /// The key whose values are names.
@@ -19,24 +19,24 @@ const SMOOTH: f64 = 40.0;
 
 /// The rows of one curve.
 #[derive(Clone, Debug)]
-pub(super) struct Curve {
+pub(super) struct SweepCurve {
     /// Which of the curves it is, from 0.
     pub index: usize,
     /// Its rows.
-    pub rows: Rows,
+    pub rows: RowIndices,
     /// The values of what else was varied.
-    pub settings: Vec<Setting>,
+    pub settings: Vec<CurveSetting>,
 }
 
 /// A key and its value: as at an axis, "*θ*_{0} = 20°", and in full.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Setting {
+pub(super) struct CurveSetting {
     markup: String,
     plain: String,
 }
 
 /// The curves of a sweep, of whose keys `along` is on the axis below.
-pub(super) fn curves(table: &Table, swept: &Sweep, along: &str) -> Vec<Curve> {
+pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Vec<SweepCurve> {
     let others = swept.varied.iter().filter(|key| *key != along);
     let others: Vec<(&String, Vec<&str>)> = others
         .filter_map(|key| Some((key, table.texts(key)?)))
@@ -47,11 +47,11 @@ pub(super) fn curves(table: &Table, swept: &Sweep, along: &str) -> Vec<Curve> {
     };
     let values: Vec<String> = (0..table.count()).map(values).collect();
     let groups = grouped(&values).into_iter().enumerate();
-    let curve = |(index, (_, rows)): (usize, (String, Rows))| {
+    let curve = |(index, (_, rows)): (usize, (String, RowIndices))| {
         let setting = |(key, texts): &(&String, Vec<&str>)| {
-            Setting::new(&swept.scenario, key, texts[rows[0]])
+            CurveSetting::new(&swept.scenario, key, texts[rows[0]])
         };
-        Curve {
+        SweepCurve {
             index,
             settings: others.iter().map(setting).collect(),
             rows,
@@ -61,8 +61,8 @@ pub(super) fn curves(table: &Table, swept: &Sweep, along: &str) -> Vec<Curve> {
 }
 
 /// What a curve with these `settings` is called, as markup no longer than `room_pt`; `word` stands before.
-pub(super) fn name(word: &str, settings: &[Setting], room_pt: f64) -> String {
-    let joined = |of: fn(&Setting) -> &str| {
+pub(super) fn name(word: &str, settings: &[CurveSetting], room_pt: f64) -> String {
+    let joined = |of: fn(&CurveSetting) -> &str| {
         let word = Some(word).filter(|word| !word.is_empty());
         let said = word.into_iter().chain(settings.iter().map(of));
         said.collect::<Vec<_>>().join(", ")
@@ -71,7 +71,7 @@ pub(super) fn name(word: &str, settings: &[Setting], room_pt: f64) -> String {
     within_room(markup, &plain, room_pt)
 }
 
-impl Setting {
+impl CurveSetting {
     fn new(scenario: &toml::Table, key: &str, value: &str) -> Self {
         if key == SCHEME {
             return Self {
@@ -100,26 +100,28 @@ impl Setting {
 }
 
 /// A line of theory.
-pub(super) struct Line {
+pub(super) struct TheoryLine {
     /// The first of the curves that it is for.
     index: usize,
     /// Its points from left to right.
     pub points: Vec<[f64; 2]>,
     /// What is set alike for all of them.
-    pub settings: Vec<Setting>,
+    pub settings: Vec<CurveSetting>,
 }
 
 /// The lines of what theory says of each of these curves, whose points run from left to right. A curve of which it says
 /// nothing has none.
-pub(super) fn lines<'a>(curves: impl Iterator<Item = (&'a Curve, Vec<[f64; 2]>)>) -> Vec<Line> {
-    let mut lines: Vec<Line> = Vec::new();
+pub(super) fn lines<'a>(
+    curves: impl Iterator<Item = (&'a SweepCurve, Vec<[f64; 2]>)>,
+) -> Vec<TheoryLine> {
+    let mut lines: Vec<TheoryLine> = Vec::new();
     for (curve, points) in curves {
         if !points.iter().any(|point| point[1].is_finite()) {
             continue;
         }
         match lines.iter_mut().find(|line| line.says(&points)) {
             Some(line) => line.take_in(curve, points),
-            None => lines.push(Line {
+            None => lines.push(TheoryLine {
                 index: curve.index,
                 points,
                 settings: curve.settings.clone(),
@@ -129,7 +131,7 @@ pub(super) fn lines<'a>(curves: impl Iterator<Item = (&'a Curve, Vec<[f64; 2]>)>
     lines
 }
 
-impl Line {
+impl TheoryLine {
     fn place(&self, x: f64) -> Result<usize, usize> {
         self.points.binary_search_by(|point| point[0].total_cmp(&x))
     }
@@ -146,7 +148,7 @@ impl Line {
     }
 
     /// Takes in a curve of which theory says the same, and the `points` that were missing.
-    fn take_in(&mut self, curve: &Curve, points: Vec<[f64; 2]>) {
+    fn take_in(&mut self, curve: &SweepCurve, points: Vec<[f64; 2]>) {
         self.settings.retain(|it| curve.settings.contains(it));
         for point in points.into_iter().filter(|point| point[1].is_finite()) {
             match self.place(point[0]) {
@@ -159,11 +161,11 @@ impl Line {
 
     /// How it is drawn on a page of that width, the theory at `place` of its panel: as a line where the rows are close, else
     /// as marks at the rows, since theory goes another way between them than the fine strokes that join them.
-    pub fn style(&self, place: usize, width_pt: f64) -> Style {
+    pub fn style(&self, place: usize, width_pt: f64) -> SeriesStyle {
         if self.points.len() as f64 > SMOOTH * width_pt / COLUMN_PT {
-            Style::theory(self.index, place)
+            SeriesStyle::theory(self.index, place)
         } else {
-            Style::theory_marked(self.index, place)
+            SeriesStyle::theory_marked(self.index, place)
         }
     }
 }

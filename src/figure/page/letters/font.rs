@@ -4,7 +4,7 @@
 //! Source: Microsoft, OpenType specification 1.9: otff, head, hhea, hmtx, maxp, loca, glyf.
 
 use super::setter::missing;
-use super::table::{Letter, Style, UNITS};
+use super::table::{FontStyle, Letter, UNITS};
 use crate::figure::{Point, Segment};
 use std::collections::BTreeSet;
 
@@ -24,7 +24,7 @@ struct Glyph {
 }
 
 impl Font {
-    pub fn of(style: &Style, letters: &BTreeSet<char>) -> Self {
+    pub fn of(style: &FontStyle, letters: &BTreeSet<char>) -> Self {
         let known = letters
             .iter()
             .filter_map(|&letter| Some((letter, style.letter(letter)?)));

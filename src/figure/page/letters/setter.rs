@@ -1,10 +1,10 @@
 //! Letters set one behind another: kerning, scripts, and what a slanted letter needs to its right.
 
-use super::Label;
+use super::SetLabel;
 use super::table::{self, ITALIC, REGULAR, UNITS};
-use crate::figure::page::scene::Placed;
+use crate::figure::page::scene::PlacedLetter;
 use crate::figure::page::scene::at;
-use crate::figure::page::scene::{Path, Point};
+use crate::figure::page::scene::{Point, VectorPath};
 
 /// Size of a sub- or superscript, as a share of its text's size.
 const SCRIPT: f64 = 0.7;
@@ -16,7 +16,7 @@ const ABOVE: f64 = 0.36;
 pub const BOX: f64 = 600.0;
 
 /// A sub- or superscript that has been begun and not ended.
-struct Script {
+struct RaisedText {
     is_above: bool,
     /// Where it began, and where the text before it ended, pt.
     began_pt: f64,
@@ -29,7 +29,7 @@ struct Script {
 }
 
 /// The letter before the next one, if they stand in one line.
-struct Before {
+struct PrecedingLetter {
     letter: char,
     is_italic: bool,
     /// How far its ink reaches beyond its advance, pt.
@@ -38,17 +38,17 @@ struct Before {
 
 #[derive(Default)]
 pub struct Setter {
-    label: Label,
+    label: SetLabel,
     /// Where the next letter begins, pt.
     x_pt: f64,
     size_pt: f64,
     /// Below the baseline of the whole label, pt.
     baseline_pt: f64,
     pub is_italic: bool,
-    scripts: Vec<Script>,
-    before: Option<Before>,
+    scripts: Vec<RaisedText>,
+    before: Option<PrecedingLetter>,
     /// The script that has just ended: another one, above or below it, begins where it began.
-    ended: Option<Script>,
+    ended: Option<RaisedText>,
 }
 
 impl Setter {
@@ -60,7 +60,7 @@ impl Setter {
     }
 
     /// What comes between the letter before and the next one, pt.
-    fn gap(&mut self, style: &table::Style, letter: char) -> f64 {
+    fn gap(&mut self, style: &table::FontStyle, letter: char) -> f64 {
         match self.before.take() {
             Some(before) if before.is_italic == self.is_italic => {
                 self.size_pt / UNITS * style.kerning(before.letter, letter)
@@ -90,7 +90,7 @@ impl Setter {
             right_pt = right_pt.max(point.x);
         }
         let is_slanted = f64::from(u8::from(self.is_italic));
-        self.before = Some(Before {
+        self.before = Some(PrecedingLetter {
             letter,
             is_italic: self.is_italic,
             overhang_pt: is_slanted * (right_pt - self.x_pt),
@@ -98,7 +98,7 @@ impl Setter {
         self.ended = None;
         self.label.path.0.extend(outline.0);
         self.label.words.push(letter);
-        self.label.letters.push(Placed {
+        self.label.letters.push(PlacedLetter {
             letter,
             is_italic,
             origin,
@@ -119,7 +119,7 @@ impl Setter {
             _ => (self.x_pt, self.x_pt),
         };
         self.x_pt = began_pt;
-        self.scripts.push(Script {
+        self.scripts.push(RaisedText {
             is_above,
             began_pt,
             behind_pt,
@@ -145,12 +145,12 @@ impl Setter {
     }
 
     /// The label, with what was not ended.
-    pub fn finish(mut self) -> Label {
+    pub fn finish(mut self) -> SetLabel {
         while !self.scripts.is_empty() {
             self.end_script();
         }
         let overhang_pt = self.before.map_or(0.0, |before| before.overhang_pt);
-        Label {
+        SetLabel {
             width_pt: self.x_pt + overhang_pt,
             ..self.label
         }
@@ -159,7 +159,7 @@ impl Setter {
 
 /// An upright box, drawn as a line around nothing: the inner contour runs against the outer one.
 pub fn missing() -> table::Letter {
-    let contour = |corners: [[f64; 2]; 4]| Path::polygon(corners.map(|[x, y]| at(x, y)));
+    let contour = |corners: [[f64; 2]; 4]| VectorPath::polygon(corners.map(|[x, y]| at(x, y)));
     let mut outline = contour([[70.0, 0.0], [530.0, 0.0], [530.0, -656.0], [70.0, -656.0]]);
     let inner = [
         [110.0, -40.0],

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use crate::figure::page::scene::at;
-use crate::figure::page::scene::{Path, Point, Segment};
+use crate::figure::page::scene::{Point, Segment, VectorPath};
 
 /// How large the tables draw a letter: lengths are thousandths of its size.
 pub const UNITS: f64 = 1000.0;
@@ -17,28 +17,28 @@ pub const UNITS: f64 = 1000.0;
 pub struct Letter {
     /// From its origin to the next letter's origin.
     pub advance: f64,
-    pub outline: Path,
+    pub outline: VectorPath,
 }
 
 #[derive(Default)]
-pub struct Style {
+pub struct FontStyle {
     lines: BTreeMap<u32, &'static str>,
     /// The classes of letters at the left and at the right of a pair.
     classes: [BTreeMap<u32, u32>; 2],
     kerning: BTreeMap<(u32, u32), f64>,
 }
 
-pub static REGULAR: LazyLock<Style> = LazyLock::new(|| {
-    Style::new(
+pub static REGULAR: LazyLock<FontStyle> = LazyLock::new(|| {
+    FontStyle::new(
         include_str!("regular.txt"),
         include_str!("regular.kern.txt"),
     )
 });
 /// Slanted letters, as for the names of quantities.
-pub static ITALIC: LazyLock<Style> =
-    LazyLock::new(|| Style::new(include_str!("italic.txt"), include_str!("italic.kern.txt")));
+pub static ITALIC: LazyLock<FontStyle> =
+    LazyLock::new(|| FontStyle::new(include_str!("italic.txt"), include_str!("italic.kern.txt")));
 
-impl Style {
+impl FontStyle {
     fn new(letters: &'static str, kerning: &str) -> Self {
         let mut style = Self {
             lines: letters.lines().filter_map(numbered).collect(),
@@ -87,8 +87,8 @@ impl Style {
     }
 
     /// The outline of a letter that consists of others: `+CODE,RIGHT,UP` for each.
-    fn put_together(&self, parts: &str) -> Option<Path> {
-        let mut whole = Path::default();
+    fn put_together(&self, parts: &str) -> Option<VectorPath> {
+        let mut whole = VectorPath::default();
         for part in parts.split(' ') {
             let mut fields = part.strip_prefix('+')?.split(',');
             let code = u32::from_str_radix(fields.next()?, 16).ok()?;
@@ -121,9 +121,9 @@ fn kerned(line: &str) -> Option<((u32, u32), f64)> {
 }
 
 /// The data of an SVG path with the commands m, l, h, v, q and z, y up; `None` where it is not that.
-fn read_outline(data: &str) -> Option<Path> {
-    let mut numbers = Numbers(data);
-    let mut path = Path::default();
+fn read_outline(data: &str) -> Option<VectorPath> {
+    let mut numbers = PackedIntegers(data);
+    let mut path = VectorPath::default();
     let (mut here, mut start) = (at(0.0, 0.0), at(0.0, 0.0));
     let mut command = ' ';
     while let Some(next) = numbers.0.chars().next() {
@@ -154,9 +154,9 @@ fn read_outline(data: &str) -> Option<Path> {
 }
 
 /// Whole numbers, apart by a blank or by the minus of the next.
-struct Numbers<'a>(&'a str);
+struct PackedIntegers<'a>(&'a str);
 
-impl Numbers<'_> {
+impl PackedIntegers<'_> {
     fn next(&mut self) -> Option<f64> {
         let text = self.0.trim_start_matches(' ');
         let digits = text.strip_prefix('-').unwrap_or(text);

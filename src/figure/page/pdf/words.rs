@@ -4,8 +4,8 @@
 use crate::figure::page::letters::CAP_HEIGHT;
 use crate::figure::page::letters::font::Font;
 use crate::figure::page::letters::table::{ITALIC, REGULAR};
-use crate::figure::page::scene::Placed;
-use crate::figure::page::scene::{Scene, Words};
+use crate::figure::page::scene::PlacedLetter;
+use crate::figure::page::scene::{PageScene, TextItem};
 use pdf_writer::types::{CidFontType, FontFlags, SystemInfo, UnicodeCmap};
 use pdf_writer::writers::Resources;
 use pdf_writer::{Content, Filter, Name, Pdf, Rect, Ref, Str};
@@ -32,7 +32,7 @@ struct OfPage {
 }
 
 impl Fonts {
-    pub fn of(scenes: &[Scene]) -> Self {
+    pub fn of(scenes: &[PageScene]) -> Self {
         let items = || scenes.iter().flat_map(|scene| &scene.items);
         let words = || items().filter_map(|item| item.words.as_ref());
         Self([false, true].map(|is_italic| {
@@ -73,10 +73,10 @@ impl Fonts {
     }
 
     /// Writes `words` where they stand; y runs down.
-    pub fn put(&self, words: &Words, content: &mut Content) {
+    pub fn put(&self, words: &TextItem, content: &mut Content) {
         content.begin_text();
-        let is_one_line = |a: &Placed, b: &Placed| {
-            let off = |p: &Placed| {
+        let is_one_line = |a: &PlacedLetter, b: &PlacedLetter| {
+            let off = |p: &PlacedLetter| {
                 if words.is_upward {
                     p.origin.x
                 } else {
@@ -92,7 +92,7 @@ impl Fonts {
     }
 
     /// Letters of one font and size on one baseline.
-    fn put_line(&self, line: &[Placed], is_upward: bool, content: &mut Content) {
+    fn put_line(&self, line: &[PlacedLetter], is_upward: bool, content: &mut Content) {
         let Some(first) = line.first() else {
             return;
         };
@@ -107,7 +107,7 @@ impl Fonts {
         } else {
             [1.0, 0.0, 0.0, -1.0, x, y]
         });
-        let along = |p: &Placed| if is_upward { -p.origin.y } else { p.origin.x };
+        let along = |p: &PlacedLetter| if is_upward { -p.origin.y } else { p.origin.x };
         let advances: Vec<f32> = font.advances().collect();
         let mut shown = content.show_positioned();
         let mut items = shown.items();

@@ -1,6 +1,6 @@
 //! The state at the start, in the frame along the vertical of the load.
 
-use crate::exact::turning::Start;
+use crate::exact::turning::TurningStart;
 use nalgebra::{Complex, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// The direction that the energy and the constant part of L refer to, of a length near one: against the load, or along L
@@ -71,7 +71,7 @@ pub(super) fn start(
     frame: &InFrame,
     axle: Vector3<f64>,
     momentum: Vector3<f64>,
-) -> Start {
+) -> TurningStart {
     let level = frame.level(axle) / axle.norm();
     let rise = frame.vertical_part(axle) / axle.norm();
     // The larger part of the axle follows the smaller one: a length off by rounding would pass for a tilt.
@@ -80,7 +80,7 @@ pub(super) fn start(
     } else {
         rise
     };
-    Start {
+    TurningStart {
         pull: load.norm() / across,
         axle: level,
         height,
@@ -91,7 +91,7 @@ pub(super) fn start(
 
 /// alpha and beta at the start; the smaller one from the axle, which knows it to full relative accuracy.
 pub(super) fn cayley_klein(
-    start: &Start,
+    start: &TurningStart,
     turn: UnitQuaternion<f64>,
 ) -> (Complex<f64>, Complex<f64>) {
     let (alpha, beta) = (Complex::new(turn.w, turn.k), Complex::new(turn.i, turn.j));

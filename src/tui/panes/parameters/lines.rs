@@ -1,7 +1,7 @@
 //! The lines of the pane. Each number has as many decimals as there is room for.
 
 use crate::analysis::remarks::{short_no_drift, short_unit};
-use crate::analysis::theory::{Axis, Path};
+use crate::analysis::theory::{AxlePath, TheoryAxis};
 use crate::physics::{Body, Friction};
 use crate::playback::reading::Reading;
 use crate::scenario::{Motion, Scenario, Window};
@@ -22,7 +22,7 @@ const DIGITS: usize = 7;
 pub(super) const PREDICTED: &str = "predicted";
 
 #[derive(Clone)]
-pub(super) struct Line {
+pub(super) struct ParameterLine {
     /// Where there is no room for all, lines of higher rank are left out first.
     pub(super) rank: u8,
     pub(super) label: Cow<'static, str>,
@@ -33,22 +33,27 @@ pub(super) struct Line {
     pub(super) is_selected: bool,
 }
 
-impl Line {
+impl ParameterLine {
     pub(super) fn is_heading(&self) -> bool {
         self.label_role == Role::Heading
     }
 }
 
-pub(super) fn heading(label: impl Into<Cow<'static, str>>) -> Line {
-    Line {
+pub(super) fn heading(label: impl Into<Cow<'static, str>>) -> ParameterLine {
+    ParameterLine {
         label: label.into(),
         label_role: Role::Heading,
         ..value(0, "", String::new(), "")
     }
 }
 
-pub(super) fn value(rank: u8, label: &'static str, value: String, unit: &'static str) -> Line {
-    Line {
+pub(super) fn value(
+    rank: u8,
+    label: &'static str,
+    value: String,
+    unit: &'static str,
+) -> ParameterLine {
+    ParameterLine {
         rank,
         label: label.into(),
         label_role: Role::Quiet,
@@ -66,7 +71,7 @@ fn number(
     number: impl Into<Option<f64>>,
     digits: usize,
     unit: &'static str,
-) -> Line {
+) -> ParameterLine {
     value(rank, label, fixed(label, number.into(), digits), unit)
 }
 
@@ -78,7 +83,7 @@ fn sized(
     size: f64,
     digits: usize,
     unit: &'static str,
-) -> Line {
+) -> ParameterLine {
     /// A number smaller than this part of the size is rounding error.
     const ROUNDING: f64 = 1e-9;
     let is_small = size > 0.0 && size < 0.1;
@@ -91,7 +96,13 @@ fn sized(
 
 /// A number of the scenario: with `digits` decimals where it has no more, else with as many as there is room for beside
 /// its label.
-fn given(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'static str) -> Line {
+fn given(
+    rank: u8,
+    label: &'static str,
+    number: f64,
+    digits: usize,
+    unit: &'static str,
+) -> ParameterLine {
     let usual = fixed(label, Some(number), digits);
     let is_whole = usual.parse() == Ok(number);
     let room = (VALUE_END as usize).saturating_sub(label.len() + 2);
@@ -104,7 +115,7 @@ fn given(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'stat
 }
 
 /// Quantities that follow from the body's values.
-pub(super) fn derived_lines(scenario: &Scenario) -> Vec<Line> {
+pub(super) fn derived_lines(scenario: &Scenario) -> Vec<ParameterLine> {
     let body: &Body = &scenario.body.mechanics;
     let height = body.first_moment().z / body.mass();
     vec![
@@ -114,7 +125,7 @@ pub(super) fn derived_lines(scenario: &Scenario) -> Vec<Line> {
     ]
 }
 
-pub(super) fn body_lines(scenario: &Scenario) -> Vec<Line> {
+pub(super) fn body_lines(scenario: &Scenario) -> Vec<ParameterLine> {
     let mut lines = derived_lines(scenario);
     if let Some(rim) = &scenario.file.body.rim {
         lines.push(given(4, "rim radius", rim.radius_m, 4, "m"));
@@ -123,7 +134,7 @@ pub(super) fn body_lines(scenario: &Scenario) -> Vec<Line> {
     lines
 }
 
-pub(super) fn start_lines(scenario: &Scenario) -> Vec<Line> {
+pub(super) fn start_lines(scenario: &Scenario) -> Vec<ParameterLine> {
     let tilt = scenario.file.start.tilt_deg.unwrap_or(0.0);
     let momentum = scenario.file.start.momentum_Js;
     let size = scenario.start.momentum.norm();
@@ -146,7 +157,7 @@ pub(super) fn start_lines(scenario: &Scenario) -> Vec<Line> {
 }
 
 /// The friction, where there is one: its coefficient, or how many there are.
-fn friction_line(friction: &Friction) -> Option<Line> {
+fn friction_line(friction: &Friction) -> Option<ParameterLine> {
     let coefficients = [
         (friction.spin_dry, "N m"),
         (friction.spin_viscous, "N m s"),
@@ -162,7 +173,7 @@ fn friction_line(friction: &Friction) -> Option<Line> {
     Some(value(2, "friction", value_of_it, unit))
 }
 
-pub(super) fn motion_lines(scenario: &Scenario, motion: &Motion) -> Vec<Line> {
+pub(super) fn motion_lines(scenario: &Scenario, motion: &Motion) -> Vec<ParameterLine> {
     let (rank, pushes) = match &scenario.pushes[..] {
         [] => (5, "none".to_owned()),
         [push] => (2, format!("{} N", decimals_of(push.force.norm(), 0))),
@@ -190,13 +201,13 @@ pub(super) fn motion_lines(scenario: &Scenario, motion: &Motion) -> Vec<Line> {
     lines
 }
 
-pub(super) fn now_lines(reading: &Reading) -> Vec<Line> {
+pub(super) fn now_lines(reading: &Reading) -> Vec<ParameterLine> {
     let sample = &reading.readouts.sample;
     let momentum = sample.momentum.norm();
     let kinetic = 0.5 * sample.momentum.dot(&sample.angular_velocity);
     // A scheme that has broken down leaves neither a position nor an energy of a rigid body.
     let of_body = |number: f64| reading.readouts.health.is_a_rotation.then_some(number);
-    let axis = |label, role, metres: f64| Line {
+    let axis = |label, role, metres: f64| ParameterLine {
         label_role: role,
         ..number(0, label, of_body(metres), 4, "m")
     };
@@ -222,7 +233,7 @@ pub(super) fn now_lines(reading: &Reading) -> Vec<Line> {
 }
 
 /// The readouts that are shown too where there is room: the extremes so far, and how the wheel turns.
-pub(super) fn further_lines(reading: &Reading) -> Vec<Line> {
+pub(super) fn further_lines(reading: &Reading) -> Vec<ParameterLine> {
     let readouts = &reading.readouts;
     let told =
         |rank, label, name, digits, unit| number(rank, label, readouts.number(name), digits, unit);
@@ -255,7 +266,7 @@ pub(super) fn further_lines(reading: &Reading) -> Vec<Line> {
 }
 
 /// The readouts to watch while values are edited; the last is the energy's drift.
-pub(super) fn watched_lines(reading: &Reading) -> [Line; 5] {
+pub(super) fn watched_lines(reading: &Reading) -> [ParameterLine; 5] {
     let readouts = &reading.readouts;
     let health = &readouts.health;
     let nutation = match readouts.nutation_is_resolved() {
@@ -266,8 +277,9 @@ pub(super) fn watched_lines(reading: &Reading) -> [Line; 5] {
     let tilt = health.is_a_rotation.then_some(readouts.sample.tilt_deg);
     // An axle that passes through the vertical has no precession. Any other has none so far.
     let theory = readouts.theory.as_ref();
-    let has_none =
-        theory.is_some_and(|theory| theory.axis == Axis::Z && theory.path == Path::ThroughVertical);
+    let has_none = theory.is_some_and(|theory| {
+        theory.axis == TheoryAxis::Z && theory.path == AxlePath::ThroughVertical
+    });
     let rate = |rank, label, rate: Option<f64>| match rate {
         None if has_none => value(rank, label, "none".to_owned(), ""),
         rate => number(rank, label, rate, 3, "deg/s"),

@@ -2,8 +2,8 @@
 //! a table of points, with the sum of the rows up to the chosen one below it. Only the rows that are drawn are read.
 
 use super::super::shortened;
-use super::page::{Line, Section};
-use crate::physics::workings::{Quantity, Table, Value};
+use super::page::{StepPageLine, StepPageSection};
+use crate::physics::workings::{PointTable, WorkedQuantity, WorkedValue};
 use crate::text::number::{NONE, exponent, significant};
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
@@ -28,14 +28,14 @@ const LEAST_SEEN: i32 = 3;
 const DIGITS_OF_TURNS: usize = 5;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Format {
+pub struct CellFormat {
     /// Columns of a number, with a space before it.
     pub cell: usize,
     /// Digits of the largest number of a vector, a matrix or a column.
     pub digits: usize,
 }
 
-impl Format {
+impl CellFormat {
     /// For `count` numbers side by side on `width` columns.
     pub fn new(width: usize, count: usize) -> Self {
         let digits = (width / count.max(1)).saturating_sub(AROUND);
@@ -90,13 +90,13 @@ impl Format {
 }
 
 /// The lines of `quantity`, which is no table; `is_result` says whether the phase was about it.
-pub fn lines(quantity: &Quantity, format: Format, is_result: bool) -> Vec<Line> {
+pub fn lines(quantity: &WorkedQuantity, format: CellFormat, is_result: bool) -> Vec<StepPageLine> {
     let role = if is_result { Role::Heading } else { Role::Text };
     let (numbers, across): (Vec<f64>, usize) = match &quantity.value {
-        Value::Number(number) => (vec![*number], 1),
-        Value::Vector(vector) => (vector.iter().copied().collect(), 3),
-        Value::Matrix(matrix) => (matrix.transpose().iter().copied().collect(), 3),
-        Value::Table(_) => return Vec::new(),
+        WorkedValue::Number(number) => (vec![*number], 1),
+        WorkedValue::Vector(vector) => (vector.iter().copied().collect(), 3),
+        WorkedValue::Matrix(matrix) => (matrix.transpose().iter().copied().collect(), 3),
+        WorkedValue::Table(_) => return Vec::new(),
     };
     let mut cells = format.aligned(&numbers);
     if let [number] = numbers[..] {
@@ -105,12 +105,12 @@ pub fn lines(quantity: &Quantity, format: Format, is_result: bool) -> Vec<Line> 
             cells = vec![format!("{text:>0$}", format.cell)];
         }
     }
-    let line = |cells: &[String]| Line::of(SYMBOL, cells.concat(), role);
+    let line = |cells: &[String]| StepPageLine::of(SYMBOL, cells.concat(), role);
     let mut lines: Vec<_> = cells.chunks(across).map(line).collect();
     let unit = SYMBOL + across * format.cell + 1;
     let unit = (unit, unit_of(quantity), Role::Quiet);
     lines[0].pieces.push(unit);
-    let symbol = Line::of(0, quantity.symbol, Role::Focus);
+    let symbol = StepPageLine::of(0, quantity.symbol, Role::Focus);
     if columns(quantity.symbol) < SYMBOL {
         lines[0].pieces.extend(symbol.pieces);
     } else {
@@ -120,9 +120,9 @@ pub fn lines(quantity: &Quantity, format: Format, is_result: bool) -> Vec<Line> 
 }
 
 /// The unit of `quantity`; after an angle of more than half a turn also how many turns it is.
-fn unit_of(quantity: &Quantity) -> String {
+fn unit_of(quantity: &WorkedQuantity) -> String {
     match quantity.value {
-        Value::Number(angle) if quantity.unit == "rad" && angle.abs() > PI => {
+        WorkedValue::Number(angle) if quantity.unit == "rad" && angle.abs() > PI => {
             let turns = significant(angle / TAU, DIGITS_OF_TURNS);
             format!("rad = {turns} turns")
         }
@@ -131,9 +131,12 @@ fn unit_of(quantity: &Quantity) -> String {
 }
 
 /// The heads of the columns of vectors and matrices.
-pub fn heads(rank: u8, format: Format) -> Section {
+pub fn heads(rank: u8, format: CellFormat) -> StepPageSection {
     let heads = ["x", "y", "z"].map(|head| format!("{head:>0$}", format.cell));
-    Section::new(rank, vec![Line::of(SYMBOL, heads.concat(), Role::Quiet)])
+    StepPageSection::new(
+        rank,
+        vec![StepPageLine::of(SYMBOL, heads.concat(), Role::Quiet)],
+    )
 }
 
 /// Columns of the points' names, with a space after them.
@@ -149,7 +152,7 @@ const FEW: usize = 3;
 const LEAST_ROWS: usize = 4;
 
 pub struct TableView<'a> {
-    pub table: &'a Table,
+    pub table: &'a PointTable,
     /// How many of its rows are added up, and the sum of each column over them; `None`: no sum is wanted.
     pub sum: Option<(usize, Vec<f64>)>,
     pub name: &'a dyn Fn(usize) -> String,
@@ -165,7 +168,7 @@ impl TableView<'_> {
     }
 
     /// Its lines: the heads, the sum, and the rows for which `room` is left.
-    pub fn lines(&self, room: usize) -> Vec<Line> {
+    pub fn lines(&self, room: usize) -> Vec<StepPageLine> {
         let groups = self.groups();
         let sum = self.sum_lines(&groups);
         let mut lines = self.heads(&groups);
@@ -184,7 +187,7 @@ impl TableView<'_> {
                 "Down goes through them"
             };
             let text = format!("... {left} more: {what}");
-            lines.push(Line::of(0, text, Role::Quiet));
+            lines.push(StepPageLine::of(0, text, Role::Quiet));
         }
         lines.extend(sum);
         lines
@@ -195,7 +198,7 @@ impl TableView<'_> {
         self.sum.as_ref().map(|(rows, _)| *rows)
     }
 
-    fn rows(&self, groups: &[Range<usize>], shown: Range<usize>) -> Vec<Line> {
+    fn rows(&self, groups: &[Range<usize>], shown: Range<usize>) -> Vec<StepPageLine> {
         let texts: Vec<_> = groups
             .iter()
             .map(|group| self.texts(group, &shown))
@@ -209,7 +212,7 @@ impl TableView<'_> {
             let name = (self.name)(self.table.points[row]);
             let mut name = shortened(&name, NAME - 1).into_owned();
             for (index, (group, texts)) in groups.iter().zip(&texts).enumerate() {
-                let mut line = Line::of(0, std::mem::take(&mut name), role);
+                let mut line = StepPageLine::of(0, std::mem::take(&mut name), role);
                 if self.has_mass_aside(group) {
                     let mass = significant(self.table.row(row)[0], MASS_DIGITS);
                     line = line.and(NAME - 1, format!("{mass:>MASS$}"), role);
@@ -249,8 +252,8 @@ impl TableView<'_> {
         }
     }
 
-    fn format(&self, group: &Range<usize>) -> Format {
-        Format::new(self.width.saturating_sub(self.begin(group)), group.len())
+    fn format(&self, group: &Range<usize>) -> CellFormat {
+        CellFormat::new(self.width.saturating_sub(self.begin(group)), group.len())
     }
 
     /// The numbers of each column of `group` on the rows `shown`.
@@ -264,14 +267,14 @@ impl TableView<'_> {
     }
 
     /// The symbols over the columns of each group with their unit, or under them their units where these differ.
-    fn heads(&self, groups: &[Range<usize>]) -> Vec<Line> {
+    fn heads(&self, groups: &[Range<usize>]) -> Vec<StepPageLine> {
         let mut lines = Vec::new();
         for group in groups {
             let cell = self.format(group).cell;
             let columns = &self.table.columns[group.clone()];
             let symbols = columns.iter().map(|(symbol, _)| format!("{symbol:>cell$}"));
             let symbols = symbols.collect::<String>();
-            let mut line = Line::of(self.begin(group), symbols, Role::Quiet);
+            let mut line = StepPageLine::of(self.begin(group), symbols, Role::Quiet);
             if self.has_mass_aside(group) {
                 let mass = self.table.columns[0].1;
                 line = line.and(NAME - 1, format!("{mass:>MASS$}"), Role::Quiet);
@@ -282,14 +285,17 @@ impl TableView<'_> {
             } else {
                 let units = columns.iter().map(|(_, unit)| format!("{unit:>cell$}"));
                 let units = units.collect::<String>();
-                lines.extend([line, Line::of(self.begin(group), units, Role::Quiet)]);
+                lines.extend([
+                    line,
+                    StepPageLine::of(self.begin(group), units, Role::Quiet),
+                ]);
             }
         }
         lines
     }
 
     /// What the chosen row adds, and the sum up to it.
-    fn sum_lines(&self, groups: &[Range<usize>]) -> Vec<Line> {
+    fn sum_lines(&self, groups: &[Range<usize>]) -> Vec<StepPageLine> {
         let columns = summed(self.table);
         let (Some(rows), Some((_, sums)), false) = (self.chosen(), &self.sum, columns.is_empty())
         else {
@@ -300,14 +306,14 @@ impl TableView<'_> {
             1 => format!("the first of {all} points gives"),
             rows => format!("the first {rows} of {all} points add up to"),
         };
-        let mut lines = vec![Line::of(0, caption, Role::Text)];
+        let mut lines = vec![StepPageLine::of(0, caption, Role::Text)];
         match groups {
             [group] if group.contains(&columns.start) => {
                 let format = self.format(group);
                 let blank = " ".repeat((columns.start - group.start) * format.cell);
                 let sums = sums[columns].iter();
                 let sums: String = sums.map(|sum| format.aligned(&[*sum]).concat()).collect();
-                let line = Line::of(0, "sum", Role::Focus);
+                let line = StepPageLine::of(0, "sum", Role::Focus);
                 lines.push(line.and(NAME, blank + &sums, Role::Heading));
             }
             _ => lines.extend(columns.clone().step_by(FEW).flat_map(|begin| {
@@ -319,19 +325,20 @@ impl TableView<'_> {
     }
 
     /// What `row` adds to each column of `group`, and their `sums`, with heads of their own.
-    fn added(&self, group: Range<usize>, row: usize, sums: &[f64]) -> [Line; 3] {
+    fn added(&self, group: Range<usize>, row: usize, sums: &[f64]) -> [StepPageLine; 3] {
         let adds = self.table.row(row);
-        let format = Format::of_vectors(self.width);
+        let format = CellFormat::of_vectors(self.width);
         let columns = &self.table.columns[group.clone()];
         let heads = columns
             .iter()
             .map(|(symbol, _)| format!("{symbol:>0$}", format.cell));
-        let heads = Line::of(SYMBOL, heads.collect::<String>(), Role::Quiet);
+        let heads = StepPageLine::of(SYMBOL, heads.collect::<String>(), Role::Quiet);
         let unit = SYMBOL + group.len() * format.cell + 1;
         let both = group.map(|column| format.aligned(&[adds[column], sums[column]]));
         let both: Vec<_> = both.collect();
         let line = |at: usize, name, role| {
-            let line = Line::of(0, name, Role::Focus).and(SYMBOL, side_by_side(&both, at), role);
+            let line =
+                StepPageLine::of(0, name, Role::Focus).and(SYMBOL, side_by_side(&both, at), role);
             line.and(unit, columns[0].1, Role::Quiet)
         };
         [
@@ -348,7 +355,7 @@ fn side_by_side(columns: &[Vec<String>], at: usize) -> String {
 }
 
 /// The columns of `table` whose sums mean something.
-fn summed(table: &Table) -> Range<usize> {
+fn summed(table: &PointTable) -> Range<usize> {
     match table.columns.first() {
         Some(("m", _)) if table.columns.len() == 10 => 4..10,
         Some(("m x", _)) => 0..table.columns.len(),
@@ -357,7 +364,7 @@ fn summed(table: &Table) -> Range<usize> {
 }
 
 /// Whether rows of `table` can be added up.
-pub fn is_summed(table: &Table) -> bool {
+pub fn is_summed(table: &PointTable) -> bool {
     !summed(table).is_empty()
 }
 
@@ -368,7 +375,7 @@ mod tests {
     #[test]
     fn no_number_is_wider_than_its_cell() {
         for width in [12, 30, 42, 60, 100] {
-            let format = Format::of_vectors(width);
+            let format = CellFormat::of_vectors(width);
             for power in -320..308 {
                 for other in [0, -3, -8, 5] {
                     let numbers = [-9.99999999_f64, 1.0, 5.5].map(|n| n * 10f64.powi(power));

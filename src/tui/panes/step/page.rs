@@ -9,23 +9,23 @@ use ratatui::layout::Rect;
 
 /// A line: texts with the columns where they begin.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Line {
+pub struct StepPageLine {
     pub pieces: Vec<(usize, String, Role)>,
     pub is_chosen: bool,
 }
 
 #[derive(Clone, Debug, Default)]
-pub struct Section {
+pub struct StepPageSection {
     /// The section of the highest rank is left out first; those of rank 0 never are.
     pub rank: u8,
     /// Whether an empty line stands before it where there is room for all such lines.
     pub is_apart: bool,
     /// The index of the quantity that is the table of these lines.
     pub table: Option<usize>,
-    pub lines: Vec<Line>,
+    pub lines: Vec<StepPageLine>,
 }
 
-impl Line {
+impl StepPageLine {
     pub fn of(column: usize, text: impl Into<String>, role: Role) -> Self {
         Self::default().and(column, text, role)
     }
@@ -36,8 +36,8 @@ impl Line {
     }
 }
 
-impl Section {
-    pub fn new(rank: u8, lines: Vec<Line>) -> Self {
+impl StepPageSection {
+    pub fn new(rank: u8, lines: Vec<StepPageLine>) -> Self {
         Self {
             rank,
             lines,
@@ -50,7 +50,7 @@ impl Section {
         let lines = wrapped(text, width.saturating_sub(indent)).into_iter();
         let column = |line: usize| if line == 0 { 0 } else { indent };
         let lines = lines.enumerate();
-        let lines = lines.map(|(at, text)| Line::of(column(at), text, role));
+        let lines = lines.map(|(at, text)| StepPageLine::of(column(at), text, role));
         Self::new(rank, lines.collect())
     }
 
@@ -63,28 +63,28 @@ impl Section {
     }
 }
 
-pub fn height(sections: &[Section]) -> usize {
+pub fn height(sections: &[StepPageSection]) -> usize {
     sections.iter().map(|section| section.lines.len()).sum()
 }
 
 /// Leaves sections out, those of the highest rank first, until no more than `room` lines are left, or only those of rank 0.
-pub fn fit(sections: &mut Vec<Section>, room: usize) {
+pub fn fit(sections: &mut Vec<StepPageSection>, room: usize) {
     while height(sections) > room && leave_one_out(sections, |section| section.rank) {}
 }
 
 /// Puts an empty line before each section that wants one, if `room` holds all of them.
-pub fn spread(sections: &mut [Section], room: usize) {
+pub fn spread(sections: &mut [StepPageSection], room: usize) {
     let height = height(sections);
     let others = sections.iter_mut().skip(1);
     let apart: Vec<_> = others.filter(|section| section.is_apart).collect();
     if height + apart.len() <= room {
         for section in apart {
-            section.lines.insert(0, Line::default());
+            section.lines.insert(0, StepPageLine::default());
         }
     }
 }
 
-pub fn draw(sections: &[Section], area: Rect, theme: &Theme, buf: &mut Buffer) {
+pub fn draw(sections: &[StepPageSection], area: Rect, theme: &Theme, buf: &mut Buffer) {
     let lines = sections.iter().flat_map(|section| &section.lines);
     for (line, place) in lines.zip(area.rows()) {
         for (column, text, role) in &line.pieces {

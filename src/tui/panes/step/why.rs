@@ -1,13 +1,13 @@
 //! Why the axle goes sideways, not down: torque, dL and L from above, and the first dip magnified.
 
 use super::super::write;
-use super::numbers::{self, Format};
-use super::page::{self, Section};
+use super::numbers::{self, CellFormat};
+use super::page::{self, StepPageSection};
 use crate::lab::Lab;
 use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::View;
 use crate::physics::loads::torque;
-use crate::physics::workings::{Quantity, Value};
+use crate::physics::workings::{WorkedQuantity, WorkedValue};
 use crate::text::wrap::wrapped;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::plane::Plane;
@@ -43,7 +43,13 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     };
     let view = lab.view();
     let width = usize::from(area.width);
-    let mut sections = vec![Section::text(0, reason(explained), width, 0, Role::Text)];
+    let mut sections = vec![StepPageSection::text(
+        0,
+        reason(explained),
+        width,
+        0,
+        Role::Text,
+    )];
     sections.extend(vectors(explained, width));
     let room = area.height.saturating_sub(LEAST_PICTURE);
     page::fit(&mut sections, room.into());
@@ -77,30 +83,30 @@ fn reason(explained: &StepWorkings) -> &'static str {
 }
 
 /// The last quantity of the step that has this symbol, if it is a vector.
-fn last<'a>(explained: &'a StepWorkings, symbols: &[&str]) -> Option<&'a Quantity> {
+fn last<'a>(explained: &'a StepWorkings, symbols: &[&str]) -> Option<&'a WorkedQuantity> {
     let quantities = explained
         .workings
         .phases()
         .flat_map(|phase| &phase.quantities);
-    let wanted = |quantity: &&Quantity| {
-        symbols.contains(&quantity.symbol) && matches!(quantity.value, Value::Vector(_))
+    let wanted = |quantity: &&WorkedQuantity| {
+        symbols.contains(&quantity.symbol) && matches!(quantity.value, WorkedValue::Vector(_))
     };
     quantities.rev().find(wanted)
 }
 
 /// The numbers of the step that the pictures draw.
-fn vectors(explained: &StepWorkings, width: usize) -> Vec<Section> {
-    let format = Format::of_vectors(width);
-    let before = Quantity::new("L", "J s", explained.states.0.momentum);
+fn vectors(explained: &StepWorkings, width: usize) -> Vec<StepPageSection> {
+    let format = CellFormat::of_vectors(width);
+    let before = WorkedQuantity::new("L", "J s", explained.states.0.momentum);
     let all = [
         (4, last(explained, &["τ"])),
         (3, Some(&before)),
         (2, last(explained, &["dL"])),
         (1, last(explained, &["new L"])),
     ];
-    let section = |(rank, quantity): (u8, Option<&Quantity>)| {
+    let section = |(rank, quantity): (u8, Option<&WorkedQuantity>)| {
         let lines = quantity.map(|quantity| numbers::lines(quantity, format, rank == 1));
-        Section::new(rank, lines.unwrap_or_default())
+        StepPageSection::new(rank, lines.unwrap_or_default())
     };
     std::iter::once(numbers::heads(5, format))
         .chain(all.map(section))
@@ -108,13 +114,13 @@ fn vectors(explained: &StepWorkings, width: usize) -> Vec<Section> {
 }
 
 /// A picture of level directions, x to the right and y up, with arrows.
-struct Picture {
+struct ArrowDiagram {
     plane: Plane,
     dots: Dots,
     signs: Vec<((u16, u16), &'static str, Role)>,
 }
 
-impl Picture {
+impl ArrowDiagram {
     /// Of all between `least` and `most`; `margin` says how far it is to be seen, m, from half of that.
     fn new(
         area: Rect,
@@ -195,7 +201,7 @@ fn torque_and_change(explained: &StepWorkings) -> [Option<Vector2<f64>>; 2] {
             let moment = part.loads.moment(&explained.scenario.body.mechanics);
             [torque(&after.orientation, &moment), changed]
         }
-        (None, Some(Value::Vector(torque))) => [*torque, *torque],
+        (None, Some(WorkedValue::Vector(torque))) => [*torque, *torque],
         (None, _) => [changed, changed],
     };
     both.map(|vector| vector.xy().try_normalize(f64::MIN_POSITIVE))
@@ -228,7 +234,7 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     let corners = arrows.iter().map(|(from, along, ..)| from + along);
     let corners: Vec<_> = corners.chain([tip]).collect();
     let margin = |half| 1.3 * half + 0.05 * length;
-    let mut picture = Picture::new(area, view, around(&corners), margin);
+    let mut picture = ArrowDiagram::new(area, view, around(&corners), margin);
     for (from, along, name, role) in arrows {
         picture.arrow(from, along, name, role);
         if name == "L" {
@@ -265,7 +271,7 @@ fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &m
     let mut notes = wrapped(note, area.width.into());
     notes.retain(|line| !line.is_empty());
     let [place, below] = split_rows(area, area.height.saturating_sub(1 + notes.len() as u16));
-    let mut picture = Picture::new(place, view, around(&way), |half| 1.15 * half + 0.1 * far);
+    let mut picture = ArrowDiagram::new(place, view, around(&way), |half| 1.15 * half + 0.1 * far);
     for pair in way.windows(2) {
         // Steps that are too long for the true dip are not joined.
         let from = if is_seen { pair[0] } else { pair[1] };

@@ -2,14 +2,14 @@
 //! that its phase is about, the axis of its turn, and the body as it stood before the step.
 
 use super::super::{MOST_PUSHES, in_lines};
-use super::body::Sign;
-use super::{CHANGE, Label, MOMENTUM, Subject, write};
+use super::body::BodySign;
+use super::{CHANGE, MOMENTUM, SceneSubject, SpaceLabel, write};
 use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::{Pane, View};
-use crate::physics::workings::{Phase, Value};
+use crate::physics::workings::{Phase, WorkedValue};
 use crate::physics::{State, observables};
 use crate::tui::dots::Ink;
-use crate::tui::scene::{Over, Scene, Stroke};
+use crate::tui::scene::{DepthBias, DotScene, LineStroke};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
@@ -27,25 +27,40 @@ const AXIS: f64 = 1.0;
 const SEEN: f64 = 0.03;
 
 /// What a letter means, at length, in short and as the letter alone; and how its arrow is drawn.
-fn meaning(letter: &str) -> (Words, Over) {
+fn meaning(letter: &str) -> (LegendText, DepthBias) {
     match letter {
         // The axle is whole where it is seen upright.
-        "g" => ((["g weight", "g weight", "g"], Role::Push), Over::BehindRod),
-        "Ω" => ((["Ω angular velocity", "Ω", "Ω"], Role::Y), Over::Arrow),
+        "g" => (
+            (["g weight", "g weight", "g"], Role::Push),
+            DepthBias::BehindRod,
+        ),
+        "Ω" => (
+            (["Ω angular velocity", "Ω", "Ω"], Role::Y),
+            DepthBias::Arrow,
+        ),
         "u" => (
             (["u axis of the turn", "u axis", "u"], Role::Y),
-            Over::Farther,
+            DepthBias::Farther,
         ),
         // These are short and cross the rim, which would hide them.
-        "τ" => ((["τ torque", "τ torque", "τ"], Role::X), Over::Everything),
-        "dL" => ((["dL = τ dt", "dL", "dL"], Role::X), Over::Everything),
-        "F" => ((["F push", "F push", "F"], Role::Push), Over::Everything),
-        _ => ((["L angular momentum", "L", "L"], Role::Z), Over::Farther),
+        "τ" => (
+            (["τ torque", "τ torque", "τ"], Role::X),
+            DepthBias::Everything,
+        ),
+        "dL" => ((["dL = τ dt", "dL", "dL"], Role::X), DepthBias::Everything),
+        "F" => (
+            (["F push", "F push", "F"], Role::Push),
+            DepthBias::Everything,
+        ),
+        _ => (
+            (["L angular momentum", "L", "L"], Role::Z),
+            DepthBias::Farther,
+        ),
     }
 }
 
-impl Subject<'_> {
-    pub(super) fn draw_arrows(&self, scene: &mut Scene) -> Vec<Label> {
+impl SceneSubject<'_> {
+    pub(super) fn draw_arrows(&self, scene: &mut DotScene) -> Vec<SpaceLabel> {
         let mut labels = Vec::new();
         for (letter, from, along) in self.arrows() {
             if !self.draws(letter) {
@@ -122,7 +137,7 @@ impl Subject<'_> {
     }
 
     /// The lines of the legend: everything named at length, or what there is room for.
-    fn legend_in(&self, width: usize, most: usize, is_pushed: bool) -> Vec<Line> {
+    fn legend_in(&self, width: usize, most: usize, is_pushed: bool) -> Vec<LegendLine> {
         let (arrows, signs) = match self.phase_legend() {
             Some(words) => (words, Vec::new()),
             None => (self.arrows_in_words(is_pushed), self.signs_in_words()),
@@ -145,12 +160,12 @@ impl Subject<'_> {
             (2, Some(2)),
             (1, None),
         ];
-        let fits = |lines: &Vec<Line>| lines.len() <= most;
+        let fits = |lines: &Vec<LegendLine>| lines.len() <= most;
         let fitting = forms.into_iter().map(lines).find(fits);
         fitting.unwrap_or_else(|| lines((2, None)).into_iter().take(most).collect())
     }
 
-    fn arrows_in_words(&self, is_pushed: bool) -> Vec<Words> {
+    fn arrows_in_words(&self, is_pushed: bool) -> Vec<LegendText> {
         let loads = self.seen.run.simulation().loads();
         let is_rubbed = !loads.friction.is_none();
         let letters = ["L", "Ω", "g", "τ", "dL", "F"].into_iter();
@@ -173,7 +188,7 @@ impl Subject<'_> {
 
     /// What is drawn besides the arrows.
     #[rustfmt::skip]
-    fn signs_in_words(&self) -> Vec<Words> {
+    fn signs_in_words(&self) -> Vec<LegendText> {
         let is_top = self.seen.run.scenario().traces_top();
         let all = [
             (true, ["+ pivot"; 3], Role::Heading),
@@ -193,21 +208,21 @@ impl Subject<'_> {
 }
 
 /// What a letter means, at length, in short and as the letter alone.
-type Words = ([&'static str; 3], Role);
+type LegendText = ([&'static str; 3], Role);
 /// The words of a line of the legend.
-type Line = Vec<(&'static str, Role)>;
+type LegendLine = Vec<(&'static str, Role)>;
 /// Columns between two words of the legend.
 const APART: usize = 2;
 
 #[derive(Clone, Copy)]
-pub struct Shown<'a> {
+pub struct StepArrows<'a> {
     explained: &'a StepWorkings,
     phase: &'a Phase,
     /// The point that was added last to the sum of the table, or chosen in it.
     point: Option<usize>,
 }
 
-impl<'a> Shown<'a> {
+impl<'a> StepArrows<'a> {
     /// The phase on the page of the step pane of `view`, if that is on the screen.
     pub fn of(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
         let explained = explained.filter(|_| view.shows(Pane::STEP))?;
@@ -252,7 +267,7 @@ impl<'a> Shown<'a> {
         let mut quantities = phases.flat_map(|phase| phase.quantities.iter().rev());
         let found = quantities.find(|quantity| quantity.symbol == symbol)?;
         match found.value {
-            Value::Vector(vector) => vector.try_normalize(f64::MIN_POSITIVE),
+            WorkedValue::Vector(vector) => vector.try_normalize(f64::MIN_POSITIVE),
             _ => None,
         }
     }
@@ -268,7 +283,7 @@ impl<'a> Shown<'a> {
     }
 }
 
-impl Subject<'_> {
+impl SceneSubject<'_> {
     /// Whether the arrow of this letter is drawn. Where the step pane is shown, only those are that its phase is about.
     fn draws(&self, letter: &str) -> bool {
         let shown = self.shown_phase.as_ref();
@@ -282,14 +297,14 @@ impl Subject<'_> {
     }
 
     /// The axis of the turn, and the body before it.
-    pub(super) fn phase(&self, scene: &mut Scene) -> Vec<Label> {
+    pub(super) fn phase(&self, scene: &mut DotScene) -> Vec<SpaceLabel> {
         let mut labels = Vec::new();
         let Some(shown) = &self.shown_phase else {
             return labels;
         };
         if let Some(axis) = shown.direction("u").filter(|_| self.draws("u")) {
             let end = axis * (AXIS * MOMENTUM * self.arm);
-            scene.line(&-end, &end, Stroke::Thin, Ink::Strong(Role::Y));
+            scene.line(&-end, &end, LineStroke::Thin, Ink::Strong(Role::Y));
             labels.push(("u", Role::Y, end * 1.04));
         }
         if shown.has_before() {
@@ -305,14 +320,14 @@ impl Subject<'_> {
                 "inertia" => (Vector3::zeros(), before),
                 _ => (before, self.state.orientation * point.at),
             };
-            scene.line(&from, &to, Stroke::Thin, Ink::Strong(Role::Focus));
+            scene.line(&from, &to, LineStroke::Thin, Ink::Strong(Role::Focus));
             labels.push(("@", Role::Focus, to));
         }
         labels
     }
 
     /// The masses where they were before the step.
-    pub(super) fn signs_of_phase(&self, scene: &Scene) -> Vec<Sign> {
+    pub(super) fn signs_of_phase(&self, scene: &DotScene) -> Vec<BodySign> {
         let shown = self.shown_phase.as_ref().filter(|shown| shown.has_before());
         shown.map_or_else(Vec::new, |shown| self.masses_before(shown.before(), scene))
     }
@@ -325,7 +340,7 @@ impl Subject<'_> {
     }
 
     /// What the letters of the phase mean.
-    fn phase_legend(&self) -> Option<Vec<Words>> {
+    fn phase_legend(&self) -> Option<Vec<LegendText>> {
         let shown = self.shown_phase.as_ref()?;
         let words = |letter: &&str| match *letter {
             "dL" if shown.is_rubbed() => (["dL, its direction", "dL, direction", "dL"], Role::X),

@@ -1,12 +1,12 @@
 //! The body in the scene: axle, hub, spokes, rim, masses and solid parts. Near parts look heavier than far ones.
 
-use super::{PARTS, Subject};
-use crate::physics::{Part, State};
+use super::{PARTS, SceneSubject};
+use crate::physics::{PlacedSolid, State};
 use crate::playback::live::LiveRun;
 use crate::playback::outline::{self, Polyline};
 use crate::scenario::file::RimFile;
 use crate::tui::dots::Ink;
-use crate::tui::scene::{Scene, Stroke};
+use crate::tui::scene::{DotScene, LineStroke};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -27,13 +27,13 @@ const ON_AXLE: f64 = 1e-3;
 const CLOSEST: f64 = 2.0;
 
 /// Lines of the body as it stood before.
-const BEFORE: (Stroke, Ink) = (Stroke::Dotted(2), Ink::Strong(Role::Ghost));
+const BEFORE: (LineStroke, Ink) = (LineStroke::Dotted(2), Ink::Strong(Role::Ghost));
 
 /// A sign, its role and its cell.
-pub type Sign = (&'static str, Role, (u16, u16));
+pub type BodySign = (&'static str, Role, (u16, u16));
 
 /// The body as it is drawn, upright: distances from the axle and heights.
-pub struct Shape {
+pub struct DrawnBody {
     pub rim: Option<RimFile>,
     /// Heights between which there is an axle.
     pub axle: (f64, f64),
@@ -44,7 +44,7 @@ pub struct Shape {
     solids: Vec<Solid>,
 }
 
-impl Shape {
+impl DrawnBody {
     pub fn of(run: &LiveRun) -> Self {
         let scenario = run.scenario();
         let points = scenario.body.mechanics.points();
@@ -112,7 +112,7 @@ struct Solid {
 }
 
 impl Solid {
-    fn of(part: &Part) -> Self {
+    fn of(part: &PlacedSolid) -> Self {
         let lines = outline::lines(part);
         let points = lines.iter().flat_map(|line| &line.points);
         let distances = points.map(|at| (at - part.centre).norm());
@@ -133,9 +133,9 @@ impl Solid {
     }
 }
 
-impl Subject<'_> {
+impl SceneSubject<'_> {
     /// The axle from the pivot to its top, hub, spokes and rim, and what joins free masses to the axle.
-    pub(super) fn body(&self, scene: &mut Scene) {
+    pub(super) fn body(&self, scene: &mut DotScene) {
         let state = self.state;
         let axle = state.axle();
         let (foot, top) = self.shape.axle;
@@ -143,7 +143,12 @@ impl Subject<'_> {
         scene.rod(&(axle * foot), &(axle * top), Ink::Strong(Role::Focus));
         for at in &self.shape.free {
             let foot = axle * at.z;
-            scene.line(&foot, &(state.orientation * at), Stroke::Dotted(2), text);
+            scene.line(
+                &foot,
+                &(state.orientation * at),
+                LineStroke::Dotted(2),
+                text,
+            );
         }
         for solid in &self.shape.solids {
             self.solid(solid, scene);
@@ -151,33 +156,35 @@ impl Subject<'_> {
         if let Some(rim) = &self.shape.rim {
             let middle = scene.depth(&(axle * rim.height_m));
             let look = |depth: f64| match is_near(depth, middle, rim.radius_m) {
-                Some(true) => (Stroke::Thick, text),
-                None => (Stroke::Thin, text),
-                Some(false) => (Stroke::Thin, Ink::Faint(Role::Quiet)),
+                Some(true) => (LineStroke::Thick, text),
+                None => (LineStroke::Thin, text),
+                Some(false) => (LineStroke::Thin, Ink::Faint(Role::Quiet)),
             };
             scene.ring(&rim.circle(state), look);
             // One spoke only: it shows that the wheel turns, and more of them would hide the axle.
             let [hub, at] = [HUB, 1.0].map(|share| rim.at(state, 0, 1, share));
-            scene.line(&hub, &at, Stroke::Thin, text);
+            scene.line(&hub, &at, LineStroke::Thin, text);
         }
     }
 
     /// Near lines thick, far ones dotted, and a dotted line from the axle to what is off it.
-    fn solid(&self, solid: &Solid, scene: &mut Scene) {
+    fn solid(&self, solid: &Solid, scene: &mut DotScene) {
         let ink = Ink::Strong(Role::Text);
         let centre = self.state.orientation * solid.centre;
         let middle = scene.depth(&centre);
         if solid.centre.xy().norm() > ON_AXLE * self.reach {
             let foot = self.state.axle() * solid.centre.z;
-            scene.line(&foot, &centre, Stroke::Dotted(2), ink);
+            scene.line(&foot, &centre, LineStroke::Dotted(2), ink);
         }
         for line in &solid.lines {
             for (from, to) in pieces(line, self.state) {
                 let depth = scene.depth(&((from + to) * 0.5));
                 let (stroke, ink) = match is_near(depth, middle, solid.size) {
-                    Some(true) if !line.is_mark => (Stroke::Thick, ink),
-                    Some(false) if !line.is_mark => (Stroke::Dotted(2), Ink::Faint(Role::Quiet)),
-                    _ => (Stroke::Thin, ink),
+                    Some(true) if !line.is_mark => (LineStroke::Thick, ink),
+                    Some(false) if !line.is_mark => {
+                        (LineStroke::Dotted(2), Ink::Faint(Role::Quiet))
+                    }
+                    _ => (LineStroke::Thin, ink),
                 };
                 scene.line(&from, &to, stroke, ink);
             }
@@ -185,7 +192,7 @@ impl Subject<'_> {
     }
 
     /// The wheel, the axle and the solid parts as they stood at `state`, dotted.
-    pub(super) fn body_before(&self, state: &State, scene: &mut Scene) {
+    pub(super) fn body_before(&self, state: &State, scene: &mut DotScene) {
         let (stroke, ink) = BEFORE;
         let axle = state.axle();
         let (foot, top) = self.shape.axle;
@@ -207,7 +214,7 @@ impl Subject<'_> {
     }
 
     /// The masses, the nearest last: a larger sign is nearer; and the hub, which no mass covers.
-    pub(super) fn masses(&self, scene: &Scene) -> Vec<Sign> {
+    pub(super) fn masses(&self, scene: &DotScene) -> Vec<BodySign> {
         let hub = self.wheel();
         let middle = scene.depth(&hub);
         let rim = self.shape.rim.as_ref();
@@ -227,14 +234,14 @@ impl Subject<'_> {
         signs.chain(hub).collect()
     }
 
-    pub(super) fn masses_before(&self, state: &State, scene: &Scene) -> Vec<Sign> {
+    pub(super) fn masses_before(&self, state: &State, scene: &DotScene) -> Vec<BodySign> {
         let masses = self.places_of_masses(state, scene);
         let sign = |at: &Vector3<f64>| ("°", Role::Ghost, scene.cell(at));
         masses.iter().map(sign).collect()
     }
 
     /// Where the masses are at `state`: those in the picture, and those of the rim only if their signs have room there.
-    fn places_of_masses(&self, state: &State, scene: &Scene) -> Vec<Vector3<f64>> {
+    fn places_of_masses(&self, state: &State, scene: &DotScene) -> Vec<Vector3<f64>> {
         let has_room = |rim: &&RimFile| {
             // From the side the rim is at least as long as twice its width.
             let plane = &scene.plane;

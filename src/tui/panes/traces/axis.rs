@@ -1,6 +1,6 @@
 //! The axis of time under the strips, and the axis of values beside them.
 
-use crate::playback::scale::{self, Scale};
+use crate::playback::scale::{self, StripScale};
 use crate::playback::strip::Strip;
 use crate::text::number::{decimal, exponent, fixed};
 
@@ -13,10 +13,10 @@ const APART: usize = 2;
 /// What follows the first label, or the last of two.
 const UNIT: &str = " s";
 
-pub type Placed = (usize, String);
+pub type PlacedTick = (usize, String);
 
 /// The labels of the time axis of `strip` on `width` cells, in order: round times, each in the middle under its own.
-pub fn times(strip: &Strip, width: usize) -> Vec<Placed> {
+pub fn times(strip: &Strip, width: usize) -> Vec<PlacedTick> {
     if strip.end_s() >= LONG_TIME_S {
         return both_ends(strip, width);
     }
@@ -34,7 +34,7 @@ pub fn times(strip: &Strip, width: usize) -> Vec<Placed> {
 }
 
 /// The labels of `ticks` (s), if there is room for them all.
-fn round_times(strip: &Strip, width: usize, ticks: &[f64]) -> Option<Vec<Placed>> {
+fn round_times(strip: &Strip, width: usize, ticks: &[f64]) -> Option<Vec<PlacedTick>> {
     let apart = match ticks {
         [first, second, ..] => second - first,
         _ => strip.window_s,
@@ -43,7 +43,7 @@ fn round_times(strip: &Strip, width: usize, ticks: &[f64]) -> Option<Vec<Placed>
     if ticks.is_empty() {
         return None;
     }
-    let mut placed: Vec<Placed> = Vec::with_capacity(ticks.len());
+    let mut placed: Vec<PlacedTick> = Vec::with_capacity(ticks.len());
     let mut free_from = 0;
     for (index, &time_s) in ticks.iter().enumerate() {
         let label = fixed(time_s + 0.0, digits);
@@ -64,7 +64,7 @@ fn round_times(strip: &Strip, width: usize, ticks: &[f64]) -> Option<Vec<Placed>
 }
 
 /// Both ends of a window of times with many digits, or how much later the right one is where there is no room.
-fn both_ends(strip: &Strip, width: usize) -> Vec<Placed> {
+fn both_ends(strip: &Strip, width: usize) -> Vec<PlacedTick> {
     let (begin, end) = ends(strip, width);
     if begin.len() + end.len() >= width {
         return vec![(0, begin)];
@@ -96,7 +96,7 @@ fn ends(strip: &Strip, width: usize) -> (String, String) {
 
 /// The labels of `scale` on `rows`, each with its row: round values, each in the row of its place, the highest first. Where
 /// there is room for less than two round values, both ends stand there.
-pub fn values(scale: &Scale, rows: usize) -> Vec<Placed> {
+pub fn values(scale: &StripScale, rows: usize) -> Vec<PlacedTick> {
     /// Rows for each value.
     const ROWS: usize = 3;
     let last = rows.saturating_sub(1);

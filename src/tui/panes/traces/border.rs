@@ -2,7 +2,7 @@
 //! act on the run and where the time is that the strip of the fast motion shows.
 
 use super::super::longest;
-use super::groups::Content;
+use super::groups::StripContent;
 use super::{ROW, Traces, ZOOM, write};
 use crate::playback::ghost::Ghost;
 use crate::playback::marks::Marks;
@@ -104,7 +104,7 @@ impl Traces<'_> {
         };
         let across = self.0.view.marker.dots().0;
         let cells = zoomed.start / across..(zoomed.end - 1) / across + 1;
-        let role = Content::Curve(self.0.detail.curve).role();
+        let role = StripContent::Curve(self.0.detail.curve).role();
         let style = self.0.view.theme.style(role);
         for x in cells.clone() {
             put(x, ZOOM_BAR, style);

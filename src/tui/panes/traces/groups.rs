@@ -1,7 +1,7 @@
 //! Which strips there are, and where they stand.
 
 use super::{ALL, NAME, STRIP, Traces, axis};
-use crate::playback::recording::Curve;
+use crate::playback::recording::RecordedCurve;
 use crate::playback::strip::Strip;
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
@@ -14,30 +14,30 @@ const STRIP_WITH_POINTS: u16 = 3;
 const WITH_POINTS: u16 = 3;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Content {
-    Curve(Curve),
+pub(super) enum StripContent {
+    Curve(RecordedCurve),
     /// The quantity of this index among the measured ones, where it is none of those curves.
     Measured(usize),
 }
 
-impl Content {
+impl StripContent {
     pub fn of_every_run() -> [Self; 4] {
-        Curve::ALL.map(Self::Curve)
+        RecordedCurve::ALL.map(Self::Curve)
     }
 
     pub fn role(self) -> Role {
         match self {
-            Self::Curve(Curve::X) => Role::X,
-            Self::Curve(Curve::Y) => Role::Y,
-            Self::Curve(Curve::Z) => Role::Z,
-            Self::Curve(Curve::Tilt) | Self::Measured(_) => Role::Path,
+            Self::Curve(RecordedCurve::X) => Role::X,
+            Self::Curve(RecordedCurve::Y) => Role::Y,
+            Self::Curve(RecordedCurve::Z) => Role::Z,
+            Self::Curve(RecordedCurve::Tilt) | Self::Measured(_) => Role::Path,
         }
     }
 }
 
 /// Strips one above the other over the same time, and the axis below them.
 pub(super) struct Group {
-    pub strips: Vec<(Content, Rect)>,
+    pub strips: Vec<(StripContent, Rect)>,
     pub area: Rect,
     pub strip: Strip,
     /// Whether it shows less time than the other group: the fast motion.
@@ -51,7 +51,9 @@ impl Traces<'_> {
             return 0;
         }
         let measured = self.measured_contents();
-        let labels = Content::of_every_run().into_iter().chain(measured.clone());
+        let labels = StripContent::of_every_run()
+            .into_iter()
+            .chain(measured.clone());
         let labels = labels.flat_map(|content| {
             let scale = self.scale(content, None);
             let few = axis::values(&scale, 2);
@@ -98,12 +100,12 @@ impl Traces<'_> {
     }
 
     /// `contents` one above the other on `area`, but for its last row, which the axis has.
-    fn stacked(&self, contents: &[Content], area: Rect) -> Vec<(Content, Rect)> {
+    fn stacked(&self, contents: &[StripContent], area: Rect) -> Vec<(StripContent, Rect)> {
         let rows = area.height.saturating_sub(1);
         let all: u16 = contents.iter().map(|content| self.weight(*content)).sum();
         let (share, mut spare) = (rows / all.max(1), rows % all.max(1));
         let mut rest = area;
-        let place = |&content: &Content| {
+        let place = |&content: &StripContent| {
             let weight = self.weight(content);
             let more = spare.min(weight);
             spare -= more;
@@ -114,7 +116,7 @@ impl Traces<'_> {
         contents.iter().map(place).collect()
     }
 
-    fn weight(&self, content: Content) -> u16 {
+    fn weight(&self, content: StripContent) -> u16 {
         match self.points(content) {
             Some(_) => WITH_POINTS,
             None => 1 + u16::from(self.0.measured.is_some()),
@@ -125,13 +127,18 @@ impl Traces<'_> {
     /// motion, and those of the others, in their order. Measured quantities go before the others. Where there is no room
     /// for all of these, z goes before y, and x before both. A curve that was measured gets a second strip, that of the
     /// fast motion, only if no other curve is left out for it.
-    fn shown(&self, height: u16, has_zoom: bool, is_beside: bool) -> (Vec<Content>, Vec<Content>) {
-        let least = |content: &Content| match (self.points(*content), is_beside) {
+    fn shown(
+        &self,
+        height: u16,
+        has_zoom: bool,
+        is_beside: bool,
+    ) -> (Vec<StripContent>, Vec<StripContent>) {
+        let least = |content: &StripContent| match (self.points(*content), is_beside) {
             (Some(_), _) => STRIP_WITH_POINTS,
             (None, true) if self.0.measured.is_none() => 1,
             (None, _) => STRIP,
         };
-        let first = Content::Curve(self.0.detail.curve);
+        let first = StripContent::Curve(self.0.detail.curve);
         let measured = self.measured_contents();
         let mut by_worth = by_worth(&measured, self.0.detail.curve);
         let fast = STRIP.min(least(&first));
@@ -150,8 +157,8 @@ impl Traces<'_> {
             room -= if fits { least(content) } else { 0 };
             fits
         });
-        let is_other = |content: &Content| matches!(content, Content::Measured(_));
-        let mut lower = Content::of_every_run().to_vec();
+        let is_other = |content: &StripContent| matches!(content, StripContent::Measured(_));
+        let mut lower = StripContent::of_every_run().to_vec();
         lower.extend(measured.into_iter().filter(is_other));
         if !has_zoom {
             lower.sort_by_key(|content| *content != first); // stable
@@ -177,10 +184,16 @@ impl Traces<'_> {
 }
 
 /// All contents, the most important first: what was `measured`, the curve of the fast motion, and the others.
-fn by_worth(measured: &[Content], fast: Curve) -> Vec<Content> {
+fn by_worth(measured: &[StripContent], fast: RecordedCurve) -> Vec<StripContent> {
     let mut contents = measured.to_vec();
-    let curves = [fast, Curve::X, Curve::Z, Curve::Tilt, Curve::Y];
-    for content in curves.map(Content::Curve) {
+    let curves = [
+        fast,
+        RecordedCurve::X,
+        RecordedCurve::Z,
+        RecordedCurve::Tilt,
+        RecordedCurve::Y,
+    ];
+    for content in curves.map(StripContent::Curve) {
         if !contents.contains(&content) {
             contents.push(content);
         }

@@ -1,14 +1,14 @@
 //! A strip as it is drawn: what it shows, of which time and values, and its curves.
 
 use super::Traces;
-use super::groups::{Content, Group};
-use crate::data::compared::Shown;
+use super::groups::{Group, StripContent};
+use crate::data::compared::ComparedPoint;
 use crate::lab::comparison::DataComparison;
 use crate::playback::ghost::Ghost;
 use crate::playback::marks::Marks;
-use crate::playback::recording::{Curve, Extent, Recording};
-use crate::playback::scale::Scale;
-use crate::playback::strip::{Blocks, Column, Strip};
+use crate::playback::recording::{Extent, RecordedCurve, Recording};
+use crate::playback::scale::StripScale;
+use crate::playback::strip::{Blocks, Strip, StripColumn};
 use crate::text::number::fixed;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::theme::Role;
@@ -42,15 +42,15 @@ enum Whose {
 const ALL: [Whose; 4] = [Whose::Before, Whose::Pinned, Whose::Exact, Whose::Run];
 
 pub(super) struct Plot {
-    pub content: Content,
+    pub content: StripContent,
     pub strip: Strip,
     /// Whether it shows less time than the others: the fast motion.
     pub is_zoom: bool,
     /// Whether it shows what was measured less what the run says.
     pub is_residual: bool,
-    pub scale: Scale,
+    pub scale: StripScale,
     /// The curves, the run's last; none of residuals.
-    pub curves: Vec<(Vec<Option<Column>>, Stroke, Ink)>,
+    pub curves: Vec<(Vec<Option<StripColumn>>, CurveStroke, Ink)>,
     /// Whether the run's curve is in part a band.
     pub has_band: bool,
     /// All of the strip, and the part that its curves have.
@@ -61,7 +61,7 @@ pub(super) struct Plot {
 impl Traces<'_> {
     /// The strips of `group`, with `beside` columns for their values, or else a line above each.
     pub(super) fn plots(&self, group: &Group, beside: u16, marks: &Marks) -> Vec<Plot> {
-        let plot = |&(content, area): &(Content, Rect)| {
+        let plot = |&(content, area): &(StripContent, Rect)| {
             let is_residual =
                 self.0.view.residuals && !group.is_zoom && self.index(content).is_some();
             let above = u16::from(beside == 0);
@@ -121,15 +121,15 @@ impl Traces<'_> {
     }
 
     /// Leaves out what was recorded beyond where the run stands: what follows the run may have been further.
-    fn end_at_run(&self, plot: &Plot, columns: &mut [Option<Column>]) {
-        if let Content::Measured(_) = plot.content {
+    fn end_at_run(&self, plot: &Plot, columns: &mut [Option<StripColumn>]) {
+        if let StripContent::Measured(_) = plot.content {
             let now_s = self.0.run.now().time_s;
             let shown = plot.strip.shown(plot.strip.begin_s, now_s);
             columns[shown.end..].fill(None);
         }
     }
 
-    fn has_band(&self, plot: &Plot, columns: &[Option<Column>]) -> bool {
+    fn has_band(&self, plot: &Plot, columns: &[Option<StripColumn>]) -> bool {
         let (across, down) = self.0.view.marker.dots();
         let rows = f64::from(plot.area.height) * down as f64;
         // A band of large dots hides the curve as soon as it is one dot high.
@@ -139,34 +139,34 @@ impl Traces<'_> {
         bands.any(|band| place(band.min) - place(band.max) >= thinnest)
     }
 
-    fn look(&self, whose: Whose, content: Content) -> (Stroke, Ink) {
+    fn look(&self, whose: Whose, content: StripContent) -> (CurveStroke, Ink) {
         let (across, down) = self.0.view.marker.dots();
         match whose {
-            Whose::Before => (Stroke::Dotted, Ink::Ghost),
-            Whose::Pinned => (Stroke::LongAndShort, Ink::Faint(Role::Pinned)),
-            Whose::Exact => (Stroke::Dashed, Ink::Faint(Role::Exact)),
+            Whose::Before => (CurveStroke::Dotted, Ink::Ghost),
+            Whose::Pinned => (CurveStroke::LongAndShort, Ink::Faint(Role::Pinned)),
+            Whose::Exact => (CurveStroke::Dashed, Ink::Faint(Role::Exact)),
             // The dots of a filled band and the dashes of the exact motion look different only where dots are small.
             Whose::Run if self.0.run.overlay().is_some() && across * down <= 2 => {
-                (Stroke::Edges, Ink::Strong(content.role()))
+                (CurveStroke::Edges, Ink::Strong(content.role()))
             }
-            Whose::Run => (Stroke::Full, Ink::Strong(content.role())),
+            Whose::Run => (CurveStroke::Full, Ink::Strong(content.role())),
         }
     }
 
     /// The recording that has what `content` shows of `whose` motion, where that is shown, and which of its curves it is.
-    fn recorded(&self, whose: Whose, content: Content) -> Option<(&Recording, Curve)> {
+    fn recorded(&self, whose: Whose, content: StripContent) -> Option<(&Recording, RecordedCurve)> {
         match (whose, content) {
-            (Whose::Run, Content::Curve(curve)) => Some((self.0.run.recording(), curve)),
-            (Whose::Run, Content::Measured(index)) => self.0.measured?.recorded(index),
-            (Whose::Before, Content::Curve(curve)) => Some((&self.0.ghost?.recording, curve)),
-            (Whose::Before, Content::Measured(index)) => {
+            (Whose::Run, StripContent::Curve(curve)) => Some((self.0.run.recording(), curve)),
+            (Whose::Run, StripContent::Measured(index)) => self.0.measured?.recorded(index),
+            (Whose::Before, StripContent::Curve(curve)) => Some((&self.0.ghost?.recording, curve)),
+            (Whose::Before, StripContent::Measured(index)) => {
                 self.0.ghost.and(self.0.measured)?.recorded_before(index)
             }
-            (Whose::Pinned, Content::Curve(curve)) => Some((&self.0.pinned?.recording, curve)),
-            (Whose::Exact, Content::Curve(curve)) => {
+            (Whose::Pinned, StripContent::Curve(curve)) => Some((&self.0.pinned?.recording, curve)),
+            (Whose::Exact, StripContent::Curve(curve)) => {
                 Some((&self.0.run.overlay()?.recording, curve))
             }
-            (Whose::Pinned | Whose::Exact, Content::Measured(_)) => None,
+            (Whose::Pinned | Whose::Exact, StripContent::Measured(_)) => None,
         }
     }
 
@@ -182,23 +182,23 @@ impl Traces<'_> {
     }
 
     /// What was measured, the curves that every run has before the others.
-    pub(super) fn measured_contents(&self) -> Vec<Content> {
+    pub(super) fn measured_contents(&self) -> Vec<StripContent> {
         let quantities = self
             .0
             .measured
             .map_or(0, |beside| beside.quantities().count());
-        let others = (0..quantities).map(Content::Measured);
+        let others = (0..quantities).map(StripContent::Measured);
         let others = others.filter(|content| self.recorded(Whose::Run, *content).is_some());
-        let curves = Content::of_every_run().into_iter();
+        let curves = StripContent::of_every_run().into_iter();
         let curves = curves.filter(|content| self.index(*content).is_some());
         curves.chain(others).collect()
     }
 
     /// The index of what `content` shows among the measured quantities.
-    fn index(&self, content: Content) -> Option<usize> {
+    fn index(&self, content: StripContent) -> Option<usize> {
         match content {
-            Content::Measured(index) => Some(index),
-            Content::Curve(curve) => {
+            StripContent::Measured(index) => Some(index),
+            StripContent::Curve(curve) => {
                 let mut quantities = self.0.measured?.quantities();
                 quantities.position(|quantity| quantity.name == curve.column())
             }
@@ -206,16 +206,16 @@ impl Traces<'_> {
     }
 
     /// The measured values of what `content` shows; none where it was not measured.
-    pub(super) fn points(&self, content: Content) -> Option<&[Shown]> {
+    pub(super) fn points(&self, content: StripContent) -> Option<&[ComparedPoint]> {
         let index = self.index(content)?;
         let curves = &self.0.measured?.compared.curves;
         curves.get(index).map(Vec::as_slice)
     }
 
-    pub(super) fn named(&self, content: Content) -> (String, &'static str) {
+    pub(super) fn named(&self, content: StripContent) -> (String, &'static str) {
         match content {
-            Content::Curve(curve) => (curve.name().to_owned(), curve.unit()),
-            Content::Measured(index) => {
+            StripContent::Curve(curve) => (curve.name().to_owned(), curve.unit()),
+            StripContent::Measured(index) => {
                 let quantities = self.0.measured.map(DataComparison::quantities);
                 let quantity = quantities.and_then(|mut quantities| quantities.nth(index));
                 quantity.map_or_else(Default::default, |quantity| {
@@ -226,14 +226,14 @@ impl Traces<'_> {
     }
 
     /// What was recorded of `content` at a step at `time_s`.
-    fn value_at(&self, content: Content, time_s: f64) -> Option<f64> {
+    fn value_at(&self, content: StripContent, time_s: f64) -> Option<f64> {
         let (recording, curve) = self.recorded(Whose::Run, content)?;
         let block = recording.between(time_s, time_s).last()?;
         (block.moments() == 1).then(|| block.extent(curve).max)
     }
 
     /// The value that was measured at the step at `time_s`.
-    fn measured_at(&self, content: Content, time_s: f64) -> Option<f64> {
+    fn measured_at(&self, content: StripContent, time_s: f64) -> Option<f64> {
         let half_s = 0.5 * self.0.run.simulation().motion().time_step_s;
         let points = self.points(content)?;
         let next = points.partition_point(|point| point.time_s < time_s - half_s);
@@ -246,8 +246,8 @@ impl Traces<'_> {
         let cursor = self.0.cursor?;
         let column = plot.strip.column(cursor.time_s)? / self.0.view.marker.dots().0;
         let value = match plot.content {
-            Content::Curve(curve) => Some(curve.at(cursor)),
-            Content::Measured(_) => self.value_at(plot.content, cursor.time_s),
+            StripContent::Curve(curve) => Some(curve.at(cursor)),
+            StripContent::Measured(_) => self.value_at(plot.content, cursor.time_s),
         };
         let unit = self.named(plot.content).1;
         let measured = self.measured_at(plot.content, cursor.time_s);
@@ -258,17 +258,17 @@ impl Traces<'_> {
     }
 
     /// The range of values of a strip, magnified as the view wants it: of the whole run, or of the time of `strip` alone.
-    pub(super) fn scale(&self, content: Content, strip: Option<&Strip>) -> Scale {
+    pub(super) fn scale(&self, content: StripContent, strip: Option<&Strip>) -> StripScale {
         let now = self.0.run.now();
         let about = match (self.0.cursor, content) {
-            (Some(cursor), Content::Curve(curve)) => curve.at(cursor),
-            (None, Content::Curve(curve)) => now.value(curve),
-            (_, Content::Measured(_)) => self.value_at(content, now.time_s).unwrap_or(0.0),
+            (Some(cursor), StripContent::Curve(curve)) => curve.at(cursor),
+            (None, StripContent::Curve(curve)) => now.value(curve),
+            (_, StripContent::Measured(_)) => self.value_at(content, now.time_s).unwrap_or(0.0),
         };
         self.magnified(self.whole_scale(content, strip), about)
     }
 
-    fn magnified(&self, scale: Scale, about: f64) -> Scale {
+    fn magnified(&self, scale: StripScale, about: f64) -> StripScale {
         if self.0.view.magnified > 1.0 {
             scale.zoomed(self.0.view.magnified, about)
         } else {
@@ -277,29 +277,29 @@ impl Traces<'_> {
     }
 
     /// The same without magnification: x and y of the whole run share one about 0, the others have their own.
-    fn whole_scale(&self, content: Content, strip: Option<&Strip>) -> Scale {
+    fn whole_scale(&self, content: StripContent, strip: Option<&Strip>) -> StripScale {
         let extent = self.extent(content, strip);
         let size = extent.max.abs().max(extent.min.abs());
         let arm_m = self.0.run.scenario().arm_m();
         let least = match content {
-            Content::Curve(Curve::X | Curve::Y) if strip.is_none() => {
-                let [x, y] =
-                    [Curve::X, Curve::Y].map(|curve| self.extent(Content::Curve(curve), None));
+            StripContent::Curve(RecordedCurve::X | RecordedCurve::Y) if strip.is_none() => {
+                let [x, y] = [RecordedCurve::X, RecordedCurve::Y]
+                    .map(|curve| self.extent(StripContent::Curve(curve), None));
                 let both = x.and(y);
                 let reach = both.max.max(-both.min);
-                return Scale::about_zero(reach.max(PLANE_LEAST * arm_m));
+                return StripScale::about_zero(reach.max(PLANE_LEAST * arm_m));
             }
-            Content::Curve(Curve::X | Curve::Y) => PLANE_LEAST * arm_m,
-            Content::Curve(Curve::Z) => Z_LEAST * arm_m,
-            Content::Curve(Curve::Tilt) => TILT_LEAST,
-            Content::Measured(_) => (SHARE_LEAST * size).max(f64::MIN_POSITIVE),
+            StripContent::Curve(RecordedCurve::X | RecordedCurve::Y) => PLANE_LEAST * arm_m,
+            StripContent::Curve(RecordedCurve::Z) => Z_LEAST * arm_m,
+            StripContent::Curve(RecordedCurve::Tilt) => TILT_LEAST,
+            StripContent::Measured(_) => (SHARE_LEAST * size).max(f64::MIN_POSITIVE),
         };
-        Scale::around(extent, least)
+        StripScale::around(extent, least)
     }
 
     /// The extent of all that the strip of `content` shows. The exact motion, the run before and the pinned one count as a
     /// whole, so that the scale stays while the run catches up with them.
-    fn extent(&self, content: Content, strip: Option<&Strip>) -> Extent {
+    fn extent(&self, content: StripContent, strip: Option<&Strip>) -> Extent {
         let recordings = ALL
             .into_iter()
             .filter_map(|whose| self.recorded(whose, content));
@@ -313,9 +313,10 @@ impl Traces<'_> {
 }
 
 /// The range of values that `points` need: those in the time of `strip`, or all.
-fn extent_of(points: Option<&[Shown]>, strip: Option<&Strip>) -> Option<Extent> {
-    let is_shown = |point: &&Shown| strip.is_none_or(|strip| strip.column(point.time_s).is_some());
-    let extent = |point: &Shown| {
+fn extent_of(points: Option<&[ComparedPoint]>, strip: Option<&Strip>) -> Option<Extent> {
+    let is_shown =
+        |point: &&ComparedPoint| strip.is_none_or(|strip| strip.column(point.time_s).is_some());
+    let extent = |point: &ComparedPoint| {
         let sigma = point.sigma.unwrap_or(0.0);
         Extent::of(point.value - sigma).and(Extent::of(point.value + sigma))
     };
@@ -323,10 +324,11 @@ fn extent_of(points: Option<&[Shown]>, strip: Option<&Strip>) -> Option<Extent> 
     points.map(extent).reduce(Extent::and)
 }
 
-fn residual_scale(points: Option<&[Shown]>) -> Scale {
-    let reach = |point: &Shown| point.residual().unwrap_or(0.0).abs() + point.sigma.unwrap_or(0.0);
+fn residual_scale(points: Option<&[ComparedPoint]>) -> StripScale {
+    let reach =
+        |point: &ComparedPoint| point.residual().unwrap_or(0.0).abs() + point.sigma.unwrap_or(0.0);
     let points = points.unwrap_or_default().iter();
-    Scale::about_zero(points.map(reach).fold(RESIDUAL_LEAST, f64::max))
+    StripScale::about_zero(points.map(reach).fold(RESIDUAL_LEAST, f64::max))
 }
 
 /// A value this part of a dot above the edge between two dots counts as below it: a value on the edge, such as a constant
@@ -337,7 +339,7 @@ const ROUNDING: f64 = 1e-4;
 const LONG_AND_SHORT: usize = 6;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stroke {
+pub enum CurveStroke {
     /// All of them, and a band is filled with a few.
     Full,
     /// All of them, and of a band its edges alone.
@@ -350,7 +352,7 @@ pub enum Stroke {
     LongAndShort,
 }
 
-impl Stroke {
+impl CurveStroke {
     /// Sets the dots of the column `x` from one row to another. Of a steep piece a dotted curve has two in each cell, counted
     /// from the cell's top; a level piece is seen at any height.
     fn set(self, dots: &mut Dots, x: usize, (from, to): (usize, usize), ink: Ink) {
@@ -370,9 +372,9 @@ impl Stroke {
 /// Draws a curve as a line, or as a band where its swings are too fast to be drawn one by one.
 pub(super) fn draw_curve(
     dots: &mut Dots,
-    columns: &[Option<Column>],
-    scale: &Scale,
-    stroke: Stroke,
+    columns: &[Option<StripColumn>],
+    scale: &StripScale,
+    stroke: CurveStroke,
     ink: Ink,
 ) {
     let height = dots.height() as f64;
@@ -403,7 +405,7 @@ pub(super) fn draw_curve(
         if is_inside(band.min) {
             stroke.set(dots, x, toward(bottom, last_bottom), ink);
         }
-        if stroke == Stroke::Full {
+        if stroke == CurveStroke::Full {
             fill(dots, x, top..=bottom, ink);
         }
         before = Some((top, bottom));
