@@ -15,7 +15,7 @@ use crate::physics::SchemeInfo;
 use crate::run::{Clock, Simulation, Step};
 use crate::scenario::csv::{self, Csv};
 use crate::scenario::head::Head;
-use crate::scenario::rescale::MOST_STEPS;
+use crate::scenario::rescale::MOST_RUN_STEPS_BY_TIME;
 use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::sweep::Sweep;
 use crate::sweep::in_order::in_order;
@@ -43,13 +43,13 @@ pub struct Verified {
 /// How the line of names begins in the CSV of a comparison.
 const OF_COMPARISON: &[u8] = b"scheme,time_step_s,";
 /// How the line of names ends in the CSV of a fit.
-const OF_FIT: &[u8] = b",residual,residual_sigmas";
+const FIT_COLUMNS_END: &[u8] = b",residual,residual_sigmas";
 /// The columns of a comparison that hold times by the clock.
 const BY_THE_CLOCK: [&str; 2] = ["ns_per_step", "wall_s"];
 const OF_THE_CLOCK: &str =
     "a comparison: ns_per_step and wall_s are times by the clock, which nothing can compute again";
 /// The most values of a table that is taken as a comparison.
-const MOST_VALUES: usize = 1_000_000;
+const MOST_COMPARISON_VALUES: usize = 1_000_000;
 
 /// Computes the file `path` again and compares. `fit` makes the fit of a command line again and gives its CSV. `watch` gets
 /// the steps taken so far (of a sweep the rows) and their number in all, and says whether to go on.
@@ -68,7 +68,7 @@ pub fn verify(
         (against.keys, against.left_out) = (2, &BY_THE_CLOCK);
         against.write_all(&comparison(&document.scenario()?, path, watch)?)?;
         notes.push(OF_THE_CLOCK.to_owned());
-    } else if head.names().ends_with(OF_FIT) {
+    } else if head.names().ends_with(FIT_COLUMNS_END) {
         let header: Header = toml::from_str(&above_run_file(&text))
             .map_err(|error| format!("{} (in its header)", error.message()))?;
         against.write_all(&fit(&header.fit.command)?)?;
@@ -196,7 +196,7 @@ fn comparison(
         return Err(cannot(why.to_owned()));
     }
     let text = csv::text(path).map_err(|problem| Problems::one("", problem))?;
-    let table = Csv::of(&text, MOST_VALUES)?;
+    let table = Csv::of(&text, MOST_COMPARISON_VALUES)?;
     let (mut schemes, mut time_steps) = (Vec::<&SchemeInfo>::new(), BTreeMap::new());
     for (line, row) in &table.rows {
         let scheme = SchemeInfo::find(&row[0]);
@@ -205,7 +205,7 @@ fn comparison(
         let (Some(scheme), Some(step)) = (scheme, step) else {
             return Err(cannot(format!("line {line} names no scheme and time step")));
         };
-        if Clock::end_s(scenario) / step > MOST_STEPS {
+        if Clock::end_s(scenario) / step > MOST_RUN_STEPS_BY_TIME {
             let why = format!("line {line} has more time steps than can be counted");
             return Err(cannot(why));
         }

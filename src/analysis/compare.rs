@@ -7,7 +7,7 @@ use crate::cores;
 use crate::physics::{SchemeInfo, State};
 use crate::run::{Clock, EnergyUnit, NotFinite, Simulation, Step, Truth, resampled};
 use crate::scenario::Scenario;
-use crate::text::number::{NONE, exponent, fixed, shortest};
+use crate::text::number::{NOT_AVAILABLE, exponent, fixed, shortest};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 use std::fmt;
@@ -52,7 +52,7 @@ pub struct ComparisonRow {
 fn or_na<S: Serializer>(number: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     match number {
         Some(number) => serializer.serialize_f64(*number),
-        None => serializer.serialize_str(NONE),
+        None => serializer.serialize_str(NOT_AVAILABLE),
     }
 }
 
@@ -91,13 +91,13 @@ pub fn compare(
         trial.map(|trial| trial.row(cell))
     };
     let rows: Option<Vec<ComparisonRow>> = cores::map(&cells, row);
-    rows.map(|rows| with_orders(rows, ROUNDING * scenario.arm_m()))
+    rows.map(|rows| with_orders(rows, ERROR_ROUNDING * scenario.arm_m()))
 }
 
 /// Number of steps of a trial, evenly spread, at which the energy is read off. The distance is read at every step.
-const LOOKS: u64 = 1000;
+const ENERGY_SAMPLES: u64 = 1000;
 /// Steps that are taken at once, without a look at the clock, the exact motion or the watcher.
-const BLOCK: u64 = 4096;
+const COMPARISON_BLOCK_STEPS: u64 = 4096;
 /// The same where a step may have to be integrated, which may take long.
 const BLOCK_OF_INTEGRATIONS: u64 = 16;
 /// Fewer steps than these tell little of what a step costs.
@@ -134,7 +134,7 @@ impl ComparisonTrial {
         };
         let stride = stride(scenario.steps);
         let block = if has_closed_form(scenario) {
-            BLOCK
+            COMPARISON_BLOCK_STEPS
         } else {
             BLOCK_OF_INTEGRATIONS
         };
@@ -229,14 +229,14 @@ fn greater(most: f64, now: f64) -> f64 {
 
 /// Every how many steps to look; odd, so that an even rhythm of the run is not met always at the same beat.
 fn stride(steps: u64) -> u64 {
-    match steps / LOOKS {
+    match steps / ENERGY_SAMPLES {
         0 => 1,
         stride => stride | 1,
     }
 }
 
 /// An error below this part of the traced point's arm tells of rounding and not of the scheme.
-const ROUNDING: f64 = 1e-12;
+const ERROR_ROUNDING: f64 = 1e-12;
 
 fn with_orders(mut rows: Vec<ComparisonRow>, least_m: f64) -> Vec<ComparisonRow> {
     for index in 1..rows.len() {
@@ -274,7 +274,7 @@ impl ComparisonTable<'_> {
         let row = |row: &ComparisonRow| {
             let mut value = serde_json::to_value(row)?;
             for field in value.as_object_mut().into_iter().flat_map(Map::values_mut) {
-                if field == NONE {
+                if field == NOT_AVAILABLE {
                     *field = Value::Null;
                 }
             }
@@ -301,7 +301,7 @@ impl ComparisonTable<'_> {
         }
         let energy = match self.energy_unit {
             Some(unit) => format!("in units of {unit}"),
-            None => format!("{NONE}: neither weight nor kinetic energy to measure it by"),
+            None => format!("{NOT_AVAILABLE}: neither weight nor kinetic energy to measure it by"),
         };
         writeln!(f)?;
         writeln!(
@@ -315,7 +315,7 @@ impl ComparisonTable<'_> {
         if self.rows.iter().any(|row| row.error_m.is_none()) {
             writeln!(
                 f,
-                "{NONE} of an error: the run broke down, after so many steps as are told: its numbers were no longer finite."
+                "{NOT_AVAILABLE} of an error: the run broke down, after so many steps as are told: its numbers were no longer finite."
             )?;
         }
         writeln!(
@@ -336,8 +336,9 @@ impl fmt::Display for ComparisonTable<'_> {
         )?;
         for row in self.rows {
             let order = row.order.map_or("-".to_owned(), |order| fixed(order, 2));
-            let number =
-                |number: Option<f64>| number.map_or(NONE.to_owned(), |number| exponent(number, 1));
+            let number = |number: Option<f64>| {
+                number.map_or(NOT_AVAILABLE.to_owned(), |number| exponent(number, 1))
+            };
             let (error, at_end) = (number(row.error_m), number(row.error_at_end_m));
             let (spin, lz) = (number(row.spin_drift), number(row.lz_drift));
             let (energy, step) = (number(row.energy_drift), shortest(row.time_step_s));

@@ -11,14 +11,14 @@ use std::f64::consts::TAU;
 
 /// A run that starts within this part of a time step of a turning point starts at it.
 pub(super) const AT_TURN: f64 = 1e-6;
-const ORDER: usize = 18;
+const EQUATION_ORDER: usize = 18;
 /// Size of the last term against the whole.
-const LAST_TERM: f64 = f64::EPSILON / 16.0;
+const EQUATION_LAST_TERM: f64 = f64::EPSILON / 16.0;
 /// Steps of the series between two rows at most; beyond them the motion is too fast to be followed.
-const MOST_STEPS: usize = 64;
+const MOST_SERIES_STEPS: usize = 64;
 
 /// The terms of one series, from the constant one on.
-type PowerSeries = [Vector3<f64>; ORDER + 1];
+type PowerSeries = [Vector3<f64>; EQUATION_ORDER + 1];
 
 /// Axle and momentum of a symmetric top at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl TopMotion {
     /// Where it is `time_s` later (earlier, if negative).
     pub fn after(mut self, time_s: f64, pull: &Vector3<f64>) -> Self {
         let mut left = time_s;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MOST_SERIES_STEPS {
             let (axle, momentum, radius) = self.series(pull);
             let step = left.clamp(-radius, radius);
             let sum = |terms: &PowerSeries| {
@@ -81,17 +81,17 @@ impl TopMotion {
 
     /// The series of axle and momentum, and how far they hold, s.
     fn series(&self, pull: &Vector3<f64>) -> (PowerSeries, PowerSeries, f64) {
-        let zeros = [Vector3::zeros(); ORDER + 1];
+        let zeros = [Vector3::zeros(); EQUATION_ORDER + 1];
         let (mut axle, mut momentum) = (zeros, zeros);
         (axle[0], momentum[0]) = (self.axle, self.momentum);
-        for k in 0..ORDER {
+        for k in 0..EQUATION_ORDER {
             let next = (k + 1) as f64;
             let turning = (0..=k).map(|i| momentum[i].cross(&axle[k - i]));
             axle[k + 1] = turning.sum::<Vector3<f64>>() / next;
             momentum[k + 1] = axle[k].cross(pull) / next;
         }
-        let reach = |k: usize| libm::pow(LAST_TERM / axle[k].norm(), 1.0 / k as f64);
-        let radius = reach(ORDER - 1).min(reach(ORDER));
+        let reach = |k: usize| libm::pow(EQUATION_LAST_TERM / axle[k].norm(), 1.0 / k as f64);
+        let radius = reach(EQUATION_ORDER - 1).min(reach(EQUATION_ORDER));
         (axle, momentum, radius)
     }
 }

@@ -13,7 +13,7 @@ use crate::run::Step;
 use nalgebra::Vector3;
 
 /// Where the heights of two tilts differ by less than this, the tilts themselves are compared.
-const NEAR: f64 = 1e-14;
+const EQUAL_HEIGHTS: f64 = 1e-14;
 
 /// With fewer turning points there has been no whole swing.
 const LEAST_TURNS: u64 = 3;
@@ -80,7 +80,7 @@ impl Tilts {
         // An arc tangent at every step would cost as much as some schemes' step: it is taken only where the axle is
         // about as low or as high as it has ever been.
         let (least, greatest) = self.heights;
-        if height > least + NEAR && height < greatest - NEAR {
+        if height > least + EQUAL_HEIGHTS && height < greatest - EQUAL_HEIGHTS {
             return;
         }
         let tilt = step.tilt_deg();
@@ -157,7 +157,7 @@ impl TiltSwing {
         let sign = if is_top { 1.0 } else { -1.0 };
         let record = &mut self.turned[usize::from(is_top)];
         let height = rows[1].1;
-        if record.is_some_and(|there| sign * height > sign * there.height + NEAR) {
+        if record.is_some_and(|there| sign * height > sign * there.height + EQUAL_HEIGHTS) {
             return;
         }
         let [before, at, after] = rows.map(|(axle, _)| tilt_of(&axle));

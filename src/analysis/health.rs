@@ -25,7 +25,7 @@ const SEARCH_STEPS: u64 = 2_000_000;
 /// Where a time step is not to be mended, the first of these is tried that can be true to the scenario's friction.
 const BETTER_SCHEMES: [&str; 2] = ["srkn11b", "strang"];
 /// Number of looks at a trial, evenly spread, at which it may be given up; and the most steps between two looks.
-const LOOKS: u64 = 1000;
+const TRIAL_LOOKS: u64 = 1000;
 const MOST_TOGETHER: u64 = 4096;
 /// A nutation that swings by less than this (degrees) is none.
 pub const LEAST_SWING_DEG: f64 = 1e-6;
@@ -273,7 +273,7 @@ pub fn advise_while(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Option
 fn turns_if_believed(scenario: &Arc<Scenario>, is_wanted: &dyn Fn() -> bool) -> Option<f64> {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut beside = ExactReference::new(scenario);
-    let together = (scenario.steps / LOOKS).clamp(1, MOST_TOGETHER);
+    let together = (scenario.steps / TRIAL_LOOKS).clamp(1, MOST_TOGETHER);
     let mut most_turns = 0.0_f64;
     loop {
         let end = scenario.steps.min(simulation.step_number() + together);

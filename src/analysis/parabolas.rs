@@ -2,7 +2,9 @@
 //! of the axle by parabolas through three rows.
 
 use super::beats::{Point, slope};
-use super::turns::{HeightExtreme, MeasuredNumber, ROUNDING, StraightLine, Turns, WithoutNutation};
+use super::turns::{
+    HEIGHT_SWING_ROUNDING, HeightExtreme, MeasuredNumber, StraightLine, Turns, WithoutNutation,
+};
 use crate::physics::SymmetricTop;
 use crate::physics::observables::Azimuth;
 use crate::run::Step;
@@ -10,10 +12,10 @@ use std::f64::consts::TAU;
 
 /// Fewer nutations than this do not say how much they differ from one another: of a symmetric body, and of a lopsided one,
 /// whose nutations grow longer and shorter over several of them.
-const FEWEST: [u64; 2] = [4, 16];
+const FEWEST_NUTATIONS: [u64; 2] = [4, 16];
 /// Where a swing of a lopsided body's axle is less than this part of all that it rises and sinks, how many there are
 /// depends on which count.
-const LEAST_PART: f64 = 0.1;
+const LEAST_SWING_PART: f64 = 0.1;
 /// The directions about a lopsided body's axle in which the vertical was at a turning point are counted in so many parts
 /// of a turn.
 const DIRECTIONS: u32 = u16::BITS;
@@ -166,7 +168,7 @@ impl Parabolas {
     /// Takes in that the axle turns back at this height.
     fn swing_to(&mut self, height: f64) {
         match self.turned_at {
-            Some(last) if (height - last).abs() <= ROUNDING => return,
+            Some(last) if (height - last).abs() <= HEIGHT_SWING_ROUNDING => return,
             Some(last) => self.smallest_swing = self.smallest_swing.min((height - last).abs()),
             None => {}
         }
@@ -176,7 +178,7 @@ impl Parabolas {
     /// Whether a lopsided body has no swing so small that another rule might not count it.
     fn is_even(&self) -> bool {
         let [lowest, highest] = self.heights;
-        self.smallest_swing >= LEAST_PART * (highest - lowest)
+        self.smallest_swing >= LEAST_SWING_PART * (highest - lowest)
     }
 
     /// Whether a lopsided body has turned so far about its axle that the lengths of all its nutations were seen.
@@ -191,7 +193,8 @@ impl Parabolas {
 
     /// Counts the candidate once the axle has truly sunk below it.
     fn confirm(&mut self) {
-        let is_below = |(_, height): &(HeightExtreme, f64)| height - self.lowest_since > ROUNDING;
+        let is_below =
+            |(_, height): &(HeightExtreme, f64)| height - self.lowest_since > HEIGHT_SWING_ROUNDING;
         let Some((turn, _)) = self.candidate.filter(is_below) else {
             return;
         };
@@ -213,7 +216,7 @@ impl Parabolas {
     /// The line through the highest points, with what a parabola may be off by at its ends: through three steps of a
     /// swing's top, ψ apart, up to (2/3√3) ψ²/12 of a step.
     fn line(&self) -> Option<StraightLine> {
-        let fewest = FEWEST[usize::from(self.is_lopsided)];
+        let fewest = FEWEST_NUTATIONS[usize::from(self.is_lopsided)];
         let (number, last) = self.last.filter(|(number, _)| *number >= fewest)?;
         let mut line = self.turns.line_to(number, last)?;
         let step = self.looks[2].time_s - self.looks[1].time_s;
@@ -242,7 +245,7 @@ impl Parabolas {
 
     pub fn nutation_period_s(&self) -> Result<MeasuredNumber, WithoutNutation> {
         let [lowest, highest] = self.heights;
-        if highest - lowest <= ROUNDING {
+        if highest - lowest <= HEIGHT_SWING_ROUNDING {
             return Err(WithoutNutation::Steady);
         }
         let line = self.line().ok_or(WithoutNutation::TooFew)?;
@@ -313,7 +316,7 @@ impl Parabolas {
         };
         let (whole, later) = (rate(&self.start), rate(&self.half));
         let [lowest, highest] = self.heights;
-        let is_steady = highest - lowest <= ROUNDING;
+        let is_steady = highest - lowest <= HEIGHT_SWING_ROUNDING;
         (is_steady && whole.is_finite() && later.is_finite()).then(|| MeasuredNumber {
             value: whole,
             uncertainty: (whole - later).abs().max(f64::EPSILON * whole.abs()),

@@ -273,7 +273,7 @@ impl ReadoutValue {
 }
 
 /// Steps that are taken without asking whether to go on.
-const BLOCK: u64 = 4096;
+const READOUT_BLOCK_STEPS: u64 = 4096;
 
 /// Plays the run of `scenario` to its end and reads `wanted` off it; `None` where `go_on` said no on the way.
 pub fn at_end(
@@ -295,7 +295,9 @@ pub fn at_end(
         ended.map_err(|error| error.to_string())?;
     }
     while !jumps && simulation.step_number() < scenario.steps {
-        let end = scenario.steps.min(simulation.step_number() + BLOCK);
+        let end = scenario
+            .steps
+            .min(simulation.step_number() + READOUT_BLOCK_STEPS);
         while simulation.step_number() < end {
             let step = simulation.step().map_err(|error| error.to_string())?;
             if is_held {

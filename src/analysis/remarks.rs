@@ -6,7 +6,7 @@ use super::predictability::{Equilibrium, Predictability};
 use super::{FrictionEffect, Health};
 use crate::run::EnergyUnit;
 use crate::text::number::{
-    NONE, exponent, fixed, short, shortest, signed, signed_exponent, steady, times,
+    NOT_AVAILABLE, exponent, fixed, short, shortest, signed, signed_exponent, steady, times,
 };
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -253,8 +253,11 @@ fn wrong_swing(health: &Health) -> Option<Remark> {
 fn energy(health: &Health) -> Remark {
     let Some(drift) = health.energy_drift else {
         return Remark {
-            long: format!("energy drift {NONE}: {}", no_drift(health)),
-            short: format!("energy {NONE}: {}", short_no_drift(health.energy_unit)),
+            long: format!("energy drift {NOT_AVAILABLE}: {}", no_drift(health)),
+            short: format!(
+                "energy {NOT_AVAILABLE}: {}",
+                short_no_drift(health.energy_unit)
+            ),
             warns: false,
         };
     };
@@ -305,16 +308,16 @@ fn length(metres: f64) -> String {
 pub fn energy_in_full(health: &Health) -> String {
     match (health.energy_drift, health.energy_unit) {
         (Some(drift), Some(unit)) => format!("{} of {unit}", signed_exponent(drift, 3)),
-        _ => format!("{NONE}: {}", no_drift(health)),
+        _ => format!("{NOT_AVAILABLE}: {}", no_drift(health)),
     }
 }
 
 /// What a time step does to the body and its nutation, for a line of the summary.
 pub fn step_in_full(health: &Health) -> String {
     let turns = match health.turns_per_step {
-        _ if !health.is_a_rotation => format!("turns the body {NONE}: {NO_ROTATION}"),
+        _ if !health.is_a_rotation => format!("turns the body {NOT_AVAILABLE}: {NO_ROTATION}"),
         turns if turns.is_finite() => format!("turns the body {} times", fixed(turns, 4)),
-        _ => format!("turns the body {NONE}: further than numbers reach"),
+        _ => format!("turns the body {NOT_AVAILABLE}: further than numbers reach"),
     };
     match health.nutation {
         Some(Nutation { multiplier, .. }) => {

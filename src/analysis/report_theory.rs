@@ -42,16 +42,16 @@ struct LagSwing {
 }
 
 /// The greatest error, relative, that is put up with.
-const WITHIN: f64 = 0.1;
+const THEORY_TOLERANCE: f64 = 0.1;
 /// A nutation that the scheme changes by more than this part in the run is not the one predicted.
 const NEUTRAL: f64 = 0.05;
 /// A swing that would be less by more than this part if its steps slipped a little is not predicted.
 const SURE: f64 = 0.05;
 /// Number of phases of the swing that are looked at, and their number in one turn.
-const PHASES: u64 = 1024;
+const SWING_PHASES: u64 = 1024;
 const IN_A_TURN: f64 = 256.0;
 /// Parts of the slip that are tried.
-const SLIPS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
+const PHASE_SLIPS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 
 impl ReportTheory {
     /// Of the run whose forces have just changed, or that begins, at `step`; `None` where it is not the report's scheme, the
@@ -87,9 +87,9 @@ impl ReportTheory {
         let off_by =
             |size: f64| 2.5 * psi * kick.abs() * size / size_2 + 1.5 * size / libm::tan(tilt).abs();
         Some(Self {
-            lag: Some(lag_size).filter(|&size| off_by(size) <= WITHIN),
+            lag: Some(lag_size).filter(|&size| off_by(size) <= THEORY_TOLERANCE),
             growth: 0.5 * libm::log1p(-2.0 * kappa * (1.0 - kappa) * (1.0 - cos)),
-            swing: (off_by(lag_size.max(swing_size)) <= WITHIN).then_some(LagSwing {
+            swing: (off_by(lag_size.max(swing_size)) <= THEORY_TOLERANCE).then_some(LagSwing {
                 lag,
                 offset,
                 tilt,
@@ -115,7 +115,7 @@ impl ReportTheory {
         // Near a simple fraction of a turn the steps meet few phases of the swing, and drift through the others as slowly as
         // the precession, which is left out, turns them.
         let seen = swing.seen(steps, self.growth, 0.0);
-        let slipped = SLIPS.map(|part| swing.seen(steps, self.growth, part * swing.slip));
+        let slipped = PHASE_SLIPS.map(|part| swing.seen(steps, self.growth, part * swing.slip));
         let (least, most) = slipped.iter().fold((seen, seen), |(least, most), &seen| {
             (seen.min(least), seen.max(most))
         });
@@ -130,7 +130,7 @@ impl LagSwing {
     /// `growth` a step.
     fn seen(&self, steps: u64, growth: f64, slip: f64) -> f64 {
         let stride = (2.0 * PI / IN_A_TURN / self.turn.abs()).clamp(1.0, u32::MAX.into()) as u64;
-        let phases = (steps / stride).min(PHASES);
+        let phases = (steps / stride).min(SWING_PHASES);
         let tilts = (0..=phases).map(|index| self.tilt((index * stride) as f64, growth, slip));
         let (low, high) = tilts.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), tilt| {
             (low.min(tilt), high.max(tilt))

@@ -6,7 +6,7 @@ use crate::text::number::short;
 use std::fmt;
 
 /// A spin of less than this part of |L| is none but for rounding.
-const ROUNDING: f64 = 1e-12;
+const SPIN_ROUNDING: f64 = 1e-12;
 
 /// Friction on a run at one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ impl FrictionEffect {
             ..
         } = friction;
         let time = |moment: Option<f64>, rate: f64| Some(moment? / rate).filter(|s| s.is_finite());
-        let least = ROUNDING * state.momentum.norm();
+        let least = SPIN_ROUNDING * state.momentum.norm();
         let spin = top.map(|_| state.axle().dot(&state.momentum).abs());
         let spin = spin.map(|spin| if spin > least { spin } else { 0.0 });
         Some(Self {

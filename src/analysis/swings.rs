@@ -17,17 +17,17 @@ use std::fmt;
 /// exact motion: what an eye sees on a plot.
 pub const BELIEVED_WITHIN: f64 = 0.01;
 /// A swing holds while its least and its greatest tilt, and the way of the tilt, are right to this part of it.
-const WITHIN: f64 = 0.05;
+const SWING_TOLERANCE: f64 = 0.05;
 /// Where the exact motion's tilt swings by less than this (degrees) it does not swing; the summary gives no more digits.
 const NO_SWING_DEG: f64 = 1e-4;
 /// Then the run's tilt may differ from it by so much, rad: by the same part of what the traced point may.
-const WHERE_NONE_RAD: f64 = WITHIN * BELIEVED_WITHIN;
+const WHERE_NONE_RAD: f64 = SWING_TOLERANCE * BELIEVED_WITHIN;
 /// So many swings up or down make a stretch, where the run has as many: the phase counts for little then.
-const SWINGS: f64 = 40.0;
+const SWINGS_PER_WINDOW: f64 = 40.0;
 /// With fewer of them the way of the tilt says nothing of a period.
 const FEW_SWINGS: f64 = 3.0;
 /// The most blocks of steps that are kept; when there are more, two and two become one.
-const MOST_BLOCKS: usize = 128;
+const MOST_SWING_BINS: usize = 128;
 
 /// Both swings so far; to be shown every step.
 #[derive(Clone, Debug)]
@@ -100,7 +100,7 @@ fn swings((least, greatest): (f64, f64)) -> bool {
 /// By how much tilts may differ from the exact motion's, which swing so, degrees.
 fn allowed_deg(exact_deg: (f64, f64)) -> f64 {
     if swings(exact_deg) {
-        WITHIN * (exact_deg.1 - exact_deg.0)
+        SWING_TOLERANCE * (exact_deg.1 - exact_deg.0)
     } else {
         WHERE_NONE_RAD.to_degrees()
     }
@@ -152,7 +152,7 @@ impl Swings {
 
     #[cold]
     fn begin_block(&mut self) {
-        if self.blocks.len() == MOST_BLOCKS {
+        if self.blocks.len() == MOST_SWING_BINS {
             self.steps *= 2;
             self.blocks = self
                 .blocks
@@ -170,13 +170,13 @@ impl Swings {
         let mut stretches: Vec<SwingBin> = Vec::new();
         for block in &self.blocks {
             match stretches.last_mut() {
-                Some(last) if last.ways[1].swings() < SWINGS => *last = last.and(block),
+                Some(last) if last.ways[1].swings() < SWINGS_PER_WINDOW => *last = last.and(block),
                 _ => stretches.push(*block),
             }
         }
         // What is left at the end belongs to the stretch before.
         if let [.., before, rest] = &mut stretches[..]
-            && rest.ways[1].swings() < SWINGS
+            && rest.ways[1].swings() < SWINGS_PER_WINDOW
         {
             *before = before.and(rest);
             stretches.pop();
@@ -227,7 +227,7 @@ impl SwingBin {
         let way = run.length / exact.length;
         let is_there = swings(exact_deg) && exact.swings() >= FEW_SWINGS;
         let of_way = if is_there {
-            (way - 1.0).abs() / WITHIN
+            (way - 1.0).abs() / SWING_TOLERANCE
         } else {
             0.0
         };

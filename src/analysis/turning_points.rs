@@ -1,7 +1,7 @@
 //! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
 
 use super::equations::{AT_TURN, Crossing, Equations, StepEquation, TopMotion};
-use super::turns::{MeasuredNumber, ROUNDING, StraightLine, Turns, WithoutNutation};
+use super::turns::{HEIGHT_SWING_ROUNDING, MeasuredNumber, StraightLine, Turns, WithoutNutation};
 use crate::physics::{LagrangeTop, SchemeInfo, SymmetricTop};
 use crate::run::Step;
 use nalgebra::Vector3;
@@ -12,14 +12,14 @@ const STEADY: f64 = 1e-9;
 /// No swing of the height is told from rounding below this.
 const LEAST_SWING: f64 = 1e-14;
 /// An axle that comes nearer to the vertical than this (rad) has no azimuth to speak of.
-const PASSES_RAD: f64 = 1e-7;
+const NO_AZIMUTH_RAD: f64 = 1e-7;
 /// Schemes of a finite order are followed between their rows while the body or its axle turns by less than this (rad).
 const FOLLOWED_RAD: f64 = 1.0;
 /// A time step in which the axle may turn by more than this (rad), and by half a turn as it passes the vertical, may hide
 /// a whole turn of the azimuth though its rows are near to one another.
 const HIDES_RAD: f64 = 1.5;
 /// Axles that turn by more than this between two rows (rad) are not followed.
-const TOO_FAR_RAD: f64 = 60.0;
+const MOST_TURN_RAD: f64 = 60.0;
 
 /// Least ratio of the rate at which a nutation moves the height to the error of a first-order scheme in that rate: below
 /// it the turning points are not where the rate changes its sign.
@@ -75,7 +75,7 @@ impl TurningPoints {
             return None;
         }
         let is_steady = range < (STEADY * swing.level().powi(2)).max(LEAST_SWING);
-        let confirmed_by = if is_steady { 1.0 } else { 1e-3 * range }.min(ROUNDING);
+        let confirmed_by = if is_steady { 1.0 } else { 1e-3 * range }.min(HEIGHT_SWING_ROUNDING);
         let (climb, bend) = (swing.climb(), swing.bend(&pull));
         let starts_at_turn = !is_steady && climb.abs() <= AT_TURN * motion.time_step_s * bend.abs();
         let is_rising = if starts_at_turn { bend } else { climb } > 0.0;
@@ -197,7 +197,7 @@ impl TurningPoints {
     }
 
     pub fn precession_rad_per_s(&self) -> Option<MeasuredNumber> {
-        if self.least_level < PASSES_RAD {
+        if self.least_level < NO_AZIMUTH_RAD {
             return None;
         }
         let of_rates = f64::EPSILON * (self.equations.rates[0] + self.equations.rates[1]);
@@ -220,7 +220,7 @@ impl TurningPoints {
         let time = self.now.time_s - self.start.time_s;
         let (now, start) = (self.now.azimuth_rad(), self.start.azimuth_rad());
         let value = (now - start + TAU * self.missed as f64) / time;
-        if swing > ROUNDING || !value.is_finite() {
+        if swing > HEIGHT_SWING_ROUNDING || !value.is_finite() {
             return None;
         }
         let TopMotion { axle, momentum } = self.start.swing;
@@ -277,7 +277,7 @@ fn is_followed(
     }
     let [spin, axle_rate] = equations.rates.map(|rate| rate * equations.time_step_s);
     match (scheme.order, scheme.turns_exactly) {
-        (None, _) => axle_rate < TOO_FAR_RAD,
+        (None, _) => axle_rate < MOST_TURN_RAD,
         (Some(_), true) => axle_rate < FOLLOWED_RAD,
         (Some(_), false) => spin.max(axle_rate) < FOLLOWED_RAD,
     }

@@ -73,7 +73,7 @@ impl WithoutNutation {
 }
 
 /// A swing of the axle's height smaller than this is rounding, not nutation.
-pub(super) const ROUNDING: f64 = 1e-9;
+pub(super) const HEIGHT_SWING_ROUNDING: f64 = 1e-9;
 
 /// One turning point of the axle's height.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -22,7 +22,7 @@ const GONE: Duration = Duration::from_secs(4);
 pub(super) const OF_ALL: u32 = 0o2770;
 const OF_TEACHER: u32 = 0o2750;
 
-pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+pub const CLASS_VERSION: &str = env!("CARGO_PKG_VERSION");
 
 #[derive(Clone, Debug, Default)]
 pub struct ClassFolder {
@@ -161,10 +161,10 @@ impl ClassFolder {
         let Some(text) = read else { return Ok(None) };
         let table: toml::Table = toml::from_str(&text).map_err(|_| unread(&"is damaged"))?;
         let version = table.get("gyrolab").and_then(toml::Value::as_str);
-        if version != Some(VERSION) {
+        if version != Some(CLASS_VERSION) {
             let version = version.unwrap_or("unknown");
             return Err(format!(
-                "the teacher's gyrolab is {version}, this one is {VERSION}: both must be the same"
+                "the teacher's gyrolab is {version}, this one is {CLASS_VERSION}: both must be the same"
             ));
         }
         let state = table.try_into().map_err(|_| unread(&"is damaged"))?;

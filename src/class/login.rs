@@ -8,7 +8,7 @@
 //! logins and with however many seats of the same name, needs 500 000 hours on average, which is 57 years.
 
 use super::ClassFolder;
-use super::seat::{CODES, DIGITS, LONGEST_NAME, Seat, all_seats, is_name, name_of};
+use super::seat::{CODE_DIGITS, CODES, LONGEST_SEAT_NAME, Seat, all_seats, is_name, name_of};
 use crate::storage::shared;
 use crate::text::printable::printable;
 use std::fs::{self, File};
@@ -93,7 +93,7 @@ pub fn take(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<(Seat,
         Some(name) => come_back(folder, &typed, name, now_unix_s).map(|seat| (seat, false)),
         None if is_name(&typed) => begin(folder, &typed).map(|seat| (seat, true)),
         None => {
-            let shown: String = typed.chars().take(2 * LONGEST_NAME).collect();
+            let shown: String = typed.chars().take(2 * LONGEST_SEAT_NAME).collect();
             Err(format!("{}: {RULE}", printable(&shown)))
         }
     }
@@ -107,7 +107,7 @@ fn begin(folder: &ClassFolder, name: &str) -> Result<Seat, String> {
     }
     for _ in 0..100 {
         let code = RandomState::new().build_hasher().finish() % CODES;
-        let seat = Seat::of(folder, &format!("{name}-{code:0DIGITS$}"));
+        let seat = Seat::of(folder, &format!("{name}-{code:0CODE_DIGITS$}"));
         match seat.make() {
             Ok(true) => return Ok(seat),
             Ok(false) => {}

@@ -32,7 +32,7 @@ use std::ops::ControlFlow;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// How often the files are looked at.
-const EVERY: Duration = Duration::from_millis(300);
+const CLASS_POLL_INTERVAL: Duration = Duration::from_millis(300);
 const LEAST_WAIT: Duration = Duration::from_millis(10);
 
 /// What a class adds to a lab.

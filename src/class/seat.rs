@@ -1,6 +1,6 @@
 //! The files of a seat: where it stands in its lessons, its votes, and who has it open.
 
-use super::folder::{ClassFolder, OF_ALL, VERSION};
+use super::folder::{CLASS_VERSION, ClassFolder, OF_ALL};
 use super::{ago, unix_ms};
 use crate::lessons::class::KeptLessons;
 use crate::storage::confined::SESSIONS;
@@ -13,16 +13,16 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 /// It is raised when the form or the meaning of a seat's file changes.
-const FORMAT: u32 = 2;
+const SEAT_FORMAT: u32 = 2;
 /// The most characters of a name.
-pub(super) const LONGEST_NAME: usize = 24;
+pub(super) const LONGEST_SEAT_NAME: usize = 24;
 /// The digits of a code, and how many codes there are.
-pub(super) const DIGITS: usize = 6;
+pub(super) const CODE_DIGITS: usize = 6;
 pub(super) const CODES: u64 = 1_000_000;
 /// The digits of a code of an older version. The seats of that version keep their words.
 const OLD_DIGITS: usize = 4;
 /// The longest file of a seat, bytes.
-const LONGEST: usize = 1 << 20;
+const LONGEST_SEAT_FILE: usize = 1 << 20;
 /// A seat is lost when its lab has given no sign for longer than this, and away after an hour.
 const LOST: Duration = Duration::from_secs(10);
 const AWAY: Duration = Duration::from_secs(3600);
@@ -60,7 +60,9 @@ pub enum Presence {
 pub(super) fn is_name(name: &str) -> bool {
     let is_allowed = |c: char| c.is_alphanumeric() || c == '-';
     let length = name.chars().count();
-    (1..=LONGEST_NAME).contains(&length) && name.chars().all(is_allowed) && !name.starts_with('-')
+    (1..=LONGEST_SEAT_NAME).contains(&length)
+        && name.chars().all(is_allowed)
+        && !name.starts_with('-')
 }
 
 /// The name of a seat, if `word` is that of one. A word whose code lacks a digit is none, and no name either: nobody who
@@ -123,15 +125,16 @@ impl Seat {
     /// # Errors
     /// When it cannot be read, or another version has written it.
     pub fn record(&self) -> Result<Record, String> {
-        let text = shared::read(&self.file("seat"), LONGEST).map_err(|error| error.to_string())?;
+        let text = shared::read(&self.file("seat"), LONGEST_SEAT_FILE)
+            .map_err(|error| error.to_string())?;
         let Some(text) = text else {
             return Ok(Record::default());
         };
         let record: Record = toml::from_str(&text).map_err(|_| "is damaged".to_owned())?;
-        let is_own = record.format == FORMAT;
+        let is_own = record.format == SEAT_FORMAT;
         is_own
             .then_some(record)
-            .ok_or_else(|| format!("another version of gyrolab wrote it, this is {VERSION}"))
+            .ok_or_else(|| format!("another version of gyrolab wrote it, this is {CLASS_VERSION}"))
     }
 
     /// What its file holds, with the places in the lessons.
@@ -150,11 +153,11 @@ impl Seat {
 
     pub fn save(&self, record: &Record) -> Result<(), String> {
         let record = Record {
-            format: FORMAT,
+            format: SEAT_FORMAT,
             ..record.clone()
         };
         let text = toml::to_string(&record).map_err(|error| error.to_string())?;
-        if text.len() > LONGEST {
+        if text.len() > LONGEST_SEAT_FILE {
             return Err("the file of this seat is above 1 MB".to_owned());
         }
         shared::replace(&self.file("seat"), &text)

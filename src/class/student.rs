@@ -2,7 +2,7 @@
 
 use super::folder::{ClassFolder, ClassState, PresentedRun, QuestionState, VoteStage};
 use super::seat::{Record, Seat};
-use super::{ClassRole, EVERY, LEAST_WAIT, unix_ms, votes};
+use super::{CLASS_POLL_INTERVAL, ClassRole, LEAST_WAIT, unix_ms, votes};
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
 use crate::lab::command::{Command, SeekTarget};
@@ -333,7 +333,7 @@ impl ClassRole for Student {
         let was_new = self.is_new;
         self.note(lab);
         if now >= self.next_look || self.is_new && !was_new {
-            self.next_look = now + EVERY;
+            self.next_look = now + CLASS_POLL_INTERVAL;
             self.look(lab);
             if self.follows() {
                 self.follow(lab, lessons);

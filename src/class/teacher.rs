@@ -1,8 +1,8 @@
 //! The teacher's lab: what it shows goes to the class, and the votes of the class come to its pages.
 
-use super::folder::{ClassFolder, ClassState, LONGEST_RUN, PresentedRun, VERSION, VoteStage};
-use super::votes::{self, FEWEST, SeatStatus, Tally, present, sittings};
-use super::{ClassRole, EVERY, LEAST_WAIT, login, unix_ms};
+use super::folder::{CLASS_VERSION, ClassFolder, ClassState, LONGEST_RUN, PresentedRun, VoteStage};
+use super::votes::{self, FEWEST_VOTES_SHOWN, SeatStatus, Tally, present, sittings};
+use super::{CLASS_POLL_INTERVAL, ClassRole, LEAST_WAIT, login, unix_ms};
 use crate::data::find_shipped;
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
@@ -52,7 +52,7 @@ impl Teacher {
     /// The class in `folder`, with the rounds of an earlier lab.
     pub fn new(folder: ClassFolder, before: ClassState) -> Self {
         let state = ClassState {
-            gyrolab: VERSION.to_owned(),
+            gyrolab: CLASS_VERSION.to_owned(),
             is_on: true,
             ..before
         };
@@ -103,7 +103,7 @@ impl Teacher {
             let here = self.seats.iter().filter(|sitting| sitting.is_here());
             self.state.answered = here.filter(has_answered).count();
             let tally = Tally::of(&self.seats, lesson, predict, round);
-            let is_shown = question.stage == VoteStage::All && tally.votes >= FEWEST;
+            let is_shown = question.stage == VoteStage::All && tally.votes >= FEWEST_VOTES_SHOWN;
             let bars = if is_shown { tally.bars } else { Vec::new() };
             self.state.question_mut(&predict.name).bars = bars;
         }
@@ -183,7 +183,9 @@ impl Teacher {
         let tally = Tally::of(&self.seats, &self.state.lesson, predict, round);
         let seen = match question.stage {
             VoteStage::Counted | VoteStage::Teacher => "",
-            VoteStage::All if tally.votes < FEWEST => " · students see no bars: under 5 votes",
+            VoteStage::All if tally.votes < FEWEST_VOTES_SHOWN => {
+                " · students see no bars: under 5 votes"
+            }
             VoteStage::All => " · shown",
             VoteStage::Closed => " · closed",
         };
@@ -295,7 +297,7 @@ impl ClassRole for Teacher {
             (&taken.lesson.name, taken.place.page) != (&self.state.lesson, self.state.page)
         });
         if now >= self.next_look || is_new {
-            self.next_look = now + EVERY;
+            self.next_look = now + CLASS_POLL_INTERVAL;
             self.trouble = None;
             self.look(lab, lessons);
             self.publish();

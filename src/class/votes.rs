@@ -14,11 +14,11 @@ use chrono::{DateTime, Utc};
 use std::collections::BTreeMap;
 
 /// With fewer votes no bars go to the students: who has voted what could be guessed.
-pub const FEWEST: usize = 5;
+pub const FEWEST_VOTES_SHOWN: usize = 5;
 /// The most bars of predicted numbers.
 const MOST_BARS: usize = 9;
 /// The columns of the longest bar.
-const BAR: usize = 20;
+const LONGEST_BAR: usize = 20;
 
 /// A seat with its record and whether somebody sits there.
 #[derive(Clone, Debug)]
@@ -199,7 +199,7 @@ pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
     let most = bars.iter().map(|bar| bar.1).max().unwrap_or(0).max(1);
     let width = bars.iter().map(|bar| bar.0.len()).max().unwrap_or(0);
     let line = |(name, count): &(String, usize)| {
-        let bar = "█".repeat((count * BAR).div_ceil(most));
+        let bar = "█".repeat((count * LONGEST_BAR).div_ceil(most));
         format!("{name:<width$} {bar} {count}\n")
     };
     Paragraph::new(
@@ -223,7 +223,7 @@ pub fn question<'a>(
     Some(open.unwrap_or(first))
 }
 
-const COLUMNS: [&str; 8] = [
+const VOTE_COLUMNS: [&str; 8] = [
     "lesson", "question", "round", "seat", "choice", "late", "page", "time",
 ];
 
@@ -231,7 +231,7 @@ const COLUMNS: [&str; 8] = [
 /// told in its words.
 pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(COLUMNS)?;
+    writer.write_record(VOTE_COLUMNS)?;
     let mut read = BTreeMap::new();
     for sitting in seats {
         for (name, place) in &sitting.lessons {

@@ -9,9 +9,9 @@ use crate::lab::view::theme::Marker;
 use crate::physics::scheme;
 use crate::run::Simulation;
 use crate::scenario::csv::{Renaming, renaming};
-use crate::scenario::rescale::MOST_STEPS;
+use crate::scenario::rescale::MOST_RUN_STEPS_BY_TIME;
 use crate::scenario::{Document, Problem, Problems, Scenario};
-use crate::tui::terminal::MOST_CELLS;
+use crate::tui::terminal::MOST_SCREEN_CELLS;
 use crate::tui::theme::ColourChoice;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::error::ErrorKind;
@@ -306,28 +306,28 @@ pub(super) struct LayoutArgs {
         value_name = "A,B",
         value_delimiter = ',',
         requires = "output",
-        help_heading = ROWS
+        help_heading = ROWS_HEADING
     )]
     columns: Vec<String>,
 
     /// Leave out the rows before this time, s; the run begins at 0 all the same
-    #[arg(long, value_name = "SECONDS", requires = "output", allow_negative_numbers = true, value_parser = time, help_heading = ROWS)]
+    #[arg(long, value_name = "SECONDS", requires = "output", allow_negative_numbers = true, value_parser = time, help_heading = ROWS_HEADING)]
     from: Option<f64>,
 
     /// Leave out the rows after this time, s; the run goes on to its end all the same
-    #[arg(long, value_name = "SECONDS", requires = "output", allow_negative_numbers = true, value_parser = time, help_heading = ROWS)]
+    #[arg(long, value_name = "SECONDS", requires = "output", allow_negative_numbers = true, value_parser = time, help_heading = ROWS_HEADING)]
     to: Option<f64>,
 
     /// Write a row for each point of the body at each step: its name, mass, place and velocity
-    #[arg(long, requires = "output", help_heading = ROWS)]
+    #[arg(long, requires = "output", help_heading = ROWS_HEADING)]
     points: bool,
 
     /// Write decimal commas, with semicolons between the columns, for Excel in German and other such languages
-    #[arg(long, requires = "output", help_heading = ROWS)]
+    #[arg(long, requires = "output", help_heading = ROWS_HEADING)]
     excel: bool,
 }
 
-const ROWS: &str = "Rows and columns of the CSV";
+const ROWS_HEADING: &str = "Rows and columns of the CSV";
 
 /// A time from the beginning of the run on, s.
 pub(super) fn time(text: &str) -> Result<f64, String> {
@@ -411,7 +411,7 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
-    let (columns, lines) = MOST_CELLS;
+    let (columns, lines) = MOST_SCREEN_CELLS;
     let number = |text: &str, most| {
         let number = text.parse().ok();
         number.filter(|number| (1..=most).contains(number))
@@ -472,8 +472,8 @@ pub(super) fn changed(
     let Some(duration) = length.duration else {
         return Ok(scenario);
     };
-    if duration / scenario.motion.time_step_s > MOST_STEPS {
-        let rule = format!("{duration:e} s are more than {MOST_STEPS:e} time steps");
+    if duration / scenario.motion.time_step_s > MOST_RUN_STEPS_BY_TIME {
+        let rule = format!("{duration:e} s are more than {MOST_RUN_STEPS_BY_TIME:e} time steps");
         let mut problem = Problem::at("", rule);
         problem.place = Some("--duration".to_owned());
         return Err(Problems::one(document.origin(), problem));

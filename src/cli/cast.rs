@@ -22,11 +22,11 @@ use std::process::ExitCode;
 use std::thread;
 use std::time::Duration;
 
-const FRAME: Duration = Duration::from_millis(50);
+const CAST_FRAME: Duration = Duration::from_millis(50);
 /// The longest recording: a slip in a number must not fill the disk.
-const LONGEST: Duration = Duration::from_secs(3600);
+const LONGEST_RECORDING: Duration = Duration::from_secs(3600);
 /// How often to look whether an export is complete: the recording's clock stands still meanwhile.
-const LOOK: Duration = Duration::from_millis(2);
+const CAST_EXPORT_POLL: Duration = Duration::from_millis(2);
 
 #[derive(Debug, Args)]
 #[command(after_help = WHAT_PASSES)]
@@ -125,10 +125,10 @@ impl Cast {
                 return Ok(());
             }
             ensure!(
-                self.now < LONGEST,
+                self.now < LONGEST_RECORDING,
                 "the recording is longer than an hour, the most there may be: shorten its waits, or raise its speed"
             );
-            self.now += FRAME;
+            self.now += CAST_FRAME;
             self.advance(lab, interruption);
         }
     }
@@ -138,10 +138,15 @@ impl Cast {
         let mut is_first = true;
         lab.advance(&mut || {
             let is_late = !std::mem::take(&mut is_first) && interruption.has_come();
-            self.now + if is_late { LONGEST } else { Duration::ZERO }
+            self.now
+                + if is_late {
+                    LONGEST_RECORDING
+                } else {
+                    Duration::ZERO
+                }
         });
         while lab.files().is_exporting() && !interruption.has_come() {
-            thread::sleep(LOOK);
+            thread::sleep(CAST_EXPORT_POLL);
             lab.advance(&mut || self.now);
         }
     }

@@ -27,9 +27,9 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// The columns of a board that is printed.
-const WIDTH: usize = 80;
+const BOARD_WIDTH: usize = 80;
 /// The longest line that is read for a seat, bytes.
-const LONGEST_LINE: u64 = 200;
+const LONGEST_SEAT_LINE: u64 = 200;
 /// How long a wrong word keeps waiting.
 const PENALTY: Duration = Duration::from_secs(1);
 
@@ -110,7 +110,7 @@ fn show_board(folder: &ClassFolder) -> anyhow::Result<ExitCode> {
             .context("the terminal cannot be used")?;
         return Ok(ExitCode::SUCCESS);
     }
-    print(&(board::lines(folder, WIDTH).join("\n") + "\n"))?;
+    print(&(board::lines(folder, BOARD_WIDTH).join("\n") + "\n"))?;
     Ok(unread(&sittings(folder).map_err(anyhow::Error::msg)?))
 }
 
@@ -230,13 +230,13 @@ fn line() -> io::Result<Option<String>> {
     let mut stdin = io::stdin().lock();
     let mut bytes = Vec::new();
     if (&mut stdin)
-        .take(LONGEST_LINE)
+        .take(LONGEST_SEAT_LINE)
         .read_until(b'\n', &mut bytes)?
         == 0
     {
         return Ok(None);
     }
-    if bytes.len() as u64 == LONGEST_LINE {
+    if bytes.len() as u64 == LONGEST_SEAT_LINE {
         stdin.skip_until(b'\n')?;
     }
     Ok(Some(String::from_utf8_lossy(&bytes).into_owned()))

@@ -9,7 +9,7 @@ use crate::analysis::predictability::predictability;
 use crate::physics::{SchemeInfo, scheme};
 use crate::run::{Clock, EnergyScale, Truth};
 use crate::scenario::Scenario;
-use crate::scenario::rescale::MOST_STEPS;
+use crate::scenario::rescale::MOST_RUN_STEPS_BY_TIME;
 use crate::text::number::{short, shortest};
 use crate::verify::csv_of_comparison;
 use anyhow::bail;
@@ -130,9 +130,12 @@ fn time_steps(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<f64
     steps.sort_by(|a, b| b.total_cmp(a));
     steps.dedup();
     let duration = Clock::end_s(scenario);
-    if let Some(&step) = steps.iter().find(|&&step| duration / step > MOST_STEPS) {
+    if let Some(&step) = steps
+        .iter()
+        .find(|&&step| duration / step > MOST_RUN_STEPS_BY_TIME)
+    {
         bail!(
-            "{}: --time-steps {} would be {} steps for {} s, of which {MOST_STEPS:e} can be counted: give longer time steps, or a shorter --duration",
+            "{}: --time-steps {} would be {} steps for {} s, of which {MOST_RUN_STEPS_BY_TIME:e} can be counted: give longer time steps, or a shorter --duration",
             args.scenario.scenario,
             shortest(step),
             short(duration / step),

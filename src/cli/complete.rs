@@ -41,7 +41,13 @@ fn completing(command: &str, arg: &str) -> Option<(CompletionSource, &'static [&
         (_, "free") => |_, begin| keys(begin, is_free, ""),
         (_, "measured") => |_, _| shipped(SHIPPED),
         (_, "columns") => |_, _| columns(),
-        (_, "kind") => |_, _| [named(&kind::NAMES, |name| (name, "")), columns()].concat(),
+        (_, "kind") => |_, _| {
+            [
+                named(&kind::FIGURE_KIND_NAMES, |name| (name, "")),
+                columns(),
+            ]
+            .concat()
+        },
         (_, "measure") => |_, _| named(READOUTS, |it| (it.name, it.meaning)),
         (_, "topic") => |_, _| topics(),
         (_, "files" | "commands") => |_, _| Vec::new(),

@@ -104,7 +104,7 @@ impl std::str::FromStr for RowRange {
 }
 
 /// What is fitted when nothing says by which scheme: the true motion, and not the artefacts of a time step.
-const SCHEME: &str = "exact";
+const FITTED_SCHEME: &str = "exact";
 
 pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     one_on_stdout("fit", args.output.as_deref(), args.json);
@@ -449,7 +449,7 @@ fn scenario(args: &FitArgs) -> Result<(Document, Option<&'static str>), Problems
     if args.changes.scheme.is_none() && !args.changes.set.iter().any(sets_scheme) {
         // What is wrong with it is told as it stands in its file.
         own = Some(document.scenario()?.motion.scheme.name);
-        let written = document.set_value("motion.scheme", Value::String(SCHEME.to_owned()));
+        let written = document.set_value("motion.scheme", Value::String(FITTED_SCHEME.to_owned()));
         written.map_err(|problem| Problems::one(args.scenario.clone(), problem))?;
     }
     change(&mut document, &args.changes)?;

@@ -38,12 +38,14 @@ pub(super) struct ManArgs {
 }
 
 /// Columns of a line.
-const WIDTH: usize = 80;
+const MANUAL_WIDTH: usize = 80;
 /// The day on which the manual was last gone through.
 const DATE: &str = "2026-11-22";
 
 pub(super) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
-    let mut gyrolab = command().disable_help_subcommand(true).term_width(WIDTH);
+    let mut gyrolab = command()
+        .disable_help_subcommand(true)
+        .term_width(MANUAL_WIDTH);
     gyrolab.build();
     if let Some(folder) = args.output.as_deref() {
         return write_pages(&gyrolab, folder, args.force);
@@ -195,14 +197,14 @@ fn topic(name: &str) -> Result<Option<String>, fmt::Error> {
 /// The lines of a table. A line that is too long goes on below the beginning of its last column.
 fn in_width(table: &str) -> String {
     let lines = table.lines().map(|line| {
-        if columns(line) <= WIDTH {
+        if columns(line) <= MANUAL_WIDTH {
             return line.to_owned();
         }
         let indent = line.len() - line.trim_start().len();
         let text = line.rfind("  ").map_or(indent, |gap| gap + 2);
         let (begin, text) = line.split_at(text);
         let hanging = columns(begin);
-        let text = wrapped(text, WIDTH - hanging);
+        let text = wrapped(text, MANUAL_WIDTH - hanging);
         begin.to_owned() + &text.join(&format!("\n{}", " ".repeat(hanging)))
     });
     lines.collect::<Vec<_>>().join("\n")
@@ -264,13 +266,13 @@ fn fixed(title: &'static str) -> ManualSection {
 
 /// Each term and what it means beside it; a long term has its meaning below it.
 fn terms(rows: &[(String, &str)]) -> String {
-    const INDENT: usize = 16;
+    const MANUAL_INDENT: usize = 16;
     let row = |(term, meaning): &(String, &str)| {
-        let meaning = wrapped(meaning, WIDTH - INDENT);
-        let meaning = meaning.join(&format!("\n{:INDENT$}", ""));
-        let begin = match wrapped(term, WIDTH - 4).join("\n    ") {
-            short if columns(&short) + 4 <= INDENT => format!("  {short:<14}"),
-            long => format!("  {long}\n{:INDENT$}", ""),
+        let meaning = wrapped(meaning, MANUAL_WIDTH - MANUAL_INDENT);
+        let meaning = meaning.join(&format!("\n{:MANUAL_INDENT$}", ""));
+        let begin = match wrapped(term, MANUAL_WIDTH - 4).join("\n    ") {
+            short if columns(&short) + 4 <= MANUAL_INDENT => format!("  {short:<14}"),
+            long => format!("  {long}\n{:MANUAL_INDENT$}", ""),
         };
         format!("{begin}{meaning}\n")
     };
@@ -278,7 +280,7 @@ fn terms(rows: &[(String, &str)]) -> String {
 }
 
 fn paragraph(text: &str) -> String {
-    wrapped(text, WIDTH).join("\n") + "\n\n"
+    wrapped(text, MANUAL_WIDTH).join("\n") + "\n\n"
 }
 
 /// The keys of each purpose, pane and place under its name.
@@ -314,7 +316,7 @@ fn files_of_commands() -> String {
 }
 
 fn chosen() -> String {
-    let rows = settings::KEYS.iter().map(|(key, kind, about)| {
+    let rows = settings::SETTINGS_KEYS.iter().map(|(key, kind, about)| {
         let value = match kind {
             ValueKind::OneOf(words) => format!("\"{}\"", words.join("\", \"")),
             ValueKind::Whole(least, most) => format!("{least} to {most}"),

@@ -23,9 +23,9 @@ use std::thread;
 use std::time::{Duration, SystemTime};
 
 /// Columns of the notes.
-const WIDTH: usize = 78;
+const NOTES_WIDTH: usize = 78;
 /// How often the session is looked at.
-const EVERY: Duration = Duration::from_millis(500);
+const NOTES_POLL_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Prints or writes what was predicted in the lesson `args.name` beside what came out.
 pub(super) fn answers(
@@ -141,14 +141,14 @@ fn follow(
         if let Some(line) = line {
             line.show(&text);
         }
-        thread::sleep(EVERY);
+        thread::sleep(NOTES_POLL_INTERVAL);
     }
     Ok(())
 }
 
 /// Prints `text` above the live line, in lines that end between words.
 fn tell(line: Option<&LiveLine<Stdout>>, text: &str) -> io::Result<()> {
-    let lines = text.lines().flat_map(|line| wrapped(line, WIDTH));
+    let lines = text.lines().flat_map(|line| wrapped(line, NOTES_WIDTH));
     let text = lines.collect::<Vec<_>>().join("\n");
     let text = printable_lines(&text);
     if let Some(line) = line {

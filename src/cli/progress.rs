@@ -98,7 +98,7 @@ impl Interruption {
         }
         let is_late = self.leave_working_for(INTERRUPTED_BY_SIGNAL).is_err();
         if is_late || !self.at_once.load(Ordering::SeqCst) {
-            thread::sleep(PATIENCE);
+            thread::sleep(SIGNAL_EXIT_LIMIT);
         }
         temporary::remove_own();
         signal_hook::low_level::exit(INTERRUPTED.into());
@@ -111,7 +111,7 @@ impl Interruption {
 pub(super) struct Interrupted;
 
 /// The longest time from a signal to the end of the process: some computations do not look at the flag.
-const PATIENCE: Duration = Duration::from_millis(1500);
+const SIGNAL_EXIT_LIMIT: Duration = Duration::from_millis(1500);
 
 /// Opens `path` for writing, if there is one to open, and has signals end what follows.
 pub(super) fn open(
@@ -171,9 +171,9 @@ fn hangup_is_ignored() -> bool {
 const QUIET: Duration = Duration::from_secs(1);
 
 /// The longest time for which a changed line is not written.
-const EVERY: Duration = Duration::from_millis(250);
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 /// The columns of a line that changes: a longer one would be wrapped, and its first part would stay.
-const WIDTH: usize = 79;
+const PROGRESS_WIDTH: usize = 79;
 
 /// The last line of a terminal, which is written anew. indicatif's bar is not used: it computes its rate with the C
 /// library's `exp` and `pow`, and nothing in this program shall.
@@ -199,9 +199,9 @@ where
     /// Shows `text`, unless another one was shown a moment ago.
     pub(super) fn show(&self, text: &str) {
         let mut written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
-        if written.is_none_or(|at| at.elapsed() >= EVERY) {
+        if written.is_none_or(|at| at.elapsed() >= PROGRESS_INTERVAL) {
             *written = Some(Instant::now());
-            let text: String = text.chars().take(WIDTH).collect();
+            let text: String = text.chars().take(PROGRESS_WIDTH).collect();
             self.write(&text);
         }
     }
@@ -243,7 +243,7 @@ pub(super) fn with_clock<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let (working, is_done) = mpsc::channel::<()>();
     let tick = move || {
         let meter = Meter::counting("second");
-        while is_done.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
+        while is_done.recv_timeout(PROGRESS_INTERVAL) == Err(RecvTimeoutError::Timeout) {
             let elapsed = HumanDuration(meter.begin.elapsed());
             meter.say(&format!("{what}: {elapsed:#}"));
         }

@@ -19,7 +19,7 @@ use std::process::ExitCode;
 use std::time::{Duration, SystemTime};
 
 /// How long the end waits for the disk before it says that the session is not kept.
-const PATIENCE: Duration = Duration::from_secs(3);
+const SESSION_SAVE_LIMIT: Duration = Duration::from_secs(3);
 
 pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
     let within = |folder| Confined::within(folder).with_context(|| named(folder));
@@ -99,7 +99,7 @@ pub(super) fn tell_of_session(
     folder: Option<&Path>,
 ) -> anyhow::Result<()> {
     let name = session.as_ref().map_or("", Session::name).to_owned();
-    let closed = session.map(|session| session.close(PATIENCE));
+    let closed = session.map(|session| session.close(SESSION_SAVE_LIMIT));
     let (kept, trouble) = match closed {
         Ok(closed) => (closed.kept, closed.trouble),
         Err(trouble) => (None, Some(trouble)),

@@ -102,7 +102,9 @@ mod tests {
     use crate::tui::theme::ColourChoice;
 
     fn are_options<T: ValueEnum>(wanted: &str) -> bool {
-        let row = settings::KEYS.iter().find(|(key, ..)| *key == wanted);
+        let row = settings::SETTINGS_KEYS
+            .iter()
+            .find(|(key, ..)| *key == wanted);
         let Some((_, ValueKind::OneOf(words), _)) = row else {
             return false;
         };

@@ -54,10 +54,10 @@ pub(super) struct VerifyArgs {
 }
 
 /// The version that computes again.
-const OWN: &str = env!("CARGO_PKG_VERSION");
+const OWN_VERSION: &str = env!("CARGO_PKG_VERSION");
 const MISSING: &str = "it is missing, or no regular file";
 /// The most bytes that are read of a file beyond what it should hold.
-const MOST_BEYOND: u64 = 1 << 20;
+const MOST_FILE_EXCESS: u64 = 1 << 20;
 
 const OWN_CODE: &str = "Your own code";
 
@@ -105,7 +105,7 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
     let document = Document::read(&run_file).map_err(Unverified::from)?;
     let scenario = Arc::new(document.scenario().map_err(Unverified::from)?);
     let version = document.table().get("gyrolab").and_then(Value::as_str);
-    let version = version.unwrap_or(OWN);
+    let version = version.unwrap_or(OWN_VERSION);
     let data = measured_in(folder);
     let against = csv.is_file().then(|| Against::open(&csv)).transpose();
     let against = against.with_context(|| PrintablePath(&csv).to_string())?;
@@ -157,7 +157,7 @@ fn differs(
     if !file.is_file() {
         return Ok(Some(MISSING.to_owned()));
     }
-    let (mut there, most) = (Vec::new(), made.len() as u64 + MOST_BEYOND);
+    let (mut there, most) = (Vec::new(), made.len() as u64 + MOST_FILE_EXCESS);
     let read = File::open(file).and_then(|file| file.take(most).read_to_end(&mut there));
     if let Err(error) = read {
         return Ok(Some(unread(&error)));
@@ -173,11 +173,16 @@ fn differs(
             Err(Unverified::Stopped) => bail!(Interrupted),
             Err(Unverified::Refused(problems)) => Some(problems.in_one_line()),
             Ok(Some((Some(difference), _))) => Some(difference),
-            Ok(_) => (version == OWN).then(|| "it is a figure of another run or part".to_owned()),
+            Ok(_) => {
+                (version == OWN_VERSION).then(|| "it is a figure of another run or part".to_owned())
+            }
         });
     }
     let [there, made] = [&there, made].map(String::from_utf8_lossy);
-    Ok(first_difference(&there, &made.replace(OWN, version)))
+    Ok(first_difference(
+        &there,
+        &made.replace(OWN_VERSION, version),
+    ))
 }
 
 /// The measured data in the folder of a write-up.

@@ -1,7 +1,7 @@
 //! The `--map` that would read a file whose columns were refused, filled in with its own names.
 
 use super::names::{is_known, named};
-use super::quantity::{RunQuantity, TIME, names};
+use super::quantity::{RunQuantity, TIME_COLUMN, names};
 use super::spellings::{name_columns, time_like, track};
 use crate::analysis::readouts;
 use crate::scenario::csv::{Csv, LEFT_OUT, Naming, Renaming};
@@ -119,9 +119,9 @@ impl Guess<'_> {
             name.contains('.')
                 || readouts::find(name).is_some()
                     && RunQuantity::find(name).is_none()
-                    && name != TIME
+                    && name != TIME_COLUMN
         };
-        let times = self.cells.names.iter().filter(|name| *name == TIME);
+        let times = self.cells.names.iter().filter(|name| *name == TIME_COLUMN);
         let has_time = times.count() == 1;
         if !has_time && self.cells.names.iter().any(|name| is_of_table(name)) {
             return self.add_of_table(&places);
@@ -221,7 +221,7 @@ impl Guess<'_> {
         if Unit::split(&self.cells.own[place].name)
             .is_some_and(|(_, unit)| unit.kind == UnitKind::Time)
         {
-            return TIME; // its own unit is read
+            return TIME_COLUMN; // its own unit is read
         }
         let numbers = self.numbers(place);
         let span = numbers
@@ -232,7 +232,7 @@ impl Guess<'_> {
         match between {
             1e4.. => "t_ns",
             1.5.. => "t_ms",
-            _ => TIME,
+            _ => TIME_COLUMN,
         }
     }
 
@@ -287,7 +287,8 @@ impl Guess<'_> {
             let angle = if is_in_degrees { "deg" } else { "rad" };
             return Some(format!("w{number}_{angle}_per_s"));
         }
-        let quantities = names().filter(|name| *name != TIME && RunQuantity::find(name).is_some());
+        let quantities =
+            names().filter(|name| *name != TIME_COLUMN && RunQuantity::find(name).is_some());
         let meant = near(own, quantities).filter(|_| own.len() >= LEAST_NEAR)?;
         Some(meant.to_owned())
     }

@@ -88,7 +88,7 @@ impl TimeSeries {
             let name = curve.quantity.name;
             text += &format!(",{name}");
             if *has_sigma {
-                text += &format!(",{}", with_word(name, names::UNCERTAINTY));
+                text += &format!(",{}", with_word(name, names::UNCERTAINTY_WORD));
             }
         }
         for (row, time_s) in self.times_s.iter().enumerate() {
@@ -155,14 +155,14 @@ pub struct MeasuredPoint {
     pub sigma: Option<f64>,
 }
 
-const TABLE: &str = "is a table of runs: each of its rows is a run of its own, so it cannot stand beside a single one. gyrolab fit holds such a table against a scenario; what stands beside a run has a column t_s";
+const IS_RUN_TABLE: &str = "is a table of runs: each of its rows is a run of its own, so it cannot stand beside a single one. gyrolab fit holds such a table against a scenario; what stands beside a run has a column t_s";
 
 impl MeasuredData {
     /// The data as quantities over the time of one run.
     pub fn series(&self) -> Result<&TimeSeries, Problems> {
         match &self.data {
             DataKind::Series(series) => Ok(series),
-            DataKind::Table(_) => Err(Problems::one(&self.origin, Problem::at("", TABLE))),
+            DataKind::Table(_) => Err(Problems::one(&self.origin, Problem::at("", IS_RUN_TABLE))),
         }
     }
 

@@ -1,6 +1,6 @@
 //! What the columns of a file are: the time, quantities, keys of the scenario, readouts, and uncertainties of these.
 
-use super::quantity::{self, COUNTS, RunQuantity, TIME};
+use super::quantity::{self, COUNTS, RunQuantity, TIME_COLUMN};
 use crate::analysis::readouts::{self, Readout, ReadoutSource};
 use crate::scenario::Problem;
 use crate::scenario::csv::Csv;
@@ -8,7 +8,7 @@ use crate::scenario::keys::{self, ValueKind};
 use crate::text::unit::with_word;
 
 /// In the name of a column that is the uncertainty of another.
-pub(super) const UNCERTAINTY: &str = "uncertainty";
+pub(super) const UNCERTAINTY_WORD: &str = "uncertainty";
 
 #[derive(Clone, Debug)]
 pub(super) enum ColumnRole {
@@ -56,7 +56,7 @@ pub(super) struct Columns {
 /// columns also those that would be refused.
 pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
     let names = &cells.names;
-    let is_series = names.iter().any(|name| name == TIME);
+    let is_series = names.iter().any(|name| name == TIME_COLUMN);
     let is_mapped = cells.own.iter().any(|own| own.is_mapped);
     let of = if is_series { of_series } else { of_table };
     let (mut columns, mut problems) = (Columns::default(), Vec::new());
@@ -67,7 +67,7 @@ pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
         match of(name) {
             Ok(ColumnRole::Foreign) => columns.left_out.push(own.shown()),
             Ok(is) => {
-                let uncertainty = with_word(name, UNCERTAINTY);
+                let uncertainty = with_word(name, UNCERTAINTY_WORD);
                 let mut others = names.iter();
                 let uncertainty = others.position(|other| *other == uncertainty);
                 columns.read.push(NamedColumn {
@@ -85,9 +85,9 @@ pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
         let is_of = |column: &NamedColumn| column.uncertainty == Some(place);
         let is_read = columns.read.iter().any(is_of);
         match uncertainty_of(name) {
-            Some(of) if of == TIME && !is_mapped => {
+            Some(of) if of == TIME_COLUMN && !is_mapped => {
                 let rule = format!(
-                    "is not read: make what was measured more uncertain, by its change in that time ({TIME} has no uncertainty)"
+                    "is not read: make what was measured more uncertain, by its change in that time ({TIME_COLUMN} has no uncertainty)"
                 );
                 problems.push(Problem::at(own.shown(), rule));
             }
@@ -111,17 +111,17 @@ pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
 /// The name of the column whose uncertainty the column `name` holds.
 pub(super) fn uncertainty_of(name: &str) -> Option<String> {
     name.split(['_', '.'])
-        .any(|word| word == UNCERTAINTY)
-        .then(|| name.replacen(&format!("_{UNCERTAINTY}"), "", 1))
+        .any(|word| word == UNCERTAINTY_WORD)
+        .then(|| name.replacen(&format!("_{UNCERTAINTY_WORD}"), "", 1))
 }
 
 /// `name` without the word for an uncertainty, wherever it has it; `None` if it has none.
 pub(super) fn without_uncertainty(name: &str) -> Option<String> {
     let lower = name.to_lowercase();
     let at = lower
-        .find(UNCERTAINTY)
+        .find(UNCERTAINTY_WORD)
         .filter(|_| lower.len() == name.len())?;
-    let (front, back) = (name.get(..at)?, name.get(at + UNCERTAINTY.len()..)?);
+    let (front, back) = (name.get(..at)?, name.get(at + UNCERTAINTY_WORD.len()..)?);
     let front = front.trim_end_matches(['_', ' ', '-']);
     Some(match front {
         "" => back.trim_start_matches(['_', ' ', '-']).to_owned(),
@@ -141,7 +141,7 @@ pub(super) fn may_be(name: &str) -> bool {
 }
 
 fn of_series(name: &str) -> Result<ColumnRole, String> {
-    if name == TIME {
+    if name == TIME_COLUMN {
         return Ok(ColumnRole::Time);
     }
     if COUNTS.contains(&name) {
@@ -152,12 +152,12 @@ fn of_series(name: &str) -> Result<ColumnRole, String> {
     }
     if name.contains('.') && keys::find(name).is_ok() {
         return Err(format!(
-            "is a key of the scenario, and a file with the time {TIME} has what was measured on one run: set the key in the scenario, or by --set"
+            "is a key of the scenario, and a file with the time {TIME_COLUMN} has what was measured on one run: set the key in the scenario, or by --set"
         ));
     }
     if readouts::find(name).is_some_and(|readout| !readout.is_text && name.contains('_')) {
         return Err(format!(
-            "is a number of a whole run, not of one time: a table of such numbers has no column {TIME}, and a run in every row"
+            "is a number of a whole run, not of one time: a table of such numbers has no column {TIME_COLUMN}, and a run in every row"
         ));
     }
     Ok(ColumnRole::Foreign)
@@ -196,7 +196,7 @@ fn kind_is_whole(columns: &[NamedColumn], is_series: bool) -> Option<Problem> {
     let has = |is: fn(&ColumnRole) -> bool| columns.iter().any(|column| is(&column.is));
     if is_series {
         let rule = format!(
-            "has no column that a run has too: beside {TIME} one is needed, such as tilt_deg, azimuth_deg, x_m or spin_rpm"
+            "has no column that a run has too: beside {TIME_COLUMN} one is needed, such as tilt_deg, azimuth_deg, x_m or spin_rpm"
         );
         return (!has(|is| matches!(is, ColumnRole::Quantity(_)))).then(|| Problem::at("", rule));
     }
@@ -211,7 +211,7 @@ fn kind_is_whole(columns: &[NamedColumn], is_series: bool) -> Option<Problem> {
             "has no column that was measured: beside the keys of the scenario a table of runs needs a readout (gyrolab readouts lists them)".to_owned()
         }
         _ => format!(
-            "has neither a column known as the time {TIME} (a time series), nor one named by a key of the scenario, such as start.spin_rpm, or by a number of a whole run (a table of runs)"
+            "has neither a column known as the time {TIME_COLUMN} (a time series), nor one named by a key of the scenario, such as start.spin_rpm, or by a number of a whole run (a table of runs)"
         ),
     };
     Some(Problem::at("", rule))

@@ -11,7 +11,7 @@ use std::borrow::Borrow;
 use std::sync::Arc;
 
 /// Steps that are taken without asking whether to go on.
-const BLOCK: u64 = 4096;
+const DATA_BLOCK_STEPS: u64 = 4096;
 
 /// Reads a run at the times of a series, which it borrows or shares, while the run is stepped.
 #[derive(Clone, Debug)]
@@ -101,7 +101,7 @@ pub fn at_times(
     while let Some(time_s) = reader.next_time_s() {
         if jumps {
             // An integration that takes long is done in parts, so that it can be ended.
-            let stride_s = BLOCK as f64 * scenario.motion.time_step_s;
+            let stride_s = DATA_BLOCK_STEPS as f64 * scenario.motion.time_step_s;
             let next_s = time_s.min(simulation.now().time_s() + stride_s);
             simulation.step_to_time(next_s)?;
             if next_s == time_s {
@@ -111,7 +111,7 @@ pub fn at_times(
             reader.take(&simulation)?;
             simulation.step()?;
         }
-        if (jumps || simulation.step_number().is_multiple_of(BLOCK)) && !go_on() {
+        if (jumps || simulation.step_number().is_multiple_of(DATA_BLOCK_STEPS)) && !go_on() {
             return Ok(None);
         }
     }
@@ -120,15 +120,15 @@ pub fn at_times(
 
 /// Whether the run of `scenario` comes to the last time of `series` in ten million steps, or parts of an integration.
 pub fn is_within_reach(series: &TimeSeries, scenario: &Scenario) -> bool {
-    const MOST: f64 = 1e7;
+    const MOST_RUN_STEPS: f64 = 1e7;
     let last_s = series.times_s.last().copied().unwrap_or(0.0);
     let steps = last_s / scenario.motion.time_step_s;
     let parts = if needs_no_steps(series, scenario) {
-        steps / BLOCK as f64
+        steps / DATA_BLOCK_STEPS as f64
     } else {
         steps
     };
-    parts <= MOST
+    parts <= MOST_RUN_STEPS
 }
 
 /// Whether the motion at a time does not depend on the steps that lead there.

@@ -4,7 +4,7 @@ use super::TimeSeries;
 use nalgebra::{Vector2, Vector3};
 
 /// A traced point that is nearer to the axle than this part of its distance from the pivot is on it.
-const ON_AXLE: f64 = 1e-9;
+const PLACE_ON_AXLE: f64 = 1e-9;
 
 /// Where the traced point was measured to be, from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub fn places(series: &TimeSeries, traced: &Vector3<f64>) -> Vec<MeasuredPlace> 
         let mut curves = series.curves.iter();
         curves.find(|curve| curve.quantity.name == name)
     };
-    let is_on_axle = traced.xy().norm() <= ON_AXLE * traced.norm();
+    let is_on_axle = traced.xy().norm() <= PLACE_ON_AXLE * traced.norm();
     let polar = || Some((of("tilt_deg")?, of("azimuth_deg")?)).filter(|_| is_on_axle);
     let (pair, is_polar) = match (of("x_m").zip(of("y_m")), polar()) {
         (Some(pair), _) => (pair, false),

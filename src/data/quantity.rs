@@ -6,7 +6,7 @@ use crate::run::Step;
 use crate::text::unit::Unit;
 use std::sync::LazyLock;
 
-pub const TIME: &str = "t_s";
+pub const TIME_COLUMN: &str = "t_s";
 
 /// Columns of a run's CSV that count its steps and edits, and measure nothing.
 pub const COUNTS: [&str; 2] = ["step", "segment"];
@@ -23,7 +23,8 @@ pub struct RunQuantity {
 
 /// Every quantity that can be measured over time.
 pub static QUANTITIES: LazyLock<Vec<RunQuantity>> = LazyLock::new(|| {
-    let is_measured = |column: &&CsvColumn| column.name != TIME && !COUNTS.contains(&column.name);
+    let is_measured =
+        |column: &&CsvColumn| column.name != TIME_COLUMN && !COUNTS.contains(&column.name);
     let quantity = |column: &'static CsvColumn| RunQuantity {
         name: column.name,
         is_direction: column.name == "azimuth_deg",
@@ -61,7 +62,7 @@ impl RunQuantity {
 /// The names of all quantities, of the time, and of the columns that count.
 pub fn names() -> impl Iterator<Item = &'static str> + Clone {
     let quantities = QUANTITIES.iter().map(|quantity| quantity.name);
-    std::iter::once(TIME).chain(quantities).chain(COUNTS)
+    std::iter::once(TIME_COLUMN).chain(quantities).chain(COUNTS)
 }
 
 #[cfg(test)]

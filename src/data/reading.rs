@@ -3,7 +3,7 @@
 use super::hint::hint;
 use super::names::{Columns, may_be, named};
 use super::numbers::CellParser;
-use super::quantity::TIME;
+use super::quantity::TIME_COLUMN;
 use super::sigma::set_sigmas;
 use super::spellings::{depends_on_name, name_columns, read_as};
 use super::{ColumnOptions, DataKind, MeasuredData};
@@ -16,7 +16,7 @@ use std::path::Path;
 use toml::Value;
 
 /// The most values of one file, rows times columns.
-const MOST_VALUES: usize = 1_000_000;
+const MOST_DATA_VALUES: usize = 1_000_000;
 
 /// The measured data that come with the program, compiled in.
 pub const SHIPPED: &[Shipped] = shipped!["measured", "csv":
@@ -80,7 +80,7 @@ pub fn read_with(
     let (cells, columns) = taken_apart(origin, text, options)
         .map_err(|found| scenario_instead(origin, text).unwrap_or_else(|| found.of(origin)))?;
     let mut numbers = CellParser::of(&cells);
-    let mut data = if columns.read.iter().any(|column| column.name == TIME) {
+    let mut data = if columns.read.iter().any(|column| column.name == TIME_COLUMN) {
         DataKind::Series(numbers.series(&columns.read))
     } else {
         DataKind::Table(numbers.table(&columns.read))
@@ -137,7 +137,7 @@ fn taken_apart(
     text: &str,
     options: &ColumnOptions,
 ) -> Result<(Csv, Columns), Problems> {
-    let mut cells = Csv::of(text, MOST_VALUES)?;
+    let mut cells = Csv::of(text, MOST_DATA_VALUES)?;
     cells.rename(&options.map, may_be)?;
     let known = name_columns(&mut cells, origin, |_| true).and_then(|()| named(&cells));
     let mut problems = match known {

@@ -4,8 +4,8 @@
 //! `y`, with or without units and titles), Sensor Logger (`seconds_elapsed`; its `x`, `y`, `z` in a file called
 //! Gyroscope.csv), Physics Toolbox (`time`, `wx`, `wy`, `wz`), and loggers that state units (`timestamp_ms`, `gx_dps`).
 
-use super::names::{UNCERTAINTY, is_known, uncertainty_of, without_uncertainty};
-use super::quantity::{QUANTITIES, TIME};
+use super::names::{UNCERTAINTY_WORD, is_known, uncertainty_of, without_uncertainty};
+use super::quantity::{QUANTITIES, TIME_COLUMN};
 use crate::scenario::Problem;
 use crate::scenario::csv::Csv;
 use crate::text::number::significant;
@@ -192,9 +192,9 @@ pub(super) fn depends_on_name(cells: &Csv) -> bool {
 /// What the column `name` is read as.
 fn meaning(name: &str, company: &Company) -> Option<Meaning> {
     if let Some(of) = without_uncertainty(name) {
-        let of = meaning(&of, company).filter(|of| of.name != TIME)?;
+        let of = meaning(&of, company).filter(|of| of.name != TIME_COLUMN)?;
         return Some(Meaning {
-            name: with_word(&of.name, UNCERTAINTY),
+            name: with_word(&of.name, UNCERTAINTY_WORD),
             ..of
         });
     }
@@ -236,7 +236,7 @@ fn meaning(name: &str, company: &Company) -> Option<Meaning> {
 fn with_unit(stem: &str, unit: &Unit) -> Option<&'static str> {
     let letters = letters(stem);
     match unit.kind {
-        UnitKind::Time => TIMES.contains(&&*letters).then_some(TIME),
+        UnitKind::Time => TIMES.contains(&&*letters).then_some(TIME_COLUMN),
         UnitKind::Rate if axis_after(&letters, &RATES).is_some() => {
             axis_after(&letters, &RATES).map(|axis| BODY_RATES[axis])
         }
@@ -264,7 +264,7 @@ fn with_unit(stem: &str, unit: &Unit) -> Option<&'static str> {
 fn without_unit(name: &str, company: &Company) -> Option<&'static str> {
     let letters = letters(name);
     if IN_SECONDS.contains(&&*letters) {
-        return Some(TIME);
+        return Some(TIME_COLUMN);
     }
     if company.has_time && name.len() == 2 {
         return axis_after(name, &["w"]).map(|axis| BODY_RATES[axis]);

@@ -32,9 +32,9 @@ pub(super) enum CsvCell<'a> {
 
 use CsvCell::{Number, Text, Whole};
 
-const TRACED: &str = "traced point, world frame";
-const MOMENTUM: &str = "angular momentum about the pivot, world frame";
-const OMEGA: &str = "angular velocity I^-1 L at this step, world frame";
+const TRACED_TEXT: &str = "traced point, world frame";
+const MOMENTUM_TEXT: &str = "angular momentum about the pivot, world frame";
+const OMEGA_TEXT: &str = "angular velocity I^-1 L at this step, world frame";
 const OMEGA_OF_BODY: &str = "angular velocity along the body's own x, y or axle";
 const TILT: &str = "angle of the axle from +z";
 const AZIMUTH: &str = "azimuth of the axle, counted on through full turns";
@@ -46,19 +46,19 @@ pub const COLUMNS: &[CsvColumn] = &[
         Whole(r.sample.step)
     }),
     column("t_s", "time", |r| Number(r.sample.time_s)),
-    column("x_m", TRACED, |r| Number(r.sample.position.x)),
-    column("y_m", TRACED, |r| Number(r.sample.position.y)),
-    column("z_m", TRACED, |r| Number(r.sample.position.z)),
-    column("Lx_Js", MOMENTUM, |r| Number(r.sample.momentum.x)),
-    column("Ly_Js", MOMENTUM, |r| Number(r.sample.momentum.y)),
-    column("Lz_Js", MOMENTUM, |r| Number(r.sample.momentum.z)),
-    column("wx_rad_per_s", OMEGA, |r| {
+    column("x_m", TRACED_TEXT, |r| Number(r.sample.position.x)),
+    column("y_m", TRACED_TEXT, |r| Number(r.sample.position.y)),
+    column("z_m", TRACED_TEXT, |r| Number(r.sample.position.z)),
+    column("Lx_Js", MOMENTUM_TEXT, |r| Number(r.sample.momentum.x)),
+    column("Ly_Js", MOMENTUM_TEXT, |r| Number(r.sample.momentum.y)),
+    column("Lz_Js", MOMENTUM_TEXT, |r| Number(r.sample.momentum.z)),
+    column("wx_rad_per_s", OMEGA_TEXT, |r| {
         Number(r.sample.angular_velocity.x)
     }),
-    column("wy_rad_per_s", OMEGA, |r| {
+    column("wy_rad_per_s", OMEGA_TEXT, |r| {
         Number(r.sample.angular_velocity.y)
     }),
-    column("wz_rad_per_s", OMEGA, |r| {
+    column("wz_rad_per_s", OMEGA_TEXT, |r| {
         Number(r.sample.angular_velocity.z)
     }),
     column("tilt_deg", TILT, |r| Number(r.sample.tilt_deg)),
@@ -86,7 +86,7 @@ pub const OPTIONAL_COLUMNS: &[CsvColumn] = &[
     }),
 ];
 
-const PLACE: &str = "the point, world frame";
+const PLACE_TEXT: &str = "the point, world frame";
 const VELOCITY: &str = "velocity of the point, world frame";
 const POINT: &str =
     "name of the point; rim.0 is the rim's first, a part's six stand along its own axes: wheel +x";
@@ -97,9 +97,9 @@ pub const POINT_COLUMNS: &[CsvColumn] = &[
     column("t_s", "time", |r| Number(r.sample.time_s)),
     column("point", POINT, |r| Text(r.point.name)),
     column("mass_kg", "mass of the point", |r| Number(r.point.mass)),
-    column("x_m", PLACE, |r| Number(r.point.position.x)),
-    column("y_m", PLACE, |r| Number(r.point.position.y)),
-    column("z_m", PLACE, |r| Number(r.point.position.z)),
+    column("x_m", PLACE_TEXT, |r| Number(r.point.position.x)),
+    column("y_m", PLACE_TEXT, |r| Number(r.point.position.y)),
+    column("z_m", PLACE_TEXT, |r| Number(r.point.position.z)),
     column("vx_m_per_s", VELOCITY, |r| Number(r.point.velocity.x)),
     column("vy_m_per_s", VELOCITY, |r| Number(r.point.velocity.y)),
     column("vz_m_per_s", VELOCITY, |r| Number(r.point.velocity.z)),

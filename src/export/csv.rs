@@ -9,7 +9,7 @@ use crate::scenario::Scenario;
 use std::io::{self, BufWriter, Write};
 
 /// It makes spreadsheet programs read the file as UTF-8.
-const BYTE_ORDER_MARK: &str = "\u{feff}";
+const BYTE_ORDER_MARK_TEXT: &str = "\u{feff}";
 
 #[derive(Debug)]
 pub struct CsvWriter<W: Write> {
@@ -31,7 +31,7 @@ impl<W: Write> CsvWriter<W> {
     pub fn with_layout(out: W, scenario: &Scenario, layout: CsvLayout) -> io::Result<Self> {
         let mut out = BufWriter::new(out);
         let mark = if layout.file().excel {
-            BYTE_ORDER_MARK
+            BYTE_ORDER_MARK_TEXT
         } else {
             ""
         };

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 /// Steps per block times points of the body; the number of steps is then limited to 16 to 4096. The watcher is asked once per
 /// block.
-const BLOCK: usize = 1 << 18;
+const EXPORT_BLOCK_STEPS: usize = 1 << 18;
 /// A block of steps that are integrated, any of which may take long, ends after this time.
 const LONGEST_BLOCK: Duration = Duration::from_millis(100);
 
@@ -43,7 +43,7 @@ pub fn play<W: Write>(
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> io::Result<(Ended, Duration)> {
     let points = simulation.scenario().body.mechanics.points().len();
-    let block = (BLOCK / points).clamp(16, 4096);
+    let block = (EXPORT_BLOCK_STEPS / points).clamp(16, 4096);
     let may_take_long = !has_closed_form(simulation.scenario());
     let layout = csv.as_deref().map(|csv| csv.layout().clone());
     let layout = layout.as_ref();

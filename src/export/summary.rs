@@ -3,7 +3,7 @@
 use crate::analysis::theory::{AxlePath, Theory, TheoryAxis};
 use crate::analysis::{MeasuredNumber, Readouts, WithoutNutation, remarks};
 use crate::scenario::Scenario;
-use crate::text::number::{NONE, counted, exponent, fixed, shortest, significant};
+use crate::text::number::{NOT_AVAILABLE, counted, exponent, fixed, shortest, significant};
 use nalgebra::Vector3;
 use serde::Serialize;
 use std::fmt;
@@ -81,8 +81,11 @@ impl RunSummary {
         };
         let steps = || format!("{} of {} s", sample.step, shortest(readouts.time_step_s));
         let steps = self.steps.clone().unwrap_or_else(steps);
-        let number =
-            |name, write: fn(f64) -> String| readouts.number(name).map_or(NONE.to_owned(), write);
+        let number = |name, write: fn(f64) -> String| {
+            readouts
+                .number(name)
+                .map_or(NOT_AVAILABLE.to_owned(), write)
+        };
         let wall = number("wall_s", |wall| fixed(wall, 3));
         let rate = number("steps_per_second", |rate| exponent(rate, 3));
         vec![
@@ -147,9 +150,9 @@ impl RunSummary {
                 format!("{value} +- {uncertainty} N on average over {nutations}")
             }
             None if readouts.nutation_is_resolved() == Some(false) => {
-                format!("{NONE}: {FAR_APART}")
+                format!("{NOT_AVAILABLE}: {FAR_APART}")
             }
-            None => format!("{NONE}: no whole nutation was seen"),
+            None => format!("{NOT_AVAILABLE}: no whole nutation was seen"),
         };
         Some(format!("M g {} N{pressed}, {measured}", fixed(weight, 3)))
     }

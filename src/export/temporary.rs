@@ -16,13 +16,16 @@ const DRAWN: usize = 6;
 const SUFFIX: &str = ".part";
 
 /// The paths of the temporary files and folders of this process, also of those that have got their names or are gone.
-static OWN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+static TEMPORARY_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Removes the temporary files and folders of this process, which ends on the spot.
 pub fn remove_own() {
     /// Another thread may still add files to a folder.
     const ATTEMPTS: usize = 3;
-    for path in &*OWN.lock().unwrap_or_else(PoisonError::into_inner) {
+    for path in &*TEMPORARY_FILES
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+    {
         if path.is_dir() {
             let _ = (0..ATTEMPTS).find(|_| fs::remove_dir_all(path).is_ok());
         } else {
@@ -32,7 +35,9 @@ pub fn remove_own() {
 }
 
 fn remember(path: &Path) {
-    let mut own = OWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut own = TEMPORARY_FILES
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner);
     own.push(path.to_owned());
 }
 

@@ -15,9 +15,9 @@ use std::io;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-const TOGETHER: usize = 4;
+const EXACT_TOGETHER: usize = 4;
 /// A curve over time is drawn by the extremes of this many parts of its time: more than the widest page has dots across.
-const PARTS: f64 = 8192.0;
+const CURVE_BINS: f64 = 8192.0;
 
 #[derive(Clone, Debug)]
 pub struct SampleRequest {
@@ -95,8 +95,8 @@ impl SampledRun {
         let Some(place) = self.place(column) else {
             return Vec::new();
         };
-        let blocks = in_parts(&self.curves[place / TOGETHER]);
-        let curve = place % TOGETHER;
+        let blocks = in_parts(&self.curves[place / EXACT_TOGETHER]);
+        let curve = place % EXACT_TOGETHER;
         let parts = blocks.iter().map(|block| Bin {
             times_s: [block.begin_s, block.end_s],
             extent: block.extents[curve],
@@ -137,7 +137,7 @@ fn in_parts(curves: &Recording) -> Vec<RecordingBin> {
         return blocks;
     };
     let length_s = (whole.end_s - whole.begin_s).max(f64::MIN_POSITIVE);
-    let part = |time_s: f64| (PARTS * ((time_s - whole.begin_s) / length_s)) as u64;
+    let part = |time_s: f64| (CURVE_BINS * ((time_s - whole.begin_s) / length_s)) as u64;
     for block in curves.finest() {
         match blocks.last_mut() {
             Some(last) if part(last.begin_s) == part(block.end_s) => *last = last.and(block),
@@ -169,7 +169,7 @@ impl RunSampler {
     fn of(scenario: &Arc<Scenario>, wanted: SampleRequest, is_exact: bool) -> Self {
         Self {
             stretch_end_s: wanted.end_s(scenario),
-            curves: vec![Recording::default(); wanted.columns.len().div_ceil(TOGETHER)],
+            curves: vec![Recording::default(); wanted.columns.len().div_ceil(EXACT_TOGETHER)],
             path: path::PathRecorder::new(is_exact),
             above: path::PathRecorder::new(is_exact),
             end_s: 0.0,
@@ -211,9 +211,9 @@ impl RunSampler {
             return;
         }
         let sample = sample();
-        let columns = self.wanted.columns.chunks(TOGETHER);
+        let columns = self.wanted.columns.chunks(EXACT_TOGETHER);
         for (columns, curves) in columns.zip(&mut self.curves) {
-            let mut values = [0.0; TOGETHER];
+            let mut values = [0.0; EXACT_TOGETHER];
             for (value, column) in values.iter_mut().zip(columns) {
                 *value = column.value(&self.scenario, &sample);
             }
@@ -273,8 +273,8 @@ pub fn play(
 /// Moments of the exact motion within the shortest of its periods that is known, and at least over the whole stretch; and at
 /// most, whatever the periods are.
 const A_PERIOD: f64 = 32.0;
-const LEAST: f64 = 3000.0;
-const MOST: f64 = 400_000.0;
+const LEAST_EXACT_SAMPLES: f64 = 3000.0;
+const MOST_EXACT_SAMPLES: f64 = 400_000.0;
 /// The part of a period, beside whole ones, between moments that are farther apart than it: the golden section, which meets
 /// ever other phases. Another part could meet the same ones again, and show a slow swing that the motion does not have.
 const OTHER_PHASE: f64 = 0.381_966;
@@ -300,7 +300,9 @@ pub fn exact(
     let period_s = closed.and_then(LagrangeTop::nutation_period);
     let look_every = if closed.is_some() { 1024 } else { 1 };
     let apart_s = apart_s(end_s - begin_s, scenario.motion.time_step_s, period_s);
-    let count = ((end_s - begin_s) / apart_s).ceil().max(LEAST) as u64;
+    let count = ((end_s - begin_s) / apart_s)
+        .ceil()
+        .max(LEAST_EXACT_SAMPLES) as u64;
     let mut recorder = RunSampler::of(scenario, wanted.clone(), true);
     let mut azimuth = Azimuth::start(&scenario.start.axle());
     for number in 0..=count {
@@ -325,7 +327,9 @@ pub fn exact(
 /// How far the moments of a stretch of the exact motion are apart, s.
 fn apart_s(length_s: f64, time_step_s: f64, period_s: Option<f64>) -> f64 {
     let period_s = period_s.unwrap_or(f64::INFINITY);
-    let apart_s = (period_s / A_PERIOD).min(time_step_s).max(length_s / MOST);
+    let apart_s = (period_s / A_PERIOD)
+        .min(time_step_s)
+        .max(length_s / MOST_EXACT_SAMPLES);
     if apart_s <= OTHER_PHASE * period_s {
         return apart_s;
     }

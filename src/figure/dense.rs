@@ -20,8 +20,8 @@ const PART_PT: f64 = 1.0;
 const FILLED: f64 = 0.75;
 const HIGH: f64 = 0.05;
 /// A curve is dense where more than this share of its parts is, a path where this share of its places is inside of the ink.
-const MOST: f64 = 0.5;
-const SWINGS: f64 = 20.0;
+const DENSE_SHARE: f64 = 0.5;
+const MAGNIFIED_SWINGS: f64 = 20.0;
 
 /// A curve over time in parts of a panel's width: how often it turns, and from where to where it goes.
 struct Columns(Vec<(u32, Option<Extent>)>);
@@ -52,7 +52,7 @@ impl Columns {
             let is_high = extent.is_some_and(|extent| extent.max - extent.min >= high);
             f64::from(*turns) * width_pt >= FILLED * PART_PT && is_high
         });
-        dense.count() as f64 > MOST * self.0.len() as f64
+        dense.count() as f64 > DENSE_SHARE * self.0.len() as f64
     }
 
     /// The band between the extremes of each part and its neighbours.
@@ -107,7 +107,7 @@ pub(super) fn over_time(
     let turns = all.max()?;
     let (_, end_s) = layout.panels.first()?.x.range;
     // The axis may begin before the run, so that a measured point at 0 has room.
-    let window_s = 2.0 * SWINGS * (end_s - request.from_s) / turns as f64;
+    let window_s = 2.0 * MAGNIFIED_SWINGS * (end_s - request.from_s) / turns as f64;
     let what = format!(
         "on {} mm about {} swings are not told apart: they are drawn as a band from the least to the greatest, with a stretch of it magnified",
         width_mm(request),
@@ -168,7 +168,7 @@ pub(super) fn of_paths(
         let lines = path.lines(&place);
         let grid = Grid::inked(&lines, PLACE_PT, 0.0)?;
         let area_pt2 = grid.area_pt2();
-        if grid.area_inside_pt2(INSIDE) < MOST * area_pt2 {
+        if grid.area_inside_pt2(INSIDE) < DENSE_SHARE * area_pt2 {
             return None;
         }
         let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();

@@ -16,12 +16,12 @@ pub enum FigureKind {
     ThreeD,
 }
 
-const MOST_COLUMNS: usize = 30;
+const MOST_FIGURE_COLUMNS: usize = 30;
 
 pub const RESIDUALS: &str = "residuals";
 
 /// The names that stand alone; a list of columns is the other way to name a figure.
-pub const NAMES: [&str; 4] = [TRACES, ABOVE, THREE_D, RESIDUALS];
+pub const FIGURE_KIND_NAMES: [&str; 4] = [TRACES, ABOVE, THREE_D, RESIDUALS];
 
 fn find(name: &str) -> Option<&'static CsvColumn> {
     CsvColumn::all().find(|column| column.name == name)
@@ -72,9 +72,9 @@ impl FigureKind {
         }
         let is_list = name.contains(',');
         let count = name.split(',').count();
-        if count > MOST_COLUMNS {
+        if count > MOST_FIGURE_COLUMNS {
             return Err(format!(
-                "names {count} columns: a figure shows at most {MOST_COLUMNS}"
+                "names {count} columns: a figure shows at most {MOST_FIGURE_COLUMNS}"
             ));
         }
         let columns = name.split(',').map(str::trim).map(|name| {
@@ -95,7 +95,7 @@ fn column(name: &str) -> Result<&'static CsvColumn, String> {
     if name.is_empty() {
         return Err("lacks a name: traces, above, 3d, residuals, or columns of the CSV with commas between them".to_owned());
     }
-    if NAMES.contains(&name) {
+    if FIGURE_KIND_NAMES.contains(&name) {
         return Err("is a figure of its own: no columns can stand beside it".to_owned());
     }
     let columns = || CsvColumn::all().map(|column| column.name);
@@ -105,7 +105,7 @@ fn column(name: &str) -> Result<&'static CsvColumn, String> {
             columns().collect::<Vec<_>>().join(", ")
         )
     } else {
-        let near = problem::nearest(name, NAMES.into_iter().chain(columns()));
+        let near = problem::nearest(name, FIGURE_KIND_NAMES.into_iter().chain(columns()));
         format!("is no kind of figure (traces, above, 3d, residuals) and no column of the CSV: {near}")
     })
 }

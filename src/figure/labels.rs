@@ -24,7 +24,7 @@ pub struct FigureLabels {
 /// The longest title of an axis y, pt.
 const LONGEST_PT: f64 = 130.0;
 /// The longest title of an axis x, of the page's width.
-const SHARE: f64 = 0.62;
+const AXIS_TITLE_SHARE: f64 = 0.62;
 /// Above and below the title of a figure, pt.
 const AROUND_PT: f64 = 4.0;
 
@@ -74,7 +74,7 @@ impl FigureLabels {
             axis.unit.clear();
         };
         if let Some(text) = &self.x {
-            renamed(text, &mut chart.x, SHARE * chart.width_pt);
+            renamed(text, &mut chart.x, AXIS_TITLE_SHARE * chart.width_pt);
         }
         chart.x.is_log |= self.is_log[0];
         chart.x.range = chart

@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 /// The room before the first and after the last residual, of the time between them.
-const MARGIN: f64 = 0.02;
+const RESIDUAL_MARGIN: f64 = 0.02;
 
 /// The room before a first and after a last point that would stand on the frame, of the time that is drawn.
 const BESIDE_POINTS: f64 = 0.015;
@@ -161,7 +161,7 @@ pub(super) fn residuals(
     let series = series(measured)?;
     let last_s = series.times_s.last().copied().unwrap_or(0.0);
     let end_s = request.to_s.unwrap_or(job.end_s().max(last_s));
-    let margin_s = MARGIN * (end_s - request.from_s);
+    let margin_s = RESIDUAL_MARGIN * (end_s - request.from_s);
     let range = (request.from_s - margin_s, end_s + margin_s);
     let curves = || series.curves.iter();
     let mut panels: Vec<Panel> = curves().map(|curve| empty(curve, range)).collect();

@@ -50,12 +50,12 @@ pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
 pub(super) fn scheme_in_words(name: &str) -> &str {
     match name {
         "report" => "the report's scheme",
-        "exact" => EXACT,
+        "exact" => EXACT_CURVE_NAME,
         name => name,
     }
 }
 
-pub(super) const EXACT: &str = "exact motion";
+pub(super) const EXACT_CURVE_NAME: &str = "exact motion";
 
 /// "Δt = 10 ms" as markup.
 fn step(run: &FigureRun) -> String {

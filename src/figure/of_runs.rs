@@ -9,7 +9,7 @@ use super::course::{self, SampleRequest, SampledRun};
 use super::dense;
 use super::kind::FigureKind;
 use super::measured;
-use super::names::{EXACT, names};
+use super::names::{EXACT_CURVE_NAME, names};
 use super::page::letters;
 use super::request::{Dense, FigureJob, SampledRunNumbers};
 pub use super::request::{DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
@@ -426,9 +426,9 @@ fn truths(runs: &[FigureRun], room_pt: f64) -> Vec<(&FigureRun, String)> {
     distinct.retain(|run| !is_drawn(run));
     let name = |run: &FigureRun| {
         if count == 1 {
-            return EXACT.to_owned();
+            return EXACT_CURVE_NAME.to_owned();
         }
-        let title = format!("{}, {EXACT}", run.scenario.file.title);
+        let title = format!("{}, {EXACT_CURVE_NAME}", run.scenario.file.title);
         letters::shortened(&title, super::page::ink::LABEL_PT, room_pt)
     };
     distinct.iter().map(|run| (*run, name(run))).collect()

@@ -5,9 +5,9 @@ use nalgebra::Vector3;
 use std::collections::HashSet;
 use std::f64::consts::TAU;
 
-const MOST: usize = 1 << 19;
+const MOST_PATH_POINTS: usize = 1 << 19;
 /// The cells along each side of the path that it is first thinned by: finer than a page's dots at 600 an inch.
-const FINEST: f64 = 4096.0;
+const FINEST_PATH_CELLS: f64 = 4096.0;
 
 /// The path of a point. Of a short one every point is kept; of a long one those that lead from one cell of a grid to another by
 /// a way that has not been gone before. Of a path that is drawn as points each cell has one. The cells grow with what there is
@@ -73,7 +73,7 @@ impl PathRecorder {
         } else {
             self.keep(point, true);
         }
-        if self.path.points.len() > MOST {
+        if self.path.points.len() > MOST_PATH_POINTS {
             self.coarsen();
         }
     }
@@ -127,8 +127,8 @@ impl PathRecorder {
         if self.cells.is_none() {
             self.path.few_a_turn = points_a_turn(&self.path.points);
         }
-        while self.path.points.len() > MOST / 2 {
-            let cells = self.cells.map_or(FINEST, |cells| 0.5 * cells);
+        while self.path.points.len() > MOST_PATH_POINTS / 2 {
+            let cells = self.cells.map_or(FINEST_PATH_CELLS, |cells| 0.5 * cells);
             self.cells = Some(cells);
             let [x, y, z] = [0, 1, 2].map(|axis| self.high[axis] - self.low[axis]);
             self.size = [x.max(y), x.max(y), z].map(|side| (side / cells).max(f64::MIN_POSITIVE));
@@ -160,9 +160,9 @@ impl PathRecorder {
 /// A path with more points than this in a turn, on the average, looks round: the chords are off it by 1.5 % of its radius.
 const ROUND: f64 = 18.0;
 /// Chords that are off it by less than this part of the picture's width look round too: about 0.15 pt.
-const UNSEEN: f64 = 7e-4;
+const UNSEEN_CHORD: f64 = 7e-4;
 /// Of fewer bends than these there is no average.
-const FEWEST: u32 = 3;
+const FEWEST_BENDS: u32 = 3;
 /// About this many points of a path are examined.
 const LOOKED_AT: usize = 50_000;
 
@@ -182,8 +182,8 @@ fn points_a_turn(path: &[[f64; 3]]) -> Option<f64> {
         (count + 1, angles + angle, heights + height)
     });
     let a_turn = TAU * f64::from(count) / angles;
-    let is_seen = heights > UNSEEN * f64::from(count) * width(path);
-    (count >= FEWEST && a_turn < ROUND && is_seen).then_some(a_turn)
+    let is_seen = heights > UNSEEN_CHORD * f64::from(count) * width(path);
+    (count >= FEWEST_BENDS && a_turn < ROUND && is_seen).then_some(a_turn)
 }
 
 /// The longest way along one of the axes from one end of `path` to the other, m.
@@ -221,7 +221,7 @@ mod tests {
         let short: Vec<_> = (0..2000).map(looping).collect();
         assert_eq!(recorded(false, short.iter().copied()).points, short);
         let long = recorded(true, (0..3_000_000).map(looping));
-        assert!(long.points.len() <= MOST && long.times > 2.0);
+        assert!(long.points.len() <= MOST_PATH_POINTS && long.times > 2.0);
         let off = |angle: f64| {
             let (x, y) = (libm::cos(angle), libm::sin(angle));
             let off = long
@@ -241,7 +241,7 @@ mod tests {
         };
         // Chords that are never repeated become points; a path that stands still is one point.
         let chords = bounded(2.0_f64.sqrt());
-        assert!(chords.points.len() <= MOST && chords.few_a_turn.is_some());
+        assert!(chords.points.len() <= MOST_PATH_POINTS && chords.few_a_turn.is_some());
         assert!(chords.points.iter().all(|point| point[0].is_finite()));
         assert_eq!(bounded(0.0).points.len(), 1);
     }

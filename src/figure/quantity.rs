@@ -7,11 +7,11 @@ use crate::analysis::readouts;
 use crate::text::unit::Unit;
 
 /// How the names of a run's own numbers begin, and what they are called: what is measured is data.
-pub const MEASURED: &str = "measured_";
+pub const MEASURED_PREFIX: &str = "measured_";
 pub const SIMULATED: &str = "simulated";
 
 /// The parts of a vector, by the numbers that keys give them.
-const PARTS: [(&str, &str); 3] = [("0", "*x*"), ("1", "*y*"), ("2", "*z*")];
+const VECTOR_PARTS: [(&str, &str); 3] = [("0", "*x*"), ("1", "*y*"), ("2", "*z*")];
 
 /// The axis of a column, of a readout, or of a dotted key of a scenario: of the readout's value at the start, where there is
 /// such a readout.
@@ -58,11 +58,13 @@ pub fn axis_in(scenario: &toml::Table, key: &str) -> ChartAxis {
 /// another one, or `scenario` has no start.
 fn of_momentum(scenario: &toml::Table, key: &str) -> Option<ChartAxis> {
     let number = key.strip_prefix("start.momentum_Js.")?;
-    let part = PARTS.iter().position(|(other, _)| *other == number)?;
+    let part = VECTOR_PARTS
+        .iter()
+        .position(|(other, _)| *other == number)?;
     let frame = scenario.get("start")?.get("momentum_frame");
     let index = match frame.and_then(toml::Value::as_str) {
         Some("body") => (part + 1).to_string(),
-        _ => PARTS[part].1.to_owned(),
+        _ => VECTOR_PARTS[part].1.to_owned(),
     };
     let unit = unit_markup(Unit::of("momentum_Js").map_or("", |unit| unit.name));
     Some(ChartAxis::new(at_start(&format!("*L*_{{{index}}}")), unit))
@@ -87,7 +89,7 @@ pub fn words(name: &str) -> (String, &'static str) {
         if !of_part.is_empty() {
             unit = of_part;
         }
-        let bare = match bare.strip_prefix(MEASURED) {
+        let bare = match bare.strip_prefix(MEASURED_PREFIX) {
             Some(bare) => format!("{SIMULATED} {bare}"),
             None => bare.to_owned(),
         };
@@ -98,7 +100,7 @@ pub fn words(name: &str) -> (String, &'static str) {
         parts.remove(0);
     }
     // A number at the end is a component, elsewhere a point, a part or a push.
-    let mut components = PARTS.iter();
+    let mut components = VECTOR_PARTS.iter();
     let component = components.find(|(number, _)| parts.last() == Some(number));
     if component.is_some() {
         parts.pop();

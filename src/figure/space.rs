@@ -5,7 +5,7 @@
 
 mod path;
 
-use super::chart::layout::EDGE;
+use super::chart::layout::PAGE_EDGE;
 use super::chart::legend::Legend;
 use super::chart::ticks::{Tick, Ticks};
 use super::chart::{ChartAxis, SeriesStyle, curve};
@@ -27,13 +27,13 @@ const EYE: f64 = 5.0;
 /// The lowest and the highest eye with which both floor and walls are seen, degrees.
 const PITCHES_DEG: (f64, f64) = (8.0, 65.0);
 /// Length of a tick, and of the gap between it and its label, pt.
-const TICK: f64 = 2.5;
+const SPACE_TICK_LENGTH: f64 = 2.5;
 const TICK_GAP: f64 = 2.2;
 /// Between labels and title, pt.
-const TITLE_GAP: f64 = 3.0;
+const SPACE_TITLE_GAP: f64 = 3.0;
 
 /// z is said to be stretched from this factor on.
-const SEEN: f64 = 1.1;
+const STATED_STRETCH: f64 = 1.1;
 
 /// Lengths of the box's sides.
 const SIZES: [f64; 3] = [1.0, 1.0, TALL];
@@ -64,15 +64,15 @@ pub(super) fn scene(
     let legend = Legend::new(series, space.stretched());
     let mut items = space.draw(drawn, &styles);
     let (left, top, right, bottom) = extent(&items);
-    let above = legend.height_above(width_pt) + EDGE;
+    let above = legend.height_above(width_pt) + PAGE_EDGE;
     let shift = at(0.5 * (width_pt - left - right), above - top);
     for item in &mut items.items {
         *item = item.clone().mapped(|p| at(p.x + shift.x, p.y + shift.y));
     }
     items.title = job.title();
     items.width_pt = width_pt;
-    items.height_pt = above + bottom - top + EDGE;
-    legend.draw_above(width_pt, EDGE, &mut items);
+    items.height_pt = above + bottom - top + PAGE_EDGE;
+    legend.draw_above(width_pt, PAGE_EDGE, &mut items);
     let place = |at: &[f64; 3]| space.place(&space.boxed(at));
     let dense = dense::of_paths(drawn, job.request, |course| &course.path, place);
     (items, dense)
@@ -121,7 +121,7 @@ impl Space {
         // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
         for _ in 0..4 {
             let (left, _, right, _) = extent(&space.draw(&[], &[]));
-            let over = right - left - (width_pt - 2.0 * EDGE);
+            let over = right - left - (width_pt - 2.0 * PAGE_EDGE);
             space.side_pt = (space.side_pt - over / 1.45).max(0.1 * width_pt);
             if over.abs() < 0.2 {
                 break;
@@ -134,10 +134,10 @@ impl Space {
     fn stretched(&self) -> Option<String> {
         let [x, _, z] = self.ranges.map(|(low, high)| high - low);
         let factor = TALL * x / z;
-        if factor >= SEEN {
+        if factor >= STATED_STRETCH {
             return Some(format!("*z* stretched {}-fold", significant(factor, 2)));
         }
-        let is_shorter = factor.recip() >= SEEN;
+        let is_shorter = factor.recip() >= STATED_STRETCH;
         is_shorter.then(|| format!("*z* shortened to {} of its length", significant(factor, 2)))
     }
 
@@ -209,7 +209,7 @@ impl Space {
 
     fn ticks(&self, axis: usize, edge: &[Vector3<f64>; 2]) -> Ticks {
         /// Between two labels, beside and above each other, pt.
-        const APART: (f64, f64) = (6.0, 6.5);
+        const LABEL_DISTANCE: (f64, f64) = (6.0, 6.5);
         let (low, high) = self.ranges[axis];
         let place = |tick: &Tick| self.place(&Self::along(edge, self.share(axis, tick.at)));
         let height = ink::height(LABEL_PT);
@@ -218,8 +218,8 @@ impl Space {
                 && ticks.windows(2).all(|pair| {
                     let (a, b) = (place(&pair[0]), place(&pair[1]));
                     let half = |tick: &Tick| 0.5 * ink::width(&tick.label, LABEL_PT);
-                    let wide = half(&pair[0]) + half(&pair[1]) + APART.0;
-                    (a.x - b.x).abs() >= wide || (a.y - b.y).abs() >= height + APART.1
+                    let wide = half(&pair[0]) + half(&pair[1]) + LABEL_DISTANCE.0;
+                    (a.x - b.x).abs() >= wide || (a.y - b.y).abs() >= height + LABEL_DISTANCE.1
                 })
         };
         let mut ticks = Ticks::linear(low, high, fits);
@@ -272,10 +272,10 @@ impl Space {
         for tick in &ticks.major {
             let foot = self.place(&Self::along(edge, self.share(axis, tick.at)));
             let to = |length: f64| at(foot.x + out.x * length, foot.y + out.y * length);
-            scene.line([foot, to(TICK)], 0.5, BLACK);
+            scene.line([foot, to(SPACE_TICK_LENGTH)], 0.5, BLACK);
             // As far out as the label needs to be clear of the tick.
             let half = at(0.5 * ink::width(&tick.label, LABEL_PT), 0.5 * height);
-            let clear = TICK + TICK_GAP + half.x * out.x.abs() + half.y * out.y.abs();
+            let clear = SPACE_TICK_LENGTH + TICK_GAP + half.x * out.x.abs() + half.y * out.y.abs();
             let middle = to(clear);
             reach = reach.max(clear + half.x * out.x.abs() + half.y * out.y.abs());
             let base = at(middle.x, middle.y + half.y);
@@ -286,12 +286,12 @@ impl Space {
         let middle = self.place(&Self::along(edge, 0.5));
         let (size, cap) = (TITLE_PT, ink::height(TITLE_PT));
         if axis == 2 {
-            let x = middle.x - reach - TITLE_GAP - 0.4 * cap;
+            let x = middle.x - reach - SPACE_TITLE_GAP - 0.4 * cap;
             scene.write_up(&title, size, at(x, middle.y));
             return;
         }
         let half = at(0.5 * ink::width(&title, size), 0.6 * cap);
-        let clear = reach + TITLE_GAP + half.x * out.x.abs() + half.y * out.y.abs();
+        let clear = reach + SPACE_TITLE_GAP + half.x * out.x.abs() + half.y * out.y.abs();
         let base = at(
             middle.x + out.x * clear,
             middle.y + out.y * clear + 0.5 * cap,

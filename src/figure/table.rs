@@ -5,14 +5,14 @@ use crate::scenario::csv::{self, Csv};
 use crate::scenario::head::Head;
 use crate::scenario::{Problem, Problems};
 use crate::text::advice::unread;
-use crate::text::number::NONE;
+use crate::text::number::NOT_AVAILABLE;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
 /// The most values of a table, rows times columns: those of a sweep of some hundred thousand runs.
-const MOST_VALUES: usize = 4_000_000;
+const MOST_TABLE_VALUES: usize = 4_000_000;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum TableSubject {
@@ -51,7 +51,7 @@ pub struct FittedKey {
 }
 
 /// The columns of a fit, behind those that say where each value was measured.
-pub const OF_FIT: [&str; 6] = [
+pub const FIT_COLUMNS: [&str; 6] = [
     "quantity",
     "measured",
     "uncertainty",
@@ -99,7 +99,7 @@ impl TableSource {
         let Some((subject, title)) = head.and_then(|head| subject(&head)) else {
             return Ok(None);
         };
-        let csv = Csv::of(&text, MOST_VALUES).map_err(|found| found.of(origin))?;
+        let csv = Csv::of(&text, MOST_TABLE_VALUES).map_err(|found| found.of(origin))?;
         let origin = origin.to_owned();
         Ok(Some(Self {
             subject,
@@ -126,7 +126,7 @@ impl TableSource {
     /// The numbers of the column of that name, NaN where there is none; `None` where the column has texts that are no numbers.
     pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
         let number = |text: &str| match text.trim() {
-            "" | NONE => Some(f64::NAN),
+            "" | NOT_AVAILABLE => Some(f64::NAN),
             "true" => Some(1.0),
             "false" => Some(0.0),
             text => text.parse().ok(),
@@ -187,7 +187,7 @@ fn found(header: &str) -> Vec<FittedKey> {
 /// The columns of the CSV of a fit that say where its values were measured; `None` where it is none.
 fn settings_of_fit(names: &[&str]) -> Option<Vec<String>> {
     let (row, rest) = names.split_first()?;
-    let count = rest.len().checked_sub(OF_FIT.len())?;
+    let count = rest.len().checked_sub(FIT_COLUMNS.len())?;
     let settings = rest[..count].iter().map(|name| (*name).to_owned());
-    (*row == "row" && rest[count..] == OF_FIT).then(|| settings.collect())
+    (*row == "row" && rest[count..] == FIT_COLUMNS).then(|| settings.collect())
 }

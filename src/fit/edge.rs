@@ -9,7 +9,7 @@ use super::chart::{Chart, Rule, moment};
 use super::free::Free;
 use super::levenberg::{Minimum, SINGULAR};
 use super::search::Fitted;
-use super::solution::PART;
+use super::solution::COMBINATION_ROUNDING;
 use super::within::complement;
 use crate::text::number::significant;
 use nalgebra::DVector;
@@ -203,7 +203,7 @@ impl Inside {
                 mean += along * u.column(k).dot(&minimum.residuals) / singular;
                 square += (along / singular).powi(2);
                 moves += along / singular.powi(2) * way;
-            } else if along.abs() > PART * normal.norm() {
+            } else if along.abs() > COMBINATION_ROUNDING * normal.norm() {
                 return None;
             }
         }

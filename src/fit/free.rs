@@ -24,7 +24,7 @@ pub struct Free {
 }
 
 /// A change of a value that is 0 and has no bounds, where the table of keys names none.
-const SMALL: f64 = 0.01;
+const ZERO_VALUE_CHANGE: f64 = 0.01;
 
 impl Free {
     /// The free key that `argument`, KEY or KEY=FROM..TO, means in `scenario`; either end may be left out. KEY+KEY are two
@@ -102,7 +102,7 @@ impl Free {
         })?;
         let nudge = match row.lab.map(|lab| lab.nudge) {
             Some(Nudge::By(size) | Nudge::Hundredth(size)) => size,
-            _ => SMALL,
+            _ => ZERO_VALUE_CHANGE,
         };
         let least = match range {
             Range::NotNegative | Range::Positive => 0.0,

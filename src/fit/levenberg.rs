@@ -45,20 +45,20 @@ pub struct Minimum {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// The sum was still falling after [`MOST_STEPS`].
+    /// The sum was still falling after [`MOST_ITERATIONS`].
     TooManySteps,
     /// However short a step is, it makes nothing better, though the slopes say that it should.
     Stuck,
 }
 
-pub const MOST_STEPS: u64 = 200;
+pub const MOST_ITERATIONS: u64 = 200;
 
 /// A foreseen gain below this ends the search; in the sum 1 is a standard uncertainty.
 const ENOUGH: f64 = 1e-8;
 /// The same as a part of the sum.
 const ENOUGH_OF_SUM: f64 = 1e-10;
 /// Where no step reduces the sum, a foreseen gain below this is rounding.
-const ROUNDING: f64 = 1e-3;
+const GAIN_ROUNDING: f64 = 1e-3;
 /// Singular values below this part of the largest are the rounding of the slopes.
 pub const SINGULAR: f64 = 1e-6;
 /// A limit that is nearer than this, in uncertainties, has been reached.
@@ -89,13 +89,13 @@ pub fn search(
         let gain = linear.gain(&held);
         let failure = if gain <= ENOUGH.max(ENOUGH_OF_SUM * sum) {
             None
-        } else if step == MOST_STEPS {
+        } else if step == MOST_ITERATIONS {
             Some(Failure::TooManySteps)
         } else if let Some(better) = linear.better(problem, &p, &r, limits, &mut damping)? {
             (p, r) = better;
             continue;
         } else {
-            let is_rounding = gain <= ROUNDING.max(ROUNDING * ROUNDING * sum);
+            let is_rounding = gain <= GAIN_ROUNDING.max(GAIN_ROUNDING * GAIN_ROUNDING * sum);
             (!is_rounding).then_some(Failure::Stuck)
         };
         return Ok(Minimum {

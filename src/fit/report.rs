@@ -4,12 +4,12 @@ use super::free::shown;
 use super::model::Model;
 use super::search::{Fit, Fitted, Sides};
 use super::solution::student;
-use crate::data::quantity::TIME;
+use crate::data::quantity::TIME_COLUMN;
 use crate::data::{DataKind, Residual};
 use crate::export::layout::commented;
-use crate::figure::table::{FittedKey, OF_FIT};
+use crate::figure::table::{FIT_COLUMNS, FittedKey};
 use crate::scenario::Scenario;
-use crate::text::number::{NONE, short, shortest, significant, uncertain};
+use crate::text::number::{NOT_AVAILABLE, short, shortest, significant, uncertain};
 use crate::text::printable::{printable, printable_lines};
 use crate::text::wrap::columns;
 use serde::ser::Serializer;
@@ -29,13 +29,13 @@ pub struct FitReport<'a> {
 /// Uncertainties to both sides that differ by no more than this part are one.
 const ALIKE: f64 = 0.05;
 /// Digits of a value whose uncertainty cannot be stated.
-const DIGITS: usize = 7;
+const REPORT_VALUE_DIGITS: usize = 7;
 
 /// Returns `number` to the second digit of `uncertainty`: 3.040e-4, where that is 2.2e-6.
 fn to_the_digit_of(number: f64, uncertainty: f64) -> String {
     let stated = uncertain(number, uncertainty).filter(|_| number != 0.0);
     stated.map_or_else(
-        || significant(number, DIGITS),
+        || significant(number, REPORT_VALUE_DIGITS),
         |stated| stated.to_the_same_digit(number),
     )
 }
@@ -53,7 +53,7 @@ impl Fitted {
         let stated = self.sigma.and_then(|sigma| uncertain(self.value, sigma));
         match stated {
             Some(stated) => stated.to_string(),
-            None => significant(self.value, DIGITS),
+            None => significant(self.value, REPORT_VALUE_DIGITS),
         }
     }
 
@@ -120,7 +120,7 @@ impl FitReport<'_> {
         for i in 0..count {
             let cell = |j: usize| match self.fit.solution.correlation(i, j) {
                 Some(correlation) => format!("{correlation:>9.4}"),
-                None => format!("{NONE:>9}"),
+                None => format!("{NOT_AVAILABLE:>9}"),
             };
             let cells: String = (0..=i).map(cell).collect();
             writeln!(f, " {cells}")?;
@@ -129,23 +129,26 @@ impl FitReport<'_> {
     }
 
     fn furthest(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const MOST: usize = 5;
+        const MOST_REPORTED_ROWS: usize = 5;
         let mut all: Vec<(usize, &Residual)> = self.fit.residuals.iter().enumerate().collect();
         let size = |residual: &Residual| residual.in_sigmas().unwrap_or(residual.value()).abs();
         all.sort_by(|a, b| size(b.1).total_cmp(&size(a.1)));
-        let rows = all.iter().take(MOST).map(|(index, residual)| {
-            let readout = self.model.columns[self.model.data[*index].column].readout;
-            let sigmas = residual.in_sigmas();
-            [
-                (residual.row + 1).to_string(),
-                readout.name.to_owned(),
-                significant(residual.measured, 6),
-                residual.sigma.map(short).unwrap_or_default(),
-                significant(residual.model, 6),
-                significant(residual.value(), 3),
-                sigmas.map_or(String::new(), |sigmas| format!("{sigmas:+.1}")),
-            ]
-        });
+        let rows = all
+            .iter()
+            .take(MOST_REPORTED_ROWS)
+            .map(|(index, residual)| {
+                let readout = self.model.columns[self.model.data[*index].column].readout;
+                let sigmas = residual.in_sigmas();
+                [
+                    (residual.row + 1).to_string(),
+                    readout.name.to_owned(),
+                    significant(residual.measured, 6),
+                    residual.sigma.map(short).unwrap_or_default(),
+                    significant(residual.model, 6),
+                    significant(residual.value(), 3),
+                    sigmas.map_or(String::new(), |sigmas| format!("{sigmas:+.1}")),
+                ]
+            });
         let head = [
             "row",
             "quantity",
@@ -156,10 +159,10 @@ impl FitReport<'_> {
             "in sigmas",
         ];
         match all.len() {
-            0..=MOST => writeln!(f, "\nResiduals:")?,
+            0..=MOST_REPORTED_ROWS => writeln!(f, "\nResiduals:")?,
             count => writeln!(
                 f,
-                "\nThe {MOST} of {count} residuals that are furthest off:"
+                "\nThe {MOST_REPORTED_ROWS} of {count} residuals that are furthest off:"
             )?,
         }
         write_table(f, head, rows)
@@ -226,7 +229,7 @@ impl fmt::Display for FitReport<'_> {
             let each = significant(sum / freedom as f64, 3);
             let probability = quality
                 .probability
-                .map_or(NONE.to_owned(), |p| significant(p, 2));
+                .map_or(NOT_AVAILABLE.to_owned(), |p| significant(p, 2));
             writeln!(
                 f,
                 "chi^2/degree of freedom: {each}, probability of so much or more: {probability}"
@@ -324,7 +327,7 @@ pub fn write_csv(
     let data = &report.model.measured.data;
     let mut names = vec!["row"];
     names.extend(at_names(data));
-    names.extend(OF_FIT);
+    names.extend(FIT_COLUMNS);
     rows.write_record(&names).map_err(io::Error::other)?;
     for (residual, datum) in report.fit.residuals.iter().zip(&report.model.data) {
         let quantity = report.model.columns[datum.column].readout.name;
@@ -364,7 +367,7 @@ impl ValueColumns {
 /// The names of what says where a value was measured.
 fn at_names(data: &DataKind) -> Vec<&str> {
     match data {
-        DataKind::Series(_) => vec![TIME],
+        DataKind::Series(_) => vec![TIME_COLUMN],
         DataKind::Table(table) => table.settings.iter().map(|it| it.key.as_str()).collect(),
     }
 }

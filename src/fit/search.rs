@@ -5,7 +5,7 @@ use super::edge::{Edge, edges};
 use super::free::Free;
 use super::levenberg::{self, Failure, LeastSquares, Minimum, Stop};
 use super::model::{FitProgress, Model};
-use super::solution::{FitSolution, Quality, SILENT, variance};
+use super::solution::{FitSolution, Quality, SILENT_KEY, variance};
 use super::thrown;
 use super::weights::Weights;
 use super::within::Limit;
@@ -87,9 +87,9 @@ impl From<Stop> for NoFit {
 }
 
 /// The change of a key by which slopes are taken, of its size.
-const CHANGE: f64 = 1e-4;
+const SLOPE_CHANGE: f64 = 1e-4;
 /// A change that moves a datum by more than this part of its uncertainty may be too large for a slope.
-const LARGE: f64 = 0.5;
+const LARGE_SLOPE_CHANGE: f64 = 0.5;
 /// The part that is aimed at then.
 const AIM: f64 = 0.1;
 /// A change is no larger than this part of the way to a limit that is not yet reached: there the data may bend.
@@ -156,7 +156,7 @@ fn fit_from(
     tell: &(dyn Fn(u64, f64) + Sync),
 ) -> Result<Fit, NoFit> {
     let mut weights = Weights::at(model, &p, go_on)?;
-    let changes = model.free.iter().map(|free| CHANGE * free.scale);
+    let changes = model.free.iter().map(|free| SLOPE_CHANGE * free.scale);
     let changes = Mutex::new(changes.collect::<Vec<f64>>());
     let mut steps = 0;
     for _ in 0..MOST_ROUNDS {
@@ -206,7 +206,7 @@ impl NoFit {
         match failure {
             Failure::TooManySteps => Self::TooLong {
                 at,
-                most: levenberg::MOST_STEPS,
+                most: levenberg::MOST_ITERATIONS,
             },
             Failure::Stuck => Self::Stuck(at),
         }
@@ -345,7 +345,7 @@ impl Weighed<'_> {
             let moved = slope.iter().zip(&self.weights.resolution);
             let most = moved.map(|(slope, size)| (slope * width / size).abs());
             let most = most.fold(0.0, f64::max);
-            if most <= LARGE || try_ == TRIES || !most.is_finite() {
+            if most <= LARGE_SLOPE_CHANGE || try_ == TRIES || !most.is_finite() {
                 return Ok((slope, change));
             }
             change *= AIM / most;
@@ -404,7 +404,7 @@ impl LeastSquares for Weighed<'_> {
         let column = |(index, (slope, _)): (usize, &(Vec<f64>, f64))| {
             let column = self.weights.whitened(slope);
             // The slope of what does not move is rounding, and would lead anywhere.
-            if column.norm() * self.model.free[index].size(keys[index]) <= SILENT {
+            if column.norm() * self.model.free[index].size(keys[index]) <= SILENT_KEY {
                 DVector::zeros(column.len())
             } else {
                 column

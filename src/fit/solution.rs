@@ -25,9 +25,9 @@ pub struct FitSolution {
 }
 
 /// A key that moves no datum by this part of its uncertainty when it changes by its own size moves none.
-pub(super) const SILENT: f64 = 1e-5;
+pub(super) const SILENT_KEY: f64 = 1e-5;
 /// Parts of a combination below this are rounding.
-pub(super) const PART: f64 = 1e-2;
+pub(super) const COMBINATION_ROUNDING: f64 = 1e-2;
 /// The part of a key in a direction is rounding below this.
 const ROUNDING: f64 = 1e-9;
 
@@ -43,7 +43,7 @@ fn alike(way: &DVector<f64>, moving: &[usize], units: &[f64]) -> Vec<(usize, f64
     let sizes = parts.iter().copied().rev();
     let largest = sizes.max_by(|a, b| a.abs().total_cmp(&b.abs()));
     let largest = largest.unwrap_or_default();
-    let places = (0..moving.len()).filter(|&place| way[place].abs() > PART);
+    let places = (0..moving.len()).filter(|&place| way[place].abs() > COMBINATION_ROUNDING);
     let combined = places.map(|place| (moving[place], parts[place] / largest));
     combined.collect()
 }
@@ -78,7 +78,7 @@ impl FitSolution {
         let keys = chart.keys(&minimum.p);
         let norms: Vec<f64> = slopes.column_iter().map(|column| column.norm()).collect();
         let size = |index: usize| free[index].size(keys[index]);
-        let is_silent = |index: usize| norms[index] * size(index) <= SILENT;
+        let is_silent = |index: usize| norms[index] * size(index) <= SILENT_KEY;
         let silent: Vec<usize> = (0..free.len()).filter(|&index| is_silent(index)).collect();
         let heard: Vec<usize> = (0..free.len()).filter(|index| !is_silent(*index)).collect();
         let mut solution = Self {
@@ -114,7 +114,8 @@ impl FitSolution {
         }
         let is_known = |place: &usize| {
             let mut unseen = unseen.iter();
-            solution.is_moving[heard[*place]] && unseen.all(|way| way.parts[*place].abs() <= PART)
+            solution.is_moving[heard[*place]]
+                && unseen.all(|way| way.parts[*place].abs() <= COMBINATION_ROUNDING)
         };
         let known: Vec<usize> = (0..heard.len()).filter(is_known).collect();
         for (&i, &j) in known.iter().flat_map(|i| known.iter().map(move |j| (i, j))) {

@@ -13,7 +13,7 @@ use crate::scenario::file::VectorFrame;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 const RATES: [&str; 3] = ["w1_rad_per_s", "w2_rad_per_s", "w3_rad_per_s"];
-const OMEGA: &str = "start.omega_rad_per_s.";
+const START_OMEGA_KEY: &str = "start.omega_rad_per_s.";
 
 /// The least share of a second moment of mass in all three with which the search begins.
 const LEAST_SHARE: f64 = 1e-3;
@@ -84,7 +84,7 @@ fn start(
         let axes = axes(free);
         let rate = free
             .key
-            .strip_prefix(OMEGA)
+            .strip_prefix(START_OMEGA_KEY)
             .and_then(|axis| axis.parse::<usize>().ok());
         let value = match (&axes[..], rate) {
             ([_, ..], _) => {

@@ -16,12 +16,12 @@ const ELSEWHERE: &str = " The search goes down from where it begins, and there m
 const NOWHERE: &str =
     " No value of the free keys changes that: free a key on which what was measured depends.";
 /// Rows that are off by more than this many uncertainties are named.
-const FAR: f64 = 3.0;
+const FAR_SIGMAS: f64 = 3.0;
 /// Times are even where they are whole multiples of one to this part of it.
-const EVEN: f64 = 0.01;
+const EVEN_TIMES: f64 = 0.01;
 /// With more rows than this in a turn, another whole turn between two of them is too far from the fitted rate to be meant.
 const MOST_ROWS: f64 = 10.0;
-const MOST_NAMED: usize = 5;
+const MOST_FAR_ROWS: usize = 5;
 /// From this correlation on, two keys are hardly told apart.
 pub(super) const HARDLY: f64 = 0.99;
 
@@ -95,13 +95,13 @@ impl Fit {
         let (mut rows, mut least, mut worst) = (BTreeSet::new(), f64::INFINITY, 0.0_f64);
         for (row, sigmas) in all {
             worst = worst.max(sigmas);
-            if sigmas > FAR {
+            if sigmas > FAR_SIGMAS {
                 rows.insert(row);
                 least = least.min(sigmas);
             }
         }
         let [least, worst] = [least, worst].map(|sigmas| significant(sigmas, 2));
-        let names = rows.iter().take(MOST_NAMED).map(ToString::to_string);
+        let names = rows.iter().take(MOST_FAR_ROWS).map(ToString::to_string);
         match (&names.collect::<Vec<_>>()[..], rows.len()) {
             ([], _) => match &self.residuals[..] {
                 [only] => format!("row {} is {worst} sigma off", only.row + 1),
@@ -110,12 +110,12 @@ impl Fit {
                 ),
             },
             ([row], _) => format!("row {row} is {worst} sigma off"),
-            ([rows @ .., last], ..=MOST_NAMED) => {
+            ([rows @ .., last], ..=MOST_FAR_ROWS) => {
                 let rows = rows.join(", ");
                 format!("rows {rows} and {last} are {least} to {worst} sigma off")
             }
             (rows, count) => {
-                let (rows, more) = (rows.join(", "), count - MOST_NAMED);
+                let (rows, more) = (rows.join(", "), count - MOST_FAR_ROWS);
                 format!("rows {rows} and {more} more are {least} to {worst} sigma off")
             }
         }
@@ -180,7 +180,7 @@ impl Fit {
         let apart_s = ways.iter().map(|way| way[0]).reduce(f64::min)?;
         let is_even = |[time_s, _]: &[f64; 2]| {
             let times = time_s / apart_s;
-            (times - times.round()).abs() < EVEN
+            (times - times.round()).abs() < EVEN_TIMES
         };
         let turns = |[time_s, way]: &[f64; 2]| (way * apart_s / time_s).abs() > 360.0 / MOST_ROWS;
         let is_aliased = ways.iter().all(is_even) && ways.iter().any(turns) && !is_counted(&points);

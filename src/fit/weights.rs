@@ -29,12 +29,12 @@ struct Together {
 }
 
 /// By this part of its uncertainty a setting is changed to see what it moves.
-const PART: f64 = 0.25;
+const SETTING_CHANGE: f64 = 0.25;
 /// The unit of unweighted residuals, of the size of the data, and a small change of them.
-const UNIT: f64 = 1e-6;
-const SMALL: f64 = 0.01;
+const UNWEIGHTED_UNIT: f64 = 1e-6;
+const RESIDUAL_CHANGE: f64 = 0.01;
 /// The relative change of the uncertainties at which the weights have settled.
-const SETTLED: f64 = 1e-7;
+const SETTLED_WEIGHTS: f64 = 1e-7;
 
 /// Whether the uncertainties of `model`'s data are stated: of all, or of none.
 pub fn are_stated(model: &Model) -> Result<bool, String> {
@@ -81,10 +81,10 @@ fn moved_by(
     go_on: FitProgress<'_>,
 ) -> Result<Vec<f64>, Stop> {
     let at = |by: f64| model.values(p, Some((setting, by)), go_on);
-    let ((high, above), (low, below)) = match (at(PART), at(-PART)) {
-        (Ok(above), Err(Stop::Impossible(_))) => ((PART, above), (0.0, at(0.0)?)),
-        (Err(Stop::Impossible(_)), Ok(below)) => ((0.0, at(0.0)?), (-PART, below)),
-        (above, below) => ((PART, above?), (-PART, below?)),
+    let ((high, above), (low, below)) = match (at(SETTING_CHANGE), at(-SETTING_CHANGE)) {
+        (Ok(above), Err(Stop::Impossible(_))) => ((SETTING_CHANGE, above), (0.0, at(0.0)?)),
+        (Err(Stop::Impossible(_)), Ok(below)) => ((0.0, at(0.0)?), (-SETTING_CHANGE, below)),
+        (above, below) => ((SETTING_CHANGE, above?), (-SETTING_CHANGE, below?)),
     };
     let pairs = above.iter().zip(&below);
     Ok(pairs
@@ -123,8 +123,8 @@ impl Weights {
         let size = if size > 0.0 { size } else { 1.0 };
         let of_all = |part: f64| vec![part * size; model.data.len()];
         Self {
-            sigma: of_all(UNIT),
-            resolution: of_all(SMALL),
+            sigma: of_all(UNWEIGHTED_UNIT),
+            resolution: of_all(RESIDUAL_CHANGE),
             are_stated: false,
             count_settings: false,
             together: Vec::new(),
@@ -184,6 +184,6 @@ impl Weights {
         let next = Self::at(model, p, go_on)?;
         let pairs = next.sigma.iter().zip(&self.sigma);
         let changes = pairs.map(|(now, before)| (now / before - 1.0).abs());
-        Ok((changes.fold(0.0, f64::max) > SETTLED).then_some(next))
+        Ok((changes.fold(0.0, f64::max) > SETTLED_WEIGHTS).then_some(next))
     }
 }

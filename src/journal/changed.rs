@@ -18,10 +18,10 @@ const AS_IT_WAS: &str = " as it was: ";
 /// Ends its `source` there.
 const CHANGED: &str = "; changed since";
 
-const MOST_VALUES: usize = 2;
+const MOST_LISTED_CHANGES: usize = 2;
 
 /// The longest name of a file, in characters; a file of a longer name is called "what was opened".
-const LONGEST_NAME: usize = 30;
+const LONGEST_FILE_NAME: usize = 30;
 
 /// The `look_at` line of the file of `scenario`: what the viewer should watch for.
 pub fn look_at(scenario: &Scenario) -> Option<&str> {
@@ -48,7 +48,7 @@ impl Original {
         }
         let file = Path::new(name).file_name().unwrap_or_default();
         let file = printable(&file.to_string_lossy()).into_owned();
-        let is_short = (1..=LONGEST_NAME).contains(&file.chars().count());
+        let is_short = (1..=LONGEST_FILE_NAME).contains(&file.chars().count());
         let file = Some(file).filter(|_| is_short);
         Self {
             scenario: Arc::clone(opened),
@@ -164,7 +164,7 @@ fn values<T: Serialize + PartialEq>(name: &str, before: &T, now: &T) -> Option<S
     });
     let new: Vec<_> = new.collect();
     Some(match new.len() {
-        1..=MOST_VALUES => new.join(", "),
+        1..=MOST_LISTED_CHANGES => new.join(", "),
         _ => format!("another {name}"),
     })
 }

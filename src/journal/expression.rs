@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-const LONGEST: usize = 1000;
+const LONGEST_EXPRESSION: usize = 1000;
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
@@ -94,8 +94,8 @@ impl Operator {
 
 impl Expression {
     pub fn parse(text: &str) -> Result<Self, Fault> {
-        if text.len() > LONGEST {
-            let rule = format!("an expression has at most {LONGEST} characters");
+        if text.len() > LONGEST_EXPRESSION {
+            let rule = format!("an expression has at most {LONGEST_EXPRESSION} characters");
             return Err(Fault { column: 1, rule });
         }
         let mut parser = Parser {
@@ -254,7 +254,7 @@ impl ExpressionNode {
 }
 
 /// How deep parentheses and signs may be nested.
-const DEEPEST: usize = 64;
+const DEEPEST_NESTING: usize = 64;
 
 /// Reads `text` from its beginning to its end.
 struct Parser<'a> {
@@ -337,7 +337,7 @@ impl<'a> Parser<'a> {
     fn expression(&mut self, least: u8) -> Result<ExpressionNode, Fault> {
         let begin = self.column();
         self.depth += 1;
-        if self.depth > DEEPEST {
+        if self.depth > DEEPEST_NESTING {
             return Self::fault(begin, "it is nested too deep");
         }
         let mut left = self.operand()?;

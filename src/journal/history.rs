@@ -11,7 +11,7 @@ use toml::Table;
 
 const MOST_RUNS: usize = 200;
 /// The most points and parts that the bodies of the earlier runs have together; it limits the memory.
-const MOST_POINTS: usize = 200_000;
+const MOST_HISTORY_POINTS: usize = 200_000;
 
 /// One run of the history: its name, its journal, and the step at which the user left it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -100,13 +100,13 @@ impl History {
         self.drop_oldest();
     }
 
-    /// Drops the oldest runs beyond [`MOST_RUNS`] and [`MOST_POINTS`]; the newest earlier run always stays.
+    /// Drops the oldest runs beyond [`MOST_RUNS`] and [`MOST_HISTORY_POINTS`]; the newest earlier run always stays.
     fn drop_oldest(&mut self) {
         let mut points = 0;
         let newest = self.past.iter().rev().take_while(|run| {
             let body = &run.journal.base().body;
             points += body.point.len() + body.part.len();
-            points <= MOST_POINTS
+            points <= MOST_HISTORY_POINTS
         });
         let kept = newest.count().clamp(1, MOST_RUNS);
         self.past.drain(..self.past.len().saturating_sub(kept));
@@ -307,7 +307,7 @@ mod tests {
             })
         };
         let mut history = method_2();
-        for count in [10, 10, MOST_POINTS - 20, 1] {
+        for count in [10, 10, MOST_HISTORY_POINTS - 20, 1] {
             history.begin("x", &points(count));
         }
         assert_eq!(history.past.len(), 3, "method-2 went");

@@ -10,16 +10,16 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Duration of the default push, as a share of the run; for a scenario without pushes of its own.
-const SHARE: f64 = 0.1;
+const PUSH_DURATION_SHARE: f64 = 0.1;
 /// Force of the default push, in weights of the body.
 const WEIGHTS: f64 = 2.0;
 
 /// A point stands on the vertical, where "out" has no direction, if its distance from it is at most this share of its
 /// distance from the pivot.
-const UPRIGHT: f64 = 1e-9;
+const ON_VERTICAL: f64 = 1e-9;
 
 /// When a push begins that begins when it is given.
-const NOW: &str = "now";
+const NOW_TEXT: &str = "now";
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
@@ -106,7 +106,7 @@ impl NextPush {
             size_N: at_or_below(WEIGHTS * weight),
             toward: Toward::Down,
             from_s: 0.0,
-            for_s: at_or_below(SHARE * length_s),
+            for_s: at_or_below(PUSH_DURATION_SHARE * length_s),
         }
     }
 
@@ -180,13 +180,13 @@ impl NextPush {
             PushField::Size => next.size_N = number(text)?,
             PushField::Toward => next.toward = Toward::typed(text)?,
             PushField::Length => {
-                let (length, from) = text.split_once("from").unwrap_or((text, NOW));
+                let (length, from) = text.split_once("from").unwrap_or((text, NOW_TEXT));
                 next.for_s = match length.trim().split_once(" step") {
                     Some((steps, _)) => nudge::typed(steps, "")? * time_step_s,
                     None => number(length)?,
                 };
                 next.from_s = match from.trim() {
-                    NOW => 0.0,
+                    NOW_TEXT => 0.0,
                     from => number(from)?,
                 }
             }
@@ -323,7 +323,7 @@ impl Toward {
             Self::Down => -Vector3::z(),
             Self::Up => Vector3::z(),
             Self::Along(direction) => Vector3::from(direction),
-            _ if out.norm() <= UPRIGHT * at.norm() => {
+            _ if out.norm() <= ON_VERTICAL * at.norm() => {
                 return Err("the point stands on the vertical, from where all ways lead out: push along x or y".to_owned());
             }
             Self::Out => out,

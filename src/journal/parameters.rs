@@ -14,7 +14,7 @@ use toml::{Table, Value};
 
 const MOST_LISTED: usize = 50;
 
-const MOMENTUM: &str = "start.momentum_Js";
+const START_MOMENTUM_KEY: &str = "start.momentum_Js";
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
@@ -138,7 +138,7 @@ fn parameters_of(
         spec: key,
         group: group(place, table),
         label: lab.label.to_owned(),
-        frame: (key.path == MOMENTUM).then(|| {
+        frame: (key.path == START_MOMENTUM_KEY).then(|| {
             let frame = scenario.file.start.momentum_frame;
             frame.unwrap_or_default().name()
         }),
@@ -320,12 +320,12 @@ impl Parameter {
 
 fn typed_whole(text: &str) -> Result<i64, String> {
     /// Every whole number up to here is exact as a float.
-    const EXACT: f64 = 9e15;
+    const LARGEST_WHOLE_EDIT: f64 = 9e15;
     if let Ok(whole) = text.trim().parse() {
         return Ok(whole);
     }
     let number = nudge::typed(text, "")?;
-    if number.fract() == 0.0 && number.abs() <= EXACT {
+    if number.fract() == 0.0 && number.abs() <= LARGEST_WHOLE_EDIT {
         Ok(number as i64)
     } else {
         Err("must be a whole number".to_owned())

@@ -6,7 +6,7 @@ use crate::run::Clock;
 use crate::scenario::dotted::number_of_push;
 use crate::scenario::file::{EditFile, MotionFile, PushFile, ScenarioFile, StartFile};
 use crate::scenario::problem::{Problem, Problems};
-use crate::scenario::rescale::{MOST_STEPS, at_time_step};
+use crate::scenario::rescale::{MOST_RUN_STEPS_BY_TIME, at_time_step};
 use crate::scenario::{Document, Motion, Push, Pushes, Scenario, Window};
 use crate::text::number;
 use nalgebra::{Matrix3, Vector3};
@@ -18,7 +18,7 @@ const REPLACED: [&str; 2] = ["motion.time_step_s", "motion.scheme"];
 /// The keys of a push that count in steps.
 const COUNTED: [&str; 3] = ["first_step", "steps", "accumulates"];
 /// A push is over if less than this share of a time step remains of it; the rest is rounding.
-const ROUNDING: f64 = 1e-9;
+const PUSH_END_ROUNDING: f64 = 1e-9;
 
 /// The scenario that starts with `state`, the state of the run of `scenario` at `step`. It has the settings and pushes in
 /// force there; edits made at `step` itself are included, later ones are not. Times are counted from the new start: a push
@@ -69,7 +69,7 @@ fn steps_of_same_length(scenario: &Scenario, motion: &Motion) -> u64 {
     }
     let length_s = scenario.steps as f64 * scenario.motion.time_step_s;
     let steps = (length_s / motion.time_step_s).round();
-    steps.clamp(1.0, MOST_STEPS) as u64
+    steps.clamp(1.0, MOST_RUN_STEPS_BY_TIME) as u64
 }
 
 /// Gravity, scheme, time step and pushes in force for the step that follows `step`.
@@ -187,7 +187,7 @@ impl RestartPoint<'_> {
             }
         };
         let begin = from.max(0.0);
-        (to - begin > ROUNDING * self.motion.time_step_s).then_some((begin, to - begin))
+        (to - begin > PUSH_END_ROUNDING * self.motion.time_step_s).then_some((begin, to - begin))
     }
 }
 
@@ -210,7 +210,9 @@ pub fn as_advised(
     if let Some(scheme) = scheme {
         file.motion.scheme = Some(scheme.to_owned());
     }
-    file.motion.steps = (end_s / time_step_s).round().clamp(1.0, MOST_STEPS) as u64;
+    file.motion.steps = (end_s / time_step_s)
+        .round()
+        .clamp(1.0, MOST_RUN_STEPS_BY_TIME) as u64;
     for ((time_s, _), edit) in Clock::edits(scenario).zip(edits) {
         let mut set = edit.set;
         set.retain(|key, _| !REPLACED.contains(&key));

@@ -4,9 +4,9 @@
 use super::view::Pane;
 
 /// The factor of the arrows with Shift.
-pub const FAR: i32 = 10;
+pub const SHIFT_FACTOR: i32 = 10;
 /// Rows that a page key moves by.
-pub(super) const PAGE: isize = 10;
+pub(super) const PAGE_KEY_ROWS: isize = 10;
 /// The most times that a key is repeated; more repetitions would make no difference on the screen.
 const MOST_REPEATED: u64 = 1000;
 

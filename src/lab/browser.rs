@@ -7,7 +7,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The name of the entry that leads to the folder above.
-const ABOVE: &str = "../";
+const PARENT_FOLDER: &str = "../";
 
 /// A preset or file that can be opened, or a folder of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ impl Browser {
         let Some(name) = chosen.map(|entry| entry.name.clone()) else {
             return false;
         };
-        let (is_up, from) = (name == ABOVE, self.folder.clone());
+        let (is_up, from) = (name == PARENT_FOLDER, self.folder.clone());
         let to = if is_up {
             self.passed.pop().or_else(|| above(&from))
         } else {
@@ -72,7 +72,7 @@ impl Browser {
         let of_folder = || self.entries.iter().skip(PRESETS.len());
         let came_from =
             |entry: &BrowserEntry| is_up && Path::new(&entry.name).file_name() == from.file_name();
-        let is_below = |entry: &BrowserEntry| !is_up && entry.name != ABOVE;
+        let is_below = |entry: &BrowserEntry| !is_up && entry.name != PARENT_FOLDER;
         let found = of_folder().position(|entry| came_from(entry) || is_below(entry));
         let last = self.entries.len().saturating_sub(1);
         self.selected = (PRESETS.len() + found.unwrap_or(0)).min(last);
@@ -103,7 +103,7 @@ impl Browser {
         let mut folders = names_in(folder, Path::is_dir, |name| !name.starts_with('.'));
         folders.retain(|name| may_be_read(Path::new(name)));
         let folders = folders.into_iter().map(|name| name + "/");
-        let above = leads_up.then(|| ABOVE.to_owned());
+        let above = leads_up.then(|| PARENT_FOLDER.to_owned());
         let folders = above.into_iter().chain(folders);
         let folders = folders.map(|name| entry(name, false, true));
         let files = names.into_iter().map(|name| entry(name, true, false));
@@ -179,7 +179,7 @@ impl Browser {
 /// Files beyond this many are not listed, nor are folders.
 const MOST_FILES: usize = 1000;
 /// How many bytes of a file are searched for its `[motion]`.
-const HEAD: u64 = 1 << 16;
+const PREVIEW_BYTES: u64 = 1 << 16;
 
 /// The paths of what is in `folder`, is of a kind and has a name that is wanted, in the order of their names.
 fn names_in(
@@ -218,8 +218,8 @@ fn above(folder: &Path) -> Option<PathBuf> {
 /// body of many points may stand before it.
 fn may_hold_run(name: &str) -> bool {
     let mut head = Vec::new();
-    let read = File::open(name).and_then(|file| file.take(HEAD).read_to_end(&mut head));
-    if read.is_err() || (head.len() as u64 == HEAD && name.ends_with(".toml")) {
+    let read = File::open(name).and_then(|file| file.take(PREVIEW_BYTES).read_to_end(&mut head));
+    if read.is_err() || (head.len() as u64 == PREVIEW_BYTES && name.ends_with(".toml")) {
         return true;
     }
     let text = String::from_utf8_lossy(&head);

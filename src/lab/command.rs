@@ -150,27 +150,27 @@ fn examples(kind: ValueKind) -> String {
 #[rustfmt::skip]
 fn own() -> Vec<CommandRow> {
     vec![
-        row("open", "\"wobble-push\"", "open a preset or a file, SCENARIO as on the command line; it stands still at step 0", form::OPEN),
+        row("open", "\"wobble-push\"", "open a preset or a file, SCENARIO as on the command line; it stands still at step 0", form::OPEN_SCHEMA),
         row("set", "{ \"motion.time_step_s\" = 0.05 }", "set dotted keys of the scenario, from the next step on; of body or start in a new run", ValueSchema::Keys),
         row("nudge", "{ key = \"motion.time_step_s\", times = -1 }", "nudge a value up, or down where times is negative", form::NUDGE),
-        row("push", "true, or { point = \"top\", force_N = [0, 0, -50], for_s = 2 }", "give the push to come, or one of one's own, from now on or from_s; force_N can be a size beside toward = \"down\"", form::PUSH),
-        row("next_push", "{ point = \"top\", force_N = 50, toward = \"down\", for_s = 2 }", "choose the push to come, or a part of it", form::NEXT_PUSH),
-        row("step", "10", "take so many time steps, or go so many back", form::STEPS),
-        row("go_to", "400, \"60 s\", \"start\" or \"end\"", "go to a step or a time at most 10000000 steps away and stop there", form::PLACE),
+        row("push", "true, or { point = \"top\", force_N = [0, 0, -50], for_s = 2 }", "give the push to come, or one of one's own, from now on or from_s; force_N can be a size beside toward = \"down\"", form::PUSH_SCHEMA),
+        row("next_push", "{ point = \"top\", force_N = 50, toward = \"down\", for_s = 2 }", "choose the push to come, or a part of it", form::NEXT_PUSH_SCHEMA),
+        row("step", "10", "take so many time steps, or go so many back", form::STEPS_SCHEMA),
+        row("go_to", "400, \"60 s\", \"start\" or \"end\"", "go to a step or a time at most 10000000 steps away and stop there", form::PLACE_SCHEMA),
         row("run_until", "\"t_s >= 60\"", "play at the speed that is set until this holds, and stop; given up after 10000000 steps", form::CONDITION),
         row("run", "true", "let the run go on", form::TRUE),
         row("pause", "true", "stop the run", form::TRUE),
         row("wait_s", "2.5", "let so many seconds pass on the clock before the next command", form::WAIT),
         row("chapter", "\"one line\"", "say this line; a recording (gyrolab cast) has a marker there", Is(ValueKind::Line)),
-        row("undo", "1", "take back so many of the things done last", form::COUNT),
-        row("redo", "1", "bring so many of them again", form::COUNT),
+        row("undo", "1", "take back so many of the things done last", form::COUNT_SCHEMA),
+        row("redo", "1", "bring so many of them again", form::COUNT_SCHEMA),
         row("export", "\"run.csv\", or { path = \"run.csv\", every = 10, force = true }", "write the run up to here, or to_step, as CSV; force replaces a file; columns, from_s, to_s, points and excel are those of gyrolab run", form::EXPORT),
         row("figure", "\"run.pdf\", or { path = \"run.svg\", kind = \"above\", exact = true, force = true }", "draw the run up to here, or to_step; kind as in gyrolab figure, and the file's end says .svg, .pdf or .png", form::FIGURE),
         row("save", "\"run.toml\", or { path = \"run.toml\", from_here = true, force = true }", "write the run up to here, or to_step, as a run file; from_here: the present state as a scenario", form::SAVE),
-        row("speed", "20 or \"top\"", "how fast the run is played, simulated seconds a second", form::SPEED),
+        row("speed", "20 or \"top\"", "how fast the run is played, simulated seconds a second", form::SPEED_SCHEMA),
         row("since_s", "12.5, or \"none\"", "time at the left edge of the traces, s; none: they follow the run", form::SINCE),
         row("magnify", "4", "how many times the values of the traces are magnified, 1 to 1000000", form::MAGNIFY),
-        row("cursor", "400, \"60 s\", \"next turn\", \"turn before\", \"mark\" or \"none\"", "the step at which the traces are read off; turns are those of the tilt; mark: mark this one, and from one that is marked count the swings", form::CURSOR),
+        row("cursor", "400, \"60 s\", \"next turn\", \"turn before\", \"mark\" or \"none\"", "the step at which the traces are read off; turns are those of the tilt; mark: mark this one, and from one that is marked count the swings", form::CURSOR_SCHEMA),
         row("measured", "\"heidelberg-spin-decay\", \"data.csv\" or \"none\"", "put measured data beside the run: data that come with gyrolab, or a CSV file with a column t_s", View("measured")),
         row("pin", "true or false", "pin the present run as the reference, which stays in view; false: none is pinned", Is(ValueKind::Flag)),
         row("take_advice", "true", "begin the run anew at the time step, or by the scheme, that mends doubtful numbers, up to the same time", form::TRUE),
@@ -403,8 +403,9 @@ impl SeekTarget {
 /// A whole number, also as 1e7.
 fn whole(text: &str) -> Option<u64> {
     /// Floats are exact whole numbers up to here.
-    const EXACT: f64 = 9e15;
-    let is_whole = |number: &f64| number.fract() == 0.0 && (0.0..=EXACT).contains(number);
+    const LARGEST_WHOLE_ARGUMENT: f64 = 9e15;
+    let is_whole =
+        |number: &f64| number.fract() == 0.0 && (0.0..=LARGEST_WHOLE_ARGUMENT).contains(number);
     let float = || text.parse().ok().filter(is_whole);
     text.parse().ok().or_else(|| Some(float()? as u64))
 }

@@ -21,10 +21,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// A run that is shorter than this share of its ghost does not replace the ghost: it was not played far enough.
-const SHORT: f64 = 0.1;
+const SHORT_RUN_SHARE: f64 = 0.1;
 /// Computing time for reading the run at the measured times in each round of the loop, while the run moves and while it
 /// stands still.
-const FOLLOWING: Duration = Duration::from_millis(6);
+const MEASURED_BUDGET: Duration = Duration::from_millis(6);
 const CATCHING_UP: Duration = Duration::from_millis(40);
 
 enum Pinned {
@@ -106,7 +106,7 @@ impl Comparison {
             return;
         }
         let left = Ghost::of(run);
-        let is_short = |before: &Ghost| left.end_s() < SHORT * before.end_s();
+        let is_short = |before: &Ghost| left.end_s() < SHORT_RUN_SHARE * before.end_s();
         if left.end_s() > 0.0 && !self.ghost.as_ref().is_some_and(is_short) {
             self.ghost = Some(left);
         }
@@ -218,7 +218,11 @@ impl Comparison {
 
     fn follow(&mut self, player: &Player, clock: &mut dyn FnMut() -> Duration) -> bool {
         let (step, is_moving) = (player.playback.step_number(), player.is_moving());
-        let share = if is_moving { FOLLOWING } else { CATCHING_UP };
+        let share = if is_moving {
+            MEASURED_BUDGET
+        } else {
+            CATCHING_UP
+        };
         let data = self.data.as_mut();
         let Some(data) = data.filter(|data| data.is_behind(step)) else {
             return false;

@@ -22,7 +22,7 @@ use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-const KEYS: &str = "Enter takes it, typing replaces it, Esc leaves it";
+const DIALOG_KEYS: &str = "Enter takes it, typing replaces it, Esc leaves it";
 const KEYS_OF_TWO: &str = "Enter writes it, Up and Down the other line, Esc leaves it";
 
 const KEYS_OF_SETTINGS: &str = "Up and Down choose, Left and Right or Enter change it, Esc closes";
@@ -204,7 +204,11 @@ impl Dialog {
         fields: &[(&str, String)],
         info: impl IntoIterator<Item: Into<String>>,
     ) -> Self {
-        let keys = if fields.len() > 1 { KEYS_OF_TWO } else { KEYS };
+        let keys = if fields.len() > 1 {
+            KEYS_OF_TWO
+        } else {
+            DIALOG_KEYS
+        };
         let fields = fields
             .iter()
             .map(|(label, text)| InputField::new(label, text));

@@ -9,7 +9,7 @@ use crate::export::Destination;
 use crate::export::destination::DestinationError;
 use crate::figure::PageFormat;
 use crate::figure::kind::FigureKind;
-use crate::scenario::limits::{LONGEST, TOO_LONG, few_enough};
+use crate::scenario::limits::{LONGEST_SCENARIO_FILE, SCENARIO_TOO_LONG, few_enough};
 use crate::scenario::{Document, Problem, Problems, Scenario, presets};
 use crate::storage::confined::Confined;
 use crate::storage::exporting::{self, Exporting, FigureInput, Written};
@@ -233,8 +233,8 @@ impl Files {
     /// Writes `content` to the file `path`; `what` names the content in the message.
     pub(super) fn save(&self, what: &str, content: &str, path: &Path, force: bool) -> ActionResult {
         is_named(path)?;
-        if content.len() as u64 > LONGEST {
-            return Err(format!("{what} {TOO_LONG}").into());
+        if content.len() as u64 > LONGEST_SCENARIO_FILE {
+            return Err(format!("{what} {SCENARIO_TOO_LONG}").into());
         }
         few_enough(content, 1).map_err(|problem| format!("{what} {}", problem.rule))?;
         self.admit_writing(path)?;

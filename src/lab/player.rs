@@ -324,10 +324,10 @@ impl Player {
     /// Whether the numbers must be read again at `now`, if the traces show `window_s`.
     pub(super) fn is_due(&self, now: Duration, window_s: f64) -> bool {
         // Of so fast a run, numbers read a few times a second would not belong to the picture of each frame.
-        let passes_s = reading::EVERY.as_secs_f64();
+        let passes_s = reading::READING_INTERVAL.as_secs_f64();
         self.playback.is_flat_out()
             || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
-            || now >= self.read_at + reading::EVERY
+            || now >= self.read_at + reading::READING_INTERVAL
     }
 
     /// Reads the numbers. Returns a message where the strip of the fast motion now shows another curve of the same run.

@@ -1,7 +1,7 @@
 //! Leads actions and time to the parts of the lab.
 
 use super::action::{
-    Action, Ask, Direction, FieldEdit, LabRequest, LessonKey, PAGE, repeated, signed,
+    Action, Ask, Direction, FieldEdit, LabRequest, LessonKey, PAGE_KEY_ROWS, repeated, signed,
 };
 use super::answer::{ActionResult, Done};
 use super::command::{Command, Commands, CursorTo, SeekTarget};
@@ -20,9 +20,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// How often to look whether an export is complete while there is nothing else to do.
-const LOOK: Duration = Duration::from_millis(2);
+const EXPORT_POLL: Duration = Duration::from_millis(2);
 /// How long steps are taken before the caller decides whether to go on.
-const PART: Duration = Duration::from_millis(100);
+const STEPPING_BUDGET: Duration = Duration::from_millis(100);
 
 /// Actions, and time.
 impl Lab {
@@ -132,7 +132,7 @@ impl Lab {
 
     /// Does what an arrow or page key does that is pressed `times` times, where that is no command of the pane in focus.
     fn move_by(&mut self, direction: Direction, times: i32) -> Result<(), String> {
-        let rows = direction.rows(PAGE) * times as isize;
+        let rows = direction.rows(PAGE_KEY_ROWS) * times as isize;
         let of_values = self.view.focus == Pane::PARAMETERS;
         match self.popups.mode {
             Mode::Lab | Mode::Find if of_values && direction.is_sideways() => {
@@ -485,7 +485,7 @@ impl Lab {
             let begin = Instant::now();
             let playback = &mut self.player.playback;
             let from = playback.step_number();
-            let halt = playback.finish_part(|| begin.elapsed() > PART);
+            let halt = playback.finish_part(|| begin.elapsed() > STEPPING_BUDGET);
             steps += playback.step_number().abs_diff(from);
             if let Some(halt) = halt {
                 self.halted(halt);
@@ -510,7 +510,7 @@ impl Lab {
     /// Lets pass the time for which the command under way waits.
     fn pass_time(&mut self) {
         if self.files.is_exporting() {
-            thread::sleep(LOOK);
+            thread::sleep(EXPORT_POLL);
             self.follow_export();
         }
         if let Some(until) = self.script.waits_until() {

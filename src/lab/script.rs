@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 /// Why a run that is played until something holds was refused, where a key has stopped it.
-const STOPPED: &str = "stopped before it held";
+const STOPPED_TEXT: &str = "stopped before it held";
 
 #[derive(Clone, Debug, Default)]
 pub struct CommandScript {
@@ -98,7 +98,7 @@ impl CommandScript {
 
     /// Whether a key has broken it off: the key has dropped its commands, or stopped the run that one of them played.
     pub fn was_stopped(&self) -> bool {
-        self.has_broken_off() && self.failure().is_none_or(|why| why.ends_with(STOPPED))
+        self.has_broken_off() && self.failure().is_none_or(|why| why.ends_with(STOPPED_TEXT))
     }
 
     /// Drops all commands; returns how many there were, in words.
@@ -270,7 +270,7 @@ fn is_complete(
             "did not hold on any of {} steps",
             HumanCount(steps)
         )),
-        (false, None, PendingAction::Playing) => Err(STOPPED.to_owned()),
+        (false, None, PendingAction::Playing) => Err(STOPPED_TEXT.to_owned()),
         (false, ..) => Ok(true),
     }
 }

@@ -1,6 +1,6 @@
 //! The time step that the step pane takes apart, and the commands that its keys mean.
 
-use super::action::{Direction, PAGE};
+use super::action::{Direction, PAGE_KEY_ROWS};
 use super::command::{Command, SeekTarget};
 use super::player::Player;
 use super::view::step::StepPageChoice;
@@ -190,7 +190,7 @@ impl StepPane {
         if direction.is_sideways() {
             return Err("Up and Down add up the table; . and , go by phase".to_owned());
         }
-        let rows = direction.rows(PAGE) as i64 * i64::from(times);
+        let rows = direction.rows(PAGE_KEY_ROWS) as i64 * i64::from(times);
         let now = match view.sum_to {
             Some(now) => (now as i64).min(all),
             None if rows > 0 => 0,

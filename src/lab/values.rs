@@ -9,7 +9,7 @@ use crate::journal::parameters::{self, Parameter, parameters};
 use crate::journal::{Journal, number_of_push};
 use crate::playback::live::LiveRun;
 use crate::scenario::Scenario;
-use list::{ListedValue, NEXT_PUSH, Of, ValueList};
+use list::{ListedValue, NEXT_PUSH_HEADING, Of, ValueList};
 use nalgebra::Vector3;
 use std::time::Duration;
 use toml::Table;
@@ -18,7 +18,14 @@ use toml::Table;
 const BELONGS: Duration = Duration::from_secs(3);
 
 /// The order of the groups in the list. The scenario's pushes come after the start, its points after the body.
-const ORDER: [&str; 6] = ["motion", "start", NEXT_PUSH, "body", "view", "scenario"];
+const GROUP_ORDER: [&str; 6] = [
+    "motion",
+    "start",
+    NEXT_PUSH_HEADING,
+    "body",
+    "view",
+    "scenario",
+];
 
 /// The list of values, the push to come, and the value that was nudged last.
 #[derive(Clone)]
@@ -70,7 +77,8 @@ impl Values {
 
     pub(super) fn select_next_push(&mut self) {
         self.list.filter_by(String::clear);
-        self.list.select(NEXT_PUSH, PushField::Size.label().0);
+        self.list
+            .select(NEXT_PUSH_HEADING, PushField::Size.label().0);
     }
 
     /// The listed value of the scenario with the dotted `key`.
@@ -199,8 +207,13 @@ impl PushChoice {
 
 /// The place of a group in the list; groups with a smaller number come first.
 fn rank(group: &str) -> usize {
-    let listed = ORDER.iter().position(|known| *known == group);
-    let place = |of: &str| ORDER.iter().position(|known| *known == of).unwrap_or(0);
+    let listed = GROUP_ORDER.iter().position(|known| *known == group);
+    let place = |of: &str| {
+        GROUP_ORDER
+            .iter()
+            .position(|known| *known == of)
+            .unwrap_or(0)
+    };
     match listed {
         Some(rank) => 2 * rank,
         None if group.starts_with("push") => 2 * place("start") + 1,

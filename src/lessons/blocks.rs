@@ -14,16 +14,16 @@ use content::BlockContent;
 use toml::{Table, Value};
 
 /// The words behind a fence that mean something in a lesson.
-pub(super) const WORDS: [&str; 7] = [
+pub(super) const BLOCK_WORDS: [&str; 7] = [
     "lesson", "lab", "task", "predict", "compare", "check", "notes",
 ];
 
 /// The keys of `lab` and `task` besides those of `[view]`. They are carried out in the order of the table of commands, the
 /// last at the end.
 const COMMON: [&str; 6] = ["open", "set", "push", "since_s", "magnify", "point_at"];
-const LAST: [&str; 2] = ["wait_s", "go_to"];
+const LAST_COMMANDS: [&str; 2] = ["wait_s", "go_to"];
 const RUN_UNTIL: &str = "run_until";
-const KEEP: &str = "keep";
+const KEEP_KEY: &str = "keep";
 /// The most choices of a prediction.
 const MOST_CHOICES: usize = 9;
 const LONGEST_LESSON: u32 = 600;
@@ -85,8 +85,8 @@ pub(super) fn setup(
 ) -> BlockResult<Setup> {
     let rows = COMMANDS.iter().map(|row| row.name);
     let rows = rows.filter(|name| COMMON.contains(name) || view::is_key(name));
-    let order: Vec<_> = rows.chain(LAST).chain([RUN_UNTIL]).collect();
-    let known: Vec<_> = order.iter().copied().chain([KEEP]).collect();
+    let order: Vec<_> = rows.chain(LAST_COMMANDS).chain([RUN_UNTIL]).collect();
+    let known: Vec<_> = order.iter().copied().chain([KEEP_KEY]).collect();
     let mut content = reader.content(&known).inspect_err(|_| names.lose())?;
     let mut commands = Vec::new();
     for name in order {
@@ -121,12 +121,12 @@ fn keep(
     page: usize,
     known_from: usize,
 ) -> Vec<Keep> {
-    let table = match content.get(KEEP) {
+    let table = match content.get(KEEP_KEY) {
         None => return Vec::new(),
         Some(Value::Table(table)) => table,
         Some(other) => {
             let rule = "must be a table of names and expressions, { coarse = \"most_distance_m\" }";
-            content.refuse(Problem::with_value(KEEP, &other, rule));
+            content.refuse(Problem::with_value(KEEP_KEY, &other, rule));
             Table::new()
         }
     };
@@ -134,7 +134,7 @@ fn keep(
     let earlier = names.clone();
     let mut kept = Vec::new();
     for (name, value) in table {
-        let key = join(KEEP, &name);
+        let key = join(KEEP_KEY, &name);
         if let Err(rule) = names.keep(&name, known_from) {
             content.refuse(Problem::at(key, rule));
             continue;

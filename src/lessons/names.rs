@@ -13,7 +13,7 @@ pub type KeptNumbers = BTreeMap<String, f64>;
 const RESERVED: [&str; 5] = ["with", "prediction", "and", "or", "abs"];
 
 /// The most numbers that a lesson keeps.
-const MOST_KEPT: usize = 100;
+const MOST_KEPT_NUMBERS: usize = 100;
 
 /// The names under which a lesson keeps numbers.
 #[derive(Clone, Debug, Default)]
@@ -34,9 +34,9 @@ impl KeptNames {
     pub(super) fn keep(&mut self, name: &str, from: usize) -> Result<(), String> {
         let mut characters = name.chars();
         let begins = characters.next().is_some_and(|c| c.is_ascii_alphabetic());
-        let rule = if self.kept.len() == MOST_KEPT {
+        let rule = if self.kept.len() == MOST_KEPT_NUMBERS {
             return Err(format!(
-                "is one too many: a lesson keeps at most {MOST_KEPT} numbers"
+                "is one too many: a lesson keeps at most {MOST_KEPT_NUMBERS} numbers"
             ));
         } else if !begins || !characters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
             "must begin with a letter and go on with letters, digits and _, none of them accented"

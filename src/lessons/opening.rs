@@ -14,7 +14,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// The longest file that is read as a lesson, bytes.
-pub const LONGEST: u64 = 1 << 20;
+pub const LONGEST_LESSON_FILE: u64 = 1 << 20;
 
 /// Opens what NAME names: a shipped lesson, or else a file: one whose name holds a `/` or ends in `.md`.
 pub fn open(name: &str) -> Result<Lesson, Problems> {
@@ -102,14 +102,14 @@ fn text_of(path: &Path) -> Result<String, Problem> {
     let file = File::open(path).map_err(cannot)?;
     let length = file.metadata().map_or(0, |file| file.len());
     let mut bytes = Vec::new();
-    if length <= LONGEST {
-        let mut start = file.take(LONGEST + 1);
+    if length <= LONGEST_LESSON_FILE {
+        let mut start = file.take(LONGEST_LESSON_FILE + 1);
         start.read_to_end(&mut bytes).map_err(cannot)?;
     }
     let length = length.max(bytes.len() as u64);
-    if length > LONGEST {
+    if length > LONGEST_LESSON_FILE {
         return Err(whole(format!(
-            "is {length} bytes long: a lesson has at most 1 MiB ({LONGEST} bytes)"
+            "is {length} bytes long: a lesson has at most 1 MiB ({LONGEST_LESSON_FILE} bytes)"
         )));
     }
     String::from_utf8(bytes).map_err(|error| {

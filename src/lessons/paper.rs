@@ -231,17 +231,17 @@ fn arms(c: char) -> Option<(&'static [(f64, f64)], f64)> {
     const LEFT: (f64, f64) = (0.0, 0.5);
     const RIGHT: (f64, f64) = (1.0, 0.5);
     const UP: (f64, f64) = (0.5, 0.0);
-    const DOWN: (f64, f64) = (0.5, 1.0);
+    const DOWN_STROKE: (f64, f64) = (0.5, 1.0);
     let ends: &[_] = match c {
         '─' => &[LEFT, RIGHT],
         '═' => return Some((&[LEFT, RIGHT], 1.5)),
-        '│' => &[UP, DOWN],
-        '┌' => &[RIGHT, DOWN],
-        '┐' => &[LEFT, DOWN],
+        '│' => &[UP, DOWN_STROKE],
+        '┌' => &[RIGHT, DOWN_STROKE],
+        '┐' => &[LEFT, DOWN_STROKE],
         '└' => &[RIGHT, UP],
         '┘' => &[LEFT, UP],
-        '├' => &[UP, DOWN, RIGHT],
-        '┤' => &[UP, DOWN, LEFT],
+        '├' => &[UP, DOWN_STROKE, RIGHT],
+        '┤' => &[UP, DOWN_STROKE, LEFT],
         _ => return None,
     };
     Some((ends, 0.5))

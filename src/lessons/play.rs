@@ -10,7 +10,7 @@ use crate::journal::expression::Expression;
 use crate::lab::Lab;
 use crate::lab::command::Command;
 use crate::scenario::{Problem, Problems};
-use crate::text::number::{NONE, significant};
+use crate::text::number::{NOT_AVAILABLE, significant};
 use indicatif::HumanCount;
 use std::ops::ControlFlow;
 
@@ -107,7 +107,7 @@ impl<'a> LessonWalk<'a> {
     fn numbers_of(&self, expression: &Expression) -> String {
         let number = |name: &str| {
             let number = names::number(name, &self.lab, &self.kept);
-            let number = number.map_or(NONE.to_owned(), |number| significant(number, 6));
+            let number = number.map_or(NOT_AVAILABLE.to_owned(), |number| significant(number, 6));
             format!("{name} is {number}")
         };
         let all: Vec<_> = expression.names().map(number).collect();
@@ -120,7 +120,10 @@ impl<'a> LessonWalk<'a> {
             let names: Vec<_> = expression.names().collect();
             let is_of_compare = names.contains(&"with") || names.contains(&"prediction");
             if !is_of_compare && names::value(expression, &self.lab, &self.kept).is_none() {
-                let rule = format!("is {NONE} on this page: {}", self.numbers_of(expression));
+                let rule = format!(
+                    "is {NOT_AVAILABLE} on this page: {}",
+                    self.numbers_of(expression)
+                );
                 let key = format!("{{{}}}", expression.text());
                 found.add(|| on_line(line, Problem::at(key, rule)));
             }
@@ -136,7 +139,7 @@ impl<'a> LessonWalk<'a> {
                 && let Some(with) = &compare.with
                 && compare.came_out(&self.lab, &self.kept).is_none()
             {
-                let rule = format!("is {NONE} on this page: {}", self.numbers_of(with));
+                let rule = format!("is {NOT_AVAILABLE} on this page: {}", self.numbers_of(with));
                 found.add(|| on_line(compare.line, Problem::at("compare.with", rule)));
             }
         }

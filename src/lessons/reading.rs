@@ -6,7 +6,7 @@
 //! An HTML comment on lines of its own is no part of the lesson.
 
 pub use super::opening::{
-    LONGEST, full_name, is_file_name, open, open_again, read_again, read_file,
+    LONGEST_LESSON_FILE, full_name, is_file_name, open, open_again, read_again, read_file,
 };
 
 use super::blocks::{self, BlockReader};
@@ -19,9 +19,9 @@ use crate::scenario::{Problem, Problems};
 use crate::text::printable::is_steering;
 use std::collections::BTreeSet;
 
-const MOST_LINES: usize = 20_000;
+const MOST_LESSON_LINES: usize = 20_000;
 /// The most blocks of a lesson, its pages included.
-const MOST_BLOCKS: usize = 1000;
+const MOST_LESSON_BLOCKS: usize = 1000;
 
 /// Reads `text`, the content of the file `origin`, as a lesson.
 pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
@@ -30,9 +30,10 @@ pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
     let one = |problem| Problems::one(origin, problem);
     let lines = Lines::of(&text);
     plain(&text, &lines).map_err(one)?;
-    let elements = structure(&text, &lines, &blocks::WORDS).map_err(one)?;
-    if elements.len() > MOST_BLOCKS {
-        let rule = format!("has more than {MOST_BLOCKS} pages and blocks, the most of a lesson");
+    let elements = structure(&text, &lines, &blocks::BLOCK_WORDS).map_err(one)?;
+    if elements.len() > MOST_LESSON_BLOCKS {
+        let rule =
+            format!("has more than {MOST_LESSON_BLOCKS} pages and blocks, the most of a lesson");
         return Err(one(Problem::at("", rule)));
     }
     let mut assembly = Assembly::default();
@@ -48,8 +49,8 @@ pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
 /// Checks that `text` is short enough and has no character that could steer a terminal.
 fn plain(text: &str, lines: &Lines) -> Result<(), Problem> {
     let count = text.matches('\n').count();
-    if count > MOST_LINES {
-        let rule = format!("has {count} lines: a lesson has at most {MOST_LINES}");
+    if count > MOST_LESSON_LINES {
+        let rule = format!("has {count} lines: a lesson has at most {MOST_LESSON_LINES}");
         return Err(Problem::at("", rule));
     }
     let mut characters = text.char_indices();
@@ -199,8 +200,8 @@ impl Assembly {
                 text: inside.to_owned(),
             }));
         }
-        if !blocks::WORDS.contains(&word) {
-            let near = nearest(word, blocks::WORDS.into_iter().chain(LANGUAGES));
+        if !blocks::BLOCK_WORDS.contains(&word) {
+            let near = nearest(word, blocks::BLOCK_WORDS.into_iter().chain(LANGUAGES));
             let also = if near.starts_with("did you mean") {
                 format!(" (shown as they are: {})", listed(LANGUAGES.into_iter()))
             } else {

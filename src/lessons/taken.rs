@@ -18,8 +18,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How long the pages before one may take to be carried out: no key is answered meanwhile.
-const LONGEST: Duration = Duration::from_secs(5);
-const TOO_LONG: &str =
+const LONGEST_PAGE_REPLAY: Duration = Duration::from_secs(5);
+const REPLAY_TOO_LONG: &str =
     "the pages before this one take too long: its lab block should open a run of its own";
 
 #[derive(Debug)]
@@ -221,7 +221,7 @@ impl OpenLesson {
         let last = stages.last().filter(|last| last.page.number == page);
         let last = last.filter(|_| !at_once);
         let begin = Instant::now();
-        let is_late = || begin.elapsed() > LONGEST;
+        let is_late = || begin.elapsed() > LONGEST_PAGE_REPLAY;
         lab.set_undo_floor(false);
         for stage in &stages[..stages.len() - usize::from(last.is_some())] {
             stage.carry_out(lab, &mut self.place.kept, |_, _| {
@@ -232,7 +232,7 @@ impl OpenLesson {
                 }
             })?;
             if is_late() {
-                return Err(TOO_LONG.to_owned());
+                return Err(REPLAY_TOO_LONG.to_owned());
             }
         }
         match last {

@@ -15,10 +15,10 @@ use pulldown_cmark::{Event, Parser, Tag};
 use std::ops::Range;
 
 /// Significant digits of a number without a format.
-const DIGITS: usize = 4;
+const LESSON_NUMBER_DIGITS: usize = 4;
 /// The most digits after the point.
-const MOST_DIGITS: usize = 12;
-const MOST_TOLD: usize = 100;
+const MOST_DECIMALS: usize = 12;
+const MOST_TEXT_PROBLEMS: usize = 100;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LessonText {
@@ -47,10 +47,10 @@ impl TextFormat {
     /// `number` as it is written; "n/a" where there is none.
     pub fn written(self, number: Option<f64>) -> String {
         let Some(number) = number.filter(|number| number.is_finite()) else {
-            return number::NONE.to_owned();
+            return number::NOT_AVAILABLE.to_owned();
         };
         match self {
-            Self::Short => number::significant(number, DIGITS),
+            Self::Short => number::significant(number, LESSON_NUMBER_DIGITS),
             Self::Fixed(digits) => number::fixed(number, digits),
             Self::Exponent(digits) => number::exponent(number, digits),
         }
@@ -67,7 +67,10 @@ impl TextFormat {
             Some(digits) => (digits, Self::Exponent),
             None => (digits, Self::Fixed),
         };
-        let digits = digits.parse().ok().filter(|digits| *digits <= MOST_DIGITS);
+        let digits = digits
+            .parse()
+            .ok()
+            .filter(|digits| *digits <= MOST_DECIMALS);
         digits.map(format).ok_or_else(wrong)
     }
 }
@@ -104,7 +107,7 @@ impl LessonText {
                 Err((key, rule)) => {
                     let lines = source[..open].matches('\n').count();
                     problems.push(on_line(line + lines, Problem::at(key, rule)));
-                    if problems.len() == MOST_TOLD {
+                    if problems.len() == MOST_TEXT_PROBLEMS {
                         break;
                     }
                 }

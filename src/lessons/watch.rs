@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 /// The time between two looks.
-const EVERY: Duration = Duration::from_secs(1);
+const LESSON_WATCH_INTERVAL: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug)]
 pub struct Watch {
@@ -30,7 +30,7 @@ impl Watch {
         if now < self.next {
             return false;
         }
-        self.next = now + EVERY;
+        self.next = now + LESSON_WATCH_INTERVAL;
         let state = state(&self.path);
         let has_changed = state.is_some() && state != self.seen;
         if has_changed {

@@ -18,7 +18,7 @@ use std::fs::File as Opened;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
-use parted::{BROKEN, Extracted, LONGEST_TEXT, NONE, packed};
+use parted::{BROKEN, Extracted, LONGEST_TEXT, NO_RUN_TEXT, packed};
 
 /// The longest file of a figure that is read, bytes.
 const LONGEST_FIGURE: u64 = 128 << 20;
@@ -27,7 +27,7 @@ const LONGEST_HEAD: usize = 256 << 10;
 /// Data and tables that are longer when compressed do not travel, bytes.
 const MOST_DATA: usize = 1 << 20;
 
-const MARK: &str = "# gyrolab figure, sha256 ";
+const FIGURE_MARK: &str = "# gyrolab figure, sha256 ";
 /// The key of what was asked of a picture that is the lab's screen, and no figure.
 pub const SCREEN: &str = "screen";
 
@@ -104,13 +104,13 @@ impl Origin {
         let head = head.ok().filter(|head| head.len() <= LONGEST_HEAD)?;
         let contents: String = self.files.iter().map(|file| file.text.as_str()).collect();
         let rest = format!(", head {}\n{head}{contents}", head.len());
-        let text = format!("{MARK}{}{rest}", sha256(rest.as_bytes()));
+        let text = format!("{FIGURE_MARK}{}{rest}", sha256(rest.as_bytes()));
         (text.len() <= LONGEST_TEXT).then_some(text)
     }
 
     /// What the carried `text` holds.
     fn read(text: &str) -> Result<Self, String> {
-        let rest = text.strip_prefix(MARK).ok_or(BROKEN)?;
+        let rest = text.strip_prefix(FIGURE_MARK).ok_or(BROKEN)?;
         let (sum, rest) = rest.split_at_checked(64).ok_or(BROKEN)?;
         if sum != sha256(rest.as_bytes()) {
             return Err(
@@ -164,7 +164,7 @@ impl FileFormat {
         match self {
             Self::Svg => svg::END_OF_FILE,
             Self::Pdf => b"",
-            Self::Png => png::END,
+            Self::Png => png::IEND_CHUNK,
         }
     }
 
@@ -212,7 +212,7 @@ impl FigureFile {
     ///
     /// A file may be large: it is neither copied, nor are two copies of its text kept with it for longer than is needed.
     pub fn of(mut file: Vec<u8>) -> Result<Self, String> {
-        let form = FileFormat::of(&file).ok_or(NONE)?;
+        let form = FileFormat::of(&file).ok_or(NO_RUN_TEXT)?;
         let Extracted { carrier, text } = form.part(&file)?;
         let text = String::from_utf8(text).map_err(|_| BROKEN)?;
         let (before, rest) = file.split_at(carrier.start);

@@ -5,7 +5,7 @@ use std::ops::Range;
 /// The longest text that a figure carries, bytes.
 pub const LONGEST_TEXT: usize = 64 << 20;
 
-pub const NONE: &str =
+pub const NO_RUN_TEXT: &str =
     "holds no run: another program drew or rewrote it, or its metadata was stripped";
 pub const TWO: &str = "holds the metadata of two figures: nothing says which one is its own";
 pub const BROKEN: &str = "its metadata is damaged";
@@ -17,8 +17,8 @@ pub struct Extracted {
 }
 
 pub fn packed(bytes: &[u8]) -> Vec<u8> {
-    const COMPRESSION: u8 = 9;
-    miniz_oxide::deflate::compress_to_vec_zlib(bytes, COMPRESSION)
+    const PAYLOAD_COMPRESSION: u8 = 9;
+    miniz_oxide::deflate::compress_to_vec_zlib(bytes, PAYLOAD_COMPRESSION)
 }
 
 pub fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, &'static str> {
@@ -30,6 +30,6 @@ pub fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, &'static str> {
 pub fn place(file: &[u8], mark: &[u8]) -> Result<usize, &'static str> {
     let places = file.windows(mark.len()).enumerate();
     let mut places = places.filter(|(_, window)| *window == mark);
-    let (place, _) = places.next().ok_or(NONE)?;
+    let (place, _) = places.next().ok_or(NO_RUN_TEXT)?;
     places.next().map_or(Ok(place), |_| Err(TWO))
 }

@@ -3,10 +3,10 @@
 
 use super::parted::{BROKEN, Extracted, packed, place, unpacked};
 
-const MARK: &str = "\n% gyrolab figure\n";
+const PDF_MARK: &str = "\n% gyrolab figure\n";
 const STREAM: &[u8] = b"\nstream\n";
 /// What readers call the attachment.
-const NAME: &str = "gyrolab-figure.txt";
+const ATTACHMENT_NAME: &str = "gyrolab-figure.txt";
 /// The tail of a file in which its trailer stands, bytes.
 const TAIL: usize = 256;
 
@@ -24,14 +24,14 @@ pub fn carrier(picture: &[u8], text: &str) -> Option<Vec<u8>> {
     let (size, before) = (number("/Size")?, number("startxref")?);
     let (attached, stream) = (size, size + 1);
     let content = packed(text.as_bytes());
-    let mut update = MARK.as_bytes().to_vec();
+    let mut update = PDF_MARK.as_bytes().to_vec();
     let catalog_at = picture.len() + update.len();
     update.extend(format!(
-        "1 0 obj\n<</Type/Catalog/Pages 2 0 R/Names<</EmbeddedFiles<</Names[({NAME}) {attached} 0 R]>>>>>>\nendobj\n"
+        "1 0 obj\n<</Type/Catalog/Pages 2 0 R/Names<</EmbeddedFiles<</Names[({ATTACHMENT_NAME}) {attached} 0 R]>>>>>>\nendobj\n"
     ).bytes());
     let attached_at = picture.len() + update.len();
     update.extend(
-        format!("{attached} 0 obj\n<</Type/Filespec/F({NAME})/EF<</F {stream} 0 R>>>>\nendobj\n")
+        format!("{attached} 0 obj\n<</Type/Filespec/F({ATTACHMENT_NAME})/EF<</F {stream} 0 R>>>>\nendobj\n")
             .bytes(),
     );
     let stream_at = picture.len() + update.len();
@@ -51,7 +51,7 @@ pub fn carrier(picture: &[u8], text: &str) -> Option<Vec<u8>> {
 }
 
 pub fn part(file: &[u8]) -> Result<Extracted, &'static str> {
-    let begin = place(file, MARK.as_bytes())?;
+    let begin = place(file, PDF_MARK.as_bytes())?;
     let update = &file[begin..];
     let stream = update
         .windows(STREAM.len())

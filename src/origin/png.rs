@@ -1,13 +1,13 @@
 //! PNG: the text is the last chunk before the end, a compressed iTXt with the keyword `gyrolab`.
 
-use super::parted::{Extracted, NONE, TWO, packed, unpacked};
+use super::parted::{Extracted, NO_RUN_TEXT, TWO, packed, unpacked};
 
 pub const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 const KEYWORD: &[u8] = b"iTXtgyrolab\0";
 /// Compressed, by zlib; of no language, and its keyword not translated.
 const COMPRESSED: &[u8] = b"\x01\0\0\0";
 /// The chunk IEND.
-pub const END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
+pub const IEND_CHUNK: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
 
 /// Returns the chunk that carries `text`.
 pub fn carrier(text: &str) -> Option<Vec<u8>> {
@@ -27,10 +27,10 @@ pub fn part(file: &[u8]) -> Result<Extracted, &'static str> {
         }
         at = end;
     }
-    let (content, begin, end) = found.ok_or(NONE)?;
+    let (content, begin, end) = found.ok_or(NO_RUN_TEXT)?;
     Ok(Extracted {
         carrier: begin..end,
-        text: unpacked(content.strip_prefix(COMPRESSED).ok_or(NONE)?)?,
+        text: unpacked(content.strip_prefix(COMPRESSED).ok_or(NO_RUN_TEXT)?)?,
     })
 }
 

@@ -6,14 +6,14 @@ use super::parted::{BROKEN, Extracted, place};
 const BEGIN: &str = "<metadata>\n";
 /// The begin, with the first letters of the text.
 const BEGIN_OF_TEXT: &[u8] = b"<metadata>\n# gyrolab figure, ";
-const END: &str = "\n</metadata>\n";
+const METADATA_END: &str = "\n</metadata>\n";
 pub const END_OF_FILE: &[u8] = b"</svg>\n";
 
 /// Returns the element that carries `text`.
 pub fn carrier(text: &str) -> Vec<u8> {
     let mut carrier = BEGIN.to_owned();
     escape(text, &mut carrier);
-    carrier.push_str(END);
+    carrier.push_str(METADATA_END);
     carrier.into_bytes()
 }
 
@@ -22,7 +22,7 @@ pub fn part(file: &[u8]) -> Result<Extracted, &'static str> {
     let rest = &file[begin + BEGIN.len()..];
     let end = rest.iter().position(|byte| *byte == b'<').ok_or(BROKEN)?;
     let (text, after) = rest.split_at(end.saturating_sub(1));
-    let after = after.strip_prefix(END.as_bytes()).ok_or(BROKEN)?;
+    let after = after.strip_prefix(METADATA_END.as_bytes()).ok_or(BROKEN)?;
     Ok(Extracted {
         carrier: begin..file.len() - after.len(),
         text: unescaped(text).ok_or(BROKEN)?,

@@ -1,7 +1,7 @@
 //! Which slips make the rows of a file: each alone, then two together.
 
 use super::follow::{ReferenceRun, Rounding, RowAgreement, difference, follow};
-use super::plan::{PARTS, Plan};
+use super::plan::{PLAN_PARTS, Plan};
 use super::rows::ProgramRows;
 use super::slips::{Mutations, Other, SLIPS};
 use super::step::{MutantStepper, Order, Real};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 const ANOTHER_STEP: &str = "another-dt";
 const ANOTHER_START: &str = "start-of-another-preset";
 /// The number of slips that are looked for.
-pub const COUNT: usize = SLIPS.len() + 2;
+pub const SLIP_COUNT: usize = SLIPS.len() + 2;
 
 /// The presets whose start may be left in a program: those that a plan can be made of, the report's own first.
 const STARTS: [&str; 4] = ["method-1", "method-2", "wobble-push", "every-slip"];
@@ -205,11 +205,11 @@ impl Variant {
             let Some(other) = scenario.ok().and_then(|it: Scenario| Plan::of(&it)) else {
                 continue;
             };
-            for parts in 1..1_u8 << PARTS {
+            for parts in 1..1_u8 << PLAN_PARTS {
                 let Some(start) = plan.with_parts(&other, parts) else {
                     break;
                 };
-                let places = (0..PARTS).filter(|part| parts & (1 << part) != 0);
+                let places = (0..PLAN_PARTS).filter(|part| parts & (1 << part) != 0);
                 let both = places.map(|part| (other.part(part), plan.part(part)));
                 let (theirs, own): (Vec<_>, Vec<_>) = both.unzip();
                 let is_other = theirs.iter().zip(&own).all(|(theirs, own)| theirs != own);

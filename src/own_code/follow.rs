@@ -11,9 +11,9 @@ const PARTED: f64 = 0.1;
 /// Errors of single precision are at most this many times those of the copies in single precision.
 const ERRORS: f64 = 10.0;
 /// Rounding of numbers in single precision, in units of the largest: of the start, and of what is written.
-const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
+const SINGLE_ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 /// The same of the whole vector, which few digits cannot tell from single precision.
-const ROUNDING_OF_ALL: f64 = 2.0 * ROUNDING;
+const ROUNDING_OF_ALL: f64 = 2.0 * SINGLE_ROUNDING;
 /// The largest room for errors of single precision that leaves something to compare, as a share of the vector.
 const MOST_SLACK: f64 = 0.02;
 /// The offsets that are tried, in rows.
@@ -121,7 +121,7 @@ impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
                 numbers.fold(0.0, f64::max)
             };
             let places = if place < 3 { vector.clone() } else { own };
-            let slack = ERRORS * most(places.clone(), 0) + ROUNDING * most(places, 1);
+            let slack = ERRORS * most(places.clone(), 0) + SINGLE_ROUNDING * most(places, 1);
             match self.rounding {
                 Rounding::FewDigits => slack + ROUNDING_OF_ALL * most(vector, 1),
                 _ => slack,

@@ -27,7 +27,7 @@ use rows::{ProgramColumn, SINGLE_DIGITS};
 use serde::Serialize;
 use slips::Mutations;
 use std::sync::Arc;
-pub use step::TRACED;
+pub use step::TRACED_SYMBOL;
 use step::{MutantStepper, Order};
 
 /// The precision in which a program computes, as far as its rows show it.
@@ -96,8 +96,10 @@ impl SlipTrial {
     /// The numbers of its step `step`, phase by phase; `None` for the steps before the first that differs, and for those so
     /// much later that they take long to compute.
     pub fn numbers(&self, step: u64) -> Option<Vec<(&'static str, WorkedQuantity)>> {
-        const MOST: u64 = 1000;
-        let later = step.checked_sub(self.first).filter(|later| *later < MOST)?;
+        const MOST_OFFSET_ROWS: u64 = 1000;
+        let later = step
+            .checked_sub(self.first)
+            .filter(|later| *later < MOST_OFFSET_ROWS)?;
         let mut program = self.program.clone();
         for _ in 0..later {
             program.step();

@@ -35,7 +35,7 @@ struct ProgramStart {
 }
 
 /// What of a plan may be left from another preset: push, rim, top, tilt and L.
-pub(super) const PARTS: usize = 5;
+pub(super) const PLAN_PARTS: usize = 5;
 
 impl Plan {
     /// The plan of `scenario`; `None` where it is more than the report's step does: another scheme, friction, a rotor, edits,
@@ -101,7 +101,7 @@ impl Plan {
         let (count, trace) = (self.points.len(), self.traced);
         let is_alike = self.rim > 0 && (self.rim, count) == (other.rim, other.points.len());
         let mut plan = self.clone();
-        for part in (0..PARTS).filter(|part| parts & (1 << part) != 0) {
+        for part in (0..PLAN_PARTS).filter(|part| parts & (1 << part) != 0) {
             match part {
                 0 => plan.pushes.clone_from(&other.pushes),
                 1 => plan.points[..self.rim].clone_from_slice(&other.points[..self.rim]),

@@ -1,6 +1,6 @@
 //! The file that a program has written: which columns are compared, to how many digits, and which time step each row is.
 
-use super::times::{self, STEP, TIME, Times};
+use super::times::{self, STEP_NAME, TIME_NAME, Times};
 use crate::data::{map_option, name_columns, time_like};
 use crate::scenario::csv::{Csv, Naming, Renaming};
 use crate::scenario::problem::{at_line, listed};
@@ -10,10 +10,12 @@ use crate::text::printable::brief;
 
 /// The columns that are read: those that are compared, the traced point, world frame, and L about the pivot; then those that
 /// say which step a row is.
-const NAMES: [&str; 8] = ["x_m", "y_m", "z_m", "Lx_Js", "Ly_Js", "Lz_Js", STEP, TIME];
-pub const COLUMNS: &[&str] = NAMES.split_at(6).0;
+const ROW_COLUMN_NAMES: [&str; 8] = [
+    "x_m", "y_m", "z_m", "Lx_Js", "Ly_Js", "Lz_Js", STEP_NAME, TIME_NAME,
+];
+pub const COMPARED_COLUMNS: &[&str] = ROW_COLUMN_NAMES.split_at(6).0;
 /// The most values of one file, rows times columns.
-const MOST_VALUES: usize = 1_000_000;
+const MOST_ROW_VALUES: usize = 1_000_000;
 /// The digits of single precision, which a column needs to show it.
 pub const SINGLE_DIGITS: i32 = 7;
 /// The digits of double precision.
@@ -21,7 +23,7 @@ const MOST_DIGITS: i32 = 17;
 /// The digits with which a column shows that its values are no numbers of single precision.
 const TELLING_DIGITS: i32 = 9;
 /// By how much right programs may differ, m and J s, times the value where it is above 1.
-const WITHIN: [f64; 2] = [1e-8, 1e-6];
+const AGREEMENT_TOLERANCES: [f64; 2] = [1e-8, 1e-6];
 
 #[derive(Clone, Debug)]
 pub struct ProgramColumn {
@@ -84,7 +86,7 @@ impl ProgramColumn {
     }
 
     pub fn name(&self) -> &'static str {
-        NAMES[self.place]
+        ROW_COLUMN_NAMES[self.place]
     }
 
     /// The unit of the last digit of `value` in this column. Where all is 0 without decimals, 0 is meant.
@@ -134,7 +136,7 @@ impl ProgramColumn {
 
 /// By how much right programs may differ in the column of this place.
 pub fn within(place: usize, value: f64) -> f64 {
-    WITHIN[place / 3] * value.abs().max(1.0)
+    AGREEMENT_TOLERANCES[place / 3] * value.abs().max(1.0)
 }
 
 impl ProgramRows {
@@ -157,7 +159,7 @@ impl ProgramRows {
             .columns
             .iter()
             .map(|column| format!(",{}", column.name()));
-        let mut text = TIME.to_owned() + &names.collect::<String>() + "\n";
+        let mut text = TIME_NAME.to_owned() + &names.collect::<String>() + "\n";
         for (row, step) in self.times.steps.of_rows.iter().enumerate() {
             text += &shortest((*step as f64 * dt).max(0.0));
             let values = self.columns.iter().map(|column| column.values[row]);
@@ -180,7 +182,7 @@ pub fn read(
 ) -> Result<ProgramRows, Problems> {
     let cells = renamed(text, map)?;
     let mut found = Problems::default();
-    let names = NAMES.iter().enumerate();
+    let names = ROW_COLUMN_NAMES.iter().enumerate();
     let places = names.filter_map(|(place, name)| {
         let at = cells.names.iter().position(|own| own == name)?;
         Some(ProgramColumn::read(place, at, &cells, &mut found))
@@ -197,16 +199,19 @@ pub fn read(
         return Err(vec![at_line(line, Problem::at(name, rule))].into());
     }
     columns.iter_mut().for_each(|it| it.values.truncate(count));
-    let others = columns.split_off(columns.partition_point(|it| it.place < COLUMNS.len()));
+    let others = columns.split_off(columns.partition_point(|it| it.place < COMPARED_COLUMNS.len()));
     if columns.is_empty() {
         return Err(nothing_to_compare(&cells).into());
     }
     let find = |name| others.iter().find(|column| column.name() == name);
-    let step = find(STEP).map(|column| &column.values[..]);
-    let time = find(TIME).map(|it| (&it.values[..], it.unit(it.values[count - 1])));
+    let step = find(STEP_NAME).map(|column| &column.values[..]);
+    let time = find(TIME_NAME).map(|it| (&it.values[..], it.unit(it.values[count - 1])));
     let line = |row: usize| cells.rows[row].0;
     let times = times::of(count, step, time, every, time_step_s, &line)?;
-    let left_out = cells.names.iter().filter(|name| !NAMES.contains(&&***name));
+    let left_out = cells
+        .names
+        .iter()
+        .filter(|name| !ROW_COLUMN_NAMES.contains(&&***name));
     Ok(ProgramRows {
         left_out: left_out.cloned().collect(),
         columns,
@@ -218,23 +223,25 @@ pub fn read(
 
 /// The cells of `text` with the names of `map`.
 fn renamed(text: &str, map: &[Renaming]) -> Result<Csv, Problems> {
-    let mut cells = Csv::of(text, MOST_VALUES)?;
-    cells.rename(map, |name| NAMES.contains(&name))?;
+    let mut cells = Csv::of(text, MOST_ROW_VALUES)?;
+    cells.rename(map, |name| ROW_COLUMN_NAMES.contains(&name))?;
     if cells.titles.is_empty() {
-        name_columns(&mut cells, "", |name| NAMES.contains(&name)).map_err(|problems| {
-            let place = |problem| at_line(cells.line_of_names, problem);
-            Problems::from(problems.into_iter().map(place).collect::<Vec<_>>())
-        })?;
+        name_columns(&mut cells, "", |name| ROW_COLUMN_NAMES.contains(&name)).map_err(
+            |problems| {
+                let place = |problem| at_line(cells.line_of_names, problem);
+                Problems::from(problems.into_iter().map(place).collect::<Vec<_>>())
+            },
+        )?;
     }
     Ok(cells)
 }
 
 /// Why there is nothing to compare in `cells`.
 fn nothing_to_compare(cells: &Csv) -> Vec<Problem> {
-    let wanted = listed(COLUMNS.iter().copied());
+    let wanted = listed(COMPARED_COLUMNS.iter().copied());
     let rule = match cells.naming {
         Naming::Numbers => format!(
-            "has no line of names: write one above the rows, such as {STEP},{TIME},x_m (at least one of {wanted}), or say what the columns are, such as --map 1={STEP},2={TIME},3=x_m"
+            "has no line of names: write one above the rows, such as {STEP_NAME},{TIME_NAME},x_m (at least one of {wanted}), or say what the columns are, such as --map 1={STEP_NAME},2={TIME_NAME},3=x_m"
         ),
         Naming::Names => {
             let names = brief(&listed(cells.names.iter().map(String::as_str)), 200);
@@ -262,7 +269,7 @@ fn coordinates(cells: &Csv) -> Vec<(usize, String)> {
     }
     if found.is_empty() {
         let first = cells.names.iter().position(|name| !time_like(name));
-        found.push((first.unwrap_or(0), COLUMNS[0].to_owned()));
+        found.push((first.unwrap_or(0), COMPARED_COLUMNS[0].to_owned()));
     }
     found
 }

@@ -32,7 +32,7 @@ pub enum Order {
 }
 
 /// The symbol of the traced point after the step.
-pub const TRACED: &str = "new X";
+pub const TRACED_SYMBOL: &str = "new X";
 
 /// How a step turns the points: about u by an angle, with the matrix R.
 #[derive(Clone, Copy, Debug)]
@@ -164,7 +164,7 @@ impl<T: Real> MutantStepper<T> {
             ("angular velocity", "Ω", "rad/s", vector(&omega)),
             (
                 "new positions",
-                TRACED,
+                TRACED_SYMBOL,
                 "m",
                 vector(&self.points[self.traced].0),
             ),

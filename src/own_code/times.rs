@@ -4,16 +4,16 @@ use crate::scenario::problem::at_line;
 use crate::scenario::{Problem, Problems};
 use crate::text::number::{rounded, shortest};
 
-pub const STEP: &str = "step";
-pub const TIME: &str = "t_s";
+pub const STEP_NAME: &str = "step";
+pub const TIME_NAME: &str = "t_s";
 /// The last step that is computed.
-const MOST_STEPS: f64 = 2e5;
+const LAST_COMPUTED_STEP: f64 = 2e5;
 /// By how much of it a time step may seem to differ, as times in single precision do.
 const SAME_WITHIN: f64 = 1e-3;
 /// How many steps of its own a program may have taken between two rows that a file has.
 const STEPS_A_ROW: [i64; 7] = [1, 2, 5, 10, 20, 50, 100];
 /// Other time steps that are tried where a file has no times, as multiples of the scenario's.
-const OTHERS: [f64; 8] = [0.1, 10.0, 0.01, 100.0, 0.5, 2.0, 0.2, 5.0];
+const OTHER_TIME_STEPS: [f64; 8] = [0.1, 10.0, 0.01, 100.0, 0.5, 2.0, 0.2, 5.0];
 
 /// The steps of the rows.
 #[derive(Clone, Debug)]
@@ -41,15 +41,15 @@ pub(super) fn of(
     time_step_s: f64,
     line: &dyn Fn(usize) -> u64,
 ) -> Result<Times, Problems> {
-    let every = every.map(|every| every.min(MOST_STEPS as u64) as i64);
+    let every = every.map(|every| every.min(LAST_COMPUTED_STEP as u64) as i64);
     let times = match (step, time) {
         (Some(step), time) => by_step(step, time, time_step_s, line)?,
         (None, Some((times, unit))) => by_time(times, unit, every, time_step_s)?,
         (None, None) => Times::at(RowSteps::evenly(count, 0, every.unwrap_or(1)), time_step_s),
     };
     let last = times.steps.of_rows.last().copied().unwrap_or(0);
-    if last as f64 > MOST_STEPS {
-        let rule = format!("is step {last}: steps up to {MOST_STEPS} are computed");
+    if last as f64 > LAST_COMPUTED_STEP {
+        let rule = format!("is step {last}: steps up to {LAST_COMPUTED_STEP} are computed");
         return Err(vec![at_line(line(count - 1), Problem::at("its row", rule))].into());
     }
     Ok(times)
@@ -68,7 +68,7 @@ impl Times {
     fn at(steps: RowSteps, time_step_s: f64) -> Self {
         let other = |factor: f64| (rounded(time_step_s * factor, 12), steps.clone());
         Self {
-            others: OTHERS.into_iter().map(other).collect(),
+            others: OTHER_TIME_STEPS.into_iter().map(other).collect(),
             own_s: None,
             steps,
         }
@@ -82,14 +82,14 @@ fn by_step(
     line: &dyn Fn(usize) -> u64,
 ) -> Result<Times, Problems> {
     for (row, number) in numbers.iter().enumerate() {
-        let rule = if number.fract() != 0.0 || !(-1.0..=MOST_STEPS).contains(number) {
+        let rule = if number.fract() != 0.0 || !(-1.0..=LAST_COMPUTED_STEP).contains(number) {
             "must be the number of a step: 0, 1, 2 and so on, to 200000"
         } else if row > 0 && *number <= numbers[row - 1] {
             "must be greater than in the row above: one run in a file"
         } else {
             continue;
         };
-        let (value, problem) = (shortest(*number), Problem::at(STEP, rule));
+        let (value, problem) = (shortest(*number), Problem::at(STEP_NAME, rule));
         return Err(vec![at_line(line(row), Problem { value, ..problem })].into());
     }
     let of_rows: Vec<i64> = numbers.iter().map(|number| *number as i64).collect();
@@ -118,7 +118,7 @@ fn by_time(
     let rule =
         "is not one step or so many after the other: print the number of the step too, as step";
     let even = even_gap(times, unit, time_step_s);
-    let (gap, off) = even.ok_or_else(|| vec![Problem::at(TIME, rule)])?;
+    let (gap, off) = even.ok_or_else(|| vec![Problem::at(TIME_NAME, rule)])?;
     let stride = every.unwrap_or_else(|| ((gap / time_step_s).round() as i64).max(1));
     let is_own = is_same(gap / stride as f64, time_step_s, off / stride as f64);
     let first = |dt: f64| (times[0] / dt).round() as i64;

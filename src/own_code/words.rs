@@ -1,8 +1,8 @@
 //! What has come out of the comparison of own code with the scheme, as a verdict and in words.
 
-use super::explain::{COUNT, Explanation, MOST_FOR_PAIRS};
+use super::explain::{Explanation, MOST_FOR_PAIRS, SLIP_COUNT};
 use super::follow::{RowDifference, Worst};
-use super::rows::{COLUMNS, ProgramColumn, SINGLE_DIGITS};
+use super::rows::{COMPARED_COLUMNS, ProgramColumn, SINGLE_DIGITS};
 use super::slips::ANOTHER_READING;
 use super::{CheckOutcome, Explanations, Precision, Verdict};
 use crate::run::pushes;
@@ -12,11 +12,11 @@ use nalgebra::Vector3;
 
 /// The preset whose body and push show every slip.
 const EVERY_SLIP: &str = "every-slip";
-const UNITS: [&str; 2] = ["m", "J s"];
+const COLUMN_UNITS: [&str; 2] = ["m", "J s"];
 /// A point's distance from the pivot changes by less of it where rounding alone changes it.
 const LENGTHENED: f64 = 1e-3;
 /// Digits of the values that differ.
-const DIGITS: usize = 12;
+const DIFFERENCE_DIGITS: usize = 12;
 
 impl CheckOutcome<'_> {
     pub(super) fn verdict(&self) -> Verdict {
@@ -176,8 +176,9 @@ impl CheckOutcome<'_> {
             other => format!("the scheme {other} gives "),
         };
         let off = differing.iter().map(|(column, yours, scheme)| {
-            let [yours, scheme] = [yours, scheme].map(|value| significant(*value, DIGITS));
-            let (name, unit) = (bare(column.place), UNITS[column.place / 3]);
+            let [yours, scheme] =
+                [yours, scheme].map(|value| significant(*value, DIFFERENCE_DIGITS));
+            let (name, unit) = (bare(column.place), COLUMN_UNITS[column.place / 3]);
             format!(
                 "{name} is {yours} {unit}, {}{scheme}",
                 std::mem::take(&mut whose)
@@ -234,10 +235,10 @@ impl CheckOutcome<'_> {
     }
 
     fn unexplained(&self) -> String {
-        let mut text = format!("None of {COUNT} slips, nor two together, makes this file.");
+        let mut text = format!("None of {SLIP_COUNT} slips, nor two together, makes this file.");
         if !self.has_pairs {
             text = format!(
-                "None of {COUNT} slips makes this file. Two together are tried where rows differ from step {MOST_FOR_PAIRS} or sooner: write the first steps too."
+                "None of {SLIP_COUNT} slips makes this file. Two together are tried where rows differ from step {MOST_FOR_PAIRS} or sooner: write the first steps too."
             );
         }
         if let Some(closest) = &self.closest {
@@ -286,7 +287,7 @@ impl CheckOutcome<'_> {
     fn left_out(&self) -> Option<String> {
         let names = self.rows.left_out.iter().map(|name| brief(name, 40));
         let names = brief(&names.collect::<Vec<_>>().join(", "), 200);
-        let columns = COLUMNS.join(", ");
+        let columns = COMPARED_COLUMNS.join(", ");
         (!names.is_empty()).then(|| {
             format!("Left out: {names} (compared are {columns}; --map gives a column one of these names).")
         })
@@ -309,7 +310,7 @@ impl CheckOutcome<'_> {
 fn worst_of(worst: [Option<Worst>; 2]) -> String {
     let words = |worst: Worst| {
         let (off, column, step) = (short(worst.off), bare(worst.place), worst.step);
-        let unit = UNITS[worst.place / 3];
+        let unit = COLUMN_UNITS[worst.place / 3];
         format!("worst {off} {unit} in {column} at step {step}")
     };
     worst
@@ -371,6 +372,6 @@ fn shifted(offset: i64) -> Option<&'static str> {
 
 /// The name of a column without its unit.
 fn bare(place: usize) -> &'static str {
-    let name = COLUMNS[place];
+    let name = COMPARED_COLUMNS[place];
     name.split('_').next().unwrap_or(name)
 }

@@ -15,10 +15,10 @@ use std::fmt;
 
 /// A sum of two moments may be below the third by this part of the largest: it is the rounding of flat bodies, for which the
 /// two are equal.
-const ROUNDING: f64 = 1e-12;
+const MOMENT_SUM_ROUNDING: f64 = 1e-12;
 
 /// The points that stand for a part: its centre, without mass, and the six.
-pub const POINTS: usize = 7;
+pub const POINTS_PER_PART: usize = 7;
 
 /// A solid, in its own frame: its axis is z, its centre of mass the origin. Lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -164,7 +164,7 @@ fn distances(moments: &Vector3<f64>) -> Result<[f64; 3], PartError> {
     if !(a + b + c).is_finite() {
         return Err(PartError::OutOfRange);
     }
-    let rounding = ROUNDING * moments.amax();
+    let rounding = MOMENT_SUM_ROUNDING * moments.amax();
     let distance = |sum: f64, third: f64, rule: &'static str| match sum - third {
         difference if difference < -rounding => Err(PartError::Unreal(rule)),
         difference => Ok((1.5 * difference.max(0.0)).sqrt()),
@@ -233,7 +233,7 @@ impl PlacedSolid {
         if !about_center.sum().is_finite() {
             return Err(PartError::OutOfRange);
         }
-        if about_center.min() < -ROUNDING * per_mass.amax() {
+        if about_center.min() < -MOMENT_SUM_ROUNDING * per_mass.amax() {
             let ratios = about_pivot.iter().zip(&squares);
             let ratios = ratios.filter(|(_, square)| **square > 0.0);
             let nearer = ratios.fold(f64::INFINITY, |least, (own, square)| {
@@ -253,11 +253,11 @@ impl PlacedSolid {
 
     /// The points that stand for it, body frame: the centre, without mass, and then on each of its own directions x, y and
     /// axis the one before and the one behind the centre.
-    pub fn points(&self) -> [PointMass; POINTS] {
+    pub fn points(&self) -> [PointMass; POINTS_PER_PART] {
         let mass = self.mass / 6.0;
         let [x, y, z] = [0, 1, 2].map(|i| self.directions.column(i) * self.distances[i]);
         let six = [x, -x, y, -y, z, -z].map(|off| PointMass::new(self.centre + off, mass));
-        let mut points = [PointMass::new(self.centre, 0.0); POINTS];
+        let mut points = [PointMass::new(self.centre, 0.0); POINTS_PER_PART];
         points[1..].copy_from_slice(&six);
         points
     }

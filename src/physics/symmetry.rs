@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 ///
 /// The splitting schemes ask for equality to the rounding of a sum instead (`splitting::principal::ROUNDING`): what they
 /// take as zero is left out of every step.
-const WITHIN: f64 = 1e-9;
+const SYMMETRY_TOLERANCE: f64 = 1e-9;
 
 /// The largest difference of the moments across, as a share of their mean, with which the motion is still near to that of a
 /// symmetric top.
@@ -39,7 +39,7 @@ impl SymmetricTop {
     pub fn of(body: &Body) -> Option<Self> {
         let inertia = body.inertia();
         let largest = inertia.diagonal().amax();
-        let small = |moment: f64| moment.abs() <= WITHIN * largest;
+        let small = |moment: f64| moment.abs() <= SYMMETRY_TOLERANCE * largest;
         let even = small(inertia[(0, 0)] - inertia[(1, 1)])
             && small(inertia[(0, 1)])
             && small(inertia[(0, 2)])
@@ -47,7 +47,7 @@ impl SymmetricTop {
         let first = body.first_moment();
         // An offset c of the centre of mass counts against the size of the body: M c² against its moments.
         let size = (largest * body.mass()).sqrt();
-        let centred = first.x.abs().max(first.y.abs()) <= WITHIN * size;
+        let centred = first.x.abs().max(first.y.abs()) <= SYMMETRY_TOLERANCE * size;
         (even && centred).then(|| Self {
             across: 0.5 * (inertia[(0, 0)] + inertia[(1, 1)]),
             along: inertia[(2, 2)],
@@ -90,7 +90,7 @@ impl SymmetricTop {
     /// Whether the point `at` (body frame, m) of `body` is on its axle: forces there leave the closed form as it is.
     pub fn has_on_axle(&self, body: &Body, at: &Vector3<f64>) -> bool {
         let size = (self.across.max(self.along) / body.mass()).sqrt();
-        at.x.abs().max(at.y.abs()) <= WITHIN * size.max(at.z.abs())
+        at.x.abs().max(at.y.abs()) <= SYMMETRY_TOLERANCE * size.max(at.z.abs())
     }
 
     /// κ = I3/I1: below 1 a long axle, above 1 a flat body.

@@ -13,9 +13,9 @@ const HALF_PI_HEAD: f64 = 1.5707963267341256;
 const HALF_PI_TAIL: f64 = 6.077100506506192e-11;
 
 /// Below, the reduction's 20 bits are enough.
-const LARGEST: f64 = 1e6;
+const LARGEST_ANGLE: f64 = 1e6;
 /// Below, sin x = x and cos x = 1 in double precision, and the polynomials would lose the sign of -0.
-const SMALLEST: f64 = 1e-8;
+const SMALLEST_ANGLE: f64 = 1e-8;
 /// A remainder nearer to zero than this for each quarter turn taken off has lost bits in two parts.
 const CANCELLED: f64 = 1.862645149230957e-9; // 2^-29
 
@@ -28,7 +28,7 @@ const ROUNDER: f64 = 6755399441055744.0;
 #[inline]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     // One test for tiny, huge and NaN: the comparison is false for the last.
-    if !(SMALLEST..LARGEST).contains(&x.abs()) {
+    if !(SMALLEST_ANGLE..LARGEST_ANGLE).contains(&x.abs()) {
         return rare(x);
     }
     if x.abs() <= FRAC_PI_4 {
@@ -91,7 +91,7 @@ pub(super) fn kernels(angle: f64, rest: f64) -> (f64, f64) {
 #[cold]
 #[inline(never)]
 fn rare(x: f64) -> (f64, f64) {
-    if x.abs() < SMALLEST {
+    if x.abs() < SMALLEST_ANGLE {
         (x, 1.0)
     } else {
         libm::sincos(x)

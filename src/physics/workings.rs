@@ -8,7 +8,7 @@ use super::Loads;
 use nalgebra::{Matrix3, Vector3};
 
 /// Every name that a phase has, by which files and commands choose one: those of the report's scheme first, in its order.
-pub const NAMES: [&str; 19] = [
+pub const PHASE_NAMES: [&str; 19] = [
     "inertia",
     "angular velocity",
     "axis and angle",
@@ -31,10 +31,10 @@ pub const NAMES: [&str; 19] = [
 ];
 
 /// Rows between two sums that are stored.
-const EVERY: usize = 256;
+const ROWS_PER_SUM: usize = 256;
 /// Rows are added up in turn to so many sums, which are added last, as the report's scheme does it with its points: the
 /// sum of all rows is then the scheme's to the last bit.
-const LANES: usize = 2;
+const SUM_LANES: usize = 2;
 
 /// The workings of one time step.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -261,11 +261,11 @@ impl ColumnSums {
     /// The sums of `table`; its rows are visited once.
     pub fn of(table: &PointTable) -> Self {
         let columns = table.columns.len();
-        let mut lanes = vec![0.0; LANES * columns];
+        let mut lanes = vec![0.0; SUM_LANES * columns];
         let mut stored = lanes.clone();
         for (row, (_, cells)) in table.rows().enumerate() {
             add(&mut lanes, row, cells);
-            if (row + 1) % EVERY == 0 {
+            if (row + 1) % ROWS_PER_SUM == 0 {
                 stored.extend_from_slice(&lanes);
             }
         }
@@ -275,11 +275,11 @@ impl ColumnSums {
     /// The sum of each column over the first `rows` rows of `table`, which is the one they were made of.
     pub fn first(&self, table: &PointTable, rows: usize) -> Vec<f64> {
         let rows = rows.min(table.points.len());
-        let from = rows / EVERY;
-        let width = LANES * self.columns;
+        let from = rows / ROWS_PER_SUM;
+        let width = SUM_LANES * self.columns;
         let stored = self.stored.get(from * width..(from + 1) * width);
         let mut lanes = stored.map_or_else(|| vec![0.0; width], <[f64]>::to_vec);
-        for row in from * EVERY..rows {
+        for row in from * ROWS_PER_SUM..rows {
             add(&mut lanes, row, table.row(row));
         }
         let (even, odd) = lanes.split_at(self.columns);
@@ -288,7 +288,7 @@ impl ColumnSums {
 }
 
 fn add(lanes: &mut [f64], row: usize, cells: &[f64]) {
-    let begin = row % LANES * cells.len();
+    let begin = row % SUM_LANES * cells.len();
     for (sum, cell) in lanes[begin..].iter_mut().zip(cells) {
         *sum += cell;
     }

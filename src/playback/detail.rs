@@ -6,7 +6,7 @@
 
 use super::live::LiveRun;
 use super::recording::{RecordedCurve, Recording};
-use super::strip::{LEAST_SWING_DEG, Strip};
+use super::strip::{LEAST_DRAWN_SWING_DEG, Strip};
 use crate::analysis::Readouts;
 use crate::text::ladder;
 
@@ -14,7 +14,7 @@ const MOST_SWINGS: f64 = 12.0;
 /// With this number of swings or fewer in the window, a longer window is taken.
 const FEWEST_SWINGS: f64 = 4.0;
 /// When the run comes to the end of the window, the window moves on by this share of its length.
-const PAGE: f64 = 0.25;
+const WINDOW_ADVANCE: f64 = 0.25;
 /// x is shown once it turns `BECOMES_X` times as often as the tilt, until it turns less than `STAYS_X` times as often.
 const BECOMES_X: f64 = 3.0;
 const STAYS_X: f64 = 1.5;
@@ -98,8 +98,8 @@ impl Detail {
             Placement::UpToNow => now_s - window_s,
             Placement::Latest => highest_s(run.recording(), curve, now_s - window_s, swing_s),
             Placement::Following => {
-                let pages = ((now_s + swing_s - window_s) / (PAGE * window_s)).ceil();
-                let begin_s = PAGE * window_s * pages.max(0.0);
+                let pages = ((now_s + swing_s - window_s) / (WINDOW_ADVANCE * window_s)).ceil();
+                let begin_s = WINDOW_ADVANCE * window_s * pages.max(0.0);
                 highest_s(run.recording(), curve, begin_s, swing_s)
             }
         };
@@ -151,7 +151,7 @@ fn of_x(recording: &Recording, long_s: f64, was_x: bool) -> Option<f64> {
 fn of_tilt(recording: &Recording, long_s: f64) -> Option<f64> {
     let (time_s, [_, tilt]) = turns(recording, long_s)?;
     let extent = recording.whole()?.extent(RecordedCurve::Tilt);
-    (tilt > 2.0 && extent.max - extent.min > LEAST_SWING_DEG).then_some(2.0 * time_s / tilt)
+    (tilt > 2.0 && extent.max - extent.min > LEAST_DRAWN_SWING_DEG).then_some(2.0 * time_s / tilt)
 }
 
 /// The recorded part of the last `long_s`, s, and how often x and the tilt turned in it.

@@ -5,11 +5,11 @@ use crate::run::Simulation;
 use crate::scenario::Scenario;
 use std::sync::Arc;
 
-const MOST_STEPS: u64 = 4000;
+const MOST_DIP_STEPS: u64 = 4000;
 /// The most points of all its steps together. A step that is integrated costs as much as many points.
 const MOST_COST: u64 = 2_000_000;
 /// An axle whose tilt has a smaller sine than this counts as upright: none of its sides is the lower one.
-const UPRIGHT: f64 = 1e-6;
+const UPRIGHT_SINE: f64 = 1e-6;
 
 /// The first dip of a run: where the axle points after each step, as its top would draw it on the sphere about the pivot.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,12 +28,12 @@ impl Dip {
         let mut run = Simulation::new(Arc::clone(scenario));
         let (tilt_deg, azimuth_deg) = (run.now().tilt_deg(), run.now().azimuth().degrees());
         let across = libm::sin(tilt_deg.to_radians());
-        if across < UPRIGHT {
+        if across < UPRIGHT_SINE {
             return None;
         }
         let arm_m = scenario.arm_m();
         let points = scenario.body.mechanics.points().len() as u64;
-        let (last, mut left) = (last.min(MOST_STEPS), MOST_COST);
+        let (last, mut left) = (last.min(MOST_DIP_STEPS), MOST_COST);
         let mut way_m = vec![(0.0, 0.0)];
         let mut turns = 0;
         let mut is_falling = None;

@@ -29,7 +29,7 @@ const COST_OF_A_RADIAN: f64 = 1000.0;
 const MOST_INTEGRATION: u64 = 250_000_000;
 
 /// A remaining time below this share of a time step is rounding.
-const ROUNDING: f64 = 1e-6;
+const DUE_TIME_ROUNDING: f64 = 1e-6;
 
 pub struct LiveRun {
     simulation: Simulation,
@@ -201,7 +201,8 @@ impl LiveRun {
         let mut until_look = look_every;
         loop {
             let time_step_s = self.simulation.motion().time_step_s;
-            if self.now().time_s + time_step_s - begin_s > time_s + ROUNDING * time_step_s {
+            if self.now().time_s + time_step_s - begin_s > time_s + DUE_TIME_ROUNDING * time_step_s
+            {
                 break PlayEnd::InTime;
             }
             if self.simulation.step_number() >= stop {
@@ -375,7 +376,7 @@ const PER_POINT: usize = 64;
 /// Memory of one checkpoint besides its points, bytes.
 const PER_CHECKPOINT: usize = 16 << 10;
 /// Least number of checkpoints, however large the body.
-const FEWEST: usize = 8;
+const FEWEST_CHECKPOINTS: usize = 8;
 
 /// A run as it stood, and what was measured on its steps up to there.
 struct Checkpoint {
@@ -412,7 +413,7 @@ impl Checkpoints {
         Self {
             stored: vec![Checkpoint::of(simulation, monitor)],
             spacing: SPACING,
-            most: (MEMORY / (PER_CHECKPOINT + PER_POINT * points)).max(FEWEST),
+            most: (MEMORY / (PER_CHECKPOINT + PER_POINT * points)).max(FEWEST_CHECKPOINTS),
         }
     }
 

@@ -5,7 +5,7 @@ use crate::run::{Sample, Simulation};
 
 /// The most time steps of a body of one point that are computed for an answer; a body of n points has 1/n of that, and steps
 /// that are integrated count as so many points.
-const MOST_STEPS: u64 = 4_000_000;
+const MOST_LOOKUP_STEPS: u64 = 4_000_000;
 
 /// What a point of a body costs in one of these steps, as an integration's cost is counted.
 const COST_OF_A_POINT: u64 = 30;
@@ -95,7 +95,7 @@ impl LookupSteps {
     fn before(run: &LiveRun, step: u64) -> Self {
         Self {
             simulation: run.again_before(step),
-            left: MOST_STEPS,
+            left: MOST_LOOKUP_STEPS,
             points: run.scenario().body.mechanics.points().len() as u64,
             change: 0.0,
         }

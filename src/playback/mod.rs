@@ -47,7 +47,7 @@ const HURRYING: Duration = Duration::from_millis(40);
 /// Computing time for the exact motion in each round of the loop while the run steps flat out: a tenth of that time.
 const FOLLOWING_FLAT_OUT: Duration = Duration::from_micros(1200);
 /// The same otherwise: a tenth of a frame at 15 frames a second.
-const FOLLOWING: Duration = Duration::from_millis(6);
+const EXACT_BUDGET: Duration = Duration::from_millis(6);
 /// The number of steps after which playing until a condition holds is given up; commands of a file go no further at once.
 pub const MOST_UNTIL: u64 = 10_000_000;
 
@@ -95,7 +95,7 @@ impl Playback {
         let run = LiveRun::new(scenario);
         Self {
             run,
-            pace: Pace::new(speed.unwrap_or(keys::SPEED), running),
+            pace: Pace::new(speed.unwrap_or(keys::DEFAULT_SPEED), running),
             stop,
             hurries: false,
             end_s,
@@ -230,7 +230,7 @@ impl Playback {
         let share = if self.is_flat_out() {
             FOLLOWING_FLAT_OUT
         } else {
-            FOLLOWING
+            EXACT_BUDGET
         };
         let deadline = clock() + share;
         self.run.follow_exact(|| clock() >= deadline);
@@ -357,9 +357,9 @@ impl Playback {
         step: u64,
         go_on: impl Fn(u64, u64) -> ControlFlow<()>,
     ) -> Result<(), NotFinite> {
-        const PART: Duration = Duration::from_millis(100);
+        const SEEK_BUDGET: Duration = Duration::from_millis(100);
         while self.step_number() < step && go_on(self.step_number(), step).is_continue() {
-            self.step_for(PART, step)?;
+            self.step_for(SEEK_BUDGET, step)?;
         }
         self.stop = self.next_stop();
         Ok(())

@@ -4,7 +4,7 @@ use crate::physics::part::{PlacedSolid, Shape};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-const PARTS: usize = 48;
+const OUTLINE_PARTS: usize = 48;
 /// Lines along a round solid, from end to end.
 const SIDES: usize = 4;
 
@@ -90,11 +90,11 @@ fn round(ends: [(f64, f64); 2], hole: Option<f64>) -> Vec<Polyline> {
 
 fn circle(radius: f64, z: f64) -> Polyline {
     let point = |part: usize| {
-        let (sin, cos) = libm::sincos(TAU * (part % PARTS) as f64 / PARTS as f64);
+        let (sin, cos) = libm::sincos(TAU * (part % OUTLINE_PARTS) as f64 / OUTLINE_PARTS as f64);
         Vector3::new(radius * cos, radius * sin, z)
     };
     Polyline {
-        points: (0..=PARTS).map(point).collect(),
+        points: (0..=OUTLINE_PARTS).map(point).collect(),
         is_mark: false,
     }
 }

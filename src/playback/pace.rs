@@ -110,14 +110,14 @@ impl Pace {
 mod tests {
     use super::*;
 
-    const FRAME: Duration = Duration::from_millis(100);
+    const LONGEST_PACE_FRAME: Duration = Duration::from_millis(100);
 
     /// The time stepped in this many frames at this speed by a machine that keeps up, in steps of `step_s`.
     fn stepped_s(speed: f64, frames: u32, step_s: f64) -> f64 {
         let mut pace = Pace::new(speed, true);
         let frame = |_| {
-            let stepped_s = (pace.earn(FRAME) / step_s).floor() * step_s;
-            pace.spend(stepped_s, FRAME, false);
+            let stepped_s = (pace.earn(LONGEST_PACE_FRAME) / step_s).floor() * step_s;
+            pace.spend(stepped_s, LONGEST_PACE_FRAME, false);
             stepped_s
         };
         (0..frames).map(frame).sum()
@@ -135,8 +135,8 @@ mod tests {
     fn what_the_machine_cannot_do_is_not_owed_for_ever() {
         let mut pace = Pace::new(1000.0, true);
         for _ in 0..31 {
-            pace.earn(FRAME);
-            pace.spend(1.0, FRAME, true);
+            pace.earn(LONGEST_PACE_FRAME);
+            pace.spend(1.0, LONGEST_PACE_FRAME, true);
             assert_eq!(pace.owed_s, 0.0);
         }
         assert!(pace.falls_behind());

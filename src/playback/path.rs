@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 const SIDE: usize = 512;
 /// The longest distance between two positions, in cells, that is drawn as a line. A longer one is left open, because the
 /// motion in between is unknown.
-const LONGEST_LINE: f64 = 24.0;
+const LONGEST_PATH_LINE_CELLS: f64 = 24.0;
 
 #[derive(Clone, Debug)]
 pub struct PathFromAbove {
@@ -52,7 +52,7 @@ impl PathFromAbove {
         let (way_x, way_y) = (x - from_x, y - from_y);
         let cell = 2.0 * self.half_width / SIDE as f64;
         let cells = way_x.abs().max(way_y.abs()) / cell;
-        if cells > 1.0 && cells <= LONGEST_LINE {
+        if cells > 1.0 && cells <= LONGEST_PATH_LINE_CELLS {
             // ceil() is a call to a library where the processor has no instruction for it.
             let whole = cells as u32;
             let dots = whole + u32::from(f64::from(whole) < cells);

@@ -9,7 +9,7 @@ use crate::physics::State;
 use crate::text::number::{exponent, fixed, rounded, shortest};
 use std::time::Duration;
 
-pub const EVERY: Duration = Duration::from_millis(250);
+pub const READING_INTERVAL: Duration = Duration::from_millis(250);
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {

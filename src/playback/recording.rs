@@ -17,7 +17,7 @@ use std::ops::Range;
 /// A stretch is coarse if it has fewer blocks than this, each of more than one step.
 const COARSE: u64 = 256;
 /// A stretch is given in blocks of the next size where it would have more of those than this.
-const FINEST: u64 = 2048;
+const MOST_STRETCH_BINS: u64 = 2048;
 
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
@@ -147,7 +147,7 @@ impl Recording {
         let levels = self.levels.iter().enumerate();
         let mut suitable = levels.filter_map(|(size, level)| {
             let numbers = level.between(since_s, until_s);
-            let are_few = numbers.end - numbers.start <= FINEST * level.in_next;
+            let are_few = numbers.end - numbers.start <= MOST_STRETCH_BINS * level.in_next;
             (level.reaches(since_s) && are_few).then_some((size, numbers))
         });
         suitable.next().unwrap_or((0, 0..0))
@@ -209,7 +209,7 @@ impl Recording {
     }
 }
 
-const WHOLE: usize = 16_384;
+const WHOLE_RUN_BINS: usize = 16_384;
 /// How many are kept once there are more, for each one that a block of the next size has. With more of them a step would
 /// take longer: they would not stay in the processor's nearer caches.
 const RECENT: usize = 1024;
@@ -238,7 +238,7 @@ impl Level {
     pub fn push(&mut self, block: RecordingBin) {
         let recent = RECENT * self.in_next as usize;
         let stored = self.blocks.len();
-        if self.dropped == 0 && stored == WHOLE {
+        if self.dropped == 0 && stored == WHOLE_RUN_BINS {
             self.keep_recent(recent - 1);
         } else if self.dropped > 0 && stored == recent {
             self.blocks.pop_front();
@@ -249,7 +249,7 @@ impl Level {
 
     #[cold]
     fn keep_recent(&mut self, kept: usize) {
-        let excess = WHOLE - kept;
+        let excess = WHOLE_RUN_BINS - kept;
         self.blocks.drain(..excess);
         // A smaller memory is gone through in the processor's nearer caches.
         self.blocks.shrink_to(kept + 1);
@@ -349,7 +349,7 @@ mod tests {
             let since = (share * length as f64).floor();
             let blocks: Vec<_> = recording.since(since).collect();
             prop_assert_eq!(end_of(&blocks, since), (length - 1) as f64);
-            prop_assert!(blocks.len() <= 4 * FINEST as usize + 16);
+            prop_assert!(blocks.len() <= 4 * MOST_STRETCH_BINS as usize + 16);
         }
 
         #[test]
@@ -463,7 +463,10 @@ mod tests {
         let stored: Vec<u64> = recording.levels.iter().map(stored).collect();
         assert_eq!(stored[0], 4096);
         let larger: u64 = stored[1..].iter().sum();
-        assert!(larger <= 2048 * 8 + 2 * WHOLE as u64, "{larger} blocks");
+        assert!(
+            larger <= 2048 * 8 + 2 * WHOLE_RUN_BINS as u64,
+            "{larger} blocks"
+        );
         // The smallest that there are cover the run without a gap.
         let blocks: Vec<_> = recording.finest().collect();
         assert_eq!(end_of(&blocks, 0.0), 999_999.0);

@@ -5,13 +5,13 @@ use crate::text::ladder;
 use crate::text::number::{fixed, rounded};
 
 /// A tick this share of the range beyond an end stands at the end: the difference is rounding.
-const ROUNDING: f64 = 1e-9;
+const STRIP_TICK_ROUNDING: f64 = 1e-9;
 
 /// An end that is written this share of the range beside its place is read at that place.
-const UNSEEN: f64 = 0.025;
+const UNSEEN_TICK_OFFSET: f64 = 0.025;
 
 /// Significant digits of a tick: no rounding of its last bits is seen.
-const DIGITS: usize = 15;
+const STRIP_TICK_DIGITS: usize = 15;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripScale {
@@ -36,8 +36,8 @@ impl StripScale {
         let missing = (least / unit - (high - low)).ceil().max(0.0);
         let below = (0.5 * missing).floor();
         Self {
-            low: rounded((low - below) * unit, DIGITS),
-            high: rounded((high + missing - below) * unit, DIGITS),
+            low: rounded((low - below) * unit, STRIP_TICK_DIGITS),
+            high: rounded((high + missing - below) * unit, STRIP_TICK_DIGITS),
         }
     }
 
@@ -79,7 +79,8 @@ impl StripScale {
         let about = |digits| format!("{} ± {}", fixed(middle, digits), fixed(half, digits));
         let is_true = |value: f64, digits: &usize| {
             let unit = libm::exp10(-(*digits as f64));
-            (value - (value / unit).round() * unit).abs() <= UNSEEN * (self.high - self.low)
+            (value - (value / unit).round() * unit).abs()
+                <= UNSEEN_TICK_OFFSET * (self.high - self.low)
         };
         let mut forms = (0..=digits).rev().flat_map(|digits| {
             let both = is_true(self.low, &digits) && is_true(self.high, &digits);
@@ -101,7 +102,9 @@ impl StripScale {
 
 /// Digits after the point that numbers `apart` need to be told apart.
 pub fn decimals(apart: f64) -> usize {
-    (-libm::log10(apart) - ROUNDING).ceil().clamp(0.0, 9.0) as usize
+    (-libm::log10(apart) - STRIP_TICK_ROUNDING)
+        .ceil()
+        .clamp(0.0, 9.0) as usize
 }
 
 /// The multiples of a number 1, 2 or 5 times a power of ten from `low` to `high`: as many as there can be, at most `most`.
@@ -114,8 +117,8 @@ pub fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
     let all = |rung: i64| {
         let apart = ladder::rung(rung);
         let (from, to) = (
-            (low / apart - ROUNDING).ceil(),
-            (high / apart + ROUNDING).floor(),
+            (low / apart - STRIP_TICK_ROUNDING).ceil(),
+            (high / apart + STRIP_TICK_ROUNDING).floor(),
         );
         (apart, from, to)
     };
@@ -124,15 +127,15 @@ pub fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
         return Vec::new();
     };
     let count = (to - from + 1.0).max(0.0) as usize;
-    let tick = |index: usize| rounded((from + index as f64) * apart, DIGITS);
+    let tick = |index: usize| rounded((from + index as f64) * apart, STRIP_TICK_DIGITS);
     (0..count).map(tick).collect()
 }
 
 /// The smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value` (> 0).
 fn nice_above(value: f64) -> f64 {
-    const STEPS: [f64; 11] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
+    const TICK_STEPS: [f64; 11] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
     let unit = libm::exp10(libm::log10(value).floor());
-    let step = STEPS
+    let step = TICK_STEPS
         .into_iter()
         .find(|step| step * unit >= value * 0.999_999);
     step.unwrap_or(10.0) * unit

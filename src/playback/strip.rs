@@ -8,10 +8,10 @@ use super::recording::{Extent, RecordedCurve, Recording, RecordingBin};
 use std::ops::Range;
 
 /// A stretch shorter than this share of a column is rounding.
-const ROUNDING: f64 = 1e-6;
+const STRETCH_ROUNDING: f64 = 1e-6;
 
 /// A tilt that changes by less than this, degrees, does not swing: it has no more than rounding.
-pub(super) const LEAST_SWING_DEG: f64 = 0.01;
+pub(super) const LEAST_DRAWN_SWING_DEG: f64 = 0.01;
 
 /// The longest window, s: small enough that adding it to a time does not overflow.
 const LONGEST_S: f64 = f64::MAX / 4.0;
@@ -71,9 +71,10 @@ impl Strip {
             return 0..0;
         }
         let share = |time_s: f64| (time_s - self.begin_s) / self.window_s * self.columns as f64;
-        let first = ((share(begin_s) + ROUNDING) as usize).min(self.columns.saturating_sub(1));
+        let first =
+            ((share(begin_s) + STRETCH_ROUNDING) as usize).min(self.columns.saturating_sub(1));
         // A stretch that ends where a column begins does not include that column; every stretch has at least one column.
-        let end = ((share(end_s) - ROUNDING).ceil() as usize).max(first + 1);
+        let end = ((share(end_s) - STRETCH_ROUNDING).ceil() as usize).max(first + 1);
         first..end.min(self.columns)
     }
 
@@ -124,7 +125,7 @@ impl Blocks {
 const NEIGHBOURS: usize = 6;
 
 /// With more turns in a column than this, swings cannot be drawn one by one: a swing has two turns and needs five columns.
-const MOST_TURNS: f64 = 0.4;
+const MOST_COLUMN_TURNS: f64 = 0.4;
 
 /// The part of a band's width by which slow motion may carry the curve in two swings.
 const MOST_CARRIED: f64 = 0.5;
@@ -200,7 +201,7 @@ impl StripPen<'_> {
         let turns_of_tilt: f64 = about().map(|drawn| drawn.turns_of_tilt).sum();
         let tilt = about().filter_map(|drawn| drawn.tilt).reduce(Extent::and);
         match tilt.map(|stored| RecordedCurve::Tilt.in_its_unit(stored)) {
-            Some(tilt) if tilt.max - tilt.min > LEAST_SWING_DEG => {
+            Some(tilt) if tilt.max - tilt.min > LEAST_DRAWN_SWING_DEG => {
                 turns.max(turns_of_tilt) / columns
             }
             _ => turns / columns,
@@ -269,7 +270,7 @@ fn inside(index: usize, away: usize, (first, last): (usize, usize)) -> usize {
 /// are its extremes over a swing about each column. Where slow motion carries it further in two swings than it swings,
 /// before and after, it is drawn as it is.
 fn is_fast(index: usize, turns: f64, swings: &[Option<Extent>], ends: (usize, usize)) -> bool {
-    if turns <= MOST_TURNS {
+    if turns <= MOST_COLUMN_TURNS {
         return false;
     }
     let middle = |index: usize| swings[index].map_or(0.0, |swing| 0.5 * (swing.min + swing.max));

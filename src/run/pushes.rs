@@ -10,7 +10,7 @@ use crate::physics::PointForce;
 use crate::scenario::{Push, Scenario, Window};
 
 /// Parts of a step smaller than this are rounding, not time.
-const ROUNDING: f64 = 1e-9;
+const STEP_PART_ROUNDING: f64 = 1e-9;
 
 /// How the windows of pushes that are given in steps are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,9 +93,9 @@ fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
 
 /// The mean factor of an accumulating push between two times, given as numbers of its own steps since its beginning.
 fn mean_growth(begin: f64, end: f64, count: f64) -> f64 {
-    let nth = (end - ROUNDING).ceil();
-    let is_full = begin + ROUNDING >= count;
-    if is_full || nth <= (begin + ROUNDING).floor() + 1.0 {
+    let nth = (end - STEP_PART_ROUNDING).ceil();
+    let is_full = begin + STEP_PART_ROUNDING >= count;
+    if is_full || nth <= (begin + STEP_PART_ROUNDING).floor() + 1.0 {
         return nth.clamp(0.0, count);
     }
     // The factors summed up to a time: whole steps 1 + 2 + ..., and the begun one.
@@ -145,9 +145,9 @@ fn share(from: f64, to: f64, stretch: &Stretch) -> f64 {
         return f64::from(from <= stretch.begin && stretch.begin < to);
     }
     let share = (to.min(stretch.end) - from.max(stretch.begin)) / length;
-    if share <= ROUNDING {
+    if share <= STEP_PART_ROUNDING {
         0.0
-    } else if share >= 1.0 - ROUNDING {
+    } else if share >= 1.0 - STEP_PART_ROUNDING {
         1.0
     } else {
         share
@@ -156,7 +156,7 @@ fn share(from: f64, to: f64, stretch: &Stretch) -> f64 {
 
 /// The first moment strictly inside `stretch` at which a push counted in seconds begins, ends or (accumulating) grows.
 pub fn next_change(pushes: &[Push], counting: Counting, stretch: &Stretch) -> Option<f64> {
-    let margin = ROUNDING * (stretch.end - stretch.begin);
+    let margin = STEP_PART_ROUNDING * (stretch.end - stretch.begin);
     let moment = next_after(pushes, counting, stretch.begin + margin);
     (moment < stretch.end - margin).then_some(moment)
 }
@@ -179,7 +179,7 @@ fn next_growth(push: &Push, counting: Counting, time_s: f64) -> Option<f64> {
             if push.accumulates =>
         {
             // The boundary after `time_s`, safely past rounding: `time_s` itself may be one of them.
-            let next = (time_s / dt + ROUNDING).floor() + 1.0;
+            let next = (time_s / dt + STEP_PART_ROUNDING).floor() + 1.0;
             let inside = next >= (first - 1) as f64 && next <= (first - 1 + count) as f64;
             inside.then_some(next * dt)
         }

@@ -410,11 +410,11 @@ fn counting(scenario: &Scenario) -> Counting {
 
 /// |L|² (J² s²) below which energy and traced point cannot leave the range of numbers; 0 where they could at any L.
 fn safe_below(scenario: &Scenario, gravity: f64) -> f64 {
-    const EDGE: f64 = 1e300;
+    const LARGEST_STATE: f64 = 1e300;
     let body = &scenario.body.mechanics;
     let weight = gravity.abs() * body.first_moment().norm();
-    if weight < EDGE && scenario.arm_m() < EDGE {
-        EDGE / body.inverse_inertia().trace().max(1.0)
+    if weight < LARGEST_STATE && scenario.arm_m() < LARGEST_STATE {
+        LARGEST_STATE / body.inverse_inertia().trace().max(1.0)
     } else {
         0.0
     }

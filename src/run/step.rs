@@ -232,9 +232,9 @@ impl Sample {
 }
 
 /// M g |c| below this part of the kinetic energy at the start is no scale: the body is balanced, or nearly.
-const LEAST_PART: f64 = 1e-9;
+const LEAST_ENERGY_PART: f64 = 1e-9;
 /// A centre of mass nearer to the pivot than this part of the body's size is at the pivot but for rounding.
-const ROUNDING: f64 = 1e-12;
+const CENTER_ROUNDING: f64 = 1e-12;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnergyUnit {
@@ -267,7 +267,7 @@ impl EnergyScale {
         let body = &scenario.body.mechanics;
         let kinetic = observables::kinetic_energy(body, &scenario.start);
         let weight = scenario.motion.gravity.abs() * moment(body);
-        let (size, unit) = if weight > 0.0 && weight >= LEAST_PART * kinetic {
+        let (size, unit) = if weight > 0.0 && weight >= LEAST_ENERGY_PART * kinetic {
             (weight, EnergyUnit::Weight)
         } else {
             (kinetic, EnergyUnit::KineticAtStart)
@@ -283,7 +283,7 @@ fn moment(body: &Body) -> f64 {
         .points()
         .iter()
         .map(|point| point.mass * point.at.norm());
-    if moment > ROUNDING * parts.sum::<f64>() {
+    if moment > CENTER_ROUNDING * parts.sum::<f64>() {
         moment
     } else {
         0.0

@@ -12,11 +12,11 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-const LONGEST: u64 = 32 << 20;
-const TOO_LONG: &str = "is longer than 32 MiB, the most that is read: leave rows out";
+const LONGEST_CSV: u64 = 32 << 20;
+const CSV_TOO_LONG: &str = "is longer than 32 MiB, the most that is read: leave rows out";
 
 /// The most columns of a file; more would take minutes.
-const MOST_COLUMNS: usize = 10_000;
+const MOST_CSV_COLUMNS: usize = 10_000;
 
 /// How archives begin: zip's, which spreadsheets are too.
 const ZIP: &[u8] = b"PK\x03\x04";
@@ -94,7 +94,7 @@ pub fn text(path: &Path) -> Result<String, Problem> {
 
 /// The text of a CSV that `file` holds, in UTF-8 or Latin-1.
 pub fn text_from(file: impl Read) -> Result<String, Problem> {
-    let bytes = bytes_of(file, LONGEST, TOO_LONG)?;
+    let bytes = bytes_of(file, LONGEST_CSV, CSV_TOO_LONG)?;
     if bytes.starts_with(ZIP) {
         let rule = "is a zip archive: unpack it and name the file in it (of phyphox \"Raw Data.csv\"); a spreadsheet is saved as CSV";
         return Err(Problem::at("", rule));
@@ -214,9 +214,9 @@ impl Csv {
                 break;
             }
             let line = self.line_of_names + reader.position().line() - 2;
-            if record.len() > MOST_COLUMNS {
+            if record.len() > MOST_CSV_COLUMNS {
                 return Err(one(format!(
-                    "has more than {MOST_COLUMNS} columns: leave columns out"
+                    "has more than {MOST_CSV_COLUMNS} columns: leave columns out"
                 )));
             }
             let mut ends = (1..=record.len()).rev();

@@ -4,7 +4,7 @@ use super::checks;
 use super::dotted::{find, is_in, overlap, set_key};
 use super::head::{is_file, read_text, text_of_stream};
 use super::limits;
-use super::problem::{PRESETS, Problem, Problems, at_line, nearest};
+use super::problem::{PRESETS_FOLDER, Problem, Problems, at_line, nearest};
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, solids, start};
 use crate::text::number::shortest;
 use crate::text::printable::{brief, printable, printable_lines};
@@ -39,7 +39,8 @@ impl Document {
         }
         match presets::find(scenario) {
             Some(preset) => {
-                let mut document = Self::parse(&format!("{PRESETS}{scenario}.toml"), preset.text)?;
+                let mut document =
+                    Self::parse(&format!("{PRESETS_FOLDER}{scenario}.toml"), preset.text)?;
                 // What the preset's own test checks is of no use in the header of a user's CSV.
                 document.table.remove("expected");
                 Ok(document)
@@ -94,7 +95,10 @@ impl Document {
     pub fn parse_header(origin: &str, text: &str) -> Result<Self, Problems> {
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
         if text.len() as u64 > limits::LONGEST_HEADER {
-            return Err(Problems::one(origin, Problem::at("", limits::TOO_LONG)));
+            return Err(Problems::one(
+                origin,
+                Problem::at("", limits::SCENARIO_TOO_LONG),
+            ));
         }
         limits::few_enough(&text, 2).map_err(|problem| Problems::one(origin, problem))?;
         let table = text.parse();
@@ -264,10 +268,10 @@ impl Document {
                 (Some(mistake), _) if problem.key == setting.key => {
                     (problem.value, problem.rule) = (String::new(), mistake.clone());
                 }
-                (_, Some(meant)) if problem.rule.starts_with(keys::UNKNOWN) => {
+                (_, Some(meant)) if problem.rule.starts_with(keys::UNKNOWN_KEY) => {
                     // The whole key: whoever typed the argument does not see the tables of a file.
                     problem.key.clone_from(&setting.key);
-                    problem.rule = format!("{}: did you mean {meant}?", keys::UNKNOWN);
+                    problem.rule = format!("{}: did you mean {meant}?", keys::UNKNOWN_KEY);
                 }
                 _ => problem
                     .rule

@@ -4,7 +4,7 @@ use super::problem::Problem;
 use toml::{Table, Value};
 
 /// The most names and numbers of a key: body.point.N.at_m.N has five. Tables nested without bound would exhaust the stack.
-const DEEPEST: usize = 5;
+const DEEPEST_KEY: usize = 5;
 
 /// `name` below the dotted path `under`.
 pub fn join(under: &str, name: &str) -> String {
@@ -18,8 +18,8 @@ pub fn join(under: &str, name: &str) -> String {
 /// Writes `value` at the dotted `key`; numbers lead into arrays, and the one past the end adds an element.
 pub fn set_key(table: &mut Table, key: &str, value: Value) -> Result<(), Problem> {
     let names: Vec<&str> = key.split('.').collect();
-    if names.len() > DEEPEST {
-        let rule = format!("leads deeper than any key: at most {DEEPEST} names and numbers");
+    if names.len() > DEEPEST_KEY {
+        let rule = format!("leads deeper than any key: at most {DEEPEST_KEY} names and numbers");
         return Err(Problem::at(key, rule));
     }
     if names.contains(&"") {

@@ -1,6 +1,6 @@
 //! Files as they are read: the whole of a scenario, or the head of a CSV, which holds the run file.
 
-use super::limits::{self, LONGEST, LONGEST_HEADER};
+use super::limits::{self, LONGEST_HEADER, LONGEST_SCENARIO_FILE};
 use super::problem::{Problem, at_line};
 use crate::origin::{FigureFile, Payload};
 use crate::text::advice::unread;
@@ -12,7 +12,7 @@ use std::path::Path;
 const EVERY_COLUMN: &[u8] = b"step,t_s,";
 
 /// How the line begins that tells the version, in the head of every CSV that gyrolab writes.
-const VERSION: &[u8] = b"# gyrolab = ";
+const VERSION_LINE: &[u8] = b"# gyrolab = ";
 
 /// Some programs put it before the first line of a file.
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
@@ -61,7 +61,7 @@ impl Head {
         let names = self.names();
         let tells_version = || {
             let mut lines = self.comments().split(|&byte| byte == b'\n');
-            lines.any(|line| line.starts_with(VERSION))
+            lines.any(|line| line.starts_with(VERSION_LINE))
         };
         names.starts_with(EVERY_COLUMN)
             || !names.is_empty() && names.iter().all(is_of_name) && tells_version()
@@ -157,7 +157,10 @@ pub(super) fn text_of_stream(stream: impl Read) -> Result<String, Problem> {
 }
 
 fn text_of_file(file: impl Read) -> Result<String, Problem> {
-    let text = utf8(bytes_of(file, LONGEST, limits::TOO_LONG)?, "")?;
+    let text = utf8(
+        bytes_of(file, LONGEST_SCENARIO_FILE, limits::SCENARIO_TOO_LONG)?,
+        "",
+    )?;
     limits::few_enough(&text, 1).map(|()| text)
 }
 

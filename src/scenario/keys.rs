@@ -4,7 +4,7 @@
 //! words wherever it comes from. Rules that need more than one value are in `checks` and `parts`.
 
 use super::dotted::{is_in, join};
-pub use super::kind::{PITCH_DEG, Range, ValueKind, ZOOM};
+pub use super::kind::{PITCH_DEG, Range, ValueKind, ZOOM_RANGE};
 use super::limits::MOST_POINTS;
 use super::problem::{Problem, Problems, nearest};
 use super::screen::{ALL_ROWS, DETAILS, HIDEABLE, PHASES};
@@ -68,7 +68,7 @@ pub const EDITABLE_MOTION: [&str; 3] = [
 pub const GRAVITY: f64 = 9.8;
 
 /// Playback speed where a scenario gives none, simulated seconds a second.
-pub const SPEED: f64 = 1.0;
+pub const DEFAULT_SPEED: f64 = 1.0;
 
 use Nudge::{By, Hundredth, Ladder, Turn, Typed, WholeHundredth};
 use Range::{Any, NotNegative, Positive};
@@ -198,8 +198,8 @@ pub static KEYS: &[ScenarioKey] = &[
     may("view.residuals", Flag, "whether measured data are shown less what the run says (default: false)"),
     may("view.camera.yaw_deg", Number(Any), "from where the 3-D view is seen: angle of the eye about +z, from -y, degrees"),
     may("view.camera.pitch_deg", Number(Range::Within(PITCH_DEG)), "height of the eye above the horizontal, degrees, -90 to 90"),
-    may("view.zoom.above", Number(Range::Within(ZOOM)), "how much larger than the whole the path from above is shown, 0.5 to 100 (default: 1)"),
-    may("view.zoom.3d", Number(Range::Within(ZOOM)), "how much larger than the whole the scene in space is shown, 0.5 to 100 (default: 1)"),
+    may("view.zoom.above", Number(Range::Within(ZOOM_RANGE)), "how much larger than the whole the path from above is shown, 0.5 to 100 (default: 1)"),
+    may("view.zoom.3d", Number(Range::Within(ZOOM_RANGE)), "how much larger than the whole the scene in space is shown, 0.5 to 100 (default: 1)"),
     must("expected.*.readout", Line, "a column of the CSV that the preset's test checks"),
     must("expected.*.at_step", Whole(0, i64::MAX), "at which step"),
     must("expected.*.value", Number(Any), "its value there"),
@@ -240,10 +240,10 @@ pub fn find(key: &str) -> Result<(&'static ScenarioKey, ValueKind), String> {
         Some(meant) => format!("did you mean {meant}?"),
         None => nearest(&pattern(key), KEYS.iter().map(|key| key.path)),
     };
-    Err(format!("{UNKNOWN}: {near}"))
+    Err(format!("{UNKNOWN_KEY}: {near}"))
 }
 
-pub(super) const UNKNOWN: &str = "unknown key";
+pub(super) const UNKNOWN_KEY: &str = "unknown key";
 
 /// What the screen calls some values, and their keys.
 const ON_SCREEN: [(&str, &str); 4] = [
@@ -296,11 +296,12 @@ pub enum Effect {
 
 impl Effect {
     pub fn of(key: &str) -> Self {
-        const IDLE: [&str; 4] = ["title", "about", "source", "motion.steps"];
+        const IDLE_KEYS: [&str; 4] = ["title", "about", "source", "motion.steps"];
         const IDLE_TABLES: [&str; 2] = ["view.", "expected."];
         if EDITABLE_MOTION.contains(&key) || key.starts_with("push.") {
             Self::FromHere
-        } else if IDLE.contains(&key) || IDLE_TABLES.iter().any(|table| key.starts_with(table)) {
+        } else if IDLE_KEYS.contains(&key) || IDLE_TABLES.iter().any(|table| key.starts_with(table))
+        {
             Self::None
         } else {
             Self::NewRun
@@ -454,7 +455,7 @@ mod tests {
         let default = |path: &str| find(path).unwrap().0.default().unwrap();
         assert_eq!(default("motion.gravity_m_per_s2"), GRAVITY.into());
         assert_eq!(default("motion.scheme"), scheme::SCHEMES[0].name.into());
-        assert_eq!(default("view.speed"), SPEED.into());
+        assert_eq!(default("view.speed"), DEFAULT_SPEED.into());
         assert_eq!(default("trace"), TOP.into());
     }
 

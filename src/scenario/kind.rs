@@ -10,7 +10,7 @@ use ValueKind::{
 use nalgebra::Vector3;
 use toml::Value;
 
-pub const LONGEST_LINE: usize = 1000;
+pub const LONGEST_TEXT_LINE: usize = 1000;
 
 pub const LONGEST_PARAGRAPH: usize = 20_000;
 
@@ -45,7 +45,7 @@ pub enum Range {
     Within((f64, f64)),
 }
 
-pub const ZOOM: (f64, f64) = (0.5, 100.0);
+pub const ZOOM_RANGE: (f64, f64) = (0.5, 100.0);
 /// The least and the greatest height of the eye above the horizontal, degrees.
 pub const PITCH_DEG: (f64, f64) = (-90.0, 90.0);
 
@@ -138,7 +138,7 @@ fn check_line(text: &str) -> Result<(), String> {
     if text.trim().is_empty() {
         return Err("must not be empty".to_owned());
     }
-    check_text(text, LONGEST_LINE, "")
+    check_text(text, LONGEST_TEXT_LINE, "")
 }
 
 fn check_text(text: &str, most: usize, allowed: &str) -> Result<(), String> {

@@ -5,13 +5,13 @@ use super::problem::Problem;
 use toml::{Table, Value};
 
 /// The longest scenario or run file, bytes.
-pub const LONGEST: u64 = 4_000_000;
+pub const LONGEST_SCENARIO_FILE: u64 = 4_000_000;
 
-pub const TOO_LONG: &str = "is longer than 4 MB (4000000 bytes), the most that a scenario or run file may have: leave some of it out";
+pub const SCENARIO_TOO_LONG: &str = "is longer than 4 MB (4000000 bytes), the most that a scenario or run file may have: leave some of it out";
 
 /// The longest header of a CSV, bytes. The run file in it is longer than the scenario was: it gives every number in full,
 /// and each line begins with "# ".
-pub(super) const LONGEST_HEADER: u64 = 4 * LONGEST;
+pub(super) const LONGEST_HEADER: u64 = 4 * LONGEST_SCENARIO_FILE;
 
 pub const MOST_POINTS: i64 = 100_000;
 
@@ -25,12 +25,12 @@ pub const MOST_PRODUCT: usize = 1_000_000;
 const MOST_TABLES: usize = 120_000;
 
 /// The most lines and elements of arrays that a file may have.
-const MOST_VALUES: usize = 800_000;
+const MOST_FILE_VALUES: usize = 800_000;
 
 /// Refuses a `text` that has more than `times` the tables or values of a file: they would take far more memory than a usual
 /// scenario of its length. The header of a CSV may have twice as many: it writes on several lines what its scenario may have on one.
 pub fn few_enough(text: &str, times: usize) -> Result<(), Problem> {
-    let (most_tables, most_values) = (times * MOST_TABLES, times * MOST_VALUES);
+    let (most_tables, most_values) = (times * MOST_TABLES, times * MOST_FILE_VALUES);
     let (mut tables, mut values, mut heading) = (0, 0, "");
     for line in text.lines() {
         // A dot in quotes is part of a name.

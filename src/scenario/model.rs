@@ -98,13 +98,13 @@ impl Edit {
 impl NamedBody {
     /// How many points stand before those of the parts.
     pub fn points_before_parts(&self) -> usize {
-        self.mechanics.points().len() - part::POINTS * self.parts.len()
+        self.mechanics.points().len() - part::POINTS_PER_PART * self.parts.len()
     }
 
     /// The indices of the points of the part of this index.
     pub fn points_of_part(&self, part: usize) -> Range<usize> {
-        let first = self.points_before_parts() + part * part::POINTS;
-        first..first + part::POINTS
+        let first = self.points_before_parts() + part * part::POINTS_PER_PART;
+        first..first + part::POINTS_PER_PART
     }
 
     pub fn point(&self, name: &str) -> Option<usize> {
@@ -172,11 +172,12 @@ impl Scenario {
     /// The name of the point of this index, for a point of a part with its direction from the part's centre: "wheel +x";
     /// `None` for a point of the rim.
     pub fn point_name(&self, index: usize) -> Option<String> {
-        const OFF_CENTRE: [&str; part::POINTS] = ["", " +x", " -x", " +y", " -y", " +z", " -z"];
+        const OFF_CENTRE: [&str; part::POINTS_PER_PART] =
+            ["", " +x", " -x", " +y", " -y", " +z", " -z"];
         let file = &self.file.body;
         if let Some(of_parts) = index.checked_sub(self.body.points_before_parts()) {
-            let part = file.part.get(of_parts / part::POINTS)?;
-            return Some(part.name.clone() + OFF_CENTRE[of_parts % part::POINTS]);
+            let part = file.part.get(of_parts / part::POINTS_PER_PART)?;
+            return Some(part.name.clone() + OFF_CENTRE[of_parts % part::POINTS_PER_PART]);
         }
         let point = file.point.get(index.checked_sub(file.rim_points())?)?;
         Some(point.name.clone())

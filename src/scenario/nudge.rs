@@ -59,7 +59,10 @@ pub fn typed(text: &str, unit: &str) -> Result<f64, String> {
     };
     let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
     let read = |end: usize| Some((text[..end].trim_end().parse().ok()?, text[end..].trim()));
-    let (number, rest) = ends.take(LONGEST).find_map(read).ok_or_else(wrong)?;
+    let (number, rest) = ends
+        .take(LONGEST_TYPED_NUMBER)
+        .find_map(read)
+        .ok_or_else(wrong)?;
     if rest.is_empty() || plain(rest) == plain(unit) {
         return Ok(number);
     }
@@ -73,7 +76,7 @@ pub fn typed(text: &str, unit: &str) -> Result<f64, String> {
 }
 
 /// Characters of a typed number that are looked at: its unit is not longer.
-const LONGEST: usize = 400;
+const LONGEST_TYPED_NUMBER: usize = 400;
 
 /// A unit whichever way it is written.
 fn plain(unit: &str) -> String {

@@ -22,7 +22,7 @@ const OF_PART: usize = 6;
 const MOST_RATE: f64 = 1e100;
 /// A direction, a place or a moment is on or about the axle to this part of its size, as for
 /// [`SymmetricTop`]: less is the rounding of a scenario's digits.
-const WITHIN: f64 = 1e-9;
+const AXLE_TOLERANCE: f64 = 1e-9;
 
 pub(super) fn body(file: &BodyFile) -> Result<NamedBody, Problems> {
     few_enough(file)?;
@@ -268,7 +268,7 @@ fn alone(part: &PlacedSolid) -> Result<f64, &'static str> {
     let moments = part.moments();
     let axis = part.directions.column(2);
     let size = (moments.amax() / part.mass).sqrt();
-    let is_small = |number: f64, size: f64| number.abs() <= WITHIN * size;
+    let is_small = |number: f64, size: f64| number.abs() <= AXLE_TOLERANCE * size;
     let centre = part.centre;
     let is_on_axle = [centre.x, centre.y]
         .iter()
@@ -281,7 +281,7 @@ fn alone(part: &PlacedSolid) -> Result<f64, &'static str> {
         (.., false) => Err(
             "must be symmetric about its axis: of any other the moments would change as it spins",
         ),
-        _ if moments.z <= WITHIN * moments.amax() => {
+        _ if moments.z <= AXLE_TOLERANCE * moments.amax() => {
             Err("has no moment about the axle: no spin of it gives a momentum")
         }
         _ => Ok(moments.z),

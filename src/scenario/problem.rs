@@ -66,7 +66,7 @@ pub fn at_line(line: u64, mut problem: Problem) -> Problem {
 }
 
 /// The most problems of one file that are told one by one: more of them help nobody.
-const MOST_TOLD: usize = 100;
+const MOST_PROBLEMS: usize = 100;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Problems {
@@ -100,7 +100,7 @@ impl Problems {
 
     /// Whether further problems are only counted.
     pub fn is_full(&self) -> bool {
-        self.list.len() >= MOST_TOLD
+        self.list.len() >= MOST_PROBLEMS
     }
 
     pub fn add_all(&mut self, other: impl Into<Self>) {
@@ -125,7 +125,7 @@ impl Problems {
 
     fn is_about_option(&self, problem: &Problem) -> bool {
         let place = problem.place.as_deref().unwrap_or_default();
-        place.starts_with("--") && self.origin.starts_with(PRESETS)
+        place.starts_with("--") && self.origin.starts_with(PRESETS_FOLDER)
     }
 
     /// The first of them in one line, without file, line or `--set`: `motion.time_step_s (-0.1) must be greater than zero`.
@@ -158,8 +158,8 @@ impl From<Problem> for String {
 
 impl From<Vec<Problem>> for Problems {
     fn from(mut list: Vec<Problem>) -> Self {
-        let more = list.len().saturating_sub(MOST_TOLD);
-        list.truncate(MOST_TOLD);
+        let more = list.len().saturating_sub(MOST_PROBLEMS);
+        list.truncate(MOST_PROBLEMS);
         Self {
             list,
             more,
@@ -169,7 +169,7 @@ impl From<Vec<Problem>> for Problems {
 }
 
 /// The folder that the presets have in the source, and so the beginning of their origin.
-pub(super) const PRESETS: &str = "presets/";
+pub(super) const PRESETS_FOLDER: &str = "presets/";
 
 /// How many problems are printed before the rest is only counted.
 const SHOWN: usize = 12;
@@ -214,30 +214,32 @@ fn shown(value: &toml::Value) -> String {
 
 /// The names one after the other, the first dozen of them.
 pub fn listed<'a>(names: impl Iterator<Item = &'a str> + Clone) -> String {
-    const MOST: usize = 12;
-    let first = names.clone().take(MOST);
+    const MOST_SUGGESTED_NAMES: usize = 12;
+    let first = names.clone().take(MOST_SUGGESTED_NAMES);
     let mut list: Vec<_> = first.map(|name| brief(name, 40)).collect();
     match names.count() {
         0 => list.push("none".to_owned()),
-        count if count > MOST => list.push(format!("and {} more", count - MOST)),
+        count if count > MOST_SUGGESTED_NAMES => {
+            list.push(format!("and {} more", count - MOST_SUGGESTED_NAMES))
+        }
         _ => {}
     }
     list.join(", ")
 }
 
 /// The longest name that is compared: nothing longer is a slip of the pen.
-const LONGEST: usize = 80;
+const LONGEST_COMPARED_NAME: usize = 80;
 /// The most names that are compared: the body may have 100 000 points.
 const MOST_COMPARED: usize = 2000;
 
 /// "did you mean ...?" for a name that is not in `known`, or the list of them where none is near.
 pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
-    if wrong.len() > LONGEST {
+    if wrong.len() > LONGEST_COMPARED_NAME {
         return format!("there is {}", listed(known));
     }
     let bare = letters(wrong);
     if let Some(name) = closest(wrong, &bare, known.clone().take(MOST_COMPARED)) {
-        return format!("did you mean {}?", brief(name, LONGEST));
+        return format!("did you mean {}?", brief(name, LONGEST_COMPARED_NAME));
     }
     // Of "precession" all that have to do with it.
     let has_it = |name: &&str| bare.len() > 2 && letters(name).contains(&bare);
@@ -250,7 +252,7 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
 
 /// The name among `known` that is so near to `name` that it was probably meant.
 pub fn near<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Option<&'a str> {
-    let is_short = name.len() <= LONGEST;
+    let is_short = name.len() <= LONGEST_COMPARED_NAME;
     is_short
         .then(|| closest(name, &letters(name), known))
         .flatten()
@@ -276,8 +278,8 @@ fn closest<'a>(
     let distances = known.filter_map(|name| {
         let furthest = 2.max(name.len() / 3);
         // A name that differs in length by more than this differs in as many letters.
-        let may_be_near =
-            name.len() <= LONGEST && name.chars().count().abs_diff(length) <= furthest;
+        let may_be_near = name.len() <= LONGEST_COMPARED_NAME
+            && name.chars().count().abs_diff(length) <= furthest;
         let distance = || strsim::damerau_levenshtein(&lower, &name.to_lowercase());
         may_be_near.then(|| (distance(), furthest, name))
     });

@@ -22,7 +22,7 @@ pub fn at_time_step(file: &ScenarioFile, time_step_s: f64) -> Result<ScenarioFil
     }
     let mut other = file.clone();
     let steps = (duration_s / time_step_s).round();
-    if steps > MOST_STEPS {
+    if steps > MOST_RUN_STEPS_BY_TIME {
         let rule = format!("would be {steps:e}: too many");
         return Err(Problem::at("motion.steps", rule));
     }
@@ -48,7 +48,7 @@ pub fn accumulates(scenario: &Scenario) -> bool {
 }
 
 /// The most steps a run may be given by a length in seconds: whole numbers are exact up to here.
-pub const MOST_STEPS: f64 = 9e15;
+pub const MOST_RUN_STEPS_BY_TIME: f64 = 9e15;
 
 fn hold_seconds(push: &mut PushFile, written_for_s: f64) -> Result<(), &'static str> {
     let Some(count) = push.steps else {

@@ -1,6 +1,6 @@
 //! The names of what the lab's screen shows, as `[view]` of a scenario and commands have them.
 
-use crate::physics::workings::NAMES;
+use crate::physics::workings::PHASE_NAMES;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::OnceLock;
@@ -21,7 +21,7 @@ pub struct Pane {
 }
 
 /// The panes that the rooms below `tui` name themselves.
-const NAMED: [Pane; 6] = [
+const NAMED_PANES: [Pane; 6] = [
     Pane::LESSON,
     Pane::TRACES,
     Pane::FROM_ABOVE,
@@ -31,15 +31,15 @@ const NAMED: [Pane; 6] = [
 ];
 
 /// All panes of the screen: `tui` has their table.
-static PANES: OnceLock<&'static [Pane]> = OnceLock::new();
+static REGISTERED_PANES: OnceLock<&'static [Pane]> = OnceLock::new();
 
 /// Says which panes the screen has. The program calls it before it reads a file.
 pub fn set_panes(panes: &'static [Pane]) {
-    let _ = PANES.set(panes); // they are the same each time
+    let _ = REGISTERED_PANES.set(panes); // they are the same each time
 }
 
 pub fn panes() -> &'static [Pane] {
-    PANES.get().copied().unwrap_or(&NAMED)
+    REGISTERED_PANES.get().copied().unwrap_or(&NAMED_PANES)
 }
 
 impl Pane {
@@ -103,17 +103,17 @@ pub const AUTO: &str = "auto";
 /// The page of the step pane after those of the phases.
 pub const WHY: &str = "why";
 /// The last phase of a step, whatever it is called.
-pub const LAST: &str = "last";
+pub const LAST_PHASE: &str = "last";
 pub const ALL_ROWS: &str = "all";
 
 /// What the step pane can show besides a phase by its number.
-pub const PHASES: [&str; NAMES.len() + 2] = {
-    let mut all = [LAST; NAMES.len() + 2];
+pub const PHASES: [&str; PHASE_NAMES.len() + 2] = {
+    let mut all = [LAST_PHASE; PHASE_NAMES.len() + 2];
     let mut at = 0;
-    while at < NAMES.len() {
-        all[at] = NAMES[at];
+    while at < PHASE_NAMES.len() {
+        all[at] = PHASE_NAMES[at];
         at += 1;
     }
-    all[NAMES.len() + 1] = WHY;
+    all[PHASE_NAMES.len() + 1] = WHY;
     all
 };

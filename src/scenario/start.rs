@@ -238,10 +238,10 @@ const REPLACING: [&str; 5] = [
     "psi_dot_rad_per_s",
 ];
 /// The ways to tell the momentum: the keys of each.
-const WAYS: [&[&str]; 4] = [&MOMENTUM, &SPIN, &OMEGA, &EULER];
-const MOMENTUM: [&str; 2] = ["momentum_Js", "momentum_frame"];
+const START_KEYS: [&[&str]; 4] = [&MOMENTUM_KEYS, &SPIN, &OMEGA_KEYS, &EULER];
+const MOMENTUM_KEYS: [&str; 2] = ["momentum_Js", "momentum_frame"];
 const SPIN: [&str; 3] = ["spin_rpm", "spin_rad_per_s", "steady"];
-const OMEGA: [&str; 2] = ["omega_rad_per_s", "omega_frame"];
+const OMEGA_KEYS: [&str; 2] = ["omega_rad_per_s", "omega_frame"];
 /// The Euler rates; a start has one or more of them.
 pub(crate) const EULER: [&str; 3] = [
     "precession_rad_per_s",
@@ -251,14 +251,14 @@ pub(crate) const EULER: [&str; 3] = [
 
 /// The keys of the way that the key `name` of the start belongs to.
 fn way_of(name: &str) -> Option<&'static [&'static str]> {
-    WAYS.into_iter().find(|way| way.contains(&name))
+    START_KEYS.into_iter().find(|way| way.contains(&name))
 }
 
 /// The keys of the start that a new value at the key `name` of the start replaces: the other ways to give the momentum, or
 /// the other spin.
 fn replaced(name: &str) -> Vec<&'static str> {
     let own = way_of(name).unwrap_or_default();
-    let others = WAYS
+    let others = START_KEYS
         .into_iter()
         .filter(|way| !own.is_empty() && *way != own);
     let spins = SPIN[..2]
@@ -315,7 +315,7 @@ pub(super) fn tell_other_way(
     now: &Scenario,
 ) -> Result<(), Problem> {
     let name = key.split('.').nth(1).unwrap_or_default();
-    let own = way_of(name).unwrap_or(&MOMENTUM);
+    let own = way_of(name).unwrap_or(&MOMENTUM_KEYS);
     remove(table, &replaced(own[own.len() - 1]));
     let start = &now.start;
     let framed = |in_world: Vector3<f64>| match value.as_str() {

@@ -291,16 +291,16 @@ fn rows(last: u64, every: u64) -> u64 {
 
 /// A CSV of 64 rows that have the numbers of the run's beginning, and steps and times spread over the whole run.
 fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
-    const ROWS: u64 = 64;
+    const ROWS_PER_SLICE: u64 = 64;
     const MOST_INTEGRATION: u64 = 50_000_000; // about 0.1 s
     let mut left = MOST_INTEGRATION;
     let points = scenario.body.mechanics.points().len() as u64;
     let apart = ((1 << 15) / points).clamp(4, 32); // steps between rows; a step of a larger body takes longer
-    let apart = apart.min(scenario.steps / ROWS).max(1);
+    let apart = apart.min(scenario.steps / ROWS_PER_SLICE).max(1);
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut csv = CsvWriter::new(Vec::new(), scenario)?;
-    for row in 0..ROWS {
-        let part = row as f64 / (ROWS - 1) as f64;
+    for row in 0..ROWS_PER_SLICE {
+        let part = row as f64 / (ROWS_PER_SLICE - 1) as f64;
         let step = (part * scenario.steps as f64) as u64 / every * every;
         csv.write(&Sample {
             step,

@@ -18,9 +18,9 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, SystemTime};
 
 /// How long a flush may hold up the loop.
-const PATIENCE: Duration = Duration::from_millis(400);
+const FLUSH_LIMIT: Duration = Duration::from_millis(400);
 /// How often what was noted is saved; a running run does not keep the disk busy.
-const PERIOD: Duration = Duration::from_millis(500);
+const SAVE_INTERVAL: Duration = Duration::from_millis(500);
 
 /// What is left of a session that has ended.
 #[derive(Debug)]
@@ -227,7 +227,7 @@ impl Session {
     /// Saves at once, and gives up after 0.4 s. Returns whether saving was attempted in that time;
     /// [`trouble`](Self::trouble) tells whether it failed.
     pub fn flush(&self) -> bool {
-        flush(&self.flushes, PATIENCE, false)
+        flush(&self.flushes, FLUSH_LIMIT, false)
     }
 
     /// Why the last attempt to save failed; `None` if it succeeded. The thread tries again every half second.
@@ -261,7 +261,7 @@ impl Session {
 
 impl Drop for Session {
     fn drop(&mut self) {
-        self.end(PATIENCE);
+        self.end(FLUSH_LIMIT);
     }
 }
 
@@ -279,7 +279,7 @@ fn flush(flushes: &Flushes, patience: Duration, ends: bool) -> bool {
 /// The body of the writer. It returns when the session is closed; one that was never saved leaves nothing.
 fn keep_writing(slot: Slot, state: &Mutex<SaveState>, flushes: &Receiver<(Sender<()>, bool)>) {
     loop {
-        let flushed = flushes.recv_timeout(PERIOD);
+        let flushed = flushes.recv_timeout(SAVE_INTERVAL);
         // A flush saves even what has not changed, so that the session left last has the newest file.
         if flushed.is_ok() || locked(state).is_news {
             save(&slot, state);

@@ -2,7 +2,7 @@
 //!
 //! Two files hold them. `settings.toml` beside the sessions is the program's: it is written when the user chooses a setting
 //! in the lab. `config.toml` in the configuration folder is the user's: it wins, and is never written. Both are checked as a
-//! scenario is, by the table [`KEYS`]; a setting that breaks a rule is not used, the others are.
+//! scenario is, by the table [`SETTINGS_KEYS`]; a setting that breaks a rule is not used, the others are.
 
 use super::own;
 use crate::scenario::keys::ValueKind::{self, Flag, OneOf, Whole};
@@ -19,10 +19,10 @@ pub const FILE: &str = "settings.toml";
 /// The longest file of settings, bytes.
 const LONGEST: usize = 1 << 20;
 
-const HEAD: &str = "# What was chosen in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and wins.\n";
+const SETTINGS_HEADER: &str = "# What was chosen in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and wins.\n";
 
 /// A setting's key, what it may hold, and its meaning.
-pub const KEYS: [(&str, ValueKind, &str); 5] = [
+pub const SETTINGS_KEYS: [(&str, ValueKind, &str); 5] = [
     (
         "marker",
         OneOf(&["braille", "half-block", "dot", "ascii"]),
@@ -45,7 +45,7 @@ pub const KEYS: [(&str, ValueKind, &str); 5] = [
 /// The settings of one file, and what is wrong with it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Read {
-    /// Those of its settings that break no rule, by the keys of [`KEYS`].
+    /// Those of its settings that break no rule, by the keys of [`SETTINGS_KEYS`].
     pub settings: Table,
     pub problems: Option<Problems>,
 }
@@ -87,9 +87,9 @@ fn sifted(table: &Table) -> (Table, Problems) {
             "color" if !table.contains_key("colour") => "colour",
             other => other,
         };
-        match KEYS.iter().find(|(known, ..)| *known == name) {
+        match SETTINGS_KEYS.iter().find(|(known, ..)| *known == name) {
             None => problems.add(|| {
-                let near = nearest(key, KEYS.iter().map(|(known, ..)| *known));
+                let near = nearest(key, SETTINGS_KEYS.iter().map(|(known, ..)| *known));
                 Problem::at(key, format!("unknown key: {near}"))
             }),
             Some((_, kind, _)) => match kind.check(value) {
@@ -137,7 +137,7 @@ pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
             Err(error) => return Err(error),
         };
         table.insert(key.to_owned(), value);
-        own::replace(&path, &format!("{HEAD}{table}"))
+        own::replace(&path, &format!("{SETTINGS_HEADER}{table}"))
     };
     remembered().map_err(|error| {
         let path = PrintablePath(&path);

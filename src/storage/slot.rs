@@ -28,9 +28,9 @@ use std::sync::{Arc, LazyLock};
 use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-const FORMAT: &str = "gyrolab session 4";
+const SESSION_FORMAT: &str = "gyrolab session 4";
 /// The most sessions that are kept, of a user and of a login that several share.
-const MOST_KEPT: usize = 20;
+const MOST_KEPT_SESSIONS: usize = 20;
 const MOST_SHARED: usize = 200;
 /// The longest file of a session, bytes.
 const LONGEST: usize = 64 << 20;
@@ -122,10 +122,10 @@ pub(super) fn stored(folder: &Path, name: &str) -> Result<SessionContent, String
     let bytes = bytes.map_err(|error| error.to_string())?;
     let text = String::from_utf8(bytes).unwrap_or_default();
     let (format, rest) = text.split_once('\n').unwrap_or_default();
-    if format != FORMAT && format.starts_with("gyrolab session ") {
+    if format != SESSION_FORMAT && format.starts_with("gyrolab session ") {
         return Err("another version of gyrolab wrote it".to_owned());
     }
-    let content = content(rest).filter(|_| format == FORMAT);
+    let content = content(rest).filter(|_| format == SESSION_FORMAT);
     content.ok_or_else(|| "it has been cut off or changed".to_owned())
 }
 
@@ -158,7 +158,11 @@ pub(super) fn prune(folder: &Path) {
         own::open(&path, OpenOptions::new().read(true)).is_ok()
     });
     let is_shared = folder.ends_with(SESSIONS);
-    let most = if is_shared { MOST_SHARED } else { MOST_KEPT };
+    let most = if is_shared {
+        MOST_SHARED
+    } else {
+        MOST_KEPT_SESSIONS
+    };
     free.filter_map(take).skip(most).for_each(Slot::remove);
     let locks = names(folder, "lock").unwrap_or_default();
     let alone = locks
@@ -230,7 +234,7 @@ impl Slot {
         let SessionContent { place, work } = content;
         let texts = format!("place {}\n{place}{}", place.len(), work.as_str());
         let path = file(&self.folder, &self.name, "session");
-        let text = format!("{FORMAT}\n{}\n{texts}", sum_of(&texts));
+        let text = format!("{SESSION_FORMAT}\n{}\n{texts}", sum_of(&texts));
         if text.len() > LONGEST {
             return Err(io::Error::other(format!(
                 "it would be longer than {LONGEST} bytes, the most that is read of a session"

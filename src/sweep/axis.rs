@@ -17,10 +17,10 @@ pub struct SweepAxis {
     pub values: Vec<Value>,
 }
 
-const MOST: u64 = 10_000_000;
+const MOST_AXIS_VALUES: u64 = 10_000_000;
 
 /// Digits of a value between two ends: one less than rounding spoils.
-const DIGITS: usize = 15;
+const AXIS_VALUE_DIGITS: usize = 15;
 
 impl SweepAxis {
     pub(super) fn new(vary: &VaryFile, place: &str) -> Result<Self, Vec<Problem>> {
@@ -119,13 +119,18 @@ fn range(from: f64, to: f64, count: u64) -> Result<Vec<Value>, String> {
         1 if from == to => Ok(vec![Value::Float(from)]),
         0 | 1 => Err("must have a count of 2 or more: both ends are among the values".to_owned()),
         _ if from == to => Err("has two ends that are the same".to_owned()),
-        count if count > MOST => Err(format!("has {count} values: at most {MOST} are allowed")),
+        count if count > MOST_AXIS_VALUES => Err(format!(
+            "has {count} values: at most {MOST_AXIS_VALUES} are allowed"
+        )),
         count => {
             let last = count - 1;
             let value = |index: u64| match index {
                 0 => from,
                 index if index == last => to,
-                index => rounded(from + (to - from) * (index as f64 / last as f64), DIGITS),
+                index => rounded(
+                    from + (to - from) * (index as f64 / last as f64),
+                    AXIS_VALUE_DIGITS,
+                ),
             };
             Ok((0..count).map(|index| Value::Float(value(index))).collect())
         }
@@ -134,11 +139,11 @@ fn range(from: f64, to: f64, count: u64) -> Result<Vec<Value>, String> {
 
 /// A whole number where a number is wanted as that number, and a number without decimals where a whole one is.
 fn as_kind(kind: ValueKind, value: Value) -> Value {
-    const EXACT: f64 = 9e15;
+    const LARGEST_WHOLE_VALUE: f64 = 9e15;
     match (kind, &value) {
         (ValueKind::Number(_), Value::Integer(whole)) => Value::Float(*whole as f64),
         (ValueKind::Whole(..) | ValueKind::WholeOr(..), Value::Float(number))
-            if number.fract() == 0.0 && number.abs() < EXACT =>
+            if number.fract() == 0.0 && number.abs() < LARGEST_WHOLE_VALUE =>
         {
             Value::Integer(*number as i64)
         }

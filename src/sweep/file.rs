@@ -55,7 +55,7 @@ pub struct VaryFile {
 }
 
 /// The keys of a sweep file and of `[[vary]]`, with what each may hold; the others are checked one by one.
-const KEYS: [(&str, Option<ValueKind>); 8] = [
+const SWEEP_FILE_KEYS: [(&str, Option<ValueKind>); 8] = [
     ("gyrolab", Some(ValueKind::Line)),
     ("title", Some(ValueKind::Line)),
     ("about", Some(ValueKind::Paragraph)),
@@ -83,7 +83,7 @@ impl SweepFile {
     /// The sweep in `document`; what its values mean is not checked.
     pub fn read(document: &Document) -> Result<Self, Problems> {
         let table = document.table();
-        let mut problems = check(table, "", &KEYS);
+        let mut problems = check(table, "", &SWEEP_FILE_KEYS);
         let mut refuse = |key: &str, rule: &str| problems.push(refused(table, "", key, rule));
         if !are_all(table.get("measure"), Value::is_str) {
             refuse("measure", "must be a list of names in brackets");

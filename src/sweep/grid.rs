@@ -8,7 +8,7 @@ use crate::run::{Clock, resampled};
 use crate::scenario::document::Document;
 use crate::scenario::dotted::{find, join, number_of_push};
 use crate::scenario::head::is_file;
-use crate::scenario::rescale::{MOST_STEPS, accumulates};
+use crate::scenario::rescale::{MOST_RUN_STEPS_BY_TIME, accumulates};
 use crate::scenario::{Problem, Problems, Scenario};
 use crate::text::number::{decimal, shortest};
 use serde::Serialize;
@@ -21,7 +21,7 @@ const TIME_STEP: &str = "motion.time_step_s";
 /// The keys of a push in steps, and those that say the same in seconds.
 const IN_STEPS_OR_SECONDS: [(&str, &str); 2] = [("first_step", "from_s"), ("steps", "for_s")];
 
-const MOST_POINTS: u64 = 1_000_000_000;
+const MOST_GRID_POINTS: u64 = 1_000_000_000;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepRow {
@@ -66,8 +66,9 @@ impl Sweep {
         let shard = shard.map_err(|rule| problems.push(Problem::at("shard", rule)));
         let counts = axes.iter().map(|axis| axis.values.len() as u64);
         let points = counts.fold(1, u64::saturating_mul);
-        if points > MOST_POINTS {
-            let rule = format!("is a grid of {points} points: at most {MOST_POINTS} are allowed");
+        if points > MOST_GRID_POINTS {
+            let rule =
+                format!("is a grid of {points} points: at most {MOST_GRID_POINTS} are allowed");
             problems.push(Problem::at("vary", rule));
         }
         if !problems.is_empty() {
@@ -356,9 +357,9 @@ fn at_time_step(scenario: &Scenario, time_step_s: f64) -> Result<Scenario, Strin
             decimal(duration_s)
         ));
     }
-    if duration_s / time_step_s > MOST_STEPS {
+    if duration_s / time_step_s > MOST_RUN_STEPS_BY_TIME {
         return Err(format!(
-            "{TIME_STEP} ({}) would be more than {MOST_STEPS:e} steps",
+            "{TIME_STEP} ({}) would be more than {MOST_RUN_STEPS_BY_TIME:e} steps",
             shortest(time_step_s)
         ));
     }

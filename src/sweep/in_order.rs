@@ -12,7 +12,7 @@ use std::time::Duration;
 /// How far the work may be ahead of the first result that is not there yet.
 const AHEAD: u64 = 1 << 14;
 /// Least time between two takings: each wakes the thread that takes.
-const PERIOD: Duration = Duration::from_millis(10);
+const LEAST_TAKE_INTERVAL: Duration = Duration::from_millis(10);
 
 /// Computes `of` for all of `range` on all cores, and gives the results to `take` in the order of the range, as many at once
 /// as are there. It ends where `take` breaks, or where `of`, which is told whether to go on, gives nothing.
@@ -30,7 +30,7 @@ pub fn in_order<T: Send>(
     let goes_on_now = || goes_on.load(Relaxed);
     let work = |results: &mut Sender<(u64, T)>, index: u64| {
         while goes_on_now() && index >= taken.load(Relaxed) + AHEAD {
-            sleep(PERIOD);
+            sleep(LEAST_TAKE_INTERVAL);
         }
         let result = goes_on_now().then(|| of(index, &goes_on_now))??;
         results.send((index, result)).ok()
@@ -55,7 +55,7 @@ fn hand_over<T>(
 ) {
     let (mut waiting, mut wanted) = (BTreeMap::new(), taken.load(Relaxed));
     while let Ok(first) = receiver.recv() {
-        sleep(PERIOD);
+        sleep(LEAST_TAKE_INTERVAL);
         waiting.extend(std::iter::once(first).chain(receiver.try_iter()));
         let mut ready = Vec::new();
         while let Some(result) = waiting.remove(&wanted) {

@@ -62,7 +62,7 @@ fn rows_of(shard: &Sweep, path: &Path) -> Result<(EmptyRows, impl Read), SweepFi
 
 /// The sweep whose shards these are, all of them and each once.
 fn of_one_sweep(shards: &[(Sweep, &Path)]) -> Result<Sweep, SweepFileError> {
-    const MOST_NAMED: usize = 12;
+    const MOST_MISSING_ROWS: usize = 12;
     let Some((first, first_path)) = shards.first() else {
         return Err(SweepFileError::Refused("there are no shards".to_owned()));
     };
@@ -84,7 +84,7 @@ fn of_one_sweep(shards: &[(Sweep, &Path)]) -> Result<Sweep, SweepFileError> {
         return Err(refused(path, why));
     }
     let mut missing = (1..=of).filter(|number| !numbers.contains(number));
-    let named = missing.by_ref().take(MOST_NAMED);
+    let named = missing.by_ref().take(MOST_MISSING_ROWS);
     let named: Vec<_> = named.map(|number| number.to_string()).collect();
     if named.is_empty() {
         return Ok(whole);

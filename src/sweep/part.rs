@@ -49,7 +49,7 @@ pub(super) fn cannot_write(path: &Path, error: &io::Error) -> SweepFileError {
 }
 
 /// Time for finding out why a row is empty: a file does not say it.
-const PATIENCE: Duration = Duration::from_secs(1);
+const EMPTY_ROW_LIMIT: Duration = Duration::from_secs(1);
 
 /// How many rows hold no readouts, and the first few, counted from 0, with their reasons where these are known.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -82,7 +82,7 @@ impl EmptyRows {
     /// says yes.
     pub fn in_words(&self, sweep: &Sweep, goes_on: impl Fn() -> bool) -> Vec<String> {
         let begin = Instant::now();
-        let goes_on = || begin.elapsed() < PATIENCE && goes_on();
+        let goes_on = || begin.elapsed() < EMPTY_ROW_LIMIT && goes_on();
         let again = |row: u64| goes_on().then(|| sweep.row(row, &goes_on)?.empty).flatten();
         let line = |(row, why): &(u64, Option<String>)| {
             let why = why.clone().or_else(|| again(*row));
@@ -324,14 +324,14 @@ impl There {
 /// The first line in which the header `there` differs from the `wanted` one, in words.
 pub(super) fn first_difference(there: &str, wanted: &str) -> Option<String> {
     const MOST_SHOWN: usize = 60;
-    const BEFORE: usize = 30;
+    const ERROR_CONTEXT: usize = 30;
     let lines: [Vec<&str>; 2] = [there, wanted].map(|text| text.split('\n').collect());
     let mut all = 0..lines[0].len().max(lines[1].len());
     let at = all.find(|&at| lines[0].get(at) != lines[1].get(at))?;
     let [there, wanted] = lines.map(|lines| lines.get(at).copied().unwrap_or_default());
     let pairs = there.chars().zip(wanted.chars());
     let same = pairs.take_while(|(a, b)| a == b);
-    let begin = same.count().saturating_sub(BEFORE);
+    let begin = same.count().saturating_sub(ERROR_CONTEXT);
     let dots = if begin > 0 { "..." } else { "" };
     let shown = |line: &str| brief(&line.chars().skip(begin).collect::<String>(), MOST_SHOWN);
     Some(format!(

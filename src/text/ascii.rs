@@ -4,7 +4,7 @@
 const RAISED: &str = "⁰0¹1²2³3⁴4⁵5⁶6⁷7⁸8⁹9⁻-⁺+ᵀT";
 const LOWERED: &str = "₀0₁1₂2₃3₄4₅5₆6₇7₈8₉9";
 
-const WORDS: [(char, &str); 38] = [
+const ASCII_WORDS: [(char, &str); 38] = [
     ('α', "alpha"),
     ('β', "beta"),
     ('ε', "eps"),
@@ -68,7 +68,7 @@ pub fn in_ascii(text: &str) -> String {
             continue;
         }
         sign = ' ';
-        match WORDS.iter().find(|(known, _)| *known == c) {
+        match ASCII_WORDS.iter().find(|(known, _)| *known == c) {
             // Two names of numbers in a row are a product.
             Some((_, word))
                 if word.len() > 1

@@ -1,7 +1,7 @@
 //! The ladder ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ...: round numbers about twice apart, numbered by rungs; rung 0 is 1.
 
 /// Relative differences below this are rounding: 0.01 · 100 is 1.
-const ROUNDING: f64 = 1e-12;
+const RUNG_ROUNDING: f64 = 1e-12;
 
 /// The number on rung `number`: the one nearest to its decimal.
 pub fn rung(number: i64) -> f64 {
@@ -12,10 +12,10 @@ pub fn rung(number: i64) -> f64 {
 
 /// Number of the largest rung that is not above `value` (> 0).
 pub fn rung_below(value: f64) -> i64 {
-    const FARTHEST: i64 = 400; // decades; beyond them there are no numbers
-    let decade = (libm::log10(value).floor() as i64).clamp(-FARTHEST, FARTHEST);
+    const FARTHEST_DECADE: i64 = 400; // decades; beyond them there are no numbers
+    let decade = (libm::log10(value).floor() as i64).clamp(-FARTHEST_DECADE, FARTHEST_DECADE);
     let top = 3 * decade + 3;
-    let is_above = |number: &i64| rung(*number) <= value * (1.0 + ROUNDING);
+    let is_above = |number: &i64| rung(*number) <= value * (1.0 + RUNG_ROUNDING);
     (top - 4..=top).rev().find(is_above).unwrap_or(top - 4)
 }
 
@@ -27,7 +27,7 @@ pub fn at_or_below(value: f64) -> f64 {
 /// `value` moved `times` rungs up, or down where `times` is negative; a value between two rungs goes to the next.
 pub fn climbed(value: f64, times: i32) -> f64 {
     let below = rung_below(value);
-    let is_between = value > rung(below) * (1.0 + ROUNDING);
+    let is_between = value > rung(below) * (1.0 + RUNG_ROUNDING);
     rung(below + i64::from(times) + i64::from(is_between && times < 0))
 }
 

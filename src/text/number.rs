@@ -4,19 +4,19 @@
 use std::fmt;
 
 /// In place of a number that there is not.
-pub const NONE: &str = "n/a";
+pub const NOT_AVAILABLE: &str = "n/a";
 
 /// From this size on a number is written with an exponent: digits before the point are no longer read.
-const LARGE: f64 = 1e9;
+const LARGE_NUMBER: f64 = 1e9;
 /// Digits after the point of a number that is written with an exponent where decimals were asked for.
-const MOST_DIGITS: usize = 6;
+const MOST_EXPONENT_DIGITS: usize = 6;
 
 /// `number` with `decimals` digits after the point: `0.886033`. What is rounded to zero has no sign: `0.000000`.
 pub fn fixed(number: f64, decimals: usize) -> String {
-    if number.abs() < LARGE {
+    if number.abs() < LARGE_NUMBER {
         return without_minus_zero(format!("{number:.decimals$}"));
     }
-    exponent(number, decimals.min(MOST_DIGITS))
+    exponent(number, decimals.min(MOST_EXPONENT_DIGITS))
 }
 
 /// `text` without the sign of a zero: a negative number that is rounded to 0 is written as 0 is.
@@ -33,7 +33,7 @@ pub fn signed(number: f64, decimals: usize) -> String {
 }
 
 fn with_sign(text: String) -> String {
-    if text.starts_with('-') || text == NONE {
+    if text.starts_with('-') || text == NOT_AVAILABLE {
         text
     } else {
         format!("+{text}")
@@ -45,7 +45,7 @@ pub fn exponent(number: f64, digits: usize) -> String {
     if number.is_finite() {
         format!("{:.digits$e}", number + 0.0) // adding 0 makes 0 of -0
     } else {
-        NONE.to_owned()
+        NOT_AVAILABLE.to_owned()
     }
 }
 
@@ -57,7 +57,7 @@ pub fn signed_exponent(number: f64, digits: usize) -> String {
 /// The shortest text that is read back as `number`: 0.1, 1e308.
 pub fn shortest(number: f64) -> String {
     if !number.is_finite() {
-        return NONE.to_owned();
+        return NOT_AVAILABLE.to_owned();
     }
     let text = format!("{number:?}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
@@ -274,7 +274,7 @@ mod tests {
         assert_eq!(uncertain(f64::NAN, 1.0), None);
     }
 
-    const WAYS: [fn(f64) -> String; 9] = [
+    const NUMBER_FORMATS: [fn(f64) -> String; 9] = [
         |n| fixed(n, 9),
         |n| signed(n, 4),
         |n| exponent(n, 3),
@@ -290,9 +290,9 @@ mod tests {
         #[test]
         fn no_number_is_long_or_no_number(bits in any::<u64>()) {
             let number = f64::from_bits(bits);
-            for text in WAYS.map(|way| way(number)) {
+            for text in NUMBER_FORMATS.map(|way| way(number)) {
                 prop_assert!(text.len() <= 24, "{text}");
-                prop_assert_eq!(text == NONE, !number.is_finite(), "{}", text);
+                prop_assert_eq!(text == NOT_AVAILABLE, !number.is_finite(), "{}", text);
                 prop_assert!(!text.contains("inf") && !text.contains("NaN"));
             }
         }

@@ -63,7 +63,7 @@ const OURS: [Unit; 16] = [
 ];
 
 /// Units in which people measure, and in which no name of gyrolab is.
-const OTHERS: [Unit; 30] = [
+const OTHER_UNITS: [Unit; 30] = [
     unit("_deg_per_s", "deg/s", UnitKind::Rate, TAU / 360.0),
     unit("_dps", "deg/s", UnitKind::Rate, TAU / 360.0),
     unit("_deg_s", "deg/s", UnitKind::Rate, TAU / 360.0),
@@ -104,7 +104,7 @@ impl Unit {
 
     /// The unit at the end of `name`, of those that anybody uses: the one whose end is the longest.
     pub fn anybodys(name: &str) -> Option<&'static Self> {
-        let known = OURS.iter().chain(&OTHERS);
+        let known = OURS.iter().chain(&OTHER_UNITS);
         let fits = known.filter(|unit| name.ends_with(unit.end));
         fits.max_by_key(|unit| unit.end.len())
     }
@@ -112,7 +112,7 @@ impl Unit {
     /// The unit that `text` is, as people write it: `s`, `m/s2`, `°/s`, `deg s^-1`, `1/min`.
     pub fn written(text: &str) -> Option<&'static Self> {
         let plain = plain(text);
-        let known = || OURS.iter().chain(&OTHERS);
+        let known = || OURS.iter().chain(&OTHER_UNITS);
         let is_written = |unit: &&Self| unit.name.replace(' ', "") == plain;
         let in_lower_case = plain.to_lowercase();
         let is_same = |unit: &&Self| unit.name.replace(' ', "").to_lowercase() == in_lower_case;
@@ -152,7 +152,7 @@ impl Unit {
                 let unit = name[at + 1..].replace(['-', '.', ' '], "_");
                 let known = OURS
                     .iter()
-                    .chain(&OTHERS)
+                    .chain(&OTHER_UNITS)
                     .find(|known| known.end[1..] == unit);
                 Some((&name[..at], known.or_else(|| Self::written(&unit))?))
             })

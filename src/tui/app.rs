@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// Longest wait for events while nothing changes.
-const IDLE: Duration = Duration::from_millis(500);
+const LONGEST_IDLE_WAIT: Duration = Duration::from_millis(500);
 /// The same while something is done in the background: an export, a search for advice.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
@@ -118,7 +118,11 @@ fn wait(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
     } else {
         let is_attentive =
             lab.files().is_exporting() || lab.adviser().is_seeking() || !lab.script().is_done();
-        let rest = if is_attentive { ATTENTIVE } else { IDLE };
+        let rest = if is_attentive {
+            ATTENTIVE
+        } else {
+            LONGEST_IDLE_WAIT
+        };
         let rest = lessons.wait().unwrap_or(rest).min(rest);
         lab.notice_ends_in().unwrap_or(rest).min(rest)
     }

@@ -13,7 +13,7 @@ use std::io;
 use std::time::Duration;
 
 /// How often the lines are written anew.
-const EVERY: Duration = Duration::from_millis(500);
+const BOARD_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Shows `lines`, which are given the width of the screen, until q, Esc or Ctrl-C.
 pub fn run(lines: impl Fn(usize) -> Vec<String>) -> io::Result<()> {
@@ -35,7 +35,7 @@ pub fn run(lines: impl Fn(usize) -> Vec<String>) -> io::Result<()> {
                 to_ascii(area, buf);
             }
         })?;
-        for event in screen.events(EVERY)? {
+        for event in screen.events(BOARD_INTERVAL)? {
             match event {
                 Event::Typed(Typed::Key(Key::Char('q') | Key::Esc | Key::Ctrl('c'))) => {
                     return Ok(());

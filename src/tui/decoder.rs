@@ -11,13 +11,13 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 /// How long a sequence may wait for its next byte. A single Esc is recognised only after this time.
-const GAP: Duration = Duration::from_millis(50);
+const BYTE_GAP: Duration = Duration::from_millis(50);
 /// How long a sequence may take as a whole.
-const WHOLE: Duration = Duration::from_millis(500);
+const WHOLE_SEQUENCE_LIMIT: Duration = Duration::from_millis(500);
 /// How long a paste may wait for its next byte: on a slow line it comes in pieces.
 const GAP_IN_PASTE: Duration = Duration::from_secs(3);
 /// The most bytes of a sequence that are kept; every key has fewer.
-const LONGEST: usize = 64;
+const LONGEST_SEQUENCE: usize = 64;
 /// The most bytes of a paste that are kept: one more than the lab takes.
 const LONGEST_PASTE: usize = MOST_PASTED + 1;
 
@@ -90,7 +90,7 @@ impl Decoder {
         let (first, last) = self.came?;
         match self.paste {
             Some(_) => Some(last + GAP_IN_PASTE),
-            None => Some((last + GAP).min(first + WHOLE)),
+            None => Some((last + BYTE_GAP).min(first + WHOLE_SEQUENCE_LIMIT)),
         }
     }
 
@@ -114,7 +114,7 @@ impl Decoder {
         if let Some(paste) = self.paste.take() {
             return self.take_pasted(paste, byte);
         }
-        if self.pending.len() >= LONGEST && is_body(&self.pending, byte) {
+        if self.pending.len() >= LONGEST_SEQUENCE && is_body(&self.pending, byte) {
             return;
         }
         self.pending.push(byte);

@@ -106,9 +106,9 @@ pub enum Ink {
 /// Dots that are drawn, and out of how many: dashes and dots tell the runs apart without colours.
 pub type Dashes = (usize, usize);
 
-pub const EXACT: Dashes = (2, 4);
+pub const EXACT_DASHES: Dashes = (2, 4);
 /// The pinned run: long dashes.
-pub const PINNED: Dashes = (5, 7);
+pub const PINNED_DASHES: Dashes = (5, 7);
 
 /// The run before an edit: single dots, closer where the dots of `marker` are as large as cells.
 pub fn of_run_before(marker: Marker) -> Dashes {

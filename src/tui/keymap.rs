@@ -2,7 +2,7 @@
 //! the help say of it.
 
 pub use crate::lab::Mode;
-use crate::lab::action::{Action, Ask, Direction, FAR, FieldEdit, LessonKey, repeated};
+use crate::lab::action::{Action, Ask, Direction, FieldEdit, LessonKey, SHIFT_FACTOR, repeated};
 use crate::lab::command::{Command, PushChoice, SeekTarget};
 use crate::lab::view::Pane;
 use crate::lab::{KeyCommands, Lab as TheLab, LabRequest};
@@ -92,14 +92,22 @@ pub enum FooterPriority {
 }
 
 const PLAY: &str = "play";
-const LOOK: &str = "look";
-const CHANGE: &str = "change the values";
-const PUSH: &str = "push";
-const KEEP: &str = "keep and export";
-const OPEN: &str = "open another run";
+const LOOK_GROUP: &str = "look";
+const CHANGE_GROUP: &str = "change the values";
+const PUSH_GROUP: &str = "push";
+const KEEP_GROUP: &str = "keep and export";
+const OPEN_GROUP: &str = "open another run";
 const LEAVE: &str = "help, close, leave";
 /// The groups of the keys of the lab, in order.
-pub const PURPOSES: [&str; 7] = [PLAY, LOOK, CHANGE, PUSH, KEEP, OPEN, LEAVE];
+pub const PURPOSES: [&str; 7] = [
+    PLAY,
+    LOOK_GROUP,
+    CHANGE_GROUP,
+    PUSH_GROUP,
+    KEEP_GROUP,
+    OPEN_GROUP,
+    LEAVE,
+];
 
 /// The keys that zoom a round picture while it has the focus.
 #[rustfmt::skip]
@@ -160,7 +168,7 @@ pub const fn row(
         footer,
         help,
         search: "",
-        purpose: LOOK,
+        purpose: LOOK_GROUP,
         worth: FooterPriority::Spare,
     }
 }
@@ -202,27 +210,27 @@ impl Binding {
 pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char(' ')], Action::TogglePause, "pause", "stop the run, or let it go on").to(PLAY).worth(FooterPriority::Kept),
     does(&[Lab], &[Char('.')], |_, count| stepped(count, 1), "step", "one time step on; 10. takes ten").to(PLAY).worth(FooterPriority::Kept),
-    does(&[Lab], &[Char('p')], |_, _| one(Command::Push(PushChoice::default())), "push", "give the push that is chosen, now").found_by("kick force hit").to(PUSH).worth(FooterPriority::Useful),
+    does(&[Lab], &[Char('p')], |_, _| one(Command::Push(PushChoice::default())), "push", "give the push that is chosen, now").found_by("kick force hit").to(PUSH_GROUP).worth(FooterPriority::Useful),
     does(&[Lab], &[Char('t')], |lab, _| one(Command::Exact(!lab.player().run().shows_exact())), "exact", "the exact motion beside the run, and how far apart they are").found_by("compare truth true overlay dashed").worth(FooterPriority::Useful),
-    row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change").to(CHANGE).worth(FooterPriority::Useful),
-    row(&[Lab], &[Enter], Action::Edit, "", "type the value that is selected").to(CHANGE),
-    row(&[Lab], &[Char('x')], Action::Ask(Ask::Export), "export", "write the run up to here as CSV").to(KEEP).worth(FooterPriority::Useful),
+    row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change").to(CHANGE_GROUP).worth(FooterPriority::Useful),
+    row(&[Lab], &[Enter], Action::Edit, "", "type the value that is selected").to(CHANGE_GROUP),
+    row(&[Lab], &[Char('x')], Action::Ask(Ask::Export), "export", "write the run up to here as CSV").to(KEEP_GROUP).worth(FooterPriority::Useful),
     does(&[Lab], &[Char('f')], |lab, _| one(lab.view().fill_toggled()), "fill", "fill the screen with the pane, or show all panes again").worth(FooterPriority::Useful),
-    row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file").to(OPEN).worth(FooterPriority::Useful),
+    row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file").to(OPEN_GROUP).worth(FooterPriority::Useful),
     does(&[Lab], &[Char(',')], |_, count| stepped(count, -1), "back", "one time step back; 10, goes ten").to(PLAY),
     does(&[Lab], &[Char('+'), Char('='), PageUp], |lab, count| one(lab.player().other_speed(repeated(count))?), "faster", "play faster").found_by("speed").to(PLAY),
     does(&[Lab], &[Char('-'), PageDown], |lab, count| one(lab.player().other_speed(-repeated(count))?), "slower", "play slower; the time step stays as it is").found_by("speed").to(PLAY),
     row(&[Lab], &[Char('g')], Action::GoTo, "go to", "go to a step or a time; 400g goes to step 400").to(PLAY),
     does(&[Lab], &[Char('r')], restarted, "restart", "back to step 0; what was done stays").to(PLAY),
-    row(&[Lab], &[Char('P')], Action::ChoosePush, "", "choose the push: point, force, direction, length").to(PUSH),
-    does(&[Lab], &[Char('u')], |_, count| one(Command::Undo(repeated(count).unsigned_abs())), "undo", "take back what was done last").to(CHANGE),
-    does(&[Lab], &[Char('U'), Ctrl('r')], |_, count| one(Command::Redo(repeated(count).unsigned_abs())), "", "do it again").to(CHANGE),
+    row(&[Lab], &[Char('P')], Action::ChoosePush, "", "choose the push: point, force, direction, length").to(PUSH_GROUP),
+    does(&[Lab], &[Char('u')], |_, count| one(Command::Undo(repeated(count).unsigned_abs())), "undo", "take back what was done last").to(CHANGE_GROUP),
+    does(&[Lab], &[Char('U'), Ctrl('r')], |_, count| one(Command::Redo(repeated(count).unsigned_abs())), "", "do it again").to(CHANGE_GROUP),
     does(&[Lab], &[Char('m')], |lab, _| one(Command::look("residuals", !lab.view().residuals)), "residuals", "residuals: measured data less the run, or both again; --measured FILE puts data beside a run").worth(FooterPriority::Kept),
     does(&[Lab], &[Char('i')], |lab, _| one(Command::Pin(!lab.comparison().is_pinned())), "", "pin this run as the reference beside every other, or take it away").found_by("compare keep"),
     does(&[Lab], &[Char('a')], |lab, _| one(lab.adviser().followed(lab.player())?), "", "take the advice about the numbers: the run from the start with what mends them"),
-    row(&[Lab], &[Char('X')], Action::Ask(Ask::Figure), "", "figure of the run up to here (a plot, a graph): SVG, PDF or PNG").found_by("screenshot picture image").to(KEEP),
-    row(&[Lab], &[Char('s')], Action::Ask(Ask::RunFile), "", "save the run file: scenario and all that was done").to(KEEP),
-    row(&[Lab], &[Char('S')], Action::Ask(Ask::Present), "", "save the present state as a scenario").to(KEEP),
+    row(&[Lab], &[Char('X')], Action::Ask(Ask::Figure), "", "figure of the run up to here (a plot, a graph): SVG, PDF or PNG").found_by("screenshot picture image").to(KEEP_GROUP),
+    row(&[Lab], &[Char('s')], Action::Ask(Ask::RunFile), "", "save the run file: scenario and all that was done").to(KEEP_GROUP),
+    row(&[Lab], &[Char('S')], Action::Ask(Ask::Present), "", "save the present state as a scenario").to(KEEP_GROUP),
     row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the list of lessons; again: back to where one was"),
     row(&[Lab], &[Char('k')], Action::Class, "", "in a class: the teacher's acts; for a student: step aside, and back"),
     row(&[Lab], &[Tab], Action::NextPane, "pane", "the next pane"),
@@ -231,15 +239,15 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('v')], Action::Toggle(Pane::STEP), "", "one time step, phase by phase, with its numbers; v takes it away again"),
     row(&[Lab], &[Char('M')], Action::ToDifference, "", "to the first step at which the rows of your own program differ, with its numbers (--measured mine.csv)").found_by("own code verify slip mistake"),
     row(&[Lab], &[Char('c')], Action::Ask(Ask::Settings), "settings", "settings: colours, dots, frames a second, the mouse, a bare screen, what is hidden").found_by("colors theme light dark background markers braille ascii fps health"),
-    row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name").to(CHANGE),
-    row(&[Lab, Browser, Filter, Find, Help], &[Up], Action::Move(Direction::Up, 1), "", "up: in lists and values; in 3-D the camera").to(CHANGE),
-    row(&[Lab, Browser, Filter, Find, Help], &[Down], Action::Move(Direction::Down, 1), "", "down").to(CHANGE),
-    row(&[Lab], &[Left], Action::Move(Direction::Left, 1), "", "values: nudge down; 3-D: turn the camera left").to(CHANGE),
-    row(&[Lab], &[Right], Action::Move(Direction::Right, 1), "", "values: nudge up; 3-D: turn the camera right").to(CHANGE),
-    row(&[Lab], &[ShiftLeft], Action::Move(Direction::Left, FAR), "", "the same ten times; a count does it too: 10 Left").to(CHANGE),
-    row(&[Lab], &[ShiftRight], Action::Move(Direction::Right, FAR), "", "the same ten times").to(CHANGE),
-    row(&[Lab, Browser, Find, Help], &[ShiftUp], Action::Move(Direction::Up, FAR), "", "ten lines up").to(CHANGE),
-    row(&[Lab, Browser, Find, Help], &[ShiftDown], Action::Move(Direction::Down, FAR), "", "ten lines down").to(CHANGE),
+    row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name").to(CHANGE_GROUP),
+    row(&[Lab, Browser, Filter, Find, Help], &[Up], Action::Move(Direction::Up, 1), "", "up: in lists and values; in 3-D the camera").to(CHANGE_GROUP),
+    row(&[Lab, Browser, Filter, Find, Help], &[Down], Action::Move(Direction::Down, 1), "", "down").to(CHANGE_GROUP),
+    row(&[Lab], &[Left], Action::Move(Direction::Left, 1), "", "values: nudge down; 3-D: turn the camera left").to(CHANGE_GROUP),
+    row(&[Lab], &[Right], Action::Move(Direction::Right, 1), "", "values: nudge up; 3-D: turn the camera right").to(CHANGE_GROUP),
+    row(&[Lab], &[ShiftLeft], Action::Move(Direction::Left, SHIFT_FACTOR), "", "the same ten times; a count does it too: 10 Left").to(CHANGE_GROUP),
+    row(&[Lab], &[ShiftRight], Action::Move(Direction::Right, SHIFT_FACTOR), "", "the same ten times").to(CHANGE_GROUP),
+    row(&[Lab, Browser, Find, Help], &[ShiftUp], Action::Move(Direction::Up, SHIFT_FACTOR), "", "ten lines up").to(CHANGE_GROUP),
+    row(&[Lab, Browser, Find, Help], &[ShiftDown], Action::Move(Direction::Down, SHIFT_FACTOR), "", "ten lines down").to(CHANGE_GROUP),
     row(&[Browser, Filter, Help], &[PageUp], Action::Move(Direction::PageUp, 1), "", "a page up"),
     row(&[Browser, Filter, Help], &[PageDown], Action::Move(Direction::PageDown, 1), "", "a page down"),
     does(&[Lab], &[Char('w')], wider, "", "traces: show twice the time"),

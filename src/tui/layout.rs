@@ -10,7 +10,7 @@ use crate::lab::view::{HideablePart, Pane, View};
 use ratatui::layout::Rect;
 
 /// The width the whole lab wants.
-const WIDTH: u16 = 80;
+const FULL_LAB_WIDTH: u16 = 80;
 /// From this width on two panes stand side by side.
 const TWO_FROM: u16 = 52;
 /// From this width on a hint fits on one line.
@@ -20,7 +20,7 @@ const BESIDE_ASKED: u16 = 24;
 /// From this width on a page of a lesson stands beside a pane.
 const BESIDE_PAGE_FROM: u16 = 72;
 /// The fewest and the most columns of a page, and its share of the screen, %.
-const PAGE: (u16, u16) = (38, 64);
+const LESSON_PAGE_COLUMNS: (u16, u16) = (38, 64);
 const PAGE_SHARE: usize = 48;
 /// The rows of a page above a pane whose run it plays, where they do not stand side by side.
 const PAGE_ROWS: u16 = 8;
@@ -30,7 +30,7 @@ const HEIGHT: u16 = 24;
 const TWO_LINES_FROM: u16 = 18;
 /// On lower screens the lines below the panes leave at least these rows to the panes, and a hint has at most this many lines.
 const ROWS_OF_PANES: u16 = 6;
-const MOST_LINES: u16 = 3;
+const MOST_STATUS_LINES: u16 = 3;
 
 /// What the lines below the panes have to say: what there is to see, and whether the numbers are to be believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,7 +105,7 @@ impl ScreenLayout {
             health,
             hint,
             keys,
-            is_cramped: area.width < WIDTH || area.height < HEIGHT,
+            is_cramped: area.width < FULL_LAB_WIDTH || area.height < HEIGHT,
         }
     }
 
@@ -129,7 +129,7 @@ impl ScreenLayout {
 fn on_low_screen(said: LinesBelow, height: u16, hides_health: bool) -> (u16, bool) {
     let below = height.saturating_sub(2 + ROWS_OF_PANES);
     let lines = below.saturating_sub(said.warns.into());
-    let lines = lines.min(MOST_LINES).min(said.lines).max(1);
+    let lines = lines.min(MOST_STATUS_LINES).min(said.lines).max(1);
     let has_health = said.warns || lines == 1;
     (lines, height >= 9 && has_health && !hides_health)
 }
@@ -154,7 +154,10 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     }
     if !view.filled && view.may_show(Pane::LESSON) && area.width >= BESIDE_PAGE_FROM {
         let share = area.width as usize * PAGE_SHARE / 100;
-        let [page, rest] = split_columns(area, (share as u16).clamp(PAGE.0, PAGE.1));
+        let [page, rest] = split_columns(
+            area,
+            (share as u16).clamp(LESSON_PAGE_COLUMNS.0, LESSON_PAGE_COLUMNS.1),
+        );
         let mut panes = panes(rest, &beside_page(view));
         panes.insert(0, (Pane::LESSON, page));
         return panes;
@@ -235,7 +238,7 @@ fn halves(area: Rect, focus: Pane) -> Vec<(Pane, Rect)> {
 /// The panes that were chosen, side by side: all of them, or two where there is room for no more.
 fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     // The panes that would stand side by side if all were shown, on at least the width that the whole lab wants.
-    let joined = joined(area.width.max(WIDTH));
+    let joined = joined(area.width.max(FULL_LAB_WIDTH));
     let has_room = |row: &PaneRow| joined.iter().any(|other| other.id == row.id);
     let is_chosen =
         |row: &&PaneRow| view.may_show(row.id) && (view.shown.contains(&row.id) || has_room(row));
@@ -243,7 +246,7 @@ fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     if panes.is_empty() {
         return Vec::new();
     }
-    if area.width < WIDTH {
+    if area.width < FULL_LAB_WIDTH {
         panes[1..].sort_by_key(|row| row.id != view.focus);
         panes.truncate(2);
     }

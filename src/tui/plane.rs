@@ -82,7 +82,7 @@ impl Plane {
 
 /// How far a label may stand from its own cell, columns and rows.
 const ACROSS: u16 = 8;
-const DOWN: u16 = 2;
+const LABEL_ROWS_DOWN: u16 = 2;
 
 /// The cells of a picture that are taken by labels and marks; counted from its upper left.
 pub struct LabelCells {
@@ -111,7 +111,8 @@ impl LabelCells {
         let last = self.width.saturating_sub(width);
         let (x, y) = (cell.0.min(last), cell.1);
         let columns = x.saturating_sub(ACROSS)..=x.saturating_add(ACROSS).min(last);
-        let rows = y.saturating_sub(DOWN)..=(y + DOWN).min(self.height.saturating_sub(1));
+        let rows = y.saturating_sub(LABEL_ROWS_DOWN)
+            ..=(y + LABEL_ROWS_DOWN).min(self.height.saturating_sub(1));
         let cells = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
         let free = cells.filter(|cell| self.is_free(*cell, width));
         // A row is about twice as high as a column is wide; of two places as near, the one to the right.

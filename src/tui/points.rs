@@ -29,7 +29,7 @@ impl Marker {
 }
 
 /// Cells of the curve that are shown after a mark that covers the curve.
-const SEEN: u8 = 3;
+const CURVE_CELLS_SHOWN: u8 = 3;
 
 /// What stands in a cell, the least first: what comes later in this list covers what comes earlier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -138,7 +138,7 @@ impl Points {
                     target.set_char(symbol).set_style(theme.style(role));
                 }
                 to_be_seen = if is_shown && !is_free {
-                    SEEN
+                    CURVE_CELLS_SHOWN
                 } else {
                     to_be_seen.saturating_sub(1)
                 };

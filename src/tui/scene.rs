@@ -13,7 +13,7 @@ const BEHIND: f64 = 0.05;
 /// Half the angle of an arrow's head, radians.
 const HEAD_ANGLE: f64 = 0.4;
 /// Length of an arrow's head: this part of the scene's reach, at least these dots, at most this part of the arrow.
-const HEAD: f64 = 0.07;
+const ARROW_HEAD: f64 = 0.07;
 const LEAST_HEAD: f64 = 5.0;
 const MOST_OF_ARROW: f64 = 0.6;
 /// Strokes of a head to each side of its middle.
@@ -170,7 +170,7 @@ impl DotScene {
         if length < SHORTEST {
             return; // seen along itself, it has no head
         }
-        let head = (HEAD * self.reach * self.plane.scale.1).max(LEAST_HEAD);
+        let head = (ARROW_HEAD * self.reach * self.plane.scale.1).max(LEAST_HEAD);
         let share = head.min(MOST_OF_ARROW * length) / length;
         for part in -HEAD_STROKES..=HEAD_STROKES {
             let angle = HEAD_ANGLE * f64::from(part) / f64::from(HEAD_STROKES);

@@ -11,12 +11,12 @@ use ratatui::style::{Color, Modifier};
 use std::fmt::Write; // which cannot fail on a `String`
 
 /// A cell, px.
-const WIDTH: u32 = 8;
+const CELL_WIDTH_PX: u32 = 8;
 const HEIGHT: u32 = 16;
 /// From a cell's upper edge to the line on which letters stand, px.
 const BASE: u32 = 12;
 /// Fonts whose letters are as wide as a cell at this size, px.
-const FONTS: &str = "DejaVu Sans Mono,Menlo,Consolas,Liberation Mono,monospace";
+const CELL_FONTS: &str = "DejaVu Sans Mono,Menlo,Consolas,Liberation Mono,monospace";
 const SIZE: f64 = 13.3;
 
 /// The picture of `lab` on a screen of this width and height.
@@ -28,16 +28,19 @@ pub fn svg(lab: &Lab, (columns, lines): (u16, u16), background: Background) -> S
         Background::Dark => ["#e5e5e5", "#1e1e1e"],
         Background::Light => ["#1e1e1e", "#ffffff"],
     };
-    let [width, height] = [u32::from(columns) * WIDTH, u32::from(lines) * HEIGHT];
+    let [width, height] = [
+        u32::from(columns) * CELL_WIDTH_PX,
+        u32::from(lines) * HEIGHT,
+    ];
     let title = xml(&lab.player().run().scenario().file.title);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-         font-family=\"{FONTS}\" font-size=\"{SIZE}\">\n<title>{title}</title>\n\
+         font-family=\"{CELL_FONTS}\" font-size=\"{SIZE}\">\n<title>{title}</title>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n",
         paper[1]
     );
     for y in 0..lines {
-        let cell = |x: u16| Some((u32::from(x) * WIDTH, buf.cell((x, y))?));
+        let cell = |x: u16| Some((u32::from(x) * CELL_WIDTH_PX, buf.cell((x, y))?));
         let row: Vec<(u32, &Cell)> = (0..columns).filter_map(cell).collect();
         let look = |cell: &Cell| (mark(cell), cell.fg, cell.bg, cell.modifier);
         for run in row.chunk_by(|a, b| look(a.1) == look(b.1)) {
@@ -73,7 +76,7 @@ fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, paper: [&'static str;
     }
     let [ink, ground] = colours;
     if ground != paper[1] {
-        let width = cells.len() as u32 * WIDTH;
+        let width = cells.len() as u32 * CELL_WIDTH_PX;
         *out +=
             &format!("<path fill=\"{ground}\" d=\"M{left} {top}h{width}v{HEIGHT}h-{width}z\"/>\n");
     }

@@ -65,7 +65,7 @@ static DRAWING: OnceLock<ThreadId> = OnceLock::new();
 static PANICS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 /// How long a terminal that accepts no bytes may delay the end of the process.
-const PATIENCE: Duration = Duration::from_millis(500);
+const TERMINAL_EXIT_LIMIT: Duration = Duration::from_millis(500);
 /// A SIGCONT that follows the request to suspend so soon cancels it. Once the process has stopped, the shell takes the
 /// terminal away from it, and SIGCONT alone does not bring that back.
 const CANCELED_WITHIN: Duration = Duration::from_millis(50);
@@ -75,11 +75,11 @@ const HEARD_WITHIN: Duration = Duration::from_millis(200);
 const MOST_EVENTS: usize = 256;
 
 /// The most columns and lines that are drawn on: a client may say any size, and each cell takes memory. The rest stays empty.
-pub const MOST_CELLS: (u16, u16) = (1000, 500);
+pub const MOST_SCREEN_CELLS: (u16, u16) = (1000, 500);
 
 /// The part that is drawn on of a screen of that `size`.
 fn drawn_of(size: Size) -> Rect {
-    let (columns, lines) = MOST_CELLS;
+    let (columns, lines) = MOST_SCREEN_CELLS;
     Rect::new(0, 0, size.width.min(columns), size.height.min(lines))
 }
 
@@ -377,7 +377,7 @@ fn handle(signal: i32) {
 /// Waits until no frame is being drawn; `None` if a frame hangs in a terminal that accepts no bytes.
 fn take_pen() -> Option<MutexGuard<'static, ()>> {
     let begin = Instant::now();
-    while begin.elapsed() < PATIENCE {
+    while begin.elapsed() < TERMINAL_EXIT_LIMIT {
         match PEN.try_lock() {
             Ok(pen) => return Some(pen),
             Err(TryLockError::Poisoned(pen)) => return Some(pen.into_inner()),
@@ -395,7 +395,7 @@ fn leave_in_time() {
         let _ = done.send(());
     });
     match spawned {
-        Ok(_) => drop(left.recv_timeout(PATIENCE)),
+        Ok(_) => drop(left.recv_timeout(TERMINAL_EXIT_LIMIT)),
         Err(_) => {
             give_back();
             print_panics();

@@ -18,12 +18,12 @@ const DWELT: f64 = 3.0;
 /// Fewer times than these are chance.
 const LEAST_DWELT: u16 = 5;
 /// The longest line between two places of the last turn, dots: the way between them is not known.
-const LONGEST_LINE: f64 = 8.0;
+const LONGEST_TRAIL_LINE_DOTS: f64 = 8.0;
 /// The longest line between two recent places, of the sheet's shorter side.
 const LONGEST_RECENT_LINE: f64 = 0.5;
 
 /// Dots of the path up to this distance across and down are near; two lines have fewer near dots than a crowd.
-const NEAR: usize = 2;
+const NEAR_DOTS: usize = 2;
 const CROWD: usize = 12;
 
 /// A path on a sheet of dots, each with its age.
@@ -79,7 +79,11 @@ impl Trail {
         let all = all.map(|block| (block.end_s, to_dot(&block.end())));
         let all: Vec<_> = all.inspect(|(_, at)| self.count(*at)).collect();
         let old = all.iter().filter(|(end_s, _)| *end_s <= now_s);
-        self.pass(old.map(|(_, at)| *at).chain([now]), LONGEST_LINE, Age::Old);
+        self.pass(
+            old.map(|(_, at)| *at).chain([now]),
+            LONGEST_TRAIL_LINE_DOTS,
+            Age::Old,
+        );
         for age in [Age::Turn, Age::Recent] {
             let longest = longest_line((self.width, self.height), age == Age::Recent);
             let since = ages.since(age, now_s);
@@ -131,7 +135,7 @@ impl Trail {
     /// is to be seen through it, on many of the dots near it.
     fn is_covered(&self, x: usize, y: usize) -> bool {
         if self.around == Around::Body {
-            let near = |at: usize| at.saturating_sub(NEAR)..=at + NEAR;
+            let near = |at: usize| at.saturating_sub(NEAR_DOTS)..=at + NEAR_DOTS;
             let dots = near(y).flat_map(|y| near(x).map(move |x| (x, y)));
             return dots.filter(|&(x, y)| self.age(x, y).is_some()).count() >= CROWD;
         }
@@ -191,7 +195,7 @@ pub fn longest_line((width, height): (usize, usize), is_recent: bool) -> f64 {
     if is_recent {
         LONGEST_RECENT_LINE * width.min(height) as f64
     } else {
-        LONGEST_LINE
+        LONGEST_TRAIL_LINE_DOTS
     }
 }
 

@@ -10,11 +10,11 @@ use std::path::Path;
 use std::rc::Rc;
 
 /// The most bytes of a line that are read beyond its computed length.
-const MOST_BEYOND: u64 = 4096;
+const MOST_LINE_EXCESS: u64 = 4096;
 /// The most characters of a line or a field that are shown.
 const MOST_SHOWN: usize = 60;
 /// The header's line with the version, which may be another one.
-const VERSION: &[u8] = b"# gyrolab = ";
+const CSV_VERSION_LINE: &[u8] = b"# gyrolab = ";
 
 /// The first thing in a file that is not as it is computed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,7 +83,7 @@ impl Against {
     /// How many rows are the same, and what differs first.
     pub fn end(mut self) -> io::Result<(u64, Option<FileDifference>)> {
         if self.difference.get().is_none() {
-            let more = self.next(MOST_BEYOND)?;
+            let more = self.next(MOST_LINE_EXCESS)?;
             if !more.is_empty() {
                 let (line, text) = (self.line, shown(&more));
                 self.differ(format!(
@@ -119,14 +119,17 @@ impl Against {
     /// Compares the computed line with the next one of the file.
     fn compare(&mut self) -> io::Result<()> {
         let computed = std::mem::take(&mut self.computed);
-        let mut there = self.next(computed.len() as u64 + MOST_BEYOND)?;
+        let mut there = self.next(computed.len() as u64 + MOST_LINE_EXCESS)?;
         let is_whole = there.pop_if(|byte| *byte == b'\n').is_some();
         if is_whole && there.pop_if(|byte| *byte == b'\r').is_some() {
             self.rewritten.get_or_insert(self.line);
         }
         let [computed, there] = [&computed, &there].map(|text| self.without_mark(text));
         let is_header = self.names.is_none() && computed.starts_with(b"#");
-        let are_versions = is_header && [computed, there].iter().all(|it| it.starts_with(VERSION));
+        let are_versions = is_header
+            && [computed, there]
+                .iter()
+                .all(|it| it.starts_with(CSV_VERSION_LINE));
         let line = self.line;
         let text = if !is_whole && there.is_empty() {
             let computed = shown(computed);

@@ -28,15 +28,15 @@ pub struct WriteupFigure {
 }
 
 /// The figures of what was measured, and of measured less run.
-const MEASURED: &str = "measured";
-const RESIDUALS: &str = "residuals";
+const MEASURED_FIGURE: &str = "measured";
+const RESIDUALS_FIGURE: &str = "residuals";
 /// The figure of the first swings of a run.
-const SWINGS: &str = "swings";
+const SWINGS_FIGURE: &str = "swings";
 /// Least number of swings of a run that has this figure.
 const MANY_SWINGS: f64 = 15.0;
-const FEW_SWINGS: f64 = 8.0;
+const FEW_FIGURE_SWINGS: f64 = 8.0;
 /// Least number of steps a swing of a curve without corners.
-const SMOOTH: f64 = 40.0;
+const SMOOTH_SWING_STEPS: f64 = 40.0;
 /// Figures of measured data end where the data do, and this factor later.
 const BEYOND_DATA: f64 = 1.05;
 
@@ -131,7 +131,7 @@ fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -
         .swing_s()
         .map(|swing_s| swing_s / scenario.motion.time_step_s);
     let joined = steps
-        .filter(|steps| *steps < SMOOTH && !is_exact)
+        .filter(|steps| *steps < SMOOTH_SWING_STEPS && !is_exact)
         .map(|steps| format!("; straight lines join the run's steps, about {steps:.0} a swing"));
     format!("{beneath}{}", joined.unwrap_or_default())
 }
@@ -158,8 +158,8 @@ fn of_data(beside: &MeasuredComparison, whole: &FigureRequest, also: &str) -> Ve
     let over_time = format!("What was measured, `{name}`, and the run{also}");
     let less = format!("What was measured, `{name}`, less what the run says");
     vec![
-        of_data(MEASURED, FigureKind::measured(series), over_time),
-        of_data(RESIDUALS, FigureKind::Residuals, less),
+        of_data(MEASURED_FIGURE, FigureKind::measured(series), over_time),
+        of_data(RESIDUALS_FIGURE, FigureKind::Residuals, less),
     ]
 }
 
@@ -188,7 +188,7 @@ fn of_run(
         } else {
             format!("Tilt in the first {to} s")
         };
-        let mut swings = plan(SWINGS, FigureKind::named("tilt_deg")?, &tilt);
+        let mut swings = plan(SWINGS_FIGURE, FigureKind::named("tilt_deg")?, &tilt);
         (swings.request.from_s, swings.request.to_s) = (from_s, Some(to_s));
         planned.push(swings);
     }
@@ -210,7 +210,7 @@ fn of_run(
 fn few_swings_s(scenario: &Scenario, readouts: &Readouts) -> Option<(f64, f64)> {
     let swing_s = readouts.swing_s()?;
     let end_s = Clock::end_s(scenario);
-    let few_s = rounded(FEW_SWINGS * swing_s, 2);
+    let few_s = rounded(FEW_FIGURE_SWINGS * swing_s, 2);
     // The first step under other forces: they changed where it began.
     let changed = readouts.since.saturating_sub(1);
     let from_s = Clock::at(scenario, changed).time_s(changed);

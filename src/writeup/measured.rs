@@ -1,11 +1,11 @@
 //! Measured data in a write-up: their file, and how far the run is from them.
 
-use super::{AGAIN, CSV, PAGE, READOUTS_FILE, RUN_FILE};
+use super::{AGAIN, CSV, READOUTS_FILE, RUN_FILE, WRITEUP_PAGE};
 use crate::data::compared::{Compared, Sum};
 use crate::data::{MeasuredData, RunQuantity, at_times};
 use crate::fit::solution::too_large;
 use crate::scenario::Scenario;
-use crate::text::number::{NONE, counted, shortest, significant};
+use crate::text::number::{NOT_AVAILABLE, counted, shortest, significant};
 use serde_json::{Value, json};
 use std::fmt::{self, Write};
 use std::path::Path;
@@ -140,7 +140,7 @@ fn write_row(page: &mut String, name: &str, own: &Sum) -> fmt::Result {
     let rms = own.scatter.first();
     let rms = rms.map(|(quantity, rms)| format!("{} {}", significant(*rms, 3), quantity.unit()));
     let [chi_squared, largest, rms] =
-        [chi_squared, largest, rms].map(|text| text.unwrap_or(NONE.to_owned()));
+        [chi_squared, largest, rms].map(|text| text.unwrap_or(NOT_AVAILABLE.to_owned()));
     writeln!(
         page,
         "| `{name}` | {} of {} | {chi_squared} | {} | {largest} | {rms} |",
@@ -170,7 +170,8 @@ fn name_of_copy(origin: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
     let stem = stem.filter(|stem| stem.chars().all(is_plain) && !stem.starts_with(['-', '.']));
     let name = stem.map(|stem| format!("{stem}.csv"));
-    let is_taken = |name: &String| [CSV, RUN_FILE, PAGE, READOUTS_FILE, AGAIN].contains(&&**name);
+    let is_taken =
+        |name: &String| [CSV, RUN_FILE, WRITEUP_PAGE, READOUTS_FILE, AGAIN].contains(&&**name);
     name.filter(|name| !is_taken(name))
         .unwrap_or_else(|| OTHERWISE.to_owned())
 }

@@ -21,7 +21,7 @@ use std::sync::Arc;
 pub const CSV: &str = "run.csv";
 /// The scenario with its edits, from which the rows are computed.
 pub const RUN_FILE: &str = "run.toml";
-pub const PAGE: &str = "README.md";
+pub const WRITEUP_PAGE: &str = "README.md";
 pub const READOUTS_FILE: &str = "readouts.json";
 /// The CSV that the page's commands write beside the others.
 const AGAIN: &str = "again.csv";
@@ -52,7 +52,7 @@ impl Writeup {
         let texts = [
             (RUN_FILE, self.scenario.to_toml()),
             (READOUTS_FILE, self.readouts_json()),
-            (PAGE, self.page()),
+            (WRITEUP_PAGE, self.page()),
         ];
         let beside = self.beside.iter();
         let beside = beside.map(|beside| (beside.name(), beside.measured.text.to_string()));

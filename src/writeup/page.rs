@@ -9,7 +9,7 @@ use crate::analysis::Theory;
 use crate::export::summary::steps_in_words;
 use crate::physics::{SchemeInfo, SymmetricTop};
 use crate::scenario::Scenario;
-use crate::text::number::{NONE, fixed, shortest, significant};
+use crate::text::number::{NOT_AVAILABLE, fixed, shortest, significant};
 use std::fmt::{self, Write};
 
 const HOW_TO_READ_QUANTITIES: &str = "The numbers of this run are simulated: read off its steps, and no data. Theory is that \
@@ -27,9 +27,9 @@ const IS_THEORY: &str = "The scheme exact computes the exact motion, which theor
 const OF_ASYMMETRY: &str = "The difference between this run and theory is also an effect of the asymmetry, so it is not \
     stated in standard errors.";
 /// A longer run file is not printed on the page.
-const MOST_LINES: usize = 120;
+const MOST_PRINTED_LINES: usize = 120;
 /// A part of L that is smaller than this part of |L| is zero.
-const ROUNDING: f64 = 1e-14;
+const MOMENTUM_ROUNDING: f64 = 1e-14;
 
 pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     let mut page = String::new();
@@ -124,7 +124,7 @@ fn start(scenario: &Scenario) -> String {
     let tilt_deg = libm::acos(scenario.start.axle().z.clamp(-1.0, 1.0)).to_degrees();
     let momentum = &scenario.start.momentum;
     // What is left of a zero by the turn from the body frame is rounding.
-    let rounding = ROUNDING * momentum.norm();
+    let rounding = MOMENTUM_ROUNDING * momentum.norm();
     let part = |axis: usize| match momentum[axis] {
         part if part.abs() < rounding => 0.0,
         part => part,
@@ -163,7 +163,7 @@ fn write_quantities(page: &mut String, writeup: &Writeup) -> fmt::Result {
     });
     writeln!(
         page,
-        "\n{HOW_TO_READ_QUANTITIES} {NONE}: there is no such number, or none that can be stated. Every readout is in \
+        "\n{HOW_TO_READ_QUANTITIES} {NOT_AVAILABLE}: there is no such number, or none that can be stated. Every readout is in \
          `{READOUTS_FILE}`, also those of this run under names that begin with `measured_`.{theirs}"
     )
 }
@@ -222,9 +222,11 @@ fn write_again(page: &mut String, beside: Option<&MeasuredComparison>) -> fmt::R
 
 /// The year and the authors, from the licence.
 fn copyright() -> (&'static str, &'static str) {
-    const MARK: &str = "Copyright (c) ";
+    const COPYRIGHT_MARK: &str = "Copyright (c) ";
     let licence = include_str!("../../LICENSE");
-    let line = licence.lines().find_map(|line| line.strip_prefix(MARK));
+    let line = licence
+        .lines()
+        .find_map(|line| line.strip_prefix(COPYRIGHT_MARK));
     line.and_then(|line| line.split_once(' '))
         .unwrap_or_default()
 }
@@ -232,7 +234,7 @@ fn copyright() -> (&'static str, &'static str) {
 fn write_run_file(page: &mut String, run_file: &str) -> fmt::Result {
     writeln!(page, "## The run file\n")?;
     let (lines, run_file) = (run_file.lines().count(), run_file.trim_end());
-    if lines > MOST_LINES {
+    if lines > MOST_PRINTED_LINES {
         return writeln!(page, "`{RUN_FILE}`, {lines} lines.");
     }
     writeln!(page, "`{RUN_FILE}`:\n\n```toml\n{run_file}\n```")

@@ -2,7 +2,7 @@
 
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Readout, ReadoutSource};
-use crate::text::number::{NONE, fixed, short, significant, uncertain};
+use crate::text::number::{NOT_AVAILABLE, fixed, short, significant, uncertain};
 use crate::text::unit::Unit;
 
 /// A measured number beside what theory says of it.
@@ -17,7 +17,7 @@ pub struct QuantityRow {
 const NUTATION: &str = "measured_nutation_period_s";
 
 /// How the names of measured numbers begin.
-const MEASURED: &str = "measured_";
+const MEASURED_NAME_PREFIX: &str = "measured_";
 
 /// The number whose theory is the difference of two others.
 const SWING: &str = "measured_tilt_swing_deg";
@@ -28,9 +28,9 @@ const DECIMALS: usize = 6;
 /// Every number of the table that was read off the run and has a value in `readouts`, or theory.
 /// `since_s` is when the forces last changed, where that is not the start.
 pub fn rows(readouts: &Readouts, since_s: Option<f64>) -> Vec<QuantityRow> {
-    let measured = READOUTS
-        .iter()
-        .filter(|readout| readout.name.starts_with(MEASURED) && !readout.is_uncertainty());
+    let measured = READOUTS.iter().filter(|readout| {
+        readout.name.starts_with(MEASURED_NAME_PREFIX) && !readout.is_uncertainty()
+    });
     let rows = measured.filter_map(|readout| {
         let predicted = predicted(readout, readouts, since_s);
         let since_s = since_s.filter(|_| readout.source == ReadoutSource::Measured);
@@ -84,7 +84,7 @@ fn row(
     let in_errors = difference.zip(error.filter(|error| *error > 0.0 && is_exact));
     let in_errors = in_errors.map(|(difference, error)| difference / error);
     let (label, meaning) = words(readout, is_strobed, since_s);
-    let none = || NONE.to_owned();
+    let none = || NOT_AVAILABLE.to_owned();
     let plain = |number: Option<f64>| number.map_or_else(none, |number| fixed(number, DECIMALS));
     let to_its_digit = stated.as_ref().zip(predicted);
     Some(QuantityRow {
@@ -126,7 +126,7 @@ fn words(readout: &Readout, is_strobed: bool, since_s: Option<f64>) -> (String, 
 
 /// The `name` of a measured number in words.
 fn bare(name: &str) -> String {
-    let bare = name.strip_prefix(MEASURED).unwrap_or(name);
+    let bare = name.strip_prefix(MEASURED_NAME_PREFIX).unwrap_or(name);
     let end = Unit::of(bare).map_or("", |unit| unit.end);
     bare[..bare.len() - end.len()].replace('_', " ")
 }

@@ -12,7 +12,7 @@ use gyrolab::lab::Refusal;
 use gyrolab::lab::command::{self, COMMANDS, Command, Export, Force, PushChoice, Save, SeekTarget};
 use gyrolab::lab::view::step::StepPageChoice;
 use gyrolab::lab::view::{HideablePart, Pane, ViewSettings};
-use gyrolab::physics::workings::NAMES;
+use gyrolab::physics::workings::PHASE_NAMES;
 use gyrolab::playback::camera::Camera;
 use gyrolab::playback::pace::Speed;
 use gyrolab::scenario::Document;
@@ -105,7 +105,7 @@ fn a_set() -> impl Strategy<Value = Table> {
 fn a_page() -> impl Strategy<Value = StepPageChoice> {
     prop_oneof![
         (1..1000usize).prop_map(StepPageChoice::Number),
-        prop::sample::select(&NAMES[..]).prop_map(StepPageChoice::Named),
+        prop::sample::select(&PHASE_NAMES[..]).prop_map(StepPageChoice::Named),
         Just(StepPageChoice::Last),
         Just(StepPageChoice::Why),
     ]

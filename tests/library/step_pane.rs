@@ -5,7 +5,7 @@ use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::{has, has_all, has_no};
 use gyrolab::lab::view::step::StepPageChoice;
 use gyrolab::physics::scheme::SCHEMES;
-use gyrolab::physics::workings::{ColumnSums, NAMES, Phase, WorkedValue};
+use gyrolab::physics::workings::{ColumnSums, PHASE_NAMES, Phase, WorkedValue};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Document;
 use gyrolab::tui::keymap::Key;
@@ -261,7 +261,7 @@ fn every_phase_of_every_scheme_has_a_name_in_the_list_and_a_page() {
             let workings = Arc::clone(&stage.lab.step_pane().shown().unwrap().workings);
             let count = workings.phases().count();
             for (index, phase) in workings.phases().enumerate() {
-                assert!(NAMES.contains(&phase.name), "{}", phase.name);
+                assert!(PHASE_NAMES.contains(&phase.name), "{}", phase.name);
                 stage.commands(&format!("phase = {}", index + 1));
                 let start = format!("step 2: {} of {count}, ", index + 1);
                 stage.shows(&start);

@@ -6,7 +6,7 @@ use crate::figure::page::ink::{self, LABEL_PT};
 
 /// Least distance of two labels beside each other, and of two above each other, pt.
 pub const BESIDE: f64 = 6.0;
-const ABOVE: f64 = 7.5;
+const AXIS_HEADROOM: f64 = 7.5;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisScale {
@@ -58,7 +58,7 @@ impl AxisScale {
 
     /// The ticks of an axis at the left, whose labels stand above each other.
     pub fn ticks_beside(&self, axis: &ChartAxis) -> Ticks {
-        let apart = ink::height(LABEL_PT) + ABOVE;
+        let apart = ink::height(LABEL_PT) + AXIS_HEADROOM;
         self.ticks(axis, |ticks| {
             let is_apart =
                 |pair: &[Tick]| (self.place(pair[1].at) - self.place(pair[0].at)).abs() >= apart;

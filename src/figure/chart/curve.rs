@@ -13,7 +13,7 @@ const TOLERANCE: f64 = 0.02;
 /// And at most, of however wide a line, pt.
 const UNSEEN_PT: f64 = 0.014;
 /// A solid line of more points than this is drawn by the outline of its ink if that has fewer: a file of 40 kB.
-const MANY: usize = 5_000;
+const MANY_LINE_POINTS: usize = 5_000;
 /// The part of white in the colour of a band, which its line has pure.
 pub const BAND_WHITE: f64 = 0.72;
 /// How far outside of its panel a line is followed, pt: half its width, which is cut off at the edge.
@@ -114,7 +114,7 @@ pub fn draw_curve(
     let lines = lines.map(|piece| simplified(piece, within_pt));
     let lines: Vec<Vec<Point>> = lines.collect();
     let count: usize = lines.iter().map(Vec::len).sum();
-    if pen.dash_pt.is_empty() && count > MANY {
+    if pen.dash_pt.is_empty() && count > MANY_LINE_POINTS {
         let area = cover::area(&lines, pen.width_pt);
         // There is none of lines that need too large a grid.
         if !area.0.is_empty() && area.0.len() < count {

@@ -1,7 +1,7 @@
 //! A chart drawn on its page.
 
 use super::curve;
-use super::layout::{self, ChartLayout, EDGE, GAP, PlacedPanel};
+use super::layout::{self, ChartLayout, PAGE_EDGE, PlacedPanel, TICK_LABEL_GAP};
 use super::legend::Legend;
 use super::ticks::{Ticks, with_minus};
 use super::{Chart, ChartSeries, Panel};
@@ -15,7 +15,7 @@ use std::collections::HashSet;
 const MOST_MARKS: f64 = 10_000.0;
 const FRAME_PT: f64 = 0.5;
 /// Length of a tick with a label and of one without, pt.
-const TICK: f64 = 3.0;
+const TICK_LENGTH: f64 = 3.0;
 const MINOR_TICK: f64 = 1.7;
 const BAR_END: f64 = 1.7;
 /// An error bar from end to end that the lowest of the marks covers, pt.
@@ -71,7 +71,10 @@ impl Chart {
         match corner {
             Some(corner) => legend.draw_in(&corner, &mut scene),
             None => {
-                let left = layout.panels.first().map_or(EDGE, |panel| panel.frame.left);
+                let left = layout
+                    .panels
+                    .first()
+                    .map_or(PAGE_EDGE, |panel| panel.frame.left);
                 legend.draw_above(self.width_pt, left, &mut scene);
             }
         }
@@ -85,7 +88,7 @@ impl Chart {
         let unit = Some(&self.x.unit).filter(|unit| !unit.is_empty());
         let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
         let remark = format!("right: {from} to {to}{unit}, magnified");
-        let room = self.width_pt - 2.0 * EDGE;
+        let room = self.width_pt - 2.0 * PAGE_EDGE;
         Some(letters::shortened(&remark, LABEL_PT, room))
     }
 
@@ -123,7 +126,7 @@ impl Chart {
             " where no bar is drawn"
         };
         let remark = format!("{known}errors{of} smaller than marks{rest}");
-        let room = self.width_pt - 2.0 * EDGE;
+        let room = self.width_pt - 2.0 * PAGE_EDGE;
         Some(letters::shortened(&remark, LABEL_PT, room))
     }
 }
@@ -188,11 +191,13 @@ fn write_below(chart: &Chart, panels: &[PlacedPanel], layout: &ChartLayout, scen
     } else {
         2.0
     };
-    let room = chart.width_pt / columns - 2.0 * EDGE;
+    let room = chart.width_pt / columns - 2.0 * PAGE_EDGE;
     let (title, size) = layout::fitted(chart.x.title(&last.below), room);
     let middle = 0.5 * (last.frame.left + last.frame.right);
     let half = 0.5 * ink::width(&title, size);
-    let middle = middle.min(chart.width_pt - EDGE - half).max(EDGE + half);
+    let middle = middle
+        .min(chart.width_pt - PAGE_EDGE - half)
+        .max(PAGE_EDGE + half);
     scene.write(&title, size, at(middle, layout.title_at()), 0.5);
 }
 
@@ -224,7 +229,10 @@ impl Panel {
         scene.write_up(title, *size, middle);
         let label = ink::height(LABEL_PT);
         for tick in &placed.ticks.major {
-            let place = at(frame.left - GAP, placed.y.place(tick.at) + 0.5 * label);
+            let place = at(
+                frame.left - TICK_LABEL_GAP,
+                placed.y.place(tick.at) + 0.5 * label,
+            );
             scene.write(&tick.label, LABEL_PT, place, 1.0);
         }
     }
@@ -250,7 +258,7 @@ fn draw_frame(placed: &PlacedPanel, scene: &mut PageScene) {
 
 /// The value of each tick and its length on paper, pt.
 fn lengths(ticks: &Ticks) -> impl Iterator<Item = (f64, f64)> {
-    let major = ticks.major.iter().map(|tick| (tick.at, TICK));
+    let major = ticks.major.iter().map(|tick| (tick.at, TICK_LENGTH));
     major.chain(ticks.minor.iter().map(|&at| (at, MINOR_TICK)))
 }
 

@@ -7,11 +7,11 @@ use crate::figure::COLUMN_PT;
 use crate::figure::page::ink::{self, LABEL_PT, PageRectangle, TITLE_PT};
 
 /// Between anything and the edge of the page, pt.
-pub const EDGE: f64 = 2.0;
+pub const PAGE_EDGE: f64 = 2.0;
 /// Between an axis and the labels of its ticks, pt.
-pub const GAP: f64 = 3.0;
+pub const TICK_LABEL_GAP: f64 = 3.0;
 /// Between the labels of an axis and its title, at the left and below, pt.
-const TITLE_GAP: f64 = 6.0;
+const AXIS_TITLE_GAP: f64 = 6.0;
 const TITLE_BELOW: f64 = 4.5;
 /// Between two panels, pt, beside the height of a label: the labels at their ends must not touch.
 const PANEL_GAP: f64 = 2.5;
@@ -71,7 +71,7 @@ impl ChartLayout {
         let label = ink::height(LABEL_PT);
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
         let (left, right, height) = sides(chart, x_range(chart), &y_ranges);
-        let top = above + EDGE + 0.5 * label;
+        let top = above + PAGE_EDGE + 0.5 * label;
         let place = |chart: &Chart, x: AxisScale| {
             let ticks = ticks_of(chart, &y_ranges, height);
             let panels = chart.panels.iter().zip(&y_ranges).zip(ticks).enumerate();
@@ -88,8 +88,13 @@ impl ChartLayout {
         let bottom = panels.last().map_or(top, |panel| panel.frame.bottom);
         let magnified = chart.magnified.iter();
         Self {
-            titles_at: EDGE + ink::height(TITLE_PT) + 1.0,
-            height_pt: bottom + GAP + 1.5 * label + TITLE_BELOW + title_height() + EDGE,
+            titles_at: PAGE_EDGE + ink::height(TITLE_PT) + 1.0,
+            height_pt: bottom
+                + TICK_LABEL_GAP
+                + 1.5 * label
+                + TITLE_BELOW
+                + title_height()
+                + PAGE_EDGE,
             magnified: magnified.flat_map(|chart| place(chart, beside)).collect(),
             panels,
         }
@@ -97,7 +102,7 @@ impl ChartLayout {
 
     pub fn labels_at(&self) -> f64 {
         let bottom = self.panels.last().map_or(0.0, |panel| panel.frame.bottom);
-        bottom + GAP + 1.5 + ink::height(LABEL_PT)
+        bottom + TICK_LABEL_GAP + 1.5 + ink::height(LABEL_PT)
     }
 
     pub fn title_at(&self) -> f64 {
@@ -137,12 +142,12 @@ fn columns(chart: &Chart, left: f64, right: f64) -> [AxisScale; 2] {
 /// Where the panels begin and end, and how high each is, pt.
 fn sides(chart: &Chart, x_range: (f64, f64), y_ranges: &[(f64, f64)]) -> (f64, f64, f64) {
     let mut height = panel_height(chart);
-    let (mut left, mut right) = (EDGE, chart.width_pt - EDGE - 1.0);
+    let (mut left, mut right) = (PAGE_EDGE, chart.width_pt - PAGE_EDGE - 1.0);
     // Which ticks there are depends on the room, and the room on their labels: three rounds settle both.
     for _ in 0..3 {
         let ticks = ticks_of(chart, y_ranges, height);
         let widest = ticks.iter().map(widest).fold(0.0, f64::max);
-        left = EDGE + title_height() + TITLE_GAP + widest + GAP;
+        left = PAGE_EDGE + title_height() + AXIS_TITLE_GAP + widest + TICK_LABEL_GAP;
         right = right.min(right_edge(chart, x_range, left, right));
         if let Some(magnified) = &chart.magnified {
             let half = 0.5 * (left + right);
@@ -203,7 +208,7 @@ fn right_edge(chart: &Chart, range: (f64, f64), left: f64, right: f64) -> f64 {
     let ticks = scale.ticks_below(&chart.x);
     let over = ticks.major.last().map_or(0.0, |tick| {
         let end = scale.place(tick.at) + 0.5 * ink::width(&tick.label, LABEL_PT);
-        end - (chart.width_pt - EDGE)
+        end - (chart.width_pt - PAGE_EDGE)
     });
     right - over.max(0.0)
 }

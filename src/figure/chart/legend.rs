@@ -1,7 +1,7 @@
 //! Which line is what: in a corner of the panel where nothing is drawn, or above the panels.
 
 use super::curve::BAND_WHITE;
-use super::layout::{ChartLayout, EDGE};
+use super::layout::{ChartLayout, PAGE_EDGE};
 use super::{Chart, SeriesStyle};
 use crate::figure::page::ink::{self, LABEL_PT, PageRectangle, WHITE, at, paler};
 use crate::figure::page::scene::{PageScene, Point, StrokeStyle, VectorPath};
@@ -10,14 +10,14 @@ use crate::figure::page::scene::{PageScene, Point, StrokeStyle, VectorPath};
 const KEY: f64 = 17.0;
 const AFTER_KEY: f64 = 3.5;
 /// Half the height of a band beside its name, pt.
-const BAND: f64 = 2.6;
-const ROW: f64 = 9.6;
-const BETWEEN: f64 = 11.0;
+const LEGEND_BAND: f64 = 2.6;
+const LEGEND_ROW_PT: f64 = 9.6;
+const LEGEND_ENTRY_GAP: f64 = 11.0;
 /// Between the legend and the panel's frame, and what must be free around it, pt.
 const INSET: f64 = 4.5;
-const FREE: f64 = 2.5;
+const LEGEND_CLEARANCE: f64 = 2.5;
 /// The part of a panel's width that a legend inside may take.
-const SHARE: f64 = 0.62;
+const LEGEND_WIDTH_SHARE: f64 = 0.62;
 
 #[derive(Clone, Debug)]
 pub struct Legend {
@@ -34,7 +34,7 @@ struct LegendEntry {
 
 /// The longest name of an entry on a page of this width, pt.
 pub fn longest_name(width_pt: f64) -> f64 {
-    width_pt - 2.0 * EDGE - KEY - AFTER_KEY
+    width_pt - 2.0 * PAGE_EDGE - KEY - AFTER_KEY
 }
 
 impl Legend {
@@ -74,9 +74,9 @@ impl Legend {
         let mut used = 0.0;
         for entry in &self.entries {
             match rows.last_mut() {
-                Some(row) if used + BETWEEN + entry.width_pt <= room => {
+                Some(row) if used + LEGEND_ENTRY_GAP + entry.width_pt <= room => {
                     row.push(entry);
-                    used += BETWEEN + entry.width_pt;
+                    used += LEGEND_ENTRY_GAP + entry.width_pt;
                 }
                 _ => {
                     rows.push(vec![entry]);
@@ -89,8 +89,8 @@ impl Legend {
 
     /// The height that it needs above the picture on a page of that width, pt.
     pub fn height_above(&self, width_pt: f64) -> f64 {
-        let rows = self.rows(width_pt - 2.0 * EDGE).len();
-        rows as f64 * ROW + rows.min(1) as f64
+        let rows = self.rows(width_pt - 2.0 * PAGE_EDGE).len();
+        rows as f64 * LEGEND_ROW_PT + rows.min(1) as f64
     }
 
     /// A corner of the panel, where there is one panel, in which nothing is drawn.
@@ -102,9 +102,10 @@ impl Legend {
         };
         let widest = self.entries.iter().map(|entry| entry.width_pt);
         let width = widest.fold(0.0, f64::max);
-        let height = self.entries.len() as f64 * ROW - 1.0;
+        let height = self.entries.len() as f64 * LEGEND_ROW_PT - 1.0;
         let frame = placed.frame.grown(-INSET);
-        let is_small = width <= SHARE * frame.width() && height <= SHARE * frame.height();
+        let is_small = width <= LEGEND_WIDTH_SHARE * frame.width()
+            && height <= LEGEND_WIDTH_SHARE * frame.height();
         if !is_small || self.entries.is_empty() {
             return None;
         }
@@ -118,7 +119,8 @@ impl Legend {
                 bottom: top + height,
             })
         });
-        let is_free = |corner: &PageRectangle| placed.is_clear(&corner.grown(FREE), panel);
+        let is_free =
+            |corner: &PageRectangle| placed.is_clear(&corner.grown(LEGEND_CLEARANCE), panel);
         corners.into_iter().find(is_free)
     }
 
@@ -126,7 +128,8 @@ impl Legend {
         scene.fill(corner.outline(), WHITE);
         let label = ink::height(LABEL_PT);
         for (row, entry) in self.entries.iter().enumerate() {
-            let base = corner.top + row as f64 * ROW + 0.5 * (ROW - 1.0 + label);
+            let base =
+                corner.top + row as f64 * LEGEND_ROW_PT + 0.5 * (LEGEND_ROW_PT - 1.0 + label);
             entry.draw(at(corner.left, base), scene);
         }
     }
@@ -134,14 +137,14 @@ impl Legend {
     /// Draws it above the picture on a page of that width, from `left` on where there is room, pt.
     pub fn draw_above(&self, width_pt: f64, left: f64, scene: &mut PageScene) {
         let label = ink::height(LABEL_PT);
-        for (index, row) in self.rows(width_pt - 2.0 * EDGE).iter().enumerate() {
+        for (index, row) in self.rows(width_pt - 2.0 * PAGE_EDGE).iter().enumerate() {
             let width: f64 = row.iter().map(|entry| entry.width_pt).sum::<f64>()
-                + BETWEEN * (row.len() as f64 - 1.0);
-            let mut x = left.min(width_pt - EDGE - width).max(EDGE);
-            let base = EDGE + index as f64 * ROW + 0.5 * (ROW + label);
+                + LEGEND_ENTRY_GAP * (row.len() as f64 - 1.0);
+            let mut x = left.min(width_pt - PAGE_EDGE - width).max(PAGE_EDGE);
+            let base = PAGE_EDGE + index as f64 * LEGEND_ROW_PT + 0.5 * (LEGEND_ROW_PT + label);
             for entry in row {
                 entry.draw(at(x, base), scene);
-                x += entry.width_pt + BETWEEN;
+                x += entry.width_pt + LEGEND_ENTRY_GAP;
             }
         }
     }
@@ -156,7 +159,10 @@ impl LegendEntry {
         };
         let y = place.y - 0.5 * ink::height(LABEL_PT);
         if style.is_band {
-            let (from, to) = (at(place.x, y - BAND), at(place.x + KEY, y + BAND));
+            let (from, to) = (
+                at(place.x, y - LEGEND_BAND),
+                at(place.x + KEY, y + LEGEND_BAND),
+            );
             let corners = [from, at(to.x, from.y), to, at(from.x, to.y)];
             scene.fill(VectorPath::polygon(corners), paler(style.color, BAND_WHITE));
         }

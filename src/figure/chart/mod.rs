@@ -224,8 +224,8 @@ impl SeriesStyle {
     /// What was measured, so many points of it: empty circles, which no run has, over the run's line. Many of them would
     /// hide that line: they are grey and behind it.
     pub fn measured(count: usize) -> Self {
-        const MANY: usize = 150;
-        let are_many = count > MANY;
+        const MANY_MARKS: usize = 150;
+        let are_many = count > MANY_MARKS;
         Self {
             color: if are_many { grey(160) } else { BLACK },
             width_pt: 0.0,
@@ -306,10 +306,10 @@ impl SeriesStyle {
 }
 
 /// The farthest that an axis reaches: the distance of its ends is still finite.
-const FARTHEST: f64 = 1e306;
+const FARTHEST_AXIS_END: f64 = 1e306;
 /// The room beyond the data, of their span, and where that is rounding, of their size.
-const MARGIN: f64 = 0.045;
-const AROUND: f64 = 0.1;
+const DATA_MARGIN: f64 = 0.045;
+const CONSTANT_MARGIN: f64 = 0.1;
 
 impl ChartAxis {
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
@@ -348,13 +348,13 @@ impl ChartAxis {
     /// stretch.
     pub fn range_of(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
         /// Values that differ by less than this part of themselves, or of the quantity's own size, differ by rounding.
-        const ROUNDING: f64 = 1e-10;
+        const VALUE_ROUNDING: f64 = 1e-10;
         if let Some(range) = self.range {
             return range;
         }
         let is_shown = |value: &f64| value.is_finite() && (!self.is_log || *value > 0.0);
         let values = values.filter(is_shown);
-        let values = values.map(|value| value.clamp(-FARTHEST, FARTHEST));
+        let values = values.map(|value| value.clamp(-FARTHEST_AXIS_END, FARTHEST_AXIS_END));
         let Some((low, high)) = extent(values) else {
             return if self.is_log { (0.1, 10.0) } else { (0.0, 1.0) };
         };
@@ -363,15 +363,15 @@ impl ChartAxis {
         }
         let largest = low.abs().max(high.abs());
         let span = high - low;
-        if span > (ROUNDING * largest.max(self.size)).max(self.flat_below * self.size) {
-            return (low - MARGIN * span, high + MARGIN * span);
+        if span > (VALUE_ROUNDING * largest.max(self.size)).max(self.flat_below * self.size) {
+            return (low - DATA_MARGIN * span, high + DATA_MARGIN * span);
         }
-        if self.size > 0.0 && largest <= ROUNDING.max(self.flat_below) * self.size {
+        if self.size > 0.0 && largest <= VALUE_ROUNDING.max(self.flat_below) * self.size {
             // Zero, as well as the numbers tell it.
-            return (-AROUND * self.size, AROUND * self.size);
+            return (-CONSTANT_MARGIN * self.size, CONSTANT_MARGIN * self.size);
         }
         let half = if largest > 1e-290 {
-            AROUND * largest
+            CONSTANT_MARGIN * largest
         } else {
             1.0
         };
@@ -382,16 +382,19 @@ impl ChartAxis {
 
 /// A logarithmic axis for values from `low` to `high`, with some room.
 fn decades_around(low: f64, high: f64) -> (f64, f64) {
-    let (low, high) = (low.max(1.0 / FARTHEST), high.max(1.0 / FARTHEST));
+    let (low, high) = (
+        low.max(1.0 / FARTHEST_AXIS_END),
+        high.max(1.0 / FARTHEST_AXIS_END),
+    );
     let decades = libm::log10(high / low);
     let margin = if decades > 0.1 {
-        MARGIN * decades
+        DATA_MARGIN * decades
     } else {
-        AROUND
+        CONSTANT_MARGIN
     };
     let factor = libm::exp10(margin);
     (
-        (low / factor).max(0.1 / FARTHEST),
-        (high * factor).min(10.0 * FARTHEST),
+        (low / factor).max(0.1 / FARTHEST_AXIS_END),
+        (high * factor).min(10.0 * FARTHEST_AXIS_END),
     )
 }

@@ -7,14 +7,14 @@
 use crate::text::ladder;
 
 /// Numbers from this power of ten on leave a power to the title, and those up to the other.
-const LARGE: i32 = 4;
-const SMALL: i32 = -3;
+const LARGE_POWER: i32 = 4;
+const SMALL_POWER: i32 = -3;
 /// A step below this part of the numbers leaves an offset to the title: else each label repeats the same digits.
 const OFFSET: f64 = 2e-6;
 /// Ticks at most; an axis that has room for more is better off with minor ticks.
-const MOST: f64 = 8.0;
+const MOST_TICKS: f64 = 8.0;
 /// Relative differences below this are rounding.
-const ROUNDING: f64 = 1e-9;
+const TICK_ROUNDING: f64 = 1e-9;
 
 const MINUS: char = '\u{2212}';
 /// The longest row of zeros that an offset has.
@@ -45,14 +45,14 @@ impl Ticks {
         if !(span > 0.0 && span.is_finite()) {
             return Self::default();
         }
-        let first = ladder::rung_below(span / MOST);
+        let first = ladder::rung_below(span / MOST_TICKS);
         let choices = (first..first + 6).map(|rung| Self::with_step(low, high, rung));
         let mut best = Self::default();
         for ticks in choices {
             if ticks.major.is_empty() {
                 break;
             }
-            let fit = ticks.major.len() <= MOST as usize + 1 && fits(&ticks.major);
+            let fit = ticks.major.len() <= MOST_TICKS as usize + 1 && fits(&ticks.major);
             let are_few = ticks.major.len() < 2 && best.major.len() >= 2;
             if are_few {
                 break;
@@ -153,8 +153,8 @@ impl Ticks {
         let begin = ladder::rung_below(low);
         let rungs = (begin..).map(|rung| (rung, ladder::rung(rung)));
         let rungs: Vec<_> = rungs
-            .take_while(|(_, at)| *at <= high * (1.0 + ROUNDING))
-            .filter(|(_, at)| *at >= low * (1.0 - ROUNDING))
+            .take_while(|(_, at)| *at <= high * (1.0 + TICK_ROUNDING))
+            .filter(|(_, at)| *at >= low * (1.0 - TICK_ROUNDING))
             .collect();
         let power = leading_power(high);
         let major = rungs.iter().map(|&(rung, at)| Tick {
@@ -177,17 +177,17 @@ fn between(low: f64, high: f64) -> (i64, i64) {
 }
 
 fn ceil(number: f64) -> i64 {
-    (number - ROUNDING).ceil() as i64
+    (number - TICK_ROUNDING).ceil() as i64
 }
 
 fn floor(number: f64) -> i64 {
-    (number + ROUNDING).floor() as i64
+    (number + TICK_ROUNDING).floor() as i64
 }
 
 /// The power of ten that numbers up to `largest` leave to the title: a multiple of 3, and 0 for ordinary numbers.
 fn leading_power(largest: f64) -> i32 {
     let exponent = libm::log10(largest).floor() as i32;
-    if (SMALL + 1..LARGE).contains(&exponent) {
+    if (SMALL_POWER + 1..LARGE_POWER).contains(&exponent) {
         0
     } else {
         exponent.div_euclid(3) * 3

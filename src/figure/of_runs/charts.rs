@@ -74,7 +74,7 @@ pub(super) fn path_warning(
 /// The circles between which the exact motion of the traced point stays, from above; none where it is one circle, pushes or
 /// edits change it, or it has no closed form. A metre is `pt_per_m` long on the page.
 fn limits(run: &FigureRun, pt_per_m: f64) -> Vec<ChartSeries> {
-    const SAME: f64 = 0.01;
+    const SAME_CURVE: f64 = 0.01;
     let scenario = &run.scenario;
     let at = scenario.body.mechanics.points()[scenario.trace].at;
     let is_on_axle = at.xy().norm() <= 1e-9 * at.norm();
@@ -88,7 +88,7 @@ fn limits(run: &FigureRun, pt_per_m: f64) -> Vec<ChartSeries> {
     let (low, high) = motion.tilt_range();
     let radius = |tilt: f64| at.norm() * libm::sin(tilt);
     let (inner, outer) = (radius(low), radius(high));
-    if (outer - inner).abs() <= SAME * outer.max(inner) {
+    if (outer - inner).abs() <= SAME_CURVE * outer.max(inner) {
         return Vec::new(); // the exact motion itself is the circle
     }
     let circle = |radius| {
@@ -102,9 +102,9 @@ fn limits(run: &FigureRun, pt_per_m: f64) -> Vec<ChartSeries> {
 fn circle(radius_m: f64, pt_per_m: f64) -> Vec<[f64; 2]> {
     /// How far the lines are off it, pt, and how many there are at most.
     const OFF_PT: f64 = 0.02;
-    const MOST: f64 = 1e5;
+    const MOST_CURVE_STEPS: f64 = 1e5;
     let count = PI * (0.5 * radius_m * pt_per_m / OFF_PT).sqrt();
-    let count = count.ceil().clamp(8.0, MOST);
+    let count = count.ceil().clamp(8.0, MOST_CURVE_STEPS);
     let places = (0..=count as u32).map(|number| {
         let angle = TAU * f64::from(number) / count;
         [radius_m * libm::cos(angle), radius_m * libm::sin(angle)]
@@ -115,14 +115,14 @@ fn circle(radius_m: f64, pt_per_m: f64) -> Vec<[f64; 2]> {
 /// The stretches of both axes of paths: one is never less than half of the other, so that a path along a line has a picture
 /// too.
 fn both_ranges(series: &[ChartSeries], runs: &[FigureRun]) -> [(f64, f64); 2] {
-    const LEAST: f64 = 0.5;
+    const LEAST_MAGNIFIED_SHARE: f64 = 0.5;
     let size = size::axis(runs, "x_m");
     let ranges = [0, 1].map(|axis| {
         let values = series.iter().flat_map(|series| series.reach(axis));
         size.range_of(values)
     });
     let longest = ranges.iter().map(|(low, high)| high - low);
-    let least = LEAST * longest.fold(0.0, f64::max);
+    let least = LEAST_MAGNIFIED_SHARE * longest.fold(0.0, f64::max);
     ranges.map(|(low, high)| {
         let missing = (least - (high - low)).max(0.0);
         (low - 0.5 * missing, high + 0.5 * missing)

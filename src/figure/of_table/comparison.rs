@@ -77,20 +77,20 @@ fn of_comparison(name: &str) -> ChartAxis {
 /// The measured order of a scheme: the slope of its errors on logarithmic axes. It is taken from end to end of the longest stretch of at least three points in which neighbouring slopes differ by a
 /// sixteenth at most. Coarser steps do not show the order yet; of finer ones the error is rounding.
 fn slope(points: &[[f64; 2]]) -> Option<f64> {
-    const LEAST: f64 = 0.3;
-    const EVEN: f64 = 1.0 / 16.0;
+    const LEAST_DECADE_SPAN: f64 = 0.3;
+    const EVEN_DECADES: f64 = 1.0 / 16.0;
     let is_sound = |point: &&[f64; 2]| point[0] > 0.0 && point[1] > 0.0 && point[1].is_finite();
     let points: Vec<_> = points.iter().filter(is_sound).collect();
     let slope = |pair: &[&[f64; 2]]| {
         libm::log(pair[1][1] / pair[0][1]) / libm::log(pair[1][0] / pair[0][0])
     };
     let slopes: Vec<f64> = points.windows(2).map(slope).collect();
-    let goes_on = |a: &f64, b: &f64| (a - b).abs() <= EVEN * a.max(*b);
+    let goes_on = |a: &f64, b: &f64| (a - b).abs() <= EVEN_DECADES * a.max(*b);
     let mut first = 0;
     let even = slopes.chunk_by(goes_on).filter_map(|even| {
         let place = first..first + even.len();
         first = place.end;
-        (even.len() >= 2 && even.iter().all(|slope| *slope > LEAST)).then_some(place)
+        (even.len() >= 2 && even.iter().all(|slope| *slope > LEAST_DECADE_SPAN)).then_some(place)
     });
     // Of two that are as long, the one of the shorter steps, which come first.
     let even: Vec<_> = even.collect();

@@ -1,7 +1,7 @@
 //! What was measured, on the model that was fitted to it; below, what is left of it.
 
 use super::{RowIndices, grouped, numbers, points, within_room};
-use crate::data::quantity::TIME;
+use crate::data::quantity::TIME_COLUMN;
 use crate::data::{self, MeasuredCurve, MeasuredPoint, RunQuantity};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::ticks::{power_of_ten, with_minus};
@@ -15,7 +15,7 @@ use crate::text::number::{significant, uncertain};
 use std::sync::Arc;
 
 /// Points on the curve of a model over time: several for each dot of a column's width.
-const POINTS: u32 = 1500;
+const MODEL_CURVE_POINTS: u32 = 1500;
 /// The most runs under several settings that can be distinguished.
 const MOST_GROUPS: usize = 6;
 
@@ -81,7 +81,7 @@ impl FitFigure<'_> {
         for found in &self.fit.found {
             let model = if lines.is_empty() { "model: " } else { "" };
             let said = format!("{model}{}", self.said(&found.key, &stated(found)));
-            let value = significant(found.value, DIGITS);
+            let value = significant(found.value, FIT_VALUE_DIGITS);
             let plain = format!("{model}{} = {value}", found.key);
             lines.push(within_room(said, &plain, self.room_pt));
         }
@@ -98,7 +98,7 @@ impl FitFigure<'_> {
 }
 
 /// Digits of a value whose uncertainty cannot be stated.
-const DIGITS: usize = 6;
+const FIT_VALUE_DIGITS: usize = 6;
 
 /// The value with its uncertainty, as markup.
 fn stated(found: &FittedKey) -> String {
@@ -111,7 +111,7 @@ fn stated(found: &FittedKey) -> String {
             let power = power_of_ten(stated.exponent);
             format!("{} · {power}", with_minus(&stated.digits))
         }
-        None => with_minus(&significant(found.value, DIGITS)),
+        None => with_minus(&significant(found.value, FIT_VALUE_DIGITS)),
     }
 }
 
@@ -138,8 +138,9 @@ fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
     let scenario = Document::parse_header("", run_file).ok()?.scenario().ok()?;
     let quantity = RunQuantity::find(name)?;
     let (begin, end) = extent(x.iter().copied())?;
-    let time = |index: u32| begin + (end - begin) * (f64::from(index) / f64::from(POINTS));
-    let times_s: Vec<f64> = (0..=POINTS).map(time).collect();
+    let time =
+        |index: u32| begin + (end - begin) * (f64::from(index) / f64::from(MODEL_CURVE_POINTS));
+    let times_s: Vec<f64> = (0..=MODEL_CURVE_POINTS).map(time).collect();
     let point = |row| MeasuredPoint {
         row,
         value: 0.0,
@@ -201,7 +202,7 @@ impl FitFigure<'_> {
 
     /// The panel of the values on the model.
     fn values(&self, name: &str, groups: &[(String, RowIndices)]) -> Result<Panel, String> {
-        let curve = (self.along == TIME).then(|| curve(&self.fit.run_file, name, &self.x));
+        let curve = (self.along == TIME_COLUMN).then(|| curve(&self.fit.run_file, name, &self.x));
         let curve = curve.flatten();
         let mut series = Vec::new();
         let mut said = self.model().into_iter();

@@ -15,7 +15,7 @@ use curves::{CurveSetting, SweepCurve};
 /// Panels on a page where none was asked for by name.
 const MOST_PANELS: usize = 7;
 /// The most series of one quantity that can be distinguished.
-const MOST_SERIES: usize = 12;
+const MOST_SWEEP_SERIES: usize = 12;
 
 /// The axis of what was varied, and a panel for each quantity.
 pub(super) fn drawn(
@@ -33,7 +33,7 @@ pub(super) fn drawn(
     let none = || format!("none of the varied keys is a number: {}", varied.join(", "));
     let (key, along) = along.ok_or_else(none)?;
     let curves = curves::curves(table, swept, key);
-    if curves.len() > MOST_SERIES {
+    if curves.len() > MOST_SWEEP_SERIES {
         return Err(too_many_curves(curves.len(), varied, key));
     }
     let quantities = columns::quantities(table, varied, columns);
@@ -68,7 +68,7 @@ pub(super) fn drawn(
 fn too_many_curves(count: usize, varied: &[String], along: &str) -> String {
     let others: Vec<_> = varied.iter().filter(|key| *key != along).cloned().collect();
     format!(
-        "{count} curves would stand beside each other, and {MOST_SERIES} can be told apart: vary {} at fewer values, or name the key with the most values last, which makes it the horizontal axis",
+        "{count} curves would stand beside each other, and {MOST_SWEEP_SERIES} can be told apart: vary {} at fewer values, or name the key with the most values last, which makes it the horizontal axis",
         others.join(", ")
     )
 }
@@ -90,7 +90,7 @@ const DECADES: f64 = 1e3;
 /// What follows the name of theory of which some line has gaps.
 const IN_GAPS: &str = " (gaps: no prediction)";
 /// What the legend calls values of the run that were not read off its steps, beside those that were.
-const OTHER: &str = "simulated, without error";
+const SIMULATED_LABEL: &str = "simulated, without error";
 
 /// The rows of `table` whose runs did not fail.
 fn rows_run(table: &TableSource, varied: &[String]) -> Vec<usize> {
@@ -157,7 +157,10 @@ impl SweepFigure<'_> {
         let is_other = part.role == QuantityOwner::Value && self.has_measured;
         let curves = self.curves.iter().map(|curve| {
             let (name, style) = match part.role {
-                _ if is_other => (self.name(OTHER, &[]), SeriesStyle::specks(curve.index)),
+                _ if is_other => (
+                    self.name(SIMULATED_LABEL, &[]),
+                    SeriesStyle::specks(curve.index),
+                ),
                 role => {
                     let word = self.has_theory.then(|| part.word(false));
                     let style = match role {

@@ -10,12 +10,12 @@ use crate::figure::extent;
 /// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one where the finer one gives too many points.
 const CELLS_PT: [f64; 2] = [0.06, 0.12];
 /// Points of an outline beyond which the grid is made coarser: a file of 800 kB.
-const MANY: usize = 100_000;
-const MOST_CELLS: f64 = 32e6;
+const MANY_OUTLINE_POINTS: usize = 100_000;
+const MOST_GRID_CELLS: f64 = 32e6;
 /// How far an outline may leave the middles of the cells' sides, in cells.
-const SMOOTH: f64 = 1.0;
+const OUTLINE_TOLERANCE: f64 = 1.0;
 /// An outline of no more sides of cells than this is a dot that cannot be seen.
-const SMALLEST: usize = 8;
+const SMALLEST_OUTLINE: usize = 8;
 
 /// The outline of the ink of lines with round corners and ends, `width_pt` wide; inked is what it winds about.
 pub fn area(lines: &[Vec<Point>], width_pt: f64) -> VectorPath {
@@ -26,7 +26,7 @@ pub fn area(lines: &[Vec<Point>], width_pt: f64) -> VectorPath {
         };
         grid.widen(0.5 * width_pt / cell_pt);
         area = grid.outlines();
-        if area.0.len() <= MANY {
+        if area.0.len() <= MANY_OUTLINE_POINTS {
             break;
         }
     }
@@ -80,7 +80,7 @@ impl Grid {
         let margin = 0.5 * width_pt + 2.0 * cell_pt;
         let count = |from: f64, to: f64| libm::ceil((to - from + 2.0 * margin) / cell_pt);
         let (columns, rows) = (count(left, right), count(top, bottom));
-        let fits = columns * rows <= MOST_CELLS;
+        let fits = columns * rows <= MOST_GRID_CELLS;
         fits.then(|| Self {
             origin: at(left - margin, top - margin),
             cell_pt,
@@ -162,10 +162,10 @@ impl Grid {
             }
             let (column, row) = (start % self.columns, start / self.columns);
             let outline = self.outline((column as isize, row as isize), &mut is_done);
-            if outline.len() <= SMALLEST {
+            if outline.len() <= SMALLEST_OUTLINE {
                 continue;
             }
-            let corners = simplified(&outline, SMOOTH);
+            let corners = simplified(&outline, OUTLINE_TOLERANCE);
             let cells = |count: f64| count * self.cell_pt;
             let place = |p: &Point| at(self.origin.x + cells(p.x), self.origin.y + cells(p.y));
             let corners = corners[..corners.len() - 1].iter().map(place);
@@ -269,7 +269,7 @@ mod tests {
             for (x, y) in tries {
                 let beyond = distance(&lines, x, y) - 0.5 * width;
                 // The diagonal of a cell, half of it on the line and half at the edge, and what the smoothing takes.
-                if beyond.abs() > CELLS_PT[0] * (1.42 + SMOOTH) {
+                if beyond.abs() > CELLS_PT[0] * (1.42 + OUTLINE_TOLERANCE) {
                     prop_assert_eq!(winding(&area, x, y).abs(), i32::from(beyond < 0.0), "{} {}: {}", x, y, beyond);
                 }
             }

@@ -16,7 +16,7 @@ use crate::text::printable::printable;
 pub const CAP_HEIGHT: f64 = 0.656;
 
 /// From this many characters on a text is cut before it is measured: no page is that wide.
-const LONGEST: usize = 2000;
+const LONGEST_LABEL: usize = 2000;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SetLabel {
@@ -62,13 +62,13 @@ pub fn escape(text: &str) -> String {
 
 /// Markup for a text as it is, cut with "…" at its end where it would be wider than `width_pt`.
 pub fn shortened(text: &str, size_pt: f64, width_pt: f64) -> String {
-    let letters: Vec<char> = text.chars().take(LONGEST + 1).collect();
+    let letters: Vec<char> = text.chars().take(LONGEST_LABEL + 1).collect();
     let beginning = |length: usize| {
         let dots = if length < letters.len() { "…" } else { "" };
         escape(&letters[..length].iter().collect::<String>()) + dots
     };
     let fits = |length: usize| label(&beginning(length), size_pt).width_pt <= width_pt;
-    if letters.len() <= LONGEST && fits(letters.len()) {
+    if letters.len() <= LONGEST_LABEL && fits(letters.len()) {
         return beginning(letters.len());
     }
     let lengths: Vec<usize> = (1..letters.len()).collect();
@@ -191,7 +191,7 @@ mod tests {
             assert!((85.0..=100.0).contains(&width_pt), "{width_pt}");
         }
         assert_eq!(shortened("nothing fits", 7.0, 0.0), "…");
-        let endless = shortened(&"i".repeat(10 * LONGEST), 7.0, f64::INFINITY);
+        let endless = shortened(&"i".repeat(10 * LONGEST_LABEL), 7.0, f64::INFINITY);
         assert!(endless.ends_with('…'));
     }
 }

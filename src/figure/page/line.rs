@@ -5,7 +5,7 @@ use super::scene::Point;
 use std::cmp::Ordering;
 
 /// Points that are thinned together; the first and the last of them stay. It bounds the time that a hostile line takes.
-const TOGETHER: usize = 512;
+const POINTS_TOGETHER: usize = 512;
 
 /// The parts of the line through `points` that lie in `frame`; it is interrupted where a point is not finite.
 pub fn clipped(points: impl Iterator<Item = Point>, frame: &PageRectangle) -> Vec<Vec<Point>> {
@@ -89,9 +89,9 @@ pub fn simplified(points: &[Point], within_pt: f64) -> Vec<Point> {
     let mut is_kept = vec![false; points.len()];
     is_kept[last] = true;
     let mut open: Vec<(usize, usize)> = Vec::new();
-    for begin in (0..last).step_by(TOGETHER) {
+    for begin in (0..last).step_by(POINTS_TOGETHER) {
         is_kept[begin] = true;
-        open.push((begin, (begin + TOGETHER).min(last)));
+        open.push((begin, (begin + POINTS_TOGETHER).min(last)));
         while let Some((from, to)) = open.pop() {
             let between = (from + 1..to)
                 .map(|index| (index, beyond(points[index], points[from], points[to])));

@@ -9,16 +9,20 @@ use super::scene::{at, hundredths};
 use super::svg::MITER_LIMIT;
 use super::{Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath};
 use crate::text::printable::printable;
-use words::{FREE, Fonts};
+use words::{FIRST_FREE_OBJECT, Fonts};
 
 const CATALOG: Ref = Ref::new(1);
 const PAGES: Ref = Ref::new(2);
 const INFORMATION: Ref = Ref::new(5);
-const COMPRESSION: u8 = 9;
+const PDF_COMPRESSION: u8 = 9;
 
 /// A page and its content: the first stand before the fonts, the others behind them.
 fn refs(page: i32) -> (Ref, Ref) {
-    let first = if page == 0 { 3 } else { FREE + 2 * page };
+    let first = if page == 0 {
+        3
+    } else {
+        FIRST_FREE_OBJECT + 2 * page
+    };
     (Ref::new(first), Ref::new(first + 1))
 }
 
@@ -26,7 +30,7 @@ fn refs(page: i32) -> (Ref, Ref) {
 /// the file's.
 pub fn written(scenes: &[PageScene], version: &str) -> Vec<u8> {
     let fonts = Fonts::of(scenes);
-    let packed = |bytes: &[u8]| miniz_oxide::deflate::compress_to_vec_zlib(bytes, COMPRESSION);
+    let packed = |bytes: &[u8]| miniz_oxide::deflate::compress_to_vec_zlib(bytes, PDF_COMPRESSION);
     let mut pdf = Pdf::new();
     // The version which every pdflatex includes without a warning.
     pdf.set_version(1, 4);

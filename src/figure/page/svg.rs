@@ -85,7 +85,8 @@ fn put_group(out: &mut String, items: &[SceneItem], has_text: bool) {
 }
 
 /// The fonts of text, the one of the outlines first.
-const FONTS: &str = "STIX Two Text,STIXTwoText,Times New Roman,Times,Liberation Serif,serif";
+const SVG_TEXT_FONTS: &str =
+    "STIX Two Text,STIXTwoText,Times New Roman,Times,Liberation Serif,serif";
 
 /// Words as text: a part of one style and height begins where its outlines do.
 fn put_text(out: &mut String, words: &TextItem) {
@@ -96,7 +97,7 @@ fn put_text(out: &mut String, words: &TextItem) {
     };
     let _ = write!(
         out,
-        "<text xml:space=\"preserve\" font-family=\"{FONTS}\"{turned}>"
+        "<text xml:space=\"preserve\" font-family=\"{SVG_TEXT_FONTS}\"{turned}>"
     );
     let place = |letter: &PlacedLetter| {
         let Point { x, y } = letter.origin;

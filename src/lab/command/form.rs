@@ -17,7 +17,7 @@ use std::path::Path;
 use toml::{Table, Value};
 
 const MOST_TIMES: i64 = 10_000;
-const MOST_STEPS: i64 = 1_000_000_000;
+const MOST_STEPS_AT_ONCE: i64 = 1_000_000_000;
 const LONGEST_WAIT: f64 = 86_400.0;
 pub const MOST_MAGNIFIED: f64 = 1e6;
 
@@ -56,20 +56,20 @@ use ValueKind::{Flag, Line, Number, Whole};
 use ValueSchema::{As, By, Is, Text, View};
 
 const LATER: ValueSchema = Is(Whole(1, i64::MAX));
-const TIME: ValueSchema = Is(Number(Range::NotNegative));
+const TIME_SCHEMA: ValueSchema = Is(Number(Range::NotNegative));
 const PATH: (&str, ValueSchema) = ("path", Is(Line));
 const TO_STEP: (&str, ValueSchema) = ("to_step", LATER);
 const FORCE: (&str, ValueSchema) = ("force", Is(Flag));
 
 pub(super) const TRUE: ValueSchema = As(|value| value.as_bool() == Some(true), "must be true");
-pub(super) const COUNT: ValueSchema = Is(Whole(1, MOST_TIMES));
-pub(super) const STEPS: ValueSchema = By(|value| not_zero(value, MOST_STEPS));
-pub(super) const OPEN: ValueSchema = Text(is_scenario);
-pub(super) const PLACE: ValueSchema = As(
+pub(super) const COUNT_SCHEMA: ValueSchema = Is(Whole(1, MOST_TIMES));
+pub(super) const STEPS_SCHEMA: ValueSchema = By(|value| not_zero(value, MOST_STEPS_AT_ONCE));
+pub(super) const OPEN_SCHEMA: ValueSchema = Text(is_scenario);
+pub(super) const PLACE_SCHEMA: ValueSchema = As(
     is::<SeekTarget>,
     "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\" or \"end\"",
 );
-pub(super) const CURSOR: ValueSchema = As(
+pub(super) const CURSOR_SCHEMA: ValueSchema = As(
     is::<CursorTo>,
     "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\", \"end\", \"next turn\", \"turn before\", \"mark\" or \"none\"",
 );
@@ -79,7 +79,7 @@ pub(super) const CONDITION: ValueSchema = Text(|text| {
     bound.map_or_else(|fault| Err(fault.to_string()), |_| Ok(()))
 });
 pub(super) const WAIT: ValueSchema = Is(Number(Range::Within((0.0, LONGEST_WAIT))));
-pub(super) const SPEED: ValueSchema = By(|value| match value.as_str() {
+pub(super) const SPEED_SCHEMA: ValueSchema = By(|value| match value.as_str() {
     Some("top") => Ok(()),
     Some(_) => Err("must be a number greater than zero, or \"top\"".to_owned()),
     None => Number(Range::Positive).check(value),
@@ -97,12 +97,12 @@ pub(super) const NUDGE: ValueSchema = ValueSchema::Fields(Fields {
     alone: Shorthand::First("the dotted key that is nudged"),
     rule: |_| Ok(()),
 });
-pub(super) const PUSH: ValueSchema = ValueSchema::Fields(Fields {
+pub(super) const PUSH_SCHEMA: ValueSchema = ValueSchema::Fields(Fields {
     known: &OF_PUSH,
     alone: Shorthand::True,
     rule: has_one_direction,
 });
-pub(super) const NEXT_PUSH: ValueSchema = ValueSchema::Fields(Fields {
+pub(super) const NEXT_PUSH_SCHEMA: ValueSchema = ValueSchema::Fields(Fields {
     known: &OF_PUSH,
     alone: Shorthand::Nothing,
     rule: |table| {
@@ -130,8 +130,8 @@ pub(super) const EXPORT: ValueSchema = ValueSchema::Fields(Fields {
     known: &[
         PATH,
         ("every", LATER),
-        ("from_s", TIME),
-        ("to_s", TIME),
+        ("from_s", TIME_SCHEMA),
+        ("to_s", TIME_SCHEMA),
         ("columns", By(are_names)),
         ("points", Is(Flag)),
         ("excel", Is(Flag)),

@@ -1,7 +1,7 @@
 //! Measured data that are rows of somebody's own program of the report's scheme: the verdict of `gyrolab verify --against`
 //! about the run as it stands, found in the background.
 
-use crate::data::quantity::TIME;
+use crate::data::quantity::TIME_COLUMN;
 use crate::data::{self, ColumnOptions, MeasuredData};
 use crate::own_code::{self, SlipTrial, Verdict, rows};
 use crate::playback::background::BackgroundJob;
@@ -47,7 +47,7 @@ impl OwnCode {
             Ok(rows) => rows,
             // Neither a time series nor a scenario.
             Err(problems)
-                if measured.is_err() && ![TIME, "="].iter().any(|it| text.contains(it)) =>
+                if measured.is_err() && ![TIME_COLUMN, "="].iter().any(|it| text.contains(it)) =>
             {
                 return Err(problems.of(name));
             }

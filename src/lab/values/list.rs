@@ -4,7 +4,7 @@ use crate::journal::next_push::{NextPush, PushField};
 use crate::journal::parameters::Parameter;
 
 /// The heading over the values of the push to come.
-pub(super) const NEXT_PUSH: &str = "next push (p)";
+pub(super) const NEXT_PUSH_HEADING: &str = "next push (p)";
 
 /// The values, the selected one, and what is searched for: while there is something, only values that have it in their
 /// names are shown: those of which a word begins with it, or where there are none, those that have it anywhere.
@@ -139,7 +139,7 @@ impl ListedValue {
     pub(super) fn all_of(push: &NextPush) -> [Self; 4] {
         PushField::ALL.map(|field| Self {
             key: None,
-            group: NEXT_PUSH.to_owned(),
+            group: NEXT_PUSH_HEADING.to_owned(),
             label: field.label().0.to_owned(),
             unit: field.label().1,
             text: push.shown(field),

@@ -19,7 +19,7 @@ use toml::Table;
 const CURSOR_SHARE: f64 = 0.02;
 const PAN_SHARE: f64 = 0.5;
 /// What is said of residuals that are shown, and that are refused.
-const RESIDUALS: &str = "measured less run, where something was measured; m shows both again";
+const RESIDUALS_TEXT: &str = "measured less run, where something was measured; m shows both again";
 const NO_DATA: &str = "there are no measured data beside the run: gyrolab --measured FILE";
 const TURN_DEG: f64 = 10.0;
 
@@ -74,7 +74,7 @@ impl View {
                     None
                 }
                 "residuals" if !self.measured => return Err(NO_DATA.into()),
-                "residuals" if look.residuals => Some(RESIDUALS.to_owned()),
+                "residuals" if look.residuals => Some(RESIDUALS_TEXT.to_owned()),
                 "residuals" => Some("measured values and the run".to_owned()),
                 "bare" if look.bare => Some("a bare screen: c brings the rest back".to_owned()),
                 _ => None,

@@ -86,8 +86,8 @@ impl ViewSettings {
     /// Whether `key` of `[view]` is of a look. Speed, measured data, exact motion and the pane that fills the screen are
     /// not.
     pub fn has(key: &str) -> bool {
-        const OTHERS: [&str; 4] = ["speed", "exact", "measured", "fill"];
-        !OTHERS.contains(&key) && is_key(key)
+        const OTHER_VIEW_KEYS: [&str; 4] = ["speed", "exact", "measured", "fill"];
+        !OTHER_VIEW_KEYS.contains(&key) && is_key(key)
     }
 
     /// The look with the values of `patch`, a table as `[view]` is one.
@@ -284,7 +284,7 @@ impl View {
         let number = |key| file.viewed(key).and_then(Value::as_float);
         // The whole run, or what of it is played in two minutes.
         let first_s = || {
-            let speed = number("speed").unwrap_or(keys::SPEED);
+            let speed = number("speed").unwrap_or(keys::DEFAULT_SPEED);
             let window_s = Clock::end_s(scenario).min(LONGEST_SWEEP_S * speed);
             window_s.max(2.0 * scenario.motion.time_step_s)
         };

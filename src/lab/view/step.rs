@@ -1,9 +1,9 @@
 //! What the step pane shows of the time step taken last: one of its phases, or why the axle goes sideways.
 
 use crate::physics::Workings;
-use crate::physics::workings::NAMES;
+use crate::physics::workings::PHASE_NAMES;
 use crate::scenario::file::Choice;
-use crate::scenario::screen::{LAST, WHY};
+use crate::scenario::screen::{LAST_PHASE, WHY};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -29,10 +29,10 @@ impl<'de> Deserialize<'de> for StepPageChoice {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         match Choice::deserialize(deserializer)? {
             Choice::Number(number) => Ok(Self::Number(number as usize)),
-            Choice::Word(word) if word == LAST => Ok(Self::Last),
+            Choice::Word(word) if word == LAST_PHASE => Ok(Self::Last),
             Choice::Word(word) if word == WHY => Ok(Self::Why),
             Choice::Word(word) => {
-                let name = NAMES.into_iter().find(|known| *known == word);
+                let name = PHASE_NAMES.into_iter().find(|known| *known == word);
                 let named = name.map(Self::Named);
                 named.ok_or_else(|| D::Error::custom(format!("there is no phase {word}")))
             }
@@ -45,7 +45,7 @@ impl From<StepPageChoice> for Choice {
         match page {
             StepPageChoice::Number(number) => Self::Number(number as u64),
             StepPageChoice::Named(name) => Self::Word(name.to_owned()),
-            StepPageChoice::Last => Self::Word(LAST.to_owned()),
+            StepPageChoice::Last => Self::Word(LAST_PHASE.to_owned()),
             StepPageChoice::Why => Self::Word(WHY.to_owned()),
         }
     }

@@ -12,8 +12,8 @@ use crate::text::printable::is_steering;
 use toml::Value;
 
 /// The longest line of text in a block, characters.
-const LONGEST_LINE: usize = 500;
-const MOST_TOLD: usize = 20;
+const LONGEST_BLOCK_LINE: usize = 500;
+const MOST_BLOCK_PROBLEMS: usize = 20;
 
 pub(super) struct BlockContent {
     document: Document,
@@ -54,7 +54,7 @@ impl BlockReader<'_> {
 impl BlockContent {
     /// Notes that `problem` was found; its key is that of the TOML.
     pub(super) fn refuse(&mut self, problem: Problem) {
-        if self.problems.len() >= MOST_TOLD {
+        if self.problems.len() >= MOST_BLOCK_PROBLEMS {
             return;
         }
         let key = problem.key.clone();
@@ -98,7 +98,7 @@ impl BlockContent {
                 "must hold no control or invisible characters"
             }
             Some(text) if !may_wrap && text.contains('\n') => "must be one line",
-            Some(text) if text.chars().count() > LONGEST_LINE && !may_wrap => "is too long",
+            Some(text) if text.chars().count() > LONGEST_BLOCK_LINE && !may_wrap => "is too long",
             Some(text) => return text.trim().to_owned(),
         };
         self.refuse(Problem::with_value(key, &value, rule));

@@ -13,9 +13,9 @@ use nalgebra::{Complex, Matrix3, Vector3};
 pub const AT_ONCE: usize = 8;
 
 /// Adding and subtracting 1.5 * 2^52 rounds to the nearest integer, below 2^51.
-const ROUNDER: f64 = 6755399441055744.0;
+const POSITION_ROUNDER: f64 = 6755399441055744.0;
 /// With more cells or turns than this there is no place in a turn left to be found.
-const MOST_TURNS: f64 = 1e12;
+const MOST_PHASE_TURNS: f64 = 1e12;
 
 impl LagrangeTop {
     /// Where the point `at` of the body (body frame, m) is at `times`, s after the start: x, y and z, m, world frame, within
@@ -29,7 +29,7 @@ impl LagrangeTop {
         let per_s = [&self.alpha, &self.beta].map(|part| part.turns_per_s.abs());
         let per_s = per_s[0].max(per_s[1]).max(self.lattice.per_period);
         let latest = times.iter().fold(0.0_f64, |latest, t| latest.max(t.abs()));
-        if self.lattice.pulsed || (latest + self.since_origin.abs()) * per_s > MOST_TURNS {
+        if self.lattice.pulsed || (latest + self.since_origin.abs()) * per_s > MOST_PHASE_TURNS {
             return None;
         }
         let period = if self.lattice.per_period == 0.0 {
@@ -82,7 +82,7 @@ fn parameter(part: &CayleyKleinParameter, turns: f64, sin: f64, cos: f64) -> Com
 /// The nearest whole number, of halves either one.
 #[inline(always)]
 fn whole(x: f64) -> f64 {
-    (x + ROUNDER) - ROUNDER
+    (x + POSITION_ROUNDER) - POSITION_ROUNDER
 }
 
 /// Sine and cosine of four times `quarter`, |`quarter`| up to π/4.

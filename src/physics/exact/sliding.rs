@@ -4,7 +4,7 @@
 //! quadratic friction has a kink, at a spin of zero, the series ends: it is begun anew with the other sign, or, where dry
 //! friction is strong enough, with the torque that holds the spin at zero, until it is not strong enough any more.
 
-use super::series::{ORDER, convolve};
+use super::series::{SERIES_ORDER, convolve};
 use crate::Damping;
 use crate::loads::axial;
 use nalgebra::{Matrix3, Vector3};
@@ -21,7 +21,7 @@ enum Contact {
 }
 
 /// A spin whose momentum is below this part of all there is has stopped but for rounding.
-const STOPPED: f64 = 1e-15;
+const STOPPED_SPIN: f64 = 1e-15;
 /// Into so many pieces a stretch is cut when the first event in it is sought: in it the body turns by about a radian.
 const PIECES: u32 = 16;
 /// An event nearer to the beginning of a stretch than this part of it is the event at which the stretch begins.
@@ -37,13 +37,13 @@ pub(super) struct Sliding {
     /// Whether the contact changes where the present series ends.
     ends: bool,
     /// Coefficients of friction's torque, body frame, N m.
-    torque: [Vector3<f64>; ORDER],
+    torque: [Vector3<f64>; SERIES_ORDER],
     /// Coefficients of the other forces' torque, world frame, N m.
-    load: [Vector3<f64>; ORDER],
+    load: [Vector3<f64>; SERIES_ORDER],
     /// Coefficients of ω3, rad/s.
-    spin: [f64; ORDER],
+    spin: [f64; SERIES_ORDER],
     /// Coefficients of the work of friction, J; the first is the work up to the centre of the series.
-    work: [f64; ORDER + 1],
+    work: [f64; SERIES_ORDER + 1],
 }
 
 /// How the body rubbed, and the work of friction, where a series begins.
@@ -69,10 +69,10 @@ impl Sliding {
             moment,
             contact: Contact::Smooth,
             ends: false,
-            torque: [Vector3::zeros(); ORDER],
-            load: [Vector3::zeros(); ORDER],
-            spin: [0.0; ORDER],
-            work: [0.0; ORDER + 1],
+            torque: [Vector3::zeros(); SERIES_ORDER],
+            load: [Vector3::zeros(); SERIES_ORDER],
+            spin: [0.0; SERIES_ORDER],
+            work: [0.0; SERIES_ORDER + 1],
         }
     }
 
@@ -87,7 +87,7 @@ impl Sliding {
         let along = self.damping.along;
         let (was, ends) = (self.contact, std::mem::take(&mut self.ends));
         let has_stopped = ends || was == Contact::Holds;
-        if !has_stopped && omega.z.abs() * along > STOPPED * unit {
+        if !has_stopped && omega.z.abs() * along > STOPPED_SPIN * unit {
             self.contact = Contact::Slips(omega.z.signum());
             return;
         }

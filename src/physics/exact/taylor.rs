@@ -15,7 +15,7 @@
 //! Source: A. Jorba and M. Zou, A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods, Experimental Mathematics 14 (2005) 99-117.
 
-use super::series::{ORDER, convolve};
+use super::series::{SERIES_ORDER, convolve};
 use super::sliding::{FrictionCoefficients, FrictionStart, Sliding};
 use crate::Damping;
 use crate::loads::axial;
@@ -24,7 +24,7 @@ use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 /// Size of the last term of a step against the whole: below rounding, so that rounding alone is left.
 const LAST_TERM: f64 = f64::EPSILON / 16.0;
 /// The most series on the way to one time: with 1 to 3 rad to a series less than a second's work, which nothing interrupts.
-const MOST_SERIES: u32 = 200_000;
+const MOST_TAYLOR_SERIES: u32 = 200_000;
 
 /// Motion of a rigid body about a fixed point under constant forces at body points, integrated to rounding.
 ///
@@ -40,8 +40,8 @@ pub struct AccurateMotion {
     pub(super) time: f64,
     /// How far from `time` the series holds, s, to either side.
     radius: f64,
-    turn: [Quaternion<f64>; ORDER + 1],
-    momentum: [Vector3<f64>; ORDER + 1],
+    turn: [Quaternion<f64>; SERIES_ORDER + 1],
+    momentum: [Vector3<f64>; SERIES_ORDER + 1],
     /// What rounding has kept out of `momentum[0]`. A fast top turns an error of L into an angle that grows with time.
     carry: Vector3<f64>,
     pub(super) friction: Option<Box<Rubbing>>,
@@ -114,8 +114,8 @@ impl AccurateMotion {
             momentum_unit: momentum.norm() + (moment.norm() * inertia.norm()).sqrt(),
             time: 0.0,
             radius: 0.0,
-            turn: [Quaternion::new(0.0, 0.0, 0.0, 0.0); ORDER + 1],
-            momentum: [Vector3::zeros(); ORDER + 1],
+            turn: [Quaternion::new(0.0, 0.0, 0.0, 0.0); SERIES_ORDER + 1],
+            momentum: [Vector3::zeros(); SERIES_ORDER + 1],
             carry: Vector3::zeros(),
             friction: damping.map(|damping| Box::new(Rubbing::new(damping, moment))),
             gave_up: false,
@@ -140,7 +140,7 @@ impl AccurateMotion {
         if t < self.time || t - self.time > self.radius {
             self.go_to_centre(t);
         }
-        let mut left = MOST_SERIES;
+        let mut left = MOST_TAYLOR_SERIES;
         while (t - self.time).abs() > self.radius {
             self.gave_up |= left == 0;
             left = left.saturating_sub(1);
@@ -199,8 +199,8 @@ impl AccurateMotion {
 
     /// The quaternion, and the change of L, at `t` s from the centre of the series, by Horner's rule.
     fn evaluate(&self, t: f64) -> (Quaternion<f64>, Vector3<f64>) {
-        let (mut turn, mut momentum) = (self.turn[ORDER], self.momentum[ORDER]);
-        for k in (1..ORDER).rev() {
+        let (mut turn, mut momentum) = (self.turn[SERIES_ORDER], self.momentum[SERIES_ORDER]);
+        for k in (1..SERIES_ORDER).rev() {
             turn = turn * t + self.turn[k];
             momentum = momentum * t + self.momentum[k];
         }
@@ -209,8 +209,8 @@ impl AccurateMotion {
 
     /// All coefficients from the state at the centre, and with them the radius.
     fn expand(&mut self, turn: Quaternion<f64>, momentum: Vector3<f64>) {
-        let mut spin = [Vector3::zeros(); ORDER];
-        let mut matrix = [Matrix3::zeros(); ORDER];
+        let mut spin = [Vector3::zeros(); SERIES_ORDER];
+        let mut matrix = [Matrix3::zeros(); SERIES_ORDER];
         (self.turn[0], self.momentum[0]) = (turn, momentum);
         if let Some(rubbing) = &mut self.friction {
             rubbing.keep(self.time, turn, momentum, self.carry);
@@ -219,7 +219,7 @@ impl AccurateMotion {
                 .sliding
                 .begin(&rotation(turn), momentum, self.momentum_unit);
         }
-        for k in 0..ORDER {
+        for k in 0..SERIES_ORDER {
             matrix[k] = convolve(k, |i, j| product_matrix(&self.turn[i], &self.turn[j]));
             spin[k] =
                 self.inverse_inertia * convolve(k, |i, j| matrix[i].tr_mul(&self.momentum[j]));
@@ -239,7 +239,7 @@ impl AccurateMotion {
             };
             self.momentum[k + 1] = torque / next;
         }
-        self.radius = self.reach(ORDER - 1).min(self.reach(ORDER));
+        self.radius = self.reach(SERIES_ORDER - 1).min(self.reach(SERIES_ORDER));
         if let Some(rubbing) = &mut self.friction
             && let Some(event) = rubbing.sliding.find_event(self.radius)
         {

@@ -22,7 +22,7 @@ const TERMS: usize = 4;
 /// Below this the period exceeds a few hundred e-foldings: taken as the separatrix itself, whose sums cannot overflow.
 const NO_RETURN: f64 = 1e-250;
 /// The same limit for the argument: a pulse this old has settled to far below rounding.
-const SETTLED: f64 = 300.0;
+const SETTLED_PULSE: f64 = 300.0;
 
 /// Whether a theta function vanishes near the origin of its argument, or half a period away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,7 +134,7 @@ impl Lattice {
     }
 
     fn hyperbolic(&self, x: f64) -> (Harmonics, Harmonics) {
-        let grow = libm::exp(x.clamp(-SETTLED, SETTLED));
+        let grow = libm::exp(x.clamp(-SETTLED_PULSE, SETTLED_PULSE));
         let fall = 1.0 / grow;
         let (ahead, behind) = (self.nome * grow * grow, self.nome * fall * fall);
         let (mut odd, mut even) = (Harmonics::ZERO, Harmonics::ZERO);

@@ -10,15 +10,15 @@ use crate::{Body, Damping, Loads, Scheme, State, loads::torque, rotation};
 use nalgebra::{Matrix3, Vector3};
 
 // Names and formulas of the phases in which the slopes are found.
-const FIRST: &str = "slope 1: at the beginning";
-const SMOOTH: &str = "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q)";
-const RUBBED: &str = "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q) + friction's torque at Ω₁";
+const FIRST_SLOPE: &str = "slope 1: at the beginning";
+const FRICTIONLESS_TEXT: &str = "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q)";
+const FRICTION_TEXT: &str = "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q) + friction's torque at Ω₁";
 type PhaseText = (&'static str, &'static str);
-const SECOND: PhaseText = (
+const SECOND_SLOPE: PhaseText = (
     "slope 2: half way by slope 1",
     "the same at Q + ½ dt Q₁′, L + ½ dt L₁′",
 );
-const THIRD: PhaseText = (
+const THIRD_SLOPE: PhaseText = (
     "slope 3: half way by slope 2",
     "the same at Q + ½ dt Q₂′, L + ½ dt L₂′",
 );
@@ -87,11 +87,20 @@ impl Rk4 {
     fn advance<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
         let k1 = self.slope(&state.orientation, &state.momentum);
         let is_rubbed = self.damping.is_some();
-        listener.hear(|| k1.phase(FIRST, if is_rubbed { RUBBED } else { SMOOTH }));
+        listener.hear(|| {
+            k1.phase(
+                FIRST_SLOPE,
+                if is_rubbed {
+                    FRICTION_TEXT
+                } else {
+                    FRICTIONLESS_TEXT
+                },
+            )
+        });
         let k2 = self.slope_after(state, &k1, 0.5 * dt);
-        listener.hear(|| k2.phase(SECOND.0, SECOND.1));
+        listener.hear(|| k2.phase(SECOND_SLOPE.0, SECOND_SLOPE.1));
         let k3 = self.slope_after(state, &k2, 0.5 * dt);
-        listener.hear(|| k3.phase(THIRD.0, THIRD.1));
+        listener.hear(|| k3.phase(THIRD_SLOPE.0, THIRD_SLOPE.1));
         let k4 = self.slope_after(state, &k3, dt);
         listener.hear(|| k4.phase(FOURTH.0, FOURTH.1));
         let turned = k1.orientation + (k2.orientation + k3.orientation) * 2.0 + k4.orientation;

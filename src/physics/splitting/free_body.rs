@@ -10,7 +10,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::jacobi::{Jacobi, carlson_rj};
-use super::principal::{ROUNDING, principal_axes};
+use super::principal::{SYMMETRY_ROUNDING, principal_axes};
 use super::turn::RotationByVector;
 use crate::trig::sin_cos;
 
@@ -29,7 +29,7 @@ impl FreeBody {
     pub fn new(inertia: &Matrix3<f64>) -> Self {
         let (moments, axes) = principal_axes(inertia);
         let equal = |i: usize, j: usize| {
-            (moments[i] - moments[j]).abs() <= ROUNDING * moments[i].max(moments[j])
+            (moments[i] - moments[j]).abs() <= SYMMETRY_ROUNDING * moments[i].max(moments[j])
         };
         // Equal to rounding is symmetric; the elliptic functions take over continuously. z first: a sphere's axis is then the axle.
         for (axis, i, j) in [(2, 0, 1), (1, 0, 2), (0, 1, 2)] {
@@ -419,7 +419,7 @@ mod tests {
         for exponent in 1..=16 {
             let delta = libm::pow(10.0, -f64::from(exponent));
             // Below the limit the moments are taken as equal, which is a change of 1e-14 of the rates.
-            let is_taken_as_equal = f64::from(u8::from(delta <= ROUNDING));
+            let is_taken_as_equal = f64::from(u8::from(delta <= SYMMETRY_ROUNDING));
             for inertia in [
                 diagonal(2.0, 2.0 + delta, 1.0),
                 diagonal(1.0, 1.0 + delta, 1.9),

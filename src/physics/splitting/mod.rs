@@ -17,7 +17,7 @@ use crate::workings::{Listener, Nobody, Phase};
 use crate::{Body, Loads, Scheme, State};
 use damped::DampedStrang;
 use free_body::{FreeBody, SymmetricBody, orthonormal};
-use principal::ROUNDING;
+use principal::SYMMETRY_ROUNDING;
 use turn::RotationByVector;
 
 mod damped;
@@ -188,7 +188,7 @@ impl Splitting {
 fn force_on_axle(moment: &Matrix3<f64>) -> Option<Vector3<f64>> {
     let row = |i: usize| moment.row(i).transpose();
     let off = row(0).amax().max(row(1).amax());
-    (off <= ROUNDING * row(2).amax()).then(|| row(2))
+    (off <= SYMMETRY_ROUNDING * row(2).amax()).then(|| row(2))
 }
 
 /// A body symmetric about its axle, with all forces on the axle: the torque does not see the spin, and the spin commutes

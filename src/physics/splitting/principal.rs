@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// What rounding leaves of a symmetry when moments are summed over points, relative: smaller differences are none, and a
 /// matrix with smaller off-diagonal elements (beside the geometric mean of their diagonal ones) is diagonal.
-pub const ROUNDING: f64 = 1e-14;
+pub const SYMMETRY_ROUNDING: f64 = 1e-14;
 /// Convergence is quadratic; three or four sweeps do.
 const MOST_SWEEPS: usize = 30;
 const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
@@ -17,7 +17,7 @@ const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
 pub fn principal_axes(inertia: &Matrix3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
     let mut a = *inertia;
     let mut axes = Matrix3::identity();
-    if is_diagonal(&a, ROUNDING) {
+    if is_diagonal(&a, SYMMETRY_ROUNDING) {
         return (a.diagonal(), axes);
     }
     for _ in 0..MOST_SWEEPS {

@@ -125,15 +125,15 @@ fn what_is_no_key_is_passed_over_as_a_whole() {
 fn escape_is_a_key_after_a_moment_and_loses_none_that_follows() {
     let (mut decoder, begin) = fed(b"\x1b");
     assert_eq!(decoder.ready(), 0);
-    assert_eq!(decoder.deadline(), Some(begin + GAP));
-    decoder.expire(begin + GAP / 2);
+    assert_eq!(decoder.deadline(), Some(begin + BYTE_GAP));
+    decoder.expire(begin + BYTE_GAP / 2);
     assert_eq!(decoder.ready(), 0);
-    decoder.expire(begin + GAP);
+    decoder.expire(begin + BYTE_GAP);
     assert_eq!(all(&mut decoder), keys(&[Key::Esc]));
     assert_eq!(decoder.deadline(), None);
     // A sequence that comes too late is no sequence.
     decoder.feed(b"\x1b", begin);
-    decoder.feed(b"[A", begin + 2 * GAP);
+    decoder.feed(b"[A", begin + 2 * BYTE_GAP);
     let late = [Key::Esc, Key::Char('['), Key::Char('A')];
     assert_eq!(all(&mut decoder), keys(&late));
     for (text, key) in [
@@ -149,7 +149,7 @@ fn escape_is_a_key_after_a_moment_and_loses_none_that_follows() {
         );
     }
     decoder.feed(b"\x1bP", begin);
-    decoder.expire(begin + GAP);
+    decoder.expire(begin + BYTE_GAP);
     assert_eq!(all(&mut decoder), keys(&[Key::Esc, Key::Char('P')]));
 }
 
@@ -166,15 +166,15 @@ fn a_sequence_without_an_end_is_given_up() {
         let last = typed(&[begun.as_bytes(), b"\x03"]).pop();
         assert_eq!(last, Some(Typed::Key(Key::Ctrl('c'))), "{begun:?}");
         let (mut decoder, begin) = fed(begun.as_bytes());
-        decoder.expire(begin + GAP);
+        decoder.expire(begin + BYTE_GAP);
         all(&mut decoder);
-        decoder.feed(b"x", begin + GAP);
+        decoder.feed(b"x", begin + BYTE_GAP);
         assert_eq!(all(&mut decoder), keys(&[Key::Char('x')]), "{begun:?}");
     }
     // Nor do keys that are held down keep it alive for ever.
     let (mut decoder, begin) = fed(b"\x1b]");
     for number in 1..100 {
-        decoder.feed(b"j", begin + GAP / 2 * number);
+        decoder.feed(b"j", begin + BYTE_GAP / 2 * number);
     }
     assert!(decoder.ready() > 70, "{}", decoder.ready());
 }
@@ -184,7 +184,7 @@ fn the_time_of_a_sequence_is_its_own() {
     // Every piece ends within a sequence: none of them waits longer than a moment.
     let (mut decoder, begin) = fed(b"\x1b[");
     for number in 1..=100 {
-        decoder.feed(b"A\x1b[", begin + GAP / 2 * number);
+        decoder.feed(b"A\x1b[", begin + BYTE_GAP / 2 * number);
     }
     assert_eq!(all(&mut decoder), keys(&[Key::Up; 100]));
 }
@@ -195,7 +195,7 @@ fn a_long_sequence_takes_no_room() {
     for long in ["\u{1b}[<", "\u{1b}]0;"] {
         decoder.feed(long.as_bytes(), begin);
         decoder.feed(&b"1".repeat(1 << 20), begin);
-        assert!(decoder.pending.len() <= LONGEST + 2);
+        assert!(decoder.pending.len() <= LONGEST_SEQUENCE + 2);
         decoder.feed(b"\x1b\\", begin);
         all(&mut decoder);
     }
@@ -210,7 +210,7 @@ fn a_paste_comes_as_one() {
     assert_eq!(typed(&[unfinished]), keys(&[Key::Ctrl('c')]));
     let (mut decoder, begin) = fed(b"\x1b[200~");
     decoder.feed(&b"1".repeat(1 << 20), begin);
-    decoder.expire(begin + GAP);
+    decoder.expire(begin + BYTE_GAP);
     assert_eq!(decoder.ready(), 0);
     decoder.expire(begin + GAP_IN_PASTE);
     assert_eq!(all(&mut decoder), [paste(&"1".repeat(LONGEST_PASTE))]);

@@ -59,9 +59,9 @@ pub fn row_at(browser: &Browser, area: Rect, at: Position) -> Option<usize> {
 
 /// The keys of the list, and how many files of the folder it contains, as much as fits in `width` columns.
 fn keys(files: usize, others: usize, width: usize) -> String {
-    const KEYS: &str = "/ filters by name, Enter opens";
-    let with_files = format!("{KEYS}; files here: {files} with a run, {others} without");
-    longest([with_files, KEYS.to_owned()], width)
+    const BROWSER_KEYS: &str = "/ filters by name, Enter opens";
+    let with_files = format!("{BROWSER_KEYS}; files here: {files} with a run, {others} without");
+    longest([with_files, BROWSER_KEYS.to_owned()], width)
 }
 
 fn filter_line(browser: &Browser, is_typed: bool, theme: &Theme, area: Rect, buf: &mut Buffer) {

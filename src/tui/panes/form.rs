@@ -10,7 +10,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{Clear, Widget};
 
-const WIDTH: u16 = 80;
+const FORM_WIDTH: u16 = 80;
 /// Below this height or width there is no room for a frame.
 const LEAST_FRAMED: u16 = 3;
 const MOST_COMPLAINT: usize = 3;
@@ -28,7 +28,7 @@ enum FormLine<'a> {
 
 impl Widget for FormPane<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let width = area.width.min(WIDTH);
+        let width = area.width.min(FORM_WIDTH);
         let area = Rect {
             x: area.x + (area.width - width) / 2,
             width,

@@ -3,7 +3,7 @@
 //! It shows where the point is, and the shape of its last swings behind it, as a line. The turn before them and all
 //! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
 
-use super::{MOST_PUSHES, PaneRow, PlotInputs, ROWS_A_LINE, Width, round_frame, write};
+use super::{MOST_SHOWN_PUSHES, PaneRow, PlotInputs, ROWS_A_LINE, Width, round_frame, write};
 use crate::data::MeasuredPlace;
 use crate::lab::view::Pane;
 use crate::lab::view::theme::Marker;
@@ -29,30 +29,30 @@ use std::f64::consts::TAU;
 /// Length of a push's line, as a share of the radius shown. Only its direction has a meaning.
 const ARROW: f64 = 0.35;
 /// A force with a horizontal part smaller than this share of it counts as straight up or down.
-const UPRIGHT: f64 = 0.1;
+const VERTICAL_FORCE_SHARE: f64 = 0.1;
 
 /// The least radius shown, m. The path of a point that stays on the vertical has no radius.
-const LEAST: f64 = 1e-6;
+const LEAST_RADIUS_M: f64 = 1e-6;
 
 /// The radius shown grows by this factor's exponential, or not at all.
-const STEP: f64 = 0.05;
+const RADIUS_STEP: f64 = 0.05;
 
 /// If gravity turns L by less than this in the whole run, rad, the path is a circle about L, and the picture is centred
 /// on it.
 const STANDING: f64 = 0.35;
 /// A point that is nearer to the axle than this part of its distance from the pivot is on it.
-const ON_AXLE: f64 = 1e-6;
+const POINT_ON_AXLE: f64 = 1e-6;
 
 /// Swings larger than this, dots, cover each other where they are close together.
 const LARGE_SWING: f64 = 4.0;
 
-const MOST_LINES: u16 = 3;
+const MOST_LEGEND_LINES: u16 = 3;
 
 /// What stands between two words of a legend at length, and in short.
-const BETWEEN: [&str; 2] = [", ", " "];
-const BEFORE: [&str; 2] = ["dotted: before"; 2];
+const LEGEND_SEPARATORS: [&str; 2] = [", ", " "];
+const EARLIER_RUN_LEGEND: [&str; 2] = ["dotted: before"; 2];
 
-pub const ROW: PaneRow = PaneRow {
+pub const FROM_ABOVE_ROW: PaneRow = PaneRow {
     id: Pane::FROM_ABOVE,
     title: "from above",
     width: Width::Round,
@@ -70,11 +70,11 @@ pub struct FromAbove<'a>(pub PlotInputs<'a>);
 impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let zoom = self.0.view.zoom.above;
-        let Some(inside) = round_frame(&ROW, zoom, &self.0, area, buf) else {
+        let Some(inside) = round_frame(&FROM_ABOVE_ROW, zoom, &self.0, area, buf) else {
             return;
         };
         let without = |lines: usize| split_rows(inside, inside.height - lines as u16);
-        let most = (inside.height / ROWS_A_LINE).clamp(1, MOST_LINES) as usize;
+        let most = (inside.height / ROWS_A_LINE).clamp(1, MOST_LEGEND_LINES) as usize;
         let (plane, _) = self.plane(without(1)[0]);
         let lines = self.legend(&plane, inside.width, most).len();
         let [picture, legend] = without(lines);
@@ -113,9 +113,9 @@ impl FromAbove<'_> {
         };
         let radii = paths.into_iter().flatten().map(about);
         let away = self.places().iter().map(|place| (place.at - middle).norm());
-        let radius = radii.chain(away).fold(LEAST, f64::max);
+        let radius = radii.chain(away).fold(LEAST_RADIUS_M, f64::max);
         // In steps of 5 %, so that the scale does not change all the time.
-        let radius = libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02;
+        let radius = libm::exp((libm::log(radius) / RADIUS_STEP).ceil() * RADIUS_STEP) * 1.02;
         let zoom = self.0.view.zoom.above;
         let half = radius / zoom;
         let plane = |middle| Plane::new(picture, self.0.view.marker, middle, (half, half));
@@ -183,7 +183,7 @@ impl FromAbove<'_> {
         let pinned = Ink::Faint(Role::Pinned);
         for (ghost, dashes, ink) in [
             (self.0.ghost, before, Ink::Ghost),
-            (self.0.pinned, dots::PINNED, pinned),
+            (self.0.pinned, dots::PINNED_DASHES, pinned),
         ] {
             let path = ghost.into_iter().flat_map(|ghost| ghost.path.dots());
             dots.dashed(path.map(|at| plane.dot(at)), dashes, ink);
@@ -200,7 +200,7 @@ impl FromAbove<'_> {
         trail.draw(&mut dots);
         if let Some(overlay) = self.0.run.overlay() {
             let exact = overlay.path.dots().map(|at| plane.dot(at));
-            dots.dashed(exact, dots::EXACT, Ink::Faint(Role::Exact));
+            dots.dashed(exact, dots::EXACT_DASHES, Ink::Faint(Role::Exact));
         }
         dots.render(&self.0.view.theme, buf);
     }
@@ -251,10 +251,14 @@ impl FromAbove<'_> {
         let points = self.0.run.scenario().body.mechanics.points();
         let mut dots = Dots::new(picture, self.0.view.marker);
         let mut signs = Vec::new();
-        for push in simulation.loads().pushes.iter().take(MOST_PUSHES) {
+        for push in simulation.loads().pushes.iter().take(MOST_SHOWN_PUSHES) {
             let at = simulation.state().orientation * points[push.point].at;
             let at = at.xy();
-            match push.force.xy().try_normalize(UPRIGHT * push.force.norm()) {
+            match push
+                .force
+                .xy()
+                .try_normalize(VERTICAL_FORCE_SHARE * push.force.norm())
+            {
                 Some(direction) => {
                     let tip = at + direction * (ARROW * radius_m);
                     let [from, to] = [at, tip].map(|at| plane.dot((at.x, at.y)));
@@ -305,13 +309,15 @@ impl FromAbove<'_> {
         let room = width.saturating_sub(columns(&self.bar(plane, width)) + 1);
         let words = self.words();
         let legend = Self::in_fewest_lines(&words, width, room, most);
-        if words.contains(&BEFORE) || self.0.ghost.is_some() {
+        if words.contains(&EARLIER_RUN_LEGEND) || self.0.ghost.is_some() {
             return legend;
         }
         // The path before the last swings is dotted too: said where it costs no line.
-        let longer = [&words[..], &[BEFORE]].concat();
+        let longer = [&words[..], &[EARLIER_RUN_LEGEND]].concat();
         let longer = Self::in_fewest_lines(&longer, width, room, legend.len());
-        let has_all = longer.iter().any(|line| line.contains(BEFORE[0]));
+        let has_all = longer
+            .iter()
+            .any(|line| line.contains(EARLIER_RUN_LEGEND[0]));
         if has_all { longer } else { legend }
     }
 
@@ -371,7 +377,7 @@ impl FromAbove<'_> {
             });
         }
         if words.len() == 1 {
-            words.push(BEFORE);
+            words.push(EARLIER_RUN_LEGEND);
         }
         words
     }
@@ -379,7 +385,7 @@ impl FromAbove<'_> {
 
 /// `words` in lines of at most `width` columns, the last of at most `room`.
 fn in_lines(words: &[[&str; 2]], form: usize, width: usize, room: usize) -> Vec<String> {
-    let (between, words) = (BETWEEN[form], words.iter().map(|word| word[form]));
+    let (between, words) = (LEGEND_SEPARATORS[form], words.iter().map(|word| word[form]));
     let lines = super::in_lines(words, |word| word, between.len(), width);
     let mut lines: Vec<_> = lines.iter().map(|line| line.join(between)).collect();
     if lines.last().is_some_and(|line| columns(line) > room) {
@@ -389,7 +395,7 @@ fn in_lines(words: &[[&str; 2]], form: usize, width: usize, room: usize) -> Vec<
 }
 
 fn is_on_axle(at: &Vector3<f64>) -> bool {
-    at.xy().norm() <= ON_AXLE * at.norm()
+    at.xy().norm() <= POINT_ON_AXLE * at.norm()
 }
 
 /// The head of an arrow that points to the right by `x` and up by `y`.

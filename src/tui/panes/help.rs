@@ -13,8 +13,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 /// Column of keys and words, and the columns between them and their texts.
-const NAMES: usize = 2;
-const GAP: usize = 2;
+const NAMES_COLUMN: usize = 2;
+const COLUMN_GAP: usize = 2;
 /// A text that would have fewer columns than this stands below its key, not in a column of its own.
 const LEAST_TEXT: usize = 40;
 const SELECTED: &str = "►";
@@ -114,7 +114,7 @@ fn first_shown(lines: &[HelpLine], selected: usize, height: usize) -> usize {
 /// `entries` in lines of `width` columns; `grouped` says whether under the headings of their groups.
 fn lines(entries: &[HelpEntry], grouped: bool, width: usize) -> Vec<HelpLine> {
     let longest = entries.iter().map(|entry| columns(&entry.name())).max();
-    let column = NAMES + longest.unwrap_or(0) + GAP;
+    let column = NAMES_COLUMN + longest.unwrap_or(0) + COLUMN_GAP;
     let column = Some(column).filter(|column| width >= column + LEAST_TEXT);
     let mut lines = Vec::new();
     for (index, entry) in entries.iter().enumerate() {
@@ -170,17 +170,17 @@ fn beside(entry: &HelpEntry, text: &str, column: usize, width: usize) -> Vec<Hel
     let text = text.map(|text| vec![(column, text, Role::Text)]);
     let mut lines: Vec<HelpPieces> = text.collect();
     if let Some(first) = lines.first_mut() {
-        first.push((NAMES, entry.name(), Role::Focus));
+        first.push((NAMES_COLUMN, entry.name(), Role::Focus));
     }
     lines
 }
 
 /// The name of `entry`, and its `text` below it.
 fn below(entry: &HelpEntry, text: &str, width: usize) -> Vec<HelpPieces> {
-    const INDENT: usize = NAMES + GAP - 1;
-    let text = wrapped(text, width.saturating_sub(INDENT)).into_iter();
-    let text = text.map(|text| vec![(INDENT, text, Role::Text)]);
-    let name = vec![(NAMES, entry.name(), Role::Focus)];
+    const HELP_INDENT: usize = NAMES_COLUMN + COLUMN_GAP - 1;
+    let text = wrapped(text, width.saturating_sub(HELP_INDENT)).into_iter();
+    let text = text.map(|text| vec![(HELP_INDENT, text, Role::Text)]);
+    let name = vec![(NAMES_COLUMN, entry.name(), Role::Focus)];
     std::iter::once(name).chain(text).collect()
 }
 
@@ -210,7 +210,7 @@ const PLACES: [(Mode, &str); 5] = [
     (Mode::Help, "in this list"),
     (Mode::Dialog, "in a dialog"),
 ];
-const WORDS: &str = "words";
+const WORDS_HEADING: &str = "words";
 
 impl HelpEntry {
     pub fn name(&self) -> String {
@@ -263,7 +263,7 @@ pub fn entries() -> Vec<HelpEntry> {
         rows.map(|row| key(pane.title, Some(pane.id), row))
     });
     let words = glossary().map(|(word, meaning)| HelpEntry {
-        group: WORDS,
+        group: WORDS_HEADING,
         pane: None,
         binding: None,
         short: word,

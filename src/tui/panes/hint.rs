@@ -13,7 +13,7 @@ use ratatui::widgets::{Clear, Widget};
 /// What a screen says that has no room for everything.
 const CRAMPED: &str = "80x24 shows more";
 /// Lines that a message may take on a small screen.
-const MOST_LINES: u16 = 4;
+const MOST_HINT_LINES: u16 = 4;
 
 /// Lines that the hint takes on a screen of this width while there is no message.
 pub fn lines_of_note(lab: &Lab, width: u16) -> u16 {
@@ -40,8 +40,8 @@ pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
     let own = place.union(layout.health).height;
     let most = match (lab.view().bare, layout.is_cramped) {
         (true, _) => place.height + 1,
-        (false, _) if lab.view().sheet.is_some() => own.max(MOST_LINES),
-        (false, true) => own.max(MOST_LINES),
+        (false, _) if lab.view().sheet.is_some() => own.max(MOST_HINT_LINES),
+        (false, true) => own.max(MOST_HINT_LINES),
         (false, false) => own,
     };
     let most = most.min(place.bottom().saturating_sub(2));

@@ -15,24 +15,24 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use std::iter::Peekable;
 
-pub const ROW: PaneRow = PaneRow {
+pub const LESSON_ROW: PaneRow = PaneRow {
     id: Pane::LESSON,
     title: "lesson",
     width: Width::Fixed,
     rank: 9,
     least: (36, 0),
     draw,
-    keys: KEYS,
+    keys: LESSON_PANE_KEYS,
     arrows: None,
 };
 
 /// The keys that mean something while there is a lesson, whichever pane has the focus.
 #[rustfmt::skip]
-pub const EVERYWHERE: &[Binding] = KEYS.split_at(5).0;
+pub const EVERYWHERE: &[Binding] = LESSON_PANE_KEYS.split_at(5).0;
 
 /// The keys that mean something while the pane has the focus; the first of them also elsewhere.
 #[rustfmt::skip]
-const KEYS: &[Binding] = &[
+const LESSON_PANE_KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Char('n')], Action::Lesson(LessonKey::Next), "next page", "the rest of the page, then the next one; while a page's run plays: to its end"),
     row(&[Mode::Lab], &[Key::Char('N')], Action::Lesson(LessonKey::Before), "", "the page before; its run begins again"),
     row(&[Mode::Lab], &[Key::Char('b')], Action::Lesson(LessonKey::Again), "", "begin the page again: its run from where the page wants it"),
@@ -63,7 +63,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     } else {
         &framed
     };
-    let inside = frame(title, area, view.focus == ROW.id, &view.theme, buf);
+    let inside = frame(title, area, view.focus == LESSON_ROW.id, &view.theme, buf);
     if inside.is_empty() {
         return;
     }
@@ -77,7 +77,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
     let quiet = view.theme.style(Role::Quiet);
     let below = page.lines.len() > page.first + inside.height as usize;
-    let has_focus = view.focus == ROW.id;
+    let has_focus = view.focus == LESSON_ROW.id;
     let more = match (page.first > 0, below, has_focus) {
         (_, true, true) => " PgDn: more ",
         (true, false, true) => " PgUp: back ",

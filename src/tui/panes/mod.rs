@@ -72,12 +72,12 @@ pub enum Width {
 
 /// Every pane, from left to right on the screen; the focus goes through them in this order.
 pub const PANES: &[PaneRow] = &[
-    lesson::ROW,
-    traces::ROW,
-    from_above::ROW,
-    three_d::ROW,
-    parameters::ROW,
-    step::ROW,
+    lesson::LESSON_ROW,
+    traces::TRACES_ROW,
+    from_above::FROM_ABOVE_ROW,
+    three_d::THREE_D_ROW,
+    parameters::PARAMETERS_ROW,
+    step::STEP_ROW,
 ];
 
 /// The ids of all panes, in the table's order.
@@ -272,7 +272,7 @@ pub(super) fn write(
 /// Rows of a round pane for each line of its legend.
 const ROWS_A_LINE: u16 = 5;
 /// The most pushes that a picture shows at one time.
-const MOST_PUSHES: usize = 20;
+const MOST_SHOWN_PUSHES: usize = 20;
 
 /// Takes the last of the highest rank out of `items`, but none of rank 0; whether there was one.
 fn leave_one_out<T>(items: &mut Vec<T>, rank: impl Fn(&T) -> u8) -> bool {

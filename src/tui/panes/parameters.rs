@@ -18,24 +18,24 @@ use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use lines::{
-    COLUMN, PREDICTED, ParameterLine, VALUE_END, body_lines, derived_lines, fewer_digits,
+    COLUMN, PREDICTED_LABEL, ParameterLine, VALUE_END, body_lines, derived_lines, fewer_digits,
     further_lines, heading, in_pane, motion_lines, now_lines, start_lines, watched_lines,
 };
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 
-const UNIT: u16 = 19;
+const UNIT_COLUMN: u16 = 19;
 /// How many columns of values that can be edited stand side by side at most; the readouts have one more.
 const MOST_EDITED: u16 = 6;
 /// What marks the selected line, and a list that goes on above or below.
 const SELECTED: &str = "►";
-const ABOVE: &str = "▲";
-const BELOW: &str = "▼";
+const MORE_ABOVE: &str = "▲";
+const MORE_BELOW: &str = "▼";
 /// From this height on there is room for the readouts to watch, below the values.
 const WATCHED_FROM: usize = 8;
 
-pub const ROW: PaneRow = PaneRow {
+pub const PARAMETERS_ROW: PaneRow = PaneRow {
     id: Pane::PARAMETERS,
     title: "parameters",
     width: Width::Fixed,
@@ -52,13 +52,13 @@ pub const ROW: PaneRow = PaneRow {
         }
         .render(area, buf);
     },
-    keys: KEYS,
+    keys: PARAMETER_PANE_KEYS,
     arrows: None,
 };
 
 /// The keys that the footer names while the pane has the focus.
 #[rustfmt::skip]
-const KEYS: &[Binding] = &[
+const PARAMETER_PANE_KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Char('/')], Action::FindValue, "find", "find a value by a part of its name; Esc shows all again"),
 ];
 
@@ -75,7 +75,7 @@ pub struct Parameters<'a> {
 
 impl Widget for Parameters<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let focus = self.view.focus == ROW.id;
+        let focus = self.view.focus == PARAMETERS_ROW.id;
         let list = Some(self.list).filter(|_| focus);
         let title = title(list, self.is_searched);
         let inside = frame(&title, area, focus, &self.view.theme, buf);
@@ -176,7 +176,7 @@ impl Parameters<'_> {
         let best = lines.iter().filter_map(answer).min();
         let mut is_found = false;
         lines.retain(|line| {
-            let is_of_line_above = is_found && line.label == PREDICTED;
+            let is_of_line_above = is_found && line.label == PREDICTED_LABEL;
             is_found = is_of_line_above || (best.is_some() && answer(line) == best);
             is_found
         });
@@ -222,8 +222,13 @@ impl Parameters<'_> {
         } else {
             area.right()
         };
-        self.hint(above, (x, place.y), ABOVE, buf);
-        self.hint(below, (x, place.bottom().saturating_sub(1)), BELOW, buf);
+        self.hint(above, (x, place.y), MORE_ABOVE, buf);
+        self.hint(
+            below,
+            (x, place.bottom().saturating_sub(1)),
+            MORE_BELOW,
+            buf,
+        );
     }
 
     /// Marks at `place` that a list goes on, if it does.
@@ -262,7 +267,7 @@ impl Parameters<'_> {
             let begin = value_end.saturating_sub(columns(&value) as u16);
             write(area, (begin, 0), &value, style, buf);
         }
-        let unit = value_end + UNIT - VALUE_END;
+        let unit = value_end + UNIT_COLUMN - VALUE_END;
         write(area, (unit, 0), &line.unit, theme.style(Role::Quiet), buf);
         if line.is_selected {
             write(area, (0, 0), SELECTED, theme.style(Role::Focus), buf);
@@ -282,7 +287,7 @@ impl Parameters<'_> {
 /// The pane's title, which says where in the list the selected value is, and what is searched for.
 fn title(list: Option<&ValueList>, is_searched: bool) -> String {
     let Some(list) = list else {
-        return ROW.title.to_owned();
+        return PARAMETERS_ROW.title.to_owned();
     };
     let shown = list.shown();
     let mut indices = shown.iter().map(|(index, _)| *index);
@@ -290,8 +295,8 @@ fn title(list: Option<&ValueList>, is_searched: bool) -> String {
     let at = at.map_or(0, |at| at + 1);
     match (list.name.as_str(), is_searched, shown.len()) {
         (name, true, count) => format!("/{name}_ {at} of {count}"),
-        ("", false, 0) => ROW.title.to_owned(),
-        ("", false, count) => format!("{} {at} of {count}", ROW.title),
+        ("", false, 0) => PARAMETERS_ROW.title.to_owned(),
+        ("", false, count) => format!("{} {at} of {count}", PARAMETERS_ROW.title),
         (name, false, count) => format!("/{name} {at} of {count}"),
     }
 }
@@ -395,7 +400,7 @@ fn read_lines(view: &View, reading: &Reading, room: usize) -> Vec<ParameterLine>
 
 fn shown(view: &View, mut lines: Vec<ParameterLine>) -> Vec<ParameterLine> {
     if view.hides(HideablePart::Predicted) {
-        lines.retain(|line| line.label != PREDICTED);
+        lines.retain(|line| line.label != PREDICTED_LABEL);
     }
     lines
 }

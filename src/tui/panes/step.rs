@@ -11,7 +11,7 @@ use crate::lab::action::{Action, Direction, repeated};
 use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::step::StepPageChoice;
 use crate::lab::view::{Pane, View};
-use crate::own_code::{SlipTrial, TRACED};
+use crate::own_code::{SlipTrial, TRACED_SYMBOL};
 use crate::physics::observables::position;
 use crate::physics::workings::{Phase, WorkedQuantity, WorkedValue};
 use crate::scenario::Scenario;
@@ -30,16 +30,16 @@ const LISTED_FROM: u16 = 24;
 /// The rank of numbers that are less important while the rows of a table are added up.
 const ASIDE: u8 = 10;
 /// A point of the rim with this number or a larger one is named by its number alone, since there is no room for more.
-const SHORT: usize = 1000;
+const SHORT_NAMES_FROM: usize = 1000;
 
-pub const ROW: PaneRow = PaneRow {
+pub const STEP_ROW: PaneRow = PaneRow {
     id: Pane::STEP,
     title: "step",
     width: Width::Wide,
     rank: 4,
     least: (44, 0),
     draw,
-    keys: KEYS,
+    keys: STEP_PANE_KEYS,
     arrows: Some(|lab, direction, times| {
         one(lab.step_pane().other_sum(direction, times, lab.view())?)
     }),
@@ -50,7 +50,7 @@ pub const PHASE_KEYS: usize = 2;
 
 /// The keys that go through the step.
 #[rustfmt::skip]
-const KEYS: &[Binding] = &[
+const STEP_PANE_KEYS: &[Binding] = &[
     does(&[Mode::Lab], &[Key::Char('.')], |lab, count| lab.step_pane().other_phase(repeated(count), lab.view(), lab.player()), "next phase", "the next phase of the time step; after the last, the next time step"),
     does(&[Mode::Lab], &[Key::Char(',')], |lab, count| lab.step_pane().other_phase(-repeated(count), lab.view(), lab.player()), "back", "the phase before; before the first, the time step before"),
     row(&[Mode::Lab], &[Key::Char('v')], Action::Toggle(Pane::STEP), "close", "the panes without the time step again"),
@@ -64,7 +64,7 @@ const KEYS: &[Binding] = &[
 fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let view = lab.view();
     let title = title(lab);
-    let inside = frame(&title, area, view.focus == ROW.id, &view.theme, buf);
+    let inside = frame(&title, area, view.focus == STEP_ROW.id, &view.theme, buf);
     if inside.is_empty() {
         return;
     }
@@ -91,7 +91,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
 
 fn title(lab: &Lab) -> String {
     let Some(explained) = lab.step_pane().shown() else {
-        return ROW.title.to_owned();
+        return STEP_ROW.title.to_owned();
     };
     let step = explained.step;
     match explained.phase(lab.view().page) {
@@ -271,7 +271,7 @@ impl PhasePage<'_> {
     fn traced(&self, heads: Option<StepPageSection>, format: CellFormat) -> Vec<StepPageSection> {
         let (scenario, (_, after)) = (&self.explained.scenario, &self.explained.states);
         let at = position(&scenario.body.mechanics, after, scenario.trace);
-        let traced = WorkedQuantity::new(TRACED, "m", at);
+        let traced = WorkedQuantity::new(TRACED_SYMBOL, "m", at);
         let Some(yours) = self.yours(&traced, format) else {
             return Vec::new();
         };
@@ -357,7 +357,7 @@ fn is_made_of_sums(phase: &Phase, quantity: &WorkedQuantity) -> bool {
 fn name_of(scenario: &Scenario, point: usize) -> String {
     match scenario.point_name(point) {
         Some(name) => name,
-        None if point < SHORT => format!("rim {point}"),
+        None if point < SHORT_NAMES_FROM => format!("rim {point}"),
         None => point.to_string(),
     }
 }
@@ -365,7 +365,7 @@ fn name_of(scenario: &Scenario, point: usize) -> String {
 /// The words about each phase of a time step: its name, what happens in it, what it changes and what for, and where that is
 /// to be seen in the 3-D view, empty where nothing is.
 #[rustfmt::skip]
-const TABLE: &[[&str; 4]] = &[
+const PHASE_TEXTS: &[[&str; 4]] = &[
     ["inertia", "How the masses lie about the pivot, added up point by point.", "nothing yet; gives I", "the body before the step (°)"],
     ["angular velocity", "The axis about which the body turns now, and how fast: L divided by the inertia.", "nothing yet; gives Ω", "the arrow Ω"],
     ["axis and angle", "The line u along Ω, and the angle about it in one time step.", "nothing yet; gives u and the angle", "the line u through the pivot"],
@@ -389,7 +389,7 @@ const TABLE: &[[&str; 4]] = &[
 
 /// The words about the phase of this `name`; empty where there are none.
 fn words_of(name: &str) -> [&'static str; 3] {
-    let found = TABLE.iter().find(|row| row[0] == name);
+    let found = PHASE_TEXTS.iter().find(|row| row[0] == name);
     found.map_or([""; 3], |[_, happens, changes, seen]| {
         [*happens, *changes, *seen]
     })
@@ -398,13 +398,13 @@ fn words_of(name: &str) -> [&'static str; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::workings::NAMES;
+    use crate::physics::workings::PHASE_NAMES;
 
     #[test]
     fn every_phase_has_words() {
-        for name in NAMES {
+        for name in PHASE_NAMES {
             assert_ne!(words_of(name), [""; 3], "{name}");
         }
-        assert_eq!(TABLE.len(), NAMES.len());
+        assert_eq!(PHASE_TEXTS.len(), PHASE_NAMES.len());
     }
 }

@@ -32,11 +32,11 @@ use std::f64::consts::TAU;
 
 /// Length of the arrow of L, in lengths of the axle. Only its direction has a meaning. Where it lies along the axle, its end
 /// shows beyond the axle's top and the arrow of the angular velocity; a longer one would leave less room for the wheel.
-const MOMENTUM: f64 = 1.36;
+const MOMENTUM_ARROW_LENGTH: f64 = 1.36;
 /// The least length of the axle as a unit of arrows, as a share of the body's size.
 const LEAST_ARM: f64 = 0.7;
 /// Length of the arrow of the change of L, as a share of the body's size.
-const CHANGE: f64 = 0.3;
+const CHANGE_ARROW_SHARE: f64 = 0.3;
 /// Length of the axes of the world, as a share of the body's size.
 const GROUND: f64 = 0.45;
 /// Height of the stand that carries the pivot, and radius of its foot, as shares of the body's size.
@@ -45,12 +45,12 @@ const FOOT: f64 = 0.22;
 /// Tilts are rounded to multiples of this, degrees, so that the scale does not change all the time.
 const TILT_DEG: f64 = 5.0;
 /// Margin around what is drawn, as a share of it, for letters.
-const MARGIN: f64 = 1.06;
+const PICTURE_MARGIN: f64 = 1.06;
 /// A torque smaller than this share of the largest torque of the weight counts as zero.
 const NO_TORQUE: f64 = 1e-9;
-const PARTS: usize = 72;
+const CIRCLE_PARTS: usize = 72;
 
-pub const ROW: PaneRow = PaneRow {
+pub const THREE_D_ROW: PaneRow = PaneRow {
     id: Pane::THREE_D,
     title: "3-D",
     width: Width::Round,
@@ -70,7 +70,7 @@ type SpaceLabel = (&'static str, Role, Vector3<f64>);
 impl Widget for ThreeD<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let zoom = self.0.view.zoom.three_d;
-        let Some(inside) = round_frame(&ROW, zoom, &self.0, area, buf) else {
+        let Some(inside) = round_frame(&THREE_D_ROW, zoom, &self.0, area, buf) else {
             return;
         };
         let subject = SceneSubject::of(self.0);
@@ -179,7 +179,7 @@ impl<'a> SceneSubject<'a> {
         let highest = circles.iter().map(end(1.0)).fold(0.0, f64::max);
         let widest = circles.iter().map(|circle| circle.0).fold(0.0, f64::max);
         let zoom = self.seen.view.zoom.three_d;
-        let half = [widest, 0.5 * (highest - lowest)].map(|half| MARGIN * half / zoom);
+        let half = [widest, 0.5 * (highest - lowest)].map(|half| PICTURE_MARGIN * half / zoom);
         let middle = if zoom > 1.0 {
             let (right, up) = self.seen.view.camera.project(&self.wheel());
             (Zoom::middle(right, half[0]), Zoom::middle(up, half[1]))
@@ -226,8 +226,11 @@ impl<'a> SceneSubject<'a> {
             let angle = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees() / (3.0 * TILT_DEG);
             for angle in [angle.floor(), angle.ceil()] {
                 let (sin, cos) = libm::sincos((angle * 3.0 * TILT_DEG).to_radians());
-                let length = MOMENTUM * self.arm;
-                circles.push((libm::hypot(length * sin, CHANGE * self.reach), length * cos));
+                let length = MOMENTUM_ARROW_LENGTH * self.arm;
+                circles.push((
+                    libm::hypot(length * sin, CHANGE_ARROW_SHARE * self.reach),
+                    length * cos,
+                ));
             }
         }
         circles
@@ -240,11 +243,11 @@ impl<'a> SceneSubject<'a> {
         let floor = Vector3::z() * if stands { -STAND * self.reach } else { 0.0 };
         let radius = self.reach * if stands { FOOT } else { GROUND };
         let around = |part: usize| {
-            let (sin, cos) = libm::sincos(TAU * part as f64 / PARTS as f64);
+            let (sin, cos) = libm::sincos(TAU * part as f64 / CIRCLE_PARTS as f64);
             floor + Vector3::new(radius * cos, radius * sin, 0.0)
         };
         let ink = Ink::Faint(Role::Quiet);
-        let circle: Vec<_> = (0..PARTS).map(around).collect();
+        let circle: Vec<_> = (0..CIRCLE_PARTS).map(around).collect();
         if stands {
             scene.ring(&circle, |_| (LineStroke::Thin, ink));
             scene.line(&Vector3::zeros(), &floor, LineStroke::Thin, ink);
@@ -298,7 +301,7 @@ impl<'a> SceneSubject<'a> {
     /// The paths of the run before and of the pinned one, and a line from the pivot to where each is at this time.
     fn other_runs(&self, scene: &mut DotScene, dots: &mut Dots) {
         let before = (Ink::Ghost, dots::of_run_before(self.seen.view.marker), 3);
-        let pinned = (Ink::Faint(Role::Pinned), dots::PINNED, 2);
+        let pinned = (Ink::Faint(Role::Pinned), dots::PINNED_DASHES, 2);
         for (run, (ink, path, axle)) in [(self.seen.ghost, before), (self.seen.pinned, pinned)] {
             let Some(recording) = run.map(|run| &run.recording) else {
                 continue;
@@ -329,7 +332,7 @@ fn torques(run: &LiveRun, state: &State) -> [Option<Vector3<f64>>; 2] {
 /// Distances from the point, columns, a row counting as two: up to the first the path is drawn over everything, at the
 /// second the sign stands.
 const JOINED: f64 = 3.0;
-const HEAD: f64 = 7.0;
+const PATH_HEAD_DOTS: f64 = 7.0;
 /// Length of the stretch of path that gives the sign its direction, columns.
 const STRETCH: f64 = 1.5;
 
@@ -371,7 +374,7 @@ impl SceneSubject<'_> {
             }
             way.push(at);
             joined += usize::from(joined + 2 == way.len() && columns(now, last) < JOINED);
-            if columns(now, at) < HEAD {
+            if columns(now, at) < PATH_HEAD_DOTS {
                 continue;
             }
             let mut newer = way.iter().rev();

@@ -14,18 +14,18 @@ use ratatui::layout::Rect;
 
 const AHEAD: &str = "·";
 const REACHED: &str = "─";
-const PUSH: &str = "═";
+const PUSH_MARK: &str = "═";
 const EDIT: &str = ":";
 /// The scenario's end, where the run has gone on beyond it.
-const END: &str = "│";
+const END_MARK: &str = "│";
 /// How far the pinned run has been.
-const PINNED: &str = "┤";
-const NOW: &str = "█";
+const PINNED_MARK: &str = "┤";
+const NOW_MARK: &str = "█";
 /// The label of the pinned run's sign, and the fewest columns of a line that has it.
 const LEGEND: &str = "┤ pinned  ";
 const LEGEND_FROM: u16 = 60;
 /// Fewest columns of a line that is worth drawing.
-const LEAST: u16 = 16;
+const LEAST_TIMELINE_WIDTH: u16 = 16;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timeline {
@@ -69,7 +69,7 @@ impl Timeline {
             width,
             ..area
         };
-        (width >= LEAST && area.height > 0).then_some(line)
+        (width >= LEAST_TIMELINE_WIDTH && area.height > 0).then_some(line)
     }
 
     fn label(&self, width: u16) -> String {
@@ -114,18 +114,18 @@ impl Timeline {
         let whole_s = self.whole_s();
         for &(begin_s, end_s) in self.marks.pushes.iter().filter(|push| push.0 <= whole_s) {
             let (first, last) = (self.column(begin_s, width), self.column(end_s, width));
-            (first..=last).for_each(|column| put(column, PUSH, Role::Push));
+            (first..=last).for_each(|column| put(column, PUSH_MARK, Role::Push));
         }
         if whole_s > self.end_s {
-            put(self.column(self.end_s, width), END, Role::Text);
+            put(self.column(self.end_s, width), END_MARK, Role::Text);
         }
         for &edit_s in self.marks.edits.iter().filter(|edit_s| **edit_s <= whole_s) {
             put(self.column(edit_s, width), EDIT, Role::Heading);
         }
         if let Some(pinned_s) = self.pinned_s {
-            put(self.column(pinned_s, width), PINNED, Role::Pinned);
+            put(self.column(pinned_s, width), PINNED_MARK, Role::Pinned);
         }
-        put(self.column(self.now_s, width), NOW, Role::Focus);
+        put(self.column(self.now_s, width), NOW_MARK, Role::Focus);
         signs
     }
 }

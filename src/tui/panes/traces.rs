@@ -24,24 +24,24 @@ use ratatui::widgets::Widget;
 /// Fewest rows of a strip: its label and one row of dots.
 const STRIP: u16 = 2;
 /// A strip that shows less than this part of the time of the others shows the fast motion alone.
-const ALL: f64 = 0.999;
+const WHOLE_TIME_SHARE: f64 = 0.999;
 /// What marks the strip that shows less time than the others.
-const ZOOM: &str = "zoom";
+const ZOOM_MARK: &str = "zoom";
 /// What is said of a strip with bands, on a line above it and beside it: the longest that fits.
-const BAND: [&str; 2] = ["fast swings", "swings"];
+const BAND_TEXTS: [&str; 2] = ["fast swings", "swings"];
 const BAND_BESIDE: [&str; 2] = ["fast", "band"];
 /// What it says while that strip is drawn anew once a second only, because its time would pass before anyone had seen it:
 /// the longest that fits.
 const HELD: [&str; 3] = ["zoom, held for a second each", "zoom, held", "held"];
 /// What follows the name of what was measured where it is shown less what the run says.
 const LESS_RUN: &str = " less run";
-const NAME: u16 = 5;
+const STRIP_NAME_WIDTH: u16 = 5;
 /// What marks the time of an edit, and the time where the run stands.
 const EDIT: char = ':';
 const PEN: char = '│';
-const CURSOR: char = '┃';
+const CURSOR_MARK: char = '┃';
 
-pub const ROW: PaneRow = PaneRow {
+pub const TRACES_ROW: PaneRow = PaneRow {
     id: Pane::TRACES,
     title: "over time",
     width: Width::Wide,
@@ -50,7 +50,7 @@ pub const ROW: PaneRow = PaneRow {
     draw: |lab, area, buf| {
         Traces(PlotInputs::of(lab)).render(area, buf);
     },
-    keys: KEYS,
+    keys: TRACES_PANE_KEYS,
     arrows: Some(|lab, direction, times| {
         let (view, player) = (lab.view(), lab.player());
         one(match direction {
@@ -64,7 +64,7 @@ pub const ROW: PaneRow = PaneRow {
 
 /// The keys that mean something here while the pane has the focus.
 #[rustfmt::skip]
-const KEYS: &[Binding] = &[
+const TRACES_PANE_KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Left], Action::Move(Direction::Left, 1), "cursor", "the cursor to the left: its values are shown; Esc takes it away"),
     row(&[Mode::Lab], &[Key::Right], Action::Move(Direction::Right, 1), "", "the cursor to the right"),
     does(&[Mode::Lab], &[Key::Char('<')], |lab, count| one(lab.view().stepped_cursor(-i64::from(repeated(count)), lab.player())), "", "the cursor one step to the left; 10< ten"),
@@ -103,7 +103,7 @@ impl Widget for Traces<'_> {
         let has_band = plots.iter().any(|plot| plot.has_band);
         let title = self.title(has_band, area.width.saturating_sub(4) as usize);
         let theme = &self.0.view.theme;
-        frame(&title, area, self.0.view.focus == ROW.id, theme, buf);
+        frame(&title, area, self.0.view.focus == TRACES_ROW.id, theme, buf);
         for plot in &plots {
             self.strip(plot, &marks, buf);
         }
@@ -167,8 +167,8 @@ impl Traces<'_> {
     fn label_beside(&self, plot: &Plot, unit: &str, buf: &mut Buffer) {
         let quiet = self.0.view.theme.style(Role::Quiet);
         let further = match plot {
-            Plot { is_zoom: true, .. } if self.0.detail.is_snapshot => [unit, ZOOM, HELD[2]],
-            Plot { is_zoom: true, .. } => [unit, ZOOM, ""],
+            Plot { is_zoom: true, .. } if self.0.detail.is_snapshot => [unit, ZOOM_MARK, HELD[2]],
+            Plot { is_zoom: true, .. } => [unit, ZOOM_MARK, ""],
             Plot {
                 is_residual: true, ..
             } => [unit, "less", "run"],
@@ -228,8 +228,8 @@ impl Traces<'_> {
         let range = format!(" {} {unit}", range.unwrap_or_default());
         let words: &[&str] = match (plot.is_zoom, self.0.detail.is_snapshot) {
             (true, true) => &HELD,
-            (true, false) => &[ZOOM],
-            (false, _) if plot.has_band => &BAND,
+            (true, false) => &[ZOOM_MARK],
+            (false, _) if plot.has_band => &BAND_TEXTS,
             (false, _) => &[],
         };
         let words = words.iter().chain(&[""]);
@@ -280,7 +280,7 @@ impl Traces<'_> {
     /// The cursor: a line, and the value there where that does not stand above the strip.
     fn cursor(&self, column: u16, value: &str, is_beside: bool, sheet: Rect, buf: &mut Buffer) {
         let style = self.0.view.theme.style(Role::Focus);
-        upright(column, CURSOR, style, sheet, buf);
+        upright(column, CURSOR_MARK, style, sheet, buf);
         if is_beside {
             let width = value.len() as u16;
             let right = column + 2;

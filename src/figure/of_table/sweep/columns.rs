@@ -2,12 +2,12 @@
 
 use crate::analysis::readouts::{self, ReadoutSource};
 use crate::figure::chart::ChartAxis;
-use crate::figure::quantity::{self, MEASURED, SIMULATED};
+use crate::figure::quantity::{self, MEASURED_PREFIX, SIMULATED};
 use crate::figure::table::TableSource;
 use crate::text::unit::Unit;
 
-const PREDICTED: &str = "predicted_";
-const UNCERTAINTY: &str = "_uncertainty";
+const PREDICTED_PREFIX: &str = "predicted_";
+const UNCERTAINTY_INFIX: &str = "_uncertainty";
 
 /// Whose number a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,9 +24,9 @@ impl QuantityOwner {
     fn of(name: &str) -> Self {
         let source = readouts::find(name).map(|readout| readout.source);
         match source {
-            _ if name.starts_with(MEASURED) => Self::Measured,
+            _ if name.starts_with(MEASURED_PREFIX) => Self::Measured,
             Some(ReadoutSource::Theory | ReadoutSource::Scheme) => Self::Theory,
-            _ if name.starts_with(PREDICTED) => Self::Theory,
+            _ if name.starts_with(PREDICTED_PREFIX) => Self::Theory,
             _ => Self::Value,
         }
     }
@@ -46,7 +46,7 @@ pub(super) struct QuantityColumn {
 
 /// What a name is without saying whose number it is.
 fn bare(name: &str) -> &str {
-    let parts = [MEASURED, PREDICTED].map(|word| name.strip_prefix(word));
+    let parts = [MEASURED_PREFIX, PREDICTED_PREFIX].map(|word| name.strip_prefix(word));
     parts.into_iter().flatten().next().unwrap_or(name)
 }
 
@@ -62,7 +62,10 @@ pub(super) fn quantities(
         numbers.is_some_and(|numbers| numbers.iter().any(|number| number.is_finite()))
     };
     let names = table.names().iter().filter(|name| {
-        !varied.contains(name) && is_asked(name) && is_number(name) && !name.contains(UNCERTAINTY)
+        !varied.contains(name)
+            && is_asked(name)
+            && is_number(name)
+            && !name.contains(UNCERTAINTY_INFIX)
     });
     let names: Vec<&String> = names.collect();
     let mut quantities: Vec<(&str, QuantityColumns)> = Vec::new();
@@ -94,7 +97,7 @@ fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
     }
     let mut measured = names
         .iter()
-        .filter_map(|other| other.strip_prefix(MEASURED));
+        .filter_map(|other| other.strip_prefix(MEASURED_PREFIX));
     let is_case_of = |other: &&str| {
         let case = own.strip_suffix(other);
         case.is_some_and(|case| case.is_empty() || case.ends_with('_'))
@@ -105,7 +108,7 @@ fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
 /// The column of the standard errors of `name`: measured_precession_uncertainty_rad_per_s of measured_precession_rad_per_s.
 fn uncertainty_of(table: &TableSource, name: &str) -> Option<String> {
     let of_name = |other: &&String| {
-        let parts = other.split_once(UNCERTAINTY);
+        let parts = other.split_once(UNCERTAINTY_INFIX);
         parts.is_some_and(|(begin, unit)| name.starts_with(begin) && name.ends_with(unit))
     };
     table.names().iter().find(of_name).cloned()
@@ -124,7 +127,7 @@ pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
     if parts.len() == 1 {
         return own;
     }
-    let words = [SIMULATED, PREDICTED.trim_end_matches('_')];
+    let words = [SIMULATED, PREDICTED_PREFIX.trim_end_matches('_')];
     let without = |word: &&str| own.name.strip_prefix(&format!("{word} "));
     let name = words.iter().find_map(without).map(str::to_owned);
     ChartAxis {
@@ -140,7 +143,7 @@ impl QuantityColumn {
         match self.role {
             QuantityOwner::Value => String::new(),
             QuantityOwner::Measured => SIMULATED.to_owned(),
-            QuantityOwner::Theory if !is_alone && !self.name.starts_with(PREDICTED) => {
+            QuantityOwner::Theory if !is_alone && !self.name.starts_with(PREDICTED_PREFIX) => {
                 quantity::axis(&self.name).name
             }
             QuantityOwner::Theory if source == Some(ReadoutSource::Scheme) => {
@@ -159,7 +162,9 @@ pub(super) fn theory<'a>(
     let names = table.names().iter().map(String::as_str);
     names.filter(|name| {
         let is_drawn = columns.is_empty() || columns.contains(name);
-        is_drawn && QuantityOwner::of(name) == QuantityOwner::Theory && !name.contains(UNCERTAINTY)
+        is_drawn
+            && QuantityOwner::of(name) == QuantityOwner::Theory
+            && !name.contains(UNCERTAINTY_INFIX)
     })
 }
 

@@ -11,11 +11,11 @@ use crate::figure::table::{SweepTable, TableSource};
 use crate::text::number::shortest;
 
 /// The key whose values are names.
-const SCHEME: &str = "motion.scheme";
+const SCHEME_KEY: &str = "motion.scheme";
 /// Numbers that differ by no more than this part of themselves are the same.
-const SAME: f64 = 1e-6;
+const SAME_NUMBER: f64 = 1e-6;
 /// From this many rows on a line looks smooth at the width of a column; with fewer its points are marked.
-const SMOOTH: f64 = 40.0;
+const SMOOTH_CURVE_ROWS: f64 = 40.0;
 
 /// The rows of one curve.
 #[derive(Clone, Debug)]
@@ -73,7 +73,7 @@ pub(super) fn name(word: &str, settings: &[CurveSetting], room_pt: f64) -> Strin
 
 impl CurveSetting {
     fn new(scenario: &toml::Table, key: &str, value: &str) -> Self {
-        if key == SCHEME {
+        if key == SCHEME_KEY {
             return Self {
                 markup: letters::escape(value),
                 plain: value.to_owned(),
@@ -142,7 +142,7 @@ impl TheoryLine {
             let own = self.points[self.place(x).ok()?][1];
             (own.is_finite() && value.is_finite()).then_some((own, value))
         });
-        let is_same = |(a, b): (f64, f64)| (a - b).abs() <= SAME * a.abs().max(b.abs());
+        let is_same = |(a, b): (f64, f64)| (a - b).abs() <= SAME_NUMBER * a.abs().max(b.abs());
         let mut pairs = pairs.peekable();
         pairs.peek().is_some() && pairs.all(is_same)
     }
@@ -162,7 +162,7 @@ impl TheoryLine {
     /// How it is drawn on a page of that width, the theory at `place` of its panel: as a line where the rows are close, else
     /// as marks at the rows, since theory goes another way between them than the fine strokes that join them.
     pub fn style(&self, place: usize, width_pt: f64) -> SeriesStyle {
-        if self.points.len() as f64 > SMOOTH * width_pt / COLUMN_PT {
+        if self.points.len() as f64 > SMOOTH_CURVE_ROWS * width_pt / COLUMN_PT {
             SeriesStyle::theory(self.index, place)
         } else {
             SeriesStyle::theory_marked(self.index, place)

@@ -4,7 +4,7 @@
 //! Source: Microsoft, OpenType specification 1.9: otff, head, hhea, hmtx, maxp, loca, glyf.
 
 use super::setter::missing;
-use super::table::{FontStyle, Letter, UNITS};
+use super::table::{FontStyle, Letter, UNITS_PER_EM};
 use crate::figure::{Point, Segment};
 use std::collections::BTreeSet;
 
@@ -88,7 +88,7 @@ impl Font {
             &[0, 0], // the sum of the file, which nobody asks for of a font within a file
             &[0x5F0F, 0x3CF5],
             &[0b11], // the baseline is at 0, and letters begin at 0
-            &[UNITS as u16],
+            &[UNITS_PER_EM as u16],
             &[0; 8], // dates
             &self.bounds().map(|bound| bound as u16),
             &[0, 6],    // no style; legible from 6 dots on

@@ -1,7 +1,7 @@
 //! Letters set one behind another: kerning, scripts, and what a slanted letter needs to its right.
 
 use super::SetLabel;
-use super::table::{self, ITALIC, REGULAR, UNITS};
+use super::table::{self, ITALIC, REGULAR, UNITS_PER_EM};
 use crate::figure::page::scene::PlacedLetter;
 use crate::figure::page::scene::at;
 use crate::figure::page::scene::{Point, VectorPath};
@@ -9,9 +9,9 @@ use crate::figure::page::scene::{Point, VectorPath};
 /// Size of a sub- or superscript, as a share of its text's size.
 const SCRIPT: f64 = 0.7;
 /// How far a subscript's baseline lies below its text's baseline, as a share of the text's size.
-const BELOW: f64 = 0.18;
+const SUBSCRIPT_DROP: f64 = 0.18;
 /// How far a superscript's baseline lies above its text's baseline, as a share of the text's size.
-const ABOVE: f64 = 0.36;
+const SUPERSCRIPT_RISE: f64 = 0.36;
 /// Advance of the box that stands for a letter which the table does not have, thousandths of the size.
 pub const BOX: f64 = 600.0;
 
@@ -63,7 +63,7 @@ impl Setter {
     fn gap(&mut self, style: &table::FontStyle, letter: char) -> f64 {
         match self.before.take() {
             Some(before) if before.is_italic == self.is_italic => {
-                self.size_pt / UNITS * style.kerning(before.letter, letter)
+                self.size_pt / UNITS_PER_EM * style.kerning(before.letter, letter)
             }
             Some(before) if !letter.is_whitespace() => before.overhang_pt,
             _ => 0.0,
@@ -77,7 +77,7 @@ impl Setter {
         let is_italic = slanted.is_some();
         let drawn = slanted.or_else(|| REGULAR.letter(letter));
         let drawn = drawn.unwrap_or_else(missing);
-        let scale = self.size_pt / UNITS;
+        let scale = self.size_pt / UNITS_PER_EM;
         self.x_pt += self.gap(style, letter);
         let origin = at(self.x_pt, self.baseline_pt);
         let placed = |p: Point| at(origin.x + p.x * scale, origin.y + p.y * scale);
@@ -127,7 +127,12 @@ impl Setter {
             outer_size_pt: self.size_pt,
             outer_baseline_pt: self.baseline_pt,
         });
-        self.baseline_pt += self.size_pt * if is_above { -ABOVE } else { BELOW };
+        self.baseline_pt += self.size_pt
+            * if is_above {
+                -SUPERSCRIPT_RISE
+            } else {
+                SUBSCRIPT_DROP
+            };
         self.size_pt *= SCRIPT;
     }
 

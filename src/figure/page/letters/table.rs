@@ -10,7 +10,7 @@ use crate::figure::page::scene::at;
 use crate::figure::page::scene::{Point, Segment, VectorPath};
 
 /// How large the tables draw a letter: lengths are thousandths of its size.
-pub const UNITS: f64 = 1000.0;
+pub const UNITS_PER_EM: f64 = 1000.0;
 
 /// A letter: lengths are thousandths of its size, y down from the baseline.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -12,12 +12,12 @@ use pdf_writer::{Content, Filter, Name, Pdf, Rect, Ref, Str};
 use std::collections::BTreeSet;
 
 /// The objects of the first font; each takes this many.
-const FIRST: i32 = 6;
+const FIRST_FONT_OBJECT: i32 = 6;
 const OBJECTS: i32 = 5;
 /// The first number that no object of the two fonts has.
-pub const FREE: i32 = FIRST + 2 * OBJECTS;
+pub const FIRST_FREE_OBJECT: i32 = FIRST_FONT_OBJECT + 2 * OBJECTS;
 /// Lengths in an outline and in a line of letters that differ by less than this count as the same, thousandths of the size.
-const SAME: f64 = 0.5;
+const SAME_LENGTH: f64 = 0.5;
 /// Angle of the slanted letters, degrees, as the font they are from has it.
 const SLANT_DEG: f32 = -14.0;
 
@@ -53,7 +53,7 @@ impl Fonts {
     }
 
     fn used(&self) -> impl Iterator<Item = (Ref, &OfPage, &Font)> {
-        let fonts = (FIRST..).step_by(OBJECTS as usize).zip(&self.0);
+        let fonts = (FIRST_FONT_OBJECT..).step_by(OBJECTS as usize).zip(&self.0);
         fonts
             .filter_map(|(first, of_page)| Some((Ref::new(first), of_page, of_page.font.as_ref()?)))
     }
@@ -115,7 +115,7 @@ impl Fonts {
         let mut next = along(first);
         for letter in line {
             let off = (along(letter) - next) * 1000.0 / letter.size_pt;
-            if off.abs() > SAME {
+            if off.abs() > SAME_LENGTH {
                 items.show(Str(&glyphs)).adjust(-libm::round(off) as f32);
                 glyphs.clear();
                 next += libm::round(off) * letter.size_pt / 1000.0;

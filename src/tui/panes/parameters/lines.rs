@@ -6,7 +6,7 @@ use crate::physics::{Body, Friction};
 use crate::playback::reading::Reading;
 use crate::scenario::{Motion, Scenario, Window};
 use crate::text::number::{
-    NONE, exponent, fixed as decimals_of, shortest, significant, without_minus_zero,
+    NOT_AVAILABLE, exponent, fixed as decimals_of, shortest, significant, without_minus_zero,
 };
 use crate::tui::theme::Role;
 use std::borrow::Cow;
@@ -16,10 +16,10 @@ pub(super) const VALUE_END: u16 = 18;
 pub(super) const COLUMN: u16 = 26;
 
 /// Digits of a number in a pane. The key line below the values, the dialog and files have all of them.
-const DIGITS: usize = 7;
+const PANE_DIGITS: usize = 7;
 
 /// The label of what theory predicts for the number above it.
-pub(super) const PREDICTED: &str = "predicted";
+pub(super) const PREDICTED_LABEL: &str = "predicted";
 
 #[derive(Clone)]
 pub(super) struct ParameterLine {
@@ -85,9 +85,9 @@ fn sized(
     unit: &'static str,
 ) -> ParameterLine {
     /// A number smaller than this part of the size is rounding error.
-    const ROUNDING: f64 = 1e-9;
+    const ZERO_ROUNDING: f64 = 1e-9;
     let is_small = size > 0.0 && size < 0.1;
-    if is_small && number.abs() > ROUNDING * size {
+    if is_small && number.abs() > ZERO_ROUNDING * size {
         value(rank, label, exponent(number, 3), unit)
     } else {
         self::number(rank, label, number, digits, unit)
@@ -220,7 +220,10 @@ pub(super) fn now_lines(reading: &Reading) -> Vec<ParameterLine> {
     lines.extend(watched_lines(reading));
     let after_nutation = lines.len() - 1;
     let predicted = reading.readouts.number("predicted_nutation_period_s");
-    lines.insert(after_nutation, number(1, PREDICTED, predicted, 5, "s"));
+    lines.insert(
+        after_nutation,
+        number(1, PREDICTED_LABEL, predicted, 5, "s"),
+    );
     lines.extend([
         sized(3, "|L|", momentum, momentum, 3, "J s"),
         sized(4, "Lz", sample.momentum.z, momentum, 3, "J s"),
@@ -245,9 +248,9 @@ pub(super) fn further_lines(reading: &Reading) -> Vec<ParameterLine> {
     let mut lines = vec![
         heading("so far"),
         told(7, "tilt from", "measured_lowest_tilt_deg", 3, "deg"),
-        told(8, PREDICTED, "predicted_lowest_tilt_deg", 3, "deg"),
+        told(8, PREDICTED_LABEL, "predicted_lowest_tilt_deg", 3, "deg"),
         told(7, "tilt to", "measured_highest_tilt_deg", 3, "deg"),
-        told(8, PREDICTED, "predicted_highest_tilt_deg", 3, "deg"),
+        told(8, PREDICTED_LABEL, "predicted_highest_tilt_deg", 3, "deg"),
         told(7, "z from", "measured_lowest_z_m", 4, "m"),
         told(7, "z to", "measured_highest_z_m", 4, "m"),
         heading("wheel"),
@@ -294,7 +297,7 @@ pub(super) fn watched_lines(reading: &Reading) -> [ParameterLine; 5] {
     [
         number(0, "tilt", tilt, 3, "deg"),
         rate(0, "precession", reading.precession_deg_per_s()),
-        rate(1, PREDICTED, predicted.map(f64::to_degrees)),
+        rate(1, PREDICTED_LABEL, predicted.map(f64::to_degrees)),
         number(1, nutation, period_s, 5, "s"),
         value(2, "E drift", drift, unit),
     ]
@@ -319,7 +322,7 @@ fn signed(label: &str, number: f64, digits: usize) -> String {
 /// `number` with the most decimals for which `format` leaves a blank after `label`, or with an exponent.
 fn fitted(label: &str, digits: usize, format: impl Fn(usize) -> String, number: f64) -> String {
     if !number.is_finite() {
-        return NONE.to_owned();
+        return NOT_AVAILABLE.to_owned();
     }
     let room = (VALUE_END as usize).saturating_sub(label.len() + 2);
     let decimals = (0..=digits).rev().map(format);
@@ -334,7 +337,7 @@ pub(super) fn in_pane(number: f64) -> String {
     if number.fract() == 0.0 {
         return shortest(number);
     }
-    significant(number, DIGITS)
+    significant(number, PANE_DIGITS)
 }
 
 /// `text`, or with fewer decimals where it is a number that is wider than `room`.

@@ -4,7 +4,7 @@
 use super::super::shortened;
 use super::page::{StepPageLine, StepPageSection};
 use crate::physics::workings::{PointTable, WorkedQuantity, WorkedValue};
-use crate::text::number::{NONE, exponent, significant};
+use crate::text::number::{NOT_AVAILABLE, exponent, significant};
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
 use std::f64::consts::{PI, TAU};
@@ -12,14 +12,14 @@ use std::ops::Range;
 
 /// Columns of the symbols, and of the units.
 pub const SYMBOL: usize = 6;
-const UNIT: usize = 6;
+const UNIT_WIDTH: usize = 6;
 /// Columns of a number besides its digits: sign, point, a zero before it, and a space.
-const AROUND: usize = 4;
+const COLUMNS_BESIDE_DIGITS: usize = 4;
 /// The fewest and the most digits of a number.
-const DIGITS: std::ops::RangeInclusive<usize> = 3..=9;
+const CELL_DIGITS: std::ops::RangeInclusive<usize> = 3..=9;
 /// A number smaller than this part of the largest beside it is the rounding error of a zero: a few units in the last
 /// place of its terms.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+const CELL_ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The text for such a number, which is not exactly zero.
 const ALMOST_ZERO: &str = "~0";
 /// A component that would show fewer digits than this is written with an exponent.
@@ -38,17 +38,17 @@ pub struct CellFormat {
 impl CellFormat {
     /// For `count` numbers side by side on `width` columns.
     pub fn new(width: usize, count: usize) -> Self {
-        let digits = (width / count.max(1)).saturating_sub(AROUND);
-        let digits = digits.clamp(*DIGITS.start(), *DIGITS.end());
+        let digits = (width / count.max(1)).saturating_sub(COLUMNS_BESIDE_DIGITS);
+        let digits = digits.clamp(*CELL_DIGITS.start(), *CELL_DIGITS.end());
         Self {
-            cell: digits + AROUND,
+            cell: digits + COLUMNS_BESIDE_DIGITS,
             digits,
         }
     }
 
     /// For vectors between their symbols and their units on `width` columns.
     pub fn of_vectors(width: usize) -> Self {
-        Self::new(width.saturating_sub(SYMBOL + UNIT), 3)
+        Self::new(width.saturating_sub(SYMBOL + UNIT_WIDTH), 3)
     }
 
     /// `numbers` with as many decimals as the largest needs, each as wide as a cell, the decimal points in one column.
@@ -64,12 +64,12 @@ impl CellFormat {
     /// `number` beside others of which `largest` is the largest.
     fn one(self, number: f64, largest: f64) -> String {
         if !number.is_finite() {
-            return NONE.to_owned();
+            return NOT_AVAILABLE.to_owned();
         }
         if number == 0.0 {
             return "0".to_owned();
         }
-        if number.abs() <= ROUNDING * largest {
+        if number.abs() <= CELL_ROUNDING * largest {
             return ALMOST_ZERO.to_owned();
         }
         let digits = self.digits as i32;
@@ -140,7 +140,7 @@ pub fn heads(rank: u8, format: CellFormat) -> StepPageSection {
 }
 
 /// Columns of the points' names, with a space after them.
-const NAME: usize = 8;
+const POINT_NAME_WIDTH: usize = 8;
 /// Columns of a mass between the name and the coordinates of its point, where there is room for nothing else.
 const MASS: usize = 5;
 const MASS_DIGITS: usize = 3;
@@ -210,12 +210,12 @@ impl TableView<'_> {
                 _ => Role::Text,
             };
             let name = (self.name)(self.table.points[row]);
-            let mut name = shortened(&name, NAME - 1).into_owned();
+            let mut name = shortened(&name, POINT_NAME_WIDTH - 1).into_owned();
             for (index, (group, texts)) in groups.iter().zip(&texts).enumerate() {
                 let mut line = StepPageLine::of(0, std::mem::take(&mut name), role);
                 if self.has_mass_aside(group) {
                     let mass = significant(self.table.row(row)[0], MASS_DIGITS);
-                    line = line.and(NAME - 1, format!("{mass:>MASS$}"), role);
+                    line = line.and(POINT_NAME_WIDTH - 1, format!("{mass:>MASS$}"), role);
                 }
                 line.is_chosen = index == 0 && self.chosen() == Some(row + 1);
                 lines.push(line.and(self.begin(group), side_by_side(texts, at), role));
@@ -227,7 +227,7 @@ impl TableView<'_> {
     /// Groups of columns that stand side by side. If there are several groups, a row takes a line for each.
     fn groups(&self) -> Vec<Range<usize>> {
         let count = self.table.columns.len();
-        let fits = |count: usize| NAME + count * LEAST_CELL <= self.width;
+        let fits = |count: usize| POINT_NAME_WIDTH + count * LEAST_CELL <= self.width;
         match (count, summed(self.table)) {
             (count, _) if fits(count) => std::iter::once(0..count).collect(),
             // The coordinates alone. Their products are only shown in the sum.
@@ -246,9 +246,9 @@ impl TableView<'_> {
     /// The column of the screen in which the numbers of `group` begin.
     fn begin(&self, group: &Range<usize>) -> usize {
         if self.has_mass_aside(group) {
-            NAME - 1 + MASS
+            POINT_NAME_WIDTH - 1 + MASS
         } else {
-            NAME
+            POINT_NAME_WIDTH
         }
     }
 
@@ -277,7 +277,7 @@ impl TableView<'_> {
             let mut line = StepPageLine::of(self.begin(group), symbols, Role::Quiet);
             if self.has_mass_aside(group) {
                 let mass = self.table.columns[0].1;
-                line = line.and(NAME - 1, format!("{mass:>MASS$}"), Role::Quiet);
+                line = line.and(POINT_NAME_WIDTH - 1, format!("{mass:>MASS$}"), Role::Quiet);
             }
             if columns.iter().all(|(_, unit)| *unit == columns[0].1) {
                 let unit = format!("in {}", columns[0].1);
@@ -314,7 +314,7 @@ impl TableView<'_> {
                 let sums = sums[columns].iter();
                 let sums: String = sums.map(|sum| format.aligned(&[*sum]).concat()).collect();
                 let line = StepPageLine::of(0, "sum", Role::Focus);
-                lines.push(line.and(NAME, blank + &sums, Role::Heading));
+                lines.push(line.and(POINT_NAME_WIDTH, blank + &sums, Role::Heading));
             }
             _ => lines.extend(columns.clone().step_by(FEW).flat_map(|begin| {
                 let group = begin..(begin + FEW).min(columns.end);

@@ -17,25 +17,25 @@ use nalgebra::Vector2;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-const DOWN: &str = "The forces pull down, but their torque τ = X × F is level: square to the axle. In the time dt it adds \
+const DOWNWARD_FORCES_TEXT: &str = "The forces pull down, but their torque τ = X × F is level: square to the axle. In the time dt it adds \
                         dL, along τ, to L; and the axle goes with L: sideways.";
 const ANY: &str = "Each force makes a torque τ = X × F square to it. In the time dt it adds dL, along τ, to L; and the axle goes with L, \
                    not with the force.";
-const RUBBED: &str = "The forces make a torque τ = X × F, and friction makes one too. In the time dt both add dL to L, which is not along τ; \
+const FRICTION_TORQUE_TEXT: &str = "The forces make a torque τ = X × F, and friction makes one too. In the time dt both add dL to L, which is not along τ; \
                       and the axle goes with L.";
-const NONE: &str = "No torque acts: L stays as it is, and the axle circles about it.";
-const UPRIGHT: [&str; 2] = ["L is upright:", "no side is sideways"];
+const NO_TORQUE_TEXT: &str = "No torque acts: L stays as it is, and the axle circles about it.";
+const UPRIGHT_TEXT: [&str; 2] = ["L is upright:", "no side is sideways"];
 /// The fewest lines of a picture.
 const LEAST_PICTURE: u16 = 6;
 /// Lengths in the picture from above, in units of the axle as it is drawn: τ, dL, and L from the pivot.
 const TORQUE: f64 = 0.75;
-const CHANGE: f64 = 0.45;
+const CHANGE_ARROW_LENGTH: f64 = 0.45;
 const BEYOND: f64 = 1.45;
 /// Arrows are at least as long as for an axle that is seen at this part of its length: from above an upright axle is a
 /// point.
 const LEAST_SEEN: f64 = 0.25;
 /// A displacement shorter than this part of the arm is rounding error.
-const ROUNDING: f64 = 1e-12;
+const DISPLACEMENT_ROUNDING: f64 = 1e-12;
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let Some(explained) = lab.step_pane().shown() else {
@@ -69,14 +69,14 @@ fn reason(explained: &StepWorkings) -> &'static str {
     let (before, after) = &explained.states;
     let parts = &explained.workings.parts;
     let Some(part) = parts.last().filter(|_| before.momentum != after.momentum) else {
-        return NONE;
+        return NO_TORQUE_TEXT;
     };
     let loads = &part.loads;
     let is_down = |force: &nalgebra::Vector3<f64>| force.xy() == Vector2::zeros() && force.z <= 0.0;
     if !loads.friction.is_none() {
-        RUBBED
+        FRICTION_TORQUE_TEXT
     } else if loads.gravity >= 0.0 && loads.pushes.iter().all(|push| is_down(&push.force)) {
-        DOWN
+        DOWNWARD_FORCES_TEXT
     } else {
         ANY
     }
@@ -215,7 +215,7 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     let tip = after.axle().xy() * arm;
     let momentum = after.momentum.xy();
     let Some(along) = momentum.try_normalize(1e-9 * after.momentum.norm()) else {
-        for (line, y) in UPRIGHT.iter().zip(0..) {
+        for (line, y) in UPRIGHT_TEXT.iter().zip(0..) {
             write(area, (0, y), line, view.theme.style(Role::Text), buf);
         }
         return;
@@ -229,7 +229,7 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     let origin = Vector2::zeros();
     let mut arrows = vec![(origin, momentum_tip, "L", Role::Z)];
     arrows.extend(torque.map(|torque| (tip, torque * (TORQUE * length), "τ", Role::X)));
-    let change = change.map(|change| change * (CHANGE * length));
+    let change = change.map(|change| change * (CHANGE_ARROW_LENGTH * length));
     arrows.extend(change.map(|change| (momentum_tip, change, "dL", Role::X)));
     let corners = arrows.iter().map(|(from, along, ..)| from + along);
     let corners: Vec<_> = corners.chain([tip]).collect();
@@ -259,7 +259,7 @@ fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &m
     let way = dip.way_m.iter();
     let way: Vec<_> = way.map(|(side, down)| Vector2::new(*side, -down)).collect();
     let far = way.iter().fold(0.0_f64, |far, at| far.max(at.amax()));
-    if far <= ROUNDING * explained.scenario.arm_m() {
+    if far <= DISPLACEMENT_ROUNDING * explained.scenario.arm_m() {
         let still = "it has not moved yet: . takes a step";
         return text(still, Role::Text, view, area, buf);
     }

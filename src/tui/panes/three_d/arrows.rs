@@ -1,9 +1,9 @@
 //! The arrows of the scene, and the line that says what their letters mean. Where the step pane is shown, only the arrows
 //! that its phase is about, the axis of its turn, and the body as it stood before the step.
 
-use super::super::{MOST_PUSHES, in_lines};
+use super::super::{MOST_SHOWN_PUSHES, in_lines};
 use super::body::BodySign;
-use super::{CHANGE, MOMENTUM, SceneSubject, SpaceLabel, write};
+use super::{CHANGE_ARROW_SHARE, MOMENTUM_ARROW_LENGTH, SceneSubject, SpaceLabel, write};
 use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::{Pane, View};
 use crate::physics::workings::{Phase, WorkedValue};
@@ -16,15 +16,15 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 /// Length of the arrow of the angular velocity, in lengths of the axle.
-const OMEGA: f64 = 1.17;
+const OMEGA_ARROW_LENGTH: f64 = 1.17;
 /// Lengths of the other arrows, as shares of the body's size. Only their directions have a meaning.
 const WEIGHT: f64 = 0.35;
 const TORQUE: f64 = 0.5;
-const PUSH: f64 = 0.4;
+const PUSH_ARROW_LENGTH: f64 = 0.4;
 /// How far the axis of a turn goes beyond the body on both sides, as a share of its size.
 const AXIS: f64 = 1.0;
 /// Directions that differ by less than this, rad, are drawn as one.
-const SEEN: f64 = 0.03;
+const DISTINCT_DIRECTIONS_RAD: f64 = 0.03;
 
 /// What a letter means, at length, in short and as the letter alone; and how its arrow is drawn.
 fn meaning(letter: &str) -> (LegendText, DepthBias) {
@@ -94,24 +94,24 @@ impl SceneSubject<'_> {
         let omega = direction(&observables::angular_velocity(body, state));
         if let Some(along) = self.direction("Ω", omega) {
             // Shorter than L, in which it would vanish where both lie along the axle.
-            arrows.push(("Ω", pivot, along * (OMEGA * arm)));
+            arrows.push(("Ω", pivot, along * (OMEGA_ARROW_LENGTH * arm)));
         }
         let momentum = self.direction("L", direction(&state.momentum));
-        let momentum = momentum.map(|along| along * (MOMENTUM * arm));
+        let momentum = momentum.map(|along| along * (MOMENTUM_ARROW_LENGTH * arm));
         if let Some(torque) = self.direction("τ", self.torque) {
             arrows.push(("τ", pivot, torque * (TORQUE * reach)));
         }
         if let (Some(change), Some(tip)) = (self.direction("dL", self.change), momentum) {
-            arrows.push(("dL", tip, change * (CHANGE * reach)));
+            arrows.push(("dL", tip, change * (CHANGE_ARROW_SHARE * reach)));
         }
         if let Some(new) = self.new_momentum() {
-            arrows.push(("new L", pivot, new * (MOMENTUM * arm)));
+            arrows.push(("new L", pivot, new * (MOMENTUM_ARROW_LENGTH * arm)));
         }
         arrows.extend(momentum.map(|along| ("L", pivot, along)));
-        for push in loads.pushes.iter().take(MOST_PUSHES) {
+        for push in loads.pushes.iter().take(MOST_SHOWN_PUSHES) {
             let from = state.orientation * body.points()[push.point].at;
             let along = direction(&push.force);
-            arrows.extend(along.map(|along| ("F", from, along * (PUSH * reach))));
+            arrows.extend(along.map(|along| ("F", from, along * (PUSH_ARROW_LENGTH * reach))));
         }
         arrows
     }
@@ -131,7 +131,7 @@ impl SceneSubject<'_> {
         for (line, y) in lines.iter().zip(0..area.height) {
             let mut x = 0;
             for (word, role) in line {
-                x = write(area, (x, y), word, theme.style(*role), buf) + APART as u16;
+                x = write(area, (x, y), word, theme.style(*role), buf) + LEGEND_WORD_GAP as u16;
             }
         }
     }
@@ -149,7 +149,7 @@ impl SceneSubject<'_> {
                 .flat_map(|at| signs.iter().map(move |sign| (sign, at)));
             let signs = signs.map(|((words, role), at)| (words[at], *role));
             let words = named.chain(signs).filter(|(word, _)| !word.is_empty());
-            in_lines(words, |(word, _)| word, APART, width)
+            in_lines(words, |(word, _)| word, LEGEND_WORD_GAP, width)
         };
         let forms = [
             (0, Some(0)),
@@ -212,7 +212,7 @@ type LegendText = ([&'static str; 3], Role);
 /// The words of a line of the legend.
 type LegendLine = Vec<(&'static str, Role)>;
 /// Columns between two words of the legend.
-const APART: usize = 2;
+const LEGEND_WORD_GAP: usize = 2;
 
 #[derive(Clone, Copy)]
 pub struct StepArrows<'a> {
@@ -303,7 +303,7 @@ impl SceneSubject<'_> {
             return labels;
         };
         if let Some(axis) = shown.direction("u").filter(|_| self.draws("u")) {
-            let end = axis * (AXIS * MOMENTUM * self.arm);
+            let end = axis * (AXIS * MOMENTUM_ARROW_LENGTH * self.arm);
             scene.line(&-end, &end, LineStroke::Thin, Ink::Strong(Role::Y));
             labels.push(("u", Role::Y, end * 1.04));
         }
@@ -336,7 +336,7 @@ impl SceneSubject<'_> {
     fn new_momentum(&self) -> Option<Vector3<f64>> {
         let shown = self.shown_phase.as_ref().filter(|_| self.draws("dL"))?;
         let (old, new) = (shown.direction("L")?, shown.direction("new L")?);
-        Some(new).filter(|new| (new - old).norm() > SEEN)
+        Some(new).filter(|new| (new - old).norm() > DISTINCT_DIRECTIONS_RAD)
     }
 
     /// What the letters of the phase mean.

@@ -1,6 +1,6 @@
 //! The body in the scene: axle, hub, spokes, rim, masses and solid parts. Near parts look heavier than far ones.
 
-use super::{PARTS, SceneSubject};
+use super::{CIRCLE_PARTS, SceneSubject};
 use crate::physics::{PlacedSolid, State};
 use crate::playback::live::LiveRun;
 use crate::playback::outline::{self, Polyline};
@@ -20,14 +20,14 @@ const HUB: f64 = 0.14;
 const HUB_SIGN: &str = "■";
 /// A mass or a line is near or far where it is nearer or farther than the middle of the rim or of its part by this share of
 /// the rim's radius or of the part's size.
-const NEAR: f64 = 0.33;
+const NEAR_SHARE: f64 = 0.33;
 /// A centre that is off the axle by less than this share of the body's size needs no line to it.
-const ON_AXLE: f64 = 1e-3;
+const CENTER_ON_AXLE: f64 = 1e-3;
 /// The least distance of the signs of masses on the rim, cells.
 const CLOSEST: f64 = 2.0;
 
 /// Lines of the body as it stood before.
-const BEFORE: (LineStroke, Ink) = (LineStroke::Dotted(2), Ink::Strong(Role::Ghost));
+const EARLIER_BODY_STROKE: (LineStroke, Ink) = (LineStroke::Dotted(2), Ink::Strong(Role::Ghost));
 
 /// A sign, its role and its cell.
 pub type BodySign = (&'static str, Role, (u16, u16));
@@ -94,8 +94,10 @@ impl RimFile {
     }
 
     fn circle(&self, state: &State) -> Vec<Vector3<f64>> {
-        let parts = 0..PARTS;
-        parts.map(|part| self.at(state, part, PARTS, 1.0)).collect()
+        let parts = 0..CIRCLE_PARTS;
+        parts
+            .map(|part| self.at(state, part, CIRCLE_PARTS, 1.0))
+            .collect()
     }
 
     fn masses(&self, state: &State) -> impl Iterator<Item = Vector3<f64>> {
@@ -172,7 +174,7 @@ impl SceneSubject<'_> {
         let ink = Ink::Strong(Role::Text);
         let centre = self.state.orientation * solid.centre;
         let middle = scene.depth(&centre);
-        if solid.centre.xy().norm() > ON_AXLE * self.reach {
+        if solid.centre.xy().norm() > CENTER_ON_AXLE * self.reach {
             let foot = self.state.axle() * solid.centre.z;
             scene.line(&foot, &centre, LineStroke::Dotted(2), ink);
         }
@@ -193,12 +195,12 @@ impl SceneSubject<'_> {
 
     /// The wheel, the axle and the solid parts as they stood at `state`, dotted.
     pub(super) fn body_before(&self, state: &State, scene: &mut DotScene) {
-        let (stroke, ink) = BEFORE;
+        let (stroke, ink) = EARLIER_BODY_STROKE;
         let axle = state.axle();
         let (foot, top) = self.shape.axle;
         scene.line(&(axle * foot), &(axle * top), stroke, ink);
         if let Some(rim) = &self.shape.rim {
-            scene.ring(&rim.circle(state), |_| BEFORE);
+            scene.ring(&rim.circle(state), |_| EARLIER_BODY_STROKE);
             let spoke = rim.at(state, 0, 1, 1.0);
             scene.line(&(axle * rim.height_m), &spoke, stroke, ink);
         }
@@ -264,7 +266,7 @@ impl SceneSubject<'_> {
 /// Whether something is in front of `middle`, behind it, or beside it, by `depth`.
 fn is_near(depth: f64, middle: f64, size: f64) -> Option<bool> {
     let share = (depth - middle) / size;
-    (share.abs() > NEAR).then_some(share < 0.0)
+    (share.abs() > NEAR_SHARE).then_some(share < 0.0)
 }
 
 /// The straight pieces of a line, in the world at `state`.

@@ -9,9 +9,9 @@ const LONG_TIME_S: f64 = 1e6;
 /// From this time on (s) it has more digits than anyone reads.
 const MOST_TIME_S: f64 = 1e15;
 /// Columns from one label to the next, at least.
-const APART: usize = 2;
+const TICK_LABEL_COLUMNS: usize = 2;
 /// What follows the first label, or the last of two.
-const UNIT: &str = " s";
+const SECONDS_SUFFIX: &str = " s";
 
 pub type PlacedTick = (usize, String);
 
@@ -49,7 +49,7 @@ fn round_times(strip: &Strip, width: usize, ticks: &[f64]) -> Option<Vec<PlacedT
         let label = fixed(time_s + 0.0, digits);
         let share = (time_s - strip.begin_s) / strip.window_s;
         let middle = (share * width as f64).min(width as f64 - 1.0) as usize;
-        let unit = if index == 0 { UNIT } else { "" };
+        let unit = if index == 0 { SECONDS_SUFFIX } else { "" };
         let length = label.len() + unit.len();
         let at = middle
             .saturating_sub(label.len() / 2)
@@ -57,7 +57,7 @@ fn round_times(strip: &Strip, width: usize, ticks: &[f64]) -> Option<Vec<PlacedT
         if at < free_from {
             return None;
         }
-        free_from = at + length + if index == 0 { 1 } else { APART };
+        free_from = at + length + if index == 0 { 1 } else { TICK_LABEL_COLUMNS };
         placed.push((at, label + unit));
     }
     Some(placed)
@@ -82,26 +82,26 @@ fn ends(strip: &Strip, width: usize) -> (String, String) {
             exponent(time_s, 3)
         }
     });
-    let end = end + UNIT;
+    let end = end + SECONDS_SUFFIX;
     if begin.len() + end.len() < width {
         return (begin, end);
     }
     let later = format!("+ {} s", decimal(strip.window_s));
-    let whole = begin + UNIT;
+    let whole = begin + SECONDS_SUFFIX;
     if whole.len() + later.len() < width {
         return (whole, later);
     }
-    (exponent(strip.begin_s, 3) + UNIT, later)
+    (exponent(strip.begin_s, 3) + SECONDS_SUFFIX, later)
 }
 
 /// The labels of `scale` on `rows`, each with its row: round values, each in the row of its place, the highest first. Where
 /// there is room for less than two round values, both ends stand there.
 pub fn values(scale: &StripScale, rows: usize) -> Vec<PlacedTick> {
     /// Rows for each value.
-    const ROWS: usize = 3;
+    const ROWS_PER_LABEL: usize = 3;
     let last = rows.saturating_sub(1);
-    let ticks = if rows > 2 * ROWS {
-        scale::ticks(scale.low, scale.high, rows / ROWS)
+    let ticks = if rows > 2 * ROWS_PER_LABEL {
+        scale::ticks(scale.low, scale.high, rows / ROWS_PER_LABEL)
     } else {
         Vec::new()
     };

@@ -3,7 +3,7 @@
 
 use super::super::longest;
 use super::groups::StripContent;
-use super::{ROW, Traces, ZOOM, write};
+use super::{TRACES_ROW, Traces, ZOOM_MARK, write};
 use crate::playback::ghost::Ghost;
 use crate::playback::marks::Marks;
 use crate::playback::strip::Strip;
@@ -20,20 +20,20 @@ const BANDS: [&str; 2] = [
     "band: lowest to highest of swings",
 ];
 /// What the title says of the exact motion, the run before and the pinned run: at length, in short and shorter.
-const EXACT: [&str; 3] = ["dashed: exact motion", "- - exact", "-- exact"];
+const EXACT_TITLES: [&str; 3] = ["dashed: exact motion", "- - exact", "-- exact"];
 const NO_EXACT: [&str; 3] = [
     "no exact motion: too long to integrate",
     "no exact",
     "no exact",
 ];
-const OTHER: [&str; 3] = ["dotted: all of the other run", "··· other run", "··· other"];
-const PINNED: [&str; 3] = [
+const OTHER_RUN_TITLES: [&str; 3] = ["dotted: all of the other run", "··· other run", "··· other"];
+const PINNED_TITLES: [&str; 3] = [
     "long and short: all of the pinned run",
     "-- - pinned",
     "-- - pin",
 ];
 
-const BAR: &str = "═";
+const BORDER_BAR: &str = "═";
 const WORD: &str = "push";
 /// The mark of the time that the strip of the fast motion shows.
 const ZOOM_BAR: &str = "▀";
@@ -53,14 +53,14 @@ impl Traces<'_> {
         };
         let has_exact = self.0.run.overlay().is_some();
         let beside = [
-            (has_exact, EXACT),
+            (has_exact, EXACT_TITLES),
             (self.0.run.shows_exact() && !has_exact, NO_EXACT),
-            (self.0.ghost.is_some(), OTHER),
-            (self.0.pinned.is_some(), PINNED),
+            (self.0.ghost.is_some(), OTHER_RUN_TITLES),
+            (self.0.pinned.is_some(), PINNED_TITLES),
         ];
         let shown: Vec<_> = beside.iter().filter(|(is_shown, _)| *is_shown).collect();
         let legend = |length: usize| shown.iter().map(move |(_, legends)| legends[length]);
-        let long: Vec<_> = [ROW.title].into_iter().chain(legend(0)).collect();
+        let long: Vec<_> = [TRACES_ROW.title].into_iter().chain(legend(0)).collect();
         let long = format!("{point} {}", long.join(", "));
         let mut titles = Vec::new();
         if has_band && self.0.ghost.is_none() && self.0.pinned.is_none() {
@@ -68,7 +68,7 @@ impl Traces<'_> {
             titles.extend((!has_exact).then(|| format!("{point}; {}", BANDS[1])));
         }
         titles.push(long);
-        let mut shortest = ROW.title.to_owned();
+        let mut shortest = TRACES_ROW.title.to_owned();
         for length in [1, 2].into_iter().filter(|_| !shown.is_empty()) {
             shortest = legend(length).collect::<Vec<_>>().join(" ");
             titles.push(format!("{point} {shortest}"));
@@ -91,7 +91,7 @@ impl Traces<'_> {
         let style = self.0.view.theme.style(Role::Push);
         let mut put = |x: usize, text, style: Style| write(border, (x as u16, 0), text, style, buf);
         for x in (0..pushed.len()).filter(|x| pushed[*x]) {
-            put(x, BAR, style);
+            put(x, BORDER_BAR, style);
         }
         for x in words(&pushed) {
             put(x, WORD, style);
@@ -110,7 +110,7 @@ impl Traces<'_> {
             put(x, ZOOM_BAR, style);
         }
         if let Some(x) = word(&pushed, cells, 0) {
-            put(x, ZOOM, style);
+            put(x, ZOOM_MARK, style);
         }
     }
 

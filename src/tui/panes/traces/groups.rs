@@ -1,6 +1,6 @@
 //! Which strips there are, and where they stand.
 
-use super::{ALL, NAME, STRIP, Traces, axis};
+use super::{STRIP, STRIP_NAME_WIDTH, Traces, WHOLE_TIME_SHARE, axis};
 use crate::playback::recording::RecordedCurve;
 use crate::playback::strip::Strip;
 use crate::tui::split::split_rows;
@@ -64,7 +64,7 @@ impl Traces<'_> {
         let names = measured
             .into_iter()
             .map(|content| self.named(content).0.len() as u16 + 1);
-        names.fold(NAME, u16::max) + widest.unwrap_or(0) + 1
+        names.fold(STRIP_NAME_WIDTH, u16::max) + widest.unwrap_or(0) + 1
     }
 
     /// The strips that there is room for, and where they stand.
@@ -78,7 +78,7 @@ impl Traces<'_> {
         };
         let at_s = self.0.cursor.map_or(now_s, |cursor| cursor.time_s);
         let short = self.0.detail.strip(columns, across > 1, at_s);
-        let is_zoom = short.window_s < ALL * self.0.view.window_s;
+        let is_zoom = short.window_s < WHOLE_TIME_SHARE * self.0.view.window_s;
         let (upper, lower) = self.shown(inside.height, is_zoom, beside > 0);
         let weight: u16 = lower.iter().map(|content| self.weight(*content)).sum();
         let height = match (upper.is_empty(), lower.is_empty()) {

@@ -333,7 +333,7 @@ fn residual_scale(points: Option<&[ComparedPoint]>) -> StripScale {
 
 /// A value this part of a dot above the edge between two dots counts as below it: a value on the edge, such as a constant
 /// in the middle of its strip, would else go up and down with its rounding.
-const ROUNDING: f64 = 1e-4;
+const DOT_ROUNDING: f64 = 1e-4;
 
 /// Cells after which long and short dashes repeat.
 const LONG_AND_SHORT: usize = 6;
@@ -381,9 +381,9 @@ pub(super) fn draw_curve(
     if height == 0.0 {
         return;
     }
-    let place = |value: f64| scale.from_top(value) * height + ROUNDING;
+    let place = |value: f64| scale.from_top(value) * height + DOT_ROUNDING;
     let row = |value: f64| place(value).clamp(0.0, height - 1.0) as usize;
-    let is_inside = |value: f64| (0.0..height + 2.0 * ROUNDING).contains(&place(value));
+    let is_inside = |value: f64| (0.0..height + 2.0 * DOT_ROUNDING).contains(&place(value));
     let mut before: Option<(usize, usize)> = None;
     for (x, column) in columns.iter().enumerate() {
         let last = before.take();
