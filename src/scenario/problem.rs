@@ -220,7 +220,7 @@ pub fn listed<'a>(names: impl Iterator<Item = &'a str> + Clone) -> String {
     match names.count() {
         0 => list.push("none".to_owned()),
         count if count > MOST_SUGGESTED_NAMES => {
-            list.push(format!("and {} more", count - MOST_SUGGESTED_NAMES))
+            list.push(format!("and {} more", count - MOST_SUGGESTED_NAMES));
         }
         _ => {}
     }

@@ -91,7 +91,7 @@ fn a_column_of_the_csv_is_the_readout_of_its_name() {
     for readout in READOUTS {
         match readout.of(&readouts) {
             ReadoutValue::Nothing => {
-                assert!(object[readout.name].is_null(), "{}: {object}", readout.name)
+                assert!(object[readout.name].is_null(), "{}: {object}", readout.name);
             }
             value => assert_eq!(object[readout.name], serde_json::to_value(value).unwrap()),
         }

@@ -183,7 +183,7 @@ impl OpenLesson {
                 lab.refuse(MARKED);
             }
             (AnswerKind::Choice(all), _) => {
-                lab.refuse(format!("the answers are 1 to {}", all.len()))
+                lab.refuse(format!("the answers are 1 to {}", all.len()));
             }
         }
     }
