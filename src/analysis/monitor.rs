@@ -12,7 +12,7 @@
 //! than the error of a scheme of the first order, a parabola through three rows gives the highest points, and it takes four
 //! nutations to say how much they differ, of a lopsided body sixteen. Rows so few that a nutation may lie unseen between
 //! them give no period. The direction in which a lopsided body points as the axle turns back changes its nutations in
-//! length, in beats that may be longer than the run: [`beats`](super::beats). Its numbers are stated once all directions
+//! length, in beats that may be longer than the run: `beats`. Its numbers are stated once all directions
 //! were seen, its nutation only if all swings are large. A run without nutation has its precession from the whole way of the azimuth. Where less was seen
 //! than that there is no number.
 //!

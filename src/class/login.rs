@@ -1,7 +1,7 @@
 //! Taking a seat: a name becomes a seat with a drawn code, and the seat's word leads back to it.
 //!
-//! A wrong code counts for every seat of its name, in the folder, for all logins together. After [`FREE`] of them the seats
-//! of that name accept no code for a minute, and after each further one for twice as long, up to [`LONGEST_WAIT_S`]. The
+//! A wrong code counts for every seat of its name, in the folder, for all logins together. After `FREE` of them the seats
+//! of that name accept no code for a minute, and after each further one for twice as long, up to `LONGEST_WAIT_S`. The
 //! right code of a seat resets the count of that seat alone; the teacher can reset it too.
 //!
 //! How long a guess takes: the code of a seat is one of a million. Someone who guesses a code in every hour, in however many
