@@ -145,7 +145,7 @@ impl RunSummary {
                 uncertainty,
                 nutations,
             }) => {
-                let (value, uncertainty) = (fixed(value, 3), exponent(uncertainty, 1));
+                let (value, uncertainty) = (fixed(value, 3), significant(uncertainty, 2));
                 let nutations = counted(nutations, "whole nutation");
                 format!("{value} +- {uncertainty} N on average over {nutations}")
             }

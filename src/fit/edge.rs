@@ -93,7 +93,7 @@ impl Edge {
                     format!(" {sum} is above {moment} by{}", &most[1..])
                 });
                 format!(
-                    "body.part.{part} is flat: {}, at the bound of what bodies there are (A, B, C: its moments .0, .1, .2 about its center).{most}{} The uncertainties of the other values are for a flat body, and to the side of thicker ones for as thick a one as may be.",
+                    "body.part.{part} is flat: {}, at the physical limit (A, B, C: its moments .0, .1, .2 about its center).{most}{} The other values have the uncertainty of an exactly flat body to one side; to the other, that of the thickness is added in quadrature.",
                     FLAT[axis],
                     if most.is_empty() { "" } else { "." }
                 )
@@ -106,7 +106,7 @@ impl Edge {
                     format!(" {moment} is{} of {other}.", &most[1..])
                 });
                 format!(
-                    "body.part.{part} is a rod: {}, at the bound of what bodies there are (A, B, C: its moments .0, .1, .2 about its center).{most} The uncertainties of the other values are for a rod, and to the side of thicker ones for as thick a one as may be.",
+                    "body.part.{part} is a rod: {}, at the physical limit (A, B, C: its moments .0, .1, .2 about its center).{most} The other values have the uncertainty of an exact rod to one side; to the other, that of the thickness is added in quadrature.",
                     ROD[axis]
                 )
             }

@@ -12,6 +12,8 @@ use nalgebra::Vector3;
 
 /// The preset whose body and push show every slip.
 const EVERY_SLIP: &str = "every-slip";
+const TRY_EVERY_SLIP: &str =
+    "run your program on the preset every-slip, and verify its rows --against every-slip";
 const COLUMN_UNITS: [&str; 2] = ["m", "J s"];
 /// A point's distance from the pivot changes by less of it where rounding alone changes it.
 const LENGTHENED: f64 = 1e-3;
@@ -85,7 +87,7 @@ impl CheckOutcome<'_> {
         }
         if agrees {
             lines.push(self.agreement());
-            lines.extend(self.too_few_digits());
+            lines.extend(self.too_few_digits("a difference this small cannot be seen"));
             lines.extend(self.not_reached());
         } else {
             lines.push(self.difference());
@@ -124,8 +126,8 @@ impl CheckOutcome<'_> {
         format!("agrees with {name} in {rows}{as_far}; {worst}")
     }
 
-    /// Says how many digits are needed, where they are too few.
-    fn too_few_digits(&self) -> Option<String> {
+    /// Says how many digits are needed, where they are too few, so that `problem`.
+    fn too_few_digits(&self, problem: &str) -> Option<String> {
         let coarsest = self.coarsest().filter(|_| self.has_few_digits())?;
         let name = coarsest.name();
         let digits = if coarsest.is_fixed {
@@ -134,7 +136,7 @@ impl CheckOutcome<'_> {
             counted(coarsest.digits() as u64, "digit")
         };
         Some(format!(
-            "With {digits} a difference this small cannot be seen: write {SINGLE_DIGITS} or more ({name})."
+            "With {digits} {problem}: write {SINGLE_DIGITS} or more ({name})."
         ))
     }
 
@@ -217,13 +219,14 @@ impl CheckOutcome<'_> {
         }
         lines.push("These rows are also produced by:".to_owned());
         lines.extend(self.explanations.iter().map(listed));
-        let why = match (self.explanations.len(), self.too_few_digits()) {
-            (_, Some(words)) => words,
-            (1, None) if self.explanations[0].names().len() > 1 && self.name != EVERY_SLIP => "Other differences may produce them too, in a scenario that hides slips: try --against every-slip.".to_owned(),
+        let too_few = self.too_few_digits("other causes may leave the same rows");
+        let why = match (self.explanations.len(), too_few) {
+            (_, Some(words)) => format!("That is no proof. {words}"),
+            (1, None) if self.explanations[0].names().len() > 1 && self.name != EVERY_SLIP => format!("Other differences may produce them too, in a scenario that hides slips: {TRY_EVERY_SLIP}."),
             (1, None) => "Other differences may produce them too: these rows are too few, or differ by too little. Write every row, from the start on.".to_owned(),
             (_, None) if self.name == EVERY_SLIP => "These rows cannot tell them apart.".to_owned(),
             (_, None) => {
-                "These rows cannot tell them apart: try --against every-slip.".to_owned()
+                format!("These rows cannot tell them apart: {TRY_EVERY_SLIP}.")
             }
         };
         lines.push(why);
@@ -297,12 +300,13 @@ impl CheckOutcome<'_> {
     fn hidden(&self) -> Option<String> {
         let (count, names) = (self.unseen.len() as u64, self.unseen.join(", "));
         let remedy = if self.name == EVERY_SLIP {
-            "Write more rows, columns or digits"
+            "write more rows, columns or digits"
         } else {
-            "Try --against every-slip"
+            TRY_EVERY_SLIP
         };
         let slips = counted(count, "slip");
-        (count > 0).then(|| format!("These rows would hide {slips}: {names}. {remedy}."))
+        (count > 0)
+            .then(|| format!("These rows would hide {slips}: {names}. To see them, {remedy}."))
     }
 }
 
