@@ -163,8 +163,8 @@ impl Screen {
     }
 
     /// Gives the terminal back to the shell until it resumes the program. `whole_job`: a script that runs the program stops
-    /// with it, as if Ctrl-Z was typed outside raw mode. If the program has been resumed already, it does not stop. A program that no shell started would stop for good: see
-    /// [`can_be_resumed`](super::job_control::can_be_resumed).
+    /// with it, as if Ctrl-Z was typed outside raw mode. If the program has been resumed already, it does not stop. A program
+    /// that no shell started would stop for good: see [`can_be_resumed`](super::job_control::can_be_resumed).
     pub fn suspend(&mut self, whole_job: bool) -> io::Result<()> {
         let begin = Instant::now();
         at_exit::run_hooks(Release::Suspend);

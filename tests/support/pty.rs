@@ -317,7 +317,9 @@ impl Terminal {
         self.wait_until("the cursor", |terminal| {
             let sent = terminal.sent_text();
             let left = sent.rfind(LEAVES_ALTERNATE_SCREEN);
-            left.is_some_and(|left| sent[left..].contains(SHOWS_CURSOR))
+            // Not where it was given back earlier, and taken again since.
+            let is_last = left > sent.rfind(MOUSE_ON);
+            left.is_some_and(|left| is_last && sent[left..].contains(SHOWS_CURSOR))
         });
         let sent = self.sent_text();
         assert!(!sent.contains("\u{1b}[?1003h"), "moves are not asked for");
