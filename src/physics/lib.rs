@@ -61,11 +61,11 @@
 //! A body of parts: a wheel on a rod.
 //!
 //! ```
-//! # use gyrolab_physics::{Body, Part, SymmetricTop, nalgebra::Vector3, part::Shape};
+//! # use gyrolab_physics::{Body, PlacedSolid, SymmetricTop, nalgebra::Vector3, part::Shape};
 //! let axle = Vector3::z();
-//! let wheel = Part::new(Shape::Cylinder { radius: 0.1, length: 0.02 }, 1.2, 0.5 * axle, &axle)?;
-//! let rod = Part::new(Shape::Rod { length: 0.6 }, 0.1, 0.3 * axle, &axle)?;
-//! let body = Body::new([wheel, rod].iter().flat_map(Part::points).collect())?;
+//! let wheel = PlacedSolid::new(Shape::Cylinder { radius: 0.1, length: 0.02 }, 1.2, 0.5 * axle, &axle)?;
+//! let rod = PlacedSolid::new(Shape::Rod { length: 0.6 }, 0.1, 0.3 * axle, &axle)?;
+//! let body = Body::new([wheel, rod].iter().flat_map(PlacedSolid::points).collect())?;
 //! let top = SymmetricTop::of(&body).unwrap();
 //! assert!((top.along - 1.2 * 0.1 * 0.1 / 2.0).abs() < 1e-15); // kg m^2: a thin rod has none
 //! assert!((top.first_moment - (1.2 * 0.5 + 0.1 * 0.3)).abs() < 1e-15); // kg m
