@@ -1,6 +1,6 @@
 //! Whether a shell could resume this process if it stopped.
 
-use rustix::process::{Pid, getpgid, getpgrp, getppid, getsid};
+use nix::unistd::{Pid, getpgid, getpgrp, getppid, getsid};
 use std::fs;
 
 /// Why Ctrl-Z does nothing where [`can_be_resumed`] is false.
@@ -11,10 +11,12 @@ pub const NO_SHELL: &str = "there is no shell to go back to: q leaves, and keeps
 /// A process group has such a shell if the parent of one of its processes is in the same session but in another group. A
 /// group without one is orphaned: the system ignores SIGTSTP there, since nobody would resume a stopped process. From
 /// this process the parents are followed upward until they leave the group.
+///
+/// In a container the session, the group and the parent may belong to a process outside, whose number is then 0.
 pub fn can_be_resumed() -> bool {
     let (group, session) = (getpgrp(), getsid(None));
-    let mut parent = getppid();
-    while let Some(process) = parent {
+    let mut parent = Some(getppid());
+    while let Some(process) = parent.filter(|process| process.as_raw() > 0) {
         if session.is_err() || getsid(Some(process)) != session {
             return false;
         }
@@ -26,10 +28,10 @@ pub fn can_be_resumed() -> bool {
     false
 }
 
-/// Returns the parent of `process`; `None` if there is none, or the system has no `/proc` that names it.
+/// Returns the parent of `process`; `None` if the system has no `/proc` that names it.
 fn parent_of(process: Pid) -> Option<Pid> {
     let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let (_, after_name) = stat.rsplit_once(')')?; // the name may hold blanks and brackets
     let parent = after_name.split_whitespace().nth(1)?;
-    Pid::from_raw(parent.parse().ok()?)
+    Some(Pid::from_raw(parent.parse().ok()?))
 }
