@@ -26,9 +26,9 @@
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::Document;
 use gyrolab::physics::{Body, Loads, PointMass, SchemeInfo, State, rotation};
-use gyrolab::run::Simulation;
-use gyrolab::scenario::Document;
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_4, TAU};
 use std::hint::black_box;

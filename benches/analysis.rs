@@ -4,11 +4,11 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use gyrolab::analysis::Monitor;
+use gyrolab::engine::analysis::Monitor;
+use gyrolab::engine::run::{Simulation, Truth};
+use gyrolab::engine::scenario::{Document, Scenario};
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::physics::{Loads, State};
-use gyrolab::run::{Simulation, Truth};
-use gyrolab::scenario::{Document, Scenario};
 use std::fmt::Write;
 use std::hint::black_box;
 use std::sync::Arc;

@@ -3,9 +3,9 @@
 
 #![allow(missing_docs, clippy::unwrap_used, non_snake_case)]
 
-use gyrolab::export::{COLUMNS, CsvWriter};
-use gyrolab::run::{Sample, Simulation};
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::engine::export::{COLUMNS, CsvWriter};
+use gyrolab::engine::run::{Sample, Simulation};
+use gyrolab::engine::scenario::{Document, Scenario};
 use serde::Serialize;
 use std::io;
 use std::sync::Arc;

@@ -4,11 +4,11 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use gyrolab::analysis::Monitor;
+use gyrolab::engine::analysis::Monitor;
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::Document;
+use gyrolab::lab::playback::live::LiveRun;
 use gyrolab::physics::scheme::SCHEMES;
-use gyrolab::playback::live::LiveRun;
-use gyrolab::run::Simulation;
-use gyrolab::scenario::Document;
 use std::hint::black_box;
 use std::sync::Arc;
 

@@ -6,10 +6,10 @@
 
 #![allow(clippy::unwrap_used)]
 
-use gyrolab::scenario::Document;
-use gyrolab::sweep::Sweep;
-use gyrolab::sweep::in_order::in_order;
-use gyrolab::sweep::part::{Opened, PartialSweep};
+use gyrolab::engine::scenario::Document;
+use gyrolab::studies::sweep::Sweep;
+use gyrolab::studies::sweep::in_order::in_order;
+use gyrolab::studies::sweep::part::{Opened, PartialSweep};
 use std::ops::ControlFlow;
 use std::time::Instant;
 

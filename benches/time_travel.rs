@@ -5,9 +5,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use gyrolab::playback::Playback;
-use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::{Document, Scenario};
+use gyrolab::lab::playback::Playback;
 use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;

@@ -5,9 +5,9 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-use gyrolab::run::Simulation;
-use gyrolab::scenario::Document;
-use gyrolab::scenario::presets::PRESETS;
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::Document;
+use gyrolab::engine::scenario::presets::PRESETS;
 use portable_pty::{Child, CommandBuilder, PtySize, native_pty_system};
 use std::io::{Read, Write};
 use std::num::NonZero;

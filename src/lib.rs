@@ -6,26 +6,13 @@
 //!
 //! The modules; each uses only modules listed before it:
 //!
-//! - [`text`](mod@text): numbers and words as people read them, without control characters that a terminal would obey.
-//! - [`cores`]: work on all cores.
-//! - [`origin`]: the run, the data and the request that the file of a figure carries.
-//! - [`physics`]: body, state, loads, schemes, observables: a crate of its own, in `src/physics`.
-//! - [`scenario`]: a TOML file becomes a checked [`Scenario`](scenario::Scenario); every refusal names file,
-//!   line, key, value and rule. The shipped presets live here too.
-//! - [`run`]: steps a scenario and its edits forward in time. No other module does.
-//! - [`journal`]: what the user does to a run, from which the run is computed again: values, pushes, undo; conditions.
-//! - [`analysis`]: how reliable a run's numbers are: theory, measurement, health, comparisons.
-//! - [`playback`]: a run that is being watched: it plays at a speed, returns to earlier steps, and records its pictures.
-//! - [`export`]: output of the program: columns, CSV, summaries, and the files they are written to.
-//! - [`data`]: what somebody has measured, read from a CSV, and what a run says of the same quantities.
-//! - [`figure`]: pictures of runs on paper: SVG, PDF and PNG.
-//! - [`fit`]: keys of a scenario so that its runs come nearest to measured data.
-//! - [`sweep`]: a grid of runs, a row each.
-//! - [`verify`]: a CSV, computed again and held against its rows.
-//! - [`own_code`]: rows that somebody's own program of the report's scheme wrote, held against it: which slip made them?
-//! - [`writeup`]: a run as a folder of files for a write-up.
-//! - [`storage`]: what the lab keeps on the disk: sessions, exports in the background, the folder it is confined to.
-//! - [`lab`]: the lab without a terminal: its state, and the commands that change it.
+//! - [`physics`]: body, state, loads, schemes, observables: the crate in `src/physics`.
+//! - [`engine`]: everything that a run is, without a screen: scenarios, steps, edits, numbers, CSV files: the crate in
+//!   `src/engine`.
+//! - [`plot`]: charts and pages as SVG, PDF and PNG. It knows no run.
+//! - [`studies`]: many runs at once, or a run against other data: sweeps, fits, own programs, CSVs computed again.
+//! - [`report`]: figures of runs and tables, and write-ups.
+//! - [`lab`]: the lab without a terminal: its state, and the commands that change it; its playback, and what it keeps on disk.
 //! - [`lessons`]: Markdown files that say what the lab does, read, checked and played without a terminal.
 //! - [`class`]: a teacher's lab and the seats of the students, which know of each other through files in a folder.
 //! - [`tui`]: the terminal: keys that lead to commands, the panes that draw the lab, and the loop.
@@ -39,27 +26,14 @@
 #![cfg(unix)]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-pub mod analysis;
 pub mod class;
 pub mod cli;
-pub mod cores;
-pub mod data;
-pub mod export;
-pub mod figure;
-pub mod fit;
-pub mod journal;
 pub mod lab;
 pub mod lessons;
-pub mod origin;
-pub mod own_code;
-pub mod playback;
-pub mod run;
-pub mod scenario;
-pub mod storage;
-pub mod sweep;
-pub mod text;
+pub mod plot;
+pub mod report;
+pub mod studies;
 pub mod tui;
-pub mod verify;
-pub mod writeup;
 
+pub use gyrolab_engine as engine;
 pub use gyrolab_physics as physics;

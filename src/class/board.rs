@@ -3,10 +3,10 @@
 use super::folder::{ClassFolder, ClassState, VoteStage};
 use super::votes::{SeatStatus, Tally, present, sittings};
 use super::{login, unix_ms};
+use crate::engine::text::number::counted;
+use crate::engine::text::wrap::{columns, wrapped};
 use crate::lessons::page::told;
 use crate::lessons::{Predict, reading};
-use crate::text::number::counted;
-use crate::text::wrap::{columns, wrapped};
 use chrono::Local;
 
 /// The lines of the board, at most `width` columns wide.

@@ -1,12 +1,12 @@
 //! The folder of a class, and the state that the teacher's lab publishes in it.
 
 use super::{ago, unix_ms};
+use crate::engine::text::printable::PrintablePath;
+use crate::lab::playback::pace::Speed;
+use crate::lab::storage::confined::SESSIONS;
+use crate::lab::storage::shared;
 use crate::lessons::KeptNumbers;
 use crate::lessons::taken::FollowedLesson;
-use crate::playback::pace::Speed;
-use crate::storage::confined::SESSIONS;
-use crate::storage::shared;
-use crate::text::printable::PrintablePath;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

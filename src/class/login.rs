@@ -9,8 +9,8 @@
 
 use super::ClassFolder;
 use super::seat::{CODE_DIGITS, CODES, LONGEST_SEAT_NAME, Seat, all_seats, is_name, name_of};
-use crate::storage::shared;
-use crate::text::printable::printable;
+use crate::engine::text::printable::printable;
+use crate::lab::storage::shared;
 use std::fs::{self, File};
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::PathBuf;

@@ -2,10 +2,10 @@
 
 use super::folder::{CLASS_VERSION, ClassFolder, OF_ALL};
 use super::{ago, unix_ms};
+use crate::engine::text::printable::PrintablePath;
+use crate::lab::storage::confined::SESSIONS;
+use crate::lab::storage::shared;
 use crate::lessons::class::KeptLessons;
-use crate::storage::confined::SESSIONS;
-use crate::storage::shared;
-use crate::text::printable::PrintablePath;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io::{self, ErrorKind};

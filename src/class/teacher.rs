@@ -3,15 +3,15 @@
 use super::folder::{CLASS_VERSION, ClassFolder, ClassState, LONGEST_RUN, PresentedRun, VoteStage};
 use super::votes::{self, FEWEST_VOTES_SHOWN, SeatStatus, Tally, present, sittings};
 use super::{CLASS_POLL_INTERVAL, ClassRole, LEAST_WAIT, login, unix_ms};
-use crate::data::find_shipped;
+use crate::engine::data::find_shipped;
+use crate::engine::scenario::Scenario;
+use crate::engine::text::printable::PrintablePath;
 use crate::lab::Lab;
 use crate::lab::action::LessonKey;
 use crate::lab::sheet::{Paragraph, SheetLineKind};
 use crate::lessons::page::ClassOverlay;
 use crate::lessons::taken::OpenLesson;
 use crate::lessons::{LessonPage, Lessons};
-use crate::scenario::Scenario;
-use crate::text::printable::PrintablePath;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;

@@ -3,13 +3,13 @@
 use super::ClassFolder;
 use super::folder::{ClassState, QuestionState, VoteStage};
 use super::seat::{Presence, Record, Seat, all_seats};
+use crate::engine::text::number::{shortest, significant};
+use crate::engine::text::printable::printable;
 use crate::lab::sheet::{Paragraph, SheetLineKind};
 use crate::lessons::class::KeptLessons;
 use crate::lessons::lesson::Right;
 use crate::lessons::predictions::{LessonProgress, LockedAnswer};
 use crate::lessons::{AnswerKind, LessonPage, Predict, PredictionAnswer, reading};
-use crate::text::number::{shortest, significant};
-use crate::text::printable::printable;
 use chrono::{DateTime, Utc};
 use std::collections::BTreeMap;
 

@@ -1,16 +1,16 @@
 //! Arguments that several commands have, how their values are read, and the scenario that they mean.
 
 use super::refuse;
-use crate::data::{ColumnOptions, ColumnSigma};
-use crate::export::CsvLayout;
-use crate::export::layout::LayoutFile;
+use crate::engine::data::{ColumnOptions, ColumnSigma};
+use crate::engine::export::CsvLayout;
+use crate::engine::export::layout::LayoutFile;
+use crate::engine::run::Simulation;
+use crate::engine::scenario::csv::{Renaming, renaming};
+use crate::engine::scenario::rescale::MOST_RUN_STEPS_BY_TIME;
+use crate::engine::scenario::{Document, Problem, Problems, Scenario};
 use crate::lab::view::theme::Background;
 use crate::lab::view::theme::Marker;
 use crate::physics::scheme;
-use crate::run::Simulation;
-use crate::scenario::csv::{Renaming, renaming};
-use crate::scenario::rescale::MOST_RUN_STEPS_BY_TIME;
-use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::tui::terminal::MOST_SCREEN_CELLS;
 use crate::tui::theme::ColourChoice;
 use clap::builder::{PossibleValue, PossibleValuesParser};

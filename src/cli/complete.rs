@@ -3,15 +3,15 @@
 
 use super::manual::names_and_commands;
 use super::{command, print};
-use crate::analysis::readouts::READOUTS;
-use crate::data::SHIPPED;
-use crate::export::columns::{COLUMNS, CsvColumn, OPTIONAL_COLUMNS, POINT_COLUMNS};
-use crate::figure::kind;
+use crate::engine::analysis::readouts::READOUTS;
+use crate::engine::data::SHIPPED;
+use crate::engine::export::columns::{COLUMNS, CsvColumn, OPTIONAL_COLUMNS, POINT_COLUMNS};
+use crate::engine::scenario::keys::{Effect, KEYS, ScenarioKey, ValueKind};
+use crate::engine::scenario::presets::PRESETS;
+use crate::engine::text::shipped::Shipped;
 use crate::lessons::shipped::LESSONS;
-use crate::scenario::keys::{Effect, KEYS, ScenarioKey, ValueKind};
-use crate::scenario::presets::PRESETS;
-use crate::sweep::SWEEPS;
-use crate::text::shipped::Shipped;
+use crate::report::figure::kind;
+use crate::studies::sweep::SWEEPS;
 use anyhow::{Context, bail};
 use clap::{Arg, Command};
 use clap_complete::Shell;

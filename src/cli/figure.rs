@@ -4,17 +4,18 @@ use super::args::{LengthArgs, MapArgs, SetArgs, changed, positive, time};
 use super::progress::{self, Interrupted};
 use super::writeup::measured;
 use super::{ended_by, refuse, tell, tell_notes};
-use crate::analysis::cost;
-use crate::data::doubts;
-use crate::figure::kind::FigureKind;
-use crate::figure::of_runs::FigureRun;
-use crate::figure::table::TableSource;
-use crate::figure::{FigureOptions, FigureSource, PT_PER_MM, PageFormat, WIDTHS_MM};
-use crate::origin;
+use crate::engine::analysis::cost;
+use crate::engine::data::doubts;
+use crate::engine::provenance;
+use crate::engine::scenario::head::is_file;
+use crate::engine::scenario::{Document, Problem, Problems};
+use crate::engine::text::printable::{PrintablePath, printable};
 use crate::physics::scheme;
-use crate::scenario::head::is_file;
-use crate::scenario::{Document, Problem, Problems};
-use crate::text::printable::{PrintablePath, printable};
+use crate::plot::{PT_PER_MM, PageFormat};
+use crate::report::figure::kind::FigureKind;
+use crate::report::figure::of_runs::FigureRun;
+use crate::report::figure::{FigureOptions, FigureSource, WIDTHS_MM};
+use crate::studies::table::TableSource;
 use anyhow::{bail, ensure};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -243,13 +244,18 @@ fn add(source: &mut FigureSource, name: &str, args: &FigureArgs) -> anyhow::Resu
         return Ok(());
     }
     let figure = if is_file(name) {
-        origin::FigureFile::open(path)
+        provenance::FigureFile::open(path)
     } else {
         Ok(None)
     };
     let figure = figure.map_err(|rule| Problems::one(name, Problem::at("", rule)))?;
     let Some(figure) = figure else {
-        return add_runs(source, &origin::name_of(name), &Document::open(name)?, args);
+        return add_runs(
+            source,
+            &provenance::name_of(name),
+            &Document::open(name)?,
+            args,
+        );
     };
     let folder = path.parent().unwrap_or(Path::new(""));
     let one = FigureSource::of(&figure.origin, folder).map_err(|problems| problems.of(name))?;

@@ -1,21 +1,21 @@
 //! The commands that tell: presets, schemes, keys, readouts, check.
 
 use super::{lesson, print, tell};
-use crate::analysis::readouts::READOUTS;
-use crate::data;
-use crate::export::summary::steps_in_words;
-use crate::journal::changed::Original;
+use crate::engine::analysis::readouts::READOUTS;
+use crate::engine::data;
+use crate::engine::export::summary::steps_in_words;
+use crate::engine::journal::changed::Original;
+use crate::engine::run::Clock;
+use crate::engine::scenario::keys::{KEYS, ScenarioKey};
+use crate::engine::scenario::presets::{self, PRESETS, Preset};
+use crate::engine::scenario::problem::nearest;
+use crate::engine::scenario::{Document, Problems, Scenario, Window};
+use crate::engine::text::number::{counted, decimal, shortest};
+use crate::engine::text::printable::{PrintablePath, printable, printable_lines};
 use crate::lab::command;
 use crate::lessons::shipped;
 use crate::physics::scheme::SCHEMES;
-use crate::run::Clock;
-use crate::scenario::keys::{KEYS, ScenarioKey};
-use crate::scenario::presets::{self, PRESETS, Preset};
-use crate::scenario::problem::nearest;
-use crate::scenario::{Document, Problems, Scenario, Window};
-use crate::sweep::{self, SWEEPS, Sweep};
-use crate::text::number::{counted, decimal, shortest};
-use crate::text::printable::{PrintablePath, printable, printable_lines};
+use crate::studies::sweep::{self, SWEEPS, Sweep};
 use anyhow::bail;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

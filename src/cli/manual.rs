@@ -2,14 +2,14 @@
 //! program has in a table is made of that table: in a topic its name in braces stands for it.
 
 use super::{command, info, print, tell};
-use crate::export::Destination;
-use crate::export::columns::{COLUMNS, OPTIONAL_COLUMNS, POINT_COLUMNS};
+use crate::engine::export::Destination;
+use crate::engine::export::columns::{COLUMNS, OPTIONAL_COLUMNS, POINT_COLUMNS};
+use crate::engine::scenario::keys::ValueKind;
+use crate::engine::scenario::problem::nearest;
+use crate::engine::text::printable::{PrintablePath, printable};
+use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::command::COMMANDS;
-use crate::scenario::keys::ValueKind;
-use crate::scenario::problem::nearest;
-use crate::storage::settings;
-use crate::text::printable::{PrintablePath, printable};
-use crate::text::wrap::{columns, wrapped};
+use crate::lab::storage::settings;
 use crate::tui::panes::help as keys_of_lab;
 use anyhow::{Context, bail};
 use clap::{Args, Command};

@@ -24,10 +24,10 @@ mod verify;
 mod workbench;
 mod writeup;
 
-use crate::export::destination::{Destination, DestinationError};
-use crate::scenario::{presets, screen};
-use crate::text::number::counted;
-use crate::text::printable::{PrintablePath, is_steering, printable, printable_lines};
+use crate::engine::export::destination::{Destination, DestinationError};
+use crate::engine::scenario::{presets, screen};
+use crate::engine::text::number::counted;
+use crate::engine::text::printable::{PrintablePath, is_steering, printable, printable_lines};
 use crate::tui::panes;
 use anyhow::Context;
 use args::{ClassArgs, LessonArgs, WorkbenchArgs};

@@ -4,13 +4,13 @@
 use super::args::{DisplayArgs, LessonArgs, SetArgs, WorkbenchArgs, change};
 use super::print;
 use super::progress::{self, Interrupted};
-use crate::export::Destination;
+use crate::engine::export::Destination;
+use crate::engine::scenario::{Document, Problem, Problems};
 use crate::lab::Lab;
 use crate::lab::view::View;
 use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::lessons::{Lesson, paper, play};
-use crate::scenario::{Document, Problem, Problems};
 use crate::tui::{panes, theme};
 use anyhow::{Context, bail};
 use std::ops::ControlFlow;

@@ -1,8 +1,8 @@
 //! Progress of a long command on stderr, and the signals that end it.
 
 use super::INTERRUPTED;
-use crate::export::Destination;
-use crate::export::temporary;
+use crate::engine::export::Destination;
+use crate::engine::export::temporary;
 use indicatif::{HumanCount, HumanDuration};
 use signal_hook::consts::{SIGHUP, TERM_SIGNALS};
 use signal_hook::flag;

@@ -4,12 +4,12 @@
 use super::args::{DisplayArgs, WorkbenchArgs};
 use super::new_lab::{DEFAULT, marker, of_workbench, theme};
 use super::{print, tell};
+use crate::engine::scenario::Scenario;
+use crate::engine::text::printable::{PrintablePath, printable};
+use crate::lab::storage::confined::Confined;
+use crate::lab::storage::session::{self, LeftAlone, Listed, Session};
 use crate::lab::view::View;
 use crate::lab::{Lab, SessionSummary};
-use crate::scenario::Scenario;
-use crate::storage::confined::Confined;
-use crate::storage::session::{self, LeftAlone, Listed, Session};
-use crate::text::printable::{PrintablePath, printable};
 use crate::tui::panes;
 use anyhow::{Context, bail};
 use std::fmt::Write as _;

@@ -4,11 +4,11 @@
 use super::args::{DisplayArgs, WorkbenchArgs};
 use super::new_lab::variable;
 use super::tell;
+use crate::engine::scenario::Problems;
+use crate::engine::text::printable::printable_lines;
 use crate::lab::Lab;
+use crate::lab::storage::settings::{self, Read};
 use crate::lab::view::theme::Marker;
-use crate::scenario::Problems;
-use crate::storage::settings::{self, Read};
-use crate::text::printable::printable_lines;
 use crate::tui::theme;
 use clap::ValueEnum;
 use std::path::Path;
@@ -97,8 +97,8 @@ fn option<T: ValueEnum>(value: Option<&Value>) -> Option<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::scenario::keys::ValueKind;
     use crate::lab::view::theme::Background;
-    use crate::scenario::keys::ValueKind;
     use crate::tui::theme::ColourChoice;
 
     fn are_options<T: ValueEnum>(wanted: &str) -> bool {

@@ -3,10 +3,10 @@
 use super::args::{MeasuredArgs, SetArgs, size, steps};
 use super::new_lab::{self, DEFAULT};
 use super::{print, progress, tell};
+use crate::engine::provenance::{self, File, Origin, Payload, SCREEN};
+use crate::lab::storage::confined::Confined;
 use crate::lab::view::theme::{Background, Marker, Theme};
 use crate::lab::{Lab, command};
-use crate::origin::{self, File, Origin, Payload, SCREEN};
-use crate::storage::confined::Confined;
 use crate::tui::screen;
 use crate::tui::svg::svg;
 use anyhow::Context;
@@ -77,7 +77,7 @@ impl ShowArgs {
         let name = self.scenario.as_deref().unwrap_or(DEFAULT);
         let files = vec![File::new(Payload::Run, name, &scenario.to_toml())];
         let origin = Origin::new(&BTreeMap::from([(SCREEN, true)]), files);
-        origin::carry(&picture, &origin).unwrap_or(picture)
+        provenance::carry(&picture, &origin).unwrap_or(picture)
     }
 }
 

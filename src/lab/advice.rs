@@ -2,12 +2,12 @@
 
 use super::command::Command;
 use super::player::Player;
-use crate::analysis::health::{Advice, advise};
-use crate::journal::restart::as_advised;
-use crate::playback::background::{self, BackgroundJob};
-use crate::run::Simulation;
-use crate::scenario::Scenario;
-use crate::text::number::shortest;
+use crate::engine::analysis::health::{Advice, advise};
+use crate::engine::journal::restart::as_advised;
+use crate::engine::run::Simulation;
+use crate::engine::scenario::Scenario;
+use crate::engine::text::number::shortest;
+use crate::lab::playback::background::{self, BackgroundJob};
 use std::sync::Arc;
 
 /// What would mend the present run, and can be done to it.

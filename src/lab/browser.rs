@@ -1,7 +1,7 @@
 //! The browser: the list of presets and files, the filter, the selected entry and its preview.
 
-use crate::scenario::presets::PRESETS;
-use crate::scenario::{Document, Scenario};
+use crate::engine::scenario::presets::PRESETS;
+use crate::engine::scenario::{Document, Scenario};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};

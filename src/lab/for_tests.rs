@@ -2,7 +2,7 @@
 
 use super::view::theme::{Background, Marker, Theme};
 use super::view::{Pane, View};
-use crate::scenario::{Document, Scenario};
+use crate::engine::scenario::{Document, Scenario};
 use std::sync::Arc;
 
 /// The scenario of the preset method-2.
@@ -11,7 +11,14 @@ pub(in crate::lab) fn scenario() -> Arc<Scenario> {
 }
 
 pub(in crate::lab) fn preset(name: &str) -> Arc<Scenario> {
-    Arc::new(Document::open(name).unwrap().scenario().unwrap())
+    preset_with(name, &[])
+}
+
+/// The scenario of the preset `name`, changed by texts `key=value`.
+pub(in crate::lab) fn preset_with(name: &str, sets: &[&str]) -> Arc<Scenario> {
+    let mut document = Document::open(name).unwrap();
+    sets.iter().for_each(|set| document.set(set).unwrap());
+    Arc::new(document.scenario().unwrap())
 }
 
 pub(in crate::lab) fn view(panes: &'static [Pane]) -> View {

@@ -1,7 +1,7 @@
 //! A form: a few fields to type into.
 
 use super::action::FieldEdit;
-use crate::text::printable::is_steering;
+use crate::engine::text::printable::is_steering;
 use tui_input::{Input, InputRequest};
 
 /// Characters a field holds at most.

@@ -1,14 +1,14 @@
 //! The numbers of a run that a condition can name: the columns of the CSV, the readouts, and keys of the scenario.
 
-use crate::analysis::Readouts;
-use crate::analysis::readouts::{self, Readout};
-use crate::export::columns::{COLUMNS, CsvColumn};
-use crate::journal::parameters::table_at;
-use crate::playback::live::LiveRun;
-use crate::run::Sample;
-use crate::scenario::keys::{self, KEYS, ValueKind};
-use crate::scenario::problem::nearest;
-use crate::scenario::{dotted, float};
+use crate::engine::analysis::Readouts;
+use crate::engine::analysis::readouts::{self, Readout};
+use crate::engine::export::columns::{COLUMNS, CsvColumn};
+use crate::engine::journal::parameters::table_at;
+use crate::engine::run::Sample;
+use crate::engine::scenario::keys::{self, KEYS, ValueKind};
+use crate::engine::scenario::problem::nearest;
+use crate::engine::scenario::{dotted, float};
+use crate::lab::playback::live::LiveRun;
 
 #[derive(Clone, Copy, Debug)]
 pub enum NumberSource {

@@ -5,8 +5,8 @@ use super::command::Command;
 use super::comparison::Comparison;
 use super::files::Files;
 use super::player::Player;
-use crate::scenario::Problems;
-use crate::text::printable::is_steering;
+use crate::engine::scenario::Problems;
+use crate::engine::text::printable::is_steering;
 use toml::Table;
 
 /// The most bytes of rows that can be pasted.

@@ -6,7 +6,7 @@ use super::browser::Browser;
 use super::dialog::Dialog;
 use super::files::Files;
 use super::form::{edit_line, type_into};
-use crate::storage::confined::Confined;
+use crate::lab::storage::confined::Confined;
 use std::path::Path;
 
 pub const MOST_COUNTED: u64 = 999_999_999;

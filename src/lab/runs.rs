@@ -1,13 +1,13 @@
 //! The runs of a session with their journals, for undo and redo; the scenario as the user opened it, and how the present
 //! run differs from it.
 
-use crate::journal::changed::Original;
-use crate::journal::history::{History, Reversal, RunRecord};
-use crate::journal::next_push::NextPush;
-use crate::journal::{Act, Journal};
-use crate::run::Clock;
-use crate::scenario::{Problems, Scenario};
-use crate::storage::session::SharedText;
+use crate::engine::journal::changed::Original;
+use crate::engine::journal::history::{History, Reversal, RunRecord};
+use crate::engine::journal::next_push::NextPush;
+use crate::engine::journal::{Act, Journal};
+use crate::engine::run::Clock;
+use crate::engine::scenario::{Problems, Scenario};
+use crate::lab::storage::session::SharedText;
 use std::sync::Arc;
 use toml::Table;
 

@@ -5,7 +5,7 @@ use super::answer::{ActionResult, Done, PendingAction};
 use super::command::{Command, Commands, LocatedCommand, SeekTarget};
 use super::files::Files;
 use super::player::Player;
-use crate::playback::{Halt, MOST_UNTIL};
+use crate::lab::playback::{Halt, MOST_UNTIL};
 use indicatif::HumanCount;
 use std::collections::VecDeque;
 use std::time::Duration;

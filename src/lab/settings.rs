@@ -4,7 +4,7 @@
 use super::command::Command;
 use super::view::theme::{Background, Marker};
 use super::view::{HideablePart, View};
-use crate::storage::settings::remember;
+use crate::lab::storage::settings::remember;
 use std::path::PathBuf;
 
 /// Frames a second that the dialog offers.

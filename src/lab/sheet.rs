@@ -1,6 +1,6 @@
 //! A text that stands beside the panes, such as the page of a lesson. A room above the lab writes it.
 
-use crate::text::ascii::in_ascii;
+use crate::engine::text::ascii::in_ascii;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheet {

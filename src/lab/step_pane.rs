@@ -5,11 +5,11 @@ use super::command::{Command, SeekTarget};
 use super::player::Player;
 use super::view::step::StepPageChoice;
 use super::view::{Pane, View};
+use crate::engine::scenario::Scenario;
+use crate::engine::scenario::screen::ALL_ROWS;
+use crate::lab::playback::dip::Dip;
 use crate::physics::workings::{ColumnSums, Phase, PointTable, WorkedValue};
 use crate::physics::{State, Workings};
-use crate::playback::dip::Dip;
-use crate::scenario::Scenario;
-use crate::scenario::screen::ALL_ROWS;
 use std::sync::Arc;
 
 /// The most points of a body whose steps are taken apart while the run goes on. The step of a larger body is taken

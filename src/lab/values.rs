@@ -4,11 +4,11 @@
 pub mod list;
 
 use super::command::{Command, Force, PushChoice};
-use crate::journal::next_push::{NextPush, PushField, Toward};
-use crate::journal::parameters::{self, Parameter, parameters};
-use crate::journal::{Journal, number_of_push};
-use crate::playback::live::LiveRun;
-use crate::scenario::Scenario;
+use crate::engine::journal::next_push::{NextPush, PushField, Toward};
+use crate::engine::journal::parameters::{self, Parameter, parameters};
+use crate::engine::journal::{Journal, number_of_push};
+use crate::engine::scenario::Scenario;
+use crate::lab::playback::live::LiveRun;
 use list::{ListedValue, NEXT_PUSH_HEADING, Of, ValueList};
 use nalgebra::Vector3;
 use std::time::Duration;
@@ -224,7 +224,7 @@ fn rank(group: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::journal::history::History;
+    use crate::engine::journal::history::History;
     use crate::lab::for_tests::scenario;
     use std::sync::Arc;
 

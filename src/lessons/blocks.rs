@@ -4,12 +4,12 @@ mod content;
 
 use super::lesson::{AnswerKind, Check, Compare, Keep, LessonBlock, Predict, Right, Setup};
 use super::names::KeptNames;
-use crate::journal::expression::Expression;
+use crate::engine::journal::expression::Expression;
+use crate::engine::scenario::Problem;
+use crate::engine::scenario::dotted::join;
+use crate::engine::text::printable::is_steering;
 use crate::lab::command::{COMMANDS, Command, LocatedCommand};
 use crate::lab::view;
-use crate::scenario::Problem;
-use crate::scenario::dotted::join;
-use crate::text::printable::is_steering;
 use content::BlockContent;
 use toml::{Table, Value};
 

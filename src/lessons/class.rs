@@ -7,7 +7,7 @@ use super::{page, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::sheet::Sheet;
-use crate::storage::confined::Confined;
+use crate::lab::storage::confined::Confined;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -12,8 +12,8 @@ use super::lesson::{
 use super::names::{self, KeptNumbers};
 use super::play::{LessonProgressCallback, LessonWalk};
 use super::predictions::{LessonProgress, Tried};
+use crate::engine::scenario::Problem;
 use crate::lab::Lab;
-use crate::scenario::Problem;
 
 /// Room for a number or some words.
 const BLANK: &str = "____________";

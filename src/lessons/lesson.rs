@@ -2,7 +2,7 @@
 
 use super::names::KeptNumbers;
 use super::text::LessonText;
-use crate::journal::expression::Expression;
+use crate::engine::journal::expression::Expression;
 use crate::lab::command::{Command, LocatedCommand};
 use crate::lab::view::HideablePart;
 use serde::{Deserialize, Serialize};

@@ -1,9 +1,9 @@
 //! The numbers that an expression of a lesson can name: those of a run, and those that earlier pages have kept.
 
-use crate::analysis::readouts;
-use crate::journal::expression::Expression;
+use crate::engine::analysis::readouts;
+use crate::engine::journal::expression::Expression;
+use crate::engine::scenario::problem::nearest;
 use crate::lab::{Lab, numbers};
-use crate::scenario::problem::nearest;
 use std::collections::BTreeMap;
 
 /// The numbers that were kept, by their names. One that could not be stated is NaN.

@@ -6,9 +6,9 @@ use super::predictions::{LessonProgress, Tried, without};
 use super::taken::OpenLesson;
 use super::text::LessonText;
 use super::{names, reading};
+use crate::engine::text::number;
 use crate::lab::Lab;
 use crate::lab::sheet::{Paragraph, Sheet, SheetLineKind};
-use crate::text::number;
 use std::collections::BTreeMap;
 use std::time::Duration;
 

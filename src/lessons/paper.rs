@@ -1,11 +1,11 @@
 //! A handout as sheets of A4: its Markdown set in lines, its pictures drawn cell by cell.
 
 use super::markdown::paragraphs;
-use crate::figure::page::ink::{self, BLACK, circle};
-use crate::figure::page::letters::escape;
-use crate::figure::page::scene::at;
-use crate::figure::page::{PageScene, Point, Unwritable, VectorPath, format};
 use crate::lab::sheet::{Emphasis, Paragraph, SheetLineKind};
+use crate::plot::ink::{self, BLACK, circle};
+use crate::plot::letters::escape;
+use crate::plot::scene::at;
+use crate::plot::{PageScene, Point, Unwritable, VectorPath, format};
 
 /// A4, pt.
 const SHEET_PT: (f64, f64) = (595.28, 841.89);

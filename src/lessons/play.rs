@@ -6,11 +6,11 @@ use super::predictions::Predictions;
 use super::stage::Stage;
 use super::structure::on_line;
 use super::text::LessonText;
-use crate::journal::expression::Expression;
+use crate::engine::journal::expression::Expression;
+use crate::engine::scenario::{Problem, Problems};
+use crate::engine::text::number::{NOT_AVAILABLE, significant};
 use crate::lab::Lab;
 use crate::lab::command::Command;
-use crate::scenario::{Problem, Problems};
-use crate::text::number::{NOT_AVAILABLE, significant};
 use indicatif::HumanCount;
 use std::ops::ControlFlow;
 

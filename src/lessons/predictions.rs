@@ -5,9 +5,9 @@ use super::lesson::{
 };
 use super::names::{KeptNumbers, value};
 use super::text::TextFormat;
+use crate::engine::text::number;
 use crate::lab::Lab;
 use crate::lab::view::HideablePart;
-use crate::text::number;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -14,9 +14,9 @@ use super::lesson::{CodeBlock, Compare, Lesson, LessonBlock, LessonPage, Setup};
 use super::names::KeptNames;
 use super::structure::{Element, LANGUAGES, Lines, PieceKind, on_line, structure};
 use super::text::LessonText;
-use crate::scenario::problem::{listed, nearest};
-use crate::scenario::{Problem, Problems};
-use crate::text::printable::is_steering;
+use crate::engine::scenario::problem::{listed, nearest};
+use crate::engine::scenario::{Problem, Problems};
+use crate::engine::text::printable::is_steering;
 use std::collections::BTreeSet;
 
 const MOST_LESSON_LINES: usize = 20_000;

@@ -1,9 +1,9 @@
 //! The lessons that come with the program, compiled in.
 
-use crate::text::shipped::{Shipped, shipped};
+use crate::engine::text::shipped::{Shipped, shipped};
 
 /// Every lesson, in the order in which they build on each other.
-pub const LESSONS: &[Shipped] = shipped!["lessons", "md":
+pub const LESSONS: &[Shipped] = shipped!["../../presets/lessons", "md":
     "why-it-does-not-fall"
     "what-holds-the-weight-up"
     "one-step-by-hand"

@@ -9,7 +9,7 @@ use super::names::{KeptNumbers, value};
 use super::predictions::Predictions;
 use crate::lab::Lab;
 use crate::lab::command::{Command, Commands, LocatedCommand};
-use crate::playback::camera::{Camera, Zoom};
+use crate::plot::camera::{Camera, Zoom};
 use std::ops::ControlFlow;
 
 #[derive(Clone, Debug, PartialEq)]

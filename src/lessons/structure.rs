@@ -1,6 +1,6 @@
 //! The structure of a lesson's Markdown: headings, fenced blocks and the text between them.
 
-use crate::scenario::Problem;
+use crate::engine::scenario::Problem;
 use pulldown_cmark::{CodeBlockKind, Event, HeadingLevel, Parser, Tag, TagEnd};
 use std::ops::Range;
 

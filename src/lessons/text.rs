@@ -6,11 +6,11 @@
 
 use super::names::{KeptNumbers, value};
 use super::structure::on_line;
-use crate::journal::expression::Expression;
+use crate::engine::journal::expression::Expression;
+use crate::engine::scenario::Problem;
+use crate::engine::text::number;
+use crate::engine::text::printable::brief;
 use crate::lab::Lab;
-use crate::scenario::Problem;
-use crate::text::number;
-use crate::text::printable::brief;
 use pulldown_cmark::{Event, Parser, Tag};
 use std::ops::Range;
 

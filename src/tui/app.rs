@@ -2,9 +2,9 @@
 
 use crate::class::ClassRole;
 use crate::lab::action::{Direction, LessonKey};
+use crate::lab::storage::session::Session;
 use crate::lab::{Lab, LabRequest};
 use crate::lessons::Lessons;
-use crate::storage::session::Session;
 use crate::tui::decoder::Typed;
 use crate::tui::job_control::{NO_SHELL, can_be_resumed};
 use crate::tui::mouse::Pointer;

@@ -5,11 +5,11 @@ use super::layout::ScreenLayout;
 use super::panes::{PlotInputs, browser, chrome, timeline::Timeline, traces::Traces};
 use super::press::press;
 use super::screen;
+use crate::engine::run::Clock;
 use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::command::{Command, CursorTo, SeekTarget};
 use crate::lab::view::Pane;
 use crate::lab::{Lab, LabRequest};
-use crate::run::Clock;
 use ratatui::layout::{Position, Rect};
 
 /// Degrees by which the 3-D view turns where it is dragged by a column, and by a row, which is twice as high.

@@ -2,7 +2,7 @@
 //! which of two crossing lines passes in front of the other.
 
 use crate::lab::view::theme::Marker;
-use crate::playback::camera::{Camera, CameraView};
+use crate::plot::camera::{Camera, CameraView};
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::plane::Plane;
 use nalgebra::Vector3;

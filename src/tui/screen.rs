@@ -2,11 +2,11 @@
 //! bytes that a terminal would be sent.
 
 use super::panes::{self, browser, chrome, form::FormPane, help, hint, lesson, measured, timeline};
+use crate::engine::text::wrap::columns;
 use crate::lab::Lab;
 use crate::lab::action::Direction;
 use crate::lab::view::theme::Marker;
 use crate::lab::view::{HideablePart, Pane};
-use crate::text::wrap::columns;
 use crate::tui::dots;
 use crate::tui::keymap::Mode;
 use crate::tui::layout::{LinesBelow, ScreenLayout};

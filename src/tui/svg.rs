@@ -2,9 +2,9 @@
 
 use super::screen;
 use super::theme::{DARK_CYAN, DARK_GREEN};
+use crate::engine::text::printable::xml;
 use crate::lab::Lab;
 use crate::lab::view::theme::Background;
-use crate::text::printable::xml;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};

@@ -5,7 +5,7 @@
 //! Only this module and the recorder use crossterm, which draws; [`keyboard`] reads what is typed. Nothing here waits for
 //! an answer from the terminal: on a slow line or in a bare pty there may be none.
 
-use crate::storage::at_exit::{self, Release};
+use crate::lab::storage::at_exit::{self, Release};
 use crate::tui::decoder::Typed;
 use crate::tui::keyboard::{self, Keyboard};
 use crossterm::cursor::{Hide, Show};

@@ -2,8 +2,8 @@
 //! point has dwelt its dots are denser. All of this is seen without colours too; with them, and by bold and dim type,
 //! the ages differ in shade as well.
 
-use crate::playback::ages::{Age, Ages};
-use crate::playback::recording::Recording;
+use crate::engine::recording::Recording;
+use crate::lab::playback::ages::{Age, Ages};
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;

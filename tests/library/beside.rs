@@ -4,7 +4,7 @@ use crate::support::desk::Desk;
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::has;
 use gyrolab::lab::Lab;
-use gyrolab::playback::ghost::Ghost;
+use gyrolab::lab::playback::ghost::Ghost;
 use gyrolab::tui::keymap::Key;
 
 fn time_s(desk: &Desk) -> f64 {

@@ -5,17 +5,17 @@
 use crate::support::desk::{Desk, commands};
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::has_all;
-use gyrolab::export::layout::LayoutFile;
-use gyrolab::journal::expression::Expression;
-use gyrolab::journal::next_push::Toward;
+use gyrolab::engine::export::layout::LayoutFile;
+use gyrolab::engine::journal::expression::Expression;
+use gyrolab::engine::journal::next_push::Toward;
+use gyrolab::engine::scenario::Document;
 use gyrolab::lab::Refusal;
 use gyrolab::lab::command::{self, COMMANDS, Command, Export, Force, PushChoice, Save, SeekTarget};
+use gyrolab::lab::playback::pace::Speed;
 use gyrolab::lab::view::step::StepPageChoice;
 use gyrolab::lab::view::{HideablePart, Pane, ViewSettings};
 use gyrolab::physics::workings::PHASE_NAMES;
-use gyrolab::playback::camera::Camera;
-use gyrolab::playback::pace::Speed;
-use gyrolab::scenario::Document;
+use gyrolab::plot::camera::Camera;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::{layout::ScreenLayout, panes, screen};
 use proptest::prelude::*;
@@ -769,7 +769,7 @@ fn a_pane_is_pointed_at_by_a_heavy_frame() {
 
 #[test]
 fn a_pane_has_the_name_that_files_give_it() {
-    let ids = gyrolab::scenario::screen::panes()
+    let ids = gyrolab::engine::scenario::screen::panes()
         .iter()
         .map(|pane| pane.id());
     let all = ["lesson", "traces", "above", "3d", "parameters", "step"];
@@ -783,7 +783,7 @@ fn a_pane_has_the_name_that_files_give_it() {
     }
     let part = |id: &str| Value::from(id).try_into::<HideablePart>();
     assert!(
-        gyrolab::scenario::screen::HIDEABLE
+        gyrolab::engine::scenario::screen::HIDEABLE
             .iter()
             .all(|id| part(id).is_ok())
     );

@@ -5,9 +5,9 @@ mod others;
 
 use crate::support::dice::Dice;
 use crate::support::scenarios;
-use gyrolab::analysis::{Instruments, MeasuredNumber, Monitor};
-use gyrolab::run::Simulation;
-use gyrolab::scenario::Scenario;
+use gyrolab::engine::analysis::{Instruments, MeasuredNumber, Monitor};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::Scenario;
 use rayon::prelude::*;
 use std::sync::Arc;
 

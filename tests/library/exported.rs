@@ -2,15 +2,15 @@
 
 use crate::support::scenarios::{parse, preset};
 use crate::support::words::has;
-use gyrolab::analysis::compare;
-use gyrolab::export::columns::COLUMNS;
-use gyrolab::export::layout::LayoutFile;
-use gyrolab::export::layout::commented;
-use gyrolab::export::{CsvLayout, CsvWriter, stream};
+use gyrolab::engine::analysis::compare;
+use gyrolab::engine::export::columns::COLUMNS;
+use gyrolab::engine::export::layout::LayoutFile;
+use gyrolab::engine::export::layout::commented;
+use gyrolab::engine::export::{CsvLayout, CsvWriter, stream};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::{Document, Scenario};
 use gyrolab::physics::SchemeInfo;
-use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Scenario};
-use gyrolab::verify::{Unverified, Verified, verify};
+use gyrolab::studies::verify::{Unverified, Verified, verify};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::ops::ControlFlow;
@@ -50,7 +50,7 @@ fn no_fit(_: &str) -> Result<Vec<u8>, Unverified> {
 }
 
 #[track_caller]
-fn difference(bytes: &[u8]) -> gyrolab::verify::FileDifference {
+fn difference(bytes: &[u8]) -> gyrolab::studies::verify::FileDifference {
     verified(bytes).unwrap().difference.expect("it is the same")
 }
 

@@ -1,10 +1,10 @@
 //! A page as SVG, PDF and PNG: what the files hold, that hostile words cannot break them, and that the three agree.
 
 use crate::support::words::{has, has_all};
-use gyrolab::figure::page::ink::{BLACK, at, circle, pen};
-use gyrolab::figure::{
+use gyrolab::plot::ink::{BLACK, at, circle, pen};
+use gyrolab::plot::{
     Color, PageFormat, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath,
-    page::letters, write,
+    letters, write,
 };
 
 const HOSTILE: &str =

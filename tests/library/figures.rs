@@ -2,17 +2,18 @@
 
 use crate::support::scenarios::preset;
 use crate::support::words::has;
-use gyrolab::figure::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
-use gyrolab::figure::course::{RunSampler, SampleRequest, SampledRun};
-use gyrolab::figure::kind::FigureKind;
-use gyrolab::figure::labels::FigureLabels;
-use gyrolab::figure::of_runs::{self, DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
-use gyrolab::figure::page::ink::WHITE;
-use gyrolab::figure::table::TableSource;
-use gyrolab::figure::{PageFormat, PageScene, Paint, Point, SceneItem, of_table, write};
-use gyrolab::run::Simulation;
-use gyrolab::scenario::Scenario;
-use gyrolab::scenario::presets::PRESETS;
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::Scenario;
+use gyrolab::engine::scenario::presets::PRESETS;
+use gyrolab::plot::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
+use gyrolab::plot::ink::WHITE;
+use gyrolab::plot::{PageFormat, PageScene, Paint, Point, SceneItem, write};
+use gyrolab::report::figure::course::{RunSampler, SampleRequest, SampledRun};
+use gyrolab::report::figure::kind::FigureKind;
+use gyrolab::report::figure::labels::FigureLabels;
+use gyrolab::report::figure::of_runs::{self, DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
+use gyrolab::report::figure::of_table;
+use gyrolab::studies::table::TableSource;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
@@ -873,7 +874,7 @@ proptest! {
         width_mm in 40.0..200.0_f64,
     ) {
         let series = (0..names.0).map(|index| ChartSeries {
-            name: gyrolab::figure::page::letters::shortened(&names.1, 7.0, gyrolab::figure::chart::legend::longest_name(width_mm * 72.0 / 25.4) - 6.0) + &index.to_string(),
+            name: gyrolab::plot::letters::shortened(&names.1, 7.0, gyrolab::plot::chart::legend::longest_name(width_mm * 72.0 / 25.4) - 6.0) + &index.to_string(),
             points: points.clone(),
             errors: [Vec::new(), errors.iter().map(|error| error.abs()).collect()],
             band: Vec::new(),

@@ -204,7 +204,7 @@ fn the_frame_of_l_stands_beside_it_and_is_kept() {
     let file = stage.lab.player().run().scenario().file.clone();
     assert_eq!(
         file.start.momentum_frame,
-        Some(gyrolab::scenario::file::VectorFrame::Body)
+        Some(gyrolab::engine::scenario::file::VectorFrame::Body)
     );
     assert_eq!(file.start.momentum_Js, Some([0.0, 0.0, 500.0]));
     Stage::open("method-1", &[], SMALL)

@@ -2,10 +2,10 @@
 
 use crate::support::dice::Dice;
 use crate::support::words::{has, has_all, has_no};
-use gyrolab::data::{DataKind, MeasuredData, at_times, open, read};
-use gyrolab::fit::report::FitReport;
-use gyrolab::fit::{Fit, Free, Model, NoFit, fit};
-use gyrolab::scenario::{Document, Problems};
+use gyrolab::engine::data::{DataKind, MeasuredData, at_times, open, read};
+use gyrolab::engine::scenario::{Document, Problems};
+use gyrolab::studies::fit::report::FitReport;
+use gyrolab::studies::fit::{Fit, Free, Model, NoFit, fit};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -254,7 +254,7 @@ fn torque(which: usize) -> impl Fn(usize) -> bool {
 #[test]
 fn heidelberg_one_weight_and_two_differ() {
     // The spins without their uncertainties: the published ones are those of the period alone.
-    let text = gyrolab::data::find_shipped("heidelberg-precession")
+    let text = gyrolab::engine::data::find_shipped("heidelberg-precession")
         .unwrap()
         .text;
     let without = text.lines().map(|line| {
@@ -501,7 +501,7 @@ fn a_key_that_moves_nothing_leads_nowhere() {
 
 #[test]
 fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
-    use gyrolab::fit::report::{self, FitCommand};
+    use gyrolab::studies::fit::report::{self, FitCommand};
     let (model, fit) = heidelberg("heidelberg-precession", &[MOMENT], &|_| true);
     let report = FitReport {
         fit: &fit,
@@ -535,10 +535,10 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     assert_eq!(header.key[0].uncertainty, fit.keys[0].sigma);
     assert_eq!(header.fit.chi_squared, fit.quality.chi_squared);
     // Its figure has the values with their errors on the model, and below what is left of them.
-    let table = gyrolab::figure::table::TableSource::read(&path)
+    let table = gyrolab::studies::table::TableSource::read(&path)
         .unwrap()
         .unwrap();
-    let chart = gyrolab::figure::of_table::chart(&table, &[], 240.0).unwrap();
+    let chart = gyrolab::report::figure::of_table::chart(&table, &[], 240.0).unwrap();
     let [values, residuals] = &chart.panels[..] else {
         panic!("{} panels", chart.panels.len())
     };
@@ -553,9 +553,9 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     let place = "*z* of weight = 0.1555 m, *z* of second weight = 0 m";
     assert_eq!(values.series[2].name, place);
     // Where the page is too narrow for that, the values stand alone.
-    let narrow = gyrolab::figure::of_table::chart(&table, &[], 120.0).unwrap();
+    let narrow = gyrolab::report::figure::of_table::chart(&table, &[], 120.0).unwrap();
     assert_eq!(narrow.panels[0].series[2].name, "0.1555, 0");
-    let points = |panel: &gyrolab::figure::chart::Panel| -> usize {
+    let points = |panel: &gyrolab::plot::chart::Panel| -> usize {
         let series = panel.series.iter();
         let marked = series.filter(|series| series.style.mark.is_some());
         marked.map(|series| series.points.len()).sum()

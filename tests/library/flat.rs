@@ -3,10 +3,10 @@
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
 use crate::support::words::{has, has_no};
-use gyrolab::data::{DataKind, MeasuredData, at_times, read};
-use gyrolab::fit::report::FitReport;
-use gyrolab::fit::{Fit, Free, Model, fit};
-use gyrolab::scenario::Document;
+use gyrolab::engine::data::{DataKind, MeasuredData, at_times, read};
+use gyrolab::engine::scenario::Document;
+use gyrolab::studies::fit::report::FitReport;
+use gyrolab::studies::fit::{Fit, Free, Model, fit};
 use rayon::prelude::*;
 use std::sync::Arc;
 

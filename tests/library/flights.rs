@@ -2,8 +2,8 @@
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
-use gyrolab::data::{DataKind, TimeSeries, at_times, read};
-use gyrolab::fit::flights::{Flight, Found, find};
+use gyrolab::engine::data::{DataKind, TimeSeries, at_times, read};
+use gyrolab::studies::fit::flights::{Flight, Found, find};
 use std::fmt::Write;
 use std::sync::Arc;
 

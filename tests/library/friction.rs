@@ -1,13 +1,13 @@
 //! The laws of friction: how spin and swing die, where the spin stops, what the work is, and that no time step explodes.
 
 use crate::support::words::has;
-use gyrolab::analysis::readouts::{ReadoutValue, find};
-use gyrolab::analysis::{Monitor, Readouts};
+use gyrolab::engine::analysis::readouts::{ReadoutValue, find};
+use gyrolab::engine::analysis::{Monitor, Readouts};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::{Document, Scenario};
 use gyrolab::physics::{
     Body, Friction, Loads, PointForce, PointMass, Scheme, SchemeInfo, State, observables, rotation,
 };
-use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Scenario};
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_3;
 use std::sync::Arc;
@@ -603,7 +603,7 @@ fn energy_and_work_of_friction_are_the_rotors() {
     for name in TRUE_TO_SPIN {
         let scenario = preset("lab-gyroscope", &[&format!("motion.scheme={name}")]).unwrap();
         let mut simulation = Simulation::new(scenario);
-        let of = |step: &gyrolab::run::Step| {
+        let of = |step: &gyrolab::engine::run::Step| {
             let (axle, momentum) = (step.after().axle(), step.after().momentum);
             let spin = momentum.dot(&axle);
             let swing = (momentum.norm_squared() - spin * spin) / across;

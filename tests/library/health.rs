@@ -4,19 +4,19 @@ use crate::support::dice::Dice;
 use crate::support::scenarios::{find_scheme, parse, preset};
 use crate::support::stage::{SMALL, Stage};
 use crate::support::words::{has, has_all, has_no};
-use gyrolab::analysis::Monitor;
-use gyrolab::analysis::compare::{ComparisonRow, compare};
-use gyrolab::analysis::cost::is_affordable;
-use gyrolab::analysis::health::{
+use gyrolab::engine::analysis::Monitor;
+use gyrolab::engine::analysis::compare::{ComparisonRow, compare};
+use gyrolab::engine::analysis::cost::is_affordable;
+use gyrolab::engine::analysis::health::{
     Advice, BELIEVED_WITHIN, Health, WheelPicture, advise, advise_while,
 };
-use gyrolab::analysis::remarks::remarks;
+use gyrolab::engine::analysis::remarks::remarks;
+use gyrolab::engine::run::resampled;
+use gyrolab::engine::run::{Simulation, Truth};
+use gyrolab::engine::scenario::presets::PRESETS;
+use gyrolab::engine::scenario::{Document, Scenario, rescale};
 use gyrolab::physics::SchemeInfo;
 use gyrolab::physics::scheme::true_to;
-use gyrolab::run::resampled;
-use gyrolab::run::{Simulation, Truth};
-use gyrolab::scenario::presets::PRESETS;
-use gyrolab::scenario::{Document, Scenario, rescale};
 use rayon::prelude::*;
 use std::cell::Cell;
 use std::f64::consts::{PI, TAU};

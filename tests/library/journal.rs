@@ -1,10 +1,10 @@
 //! A run is a scenario and its journal: what an edit at a step changes, from which step on, and what it does not change.
 
 use crate::support::scenarios::{parse, preset};
-use gyrolab::export::{CsvLayout, CsvWriter, stream};
+use gyrolab::engine::export::{CsvLayout, CsvWriter, stream};
+use gyrolab::engine::run::{Sample, Simulation};
 use gyrolab::physics::workings::WorkedValue;
 use gyrolab::physics::{Loads, SchemeInfo};
-use gyrolab::run::{Sample, Simulation};
 use std::fmt::Write;
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;

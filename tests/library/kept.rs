@@ -3,7 +3,7 @@
 use crate::support::desk::Desk;
 use crate::support::scenarios::{self, preset};
 use gyrolab::lab::command::Command;
-use gyrolab::storage::session::SessionContent;
+use gyrolab::lab::storage::session::SessionContent;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
 
@@ -107,7 +107,7 @@ fn the_pinned_run_comes_back_with_what_was_done_to_it() {
     assert_eq!(again.end_s(), before.end_s());
     assert_eq!(again.marks, before.marks);
     assert_eq!(again.scenario.file.push.len(), 1);
-    let dots = |ghost: &gyrolab::playback::ghost::Ghost| ghost.path.dots().collect::<Vec<_>>();
+    let dots = |ghost: &gyrolab::lab::playback::ghost::Ghost| ghost.path.dots().collect::<Vec<_>>();
     assert_eq!(dots(again), dots(&before), "the same numbers");
     back.press(&[Key::Char('i')]);
     let none = resumed(&back.lab.content());

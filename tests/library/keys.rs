@@ -168,17 +168,6 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     files.into_iter().filter(is_wanted).chain(below).collect()
 }
 
-/// The texts between quotation marks of `code`.
-fn literals(code: &str) -> Vec<String> {
-    let code = code.split("#[cfg(test)]").next().unwrap_or_default();
-    let is_code = |line: &&str| !line.trim_start().starts_with("//");
-    let lines = code.lines().filter(is_code);
-    let code = lines.collect::<Vec<_>>().join("\n");
-    let code = code.replace("\\\"", "'").replace("'\"'", "");
-    let literals = code.split('"').skip(1).step_by(2);
-    literals.map(str::to_owned).collect()
-}
-
 #[test]
 fn every_key_that_a_text_names_is_a_key() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -186,20 +175,11 @@ fn every_key_that_a_text_names_is_a_key() {
     let mut texts = vec![("README.md".to_owned(), read(&root.join("README.md")))];
     let mut add = |folder: &str, extension: &str| {
         for path in files(&root.join(folder), extension) {
-            let parts = if extension == "rs" {
-                literals(&read(&path))
-            } else {
-                vec![read(&path)]
-            };
-            let name = path.display().to_string();
-            texts.extend(parts.into_iter().map(|part| (name.clone(), part)));
+            texts.push((path.display().to_string(), read(&path)));
         }
     };
     add("src/cli/topics", "txt");
     add("presets", "md");
-    for room in ["analysis", "lab", "scenario", "lessons", "tui"] {
-        add(&format!("src/{room}"), "rs");
-    }
     let (keys, mut count) = (keys(), 0);
     for (file, text) in &texts {
         for key in named(text) {

@@ -3,6 +3,9 @@
 use crate::support::desk::Desk;
 use crate::support::scenarios::{preset, view};
 use crate::support::words::{has, has_all};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::{Document, Problem, Problems};
+use gyrolab::engine::text::printable::is_steering;
 use gyrolab::lab::Lab;
 use gyrolab::lab::view::HideablePart;
 use gyrolab::lab::view::theme::Marker;
@@ -12,9 +15,6 @@ use gyrolab::lessons::predictions::{LockedAnswer, Predictions};
 use gyrolab::lessons::{
     KeptNumbers, Lesson, LessonBlock, LessonPage, PredictionAnswer, reading, shipped,
 };
-use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Problem, Problems};
-use gyrolab::text::printable::is_steering;
 use gyrolab::tui::screen;
 use proptest::prelude::*;
 use std::fs;

@@ -2,9 +2,9 @@
 
 use crate::support::scenarios::preset;
 use crate::support::words::has;
-use gyrolab::playback::Playback;
-use gyrolab::playback::live::LiveRun;
-use gyrolab::scenario::{Document, Problems, Scenario};
+use gyrolab::engine::scenario::{Document, Problems, Scenario};
+use gyrolab::lab::playback::Playback;
+use gyrolab::lab::playback::live::LiveRun;
 use std::cell::Cell;
 use std::fmt::Write as _;
 use std::fs;

@@ -1,13 +1,13 @@
 //! Files as accidents leave them: whatever is cut out of a scenario, swapped, or put in, it is refused in printable
 //! words or it runs, and never does the program panic.
 
-use gyrolab::analysis::cost;
-use gyrolab::export::COLUMNS;
+use gyrolab::engine::analysis::cost;
+use gyrolab::engine::export::COLUMNS;
+use gyrolab::engine::run::{Sample, Simulation};
+use gyrolab::engine::scenario::presets::PRESETS;
+use gyrolab::engine::scenario::{Document, Problems, Scenario};
+use gyrolab::engine::text::printable::is_steering;
 use gyrolab::physics::scheme;
-use gyrolab::run::{Sample, Simulation};
-use gyrolab::scenario::presets::PRESETS;
-use gyrolab::scenario::{Document, Problems, Scenario};
-use gyrolab::text::printable::is_steering;
 use proptest::prelude::*;
 use proptest::sample::Index;
 use std::sync::Arc;
@@ -281,7 +281,7 @@ proptest! {
     #[test]
     fn any_setting_is_refused_or_runs(
         keys in prop::collection::vec(prop_oneof![
-            prop::sample::select(gyrolab::scenario::keys::KEYS.iter().map(|key| key.path.replace('*', "0")).collect::<Vec<_>>()),
+            prop::sample::select(gyrolab::engine::scenario::keys::KEYS.iter().map(|key| key.path.replace('*', "0")).collect::<Vec<_>>()),
             "[a-z._0-9]{0,12}",
         ], 1..4),
         value in prop_oneof![number(), any::<String>(), prop::collection::vec(number(), 0..4).prop_map(|list| format!("[{}]", list.join(",")))],

@@ -1,7 +1,7 @@
 //! The mouse on a screen without a terminal: what is done where it points.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
-use gyrolab::playback::camera::Camera;
+use gyrolab::plot::camera::Camera;
 use gyrolab::tui::layout::ScreenLayout;
 use gyrolab::tui::mouse::Pointer;
 use gyrolab::tui::mouse::{Did, Mouse};
@@ -220,10 +220,10 @@ fn health_predictions_and_all_but_two_panes_are_hidden_in_the_settings() {
 
 #[test]
 fn every_preset_says_what_to_try_next_in_the_room_there_is() {
-    for preset in gyrolab::scenario::presets::PRESETS {
+    for preset in gyrolab::engine::scenario::presets::PRESETS {
         assert!((20..=84).contains(&preset.next.len()), "{}", preset.name);
         for word in preset.next.split([' ', ':', ',']) {
-            let named = gyrolab::scenario::presets::find(word);
+            let named = gyrolab::engine::scenario::presets::find(word);
             assert!(named.is_none_or(|other| other.name != preset.name));
         }
     }

@@ -3,10 +3,10 @@
 use crate::support::scenarios::changed;
 use crate::support::scenarios::{parse, preset};
 use crate::support::words::{has, has_no};
-use gyrolab::journal::parameters::{Parameter, parameters, table_at, table_of};
-use gyrolab::scenario::Scenario;
-use gyrolab::scenario::file::ScenarioFile;
-use gyrolab::scenario::presets::PRESETS;
+use gyrolab::engine::journal::parameters::{Parameter, parameters, table_at, table_of};
+use gyrolab::engine::scenario::Scenario;
+use gyrolab::engine::scenario::file::ScenarioFile;
+use gyrolab::engine::scenario::presets::PRESETS;
 use toml::Value;
 
 fn listed(scenario: &Scenario) -> Vec<Parameter> {

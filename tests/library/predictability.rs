@@ -3,15 +3,15 @@
 use crate::support::scenarios::{find_scheme, parse, preset};
 use crate::support::stage::{LARGE, Stage};
 use crate::support::words::{has, has_all, has_no};
-use gyrolab::analysis::Monitor;
-use gyrolab::analysis::compare::{ComparisonTable, compare};
-use gyrolab::analysis::health::{Advice, Health, advise};
-use gyrolab::analysis::predictability::{Equilibrium, predictability};
-use gyrolab::analysis::readouts::{ReadoutValue, at_end, find};
-use gyrolab::analysis::remarks::remarks;
-use gyrolab::run::{Clock, Simulation, resampled};
-use gyrolab::scenario::Scenario;
-use gyrolab::scenario::presets::PRESETS;
+use gyrolab::engine::analysis::Monitor;
+use gyrolab::engine::analysis::compare::{ComparisonTable, compare};
+use gyrolab::engine::analysis::health::{Advice, Health, advise};
+use gyrolab::engine::analysis::predictability::{Equilibrium, predictability};
+use gyrolab::engine::analysis::readouts::{ReadoutValue, at_end, find};
+use gyrolab::engine::analysis::remarks::remarks;
+use gyrolab::engine::run::{Clock, Simulation, resampled};
+use gyrolab::engine::scenario::Scenario;
+use gyrolab::engine::scenario::presets::PRESETS;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -226,7 +226,7 @@ fn a_sleeping_top_is_in_no_unstable_equilibrium() {
 #[test]
 fn a_push_ends_the_balance_and_the_run_is_judged_again() {
     let push = "push.0={point='top',force_N=[1,0,0],from_s=1,for_s=0.1}";
-    let mut document = gyrolab::scenario::Document::parse("x.toml", UPRIGHT).unwrap();
+    let mut document = gyrolab::engine::scenario::Document::parse("x.toml", UPRIGHT).unwrap();
     for set in [
         push,
         "motion.scheme=exact",

@@ -2,11 +2,11 @@
 
 use crate::support::scenarios::{parse, preset};
 use crate::support::words::has;
-use gyrolab::journal::restart::{in_force, scenario_from};
+use gyrolab::engine::journal::restart::{in_force, scenario_from};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::{Document, Scenario};
 use gyrolab::physics::State;
 use gyrolab::physics::observables::position;
-use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Scenario};
 use proptest::prelude::*;
 use std::sync::Arc;
 use toml::Table;

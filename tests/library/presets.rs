@@ -2,14 +2,14 @@
 
 use crate::support::ground::names;
 use crate::support::scenarios::preset as preset_named;
-use gyrolab::analysis::compare::compare;
-use gyrolab::analysis::health::{Advice, advise};
-use gyrolab::analysis::{Monitor, Readouts};
-use gyrolab::export::CsvColumn;
-use gyrolab::run::Simulation;
-use gyrolab::scenario::file::ExpectedFile;
-use gyrolab::scenario::presets::{PRESETS, Preset};
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::engine::analysis::compare::compare;
+use gyrolab::engine::analysis::health::{Advice, advise};
+use gyrolab::engine::analysis::{Monitor, Readouts};
+use gyrolab::engine::export::CsvColumn;
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::file::ExpectedFile;
+use gyrolab::engine::scenario::presets::{PRESETS, Preset};
+use gyrolab::engine::scenario::{Document, Scenario};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;

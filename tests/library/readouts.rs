@@ -4,16 +4,16 @@ use crate::support::desk::Desk;
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
 use crate::support::words::{has, has_no};
-use gyrolab::analysis::Predictability;
-use gyrolab::analysis::compare::{ComparisonTable, compare};
-use gyrolab::analysis::readouts::{READOUTS, ReadoutValue, find, names, nearest};
-use gyrolab::analysis::theory::TheoryAxis;
-use gyrolab::analysis::{Monitor, Readouts};
-use gyrolab::export::{COLUMNS, RunSummary};
+use gyrolab::engine::analysis::Predictability;
+use gyrolab::engine::analysis::compare::{ComparisonTable, compare};
+use gyrolab::engine::analysis::readouts::{READOUTS, ReadoutValue, find, names, nearest};
+use gyrolab::engine::analysis::theory::TheoryAxis;
+use gyrolab::engine::analysis::{Monitor, Readouts};
+use gyrolab::engine::export::{COLUMNS, RunSummary};
+use gyrolab::engine::run::{EnergyScale, EnergyUnit, Simulation};
+use gyrolab::engine::scenario::presets::PRESETS;
+use gyrolab::engine::scenario::{Document, Scenario};
 use gyrolab::physics::scheme::{SCHEMES, true_to};
-use gyrolab::run::{EnergyScale, EnergyUnit, Simulation};
-use gyrolab::scenario::presets::PRESETS;
-use gyrolab::scenario::{Document, Scenario};
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
 use std::collections::BTreeSet;
@@ -22,7 +22,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// The readouts at the end of the run, and every row of it.
-fn played(scenario: &Scenario) -> (Readouts, Vec<gyrolab::run::Sample>) {
+fn played(scenario: &Scenario) -> (Readouts, Vec<gyrolab::engine::run::Sample>) {
     let scenario = Arc::new(scenario.clone());
     let mut simulation = Simulation::new(Arc::clone(&scenario));
     let mut monitor = Monitor::new(simulation.now());
@@ -99,7 +99,10 @@ fn a_column_of_the_csv_is_the_readout_of_its_name() {
 }
 
 /// Least and greatest of one number of the rows.
-fn extremes(rows: &[gyrolab::run::Sample], of: fn(&gyrolab::run::Sample) -> f64) -> [f64; 2] {
+fn extremes(
+    rows: &[gyrolab::engine::run::Sample],
+    of: fn(&gyrolab::engine::run::Sample) -> f64,
+) -> [f64; 2] {
     let numbers = || rows.iter().map(of);
     let least = numbers().fold(f64::INFINITY, f64::min);
     [least, numbers().fold(f64::NEG_INFINITY, f64::max)]
@@ -112,7 +115,7 @@ const EXTREMES: [&str; 4] = [
     "measured_highest_z_m",
 ];
 
-fn expected_extremes(rows: &[gyrolab::run::Sample]) -> [f64; 4] {
+fn expected_extremes(rows: &[gyrolab::engine::run::Sample]) -> [f64; 4] {
     let tilt = extremes(rows, |row| row.tilt_deg);
     let z = extremes(rows, |row| row.position.z);
     [tilt[0], tilt[1], z[0], z[1]]
@@ -401,7 +404,7 @@ fn no_text_shows_what_is_no_number() {
             assert_eq!(blemish(&numbers), None, "{case}\n{numbers}");
             let picture = picture(&scenario);
             assert_eq!(blemish(&picture), None, "{case}\n{picture}");
-            for remark in gyrolab::analysis::remarks::remarks(&readouts.health, None) {
+            for remark in gyrolab::engine::analysis::remarks::remarks(&readouts.health, None) {
                 assert_eq!(blemish(&remark.long), None, "{case}: {remark:?}");
             }
         }

@@ -6,7 +6,7 @@
 #![allow(clippy::expect_used)]
 
 use crate::support::scenarios::preset;
-use gyrolab::run::Simulation;
+use gyrolab::engine::run::Simulation;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -2,8 +2,8 @@
 //! has never seen the code can act on it.
 
 use crate::support::words::{has, has_all};
-use gyrolab::scenario::Document;
-use gyrolab::text::printable::is_steering;
+use gyrolab::engine::scenario::Document;
+use gyrolab::engine::text::printable::is_steering;
 use std::fs;
 use std::path::Path;
 
@@ -372,7 +372,7 @@ fn no_key_is_left_out() {
             .any(|row| row.3.starts_with(&begin) && !row.3.contains("missing"));
         by_line || ["push.0.from_s", "push.0.for_s"].contains(&begin.as_str())
     };
-    let left: Vec<_> = gyrolab::scenario::keys::KEYS
+    let left: Vec<_> = gyrolab::engine::scenario::keys::KEYS
         .iter()
         .filter(|key| !covered(key.path))
         .map(|key| key.path)

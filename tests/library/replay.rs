@@ -3,10 +3,10 @@
 
 use crate::support::desk::{Desk, commands};
 use crate::support::scenarios::preset;
-use gyrolab::playback::Playback;
-use gyrolab::playback::recording::RecordedCurve;
-use gyrolab::run::Simulation;
-use gyrolab::scenario::Scenario;
+use gyrolab::engine::recording::RecordedCurve;
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::Scenario;
+use gyrolab::lab::playback::Playback;
 use proptest::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;

@@ -1,41 +1,27 @@
-//! The order of the rooms: no import leads upward, and the terminal's libraries are used in one room only.
+//! The order of the folders: no import leads upward. The boundaries of the crates are held by the compiler; these are the
+//! modules within a crate.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The rooms from the lowest to the highest: each may import those before it.
-const ORDER: [&str; 23] = [
-    "text", "cores", "origin", "physics", "scenario", "run", "journal", "analysis", "playback",
-    "export", "data", "figure", "fit", "sweep", "verify", "own_code", "writeup", "storage", "lab",
-    "lessons", "class", "tui", "cli",
+/// The modules of the program from the lowest to the highest: each may import those before it.
+const PROGRAM: [&str; 10] = [
+    "physics", "engine", "plot", "studies", "report", "lab", "lessons", "class", "tui", "cli",
 ];
-/// The room of the terminal, and the libraries that only it may use.
-const TERMINAL: &str = "tui";
-const TERMINAL_LIBRARIES: [&str; 2] = ["ratatui", "crossterm"];
-
-/// A source file of a room: its path from `src` on, its room, and its code without comments.
-struct Source {
-    path: String,
-    room: String,
-    code: String,
-}
-
-fn sources() -> Vec<Source> {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut files = Vec::new();
-    collect(&src, &mut files);
-    assert!(files.len() > 100, "only {} files found", files.len());
-    let source = |file: &PathBuf| {
-        let path = file.strip_prefix(&src).unwrap().display().to_string();
-        let room = path.split('/').next().unwrap().trim_end_matches(".rs");
-        Source {
-            room: room.to_owned(),
-            code: without_comments(&fs::read_to_string(file).unwrap()),
-            path,
-        }
-    };
-    files.iter().map(source).collect()
-}
+/// The same of the engine.
+const ENGINE: [&str; 11] = [
+    "text",
+    "cores",
+    "provenance",
+    "physics",
+    "scenario",
+    "run",
+    "journal",
+    "analysis",
+    "recording",
+    "export",
+    "data",
+];
 
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
@@ -48,73 +34,43 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// `code` without the comments that run to the end of a line; no other kind is used here.
-fn without_comments(code: &str) -> String {
-    let kept = |line: &str| line.split("//").next().unwrap_or_default().to_owned() + "\n";
-    code.lines().map(kept).collect()
-}
-
-/// Every place in `code` that names something of this crate, from the room's name on.
-fn imports(code: &str) -> impl Iterator<Item = &str> {
-    code.match_indices("crate::")
-        .map(|(at, found)| &code[at + found.len()..])
+/// The imports of the modules in `folder` that lead upward in `order`, a line each.
+fn upward(folder: &Path, order: &[&str]) -> Vec<String> {
+    let place = |name: &str| order.iter().position(|module| *module == name);
+    let mut found = Vec::new();
+    for module in order {
+        let mut files = Vec::from([folder.join(format!("{module}.rs"))]);
+        if files[0].exists() {
+            assert!(!folder.join(module).join("mod.rs").exists());
+        } else {
+            files.clear();
+        }
+        if folder.join(module).exists() {
+            collect(&folder.join(module), &mut files);
+        }
+        let is_crate = folder.join(module).join("Cargo.toml").exists();
+        for file in files.iter().filter(|_| !is_crate) {
+            for line in fs::read_to_string(file).unwrap().lines() {
+                let code = line.split("//").next().unwrap_or_default();
+                for import in code.split("crate::").skip(1) {
+                    let name = import
+                        .split(|c: char| !c.is_alphanumeric() && c != '_')
+                        .next();
+                    if place(name.unwrap()).is_some_and(|there| Some(there) > place(module)) {
+                        found.push(format!("{}: {}", file.display(), line.trim()));
+                    }
+                }
+            }
+        }
+    }
+    found
 }
 
 #[test]
 fn no_import_leads_upward() {
-    let place = |room: &str| ORDER.iter().position(|name| *name == room);
-    let mut upward = Vec::new();
-    for source in sources() {
-        if source.room == "physics" {
-            continue; // a crate of its own, which knows no other room
-        }
-        let Some(here) = place(&source.room) else {
-            assert!(
-                ["lib", "main"].contains(&source.room.as_str()),
-                "{}",
-                source.path
-            );
-            continue;
-        };
-        for import in imports(&source.code) {
-            let room = import
-                .split(|c: char| !(c.is_alphanumeric() || c == '_'))
-                .next();
-            if place(room.unwrap_or_default()).is_none_or(|there| there > here) {
-                let line = import.lines().next().unwrap_or_default();
-                upward.push(format!("{} imports {line}", source.path));
-            }
-        }
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    for (folder, order) in [(src.clone(), &PROGRAM[..]), (src.join("engine"), &ENGINE)] {
+        let found = upward(&folder, order);
+        assert!(found.is_empty(), "{found:#?}");
     }
-    assert!(upward.is_empty(), "{upward:#?}");
-}
-
-#[test]
-fn only_one_room_knows_the_terminals_libraries() {
-    let outside: Vec<_> = sources()
-        .into_iter()
-        .filter(|source| source.room != TERMINAL)
-        .filter(|source| {
-            TERMINAL_LIBRARIES
-                .iter()
-                .any(|name| source.code.contains(name))
-        })
-        .map(|source| source.path)
-        .collect();
-    assert!(outside.is_empty(), "{outside:?}");
-}
-
-#[test]
-fn the_lab_itself_stands_in_two_files() {
-    let own = sources()
-        .into_iter()
-        .filter(|source| source.code.contains("impl Lab {"))
-        .map(|source| source.path);
-    let mut own: Vec<_> = own.collect();
-    own.sort_unstable();
-    assert_eq!(
-        own,
-        ["lab/mod.rs", "lab/routing.rs"],
-        "its parts do the rest"
-    );
 }

@@ -2,12 +2,12 @@
 
 use crate::support::desk::{Desk, commands};
 use crate::support::scenarios::preset;
-use gyrolab::analysis::readouts::{READOUTS, ReadoutValue};
-use gyrolab::export::columns::CsvColumn;
+use gyrolab::engine::analysis::readouts::{READOUTS, ReadoutValue};
+use gyrolab::engine::export::columns::CsvColumn;
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::Document;
 use gyrolab::lab::command;
-use gyrolab::playback::live::LiveRun;
-use gyrolab::run::Simulation;
-use gyrolab::scenario::Document;
+use gyrolab::lab::playback::live::LiveRun;
 use std::sync::Arc;
 
 /// The lab after a run of `name` until `condition`, without a clock.
@@ -67,7 +67,8 @@ fn numbers_of_theory_of_the_exact_motion_and_of_measuring() {
         assert_eq!(end, Ok(()), "{condition}");
         let holds = |desk: &Desk| {
             let readouts = &desk.lab.player().reading.readouts;
-            let expression = gyrolab::journal::expression::Expression::parse(condition).unwrap();
+            let expression =
+                gyrolab::engine::journal::expression::Expression::parse(condition).unwrap();
             let motion = desk.lab.player().motion();
             let value = |name: &str| match name {
                 "motion.time_step_s" => Some(motion.time_step_s),

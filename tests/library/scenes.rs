@@ -2,7 +2,7 @@
 
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::view::Pane;
-use gyrolab::playback::camera::Camera;
+use gyrolab::plot::camera::Camera;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::layout::ScreenLayout;
 use ratatui::layout::Rect;

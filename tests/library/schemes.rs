@@ -2,13 +2,13 @@
 //! take a run over from any other.
 
 use crate::support::scenarios::{find_scheme, parse, preset};
-use gyrolab::analysis::compare::compare;
-use gyrolab::export::{CsvWriter, stream};
+use gyrolab::engine::analysis::compare::compare;
+use gyrolab::engine::export::{CsvWriter, stream};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::run::resampled;
+use gyrolab::engine::scenario::Scenario;
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::physics::{Loads, SchemeInfo, State};
-use gyrolab::run::Simulation;
-use gyrolab::run::resampled;
-use gyrolab::scenario::Scenario;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 

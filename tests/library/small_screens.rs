@@ -1,7 +1,7 @@
 //! What is said on screens with few rows and columns can be read there to its end.
 
 use crate::support::stage::Stage;
-use gyrolab::scenario::presets::PRESETS;
+use gyrolab::engine::scenario::presets::PRESETS;
 use ratatui::layout::Rect;
 
 const TEACHERS: Rect = Rect {

@@ -3,11 +3,11 @@
 use crate::support::scenarios::changed;
 use crate::support::scenarios::{parse, preset, read};
 use crate::support::words::has;
-use gyrolab::journal::parameters::{Parameter, parameters, table_of};
+use gyrolab::engine::journal::parameters::{Parameter, parameters, table_of};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::{Document, Scenario};
 use gyrolab::physics::observables::{angular_velocity, tilt_deg};
 use gyrolab::physics::rotation;
-use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Scenario};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -389,7 +389,7 @@ fn a_rotor_precesses_by_its_momentum_alone() {
     assert!((rate / (load / (WHEEL * spin)) - 1.0).abs() < 0.1);
     // The run from here on keeps the rotor.
     let state = steady.start;
-    let again = gyrolab::journal::restart::scenario_from(&steady, &state, 0).unwrap();
+    let again = gyrolab::engine::journal::restart::scenario_from(&steady, &state, 0).unwrap();
     assert_eq!(again.rotor(), steady.rotor());
     assert!(again.rotor().is_some());
 }

@@ -3,11 +3,11 @@
 use crate::support::scenarios::{parse, preset, resumed};
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::{has, has_all, has_no};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::Document;
 use gyrolab::lab::view::step::StepPageChoice;
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::physics::workings::{ColumnSums, PHASE_NAMES, Phase, WorkedValue};
-use gyrolab::run::Simulation;
-use gyrolab::scenario::Document;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
 use ratatui::layout::Rect;

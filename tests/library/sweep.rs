@@ -1,8 +1,8 @@
 //! Sweeps in the library: those that are shipped, and the rows computed again.
 
-use gyrolab::scenario::Document;
-use gyrolab::sweep::{SWEEPS, Shard, Sweep, find};
-use gyrolab::verify::{Unverified, verify};
+use gyrolab::engine::scenario::Document;
+use gyrolab::studies::sweep::{SWEEPS, Shard, Sweep, find};
+use gyrolab::studies::verify::{Unverified, verify};
 use std::collections::BTreeSet;
 use std::fs;
 use std::ops::ControlFlow;

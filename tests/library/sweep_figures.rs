@@ -1,10 +1,10 @@
 //! Figures of sweeps: what was measured, theory, and what is neither are told apart, and so are the curves.
 
 use crate::figures::{is_tidy, says, table, words};
-use gyrolab::figure::COLUMN_PT;
-use gyrolab::figure::chart::{Chart, ChartSeries};
-use gyrolab::figure::of_table;
-use gyrolab::figure::page::ink::PointMark;
+use gyrolab::plot::COLUMN_PT;
+use gyrolab::plot::chart::{Chart, ChartSeries};
+use gyrolab::plot::ink::PointMark;
+use gyrolab::report::figure::of_table;
 
 #[test]
 fn a_line_of_theory_with_gaps_says_where_they_are_explained() {

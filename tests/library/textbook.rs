@@ -2,7 +2,7 @@
 //! and held against figures from elliptic integrals (30 digits) that know nothing of any stepping.
 
 use crate::support::scenarios::preset as preset_with;
-use gyrolab::run::{Sample, Simulation};
+use gyrolab::engine::run::{Sample, Simulation};
 use std::sync::Arc;
 
 fn samples(preset: &str, set: &[&str]) -> Vec<Sample> {

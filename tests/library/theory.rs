@@ -2,13 +2,13 @@
 
 use crate::support::scenarios::preset as opened;
 use crate::support::words::{has, has_all, has_no};
-use gyrolab::analysis::theory::AxlePath;
-use gyrolab::analysis::{Health, MeasuredNumber, Monitor, Readouts, Theory};
-use gyrolab::export::RunSummary;
+use gyrolab::engine::analysis::theory::AxlePath;
+use gyrolab::engine::analysis::{Health, MeasuredNumber, Monitor, Readouts, Theory};
+use gyrolab::engine::export::RunSummary;
+use gyrolab::engine::run::resampled;
+use gyrolab::engine::run::{Simulation, Truth};
+use gyrolab::engine::scenario::{Document, Scenario};
 use gyrolab::physics::SchemeInfo;
-use gyrolab::run::resampled;
-use gyrolab::run::{Simulation, Truth};
-use gyrolab::scenario::{Document, Scenario};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::time::Duration;

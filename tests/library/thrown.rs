@@ -2,9 +2,9 @@
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
-use gyrolab::data::{DataKind, MeasuredData, MeasuredPoint, at_times, read};
-use gyrolab::fit::{Fit, Free, Model, fit};
-use gyrolab::scenario::Document;
+use gyrolab::engine::data::{DataKind, MeasuredData, MeasuredPoint, at_times, read};
+use gyrolab::engine::scenario::Document;
+use gyrolab::studies::fit::{Fit, Free, Model, fit};
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 

@@ -4,12 +4,12 @@
 use crate::support::dice::Dice;
 use crate::support::scenarios::{find_scheme, parse, preset};
 use differential_equations::prelude::*;
+use gyrolab::engine::run::resampled;
+use gyrolab::engine::run::{Simulation, Truth};
+use gyrolab::engine::scenario::file::{EditFile, PushFile, ScenarioFile};
+use gyrolab::engine::scenario::{Document, Scenario};
 use gyrolab::physics::State;
 use gyrolab::physics::exact::ExactMethod;
-use gyrolab::run::resampled;
-use gyrolab::run::{Simulation, Truth};
-use gyrolab::scenario::file::{EditFile, PushFile, ScenarioFile};
-use gyrolab::scenario::{Document, Scenario};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::fmt::Write;
 use std::sync::Arc;

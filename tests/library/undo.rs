@@ -1,10 +1,10 @@
 //! Undo and redo, where several edits interact.
 
 use crate::support::desk::Desk;
-use gyrolab::journal::{Act, Journal};
+use gyrolab::engine::journal::{Act, Journal};
+use gyrolab::engine::scenario::Document;
+use gyrolab::engine::scenario::file::PushFile;
 use gyrolab::lab::command::Command;
-use gyrolab::scenario::Document;
-use gyrolab::scenario::file::PushFile;
 use gyrolab::tui::keymap::{Key, Mode};
 use proptest::prelude::*;
 use std::time::Duration;
@@ -37,7 +37,7 @@ fn a_run_passed_on_the_way_back_is_left_where_it_stood() {
 
 #[test]
 fn a_push_that_an_edit_of_the_file_adds_is_listed() {
-    let mut file = gyrolab::scenario::presets::find("method-2")
+    let mut file = gyrolab::engine::scenario::presets::find("method-2")
         .unwrap()
         .text
         .to_owned();
@@ -112,7 +112,7 @@ proptest! {
     ) {
         let edits = "\n[[edit]]\nstep = 60\nset = { 'motion.gravity_m_per_s2' = 1 }\n\
                      [[edit]]\nstep = 60\nset = { 'push.0.force_N' = [0, 0, -1] }\n";
-        let text = gyrolab::scenario::presets::find("wobble-push").unwrap().text;
+        let text = gyrolab::engine::scenario::presets::find("wobble-push").unwrap().text;
         let document = Document::parse("edited", &format!("{text}{edits}")).unwrap();
         let mut journal = Journal::of(document.scenario().unwrap().file);
         let (mut past, mut future) = (Vec::new(), Vec::new());

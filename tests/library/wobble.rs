@@ -2,9 +2,9 @@
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
-use gyrolab::analysis::{Monitor, Readouts};
-use gyrolab::run::Simulation;
-use gyrolab::scenario::Scenario;
+use gyrolab::engine::analysis::{Monitor, Readouts};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::Scenario;
 use std::sync::Arc;
 
 fn played(scenario: &Scenario) -> Readouts {

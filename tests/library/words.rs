@@ -170,7 +170,9 @@ fn esc_leads_out_of_the_lessons() {
 fn the_list_of_files_has_those_that_hold_a_run() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-    let preset = gyrolab::scenario::presets::find("cusps").unwrap().text;
+    let preset = gyrolab::engine::scenario::presets::find("cusps")
+        .unwrap()
+        .text;
     write("mine.toml", preset);
     write("broken.toml", "[motion]\ntime_step_s = -1\n");
     write("dotted.toml", "title = 'x'\nmotion.time_step_s = 1\n");
@@ -193,7 +195,9 @@ fn the_browser_goes_into_folders_and_comes_back() {
     let inner = root.path().join("runs").join("june");
     std::fs::create_dir_all(&inner).unwrap();
     std::fs::create_dir(root.path().join(".hidden")).unwrap();
-    let preset = gyrolab::scenario::presets::find("cusps").unwrap().text;
+    let preset = gyrolab::engine::scenario::presets::find("cusps")
+        .unwrap()
+        .text;
     std::fs::write(inner.join("mine.toml"), preset).unwrap();
     std::fs::write(root.path().join("first.toml"), preset).unwrap();
     // As a lab that stays in its folder.
@@ -243,7 +247,9 @@ fn the_browser_goes_into_folders_and_comes_back() {
 fn a_file_in_a_folder_is_opened_with_enter() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("runs")).unwrap();
-    let preset = gyrolab::scenario::presets::find("cusps").unwrap().text;
+    let preset = gyrolab::engine::scenario::presets::find("cusps")
+        .unwrap()
+        .text;
     let title = preset.replace("title = \"Cusps\"", "title = \"Cusps of June\"");
     std::fs::write(folder.path().join("runs/mine.toml"), title).unwrap();
     let mut stage = Stage::open("method-2", &[], SMALL);

@@ -3,8 +3,8 @@
 
 use crate::support::stage::{LARGE, SMALL, Stage, picture};
 use crate::support::words::has_all;
+use gyrolab::engine::scenario::presets::PRESETS;
 use gyrolab::lab::LabRequest;
-use gyrolab::scenario::presets::PRESETS;
 use gyrolab::tui::keymap::{BINDINGS, Key, Mode};
 use gyrolab::tui::screen;
 use proptest::prelude::*;

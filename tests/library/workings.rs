@@ -1,12 +1,12 @@
 //! What a step publishes: its two ends, what is read off it, and the workings, which are the numbers that made it.
 
 use crate::support::scenarios::parse;
+use gyrolab::engine::run::{Simulation, Step};
+use gyrolab::engine::scenario::{Document, Scenario};
+use gyrolab::lab::playback::live::LiveRun;
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::physics::workings::{Phase, PhaseTarget, PointTable, WorkedValue};
 use gyrolab::physics::{observables, rotation};
-use gyrolab::playback::live::LiveRun;
-use gyrolab::run::{Simulation, Step};
-use gyrolab::scenario::{Document, Scenario};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use std::sync::Arc;
 

@@ -3,7 +3,7 @@
 
 use crate::support::ground::Ground;
 use crate::support::pty::LEAVES_ALTERNATE_SCREEN;
-use gyrolab::text::printable::is_steering;
+use gyrolab::engine::text::printable::is_steering;
 use std::process::Output;
 
 /// Sets a window's title, turns text round, and hides.

@@ -2,8 +2,8 @@
 
 use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
 use crate::support::words::{has, has_all, has_no};
+use gyrolab::engine::text::shipped::Shipped;
 use gyrolab::lessons::shipped::{LESSONS, TEMPLATE};
-use gyrolab::text::shipped::Shipped;
 use std::fs;
 
 /// A ground with the template as `my.md`.

@@ -1,7 +1,7 @@
 //! The files and messages that the README and the manual show are what the program takes and says.
 
 use crate::support::ground::Ground;
-use gyrolab::storage::settings;
+use gyrolab::lab::storage::settings;
 
 /// The blocks of `kind` in the README, in order.
 fn blocks(kind: &str) -> Vec<String> {

@@ -2,14 +2,14 @@
 
 use crate::support::ground::names;
 use crate::support::scenarios::preset;
-use gyrolab::export::destination::DestinationError;
-use gyrolab::export::stream;
-use gyrolab::export::{CsvLayout, CsvWriter};
-use gyrolab::run::Simulation;
-use gyrolab::scenario::Scenario;
-use gyrolab::scenario::presets::PRESETS;
-use gyrolab::storage::at_exit::{self, Release};
-use gyrolab::storage::exporting::{Exporting, Written, estimate};
+use gyrolab::engine::export::destination::DestinationError;
+use gyrolab::engine::export::stream;
+use gyrolab::engine::export::{CsvLayout, CsvWriter};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::Scenario;
+use gyrolab::engine::scenario::presets::PRESETS;
+use gyrolab::lab::storage::at_exit::{self, Release};
+use gyrolab::lab::storage::exporting::{Exporting, Written, estimate};
 use std::fs;
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;

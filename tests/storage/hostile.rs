@@ -1,7 +1,7 @@
 //! Damaged session files, and session folders in which another user has placed links, FIFOs or files.
 
 use crate::session::{content, folder, texts};
-use gyrolab::storage::session::{Session, resume};
+use gyrolab::lab::storage::session::{Session, resume};
 use rustix::fs::{CWD, FileType, Mode, mknodat};
 use std::fs;
 use std::os::unix::fs::{chown, symlink};

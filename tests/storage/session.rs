@@ -2,8 +2,8 @@
 
 use crate::support::ground;
 use crate::support::words::has;
-use gyrolab::storage::at_exit::{self, Release};
-use gyrolab::storage::session::{Session, SessionContent, SessionSearch, later, list, resume};
+use gyrolab::lab::storage::at_exit::{self, Release};
+use gyrolab::lab::storage::session::{Session, SessionContent, SessionSearch, later, list, resume};
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::fs::PermissionsExt;

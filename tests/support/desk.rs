@@ -3,11 +3,11 @@
 #![allow(dead_code, reason = "no test needs all of it")]
 
 use super::scenarios::{preset, view};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::{Document, Scenario};
 use gyrolab::lab::command::{self, Command};
 use gyrolab::lab::view::theme::Marker;
 use gyrolab::lab::{ActionResult, Lab};
-use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Scenario};
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::press::press;
 use std::path::Path;

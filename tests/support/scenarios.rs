@@ -1,14 +1,14 @@
 //! Opens scenarios, and makes views of them.
 
-use gyrolab::journal::parameters;
+use gyrolab::engine::journal::parameters;
+use gyrolab::engine::scenario::file::ScenarioFile;
+use gyrolab::engine::scenario::{Document, Problems, Scenario};
 use gyrolab::lab::Lab;
+use gyrolab::lab::storage::session::SessionContent;
 use gyrolab::lab::view::View;
 use gyrolab::lab::view::theme::Marker;
 use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::physics::SchemeInfo;
-use gyrolab::scenario::file::ScenarioFile;
-use gyrolab::scenario::{Document, Problems, Scenario};
-use gyrolab::storage::session::SessionContent;
 use toml::{Table, Value};
 
 /// The preset `name`, with each of `set` (`key=value`) set.

@@ -2,8 +2,8 @@
 
 use super::form::{below, quoted};
 use super::{COMMANDS, Command, CommandRow};
-use crate::scenario::problem::nearest;
-use crate::scenario::{Document, Problem, Problems};
+use crate::engine::scenario::problem::nearest;
+use crate::engine::scenario::{Document, Problem, Problems};
 use std::path::Path;
 use toml::Value;
 

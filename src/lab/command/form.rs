@@ -1,17 +1,17 @@
 //! What the value of a command may be, and how another one is refused.
 
 use super::{CursorTo, SeekTarget};
-use crate::export::layout::LayoutFile;
-use crate::figure::PageFormat;
-use crate::figure::kind::FigureKind;
-use crate::journal::expression::Expression;
-use crate::journal::next_push::Toward;
+use crate::engine::export::layout::LayoutFile;
+use crate::engine::journal::expression::Expression;
+use crate::engine::journal::next_push::Toward;
+use crate::engine::scenario::dotted::join;
+use crate::engine::scenario::head::is_file;
+use crate::engine::scenario::keys::{self, Range, ValueKind};
+use crate::engine::scenario::problem::nearest;
+use crate::engine::scenario::{Problem, presets};
 use crate::lab::numbers;
-use crate::scenario::dotted::join;
-use crate::scenario::head::is_file;
-use crate::scenario::keys::{self, Range, ValueKind};
-use crate::scenario::problem::nearest;
-use crate::scenario::{Problem, presets};
+use crate::plot::PageFormat;
+use crate::report::figure::kind::FigureKind;
 use serde::de::DeserializeOwned;
 use std::path::Path;
 use toml::{Table, Value};

@@ -5,11 +5,11 @@
 //! curves can be drawn. [`Compared`] has the two side by side.
 
 use super::OwnCode;
-use crate::data::compared::Compared;
-use crate::data::{ColumnOptions, MeasuredData, RunQuantity, RunReader, TimeSeries};
-use crate::playback::recording::{Moment, RecordedCurve, Recording};
-use crate::run::Simulation;
-use crate::scenario::{Problems, Scenario};
+use crate::engine::data::compared::Compared;
+use crate::engine::data::{ColumnOptions, MeasuredData, RunQuantity, RunReader, TimeSeries};
+use crate::engine::recording::{Moment, RecordedCurve, Recording};
+use crate::engine::run::Simulation;
+use crate::engine::scenario::{Problems, Scenario};
 use nalgebra::Vector3;
 use std::sync::Arc;
 

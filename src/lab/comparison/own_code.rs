@@ -1,14 +1,14 @@
 //! Measured data that are rows of somebody's own program of the report's scheme: the verdict of `gyrolab verify --against`
 //! about the run as it stands, found in the background.
 
-use crate::data::quantity::TIME_COLUMN;
-use crate::data::{self, ColumnOptions, MeasuredData};
-use crate::own_code::{self, SlipTrial, Verdict, rows};
-use crate::playback::background::BackgroundJob;
-use crate::scenario::csv::Renaming;
-use crate::scenario::{Problems, Scenario};
-use crate::text::printable::printable_lines;
-use crate::verify::Unverified;
+use crate::engine::data::quantity::TIME_COLUMN;
+use crate::engine::data::{self, ColumnOptions, MeasuredData};
+use crate::engine::scenario::csv::Renaming;
+use crate::engine::scenario::{Problems, Scenario};
+use crate::engine::text::printable::printable_lines;
+use crate::lab::playback::background::BackgroundJob;
+use crate::studies::own_code::{self, SlipTrial, Verdict, rows};
+use crate::studies::verify::Unverified;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -1,9 +1,9 @@
 //! Where the run is on its way to by itself: back to the step where it was left, or, begun anew by an edit, to the time at
 //! which the run before stood.
 
-use crate::playback::live::LiveRun;
-use crate::playback::{Halt, Playback};
-use crate::run::{Clock, Simulation};
+use crate::engine::run::{Clock, Simulation};
+use crate::lab::playback::live::LiveRun;
+use crate::lab::playback::{Halt, Playback};
 
 /// The step to which the run is on its way by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

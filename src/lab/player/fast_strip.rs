@@ -1,13 +1,13 @@
 //! The window of the strip of the fast motion. While it passes too fast to be seen, it is chosen only once in a while.
 
-use crate::analysis::Readouts;
+use crate::engine::analysis::Readouts;
+use crate::engine::recording::RecordedCurve;
+use crate::engine::run::Clock;
+use crate::lab::playback::Playback;
+use crate::lab::playback::detail::{Detail, DetailRequest, Placement};
+use crate::lab::playback::pace::Speed;
+use crate::lab::playback::reading::Reading;
 use crate::lab::view::View;
-use crate::playback::Playback;
-use crate::playback::detail::{Detail, DetailRequest, Placement};
-use crate::playback::pace::Speed;
-use crate::playback::reading::Reading;
-use crate::playback::recording::RecordedCurve;
-use crate::run::Clock;
 use std::time::Duration;
 
 /// If the window passes in less wall time than this, s, the strip stands still for a while.

@@ -1,7 +1,7 @@
 //! The list of the values that can be edited, with the selected one.
 
-use crate::journal::next_push::{NextPush, PushField};
-use crate::journal::parameters::Parameter;
+use crate::engine::journal::next_push::{NextPush, PushField};
+use crate::engine::journal::parameters::Parameter;
 
 /// The heading over the values of the push to come.
 pub(super) const NEXT_PUSH_HEADING: &str = "next push (p)";
@@ -185,7 +185,7 @@ impl Match {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::journal::parameters::{parameters, table_of};
+    use crate::engine::journal::parameters::{parameters, table_of};
     use crate::lab::for_tests::scenario;
 
     /// A value of a scenario that is listed under this group and label.

@@ -2,17 +2,17 @@
 
 use super::swings;
 use super::{Pane, View};
+use crate::engine::recording::RecordedCurve;
+use crate::engine::run::Simulation;
+use crate::engine::scenario::screen::AUTO;
 use crate::lab::action::{Direction, signed};
 use crate::lab::answer::{ActionResult, Done};
 use crate::lab::command::{Command, CursorTo, MOST_MAGNIFIED, SeekTarget};
+use crate::lab::playback::lookup;
+use crate::lab::playback::strip::Strip;
 use crate::lab::player::Player;
 use crate::lab::step_pane::StepPane;
-use crate::playback::camera::Zoom;
-use crate::playback::lookup;
-use crate::playback::recording::RecordedCurve;
-use crate::playback::strip::Strip;
-use crate::run::Simulation;
-use crate::scenario::screen::AUTO;
+use crate::plot::camera::Zoom;
 use toml::Table;
 
 /// The share of the window by which a key moves the cursor, and by which it moves the window.

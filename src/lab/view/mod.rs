@@ -12,10 +12,10 @@ mod swings;
 pub mod theme;
 
 use super::sheet::Sheet;
-use crate::playback::camera::{Camera, Zoom};
-use crate::playback::recording::RecordedCurve;
-use crate::run::Clock;
-use crate::scenario::{Scenario, keys};
+use crate::engine::recording::RecordedCurve;
+use crate::engine::run::Clock;
+use crate::engine::scenario::{Scenario, keys};
+use crate::plot::camera::{Camera, Zoom};
 pub use pane::{HideablePart, Pane};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};

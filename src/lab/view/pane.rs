@@ -1,6 +1,6 @@
 //! The parts of the screen, by the names that commands, `[view]` and sessions have for them.
 
-pub use crate::scenario::screen::Pane;
+pub use crate::engine::scenario::screen::Pane;
 use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,9 +1,9 @@
 //! What the step pane shows of the time step taken last: one of its phases, or why the axle goes sideways.
 
+use crate::engine::scenario::file::Choice;
+use crate::engine::scenario::screen::{LAST_PHASE, WHY};
 use crate::physics::Workings;
 use crate::physics::workings::PHASE_NAMES;
-use crate::scenario::file::Choice;
-use crate::scenario::screen::{LAST_PHASE, WHY};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 

@@ -1,7 +1,7 @@
 //! Swings of the tilt, counted from one of its turns to another.
 
-use crate::analysis::readouts::Readouts;
-use crate::text::number::{short, uncertain};
+use crate::engine::analysis::readouts::Readouts;
+use crate::engine::text::number::{short, uncertain};
 
 /// Number, period and mean of the swings between `turns`, the time, s, and the tilt, degrees, of each, beside theory's in
 /// `readouts`; `None` for fewer than two turns.

@@ -1,14 +1,14 @@
 //! The TOML of a block, and what is wrong with it.
 
 use super::{BlockReader, BlockResult, expression};
-use crate::journal::expression::Expression;
+use crate::engine::journal::expression::Expression;
+use crate::engine::scenario::dotted::join;
+use crate::engine::scenario::problem::nearest;
+use crate::engine::scenario::{Document, Problem};
+use crate::engine::text::printable::is_steering;
 use crate::lab::command::COMMANDS;
 use crate::lessons::structure::on_line;
 use crate::lessons::text::LessonText;
-use crate::scenario::dotted::join;
-use crate::scenario::problem::nearest;
-use crate::scenario::{Document, Problem};
-use crate::text::printable::is_steering;
 use toml::Value;
 
 /// The longest line of text in a block, characters.

@@ -1,12 +1,12 @@
 //! The list of presets and files, with a preview of what is selected.
 
 use super::{longest, popup_frame, write};
+use crate::engine::scenario::Scenario;
+use crate::engine::text::printable::printable;
+use crate::engine::text::wrap::wrapped;
 use crate::lab::Lab;
 use crate::lab::browser::Browser;
 use crate::lab::view::theme::Theme;
-use crate::scenario::Scenario;
-use crate::text::printable::printable;
-use crate::text::wrap::wrapped;
 use crate::tui::keymap::Mode;
 use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;

@@ -1,14 +1,14 @@
 //! The lines around the panes: title, health and keys.
 
 use super::{longest, shortened, write};
-use crate::analysis::remarks::{Remark, remarks};
+use crate::engine::analysis::remarks::{Remark, remarks};
+use crate::engine::text::number::{fixed, significant};
+use crate::engine::text::wrap::columns;
 use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
+use crate::lab::playback::reading::Reading;
 use crate::lab::view::step::StepPageChoice;
 use crate::lab::view::{HideablePart, Pane};
-use crate::playback::reading::Reading;
-use crate::text::number::{fixed, significant};
-use crate::text::wrap::columns;
 use crate::tui::keymap::{BINDINGS, Binding, FooterPriority, Key, KeyEffect, Mode};
 use crate::tui::screen::page_goes_on;
 use crate::tui::split::split_columns;

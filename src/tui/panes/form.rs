@@ -1,9 +1,9 @@
 //! A form, over the bottom of the panes.
 
 use super::{popup_frame, wrapped_to, write};
+use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::form::{InputField, InputForm};
 use crate::lab::view::theme::Theme;
-use crate::text::wrap::{columns, wrapped};
 use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;

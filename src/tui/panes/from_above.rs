@@ -4,15 +4,15 @@
 //! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
 
 use super::{MOST_SHOWN_PUSHES, PaneRow, PlotInputs, ROWS_A_LINE, Width, round_frame, write};
-use crate::data::MeasuredPlace;
+use crate::engine::data::MeasuredPlace;
+use crate::engine::recording::Moment;
+use crate::engine::run::Clock;
+use crate::engine::text::wrap::columns;
+use crate::lab::playback::ages::{Age, Ages};
+use crate::lab::playback::path::PathFromAbove;
 use crate::lab::view::Pane;
 use crate::lab::view::theme::Marker;
-use crate::playback::ages::{Age, Ages};
-use crate::playback::camera::Zoom;
-use crate::playback::path::PathFromAbove;
-use crate::playback::recording::Moment;
-use crate::run::Clock;
-use crate::text::wrap::columns;
+use crate::plot::camera::Zoom;
 use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
 use crate::tui::plane::{LabelCells, Plane};

@@ -2,11 +2,11 @@
 //! purpose, and the words are those of the glossary.
 
 use super::{PANES, popup_frame, write};
+use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::action::Action;
 use crate::lab::values::list::Match;
 use crate::lab::view::Pane;
 use crate::lab::{Lab, LabRequest, Mode};
-use crate::text::wrap::{columns, wrapped};
 use crate::tui::keymap::{BINDINGS, Binding, KeyEffect, PURPOSES};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;

@@ -2,8 +2,8 @@
 
 use super::chrome::SEPARATOR;
 use super::{wrapped_to, write};
+use crate::engine::text::wrap::wrapped;
 use crate::lab::{Lab, MOST_COUNTED};
-use crate::text::wrap::wrapped;
 use crate::tui::layout::ScreenLayout;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;

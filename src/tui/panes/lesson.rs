@@ -1,13 +1,13 @@
 //! The page of a lesson beside the run: its text, the question with its answers, what is to be reached, and the keys.
 
 use super::{PaneRow, Width, frame, longest, write};
+use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::sheet::{Emphasis, Paragraph, Sheet, SheetLineKind};
 use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
-use crate::text::wrap::{columns, wrapped};
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;

@@ -2,13 +2,13 @@
 
 use super::chrome::SEPARATOR;
 use super::{shortened, write};
-use crate::data::RunQuantity;
-use crate::data::compared::Sum;
+use crate::engine::data::RunQuantity;
+use crate::engine::data::compared::Sum;
+use crate::engine::text::number::{counted, short, shortest};
+use crate::engine::text::printable::printable;
+use crate::engine::text::wrap::columns;
 use crate::lab::Lab;
 use crate::lab::comparison::DataComparison;
-use crate::text::number::{counted, short, shortest};
-use crate::text::printable::printable;
-use crate::text::wrap::columns;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

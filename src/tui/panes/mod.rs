@@ -1,7 +1,7 @@
 //! The panes. Each borrows what it shows and draws it on its area; none of them changes anything.
 //!
 //! [`PANES`] is the one table of panes: a new pane is a file with its `ROW`, and that row's name in the table. The program
-//! gives the [`IDS`] to [`screen`](crate::scenario::screen), by which files and commands name panes.
+//! gives the [`IDS`] to [`screen`](crate::engine::scenario::screen), by which files and commands name panes.
 
 pub mod browser;
 pub mod chrome;
@@ -17,19 +17,19 @@ pub mod three_d;
 pub mod timeline;
 pub mod traces;
 
+use crate::engine::run::Sample;
+use crate::engine::text::printable::printable;
+use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::action::Direction;
 use crate::lab::comparison::DataComparison;
+use crate::lab::playback::detail::Detail;
+use crate::lab::playback::ghost::Ghost;
+use crate::lab::playback::live::LiveRun;
+use crate::lab::playback::reading::Reading;
 use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
 use crate::lab::{KeyCommands, Lab};
-use crate::playback::detail::Detail;
-use crate::playback::ghost::Ghost;
-use crate::playback::live::LiveRun;
-use crate::playback::reading::Reading;
-use crate::run::Sample;
-use crate::text::printable::printable;
-use crate::text::wrap::{columns, wrapped};
 use crate::tui::keymap::Binding;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -313,7 +313,7 @@ mod tests {
 
     #[test]
     fn every_pane_has_a_rank_of_its_own_and_those_that_the_lab_names_are_among_them() {
-        assert_eq!(IDS, crate::scenario::screen::panes());
+        assert_eq!(IDS, crate::engine::scenario::screen::panes());
         for (index, row) in PANES.iter().enumerate() {
             assert!(PANES[..index].iter().all(|other| other.rank != row.rank));
         }

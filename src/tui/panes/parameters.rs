@@ -6,14 +6,14 @@
 mod lines;
 
 use super::{PaneRow, Width, frame, leave_one_out, shortened, write};
+use crate::engine::scenario::{Motion, Scenario};
+use crate::engine::text::printable::printable;
+use crate::engine::text::wrap::columns;
 use crate::lab::action::Action;
+use crate::lab::playback::reading::Reading;
 use crate::lab::values::list::ValueList;
 use crate::lab::values::list::{ListedValue, Match};
 use crate::lab::view::{HideablePart, Pane, View};
-use crate::playback::reading::Reading;
-use crate::scenario::{Motion, Scenario};
-use crate::text::printable::printable;
-use crate::text::wrap::columns;
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;

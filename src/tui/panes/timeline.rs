@@ -4,10 +4,10 @@
 //! the scale changes only when the run goes on beyond the line's end.
 
 use super::write;
+use crate::engine::run::Clock;
+use crate::engine::text::number::decimal;
 use crate::lab::Lab;
-use crate::playback::marks::Marks;
-use crate::run::Clock;
-use crate::text::number::decimal;
+use crate::lab::playback::marks::Marks;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

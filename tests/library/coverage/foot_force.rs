@@ -2,9 +2,9 @@
 
 use super::{Case, preset, random};
 use crate::support::scenarios;
-use gyrolab::analysis::{MeasuredNumber, Monitor};
-use gyrolab::run::Simulation;
-use gyrolab::scenario::Scenario;
+use gyrolab::engine::analysis::{MeasuredNumber, Monitor};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::Scenario;
 use rayon::prelude::*;
 use std::sync::Arc;
 

@@ -9,9 +9,9 @@
 use super::{Case, between, log_between, preset, random};
 use crate::support::dice::Dice;
 use crate::support::scenarios::parse;
-use gyrolab::analysis::{Instruments, MeasuredNumber, WithoutNutation};
-use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::engine::analysis::{Instruments, MeasuredNumber, WithoutNutation};
+use gyrolab::engine::run::Simulation;
+use gyrolab::engine::scenario::{Document, Scenario};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::sync::Arc;

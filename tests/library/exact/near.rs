@@ -1,8 +1,8 @@
 //! The closed form at many times at once, against the closed form itself.
 
+use gyrolab::engine::run::{Simulation, Truth};
+use gyrolab::engine::scenario::Document;
 use gyrolab::physics::exact::AT_ONCE;
-use gyrolab::run::{Simulation, Truth};
-use gyrolab::scenario::Document;
 use nalgebra::Vector3;
 use std::sync::Arc;
 

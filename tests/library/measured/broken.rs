@@ -1,7 +1,7 @@
 //! Files of measured data that are refused, and in which words: file, line, column, value, rule and remedy.
 
-use gyrolab::data::{open, read};
-use gyrolab::text::printable::is_steering;
+use gyrolab::engine::data::{open, read};
+use gyrolab::engine::text::printable::is_steering;
 use std::fs;
 
 #[track_caller]

@@ -1,8 +1,8 @@
 //! What a run says at the measured times.
 
 use crate::support::scenarios::preset;
-use gyrolab::data::{DataKind, TimeSeries, at_times, read};
-use gyrolab::run::{Simulation, Truth};
+use gyrolab::engine::data::{DataKind, TimeSeries, at_times, read};
+use gyrolab::engine::run::{Simulation, Truth};
 use std::sync::Arc;
 
 /// A series of these columns with a row at each of these times.

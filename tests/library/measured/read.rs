@@ -1,7 +1,7 @@
 //! Files of measured data as they are read.
 
-use gyrolab::data::SHIPPED;
-use gyrolab::data::{DataKind, MeasuredData, RunTable, TimeSeries, open, read};
+use gyrolab::engine::data::SHIPPED;
+use gyrolab::engine::data::{DataKind, MeasuredData, RunTable, TimeSeries, open, read};
 use toml::Value;
 
 #[track_caller]
@@ -38,7 +38,7 @@ fn a_time_series_has_curves_with_gaps_and_uncertainties() {
     let [tilt, spin] = &series.curves[..] else {
         panic!("{series:?}")
     };
-    let points = |curve: &gyrolab::data::MeasuredCurve| -> Vec<(usize, f64, Option<f64>)> {
+    let points = |curve: &gyrolab::engine::data::MeasuredCurve| -> Vec<(usize, f64, Option<f64>)> {
         let points = curve.points.iter();
         points
             .map(|point| (point.row, point.value, point.sigma))
@@ -81,8 +81,8 @@ fn a_spreadsheet_with_decimal_commas_is_read_as_it_is_meant() {
 
 #[test]
 fn what_gyrolab_exports_is_measured_data_too() {
-    use gyrolab::export::CsvWriter;
-    use gyrolab::export::layout::LayoutFile;
+    use gyrolab::engine::export::CsvWriter;
+    use gyrolab::engine::export::layout::LayoutFile;
     let scenario = std::sync::Arc::new(crate::support::scenarios::preset("steady-slow", &[]));
     for excel in [false, true] {
         let layout = LayoutFile {
@@ -91,7 +91,7 @@ fn what_gyrolab_exports_is_measured_data_too() {
         };
         let layout = layout.check().unwrap();
         let mut csv = CsvWriter::with_layout(Vec::new(), &scenario, layout).unwrap();
-        let simulation = gyrolab::run::Simulation::new(std::sync::Arc::clone(&scenario));
+        let simulation = gyrolab::engine::run::Simulation::new(std::sync::Arc::clone(&scenario));
         csv.write(&simulation.sample()).unwrap();
         let text = String::from_utf8(csv.finish().unwrap()).unwrap();
         let series = series(&text);

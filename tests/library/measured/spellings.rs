@@ -1,9 +1,9 @@
 //! Files as other programs write them: names, units, columns and rows that are not read.
 
-use gyrolab::data::{ColumnOptions, ColumnSigma, MeasuredData, doubts, read, read_with};
-use gyrolab::scenario::Document;
-use gyrolab::scenario::csv::renaming;
-use gyrolab::text::printable::is_steering;
+use gyrolab::engine::data::{ColumnOptions, ColumnSigma, MeasuredData, doubts, read, read_with};
+use gyrolab::engine::scenario::Document;
+use gyrolab::engine::scenario::csv::renaming;
+use gyrolab::engine::text::printable::is_steering;
 use std::sync::Arc;
 
 fn options(map: &str, sigma: &str) -> ColumnOptions {
@@ -299,7 +299,7 @@ fn one_column_of_a_number_of_the_run_is_a_table() {
         "predicted_nutation_period_s\n0,11\n0,12\n",
     ] {
         let measured = mapped(text, "");
-        let gyrolab::data::DataKind::Table(table) = measured.data else {
+        let gyrolab::engine::data::DataKind::Table(table) = measured.data else {
             panic!("no table")
         };
         let values = table.readouts[0].points.iter().map(|point| point.value);
@@ -353,7 +353,7 @@ fn text_in_other_encodings_is_read_or_told_what_to_do() {
     let path = folder.path().join("lab.csv");
     let name = path.to_str().unwrap();
     std::fs::write(&path, b"Time (s);Gyr X (\xb0/s)\r\n0,5;100\r\n").unwrap();
-    let measured = gyrolab::data::open(name).unwrap();
+    let measured = gyrolab::engine::data::open(name).unwrap();
     assert_eq!(last(&measured), (0.5, vec![("w1_rad_per_s", 1.745329252)]));
     let utf16 = "t_s,tilt_deg\n0,1\n".encode_utf16();
     let bytes: Vec<u8> = [0xff, 0xfe]
@@ -361,7 +361,7 @@ fn text_in_other_encodings_is_read_or_told_what_to_do() {
         .chain(utf16.flat_map(u16::to_le_bytes))
         .collect();
     std::fs::write(&path, bytes).unwrap();
-    let told = gyrolab::data::open(name).unwrap_err().to_string();
+    let told = gyrolab::engine::data::open(name).unwrap_err().to_string();
     assert!(
         told.contains("UTF-16") && told.contains("CSV UTF-8"),
         "{told}"
@@ -378,7 +378,7 @@ fn names_in_a_note_steer_no_terminal() {
 /// The reader of rows that somebody's own program wrote is the same.
 #[test]
 fn rows_of_a_program_have_units_too() {
-    use gyrolab::own_code::rows;
+    use gyrolab::studies::own_code::rows;
     let read = |text: &str, map: &str| rows::read(text, &options(map, "").map, None, 0.1);
     for (text, map) in [
         ("t;x;y;z\n0;0,1;0,2;0,3\n0,1;0,1;0,2;0,3\n", ""),

@@ -1,13 +1,13 @@
 //! The lines of the pane. Each number has as many decimals as there is room for.
 
-use crate::analysis::remarks::{short_no_drift, short_unit};
-use crate::analysis::theory::{AxlePath, TheoryAxis};
-use crate::physics::{Body, Friction};
-use crate::playback::reading::Reading;
-use crate::scenario::{Motion, Scenario, Window};
-use crate::text::number::{
+use crate::engine::analysis::remarks::{short_no_drift, short_unit};
+use crate::engine::analysis::theory::{AxlePath, TheoryAxis};
+use crate::engine::scenario::{Motion, Scenario, Window};
+use crate::engine::text::number::{
     NOT_AVAILABLE, exponent, fixed as decimals_of, shortest, significant, without_minus_zero,
 };
+use crate::lab::playback::reading::Reading;
+use crate::physics::{Body, Friction};
 use crate::tui::theme::Role;
 use std::borrow::Cow;
 

@@ -3,9 +3,9 @@
 
 use super::super::shortened;
 use super::page::{StepPageLine, StepPageSection};
+use crate::engine::text::number::{NOT_AVAILABLE, exponent, significant};
+use crate::engine::text::wrap::columns;
 use crate::physics::workings::{PointTable, WorkedQuantity, WorkedValue};
-use crate::text::number::{NOT_AVAILABLE, exponent, significant};
-use crate::text::wrap::columns;
 use crate::tui::theme::Role;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;

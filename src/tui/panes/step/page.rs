@@ -1,8 +1,8 @@
 //! A page of text in sections, of which the least important are left out where the screen is too small for all.
 
 use super::super::{leave_one_out, write};
+use crate::engine::text::wrap::wrapped;
 use crate::lab::view::theme::Theme;
-use crate::text::wrap::wrapped;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

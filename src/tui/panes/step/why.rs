@@ -3,12 +3,12 @@
 use super::super::write;
 use super::numbers::{self, CellFormat};
 use super::page::{self, StepPageSection};
+use crate::engine::text::wrap::wrapped;
 use crate::lab::Lab;
 use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::View;
 use crate::physics::loads::torque;
 use crate::physics::workings::{WorkedQuantity, WorkedValue};
-use crate::text::wrap::wrapped;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::plane::Plane;
 use crate::tui::split::{split_columns, split_rows};

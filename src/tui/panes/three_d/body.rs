@@ -1,10 +1,10 @@
 //! The body in the scene: axle, hub, spokes, rim, masses and solid parts. Near parts look heavier than far ones.
 
 use super::{CIRCLE_PARTS, SceneSubject};
+use crate::engine::scenario::file::RimFile;
+use crate::lab::playback::live::LiveRun;
+use crate::lab::playback::outline::{self, Polyline};
 use crate::physics::{PlacedSolid, State};
-use crate::playback::live::LiveRun;
-use crate::playback::outline::{self, Polyline};
-use crate::scenario::file::RimFile;
 use crate::tui::dots::Ink;
 use crate::tui::scene::{DotScene, LineStroke};
 use crate::tui::theme::Role;
@@ -85,24 +85,27 @@ impl DrawnBody {
     }
 }
 
-impl RimFile {
-    /// The point `index` of `points` on the rim, or on a circle that is `share` as large.
-    fn at(&self, state: &State, index: usize, points: usize, share: f64) -> Vector3<f64> {
-        let (sin, cos) = libm::sincos(TAU * index as f64 / points as f64);
-        let radius = share * self.radius_m;
-        state.orientation * Vector3::new(radius * cos, radius * sin, self.height_m)
-    }
+/// The point `index` of `points` on the rim, or on a circle that is `share` as large.
+fn rim_point(
+    rim: &RimFile,
+    state: &State,
+    index: usize,
+    points: usize,
+    share: f64,
+) -> Vector3<f64> {
+    let (sin, cos) = libm::sincos(TAU * index as f64 / points as f64);
+    let radius = share * rim.radius_m;
+    state.orientation * Vector3::new(radius * cos, radius * sin, rim.height_m)
+}
 
-    fn circle(&self, state: &State) -> Vec<Vector3<f64>> {
-        let parts = 0..CIRCLE_PARTS;
-        parts
-            .map(|part| self.at(state, part, CIRCLE_PARTS, 1.0))
-            .collect()
-    }
+fn rim_circle(rim: &RimFile, state: &State) -> Vec<Vector3<f64>> {
+    (0..CIRCLE_PARTS)
+        .map(|part| rim_point(rim, state, part, CIRCLE_PARTS, 1.0))
+        .collect()
+}
 
-    fn masses(&self, state: &State) -> impl Iterator<Item = Vector3<f64>> {
-        (0..self.points).map(|point| self.at(state, point, self.points, 1.0))
-    }
+fn rim_masses(rim: &RimFile, state: &State) -> impl Iterator<Item = Vector3<f64>> {
+    (0..rim.points).map(|point| rim_point(rim, state, point, rim.points, 1.0))
 }
 
 /// A part as it is drawn, upright.
@@ -162,9 +165,9 @@ impl SceneSubject<'_> {
                 None => (LineStroke::Thin, text),
                 Some(false) => (LineStroke::Thin, Ink::Faint(Role::Quiet)),
             };
-            scene.ring(&rim.circle(state), look);
+            scene.ring(&rim_circle(rim, state), look);
             // One spoke only: it shows that the wheel turns, and more of them would hide the axle.
-            let [hub, at] = [HUB, 1.0].map(|share| rim.at(state, 0, 1, share));
+            let [hub, at] = [HUB, 1.0].map(|share| rim_point(rim, state, 0, 1, share));
             scene.line(&hub, &at, LineStroke::Thin, text);
         }
     }
@@ -200,8 +203,8 @@ impl SceneSubject<'_> {
         let (foot, top) = self.shape.axle;
         scene.line(&(axle * foot), &(axle * top), stroke, ink);
         if let Some(rim) = &self.shape.rim {
-            scene.ring(&rim.circle(state), |_| EARLIER_BODY_STROKE);
-            let spoke = rim.at(state, 0, 1, 1.0);
+            scene.ring(&rim_circle(rim, state), |_| EARLIER_BODY_STROKE);
+            let spoke = rim_point(rim, state, 0, 1, 1.0);
             scene.line(&(axle * rim.height_m), &spoke, stroke, ink);
         }
         for at in &self.shape.free {
@@ -252,7 +255,7 @@ impl SceneSubject<'_> {
         };
         let rim = self.shape.rim.iter().filter(has_room);
         let free = self.shape.free.iter().map(|at| state.orientation * at);
-        let masses = rim.flat_map(|rim| rim.masses(state)).chain(free);
+        let masses = rim.flat_map(|rim| rim_masses(rim, state)).chain(free);
         masses.filter(|at| scene.shows(at)).collect()
     }
 

@@ -1,8 +1,8 @@
 //! The axis of time under the strips, and the axis of values beside them.
 
-use crate::playback::scale::{self, StripScale};
-use crate::playback::strip::Strip;
-use crate::text::number::{decimal, exponent, fixed};
+use crate::engine::text::number::{decimal, exponent, fixed};
+use crate::lab::playback::scale::{self, StripScale};
+use crate::lab::playback::strip::Strip;
 
 /// Times from this on, s, have more digits than a tick has room for.
 const LONG_TIME_S: f64 = 1e6;

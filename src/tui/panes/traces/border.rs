@@ -4,10 +4,10 @@
 use super::super::longest;
 use super::groups::StripContent;
 use super::{TRACES_ROW, Traces, ZOOM_MARK, write};
-use crate::playback::ghost::Ghost;
-use crate::playback::marks::Marks;
-use crate::playback::strip::Strip;
-use crate::text::number::decimal;
+use crate::engine::text::number::decimal;
+use crate::lab::playback::ghost::Ghost;
+use crate::lab::playback::marks::Marks;
+use crate::lab::playback::strip::Strip;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

@@ -1,8 +1,8 @@
 //! Which strips there are, and where they stand.
 
 use super::{STRIP, STRIP_NAME_WIDTH, Traces, WHOLE_TIME_SHARE, axis};
-use crate::playback::recording::RecordedCurve;
-use crate::playback::strip::Strip;
+use crate::engine::recording::RecordedCurve;
+use crate::lab::playback::strip::Strip;
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
 use ratatui::layout::{Margin, Position, Rect};

@@ -2,14 +2,14 @@
 
 use super::Traces;
 use super::groups::{Group, StripContent};
-use crate::data::compared::ComparedPoint;
+use crate::engine::data::compared::ComparedPoint;
+use crate::engine::recording::{Extent, RecordedCurve, Recording};
+use crate::engine::text::number::fixed;
 use crate::lab::comparison::DataComparison;
-use crate::playback::ghost::Ghost;
-use crate::playback::marks::Marks;
-use crate::playback::recording::{Extent, RecordedCurve, Recording};
-use crate::playback::scale::StripScale;
-use crate::playback::strip::{Blocks, Strip, StripColumn};
-use crate::text::number::fixed;
+use crate::lab::playback::ghost::Ghost;
+use crate::lab::playback::marks::Marks;
+use crate::lab::playback::scale::StripScale;
+use crate::lab::playback::strip::{Blocks, Strip, StripColumn};
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::theme::Role;
 use ratatui::layout::Rect;

@@ -1,0 +1,199 @@
+//! What a recording stores: the curves, their values at one moment, and their extremes over many.
+
+use crate::physics::State;
+use crate::run::Sample;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RecordedCurve {
+    /// x of the traced point, world frame, m.
+    X,
+    /// y of the traced point, world frame, m.
+    Y,
+    /// z of the traced point, world frame, m.
+    Z,
+    /// Angle of the axle from +z, degrees.
+    Tilt,
+}
+
+impl RecordedCurve {
+    pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::Z, Self::Tilt];
+
+    pub const OF_POINT: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// The name of its numbers in a CSV and among the readouts.
+    pub fn column(self) -> &'static str {
+        self.named().2
+    }
+
+    pub fn name(self) -> &'static str {
+        self.named().0
+    }
+
+    /// The unit of its extents, as it is written after numbers.
+    pub fn unit(self) -> &'static str {
+        self.named().1
+    }
+
+    pub fn at(self, sample: &Sample) -> f64 {
+        match self {
+            Self::X => sample.position.x,
+            Self::Y => sample.position.y,
+            Self::Z => sample.position.z,
+            Self::Tilt => sample.tilt_deg,
+        }
+    }
+
+    fn of_stored(self, stored: f64) -> f64 {
+        match self {
+            Self::X | Self::Y | Self::Z => stored,
+            Self::Tilt => tilt_deg(stored),
+        }
+    }
+
+    pub fn in_its_unit(self, stored: Extent) -> Extent {
+        Extent {
+            min: self.of_stored(stored.min),
+            max: self.of_stored(stored.max),
+        }
+    }
+
+    fn named(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::X => ("x", "m", "x_m"),
+            Self::Y => ("y", "m", "y_m"),
+            Self::Z => ("z", "m", "z_m"),
+            Self::Tilt => ("tilt", "deg", "tilt_deg"),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    pub time_s: f64,
+    /// The traced point, world frame, m.
+    pub position: Vector3<f64>,
+    /// Height of the axle's direction, a unit vector: the cosine of the tilt.
+    pub axle_height: f64,
+}
+
+impl Moment {
+    pub fn new(state: &State, traced: &Vector3<f64>) -> Self {
+        Self {
+            time_s: state.time_s,
+            position: state.orientation * traced,
+            axle_height: state.axle().z,
+        }
+    }
+
+    pub fn is_finite(&self) -> bool {
+        self.values().iter().all(|value| value.is_finite())
+    }
+
+    pub fn value(&self, curve: RecordedCurve) -> f64 {
+        curve.of_stored(self.values()[curve as usize])
+    }
+
+    /// The stored value of each curve. For the tilt it is the negative cosine: it grows with the tilt, and saves computing
+    /// an arc cosine at every step.
+    pub(super) fn values(&self) -> [f64; 4] {
+        let at = &self.position;
+        [at.x, at.y, at.z, -self.axle_height]
+    }
+}
+
+/// The least and the largest value of a stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    pub min: f64,
+    pub max: f64,
+}
+
+impl Extent {
+    pub fn of(value: f64) -> Self {
+        Self {
+            min: value,
+            max: value,
+        }
+    }
+
+    /// The extent of both. Not by [`f64::min`], which takes several instructions for what is no number.
+    #[inline]
+    pub fn and(self, other: Self) -> Self {
+        let Self { min, max } = self;
+        Self {
+            min: if other.min < min { other.min } else { min },
+            max: if other.max > max { other.max } else { max },
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordingBin {
+    /// Time of its first moment, s.
+    pub begin_s: f64,
+    /// Time of its last moment, s.
+    pub end_s: f64,
+    moments: u64,
+    pub extents: [Extent; 4],
+    /// How often each curve has turned: gone up after it had gone down, or down after it had gone up.
+    pub turned: [u32; 4],
+    pub last: [f64; 4],
+}
+
+impl RecordingBin {
+    pub fn extent(&self, curve: RecordedCurve) -> Extent {
+        curve.in_its_unit(self.stored(curve))
+    }
+
+    /// The extremes of the stored value of `curve`: of many blocks only what is drawn in the end is worth an arc cosine.
+    pub fn stored(&self, curve: RecordedCurve) -> Extent {
+        self.extents[curve as usize]
+    }
+
+    pub fn moments(&self) -> u64 {
+        self.moments
+    }
+
+    /// How often `curve` turns in it, up or down: twice in a swing.
+    pub fn turns(&self, curve: RecordedCurve) -> u32 {
+        self.turned[curve as usize]
+    }
+
+    /// The traced point at its last moment, world frame, m.
+    pub fn end(&self) -> Vector3<f64> {
+        let [x, y, z, _] = self.last;
+        Vector3::new(x, y, z)
+    }
+
+    #[inline]
+    pub(super) fn of(time_s: f64, values: [f64; 4], turned: [u32; 4]) -> Self {
+        Self {
+            begin_s: time_s,
+            end_s: time_s,
+            moments: 1,
+            extents: values.map(Extent::of),
+            turned,
+            last: values,
+        }
+    }
+
+    #[inline]
+    pub fn and(self, later: Self) -> Self {
+        Self {
+            begin_s: self.begin_s,
+            moments: self.moments + later.moments,
+            extents: std::array::from_fn(|curve| self.extents[curve].and(later.extents[curve])),
+            turned: std::array::from_fn(|curve| self.turned[curve] + later.turned[curve]),
+            ..later
+        }
+    }
+}
+
+/// The tilt of an axle, degrees, from the negative cosine of the tilt. Near the vertical it is accurate to a millionth of a
+/// degree, which is enough for a picture but not for a printed number.
+fn tilt_deg(negative_cosine: f64) -> f64 {
+    libm::acos((-negative_cosine).clamp(-1.0, 1.0)).to_degrees()
+}

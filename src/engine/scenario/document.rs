@@ -1,0 +1,399 @@
+//! A scenario's text, where it came from, and what `--set` changed in it.
+
+use super::checks;
+use super::dotted::{find, is_in, overlap, set_key};
+use super::head::{is_file, read_text, text_of_stream};
+use super::limits;
+use super::problem::{PRESETS_FOLDER, Problem, Problems, at_line, nearest};
+use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, solids, start};
+use crate::text::number::shortest;
+use crate::text::printable::{brief, printable, printable_lines};
+use std::io::Read;
+use std::path::Path;
+use toml::Value;
+use toml::de::{DeTable, DeValue};
+
+/// A scenario or run file on its way to a [`Scenario`].
+#[derive(Clone, Debug)]
+pub struct Document {
+    origin: String,
+    text: String,
+    table: toml::Table,
+    set: Vec<SetArgument>,
+}
+
+#[derive(Clone, Debug)]
+struct SetArgument {
+    key: String,
+    argument: String,
+    /// Why an array or a table is no TOML, and was taken as text.
+    mistake: Option<String>,
+}
+
+impl Document {
+    /// Opens what SCENARIO names: a shipped preset, or else a file (scenario, run file, CSV with its run file in the header,
+    /// or figure).
+    pub fn open(scenario: &str) -> Result<Self, Problems> {
+        if is_file(scenario) {
+            return Self::read(Path::new(scenario));
+        }
+        match presets::find(scenario) {
+            Some(preset) => {
+                let mut document =
+                    Self::parse(&format!("{PRESETS_FOLDER}{scenario}.toml"), preset.text)?;
+                // What the preset's own test checks is of no use in the header of a user's CSV.
+                document.table.remove("expected");
+                Ok(document)
+            }
+            None => Err(no_preset(scenario)),
+        }
+    }
+
+    /// Reads a scenario or run file, the header of a CSV, or a figure's run.
+    pub fn read(path: &Path) -> Result<Self, Problems> {
+        let origin = path.display().to_string();
+        let text = read_text(path).map_err(|problem| Problems::one(&*origin, problem))?;
+        Self::parse_header(&origin, &text)
+    }
+
+    /// Reads the same of a stream that is not a figure.
+    pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
+        let text = text_of_stream(reader).map_err(|problem| Problems::one(origin, problem))?;
+        Self::parse_header(origin, &text)
+    }
+
+    pub fn origin(&self) -> &str {
+        &self.origin
+    }
+
+    pub fn table(&self) -> &toml::Table {
+        &self.table
+    }
+
+    /// The lines, from 1, at which the dotted `keys` stand in the text.
+    pub fn lines_of(&self, keys: impl Iterator<Item = String>) -> Vec<Option<usize>> {
+        let line = self.line_finder();
+        keys.map(|key| line(&key)).collect()
+    }
+
+    fn line_finder(&self) -> impl Fn(&str) -> Option<usize> {
+        let spans = DeTable::parse(&self.text).ok();
+        let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
+        move |key| {
+            let offset = offset_of(spans.as_ref()?.get_ref(), key)?;
+            Some(line_ends.partition_point(|&end| end < offset) + 1)
+        }
+    }
+
+    /// Takes `text` as the scenario that `origin` holds.
+    pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
+        limits::few_enough(text, 1).map_err(|problem| Problems::one(origin, problem))?;
+        Self::parse_header(origin, text)
+    }
+
+    /// The same for the header of a CSV, which may be twice as long.
+    pub fn parse_header(origin: &str, text: &str) -> Result<Self, Problems> {
+        let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+        if text.len() as u64 > limits::LONGEST_HEADER {
+            return Err(Problems::one(
+                origin,
+                Problem::at("", limits::SCENARIO_TOO_LONG),
+            ));
+        }
+        limits::few_enough(&text, 2).map_err(|problem| Problems::one(origin, problem))?;
+        let table = text.parse();
+        let table = table.map_err(|error| Problems::one(origin, syntax_problem(&text, &error)))?;
+        Ok(Self {
+            text,
+            ..Self::from_table(origin, table)
+        })
+    }
+
+    /// The document that `file` would be written as.
+    pub fn from_file(origin: &str, file: &ScenarioFile) -> Result<Self, Problems> {
+        let table = toml::Table::try_from(file)
+            .map_err(|error| Problems::one(origin, Problem::at("", error.to_string())))?;
+        Ok(Self::from_table(origin, table))
+    }
+
+    /// The scenario whose tables and keys are `table`, which is a part of the file `origin`.
+    pub fn from_table(origin: &str, table: toml::Table) -> Self {
+        Self {
+            origin: origin.to_owned(),
+            text: String::new(),
+            table,
+            set: Vec::new(),
+        }
+    }
+
+    /// Checks its size, and each key and value by itself.
+    pub fn check(&self) -> Result<(), Problems> {
+        if let Some(problem) = limits::exceeded(&self.table) {
+            return Err(self.placed(problem));
+        }
+        let mut problems = keys::check(&self.table);
+        if problems.list.is_empty() {
+            return Ok(());
+        }
+        checks::names(&self.table, &mut problems);
+        Err(self.placed(problems))
+    }
+
+    /// Carries out one `--set KEY=VALUE`: the value is TOML, or else text.
+    pub fn set(&mut self, argument: &str) -> Result<(), Problems> {
+        let Some((key, value)) = argument.split_once('=') else {
+            let rule = "must be KEY=VALUE, such as motion.time_step_s=0.05";
+            return Err(self.refused(argument, Problem::at("", rule)));
+        };
+        let (value, mistake) = toml_or_text(value);
+        if let Err(problem) = self.set_value(key.trim(), value) {
+            return Err(self.refused(argument, problem));
+        }
+        self.set.push(SetArgument {
+            key: key.trim().to_owned(),
+            argument: argument.to_owned(),
+            mistake,
+        });
+        Ok(())
+    }
+
+    fn refused(&self, argument: &str, mut problem: Problem) -> Problems {
+        problem.place = Some(set_place(argument));
+        Problems::one(self.origin.as_str(), problem)
+    }
+
+    pub fn set_value(&mut self, key: &str, value: Value) -> Result<(), Problem> {
+        start::make_room(&mut self.table, key);
+        solids::prepare(&mut self.table, key, &value);
+        set_key(&mut self.table, key, value)
+    }
+
+    /// Writes `value` at the dotted `key`, without a place for problems. What the value changes is first written in the way
+    /// that it needs: a momentum where there is a spin, a spin where a momentum becomes steady, the dimensions of a part that
+    /// gets another shape.
+    pub fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
+        if start::is_other_way(&self.table, key, &value) {
+            let now = self.scenario()?;
+            let told = start::tell_other_way(&mut self.table, key, &value, &now);
+            told.map_err(|problem| self.placed(problem))?;
+        }
+        let written = self.set_value(key, value);
+        written.map_err(|problem| self.placed(problem))
+    }
+
+    /// Takes the scenario to another time step (s), holding its seconds: see [`rescale`].
+    pub fn set_time_step(&mut self, time_step_s: f64) -> Result<(), Problems> {
+        let file = rescale::at_time_step(&self.scenario()?.file, time_step_s);
+        let file = file.map_err(|mut problem| {
+            if problem.key == "motion.time_step_s" {
+                problem.place = Some(format!("--time-step {}", shortest(time_step_s)));
+                Problems::one(self.origin.as_str(), problem)
+            } else {
+                self.placed(problem)
+            }
+        })?;
+        *self = Self::from_file(&self.origin, &file)?;
+        Ok(())
+    }
+
+    pub fn scenario(&self) -> Result<Scenario, Problems> {
+        if self.is_sweep() {
+            let rule = "is a sweep of many runs, not a scenario: gyrolab sweep runs it";
+            return Err(Problems::one(self.origin.as_str(), Problem::at("", rule)));
+        }
+        self.check()?;
+        checks::scenario(self.file()?).map_err(|problems| self.placed(problems))
+    }
+
+    /// Whether it is a sweep's file, or the header of a sweep's CSV: no scenario has these keys.
+    pub fn is_sweep(&self) -> bool {
+        ["scenario", "vary", "measure"]
+            .iter()
+            .any(|key| self.table.contains_key(*key))
+    }
+
+    /// The file's shape; its numbers are not checked.
+    pub fn file(&self) -> Result<ScenarioFile, Problems> {
+        let file = self.table.clone().try_into();
+        file.map_err(|error: toml::de::Error| self.placed(Problem::at("", error.message())))
+    }
+
+    /// The last `--set` that wrote what a problem at `key` is about: the value, something in it or around it, or the
+    /// table that lacks it where the file has none such.
+    fn setting_behind(&self, key: &str, written: &toml::Table) -> Option<&SetArgument> {
+        let last =
+            |wanted: &dyn Fn(&str) -> bool| self.set.iter().rev().find(|set| wanted(&set.key));
+        last(&|set| overlap(key, set)).or_else(|| {
+            let table = key.rsplit_once('.')?.0;
+            let is_new = find(written, table).is_none();
+            last(&|set| is_new && is_in(set, table))
+        })
+    }
+
+    /// Which entries the file has, where `--set` alone began the entry (a push, a point) that lacks a key.
+    fn that_are_there(problem: &Problem, written: &toml::Table) -> Option<String> {
+        let (entry, _) = problem.key.rsplit_once('.')?;
+        let (list, number) = entry.rsplit_once('.')?;
+        number.parse::<usize>().ok()?;
+        if find(written, entry).is_some() || !problem.rule.starts_with("is missing") {
+            return None;
+        }
+        let there = find(written, list).and_then(Value::as_array);
+        let there = match there.map_or(0, Vec::len) {
+            0 => format!("there is no {list}"),
+            1 => format!("there is only {list}.0"),
+            count => format!("there are {list}.0 to {list}.{}", count - 1),
+        };
+        Some(format!(": {entry} would be a new one, {there}"))
+    }
+
+    /// Problems with the places at which the user wrote their keys, in the order of the file.
+    pub fn placed(&self, found: impl Into<Problems>) -> Problems {
+        let Problems { list, more, .. } = found.into();
+        let line_of = self.line_finder();
+        let written = if self.set.is_empty() {
+            toml::Table::new()
+        } else {
+            self.text.parse().unwrap_or_default()
+        };
+        let placed = |mut problem: Problem| {
+            let Some(setting) = self.setting_behind(&problem.key, &written) else {
+                let line = line_of(&problem.key);
+                problem.place = line.map(|line| format!("line {line}"));
+                return (line.unwrap_or(0), problem);
+            };
+            problem.place = Some(set_place(&setting.argument));
+            let meant = keys::meant(&setting.key);
+            match (&setting.mistake, meant) {
+                (Some(mistake), _) if problem.key == setting.key => {
+                    (problem.value, problem.rule) = (String::new(), mistake.clone());
+                }
+                (_, Some(meant)) if problem.rule.starts_with(keys::UNKNOWN_KEY) => {
+                    // The whole key: whoever typed the argument does not see the tables of a file.
+                    problem.key.clone_from(&setting.key);
+                    problem.rule = format!("{}: did you mean {meant}?", keys::UNKNOWN_KEY);
+                }
+                _ => problem
+                    .rule
+                    .extend(Self::that_are_there(&problem, &written)),
+            }
+            (usize::MAX, problem)
+        };
+        let mut placed: Vec<_> = list.into_iter().map(placed).collect();
+        placed.sort_by_key(|(line, _)| *line);
+        Problems {
+            origin: self.origin.clone(),
+            list: placed.into_iter().map(|(_, problem)| problem).collect(),
+            more,
+        }
+    }
+}
+
+/// `text` as TOML, or else as text; and why an array or a table is no TOML.
+pub fn toml_or_text(text: &str) -> (Value, Option<String>) {
+    match text.trim().parse() {
+        Ok(value) => (value, None),
+        Err(error) => {
+            let mistake = mistake(text.trim(), &error);
+            (Value::String(text.to_owned()), mistake)
+        }
+    }
+}
+
+fn set_place(argument: &str) -> String {
+    format!("--set {}", brief(argument, 80))
+}
+
+fn no_preset(name: &str) -> Problems {
+    let near = nearest(name, presets::PRESETS.iter().map(|preset| preset.name));
+    let hint = if Path::new(name).exists() {
+        format!("for the file of that name write ./{}", printable(name))
+    } else {
+        "a file's name holds a / or ends in .toml or .csv".to_owned()
+    };
+    let rule = format!("no preset of that name: {near} ({hint})");
+    Problems::one(name, Problem::at("", rule))
+}
+
+fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
+    const WIDEST: usize = 160;
+    let picture = error.to_string();
+    let mut lines = picture.trim_end().lines();
+    let rule = if lines.clone().all(|line| line.len() <= WIDEST) {
+        printable_lines(picture.trim_end()).into_owned()
+    } else {
+        // A picture of a line that fills the screen shows nothing.
+        let place = brief(lines.next().unwrap_or_default(), WIDEST);
+        format!("{place}: {}", brief(error.message(), WIDEST))
+    };
+    let rule = match error.span() {
+        Some(span) => repeated_table(text, span.start).unwrap_or(rule),
+        None => format!("cannot be read as TOML: {rule}"),
+    };
+    let problem = Problem::at("", rule);
+    match error.span() {
+        Some(span) => at_line(line_at(text, span.start) as u64, problem),
+        None => problem,
+    }
+}
+
+/// The tables of which a file may have several.
+const REPEATED: [&str; 6] = ["do", "push", "edit", "expected", "body.point", "body.part"];
+
+/// What is wrong with the line at `offset`, where it begins one of these tables a second time as if it were the only one.
+fn repeated_table(text: &str, offset: usize) -> Option<String> {
+    let line = text.lines().nth(line_at(text, offset) - 1)?.trim();
+    let name = line.strip_prefix('[')?.strip_suffix(']')?.trim();
+    REPEATED.contains(&name).then(|| {
+        format!("[{name}] stands here again: write [[{name}]], in two brackets, for each of them")
+    })
+}
+
+fn line_at(text: &str, offset: usize) -> usize {
+    text.as_bytes()[..offset.min(text.len())]
+        .iter()
+        .filter(|&&byte| byte == b'\n')
+        .count()
+        + 1
+}
+
+/// Where the dotted `key`, or as much of it as there is, stands in the text: a value's key, a table's head.
+fn offset_of(table: &DeTable<'_>, key: &str) -> Option<usize> {
+    let entry = |name: &str| table.get_key_value(name);
+    let quoted = key.strip_prefix('"').and_then(|key| key.strip_suffix('"'));
+    let (name, rest) = match quoted {
+        Some(name) => (name, ""),
+        None => key.split_once('.').unwrap_or((key, "")),
+    };
+    // What an edit sets has the whole path for its name.
+    let (found, value) = entry(name).or_else(|| entry(key))?;
+    Some(offset_inside(value.get_ref(), rest).unwrap_or(found.span().start))
+}
+
+fn offset_inside(value: &DeValue<'_>, key: &str) -> Option<usize> {
+    match value {
+        DeValue::Table(table) => offset_of(table, key),
+        DeValue::Array(array) => {
+            let (place, rest) = key.split_once('.').unwrap_or((key, ""));
+            let item = array.get(place.parse::<usize>().ok()?)?;
+            Some(offset_inside(item.get_ref(), rest).unwrap_or(item.span().start))
+        }
+        _ => None,
+    }
+}
+
+/// What is wrong with `value`, which begins as an array or a table and is no TOML.
+fn mistake(value: &str, error: &toml::de::Error) -> Option<String> {
+    if !value.starts_with(['[', '{']) {
+        return None;
+    }
+    let from = error.span().map_or(0, |span| span.start);
+    let rest = value.get(from..).unwrap_or_default();
+    let rest = if rest.is_empty() {
+        "its end".to_owned()
+    } else {
+        format!("\"{}\"", brief(rest, 24))
+    };
+    let message = brief(error.message(), 120);
+    Some(format!("is no TOML: at {rest}: {message}"))
+}

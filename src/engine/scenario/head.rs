@@ -1,0 +1,186 @@
+//! Files as they are read: the whole of a scenario, or the head of a CSV, which holds the run file.
+
+use super::limits::{self, LONGEST_HEADER, LONGEST_SCENARIO_FILE};
+use super::problem::{Problem, at_line};
+use crate::provenance::{FigureFile, Payload};
+use crate::text::advice::unread;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+
+/// How the line of names begins in the CSV of a run with every column.
+const EVERY_COLUMN: &[u8] = b"step,t_s,";
+
+/// How the line begins that tells the version, in the head of every CSV that gyrolab writes.
+const VERSION_LINE: &[u8] = b"# gyrolab = ";
+
+/// Some programs put it before the first line of a file.
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
+
+/// The beginning of a file: the lines that begin with `#`, and the one after them, which names the columns of a CSV.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Head {
+    bytes: Vec<u8>,
+    names: usize,
+}
+
+impl Head {
+    /// Reads the head of a file from its beginning; of a longer one no more than the longest.
+    pub fn read(reader: &mut impl BufRead) -> io::Result<Self> {
+        let mut reader = reader.take(LONGEST_HEADER + 1);
+        let (mut bytes, mut names) = (Vec::new(), 0);
+        loop {
+            reader.read_until(b'\n', &mut bytes)?;
+            let line = without_mark(&bytes[names..]);
+            let is_above = line.starts_with(b"#") || line.trim_ascii().is_empty();
+            if line.is_empty() || !is_above {
+                return Ok(Self { bytes, names });
+            }
+            names = bytes.len();
+        }
+    }
+
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// The line that names the columns of a CSV, without its end.
+    pub fn names(&self) -> &[u8] {
+        without_mark(&self.bytes[self.names..]).trim_ascii_end()
+    }
+
+    /// The line of names, counted from 1.
+    pub fn line_of_names(&self) -> u64 {
+        let above = &self.bytes[..self.names];
+        1 + above.iter().filter(|&&byte| byte == b'\n').count() as u64
+    }
+
+    /// Whether it is the head of a CSV that gyrolab wrote. Nothing in TOML is a line of names without a value.
+    pub fn is_of_csv(&self) -> bool {
+        let is_of_name = |byte: &u8| byte.is_ascii_alphanumeric() || b"_.,;\"".contains(byte);
+        let names = self.names();
+        let tells_version = || {
+            let mut lines = self.comments().split(|&byte| byte == b'\n');
+            lines.any(|line| line.starts_with(VERSION_LINE))
+        };
+        names.starts_with(EVERY_COLUMN)
+            || !names.is_empty() && names.iter().all(is_of_name) && tells_version()
+    }
+
+    /// The lines that begin with `#`, without a byte order mark.
+    fn comments(&self) -> &[u8] {
+        without_mark(&self.bytes[..self.names])
+    }
+
+    /// The lines above the line of names without their `# `: the run file of a CSV.
+    pub fn run_file(&self) -> Result<String, Problem> {
+        if self.comments().trim_ascii().is_empty() {
+            let rule = "is a CSV with no run file in its header, the \"# \" lines that gyrolab writes, and other programs drop: name the file as gyrolab wrote it";
+            return Err(Problem::at("", rule));
+        }
+        self.header()
+    }
+
+    /// The lines above the line of names without their `# `; none where there are none.
+    pub fn header(&self) -> Result<String, Problem> {
+        let lines = utf8(self.comments().to_vec(), "")?;
+        let stripped = |line: &str| {
+            let line = line.trim_start_matches('\u{feff}');
+            let line = line.strip_prefix('#').unwrap_or(line);
+            line.strip_prefix(' ').unwrap_or(line).to_owned()
+        };
+        Ok(lines.split_inclusive('\n').map(stripped).collect())
+    }
+}
+
+fn without_mark(line: &[u8]) -> &[u8] {
+    line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line)
+}
+
+/// The text of a scenario, the run file in the header of a CSV, of which no more is read, or the one in a figure.
+pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
+    let whole = |rule: String| Problem::at("", rule);
+    let cannot = |error: io::Error| whole(unread(&error));
+    if path.is_dir() {
+        return Err(whole("is a folder: name a file in it".to_owned()));
+    }
+    let mut reader = BufReader::new(File::open(path).map_err(cannot)?);
+    if let Some(figure) = FigureFile::read(&mut reader).map_err(whole)? {
+        return run_of_figure(&figure);
+    }
+    let head = Head::read(&mut reader).map_err(cannot)?;
+    if head.is_of_csv() {
+        return head.run_file();
+    }
+    if path.extension().is_some_and(|extension| extension == "csv") {
+        let names = String::from_utf8_lossy(EVERY_COLUMN);
+        return Err(whole(format!(
+            "is not the CSV of a run: no line \"{names}...\" below a run file"
+        )));
+    }
+    text_of_file(head.bytes.as_slice().chain(reader))
+}
+
+/// The run file in a figure: of several the first, of a table the one in its header.
+fn run_of_figure(figure: &FigureFile) -> Result<String, Problem> {
+    match figure.origin.files.first() {
+        Some(file) if file.sha256.is_some() => {
+            let rule = format!(
+                "shows a table that did not travel with it: name {}",
+                file.name
+            );
+            Err(Problem::at("", rule))
+        }
+        Some(file) if file.holds == Payload::Table => {
+            let head = Head::read(&mut file.text.as_bytes());
+            head.map_err(|error| Problem::at("", unread(&error)))?
+                .run_file()
+        }
+        file => Ok(file.map(|file| file.text.clone()).unwrap_or_default()),
+    }
+}
+
+/// Whether SCENARIO names a file, and no preset.
+pub fn is_file(name: &str) -> bool {
+    let endings = [".toml", ".csv", ".svg", ".pdf", ".png"];
+    name.contains('/') || endings.iter().any(|ending| name.contains(ending))
+}
+
+/// The text of a scenario, or the run file in the header of a CSV, that `stream` holds.
+pub(super) fn text_of_stream(stream: impl Read) -> Result<String, Problem> {
+    let mut reader = BufReader::new(stream);
+    let head = Head::read(&mut reader).map_err(|error| Problem::at("", unread(&error)))?;
+    if head.is_of_csv() {
+        return head.run_file();
+    }
+    text_of_file(head.bytes.as_slice().chain(reader))
+}
+
+fn text_of_file(file: impl Read) -> Result<String, Problem> {
+    let text = utf8(
+        bytes_of(file, LONGEST_SCENARIO_FILE, limits::SCENARIO_TOO_LONG)?,
+        "",
+    )?;
+    limits::few_enough(&text, 1).map(|()| text)
+}
+
+/// The bytes of `file` to its end, of which no more than `most` and one are read.
+pub(super) fn bytes_of(file: impl Read, most: u64, too_long: &str) -> Result<Vec<u8>, Problem> {
+    let mut bytes = Vec::new();
+    let read = file.take(most + 1).read_to_end(&mut bytes);
+    let length = read.map_err(|error| Problem::at("", unread(&error)))?;
+    if length as u64 > most {
+        return Err(Problem::at("", too_long));
+    }
+    Ok(bytes)
+}
+
+/// The text that `bytes` are; `words` are added after the name of the encoding.
+pub(super) fn utf8(bytes: Vec<u8>, words: &str) -> Result<String, Problem> {
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = good.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
+        let rule = format!("is not text in UTF-8: save the file in that encoding{words}");
+        at_line(line, Problem::at("", rule))
+    })
+}

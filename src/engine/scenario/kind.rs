@@ -1,0 +1,212 @@
+//! What a key may hold, and the rules by which a value is refused.
+
+use super::problem::nearest;
+use super::screen;
+use crate::text::printable::is_steering;
+use Range::{NotNegative, Positive, Within};
+use ValueKind::{
+    Flag, Line, Number, OneOf, Pane, Panes, Paragraph, Settings, Vector, Whole, WholeOr,
+};
+use nalgebra::Vector3;
+use toml::Value;
+
+pub const LONGEST_TEXT_LINE: usize = 1000;
+
+pub const LONGEST_PARAGRAPH: usize = 20_000;
+
+/// What a key may hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ValueKind {
+    /// Text on one line, not empty.
+    Line,
+    /// Text that may have several lines.
+    Paragraph,
+    Number(Range),
+    /// A whole number, from the least to the most.
+    Whole(i64, i64),
+    /// A whole number from 1 to the most, or one of these words.
+    WholeOr(i64, &'static [&'static str]),
+    Vector,
+    Flag,
+    OneOf(&'static [&'static str]),
+    /// The id of a pane, or one of these words.
+    Pane(&'static [&'static str]),
+    /// A list of such.
+    Panes(&'static [&'static str]),
+    /// A table of dotted keys and their new values (run files).
+    Settings,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Range {
+    Any,
+    Positive,
+    NotNegative,
+    Within((f64, f64)),
+}
+
+pub const ZOOM_RANGE: (f64, f64) = (0.5, 100.0);
+/// The least and the greatest height of the eye above the horizontal, degrees.
+pub const PITCH_DEG: (f64, f64) = (-90.0, 90.0);
+
+impl ValueKind {
+    /// Whether `value` is of this kind and in its range.
+    pub fn check(self, value: &Value) -> Result<(), String> {
+        match self {
+            Line => text(value).and_then(check_line),
+            Paragraph => text(value).and_then(|text| check_text(text, LONGEST_PARAGRAPH, "\n")),
+            Number(range) => number(value).and_then(|number| range.check(number)),
+            Whole(least, most) => check_whole(value, least, most),
+            WholeOr(most, words) => match value {
+                Value::String(word) => check_word(word, words)
+                    .map_err(|rule| format!("{rule}, or a whole number from 1 to {most}")),
+                _ => check_whole(value, 1, most),
+            },
+            Vector => check_vector(value),
+            Flag => is(value.is_bool(), "true or false", value),
+            OneOf(_) | Pane(_) => text(value).and_then(|text| check_word(text, &self.words())),
+            Panes(_) => check_words(value, &self.words()),
+            Settings => is(value.is_table(), "a table of keys and values", value),
+        }
+    }
+}
+
+impl ValueKind {
+    /// The words that are of this kind.
+    pub fn words(self) -> Vec<&'static str> {
+        match self {
+            OneOf(words) | WholeOr(_, words) => words.to_vec(),
+            Pane(others) | Panes(others) => {
+                let panes = screen::panes().iter().map(|pane| pane.id());
+                panes.chain(others.iter().copied()).collect()
+            }
+            Flag => vec!["true", "false"],
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl Range {
+    fn check(self, number: f64) -> Result<(), String> {
+        match self {
+            Positive if number <= 0.0 => Err("must be greater than zero".to_owned()),
+            NotNegative if number < 0.0 => Err("must not be negative".to_owned()),
+            Within((least, most)) if number < least || number > most => {
+                Err(format!("must be from {least} to {most}"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+fn not(wanted: &str, value: &Value) -> String {
+    let found = match value {
+        Value::String(_) => "text",
+        Value::Float(number) if !number.is_finite() => {
+            return format!("must be {wanted}, and {number} is no finite number");
+        }
+        Value::Integer(_) | Value::Float(_) => "a number",
+        Value::Boolean(_) => "true or false",
+        Value::Datetime(_) => "a date",
+        Value::Array(_) => "an array",
+        Value::Table(_) => "a table",
+    };
+    format!("must be {wanted}, not {found}")
+}
+
+fn is(wanted: bool, what: &str, value: &Value) -> Result<(), String> {
+    wanted.then_some(()).ok_or_else(|| not(what, value))
+}
+
+fn text(value: &Value) -> Result<&str, String> {
+    value.as_str().ok_or_else(|| not("text", value))
+}
+
+pub fn float(value: &Value) -> Option<f64> {
+    let whole = || value.as_integer().map(|whole| whole as f64);
+    value.as_float().or_else(whole)
+}
+
+fn number(value: &Value) -> Result<f64, String> {
+    match float(value).ok_or_else(|| not("a number", value))? {
+        number if number.is_finite() => Ok(number),
+        _ => Err("must be a finite number".to_owned()),
+    }
+}
+
+fn check_line(text: &str) -> Result<(), String> {
+    if text.trim().is_empty() {
+        return Err("must not be empty".to_owned());
+    }
+    check_text(text, LONGEST_TEXT_LINE, "")
+}
+
+fn check_text(text: &str, most: usize, allowed: &str) -> Result<(), String> {
+    let length = text.chars().count();
+    if length > most {
+        return Err(format!(
+            "must be at most {most} characters long, not {length}"
+        ));
+    }
+    let mut steering = text
+        .chars()
+        .filter(|&c| is_steering(c) && !allowed.contains(c));
+    steering.next().map_or(Ok(()), |c| {
+        let code = c as u32;
+        Err(format!(
+            "must hold no control, direction or invisible characters (here U+{code:04X})"
+        ))
+    })
+}
+
+fn check_whole(value: &Value, least: i64, most: i64) -> Result<(), String> {
+    let whole = value.as_integer().ok_or_else(|| match value {
+        Value::Float(_) => "must be a whole number".to_owned(),
+        other => not("a whole number", other),
+    })?;
+    if whole < least {
+        return Err(format!("must be {least} or more"));
+    }
+    if whole > most {
+        return Err(format!("must be at most {most}"));
+    }
+    Ok(())
+}
+
+fn check_vector(value: &Value) -> Result<(), String> {
+    let items = items(value, "three numbers in brackets")?;
+    if items.len() != 3 {
+        return Err(format!("must be three numbers, not {}", items.len()));
+    }
+    check_each(items, |item| number(item).map(drop))
+}
+
+fn check_words(value: &Value, words: &[&str]) -> Result<(), String> {
+    let items = items(value, "a list in brackets")?;
+    check_each(items, |item| check_word(text(item)?, words))
+}
+
+fn items<'a>(value: &'a Value, wanted: &str) -> Result<&'a Vec<Value>, String> {
+    value.as_array().ok_or_else(|| not(wanted, value))
+}
+
+fn check_each(items: &[Value], check: impl Fn(&Value) -> Result<(), String>) -> Result<(), String> {
+    let mut items = items.iter();
+    items.try_for_each(|item| check(item).map_err(|rule| format!("each {rule}")))
+}
+
+fn check_word(word: &str, words: &[&str]) -> Result<(), String> {
+    if words.contains(&word) {
+        return Ok(());
+    }
+    let near = Some(nearest(word, words.iter().copied()));
+    let near = near.filter(|near| near.starts_with("did"));
+    let near = near.map_or(String::new(), |near| format!("; {near}"));
+    let one_of = if words.len() > 1 { "one of " } else { "" };
+    Err(format!("must be {one_of}{}{near}", words.join(", ")))
+}
+
+/// `vector` as the value of a key that holds one.
+pub fn vector(vector: &Vector3<f64>) -> Value {
+    Value::Array(vector.iter().map(|&number| Value::Float(number)).collect())
+}

@@ -1,0 +1,101 @@
+//! Numbers as they are nudged and typed: steps of 1, 2 and 5 times a power of ten, free of binary noise, and units.
+
+use super::keys::Nudge;
+use crate::text::ladder::{at_or_below, climbed};
+use crate::text::printable::brief;
+
+/// `value` nudged `times` times by the rule `nudge`, its size being `size`; `None` where the rule is not one for numbers.
+pub fn number(value: f64, size: f64, nudge: Nudge, times: i32) -> Option<f64> {
+    match nudge {
+        Nudge::By(step) => Some(added(value, step, times)),
+        Nudge::Hundredth(zero) => Some(added(value, hundredth(size).unwrap_or(zero), times)),
+        Nudge::Ladder => Some(climbed(value, times)),
+        Nudge::WholeHundredth | Nudge::Turn | Nudge::Typed => None,
+    }
+}
+
+/// `value` nudged `times` times in whole numbers.
+pub fn whole(value: i64, times: i32) -> i64 {
+    let step = hundredth(value.unsigned_abs() as f64);
+    let step = step.unwrap_or(1.0).max(1.0) as i64;
+    value.saturating_add(step.saturating_mul(i64::from(times)))
+}
+
+/// `value` + `times` · `step`, with no more decimals than the two have: 0.1 + 0.2 is 0.3.
+fn added(value: f64, step: f64, times: i32) -> f64 {
+    let sum = value + step * f64::from(times);
+    let decimals = decimals(value).max(decimals(step));
+    let clean: f64 = format!("{sum:.decimals$}").parse().unwrap_or(sum);
+    clean + 0.0 // no -0
+}
+
+/// Decimals of the shortest number that is read back as `value`.
+fn decimals(value: f64) -> usize {
+    let text = value.to_string();
+    text.split_once('.').map_or(0, |(_, behind)| behind.len())
+}
+
+/// The element `times` places after the one that `is_now`; after the last comes the first. Where none is, the first follows and
+/// the last precedes it. `None` for an empty list.
+pub fn cycled<T>(list: &[T], is_now: impl Fn(&T) -> bool, times: i32) -> Option<&T> {
+    let count = i64::try_from(list.len()).ok().filter(|count| *count > 0)?;
+    let now = list.iter().position(is_now).map(|now| now as i64);
+    let now = now.unwrap_or(if times < 0 { 0 } else { -1 });
+    list.get((now + i64::from(times)).rem_euclid(count) as usize)
+}
+
+/// The largest rung not above a hundredth of `size`; `None` where that is nothing.
+fn hundredth(size: f64) -> Option<f64> {
+    let step = at_or_below(size / 100.0);
+    (step > 0.0).then_some(step)
+}
+
+/// The number at the beginning of `text`, which may be followed by its unit `unit`.
+pub fn typed(text: &str, unit: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let wrong = || match text {
+        "" => "must be a number".to_owned(),
+        _ => format!("must be a number, not \"{}\"", brief(text, 20)),
+    };
+    let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
+    let read = |end: usize| Some((text[..end].trim_end().parse().ok()?, text[end..].trim()));
+    let (number, rest) = ends
+        .take(LONGEST_TYPED_NUMBER)
+        .find_map(read)
+        .ok_or_else(wrong)?;
+    if rest.is_empty() || plain(rest) == plain(unit) {
+        return Ok(number);
+    }
+    if rest.starts_with(',') {
+        return Err("must be a number with a point: 0.5, not 0,5".to_owned());
+    }
+    match unit {
+        "" => Err(wrong()),
+        _ => Err(format!("is in {unit}, not in \"{}\"", brief(rest, 20))),
+    }
+}
+
+/// Characters of a typed number that are looked at: its unit is not longer.
+const LONGEST_TYPED_NUMBER: usize = 400;
+
+/// A unit whichever way it is written.
+fn plain(unit: &str) -> String {
+    unit.replace([' ', '^', '*', '·'], "")
+        .replace('²', "2")
+        .replace('°', "deg")
+        .replace("×", "s/s")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_have_no_binary_noise() {
+        assert_eq!(added(0.1, 0.2, 1), 0.3);
+        assert_eq!(added(8.41, 0.01, 1), 8.42);
+        assert_eq!(added(9.8, 0.1, -98), 0.0);
+        assert!(added(-0.1, 0.1, 1).is_sign_positive());
+        assert_eq!(added(0.565685424949238, 0.005, 1), 0.570685424949238);
+    }
+}

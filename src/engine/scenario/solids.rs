@@ -1,0 +1,291 @@
+//! The solid parts of a body: from `[[body.part]]` to [`PlacedSolid`], with the dimensions that each shape has.
+
+use super::kind::vector;
+use super::problem::{Problem, Problems};
+use crate::physics::part::{PartError, PlacedSolid, Shape};
+use crate::text::ladder::at_or_below;
+use crate::text::number::{shortest, significant};
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PartFile {
+    pub shape: String,
+    pub name: String,
+    pub mass_kg: f64,
+    pub at_m: [f64; 3],
+    pub axis: Option<[f64; 3]>,
+    pub radius_m: Option<f64>,
+    pub inner_radius_m: Option<f64>,
+    pub outer_radius_m: Option<f64>,
+    pub length_m: Option<f64>,
+    pub size_m: Option<[f64; 3]>,
+    pub moments_kg_m2: Option<[f64; 3]>,
+    pub about: Option<About>,
+}
+
+/// The point about which the moments of a part are given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum About {
+    /// Its center of mass.
+    Center,
+    /// The pivot: about the axes through it that are parallel to the part's own.
+    Pivot,
+}
+
+/// A shape as a file names it, and its dimensions.
+pub(super) struct SolidShape {
+    name: &'static str,
+    /// The dimensions without which there is no such solid.
+    needs: &'static [&'static str],
+    may_have: &'static [&'static str],
+    /// The shape of a part that has the dimensions.
+    make: fn(&PartFile) -> Shape,
+}
+
+const fn form(
+    name: &'static str,
+    needs: &'static [&'static str],
+    may_have: &'static [&'static str],
+    make: fn(&PartFile) -> Shape,
+) -> SolidShape {
+    SolidShape {
+        name,
+        needs,
+        may_have,
+        make,
+    }
+}
+
+const TUBE: [&str; 3] = ["inner_radius_m", "outer_radius_m", "length_m"];
+
+#[rustfmt::skip]
+pub(super) static FORMS: [SolidShape; 9] = [
+    form("ring", &["radius_m"], &[], |file| Shape::Ring { radius: of(file.radius_m) }),
+    form("cylinder", &["radius_m"], &["length_m"], |file| Shape::Cylinder { radius: of(file.radius_m), length: of(file.length_m) }),
+    form("tube", &TUBE, &[], |file| Shape::Tube { inner: of(file.inner_radius_m), outer: of(file.outer_radius_m), length: of(file.length_m) }),
+    form("rod", &["length_m"], &[], |file| Shape::Rod { length: of(file.length_m) }),
+    form("ball", &["radius_m"], &[], |file| Shape::Ball { radius: of(file.radius_m) }),
+    form("shell", &["radius_m"], &[], |file| Shape::Shell { radius: of(file.radius_m) }),
+    form("cone", &["radius_m", "length_m"], &[], |file| Shape::Cone { radius: of(file.radius_m), length: of(file.length_m) }),
+    form("block", &["size_m"], &[], |file| Shape::Block { size: of(file.size_m).into() }),
+    form("moments", &["moments_kg_m2"], &["about"], |file| Shape::Moments(Vector3::from(of(file.moments_kg_m2)) / file.mass_kg)),
+];
+
+/// The dimension that a form needs, or that is nothing where it may be left out.
+fn of<T: Default>(dimension: Option<T>) -> T {
+    dimension.unwrap_or_default()
+}
+
+/// The dimensions of any shape, in the order of the table of keys, and the point that moments are about.
+const DIMENSIONS: [&str; 7] = [
+    "radius_m",
+    "inner_radius_m",
+    "outer_radius_m",
+    "length_m",
+    "size_m",
+    "moments_kg_m2",
+    "about",
+];
+
+pub(super) const fn names() -> [&'static str; FORMS.len()] {
+    let mut names = [""; FORMS.len()];
+    let mut at = 0;
+    while at < names.len() {
+        names[at] = FORMS[at].name;
+        at += 1;
+    }
+    names
+}
+
+pub fn has_dimension(shape: &str, name: &str) -> bool {
+    let form = FORMS.iter().find(|form| form.name == shape);
+    form.is_some_and(|form| form.needs.contains(&name) || form.may_have.contains(&name))
+}
+
+/// The part that `file` describes.
+/// In a refusal the keys are those in the part's table.
+pub(super) fn part(file: &PartFile) -> Result<PlacedSolid, Problems> {
+    // An unknown shape has been refused by the keys.
+    let form = FORMS.iter().find(|form| form.name == file.shape);
+    let form = form.unwrap_or(&FORMS[0]);
+    Problems::from(wrong_dimensions(form, file)).or(())?;
+    check_dimensions(form, file)?;
+    let axis = Vector3::from(file.axis.unwrap_or([0.0, 0.0, 1.0]));
+    if axis == Vector3::zeros() {
+        let rule = "must not be of length 0: it is a direction";
+        return Err(Problem::with_value("axis", &vector(&axis), rule).into());
+    }
+    let centre = Vector3::from(file.at_m);
+    let part = match file.about {
+        Some(About::Pivot) => {
+            let moments = of(file.moments_kg_m2).into();
+            PlacedSolid::about_pivot(&moments, file.mass_kg, centre, &axis)
+        }
+        Some(About::Center) | None => {
+            PlacedSolid::new((form.make)(file), file.mass_kg, centre, &axis)
+        }
+    };
+    Ok(part.map_err(|error| {
+        let moments = vector(&Vector3::from(of(file.moments_kg_m2)));
+        let rule = match error {
+            PartError::OutOfRange => return Problem::at("", error.to_string()),
+            PartError::Unreal(_) => format!("cannot be: {error}"),
+            PartError::TooFar { nearer, .. } => {
+                format!("cannot be: {error}{}", moves_alike(file, nearer))
+            }
+        };
+        Problem::with_value("moments_kg_m2", &moments, rule)
+    })?)
+}
+
+/// Names a mass and a center that the part of `file` may have instead: a heavier one, nearer to the pivot by the factor
+/// `nearer` or less.
+fn moves_alike(file: &PartFile, nearer: f64) -> String {
+    let factor = at_or_below(nearer);
+    let mass = file.mass_kg / factor;
+    if !(factor > 0.0 && mass.is_finite()) {
+        return String::new();
+    }
+    let [x, y, z] = file.at_m.map(|at| significant(factor * at, 12));
+    let mass = significant(mass, 12);
+    format!(
+        ". The motion depends on M d, not on M: mass_kg = {mass} with at_m = [{x}, {y}, {z}] moves alike"
+    )
+}
+
+/// The dimensions that are missing, and those that a solid of this form has not.
+fn wrong_dimensions(form: &SolidShape, file: &PartFile) -> Vec<Problem> {
+    let written = Table::try_from(file).unwrap_or_default();
+    let all = [form.needs, form.may_have].concat().join(", ");
+    let wrong = |name: &'static str| match (written.get(name), has_dimension(form.name, name)) {
+        (None, _) if form.needs.contains(&name) => {
+            let rule = format!("is missing: a part of shape {} has {all}", form.name);
+            Some(Problem::at(name, rule))
+        }
+        (Some(value), false) => {
+            let shape = form.name;
+            let rule = format!("does not go with shape {shape}, which has {all}: leave it out");
+            Some(Problem::with_value(name, value, rule))
+        }
+        _ => None,
+    };
+    DIMENSIONS.into_iter().filter_map(wrong).collect()
+}
+
+/// Refuses dimensions that no solid of this form has.
+fn check_dimensions(form: &SolidShape, file: &PartFile) -> Result<(), Problem> {
+    let refused =
+        |name: &str, value: Value, rule: &str| Err(Problem::with_value(name, &value, rule));
+    if let (Some(length), "rod" | "cone") = (file.length_m, form.name)
+        && length <= 0.0
+    {
+        return refused("length_m", length.into(), "must be greater than zero");
+    }
+    if let (Some(inner), Some(outer)) = (file.inner_radius_m, file.outer_radius_m)
+        && inner > outer
+    {
+        let rule = format!(
+            "must not be greater than outer_radius_m, {}",
+            shortest(outer)
+        );
+        return refused("inner_radius_m", inner.into(), &rule);
+    }
+    for (name, numbers) in [
+        ("size_m", file.size_m),
+        ("moments_kg_m2", file.moments_kg_m2),
+    ] {
+        let numbers = Vector3::from(of(numbers));
+        if numbers.min() < 0.0 {
+            return refused(name, vector(&numbers), "must hold no negative number");
+        }
+    }
+    Ok(())
+}
+
+/// Prepares the file's `table` for a new `value` at `key`. Where a part is to have another shape, or a direction that its file
+/// does not give, its table gets the dimensions that the value asks for, as near to the old ones as there are.
+pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
+    let mut names = key.split('.');
+    let (Some("body"), Some("part")) = (names.next(), names.next()) else {
+        return;
+    };
+    let index = names.next().and_then(|index| index.parse::<usize>().ok());
+    let parts = table.get_mut("body").and_then(|body| body.get_mut("part"));
+    let part = parts
+        .zip(index)
+        .and_then(|(parts, index)| parts.get_mut(index));
+    let (Some(name), Some(Value::Table(part))) = (names.next(), part) else {
+        return;
+    };
+    match (name, value.as_str()) {
+        ("axis", _) if names.next().is_some() && !part.contains_key("axis") => {
+            part.insert("axis".to_owned(), vector(&Vector3::z()));
+        }
+        ("shape", Some(shape)) => {
+            let old: Result<PartFile, _> = part.clone().try_into();
+            let told = old.map_or(Vec::new(), |old| dimensions(&old, shape));
+            if !told.is_empty() {
+                part.retain(|key, _| !DIMENSIONS.contains(&key));
+            }
+            let told = told.into_iter();
+            part.extend(told.map(|(name, value)| (name.to_owned(), value)));
+        }
+        _ => {}
+    }
+}
+
+/// The dimensions that a part of the shape `shape` has in the place of `old`; none where there is no such shape, or no such
+/// part.
+fn dimensions(old: &PartFile, shape: &str) -> Vec<(&'static str, Value)> {
+    let Ok(part) = part(old) else {
+        return Vec::new();
+    };
+    let size = size(&part.shape);
+    let (radius, length) = (0.5 * size.x.max(size.y), size.z);
+    let hole = match part.shape {
+        Shape::Tube { inner, .. } => inner,
+        _ => 0.5 * radius,
+    };
+    // A rod or a cone without length is nothing.
+    let length = match (length > 0.0, shape) {
+        (false, "rod" | "cone") => 2.0 * radius,
+        _ => length,
+    };
+    let values = [
+        radius.into(),
+        hole.into(),
+        radius.into(),
+        length.into(),
+        vector(&size),
+        vector(&part.moments()),
+    ];
+    // Moments are then about the center, which needs no saying.
+    let all = DIMENSIONS.into_iter().zip(values);
+    all.filter(|(name, _)| has_dimension(shape, name)).collect()
+}
+
+/// How long a solid is along its x, its y and its axis, m.
+fn size(shape: &Shape) -> Vector3<f64> {
+    let round = |radius: f64, length: f64| Vector3::new(2.0 * radius, 2.0 * radius, length);
+    match *shape {
+        Shape::Ring { radius } => round(radius, 0.0),
+        Shape::Cylinder { radius, length } | Shape::Cone { radius, length } => {
+            round(radius, length)
+        }
+        Shape::Tube { outer, length, .. } => round(outer, length),
+        Shape::Rod { length } => round(0.5 * length, length),
+        Shape::Ball { radius } | Shape::Shell { radius } => round(radius, 2.0 * radius),
+        Shape::Block { size } => size,
+        Shape::Moments(moments) => block_of(&moments),
+    }
+}
+
+/// The sides of the block that has these moments divided by the mass, m.
+fn block_of(moments: &Vector3<f64>) -> Vector3<f64> {
+    let [a, b, c] = (*moments).into();
+    let side = |twice: f64| (6.0 * twice.max(0.0)).sqrt();
+    Vector3::new(side(b + c - a), side(a + c - b), side(a + b - c))
+}

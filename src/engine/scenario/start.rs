@@ -1,0 +1,343 @@
+//! The start: orientation, and momentum. A file gives the momentum itself, the spin about the axle, the angular velocity,
+//! or the Euler rates.
+
+use super::dotted::find;
+use super::file::{StartFile, VectorFrame};
+use super::keys::STATED;
+use super::kind::vector;
+use super::model::Scenario;
+use super::problem::Problem;
+use crate::physics::observables::{VERTICAL_WITHIN, angular_velocity};
+use crate::physics::symmetry::steady_precession;
+use crate::physics::{self, State, SymmetricTop, rotation};
+use crate::text::number;
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::TAU;
+use toml::{Table, Value};
+
+/// An Euler rate below this share of the angular velocity is rounding.
+const RATE_ROUNDING: f64 = 1e-15;
+
+/// rad/s of one revolution a minute.
+const RPM: f64 = TAU / 60.0;
+
+/// The state at t = 0 under the gravity `gravity`, m/s²; pushes do not count.
+pub(super) fn start(
+    file: &StartFile,
+    body: &physics::Body,
+    gravity: f64,
+) -> Result<State, Problem> {
+    is_told_once(file)?;
+    let orientation = orientation(file);
+    let turned = |frame: Option<VectorFrame>, vector: [f64; 3]| match frame.unwrap_or_default() {
+        VectorFrame::World => Vector3::from(vector),
+        VectorFrame::Body => orientation * Vector3::from(vector),
+    };
+    let momentum_of = |velocity: Vector3<f64>| orientation * (body.inertia() * velocity);
+    let momentum = match (file.momentum_Js, file.omega_rad_per_s, spin(file)) {
+        (Some(momentum), ..) => turned(file.momentum_frame, momentum),
+        (None, Some(omega), _) => {
+            let omega = turned(file.omega_frame, omega);
+            momentum_of(orientation.tr_mul(&omega))
+        }
+        (None, None, None) => momentum_of(of_euler_rates(file, &orientation)),
+        (None, None, Some(spin)) => {
+            let mut velocity = Vector3::new(0.0, 0.0, spin);
+            if file.steady == Some(true) {
+                let precession = steady(body, &orientation, spin, gravity);
+                velocity += precession.map_err(|rule| refused("steady", true, rule))?;
+            }
+            momentum_of(velocity)
+        }
+    };
+    Ok(State {
+        time_s: 0.0,
+        orientation,
+        momentum,
+    })
+}
+
+/// The same in revolutions a minute.
+pub fn rpm(rad_per_s: f64) -> f64 {
+    rad_per_s / RPM
+}
+
+/// Rz(turn) Rx(tilt) Rz(roll); an angle of 0 leaves every bit of the others alone.
+fn orientation(file: &StartFile) -> Matrix3<f64> {
+    let about = |axis: Vector3<f64>, deg: Option<f64>| {
+        rotation::about(&axis, deg.unwrap_or(0.0).to_radians())
+    };
+    let is_turned = |deg: Option<f64>| deg.is_some_and(|deg| deg != 0.0);
+    let mut orientation = about(Vector3::x(), file.tilt_deg);
+    if is_turned(file.turn_deg) {
+        orientation = about(Vector3::z(), file.turn_deg) * orientation;
+    }
+    if is_turned(file.roll_deg) {
+        orientation *= about(Vector3::z(), file.roll_deg);
+    }
+    orientation
+}
+
+/// Returns the angular velocity, body frame, rad/s, of the Euler rates in `file`, of which the missing ones are 0: the rates of
+/// the turn φ, the tilt θ and the roll ψ of `orientation` = Rz(φ) Rx(θ) Rz(ψ).
+///
+/// It is φ' z + θ' n + ψ' e3, n the line of nodes (H. Goldstein, Classical Mechanics, section 4.9). Of a vertical axle too: then
+/// φ' and ψ' are about the same axis.
+fn of_euler_rates(file: &StartFile, orientation: &Matrix3<f64>) -> Vector3<f64> {
+    let vertical = orientation.row(2).transpose();
+    let (nodes, _) = nodes(file);
+    let rate = |rate: Option<f64>| rate.unwrap_or(0.0);
+    rate(file.precession_rad_per_s) * vertical
+        + rate(file.nutation_rad_per_s) * nodes
+        + rate(file.psi_dot_rad_per_s) * Vector3::z()
+}
+
+/// Returns the line of nodes and the direction across it and the axle, body frame; with the latter the vertical is
+/// (the direction) sin θ + e3 cos θ.
+fn nodes(file: &StartFile) -> (Vector3<f64>, Vector3<f64>) {
+    let (sin, cos) = libm::sincos(file.roll_deg.unwrap_or(0.0).to_radians());
+    (Vector3::new(cos, -sin, 0.0), Vector3::new(sin, cos, 0.0))
+}
+
+/// Returns precession, nutation and psi-dot, rad/s, at the start of `now`; `None` where the axle is vertical and turns out of
+/// the plane in which they can tilt it.
+fn euler_rates(now: &Scenario) -> Option<[f64; 3]> {
+    let start = &now.start;
+    let omega = angular_velocity(&now.body.mechanics, start);
+    let omega = start.orientation.tr_mul(&omega);
+    let vertical = start.orientation.row(2).transpose();
+    let (nodes, across) = nodes(&now.file.start);
+    let (sine, rate) = (vertical.dot(&across), omega.dot(&across));
+    let is_vertical = sine.abs() <= VERTICAL_WITHIN;
+    if is_vertical && rate.abs() > VERTICAL_WITHIN * omega.norm() {
+        return None;
+    }
+    let precession = if is_vertical { 0.0 } else { rate / sine };
+    let rates = [
+        precession,
+        omega.dot(&nodes),
+        omega.z - precession * vertical.z,
+    ];
+    // What is left of a zero by the turn into the body frame is rounding.
+    let rounding = RATE_ROUNDING * omega.norm();
+    Some(rates.map(|rate| if rate.abs() <= rounding { 0.0 } else { rate }))
+}
+
+fn spin(file: &StartFile) -> Option<f64> {
+    file.spin_rad_per_s.or(file.spin_rpm.map(|rpm| rpm * RPM))
+}
+
+fn refused(name: &str, value: impl Into<Value>, rule: impl Into<String>) -> Problem {
+    Problem::with_value(format!("start.{name}"), &value.into(), rule)
+}
+
+fn is_told_once(file: &StartFile) -> Result<(), Problem> {
+    let written = Table::try_from(file).unwrap_or_default();
+    let mut told = WAYS_TO_TELL
+        .into_iter()
+        .filter(|name| written.contains_key(*name));
+    let Some(way) = told.next() else {
+        let rule = format!("is missing ({STATED})");
+        return Err(Problem::at("start.momentum_Js", rule));
+    };
+    let others = replaced(way);
+    if let Some(other) = told.find(|name| others.contains(name)) {
+        let rule = if EULER.contains(&other) {
+            format!(
+                "cannot be combined with {way}: remove it, or give psi_dot_rad_per_s in the place of {way}"
+            )
+        } else {
+            format!("is given beside {way}: keep one of the two")
+        };
+        return Err(refused(other, written[other].clone(), rule));
+    }
+    for (frame, own) in [
+        ("momentum_frame", "momentum_Js"),
+        ("omega_frame", "omega_rad_per_s"),
+    ] {
+        if written.contains_key(frame) && way != own {
+            let rule = format!("goes with {own}, and {way} is given: leave it out");
+            return Err(Problem::at(format!("start.{frame}"), rule));
+        }
+    }
+    if file.steady == Some(true) && !SPIN.contains(&way) {
+        let rule = format!("goes with a spin: give spin_rpm or spin_rad_per_s instead of {way}");
+        return Err(refused("steady", true, rule));
+    }
+    Ok(())
+}
+
+/// The angular velocity, body frame, rad/s, that the spin `spin` (rad/s) lacks for a steady precession: φ'(z − (z·e3)e3),
+/// φ' the slow root.
+fn steady(
+    body: &physics::Body,
+    orientation: &Matrix3<f64>,
+    spin: f64,
+    gravity: f64,
+) -> Result<Vector3<f64>, String> {
+    let top = SymmetricTop::of(body).ok_or(
+        "needs a body that is symmetric about its axle, and this one is lopsided: leave it out",
+    )?;
+    let up = orientation.row(2).transpose();
+    let across = Vector3::new(up.x, up.y, 0.0);
+    if across.norm() <= VERTICAL_WITHIN {
+        return Ok(Vector3::zeros()); // a vertical axle stays where it is
+    }
+    let is_level = up.z.abs() <= VERTICAL_WITHIN;
+    let cosine = if is_level { 0.0 } else { up.z };
+    let load = gravity * top.first_moment;
+    let slow = match load {
+        0.0 => Some(0.0),
+        _ => steady_precession(top.across * cosine, top.along * spin, load).0,
+    };
+    let slow = slow.filter(|slow| slow.is_finite());
+    slow.map(|slow| slow * across)
+        .ok_or_else(|| too_slow(least_spin(&top, cosine, load)))
+}
+
+/// The least spin with a steady precession, rad/s: I3² ω3² = 4 I1 cos θ M g l.
+fn least_spin(top: &SymmetricTop, cosine: f64, load: f64) -> f64 {
+    2.0 * (top.across * cosine).abs().sqrt() * load.abs().sqrt() / top.along
+}
+
+fn too_slow(least: f64) -> String {
+    let why = match least {
+        0.0 => "the spin must not be zero".to_owned(),
+        least if least.is_finite() => {
+            let (rpm, rate) = (above(rpm(least)), above(least));
+            format!("the spin must be at least {rpm} rpm ({rate} rad/s)")
+        }
+        _ => "its numbers leave the range of floating-point numbers".to_owned(),
+    };
+    format!("has no steady precession at this tilt: {why}")
+}
+
+/// A number of four digits not below `number`, and hardly above it.
+fn above(number: f64) -> String {
+    let up = number * (1.0 + 6e-4);
+    number::significant(up, 4)
+}
+
+/// The keys of which a start has one, or several of the last three.
+const WAYS_TO_TELL: [&str; 7] = [
+    "momentum_Js",
+    "spin_rpm",
+    "spin_rad_per_s",
+    "omega_rad_per_s",
+    "precession_rad_per_s",
+    "nutation_rad_per_s",
+    "psi_dot_rad_per_s",
+];
+/// The keys that replace another way to tell the momentum when they are set. Precession and nutation do not: with one of them
+/// alone the spin would be lost.
+const REPLACING: [&str; 5] = [
+    "momentum_Js",
+    "spin_rpm",
+    "spin_rad_per_s",
+    "omega_rad_per_s",
+    "psi_dot_rad_per_s",
+];
+/// The ways to tell the momentum: the keys of each.
+const START_KEYS: [&[&str]; 4] = [&MOMENTUM_KEYS, &SPIN, &OMEGA_KEYS, &EULER];
+const MOMENTUM_KEYS: [&str; 2] = ["momentum_Js", "momentum_frame"];
+const SPIN: [&str; 3] = ["spin_rpm", "spin_rad_per_s", "steady"];
+const OMEGA_KEYS: [&str; 2] = ["omega_rad_per_s", "omega_frame"];
+/// The Euler rates; a start has one or more of them.
+pub const EULER: [&str; 3] = [
+    "precession_rad_per_s",
+    "nutation_rad_per_s",
+    "psi_dot_rad_per_s",
+];
+
+/// The keys of the way that the key `name` of the start belongs to.
+fn way_of(name: &str) -> Option<&'static [&'static str]> {
+    START_KEYS.into_iter().find(|way| way.contains(&name))
+}
+
+/// The keys of the start that a new value at the key `name` of the start replaces: the other ways to give the momentum, or
+/// the other spin.
+fn replaced(name: &str) -> Vec<&'static str> {
+    let own = way_of(name).unwrap_or_default();
+    let others = START_KEYS
+        .into_iter()
+        .filter(|way| !own.is_empty() && *way != own);
+    let spins = SPIN[..2]
+        .iter()
+        .filter(|spin| SPIN[..2].contains(&name) && **spin != name);
+    others.flatten().chain(spins).copied().collect()
+}
+
+/// Whether a file can have only one of the dotted keys `one` and `other`, since both tell the momentum at the start.
+pub fn exclude_each_other(one: &str, other: &str) -> bool {
+    let of_start = |key: &'_ str| Some(key.strip_prefix("start.")?.split('.').next()?.to_owned());
+    let names = of_start(one).zip(of_start(other));
+    names.is_some_and(|(one, other)| replaced(&one).contains(&other.as_str()))
+}
+
+/// Removes from the file's `table` what a new value at `key` replaces.
+pub(super) fn make_room(table: &mut Table, key: &str) {
+    let name = key.strip_prefix("start.").unwrap_or_default();
+    if REPLACING.contains(&name) {
+        remove(table, &replaced(name));
+    }
+}
+
+fn remove(table: &mut Table, names: &[&str]) {
+    if let Some(Value::Table(start)) = table.get_mut("start") {
+        start.retain(|name, _| !names.contains(&name));
+    }
+}
+
+/// Whether a new `value` at `key` is about a way of telling the momentum that `table` does not use.
+pub(super) fn is_other_way(table: &Table, key: &str, value: &Value) -> bool {
+    let is_given = |name: &str| find(table, &format!("start.{name}")).is_some();
+    let name = key.strip_prefix("start.").unwrap_or_default();
+    match name.split_once('.').map_or(name, |(vector, _)| vector) {
+        "momentum_Js" if name != "momentum_Js" => !is_given("momentum_Js"),
+        "omega_rad_per_s" if name != "omega_rad_per_s" => !is_given("omega_rad_per_s"),
+        "momentum_frame" => !is_given("momentum_Js"),
+        "omega_frame" => !is_given("omega_rad_per_s"),
+        name if EULER.contains(&name) => !EULER.iter().any(|rate| is_given(rate)),
+        "steady" => value.as_bool() == Some(true) && !SPIN[..2].iter().any(|spin| is_given(spin)),
+        _ => false,
+    }
+}
+
+/// Tells the momentum in `table` in the way that `key` is about, as it is at the start of `now`; where `value` is a frame,
+/// in that frame, and else in the world's.
+///
+/// # Errors
+/// Where the key is an Euler rate, and there are none that give this start.
+pub(super) fn tell_other_way(
+    table: &mut Table,
+    key: &str,
+    value: &Value,
+    now: &Scenario,
+) -> Result<(), Problem> {
+    let name = key.split('.').nth(1).unwrap_or_default();
+    let own = way_of(name).unwrap_or(&MOMENTUM_KEYS);
+    remove(table, &replaced(own[own.len() - 1]));
+    let start = &now.start;
+    let framed = |in_world: Vector3<f64>| match value.as_str() {
+        Some("body") => vector(&start.orientation.tr_mul(&in_world)),
+        _ => vector(&in_world),
+    };
+    let omega = || angular_velocity(&now.body.mechanics, start);
+    let told: Vec<(&str, Value)> = match own[0] {
+        "spin_rpm" => vec![("spin_rad_per_s", now.spin_rad_per_s(start).into())],
+        "omega_rad_per_s" => vec![("omega_rad_per_s", framed(omega()))],
+        "precession_rad_per_s" => {
+            let rates = euler_rates(now).ok_or_else(|| Problem::at(key, NO_RATES))?;
+            EULER.into_iter().zip(rates.map(Value::from)).collect()
+        }
+        _ => vec![("momentum_Js", framed(start.momentum))],
+    };
+    if let Some(Value::Table(table)) = table.get_mut("start") {
+        let told = told.into_iter();
+        table.extend(told.map(|(name, value)| (name.to_owned(), value)));
+    }
+    Ok(())
+}
+
+/// Why a start cannot be stated by Euler rates.
+const NO_RATES: &str = "cannot be set alone: the axle is vertical, and no Euler rates give its present angular velocity; tilt it, or write all rates into the file";

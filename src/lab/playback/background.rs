@@ -1,0 +1,57 @@
+//! Work in the background, beside a run that goes on.
+
+use crate::engine::analysis::health::{Advice, advise_while};
+use crate::engine::scenario::Scenario;
+use std::sync::{Arc, OnceLock};
+use std::thread;
+use std::time::Duration;
+
+/// Delay before a search begins. A held key nudges a value many times a second; each search is then dropped before it begins.
+const DELAY: Duration = Duration::from_millis(200);
+
+/// Work in progress or finished. Dropping it ends the work: one that nobody waits for would take the processor from the
+/// run that is edited.
+pub struct BackgroundJob<T> {
+    answer: Arc<OnceLock<T>>,
+    is_reported: bool,
+}
+
+impl<T: Send + Sync + 'static> BackgroundJob<T> {
+    /// Begins `work`, which can ask whether its answer is still wanted. If the system gives no thread, there is no answer.
+    pub fn begin(
+        name: &str,
+        work: impl FnOnce(&(dyn Fn() -> bool + Sync)) -> Option<T> + Send + 'static,
+    ) -> Self {
+        let answer = Arc::new(OnceLock::new());
+        let asker = Arc::downgrade(&answer);
+        let work = move || {
+            let found = work(&|| asker.strong_count() > 0);
+            if let (Some(answer), Some(found)) = (asker.upgrade(), found) {
+                let _ = answer.set(found); // it is set only here, so this succeeds
+            }
+        };
+        let _ = thread::Builder::new().name(name.to_owned()).spawn(work);
+        Self {
+            answer,
+            is_reported: false,
+        }
+    }
+
+    pub fn answer(&self) -> Option<&T> {
+        self.answer.get()
+    }
+
+    pub fn take_news(&mut self) -> bool {
+        let is_news = !self.is_reported && self.answer.get().is_some();
+        self.is_reported |= is_news;
+        is_news
+    }
+}
+
+/// Searches for a change that makes an unreliable run reliable, by trial runs: it may take a second.
+pub fn advice(scenario: Arc<Scenario>) -> BackgroundJob<Advice> {
+    BackgroundJob::begin("advice", move |is_wanted| {
+        thread::sleep(DELAY);
+        is_wanted().then(|| advise_while(&scenario, is_wanted))?
+    })
+}

@@ -1,0 +1,459 @@
+//! A run that is being watched: the simulation, and the data of its pictures.
+//!
+//! It can return to any step that it has reached before: it loads the last checkpoint before that step and steps on from
+//! there, with the same bits as the first time. The pictures of the steps that then lie ahead are stored separately.
+
+mod pictures;
+
+use super::path::PathFromAbove;
+use crate::engine::analysis::cost::{has_closed_form, integration_rad_per_s, is_affordable};
+use crate::engine::analysis::readouts::ReadoutSource;
+use crate::engine::analysis::{Health, Monitor, Readouts};
+use crate::engine::journal::restart::in_force;
+use crate::engine::recording::{Moment, Recording};
+use crate::engine::run::{NotFinite, Simulation};
+use crate::engine::scenario::Scenario;
+use crate::physics::{State, Workings};
+use pictures::{Overlay, Pictures};
+use std::sync::Arc;
+
+/// Steps between two readings of the clock for a body of one point; a body of n points takes 1/n of that.
+const STEPS_PER_LOOK: usize = 4096;
+
+/// Cost of a step besides its points, in points.
+const COST_OF_A_STEP: u64 = 60;
+/// Cost of an integration of the exact motion, in points per radian.
+const COST_OF_A_RADIAN: f64 = 1000.0;
+
+/// The greatest cost of integrations for the workings of a step: about half a second.
+const MOST_INTEGRATION: u64 = 250_000_000;
+
+/// A remaining time below this share of a time step is rounding.
+const DUE_TIME_ROUNDING: f64 = 1e-6;
+
+pub struct LiveRun {
+    simulation: Simulation,
+    monitor: Monitor,
+    checkpoints: Checkpoints,
+    pictures: Pictures,
+    shows_exact: bool,
+    overlay: Option<Overlay>,
+    keeps_workings: bool,
+    /// The workings that were asked for last without having been kept, and of which step they are.
+    explained: Option<(u64, Arc<Workings>)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlayEnd {
+    /// The run has stepped all the simulated time that it was given.
+    InTime,
+    CutShort,
+    AtStop,
+    Fulfilled,
+    NotFinite(NotFinite),
+}
+
+impl LiveRun {
+    pub fn new(scenario: Arc<Scenario>) -> Self {
+        let reach = scenario.arm_m();
+        let simulation = Simulation::new(scenario);
+        let monitor = Monitor::new(simulation.now());
+        Self {
+            checkpoints: Checkpoints::new(&simulation, &monitor),
+            pictures: Pictures::new(simulation.now(), reach),
+            monitor,
+            simulation,
+            shows_exact: false,
+            overlay: None,
+            keeps_workings: false,
+            explained: None,
+        }
+    }
+
+    /// Takes one time step.
+    ///
+    /// # Errors
+    /// When the numbers stop being finite; the run then stays at the step before.
+    pub fn step(&mut self) -> Result<(), NotFinite> {
+        let step = self.simulation.step()?;
+        self.monitor.follow(step);
+        self.pictures.follow(step);
+        self.checkpoints.offer(&self.simulation, &self.monitor);
+        Ok(())
+    }
+
+    /// Steps until the run stands at `step`, or until `enough` returns true: see [`play`](Self::play).
+    ///
+    /// # Errors
+    /// When the numbers stop being finite; the run then stays at the step before.
+    pub fn step_to(&mut self, step: u64, enough: impl FnMut() -> bool) -> Result<(), NotFinite> {
+        match self.play(f64::INFINITY, step, enough, |_| false) {
+            PlayEnd::NotFinite(error) => Err(error),
+            _ => Ok(()),
+        }
+    }
+
+    pub fn furthest(&self) -> u64 {
+        self.pictures.furthest()
+    }
+
+    /// The step for which it has set out, if it has not arrived. Calling [`step`](Self::step) repeatedly leads there.
+    pub fn destination(&self) -> Option<u64> {
+        let (step, to) = (self.simulation.step_number(), self.pictures.followed_to);
+        (step < to).then_some(to)
+    }
+
+    /// Sets out for `step`, or for the furthest step that it has reached if that is earlier. It then stands at that step, or
+    /// at an earlier one with the step as its [`destination`](Self::destination).
+    pub fn set_out_for(&mut self, step: u64) {
+        self.stay();
+        let here = self.simulation.step_number();
+        let step = step.min(self.furthest());
+        if step == here {
+            return;
+        }
+        if step < here {
+            self.set_overlay(self.shows_exact);
+        }
+        let latest = self.pictures.go_to(step, here);
+        self.stand_before(latest);
+        self.pictures.keep(self.simulation.step_number());
+    }
+
+    /// A copy of the run at the last stored state that is at `step` or before, to step through what it has been through.
+    pub(super) fn again_before(&self, step: u64) -> Simulation {
+        let Some(stored) = self.stored_before(step) else {
+            return self.simulation.clone();
+        };
+        let mut again = stored.simulation.clone();
+        if !Arc::ptr_eq(again.scenario(), self.scenario()) {
+            again.go_on_in(Arc::clone(self.scenario()));
+        }
+        again
+    }
+
+    /// The last checkpoint that is at `step` or before; `None` where the present state is the later one.
+    fn stored_before(&self, step: u64) -> Option<&Checkpoint> {
+        let stored = self.checkpoints.before(step);
+        let here = self.simulation.step_number();
+        let is_nearer = (stored.simulation.step_number()..=step).contains(&here);
+        (!is_nearer || self.simulation.has_ended()).then_some(stored)
+    }
+
+    /// Puts the run at the latest stored state that is not later than `latest`: a checkpoint, or the present one.
+    fn stand_before(&mut self, latest: u64) {
+        let Some(stored) = self.stored_before(latest) else {
+            return;
+        };
+        let scenario = Arc::clone(self.simulation.scenario());
+        (self.simulation, self.monitor) = (stored.simulation.clone(), stored.monitor.clone());
+        self.simulation.keep_workings(self.keeps_workings);
+        self.pictures.stand_at(self.simulation.now());
+        self.adopt(&scenario);
+    }
+
+    /// Makes `scenario`, which has the same past, the one that the simulation and its measurements follow from the present
+    /// step on. The pictures stay: where it leads to other numbers, [`go_on_in`](Self::go_on_in) is to be called.
+    pub fn adopt(&mut self, scenario: &Arc<Scenario>) {
+        if !Arc::ptr_eq(self.simulation.scenario(), scenario) {
+            self.simulation.go_on_in(Arc::clone(scenario));
+            self.monitor.beside.go_on_in(scenario);
+        }
+    }
+
+    /// Cancels its way to the destination and stays at the present step. Where the recording lacks steps, it is filled with
+    /// the present moment.
+    pub fn stay(&mut self) {
+        if self.destination().is_some() {
+            self.pictures.stay(self.simulation.step_number());
+        }
+    }
+
+    /// Continues with `scenario`, which has the same motion up to the present step and up to the destination. The pictures
+    /// of later steps are dropped.
+    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+        self.pictures.ahead = None;
+        self.explained = None;
+        self.checkpoints.cut_back(self.pictures.followed_to);
+        if self.simulation.has_ended() {
+            self.stand_before(self.simulation.step_number());
+        }
+        self.adopt(scenario);
+        let now_s = self.now().time_s;
+        let can_be_had = is_affordable(scenario);
+        match &mut self.overlay {
+            Some(overlay) if can_be_had && overlay.goes_on_at(now_s) => overlay.go_on_in(scenario),
+            _ => self.set_overlay(self.shows_exact),
+        }
+    }
+
+    /// Plays for `time_s` simulated seconds, in whole steps. It ends earlier at the step `stop`, at a step where
+    /// `is_fulfilled` returns true, or when `enough` returns true because the time for computing is used up.
+    pub fn play(
+        &mut self,
+        time_s: f64,
+        stop: u64,
+        mut enough: impl FnMut() -> bool,
+        mut is_fulfilled: impl FnMut(&mut Self) -> bool,
+    ) -> PlayEnd {
+        let begin_s = self.now().time_s;
+        let look_every = self.steps_per_look();
+        let mut until_look = look_every;
+        loop {
+            let time_step_s = self.simulation.motion().time_step_s;
+            if self.now().time_s + time_step_s - begin_s > time_s + DUE_TIME_ROUNDING * time_step_s
+            {
+                break PlayEnd::InTime;
+            }
+            if self.simulation.step_number() >= stop {
+                break PlayEnd::AtStop;
+            }
+            if let Err(error) = self.step() {
+                break PlayEnd::NotFinite(error);
+            }
+            if is_fulfilled(self) {
+                break PlayEnd::Fulfilled;
+            }
+            until_look -= 1;
+            if until_look == 0 {
+                if enough() {
+                    break PlayEnd::CutShort;
+                }
+                until_look = look_every;
+            }
+        }
+    }
+
+    /// A step that is integrated, by the scheme or beside the run, may take long, and nothing before it says so: a push may
+    /// set in.
+    fn steps_per_look(&self) -> usize {
+        if !has_closed_form(self.scenario()) {
+            return 1;
+        }
+        (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1)
+    }
+
+    /// What a step costs, in points of a body: its points, a constant share, and the integration of the exact motion.
+    pub fn cost_of_a_step(&self) -> u64 {
+        let points = self.scenario().body.mechanics.points().len() as u64;
+        (points + COST_OF_A_STEP).saturating_add(self.integration_cost())
+    }
+
+    /// What of that goes to integrations of the exact motion: by the scheme, and beside the run.
+    fn integration_cost(&self) -> u64 {
+        integration_cost(&self.simulation, self.monitor.beside.motions())
+    }
+
+    /// Shows the exact motion beside the run where that can be had, or does not.
+    pub fn set_overlay(&mut self, shown: bool) {
+        let scenario = self.simulation.scenario();
+        self.overlay = (shown && is_affordable(scenario)).then(|| Overlay::new(scenario));
+        self.shows_exact = shown;
+    }
+
+    pub fn shows_exact(&self) -> bool {
+        self.shows_exact
+    }
+
+    pub fn follow_exact(&mut self, enough: impl FnMut() -> bool) {
+        let now_s = self.now().time_s;
+        if let Some(overlay) = &mut self.overlay {
+            overlay.follow(now_s, enough);
+        }
+    }
+
+    pub fn overlay(&self) -> Option<&Overlay> {
+        self.overlay.as_ref()
+    }
+
+    /// Where the exact motion stands, where it is shown and has come as far as the run.
+    pub fn exact_now(&self) -> Option<&Moment> {
+        let now = &self.overlay.as_ref()?.now;
+        (now.time_s >= self.now().time_s).then_some(now)
+    }
+
+    /// Whether the exact motion is shown and its time is earlier than the run's.
+    pub fn overlay_is_behind(&self) -> bool {
+        let now_s = self.now().time_s;
+        let overlay = self.overlay.as_ref();
+        overlay.is_some_and(|overlay| overlay.is_before(now_s))
+    }
+
+    pub fn health(&mut self) -> Health {
+        self.monitor.health(self.simulation.now())
+    }
+
+    pub fn readouts(&mut self) -> Readouts {
+        let health = self.health();
+        Readouts::new(&self.simulation, &mut self.monitor, &health, None)
+    }
+
+    /// Reads those of `source` off it again, of `readouts` that were read at an earlier step.
+    pub fn read_again(&mut self, readouts: &mut Readouts, source: ReadoutSource) {
+        readouts.read_again(source, &self.simulation, &mut self.monitor);
+    }
+
+    /// Whether the workings of every step to come are kept, as whoever shows them wants it while the run goes on.
+    pub fn keep_workings(&mut self, kept: bool) {
+        self.keeps_workings = kept;
+        self.simulation.keep_workings(kept);
+    }
+
+    /// What the scheme computed in the step taken last; `None` at step 0. Where the workings were not kept, that step is
+    /// taken a second time, on a copy of the run that comes from the last checkpoint before it; `None` where that takes long.
+    pub fn workings(&mut self) -> Option<Arc<Workings>> {
+        let now = self.simulation.now();
+        let before = now.number().checked_sub(1)?;
+        if let Some(workings) = now.workings() {
+            return Some(Arc::clone(workings));
+        }
+        let known = self.explained.as_ref();
+        if let Some((_, workings)) = known.filter(|(step, _)| *step == before + 1) {
+            return Some(Arc::clone(workings));
+        }
+        let mut again = self.again_before(before);
+        let mut left = MOST_INTEGRATION;
+        while again.step_number() < before {
+            left = left.checked_sub(integration_cost(&again, 0))?;
+            again.step().ok()?;
+        }
+        again.keep_workings(true);
+        let workings = again.step().ok()?.workings()?;
+        self.explained = Some((before + 1, Arc::clone(workings)));
+        Some(Arc::clone(workings))
+    }
+
+    /// The last state in which the body was a rigid one, and its step, where the scheme has broken down since.
+    pub fn last_whole(&self) -> Option<&(u64, State)> {
+        self.pictures.last_whole.as_ref()
+    }
+
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    pub fn scenario(&self) -> &Arc<Scenario> {
+        self.simulation.scenario()
+    }
+
+    pub fn now(&self) -> &Moment {
+        &self.pictures.now
+    }
+
+    pub fn pictures(&self) -> (&Recording, &PathFromAbove) {
+        match &self.pictures.ahead {
+            Some(ahead) => (&ahead.recording, &ahead.path),
+            None => (&self.pictures.recording, &self.pictures.path),
+        }
+    }
+
+    pub fn recording(&self) -> &Recording {
+        &self.pictures.recording
+    }
+
+    pub fn path(&self) -> &PathFromAbove {
+        &self.pictures.path
+    }
+}
+
+/// What the integrations of the next step of `simulation` cost, in points of a body: that of its scheme, if that is the exact
+/// one, and so many `others`.
+pub fn integration_cost(simulation: &Simulation, others: u32) -> u64 {
+    let (motion, _) = in_force(simulation.scenario(), simulation.step_number());
+    let is_exact = motion.scheme.order.is_none();
+    let integrations = f64::from(others) + f64::from(is_exact);
+    if integrations == 0.0 {
+        return 0;
+    }
+    let rad_per_s = integration_rad_per_s(simulation.scenario(), simulation.state());
+    (integrations * rad_per_s * motion.time_step_s * COST_OF_A_RADIAN).ceil() as u64
+}
+
+/// Steps between two checkpoints at first; a power of two.
+const SPACING: u64 = 256;
+const MEMORY: usize = 24 << 20;
+const PER_POINT: usize = 64;
+/// Memory of one checkpoint besides its points, bytes.
+const PER_CHECKPOINT: usize = 16 << 10;
+/// Least number of checkpoints, however large the body.
+const FEWEST_CHECKPOINTS: usize = 8;
+
+/// A run as it stood, and what was measured on its steps up to there.
+struct Checkpoint {
+    simulation: Simulation,
+    monitor: Monitor,
+}
+
+/// Stored states, equally spaced from the start. When there are too many, every second one is dropped and the spacing
+/// doubles, so that memory is bounded however long the run is.
+struct Checkpoints {
+    stored: Vec<Checkpoint>,
+    spacing: u64,
+    most: usize,
+}
+
+impl Checkpoint {
+    fn of(simulation: &Simulation, monitor: &Monitor) -> Self {
+        let mut simulation = simulation.clone();
+        simulation.keep_workings(false); // they may take much memory, and are found again by a step
+        Self {
+            simulation,
+            monitor: monitor.clone(),
+        }
+    }
+
+    fn step(&self) -> u64 {
+        self.simulation.step_number()
+    }
+}
+
+impl Checkpoints {
+    pub fn new(simulation: &Simulation, monitor: &Monitor) -> Self {
+        let points = simulation.scenario().body.mechanics.points().len();
+        Self {
+            stored: vec![Checkpoint::of(simulation, monitor)],
+            spacing: SPACING,
+            most: (MEMORY / (PER_CHECKPOINT + PER_POINT * points)).max(FEWEST_CHECKPOINTS),
+        }
+    }
+
+    /// Stores a run and the measurements on its steps if its step is a multiple of the spacing. To be called after every step.
+    #[inline]
+    pub fn offer(&mut self, simulation: &Simulation, monitor: &Monitor) {
+        if simulation.step_number() & (self.spacing - 1) == 0 {
+            self.keep(simulation, monitor);
+        }
+    }
+
+    fn keep(&mut self, simulation: &Simulation, monitor: &Monitor) {
+        if self.before(u64::MAX).step() >= simulation.step_number() {
+            return; // this step is stored already
+        }
+        self.stored.push(Checkpoint::of(simulation, monitor));
+        if self.stored.len() > self.most + 1 {
+            self.spacing *= 2;
+            let spacing = self.spacing;
+            let stays = |stored: &Checkpoint| stored.step().is_multiple_of(spacing);
+            self.stored.retain(stays);
+        }
+    }
+
+    pub fn before(&self, step: u64) -> &Checkpoint {
+        let begun = self.stored.partition_point(|stored| stored.step() <= step);
+        &self.stored[begun.saturating_sub(1)]
+    }
+
+    pub fn cut_back(&mut self, step: u64) {
+        self.stored.retain(|stored| stored.step() <= step);
+    }
+}
+
+#[cfg(test)]
+impl LiveRun {
+    /// The run of a preset at the step `steps`.
+    pub fn played(preset: &str, steps: u64) -> Self {
+        let mut run = Self::new(crate::lab::for_tests::preset(preset));
+        run.step_to(steps, || false).unwrap();
+        run
+    }
+}

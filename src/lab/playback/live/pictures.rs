@@ -1,0 +1,212 @@
+//! What the pictures of a run are drawn from: its curves over time, its path, where it stands, and the
+//! exact motion beside it.
+
+use super::PathFromAbove;
+use crate::engine::recording::{Moment, Recording};
+use crate::engine::run::{Step, Truth};
+use crate::engine::scenario::Scenario;
+use crate::physics::State;
+use nalgebra::Vector3;
+use std::cmp::Ordering;
+use std::sync::Arc;
+
+/// The data of the pictures of one run; to be shown every step.
+pub(super) struct Pictures {
+    pub now: Moment,
+    pub recording: Recording,
+    pub path: PathFromAbove,
+    /// The last step in the path. It is later than the present step while the run is still stepping towards it.
+    pub followed_to: u64,
+    pub ahead: Option<Ahead>,
+    /// The last state in which the body was a rigid one, and its step; `None` where it still is one.
+    pub last_whole: Option<(u64, State)>,
+}
+
+/// The pictures of a run up to the furthest step it has been at, while it stands at an earlier one.
+pub(super) struct Ahead {
+    pub step: u64,
+    pub recording: Recording,
+    pub path: PathFromAbove,
+}
+
+impl Pictures {
+    pub fn new(step: &Step, reach: f64) -> Self {
+        let mut pictures = Self {
+            now: moment(step),
+            recording: Recording::default(),
+            path: PathFromAbove::new(reach),
+            followed_to: 0,
+            ahead: None,
+            last_whole: None,
+        };
+        pictures.recording.push(&pictures.now);
+        pictures.path.follow(0, &pictures.now.position);
+        pictures
+    }
+
+    #[inline]
+    pub fn follow(&mut self, step: &Step) {
+        self.now = moment(step);
+        if self.last_whole.is_none() && !step.after().is_a_rotation() {
+            let before = step.before().filter(|before| before.is_a_rotation());
+            self.last_whole = before.map(|before| (step.number() - 1, *before));
+        }
+        self.keep(step.number());
+    }
+
+    /// Adds the present moment, which is at `step`, to the recording and the path, unless they have it already.
+    pub fn keep(&mut self, step: u64) {
+        if step >= self.recording.moments() {
+            self.recording.push(&self.now);
+        }
+        match step.cmp(&self.followed_to) {
+            Ordering::Less => {}
+            Ordering::Equal => self.path.stand_at(&self.now.position),
+            Ordering::Greater => {
+                self.path.follow(step, &self.now.position);
+                self.followed_to = step;
+            }
+        }
+        if let Some(ahead) = self.ahead.take_if(|ahead| ahead.step == step) {
+            (self.recording, self.path) = (ahead.recording, ahead.path);
+        }
+    }
+
+    pub fn stand_at(&mut self, step: &Step) {
+        self.now = moment(step);
+        self.last_whole.take_if(|(at, _)| *at >= step.number());
+    }
+
+    /// Goes back, or forward, to `step`, which the run has reached, from the present step `here`. Returns the latest step
+    /// from which it has to be shown the steps up to there again.
+    pub fn go_to(&mut self, step: u64, here: u64) -> u64 {
+        let ahead = self.ahead.get_or_insert_with(|| Ahead {
+            step: here,
+            recording: self.recording.clone(),
+            path: self.path.clone(),
+        });
+        if step > here {
+            self.recording.clone_from(&ahead.recording);
+            self.path.clone_from(&ahead.path);
+        }
+        self.path.cut_back(step);
+        self.followed_to = step;
+        let recorded = self.cut_back_recording(step + 1);
+        step.min(recorded.saturating_sub(1))
+    }
+
+    /// Cuts the recording back to at most `moments`, and so far that filling it again makes it fine enough. Returns how
+    /// many moments it keeps.
+    fn cut_back_recording(&mut self, moments: u64) -> u64 {
+        let kept = self.recording.cut_back(moments);
+        match self.recording.coarse_since() {
+            Some(from) => self.recording.cut_back(from),
+            None => kept,
+        }
+    }
+
+    /// Ends at the present step, `step`, where it was on its way to a later one. Where the recording lacks steps, it is
+    /// filled with the present moment.
+    pub fn stay(&mut self, step: u64) {
+        self.path.cut_back(step);
+        self.path.stand_at(&self.now.position);
+        self.followed_to = step;
+        for _ in self.recording.cut_back(step + 1)..=step {
+            self.recording.push(&self.now);
+        }
+    }
+
+    pub fn furthest(&self) -> u64 {
+        let ahead = self.ahead.as_ref().map_or(0, |ahead| ahead.step);
+        ahead.max(self.followed_to)
+    }
+}
+
+fn moment(step: &Step) -> Moment {
+    Moment {
+        time_s: step.time_s(),
+        position: *step.position(),
+        axle_height: step.after().axle().z,
+    }
+}
+
+/// The most samples of the exact motion that one call of [`follow`](Overlay::follow) computes. If the run is further
+/// ahead, only every second, third, ... step is sampled.
+const MOST_SAMPLES: f64 = 20_000.0;
+
+pub struct Overlay {
+    truth: Truth,
+    traced: Vector3<f64>,
+    /// Least time between two samples, s.
+    time_step_s: f64,
+    pub now: Moment,
+    pub recording: Recording,
+    pub path: PathFromAbove,
+    has_ended: bool,
+}
+
+impl Overlay {
+    pub fn new(scenario: &Arc<Scenario>) -> Self {
+        let traced = scenario.body.mechanics.points()[scenario.trace].at;
+        let now = Moment::new(&scenario.start, &traced);
+        let mut overlay = Self {
+            truth: Truth::new(Arc::clone(scenario)),
+            traced,
+            time_step_s: scenario.motion.time_step_s,
+            now,
+            recording: Recording::default(),
+            path: PathFromAbove::new(traced.norm()),
+            has_ended: false,
+        };
+        overlay.record(now);
+        overlay
+    }
+
+    /// Continues as the exact motion of `scenario`, which has the same motion up to the present time.
+    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+        self.truth.go_on_in(scenario);
+    }
+
+    pub fn follow(&mut self, time_s: f64, mut enough: impl FnMut() -> bool) {
+        let due = (time_s - self.now.time_s) / self.time_step_s;
+        let spacing_s = self.time_step_s * (due / MOST_SAMPLES).ceil().max(1.0);
+        while self.is_before(time_s) {
+            let next = self.now.time_s + spacing_s;
+            // The last sample is at exactly the run's time, without the rounding of the summed spacings.
+            let next = if next > time_s - 0.5 * self.time_step_s {
+                time_s
+            } else {
+                next
+            };
+            let state = self.truth.state_at(next);
+            let moment = Moment {
+                time_s: next,
+                ..Moment::new(&state, &self.traced)
+            };
+            self.has_ended = !moment.is_finite();
+            if !self.has_ended {
+                self.record(moment);
+            }
+            if enough() {
+                return;
+            }
+        }
+    }
+
+    fn record(&mut self, moment: Moment) {
+        self.recording.push(&moment);
+        let sample = self.recording.moments();
+        self.path.follow(sample, &moment.position);
+        self.now = moment;
+    }
+
+    /// Whether it can go on from a run that stands at `time_s` (s): it has not come further, nor ended.
+    pub fn goes_on_at(&self, time_s: f64) -> bool {
+        !self.has_ended && self.now.time_s <= time_s
+    }
+
+    /// Whether it has not come as far as `time_s` (s), and goes on.
+    pub fn is_before(&self, time_s: f64) -> bool {
+        !self.has_ended && self.now.time_s < time_s
+    }
+}

@@ -1,0 +1,164 @@
+//! The numbers of any step that a run has reached, computed again from its stored states, without moving the run.
+
+use super::live::{LiveRun, integration_cost};
+use crate::engine::run::{Sample, Simulation};
+
+/// The most time steps of a body of one point that are computed for an answer; a body of n points has 1/n of that, and steps
+/// that are integrated count as so many points.
+const MOST_LOOKUP_STEPS: u64 = 4_000_000;
+
+/// What a point of a body costs in one of these steps, as an integration's cost is counted.
+const COST_OF_A_POINT: u64 = 30;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Missing {
+    #[error("the run has not been there")]
+    NotReached,
+    #[error("its steps take so long that they are only computed by going there")]
+    TooFar,
+    #[error("the tilt turns nowhere on that side")]
+    NoTurn,
+}
+
+/// The numbers at `step` of `run`: those that its CSV has in that row.
+///
+/// # Errors
+/// Where the run has not been at the step, or computing it again would take too long.
+pub fn sample(run: &LiveRun, step: u64) -> Result<Sample, Missing> {
+    if step > run.furthest() {
+        return Err(Missing::NotReached);
+    }
+    let mut steps = LookupSteps::before(run, step);
+    while steps.step_number() < step {
+        steps.step()?;
+    }
+    Ok(steps.simulation.sample())
+}
+
+/// The step nearest to `from`, after or before it, at which the tilt of `run` turns up or down.
+///
+/// # Errors
+/// Where there is none, or computing it would take too long.
+pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
+    if forward {
+        let mut steps = LookupSteps::before(run, from.saturating_sub(1));
+        while steps.step_number() < run.furthest() {
+            if let Some(turn) = steps.step()?.filter(|turn| *turn > from) {
+                return Ok(turn);
+            }
+        }
+        return Err(Missing::NoTurn);
+    }
+    // From stored states further and further back, until the tilt turns after one of them.
+    let (mut begin, mut left) = (from, None);
+    while begin > 0 {
+        let mut steps = LookupSteps::before(run, begin - 1);
+        steps.left = left.unwrap_or(steps.left);
+        let end = from.min(begin + 1); // a turn is seen one step after it
+        begin = steps.step_number();
+        let mut last = None;
+        while steps.step_number() < end {
+            last = steps.step()?.or(last);
+        }
+        if let Some(turn) = last {
+            return Ok(turn);
+        }
+        left = Some(steps.left);
+    }
+    Err(Missing::NoTurn)
+}
+
+/// The turns of the tilt of `run` from step `from` to step `to`: the time, s, and the tilt, degrees, of each.
+pub fn turns(run: &LiveRun, from: u64, to: u64) -> Result<Vec<(f64, f64)>, Missing> {
+    let mut steps = LookupSteps::before(run, from.saturating_sub(1));
+    let mut turns = Vec::new();
+    while steps.step_number() <= to && steps.step_number() < run.furthest() {
+        let now = steps.simulation.now();
+        let (time_s, tilt_deg) = (now.time_s(), now.tilt_deg());
+        if steps.step()?.is_some_and(|turn| turn >= from) {
+            turns.push((time_s, tilt_deg));
+        }
+    }
+    Ok(turns)
+}
+
+struct LookupSteps {
+    simulation: Simulation,
+    /// The points of the steps that may still be taken.
+    left: u64,
+    points: u64,
+    /// How the height of the axle changed in the last step, where it did.
+    change: f64,
+}
+
+impl LookupSteps {
+    fn before(run: &LiveRun, step: u64) -> Self {
+        Self {
+            simulation: run.again_before(step),
+            left: MOST_LOOKUP_STEPS,
+            points: run.scenario().body.mechanics.points().len() as u64,
+            change: 0.0,
+        }
+    }
+
+    fn step_number(&self) -> u64 {
+        self.simulation.step_number()
+    }
+
+    /// Takes a step; gives the step before it where the tilt has turned there.
+    fn step(&mut self) -> Result<Option<u64>, Missing> {
+        let cost = self.points + integration_cost(&self.simulation, 0) / COST_OF_A_POINT;
+        self.left = self.left.checked_sub(cost).ok_or(Missing::TooFar)?;
+        let (before, height) = (self.step_number(), self.simulation.state().axle().z);
+        self.simulation.step().map_err(|_| Missing::NotReached)?;
+        let change = self.simulation.state().axle().z - height;
+        let turned = change * self.change < 0.0;
+        if change != 0.0 {
+            self.change = change;
+        }
+        Ok(turned.then_some(before))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_numbers_of_an_earlier_step_are_those_that_it_had() {
+        let samples: Vec<_> = (0..=700)
+            .map(|steps| LiveRun::played("cusps", steps).simulation().sample())
+            .collect();
+        let run = LiveRun::played("cusps", 700);
+        for step in [0, 1, 255, 256, 257, 699, 700] {
+            assert_eq!(sample(&run, step).unwrap(), samples[step as usize]);
+        }
+        assert_eq!(sample(&run, 701), Err(Missing::NotReached));
+    }
+
+    #[test]
+    fn turns_of_the_tilt_are_found_on_both_sides() {
+        // It is highest at the cusps, every 0.8225 s, and lowest between them.
+        let run = LiveRun::played("cusps", 3000);
+        let next = |&at: &u64| turn(&run, at, true).ok();
+        let turns: Vec<_> = std::iter::successors(Some(0), next).skip(1).collect();
+        assert_eq!(turns.len(), 7, "{turns:?}");
+        for (index, &turn) in turns.iter().enumerate() {
+            let expected = 411.25 * (index + 1) as f64;
+            assert!((turn as f64 - expected).abs() < 2.0, "{turns:?}");
+        }
+        for pair in turns.windows(2) {
+            assert_eq!(turn(&run, pair[1], false), Ok(pair[0]));
+            assert_eq!(turn(&run, pair[1] - 1, false), Ok(pair[0]));
+        }
+        assert_eq!(turn(&run, turns[0], false), Err(Missing::NoTurn));
+        assert_eq!(turn(&run, turns[6], true), Err(Missing::NoTurn));
+    }
+
+    #[test]
+    fn a_turn_that_is_nowhere_is_not_looked_for_without_end() {
+        let run = LiveRun::played("torque-free", 400_000);
+        assert_eq!(turn(&run, 1000, false), Err(Missing::NoTurn));
+        assert_eq!(turn(&run, 400_000, false), Err(Missing::TooFar));
+    }
+}

@@ -1,0 +1,72 @@
+//! The numbers on the screen. They are updated four times a second: nobody can read digits that change in every frame,
+//! and sending them would load a slow line. Of a very fast run they are updated for every frame, so that they belong to it.
+
+use super::live::LiveRun;
+use super::pace::{Pace, Speed};
+use crate::engine::analysis::{MeasuredNumber, Readouts};
+use crate::engine::recording::Moment;
+use crate::engine::text::number::{exponent, fixed, rounded, shortest};
+use crate::physics::State;
+use std::time::Duration;
+
+pub const READING_INTERVAL: Duration = Duration::from_millis(250);
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    pub readouts: Readouts,
+    /// The state at that time. Where the scheme has broken down, the last state whose orientation is a rotation.
+    pub state: State,
+    /// The step of that state, if the scheme has broken down since; else `None`.
+    pub last_whole: Option<u64>,
+    pub exact: Option<Moment>,
+    pub pace: String,
+}
+
+impl Reading {
+    pub fn new(run: &mut LiveRun, pace: &Pace) -> Self {
+        let last_whole = run.last_whole();
+        Self {
+            state: last_whole.map_or(*run.simulation().state(), |(_, state)| *state),
+            last_whole: last_whole.map(|(step, _)| *step),
+            exact: run.exact_now().copied(),
+            readouts: run.readouts(),
+            pace: pace_in_words(pace),
+        }
+    }
+
+    /// Measured precession, degrees a second; `None` until its uncertainty is small enough.
+    pub fn precession_deg_per_s(&self) -> Option<f64> {
+        self.readouts
+            .precession
+            .filter(MeasuredNumber::is_settled)
+            .map(|measured| measured.value.to_degrees())
+    }
+}
+
+fn pace_in_words(pace: &Pace) -> String {
+    match (pace.is_running, pace.speed) {
+        (false, Speed::Times(speed)) => format!("paused ×{}", short(speed)),
+        (false, Speed::Top) => "paused, top".to_owned(),
+        (true, Speed::Top) => format!("► top ×{}", achieved(pace)),
+        (true, Speed::Times(_)) if pace.falls_behind() => {
+            format!("► ×{} max", achieved(pace))
+        }
+        (true, Speed::Times(speed)) => format!("► ×{}", short(speed)),
+    }
+}
+
+/// The speed that is reached; further digits than two change all the time.
+fn achieved(pace: &Pace) -> String {
+    let speed = rounded(pace.achieved, 2);
+    short(if speed.is_finite() { speed } else { 0.0 })
+}
+
+/// The speed in few characters: 20, 0.002, 5e5.
+fn short(speed: f64) -> String {
+    match speed {
+        n if n >= 1e5 => exponent(n, 0),
+        n if n >= 10.0 => fixed(n, 0),
+        n if n >= 1e-3 => shortest((n * 1e6).round() / 1e6),
+        n => exponent(n, 0),
+    }
+}

@@ -1,0 +1,195 @@
+//! The range of values that an axis shows, and the round values at its ticks.
+
+use crate::engine::recording::Extent;
+use crate::engine::text::ladder;
+use crate::engine::text::number::{fixed, rounded};
+
+/// A tick this share of the range beyond an end stands at the end: the difference is rounding.
+const STRIP_TICK_ROUNDING: f64 = 1e-9;
+
+/// An end that is written this share of the range beside its place is read at that place.
+const UNSEEN_TICK_OFFSET: f64 = 0.025;
+
+/// Significant digits of a tick: no rounding of its last bits is seen.
+const STRIP_TICK_DIGITS: usize = 15;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StripScale {
+    pub low: f64,
+    pub high: f64,
+}
+
+impl StripScale {
+    /// From `-reach` to `reach`, rounded up.
+    pub fn about_zero(reach: f64) -> Self {
+        let reach = nice_above(reach.max(1e-9));
+        Self {
+            low: -reach,
+            high: reach,
+        }
+    }
+
+    /// Round numbers around `extent`, at least `least` apart; they change seldom while the extent grows.
+    pub fn around(extent: Extent, least: f64) -> Self {
+        let unit = ladder::at_or_below((extent.max - extent.min).max(least) / 4.0);
+        let (low, high) = ((extent.min / unit).floor(), (extent.max / unit).ceil());
+        let missing = (least / unit - (high - low)).ceil().max(0.0);
+        let below = (0.5 * missing).floor();
+        Self {
+            low: rounded((low - below) * unit, STRIP_TICK_DIGITS),
+            high: rounded((high + missing - below) * unit, STRIP_TICK_DIGITS),
+        }
+    }
+
+    pub fn zoomed(&self, zoom: f64, value: f64) -> Self {
+        Self {
+            low: value + (self.low - value) / zoom,
+            high: value + (self.high - value) / zoom,
+        }
+    }
+
+    /// The place of `value`: 0 at the high end, 1 at the low one.
+    pub fn from_top(&self, value: f64) -> f64 {
+        (self.high - value) / (self.high - self.low)
+    }
+
+    pub fn meets(&self, extent: Extent) -> bool {
+        extent.max >= self.low && extent.min <= self.high
+    }
+
+    /// Digits after the point with which its ends are written: as they are, or to a hundredth of the range.
+    pub fn decimals(&self) -> usize {
+        let range = self.high - self.low;
+        let most = decimals(range / 100.0);
+        let is_exact = |digits: &usize| {
+            let unit = libm::exp10(-(*digits as f64));
+            let rest = |end: f64| (end / unit - (end / unit).round()).abs() * unit;
+            rest(self.low).max(rest(self.high)) < 1e-6 * range && unit < 0.5 * range
+        };
+        (0..most).find(is_exact).unwrap_or(most)
+    }
+
+    /// Both ends in at most `width` columns: close together where there is no room for spaces, else as the middle and the
+    /// distance of the ends from it, a middle of 0 left out if need be, and then with fewer digits, as long as no end is
+    /// seen to be elsewhere. `None` where that has no room either.
+    pub fn in_words_within(&self, width: usize) -> Option<String> {
+        let fits = |words: &String| words.chars().count() <= width;
+        let digits = self.decimals();
+        let (middle, half) = (0.5 * (self.low + self.high), 0.5 * (self.high - self.low));
+        let about = |digits| format!("{} ± {}", fixed(middle, digits), fixed(half, digits));
+        let is_true = |value: f64, digits: &usize| {
+            let unit = libm::exp10(-(*digits as f64));
+            (value - (value / unit).round() * unit).abs()
+                <= UNSEEN_TICK_OFFSET * (self.high - self.low)
+        };
+        let mut forms = (0..=digits).rev().flat_map(|digits| {
+            let both = is_true(self.low, &digits) && is_true(self.high, &digits);
+            let words = [" .. ", ".."].map(|between| self.with_digits(digits, between));
+            let both = both.then_some(words).into_iter().flatten();
+            let around = is_true(middle, &digits) && is_true(half, &digits);
+            let about_zero =
+                (around && middle == 0.0).then(|| format!("± {}", fixed(half, digits)));
+            both.chain(around.then(|| about(digits))).chain(about_zero)
+        });
+        forms.find(fits)
+    }
+
+    fn with_digits(&self, digits: usize, between: &str) -> String {
+        let [low, high] = [self.low, self.high].map(|end| fixed(end, digits));
+        format!("{low}{between}{high}")
+    }
+}
+
+/// Digits after the point that numbers `apart` need to be told apart.
+pub fn decimals(apart: f64) -> usize {
+    (-libm::log10(apart) - STRIP_TICK_ROUNDING)
+        .ceil()
+        .clamp(0.0, 9.0) as usize
+}
+
+/// The multiples of a number 1, 2 or 5 times a power of ten from `low` to `high`: as many as there can be, at most `most`.
+pub fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
+    let range = high - low;
+    if !(range > 0.0 && range.is_finite()) || most == 0 {
+        return Vec::new();
+    }
+    let first = ladder::rung_below(range / most as f64);
+    let all = |rung: i64| {
+        let apart = ladder::rung(rung);
+        let (from, to) = (
+            (low / apart - STRIP_TICK_ROUNDING).ceil(),
+            (high / apart + STRIP_TICK_ROUNDING).floor(),
+        );
+        (apart, from, to)
+    };
+    let fits = |&(_, from, to): &(f64, f64, f64)| to - from < most as f64;
+    let Some((apart, from, to)) = (first..first + 4).map(all).find(fits) else {
+        return Vec::new();
+    };
+    let count = (to - from + 1.0).max(0.0) as usize;
+    let tick = |index: usize| rounded((from + index as f64) * apart, STRIP_TICK_DIGITS);
+    (0..count).map(tick).collect()
+}
+
+/// The smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value` (> 0).
+fn nice_above(value: f64) -> f64 {
+    const TICK_STEPS: [f64; 11] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
+    let unit = libm::exp10(libm::log10(value).floor());
+    let step = TICK_STEPS
+        .into_iter()
+        .find(|step| step * unit >= value * 0.999_999);
+    step.unwrap_or(10.0) * unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_calm_value_needs_few_digits() {
+        for (low, high, words) in [
+            (29.999_999_75, 30.000_000_02, "29.99 .. 30.01"),
+            (30.0, 30.0, "29.99 .. 30.01"),
+            (31.4, 57.2, "30 .. 60"),
+        ] {
+            let scale = StripScale::around(Extent::of(low).and(Extent::of(high)), 0.02);
+            assert_eq!(scale.in_words_within(40).unwrap(), words);
+        }
+    }
+
+    #[test]
+    fn ends_have_fewer_digits_where_there_is_little_room() {
+        // With fewer digits than the last ones have, the ends would be elsewhere.
+        for (low, high, width, words) in [
+            (29.998_75, 30.001_25, 30, "29.99875 .. 30.00125"),
+            (29.998_75, 30.001_25, 20, "29.99875 .. 30.00125"),
+            (29.998_75, 30.001_25, 19, "29.99875..30.00125"),
+            (29.998_75, 30.001_25, 17, "29.9988..30.0012"),
+            (29.998_75, 30.001_25, 16, "29.9988..30.0012"),
+            (29.998_75, 30.001_25, 15, ""),
+            (0.6, 0.95, 12, "0.60 .. 0.95"),
+            (0.6, 0.95, 10, "0.60..0.95"),
+            (0.6, 0.95, 9, ""),
+        ] {
+            let scale = StripScale { low, high };
+            let within = |width| scale.in_words_within(width).unwrap_or_default();
+            assert_eq!(within(width), words, "{scale:?} within {width}");
+            assert!((0..40).all(|width| within(width).chars().count() <= width));
+        }
+    }
+
+    #[test]
+    fn ticks_are_round_and_no_more_than_there_is_room_for() {
+        for (low, high, most, expected) in [
+            (0.0, 230.0, 6, &[0.0, 50.0, 100.0, 150.0, 200.0][..]),
+            (0.0, 230.0, 2, &[0.0, 200.0]),
+            (-0.8, 0.8, 5, &[-0.5, 0.0, 0.5]),
+            (12.25, 12.35, 3, &[12.25, 12.3, 12.35]),
+            (1.0, 1.0, 5, &[]),
+            (0.0, f64::INFINITY, 5, &[]),
+            (0.0, 1.0, 0, &[]),
+        ] {
+            assert_eq!(ticks(low, high, most), expected, "{low} to {high}");
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! The only folder in which a lab may read and write, if the command line names one with `--folder`. It is meant for a
+//! login that several people share and that may run nothing but the lab.
+
+use crate::engine::text::printable::{PrintablePath, printable};
+use std::fs;
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+/// Subfolder for the sessions of a confined lab, and for its class.
+pub const SESSIONS: &str = ".gyrolab";
+/// The most that the files of a seat take together, bytes.
+pub const MOST_OF_SEAT: u64 = 20_000_000;
+
+/// A folder that the lab's reads and writes never leave.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Confined {
+    root: PathBuf,
+    sessions: PathBuf,
+    /// The folder of the class whose seat this is: its lessons and scenarios are read too, and nothing is written there.
+    class: Option<PathBuf>,
+}
+
+impl Confined {
+    /// Confines the lab to `folder` and makes it the working directory of this process.
+    pub fn enter(folder: &Path) -> io::Result<Self> {
+        let confined = Self::within(folder)?;
+        std::env::set_current_dir(&confined.root)?;
+        Ok(confined)
+    }
+
+    /// Confines the lab to `folder`, which must be the working directory whenever a path is checked.
+    pub fn within(folder: &Path) -> io::Result<Self> {
+        let root = fs::canonicalize(folder)?;
+        if !root.is_dir() {
+            return Err(io::Error::from(io::ErrorKind::NotADirectory));
+        }
+        Ok(Self {
+            sessions: root.join(SESSIONS),
+            class: None,
+            root,
+        })
+    }
+
+    /// Keeps the sessions in `folder`, such as that of the teacher.
+    pub fn keeping_in(self, sessions: PathBuf) -> Self {
+        Self { sessions, ..self }
+    }
+
+    /// Makes it the folder of a seat of the class in `folder`.
+    pub fn as_seat_of(self, folder: &Path) -> Self {
+        let class = Some(folder.to_owned());
+        Self { class, ..self }
+    }
+
+    pub fn class(&self) -> Option<PathBuf> {
+        self.class.clone()
+    }
+
+    pub fn is_seat(&self) -> bool {
+        self.class.is_some()
+    }
+
+    /// The folder whose lessons are listed: that of the class, or its own.
+    pub fn lessons(&self) -> &Path {
+        self.class.as_deref().unwrap_or(&self.root)
+    }
+
+    /// The folder for sessions; it may not exist yet.
+    pub fn sessions(&self) -> Result<PathBuf, String> {
+        match fs::symlink_metadata(&self.sessions) {
+            Ok(there) if !there.is_dir() => Err(format!(
+                "sessions cannot be kept in {}: it is not a folder",
+                PrintablePath(&self.sessions)
+            )),
+            _ => Ok(self.sessions.clone()),
+        }
+    }
+
+    /// Checks that the file `path` may be read: it lies in the folder, or in that of the class. Its full path is allowed.
+    pub fn check_reading(&self, path: &Path) -> Result<(), String> {
+        for root in [&self.root, self.class.as_ref().unwrap_or(&self.root)] {
+            if let Ok(rest) = path.strip_prefix(root) {
+                let root = root.clone();
+                return Self {
+                    root,
+                    ..self.clone()
+                }
+                .check(rest);
+            }
+        }
+        self.check(path)
+    }
+
+    /// Checks that the file `path` may be written: as [`check`](Self::check), and a seat has room for it.
+    pub fn check_writing(&self, path: &Path) -> Result<(), String> {
+        self.check(path)?;
+        if self.is_seat() && size_of(&self.root) >= MOST_OF_SEAT {
+            let most = MOST_OF_SEAT / 1_000_000;
+            return Err(format!(
+                "the files of this seat take {most} MB, the most of a seat: ask your teacher to remove some"
+            ));
+        }
+        Ok(())
+    }
+
+    /// Checks that the file `path`, existing or not, lies in the folder: the path is relative, has no `..`, and no symbolic
+    /// link in it leads out of the folder.
+    pub fn check(&self, path: &Path) -> Result<(), String> {
+        let mut full = self.root.clone();
+        for component in path.components() {
+            match component {
+                Component::CurDir => {}
+                Component::Normal(name) if name == "-" => {
+                    return Err("- is no name for a file here".to_owned());
+                }
+                Component::Normal(name) => full.push(name),
+                Component::ParentDir | Component::RootDir | Component::Prefix(_) => {
+                    return Err(
+                        "this lab stays in its folder: a name must not begin with / or contain .."
+                            .to_owned(),
+                    );
+                }
+            }
+        }
+        self.check_full(&full)?;
+        match fs::symlink_metadata(&full) {
+            Ok(there) if there.is_symlink() => {
+                self.check_full(&fs::canonicalize(&full).map_err(|_| leads_out(&full))?)
+            }
+            _ => Ok(()),
+        }?;
+        let folder = full.parent().unwrap_or(&self.root);
+        if let Ok(folder) = fs::canonicalize(folder) {
+            self.check_full(&folder)?;
+        }
+        match fs::metadata(&full) {
+            Ok(there) if !there.is_file() && !there.is_dir() => {
+                Err("this lab reads and writes regular files alone".to_owned())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks an absolute path, without following links in it.
+    fn check_full(&self, path: &Path) -> Result<(), String> {
+        let inside = path.strip_prefix(&self.root).map_err(|_| leads_out(path))?;
+        let is_hidden = |part: Component<'_>| part.as_os_str().as_encoded_bytes().starts_with(b".");
+        if inside.components().any(is_hidden) {
+            Err("names that begin with a dot are the lab's own".to_owned())
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// What the files in `folder` take together, bytes.
+fn size_of(folder: &Path) -> u64 {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let there = entries.filter_map(|entry| Some((entry.path(), entry.metadata().ok()?)));
+    let size = |(path, there): (PathBuf, fs::Metadata)| {
+        if there.is_dir() {
+            size_of(&path)
+        } else {
+            there.len()
+        }
+    };
+    there.map(size).sum()
+}
+
+fn leads_out(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    format!(
+        "this lab stays in its folder: {} leads out of it",
+        printable(&name)
+    )
+}

@@ -1,0 +1,442 @@
+//! Exports a run to a CSV file, or draws a figure of it, in the background; how large the CSV will be, and how it is fetched
+//! from this machine.
+
+use super::at_exit::{self, Registered, Release};
+use crate::engine::data::MeasuredData;
+use crate::engine::export::destination::{Destination, DestinationError};
+use crate::engine::export::stream::{self, Ended};
+use crate::engine::export::{COLUMNS, CsvLayout, CsvWriter};
+use crate::engine::run::{Clock, NotFinite, Sample, Simulation};
+use crate::engine::scenario::Scenario;
+use crate::engine::text::printable::printable;
+use crate::lab::playback::live::integration_cost;
+use crate::plot::PageFormat;
+use crate::report::figure::kind::FigureKind;
+use crate::report::figure::of_runs::{EXACT_BESIDE, FigureRun};
+use crate::report::figure::{FigureOptions, FigureSource};
+use std::ffi::OsStr;
+use std::io;
+use std::num::NonZeroU64;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// An export in progress, or a finished one. Dropping it cancels an export in progress and removes its temporary file.
+pub struct Exporting {
+    path: PathBuf,
+    shared: Arc<Shared>,
+    worker: Option<JoinHandle<Result<Written, String>>>,
+    _at_end: Registered,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    pub path: PathBuf,
+    pub rows: Option<u64>,
+    pub bytes: u64,
+    pub warnings: Vec<String>,
+    /// Where the run's numbers stopped being finite, if they did. The file has the rows before that.
+    pub not_finite: Option<NotFinite>,
+}
+
+/// What a figure shows of a run.
+#[derive(Clone, Debug)]
+pub struct FigureInput {
+    pub kind: FigureKind,
+    /// Whether the exact motion stands beside the run.
+    pub exact: bool,
+    pub measured: Option<Arc<MeasuredData>>,
+    pub format: PageFormat,
+}
+
+#[derive(Default)]
+struct Shared {
+    step: AtomicU64,
+    steps: u64,
+    is_cancelled: AtomicBool,
+    has_ended: AtomicBool,
+    /// Whether the end of the process has cancelled it.
+    is_cut_off: AtomicBool,
+}
+
+impl Exporting {
+    /// Starts writing the run of `scenario`, from step 0 to its last step, to the file `path`. It writes the same bytes as
+    /// `gyrolab run -o`, with the rows and columns of `layout`. The file appears once it is complete.
+    pub fn begin(
+        scenario: Arc<Scenario>,
+        path: &Path,
+        layout: CsvLayout,
+        replace: bool,
+    ) -> Result<Self, DestinationError> {
+        let refused = |error| DestinationError::refused(path, error);
+        let destination = Destination::open_file(path, replace)?;
+        let csv = CsvWriter::with_layout(destination, &scenario, layout).map_err(refused)?;
+        let path = std::path::absolute(path).map_err(refused)?;
+        let steps = scenario.steps;
+        let written = path.clone();
+        let write = move |shared: &Shared| write(scenario, csv, written, shared);
+        Self::spawn(path, steps, write).map_err(refused)
+    }
+
+    /// Starts drawing a figure of the run of `scenario`, a column of a page wide, to the file `path`. It writes the same bytes
+    /// as `gyrolab figure -o`. The file appears once it is complete.
+    pub fn begin_figure(
+        scenario: Arc<Scenario>,
+        path: &Path,
+        drawn: FigureInput,
+        replace: bool,
+    ) -> Result<Self, DestinationError> {
+        let refused = |error| DestinationError::refused(path, error);
+        let output = Destination::open_file(path, replace)?;
+        let path = std::path::absolute(path).map_err(refused)?;
+        let (steps, drawn_to) = (scenario.steps, path.clone());
+        let draw = move |shared: &Shared| draw(scenario, output, drawn_to, drawn, shared);
+        Self::spawn(path, steps, draw).map_err(refused)
+    }
+
+    fn spawn(
+        path: PathBuf,
+        steps: u64,
+        write: impl FnOnce(&Shared) -> Result<Written, String> + Send + 'static,
+    ) -> io::Result<Self> {
+        let shared = Arc::new(Shared {
+            steps,
+            ..Shared::default()
+        });
+        let (at_work, at_end) = (Arc::clone(&shared), Arc::clone(&shared));
+        let work = move || {
+            let result = write(&at_work);
+            at_work.has_ended.store(true, Ordering::SeqCst);
+            result
+        };
+        let worker = thread::Builder::new()
+            .name("export".to_owned())
+            .spawn(work)?;
+        Ok(Self {
+            path,
+            shared,
+            worker: Some(worker),
+            _at_end: at_exit::hook(move |release| at_end.prepare_for(release)),
+        })
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The step that the export has reached, and the run's last step.
+    pub fn progress(&self) -> (u64, u64) {
+        (self.shared.step.load(Ordering::Relaxed), self.shared.steps)
+    }
+
+    /// Asks the export to stop and to remove its temporary file; [`outcome`](Self::outcome) tells when it has.
+    pub fn cancel(&self) {
+        self.shared.cancel();
+    }
+
+    /// Returns what was written, or why nothing was. `None` while the export is in progress, after the result has been
+    /// returned once, and where the end of the process cuts the export off: the session then keeps that it was under way.
+    pub fn outcome(&mut self) -> Option<Result<Written, String>> {
+        if self.shared.is_cut_off.load(Ordering::SeqCst) {
+            return None;
+        }
+        let worker = self.worker.take_if(|worker| worker.is_finished())?;
+        let broken = || Err("the export broke off, and nothing was written".to_owned());
+        Some(worker.join().unwrap_or_else(|_| broken()))
+    }
+}
+
+impl Drop for Exporting {
+    fn drop(&mut self) {
+        self.cancel();
+        if let Some(worker) = self.worker.take() {
+            let _ = worker.join();
+        }
+    }
+}
+
+impl Shared {
+    fn cancel(&self) {
+        self.is_cancelled.store(true, Ordering::SeqCst);
+    }
+
+    /// Notes that `step` has been reached; breaks where the export has been cancelled.
+    fn reach(&self, step: u64) -> ControlFlow<()> {
+        self.step.store(step.min(self.steps), Ordering::Relaxed);
+        if self.is_cancelled.load(Ordering::SeqCst) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+
+    /// Before the process ends, cancels the export and waits until its temporary file is removed. A suspended process
+    /// continues its export when it is resumed.
+    fn prepare_for(&self, release: Release) {
+        if release == Release::Suspend {
+            return;
+        }
+        if !self.has_ended.load(Ordering::SeqCst) {
+            self.is_cut_off.store(true, Ordering::SeqCst);
+        }
+        self.cancel();
+        let begin = Instant::now();
+        while !self.has_ended.load(Ordering::SeqCst) && begin.elapsed() < release.patience() {
+            thread::sleep(Duration::from_millis(2));
+        }
+    }
+}
+
+/// Plays the run of `scenario` and writes its rows to `csv`, which becomes the file `path`.
+fn write(
+    scenario: Arc<Scenario>,
+    mut csv: CsvWriter<Destination>,
+    path: PathBuf,
+    shared: &Shared,
+) -> Result<Written, String> {
+    let mut simulation = Simulation::new(scenario);
+    let watch = |step, _| shared.reach(step);
+    let cannot_write = |error| DestinationError::refused(&path, error).fact();
+    let played = stream::play(&mut simulation, shared.steps, Some(&mut csv), |_| {}, watch);
+    let (ended, _) = played.map_err(cannot_write)?;
+    let rows = csv.count();
+    let destination = csv.finish().map_err(cannot_write)?;
+    if ended == Ended::Stopped || shared.reach(simulation.step_number()).is_break() {
+        return Err("the export was stopped, and nothing was written".to_owned());
+    }
+    let bytes = destination.bytes().map_err(cannot_write)?;
+    destination.keep().map_err(|error| error.fact())?;
+    Ok(Written {
+        path,
+        rows: Some(rows),
+        warnings: Vec::new(),
+        bytes,
+        not_finite: ended.not_finite(),
+    })
+}
+
+/// Draws the run of `scenario` on `output`, which becomes the file `path`.
+fn draw(
+    scenario: Arc<Scenario>,
+    output: Destination,
+    path: PathBuf,
+    drawn: FigureInput,
+    shared: &Shared,
+) -> Result<Written, String> {
+    let source = FigureSource {
+        asked: FigureOptions {
+            kind: Some(drawn.kind.name()),
+            exact: drawn.exact,
+            ..FigureOptions::default()
+        },
+        runs: vec![FigureRun {
+            named: scenario.file.title.clone(),
+            scenario,
+        }],
+        measured: drawn.measured,
+        table: None,
+    };
+    let figure = source.draw(|step, _| shared.reach(step))?;
+    let figure = figure.filter(|_| shared.reach(shared.steps).is_continue());
+    let figure = figure.ok_or("the figure was stopped, and nothing was written")?;
+    let bytes = source.write(&figure.scene, drawn.format);
+    let bytes = bytes.map_err(|error| error.to_string())?;
+    output
+        .write_and_keep(&bytes)
+        .map_err(|error| error.fact())?;
+    let told = figure.broke.iter().cloned().chain(figure.told());
+    let in_the_lab = |text: String| text.replace(EXACT_BESIDE, "t, then X draws that beside it");
+    Ok(Written {
+        path,
+        rows: None,
+        bytes: bytes.len() as u64,
+        warnings: told.map(in_the_lab).collect(),
+        not_finite: None,
+    })
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Estimate {
+    /// Number of rows. The export has fewer only if the numbers stop being finite.
+    pub rows: u64,
+    /// Number of bytes, within a few percent.
+    pub bytes: u64,
+}
+
+/// Estimates the size of the export of `scenario` with every `every`-th row. It takes a few milliseconds: it writes
+/// 64 rows with the numbers of the run's beginning and with steps and times spread over the whole run.
+pub fn estimate(scenario: &Arc<Scenario>, every: NonZeroU64) -> Estimate {
+    let rows = rows(scenario.steps, every.get());
+    let text = sample_rows(scenario, every.get()).unwrap_or_default(); // writing to memory does not fail
+    let text = String::from_utf8_lossy(&text);
+    let lines = text
+        .lines()
+        .rev()
+        .take_while(|line| !line.starts_with(COLUMNS[0].name));
+    let lengths: Vec<_> = lines.map(|line| line.len() + 1).collect();
+    let few: usize = lengths.iter().sum();
+    let row = few as f64 / lengths.len().max(1) as f64;
+    Estimate {
+        rows,
+        bytes: ((row * rows as f64).round() as u64).saturating_add((text.len() - few) as u64),
+    }
+}
+
+/// The number of rows of a run that ends at step `last`: rows 0, `every`, twice `every` and so on, and the last.
+fn rows(last: u64, every: u64) -> u64 {
+    last / every + 1 + u64::from(!last.is_multiple_of(every))
+}
+
+/// A CSV of 64 rows that have the numbers of the run's beginning, and steps and times spread over the whole run.
+fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
+    const ROWS_PER_SLICE: u64 = 64;
+    const MOST_INTEGRATION: u64 = 50_000_000; // about 0.1 s
+    let mut left = MOST_INTEGRATION;
+    let points = scenario.body.mechanics.points().len() as u64;
+    let apart = ((1 << 15) / points).clamp(4, 32); // steps between rows; a step of a larger body takes longer
+    let apart = apart.min(scenario.steps / ROWS_PER_SLICE).max(1);
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    let mut csv = CsvWriter::new(Vec::new(), scenario)?;
+    for row in 0..ROWS_PER_SLICE {
+        let part = row as f64 / (ROWS_PER_SLICE - 1) as f64;
+        let step = (part * scenario.steps as f64) as u64 / every * every;
+        csv.write(&Sample {
+            step,
+            time_s: Clock::at(scenario, step).time_s(step),
+            ..simulation.sample()
+        })?;
+        // Where the numbers stop being finite, or steps take long, it repeats the last state.
+        for _ in simulation.step_number()..((row + 1) * apart).min(scenario.steps) {
+            left = left.saturating_sub(integration_cost(&simulation, 0));
+            if left == 0 || simulation.step().is_err() {
+                break;
+            }
+        }
+    }
+    csv.finish()
+}
+
+/// The `scp` command that the user types on their own machine to fetch the file `path` from this one; `None` where the
+/// lab does not run over SSH. Where the name of the file, the user or the machine cannot be typed in a shell, a message
+/// that says so.
+pub fn scp_line(path: &Path) -> Option<String> {
+    // ssh sets it to "CLIENT CLIENT_PORT SERVER SERVER_PORT".
+    let connection = std::env::var("SSH_CONNECTION").ok()?;
+    let user = ["USER", "LOGNAME"]
+        .into_iter()
+        .find_map(std::env::var_os)
+        .unwrap_or_default();
+    let port = connection.split(' ').nth(3).unwrap_or_default();
+    let made = scp_line_from(port, &user, &gethostname::gethostname(), path.as_os_str());
+    Some(made.unwrap_or_else(|what| {
+        format!("no scp line: {what} holds characters that cannot be typed in a shell")
+    }))
+}
+
+/// The command, or which part of it cannot be typed. An empty `user` is left out.
+fn scp_line_from(
+    port: &str,
+    user: &OsStr,
+    host: &OsStr,
+    path: &OsStr,
+) -> Result<String, &'static str> {
+    let port = match port.parse::<u16>() {
+        Ok(22) | Err(_) => String::new(),
+        Ok(port) => format!("-P {port} "),
+    };
+    let user = if user.is_empty() {
+        String::new()
+    } else {
+        format!("{}@", name(user).ok_or("the user's name")?)
+    };
+    let host = name(host).ok_or("this machine's name")?;
+    let path = path.to_str().filter(|path| printable(path) == *path);
+    let place = format!("{user}{host}:{}", path.ok_or("its name")?);
+    let quoted = shlex::try_quote(&place).map_err(|_| "its name")?;
+    Ok(format!("scp {port}{quoted} ."))
+}
+
+/// `text` if it is a name of a user or a machine that scp does not mistake for an option or a path.
+fn name(text: &OsStr) -> Option<&str> {
+    let is_plain = |c: char| c.is_alphanumeric() || "._-@+%\\$".contains(c);
+    text.to_str()
+        .filter(|name| !name.is_empty() && !name.starts_with('-') && name.chars().all(is_plain))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An export that does nothing until it is cancelled.
+    fn waiting() -> Exporting {
+        let write = |shared: &Shared| {
+            while shared.reach(0).is_continue() {
+                thread::yield_now();
+            }
+            Err("stopped".to_owned())
+        };
+        Exporting::spawn(PathBuf::from("run.csv"), 10, write).unwrap()
+    }
+
+    fn wait(exporting: &Exporting) {
+        let worker = exporting.worker.as_ref().unwrap();
+        while !worker.is_finished() {
+            thread::yield_now();
+        }
+    }
+
+    #[test]
+    fn an_export_that_the_user_stops_has_an_outcome_and_one_that_the_end_cuts_off_has_none() {
+        let mut stopped = waiting();
+        stopped.cancel();
+        wait(&stopped);
+        assert_eq!(stopped.outcome(), Some(Err("stopped".to_owned())));
+        let mut suspended = waiting();
+        suspended.shared.prepare_for(Release::Suspend);
+        assert!(suspended.shared.reach(0).is_continue());
+        let mut cut_off = waiting();
+        cut_off.shared.prepare_for(Release::Exit);
+        wait(&cut_off);
+        assert_eq!((suspended.outcome(), cut_off.outcome()), (None, None));
+    }
+
+    fn line(port: &str, user: &str, host: &str, path: &str) -> Result<String, &'static str> {
+        let [user, host, path] = [user, host, path].map(OsStr::new);
+        scp_line_from(port, user, host, path)
+    }
+
+    #[test]
+    fn an_scp_line_can_be_pasted() {
+        assert_eq!(
+            line("22", "ada", "lab.example.org", "/home/ada/run-1.csv").unwrap(),
+            "scp ada@lab.example.org:/home/ada/run-1.csv ."
+        );
+        for path in [
+            "/tmp/Ada's run $1.csv",
+            "/tmp/a\"b`c!d\\e;f&g|h<i>j(k)l*m?n[o]p{q}r~s#t.csv",
+            "/tmp/速い.csv",
+        ] {
+            let line = line("2222", "", "lab", path).unwrap();
+            let words = ["scp", "-P", "2222", &format!("lab:{path}"), "."];
+            assert_eq!(shlex::split(&line).unwrap(), words, "{line}");
+        }
+    }
+
+    #[test]
+    fn names_that_cannot_be_typed_give_no_scp_line() {
+        for (user, host, path) in [
+            ("ada", "lab", "/tmp/a\u{1b}]0;x\u{7}.csv"),
+            ("ada", "lab", "/tmp/a\nb.csv"),
+            ("ada", "lab", "/tmp/a\u{200b}.csv"),
+            ("a\u{1b}[2Jda", "lab", "/tmp/a.csv"),
+            ("-oProxyCommand=sh", "lab", "/tmp/a.csv"),
+            ("ada", "la\u{202e}b", "/tmp/a.csv"),
+            ("ada", "", "/tmp/a.csv"),
+        ] {
+            line("22", user, host, path).unwrap_err();
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Settings of the lab that hold for every run: what dots are made of, colours, frames a second, the mouse.
+//!
+//! Two files hold them. `settings.toml` beside the sessions is the program's: it is written when the user chooses a setting
+//! in the lab. `config.toml` in the configuration folder is the user's: it wins, and is never written. Both are checked as a
+//! scenario is, by the table [`SETTINGS_KEYS`]; a setting that breaks a rule is not used, the others are.
+
+use super::own;
+use crate::engine::scenario::keys::ValueKind::{self, Flag, OneOf, Whole};
+use crate::engine::scenario::problem::nearest;
+use crate::engine::scenario::{Document, Problem, Problems};
+use crate::engine::text::printable::PrintablePath;
+use etcetera::{BaseStrategy, base_strategy::Xdg};
+use std::fs::{self, File};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use toml::{Table, Value};
+
+pub const FILE: &str = "settings.toml";
+/// The longest file of settings, bytes.
+const LONGEST: usize = 1 << 20;
+
+const SETTINGS_HEADER: &str = "# What was chosen in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and wins.\n";
+
+/// A setting's key, what it may hold, and its meaning.
+pub const SETTINGS_KEYS: [(&str, ValueKind, &str); 5] = [
+    (
+        "marker",
+        OneOf(&["braille", "half-block", "dot", "ascii"]),
+        "what dots are made of",
+    ),
+    (
+        "colour",
+        OneOf(&["auto", "always", "never"]),
+        "whether there are colours",
+    ),
+    (
+        "background",
+        OneOf(&["dark", "light"]),
+        "what screen the colours are for",
+    ),
+    ("fps", Whole(1, 60), "frames a second at most"),
+    ("mouse", Flag, "whether the lab takes the mouse"),
+];
+
+/// The settings of one file, and what is wrong with it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Read {
+    /// Those of its settings that break no rule, by the keys of [`SETTINGS_KEYS`].
+    pub settings: Table,
+    pub problems: Option<Problems>,
+}
+
+/// The settings of the file `path` whose bytes are `read`; where there is no such file, there are no settings.
+fn checked(path: &Path, read: io::Result<Vec<u8>>) -> Read {
+    let origin = path.display().to_string();
+    let document = match read {
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            return Read::default();
+        }
+        Ok(bytes) => Document::read_from(&origin, &*bytes),
+        Err(error) => {
+            let rule = format!("cannot be read: {error}");
+            Err(Problems::one(origin, Problem::at("", rule)))
+        }
+    };
+    match document {
+        Ok(document) => {
+            let (settings, found) = sifted(document.table());
+            let placed = found.or(()).map_err(|found| document.placed(found));
+            Read {
+                settings,
+                problems: placed.err(),
+            }
+        }
+        Err(problems) => Read {
+            settings: Table::new(),
+            problems: Some(problems),
+        },
+    }
+}
+
+/// The settings in `table` that break no rule, and what is wrong with the others.
+fn sifted(table: &Table) -> (Table, Problems) {
+    let (mut good, mut problems) = (Table::new(), Problems::default());
+    for (key, value) in table {
+        let name = match key.as_str() {
+            "color" if !table.contains_key("colour") => "colour",
+            other => other,
+        };
+        match SETTINGS_KEYS.iter().find(|(known, ..)| *known == name) {
+            None => problems.add(|| {
+                let near = nearest(key, SETTINGS_KEYS.iter().map(|(known, ..)| *known));
+                Problem::at(key, format!("unknown key: {near}"))
+            }),
+            Some((_, kind, _)) => match kind.check(value) {
+                Ok(()) => drop(good.insert(name.to_owned(), value.clone())),
+                Err(rule) => problems.add(|| Problem::with_value(key, value, rule)),
+            },
+        }
+    }
+    (good, problems)
+}
+
+/// The user's file: `$XDG_CONFIG_HOME/gyrolab/config.toml`, by default `~/.config/gyrolab/config.toml`; `None` where the
+/// user has no home.
+pub fn config() -> Option<PathBuf> {
+    let folder = Xdg::new().ok()?.config_dir();
+    let folder = folder.is_absolute().then_some(folder)?;
+    Some(folder.join("gyrolab").join("config.toml"))
+}
+
+/// Reads the user's file at `path`, which may be a symbolic link.
+pub fn read_config(path: &Path) -> Read {
+    let bytes = match fs::metadata(path) {
+        Ok(there) if !there.is_file() => Err(io::Error::other("it is not a file")),
+        _ => File::open(path).and_then(|file| own::read_at_most(file, LONGEST)),
+    };
+    checked(path, bytes)
+}
+
+/// Reads the file that the program has written in `folder`, if it is the user's own; no symbolic link is followed.
+pub fn read(folder: &Path) -> Read {
+    let path = folder.join(FILE);
+    checked(&path, own::read(&path, LONGEST))
+}
+
+/// Replaces the setting `key` in the file of `folder`, which is created if it does not exist. What is wrong in the file is
+/// left out.
+pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
+    let path = folder.join(FILE);
+    let remembered = || -> io::Result<()> {
+        own::make_folder(folder)?;
+        let mut table = match own::read(&path, LONGEST) {
+            // What is no TOML was reported when the lab was opened.
+            Ok(bytes) => sifted(&toml::from_slice(&bytes).unwrap_or_default()).0,
+            Err(error) if error.kind() == ErrorKind::NotFound => Table::new(),
+            Err(error) => return Err(error),
+        };
+        table.insert(key.to_owned(), value);
+        own::replace(&path, &format!("{SETTINGS_HEADER}{table}"))
+    };
+    remembered().map_err(|error| {
+        let path = PrintablePath(&path);
+        format!("the choice cannot be remembered in {path}: {error}")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    #[test]
+    fn a_link_is_neither_read_nor_written_through() {
+        let home = tempfile::tempdir().unwrap();
+        let target = home.path().join("target");
+        fs::write(&target, "marker = 'dot'\n").unwrap();
+        symlink(&target, home.path().join(FILE)).unwrap();
+        let found = read(home.path());
+        assert!(found.settings.is_empty());
+        let told = found.problems.unwrap().to_string();
+        assert!(told.contains("symbolic link"), "{told}");
+        let trouble = remember(home.path(), "marker", "ascii".into()).unwrap_err();
+        assert!(trouble.contains("symbolic link"), "{trouble}");
+        assert_eq!(fs::read_to_string(&target).unwrap(), "marker = 'dot'\n");
+        // The user's own file may be a link.
+        let config = home.path().join("config.toml");
+        symlink(&target, &config).unwrap();
+        assert_eq!(read_config(&config).settings["marker"], "dot".into());
+    }
+}

@@ -1,0 +1,158 @@
+//! The parallel projection of the world onto a picture, along a direction that the user turns.
+
+use crate::engine::scenario::keys::{PITCH_DEG, ZOOM_RANGE};
+use crate::engine::text::ladder;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Camera {
+    /// Angle about +z from −y, degrees: at 0 the picture's right is +x and its depth +y.
+    pub yaw_deg: f64,
+    /// Height of the eye above the horizontal, degrees, −90 to 90.
+    pub pitch_deg: f64,
+}
+
+/// The apparent length of an axle that can be read, as a share of its length: a shorter one points too much at the eye, and
+/// of a longer one the wheel is seen as a line.
+const READ: std::ops::RangeInclusive<f64> = 0.75..=0.97;
+/// The direction to which the camera turns an axle that cannot be read: this angle from the picture's right towards the
+/// eye, degrees. If the axle is not below the horizontal, the wheel is then an open ellipse.
+const ASIDE_DEG: f64 = 25.0;
+/// An axle nearer to the vertical than this, degrees, is seen from every side alike.
+const UPRIGHT_DEG: f64 = 8.0;
+/// Directions that are chosen are multiples of this, degrees.
+const NOTCH_DEG: f64 = 10.0;
+
+/// The enlargement of the pictures in space: 1 where a picture shows the whole.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Zoom {
+    pub above: f64,
+    #[serde(rename = "3d")]
+    pub three_d: f64,
+}
+
+impl Default for Zoom {
+    fn default() -> Self {
+        Self {
+            above: 1.0,
+            three_d: 1.0,
+        }
+    }
+}
+
+impl Zoom {
+    /// `zoom` moved by `rungs` on the ladder 1, 2, 5, ..., down if negative; `None` if it is at its limit already.
+    pub fn shifted(zoom: f64, rungs: i32) -> Option<f64> {
+        let next = ladder::climbed(zoom, rungs).clamp(ZOOM_RANGE.0, ZOOM_RANGE.1);
+        (next != zoom).then_some(next)
+    }
+
+    /// The middle of a picture that reaches `half` to each side and shows a point at `at`. It is a multiple of `half`, so
+    /// that the picture stands still while the point moves, and the point is at most half of `half` away from it.
+    pub fn middle(at: f64, half: f64) -> f64 {
+        (at / half).round() * half
+    }
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Self {
+            yaw_deg: 30.0,
+            pitch_deg: 20.0,
+        }
+    }
+}
+
+impl Camera {
+    /// Turns the viewing direction by these angles, degrees; the pitch stays within −90 to 90.
+    pub fn turn(&mut self, yaw_deg: f64, pitch_deg: f64) {
+        self.yaw_deg = (self.yaw_deg + yaw_deg).rem_euclid(360.0);
+        self.pitch_deg = (self.pitch_deg + pitch_deg).clamp(PITCH_DEG.0, PITCH_DEG.1);
+    }
+
+    /// The camera turned about the vertical so that `axle` (a direction, world frame) is seen aslant: long enough to be
+    /// read, and the wheel across it open. It stays as it is where that is so from here.
+    pub fn aside_of(self, axle: &Vector3<f64>) -> Self {
+        let (right, up) = self.project(axle);
+        let is_upright = axle.xy().norm() < libm::sin(UPRIGHT_DEG.to_radians()) * axle.norm();
+        let share = libm::hypot(right, up) / axle.norm();
+        if is_upright || share.is_nan() || READ.contains(&share) {
+            return self;
+        }
+        let azimuth_deg = libm::atan2(axle.y, axle.x).to_degrees();
+        let yaw_deg = ((azimuth_deg + ASIDE_DEG) / NOTCH_DEG).round() * NOTCH_DEG;
+        Self {
+            yaw_deg: yaw_deg.rem_euclid(360.0) + 0.0, // no negative zero
+            ..self
+        }
+    }
+
+    /// Its sines and cosines: for many points in turn. The same on every machine.
+    pub fn view(&self) -> CameraView {
+        let (sin_yaw, cos_yaw) = libm::sincos(self.yaw_deg.to_radians());
+        let (sin_pitch, cos_pitch) = libm::sincos(self.pitch_deg.to_radians());
+        CameraView {
+            sin_yaw,
+            cos_yaw,
+            sin_pitch,
+            cos_pitch,
+        }
+    }
+
+    /// Where `point` (world frame, m) stands in the picture: right and up, m.
+    pub fn project(&self, point: &Vector3<f64>) -> (f64, f64) {
+        self.view().project(point)
+    }
+}
+
+/// A camera whose angles are known by their sines and cosines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraView {
+    sin_yaw: f64,
+    cos_yaw: f64,
+    sin_pitch: f64,
+    cos_pitch: f64,
+}
+
+impl CameraView {
+    pub fn project(&self, point: &Vector3<f64>) -> (f64, f64) {
+        let right = self.cos_yaw * point.x + self.sin_yaw * point.y;
+        let depth = self.cos_yaw * point.y - self.sin_yaw * point.x;
+        (right, self.cos_pitch * point.z + self.sin_pitch * depth)
+    }
+
+    /// The direction to the picture's right, world frame.
+    pub fn right(&self) -> Vector3<f64> {
+        Vector3::new(self.cos_yaw, self.sin_yaw, 0.0)
+    }
+
+    /// How much farther from the eye than the pivot `point` (world frame, m) is, m.
+    pub fn depth(&self, point: &Vector3<f64>) -> f64 {
+        let depth = self.cos_yaw * point.y - self.sin_yaw * point.x;
+        self.cos_pitch * depth - self.sin_pitch * point.z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn from_above_y_is_up_and_from_the_side_z_is() {
+        let at = Vector3::new(1.0, 2.0, 3.0);
+        let seen = |pitch_deg| {
+            let view = Camera {
+                yaw_deg: 0.0,
+                pitch_deg,
+            }
+            .view();
+            (view.project(&at), view.depth(&at))
+        };
+        let ((right, up), _) = seen(90.0);
+        assert!((right - 1.0).abs() < 1e-15 && (up - 2.0).abs() < 1e-15);
+        assert_eq!(seen(0.0), ((1.0, 3.0), 2.0));
+    }
+}

@@ -1,0 +1,283 @@
+//! A chart drawn on its page.
+
+use super::curve;
+use super::layout::{self, ChartLayout, PAGE_EDGE, PlacedPanel, TICK_LABEL_GAP};
+use super::legend::Legend;
+use super::ticks::{Ticks, with_minus};
+use super::{Chart, ChartSeries, Panel};
+use crate::engine::text::number::significant;
+use crate::plot::ink::{self, BLACK, LABEL_PT, MARK_PT, at, pen};
+use crate::plot::letters;
+use crate::plot::scene::{PageScene, Point};
+use std::collections::HashSet;
+
+/// The most marks in a panel.
+const MOST_MARKS: f64 = 10_000.0;
+const FRAME_PT: f64 = 0.5;
+/// Length of a tick with a label and of one without, pt.
+const TICK_LENGTH: f64 = 3.0;
+const MINOR_TICK: f64 = 1.7;
+const BAR_END: f64 = 1.7;
+/// An error bar from end to end that the lowest of the marks covers, pt.
+const COVERED_PT: f64 = 2.8;
+
+impl Chart {
+    pub fn scene(&self) -> PageScene {
+        let bare = ChartLayout::new(self, 0.0);
+        self.as_seen(&bare).placed(bare)
+    }
+
+    /// The chart in the places of `layout`, without points that stand upon each other, and with lines that are seen beside each other.
+    fn as_seen(&self, layout: &ChartLayout) -> Self {
+        let mut seen = self.clone();
+        seen.x.range = layout.panels.first().map(|placed| placed.x.range);
+        let magnified = seen.magnified.iter_mut();
+        let magnified = magnified.flat_map(|chart| &mut chart.panels);
+        let places = layout.panels.iter().chain(&layout.magnified);
+        for (panel, placed) in seen.panels.iter_mut().chain(magnified).zip(places) {
+            panel.y.range = Some(placed.y.range);
+            let mut above = curve::Above::default();
+            for series in &mut panel.series {
+                placed.thin_marks(series);
+                if series.style.width_pt > 0.0 {
+                    above.add(&placed.pieces(series), &mut series.style);
+                }
+            }
+        }
+        seen
+    }
+
+    /// The chart in its places; `bare` leaves no room for a legend above the panels.
+    fn placed(&self, bare: ChartLayout) -> PageScene {
+        let remarks = self.remark(&bare).into_iter().chain(self.magnified());
+        let legend = Legend::of(self, remarks);
+        let corner = legend.free_corner(self, &bare);
+        let layout = match corner {
+            Some(_) => bare,
+            None => ChartLayout::new(self, legend.height_above(self.width_pt)),
+        };
+        let mut scene = PageScene::new(self.width_pt, layout.height_pt, &self.title);
+        for (panel, placed) in self.panels.iter().zip(&layout.panels) {
+            panel.draw(placed, &mut scene);
+            panel.write_beside(placed, &layout, &mut scene);
+        }
+        write_below(self, &layout.panels, &layout, &mut scene);
+        if let Some(magnified) = &self.magnified {
+            for (panel, placed) in magnified.panels.iter().zip(&layout.magnified) {
+                panel.draw(placed, &mut scene);
+            }
+            write_below(magnified, &layout.magnified, &layout, &mut scene);
+        }
+        match corner {
+            Some(corner) => legend.draw_in(&corner, &mut scene),
+            None => {
+                let left = layout
+                    .panels
+                    .first()
+                    .map_or(PAGE_EDGE, |panel| panel.frame.left);
+                legend.draw_above(self.width_pt, left, &mut scene);
+            }
+        }
+        scene
+    }
+
+    /// What the legend says of the stretch that is magnified.
+    fn magnified(&self) -> Option<String> {
+        let (from, to) = self.magnified.as_ref()?.x.range?;
+        let [from, to] = [from, to].map(|end| with_minus(&significant(end, 9)));
+        let unit = Some(&self.x.unit).filter(|unit| !unit.is_empty());
+        let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        let remark = format!("right: {from} to {to}{unit}, magnified");
+        let room = self.width_pt - 2.0 * PAGE_EDGE;
+        Some(letters::shortened(&remark, LABEL_PT, room))
+    }
+
+    /// Whether something measured has marks without a known error.
+    fn lacks_errors(&self) -> bool {
+        let mut series = self.panels.iter().flat_map(|panel| &panel.series);
+        series.any(|series| {
+            let mark = series.style.mark.filter(|mark| mark.is_of_measured());
+            let mut points = series.points.iter().zip(&series.errors[1]);
+            let is_unknown = points.any(|(point, error)| point[1].is_finite() && error.is_nan());
+            mark.is_some() && (series.errors[1].is_empty() || is_unknown)
+        })
+    }
+
+    /// What the legend says of error bars that are too small to be drawn.
+    fn remark(&self, layout: &ChartLayout) -> Option<String> {
+        let panels = self.panels.iter().zip(&layout.panels);
+        let bars = panels.flat_map(|(panel, placed)| {
+            let bars = move |series| [0, 1].map(|axis| placed.bars(series, axis));
+            panel.series.iter().flat_map(bars).flatten()
+        });
+        let (hidden, drawn): (Vec<_>, Vec<_>) = bars.partition(is_covered);
+        if hidden.is_empty() {
+            return None;
+        }
+        let known = if self.lacks_errors() { "known " } else { "" };
+        let of = if self.are_read_off {
+            " of reading the run"
+        } else {
+            ""
+        };
+        let rest = if drawn.is_empty() {
+            ""
+        } else {
+            " where no bar is drawn"
+        };
+        let remark = format!("{known}errors{of} smaller than marks{rest}");
+        let room = self.width_pt - 2.0 * PAGE_EDGE;
+        Some(letters::shortened(&remark, LABEL_PT, room))
+    }
+}
+
+/// Whether a mark would cover an error bar.
+fn is_covered(&[a, b]: &[Point; 2]) -> bool {
+    (a.x - b.x).abs() + (a.y - b.y).abs() < COVERED_PT
+}
+
+impl PlacedPanel {
+    /// Leaves out those points of `series`, which are marks, that stand where another one does: marks that are nearer to each
+    /// other than half of their width cannot be told apart.
+    fn thin_marks(&self, series: &mut ChartSeries) {
+        let area = self.frame.width() * self.frame.height();
+        let cell_pt = MARK_PT.max((area / MOST_MARKS).sqrt());
+        if series.style.mark.is_none() || (series.points.len() as f64) <= MOST_MARKS {
+            return;
+        }
+        let mut taken = HashSet::new();
+        let mut is_kept = |index: &usize| {
+            let place = self.place(&series.points[*index]);
+            let cell = [place.x, place.y].map(|length| (length / cell_pt).floor() as i64);
+            self.frame.holds(place) && taken.insert(cell)
+        };
+        let kept: Vec<usize> = (0..series.points.len()).filter(&mut is_kept).collect();
+        series.errors = [0, 1].map(|axis| {
+            let errors = kept
+                .iter()
+                .filter_map(|&index| series.errors[axis].get(index));
+            errors.copied().collect()
+        });
+        series.points = kept.iter().map(|&index| series.points[index]).collect();
+    }
+
+    /// The ends of the error bars along an axis of those points of `series` that are in the panel, cut off at its frame.
+    fn bars<'a>(
+        &'a self,
+        series: &'a ChartSeries,
+        axis: usize,
+    ) -> impl Iterator<Item = [Point; 2]> + 'a {
+        let points = series.points.iter().zip(&series.errors[axis]).enumerate();
+        let shown = points
+            .filter(|(_, (point, error))| error.is_finite() && self.frame.holds(self.place(point)));
+        shown.map(move |(index, _)| {
+            let ends = series.ends(index, axis);
+            ends.map(|end| self.frame.nearest(self.place(&end)))
+        })
+    }
+}
+
+/// Writes labels and title below `panels`, a column of `layout` that shows `chart`.
+fn write_below(chart: &Chart, panels: &[PlacedPanel], layout: &ChartLayout, scene: &mut PageScene) {
+    let Some(last) = panels.last() else {
+        return;
+    };
+    for tick in &last.below.major {
+        let place = at(last.x.place(tick.at), layout.labels_at());
+        scene.write(&tick.label, LABEL_PT, place, 0.5);
+    }
+    let columns = if layout.magnified.is_empty() {
+        1.0
+    } else {
+        2.0
+    };
+    let room = chart.width_pt / columns - 2.0 * PAGE_EDGE;
+    let (title, size) = layout::fitted(chart.x.title(&last.below), room);
+    let middle = 0.5 * (last.frame.left + last.frame.right);
+    let half = 0.5 * ink::width(&title, size);
+    let middle = middle
+        .min(chart.width_pt - PAGE_EDGE - half)
+        .max(PAGE_EDGE + half);
+    scene.write(&title, size, at(middle, layout.title_at()), 0.5);
+}
+
+impl Panel {
+    fn draw(&self, placed: &PlacedPanel, scene: &mut PageScene) {
+        let part = |is_behind: bool| {
+            let series = self.series.iter();
+            series.filter(move |series| series.style.is_behind == is_behind)
+        };
+        for series in self.series.iter().rev() {
+            placed.fill_band(series, scene);
+        }
+        for series in part(true).rev() {
+            draw_points(series, placed, scene);
+            placed.draw_line(series, scene);
+        }
+        part(false).for_each(|series| placed.draw_line(series, scene));
+        part(true)
+            .rev()
+            .for_each(|series| placed.draw_core(series, scene));
+        draw_frame(placed, scene);
+        part(false).for_each(|series| draw_points(series, placed, scene));
+    }
+
+    fn write_beside(&self, placed: &PlacedPanel, layout: &ChartLayout, scene: &mut PageScene) {
+        let frame = &placed.frame;
+        let (title, size) = &placed.title;
+        let middle = at(layout.titles_at, 0.5 * (frame.top + frame.bottom));
+        scene.write_up(title, *size, middle);
+        let label = ink::height(LABEL_PT);
+        for tick in &placed.ticks.major {
+            let place = at(
+                frame.left - TICK_LABEL_GAP,
+                placed.y.place(tick.at) + 0.5 * label,
+            );
+            scene.write(&tick.label, LABEL_PT, place, 1.0);
+        }
+    }
+}
+
+/// The frame and its ticks, on all four sides, inwards.
+fn draw_frame(placed: &PlacedPanel, scene: &mut PageScene) {
+    let frame = &placed.frame;
+    scene.stroke(frame.outline(), pen(FRAME_PT, BLACK), None);
+    for (value, length) in lengths(&placed.below) {
+        let x = placed.x.place(value);
+        for (edge, inwards) in [(frame.bottom, -length), (frame.top, length)] {
+            scene.line([at(x, edge), at(x, edge + inwards)], FRAME_PT, BLACK);
+        }
+    }
+    for (value, length) in lengths(&placed.ticks) {
+        let y = placed.y.place(value);
+        for (edge, inwards) in [(frame.left, length), (frame.right, -length)] {
+            scene.line([at(edge, y), at(edge + inwards, y)], FRAME_PT, BLACK);
+        }
+    }
+}
+
+/// The value of each tick and its length on paper, pt.
+fn lengths(ticks: &Ticks) -> impl Iterator<Item = (f64, f64)> {
+    let major = ticks.major.iter().map(|tick| (tick.at, TICK_LENGTH));
+    major.chain(ticks.minor.iter().map(|&at| (at, MINOR_TICK)))
+}
+
+fn draw_points(series: &ChartSeries, placed: &PlacedPanel, scene: &mut PageScene) {
+    let Some(mark) = series.style.mark else {
+        return;
+    };
+    let color = series.style.color;
+    for (axis, (dx, dy)) in [(0.0, BAR_END), (BAR_END, 0.0)].into_iter().enumerate() {
+        for bar in placed.bars(series, axis).filter(|bar| !is_covered(bar)) {
+            scene.line(bar, FRAME_PT, color);
+            for end in bar {
+                let across = [at(end.x - dx, end.y - dy), at(end.x + dx, end.y + dy)];
+                scene.line(across, FRAME_PT, color);
+            }
+        }
+    }
+    let places = series.points.iter().map(|point| placed.place(point));
+    for place in places.filter(|place| placed.frame.holds(*place)) {
+        scene.mark(mark, place, color);
+    }
+}

@@ -1,0 +1,214 @@
+//! Where the parts of a chart stand on the page. Every label is measured, so that none is cut and none overlaps another.
+
+use super::axis::{AxisScale, BESIDE, widest};
+use super::ticks::{Tick, Ticks};
+use super::{Chart, Panel};
+use crate::plot::COLUMN_PT;
+use crate::plot::ink::{self, LABEL_PT, PageRectangle, TITLE_PT};
+
+/// Between anything and the edge of the page, pt.
+pub const PAGE_EDGE: f64 = 2.0;
+/// Between an axis and the labels of its ticks, pt.
+pub const TICK_LABEL_GAP: f64 = 3.0;
+/// Between the labels of an axis and its title, at the left and below, pt.
+const AXIS_TITLE_GAP: f64 = 6.0;
+const TITLE_BELOW: f64 = 4.5;
+/// Between two panels, pt, beside the height of a label: the labels at their ends must not touch.
+const PANEL_GAP: f64 = 2.5;
+/// The smallest letters of a title that is too long for its axis, pt.
+const LEAST_TITLE_PT: f64 = 5.5;
+/// On a page as wide as a column: height of one panel alone, of each of two, of each of more, pt.
+const HEIGHTS: [f64; 3] = [140.0, 88.0, 66.0];
+
+/// Many decades need a higher panel.
+const LOG: f64 = 1.25;
+
+#[derive(Clone, Debug)]
+pub struct PlacedPanel {
+    pub frame: PageRectangle,
+    pub x: AxisScale,
+    pub y: AxisScale,
+    /// The ticks of the axis y and of the axis x.
+    pub ticks: Ticks,
+    pub below: Ticks,
+    /// The title of the axis y and the size of its letters, pt.
+    pub title: (String, f64),
+}
+
+/// A chart with everything but its legend in its place. The legend is put in afterwards, and where it stands above the panels
+/// these move down.
+#[derive(Clone, Debug)]
+pub struct ChartLayout {
+    pub panels: Vec<PlacedPanel>,
+    /// The same panels with the stretch that is magnified; empty without one.
+    pub magnified: Vec<PlacedPanel>,
+    /// Where the titles of the axes at the left have their baseline, pt.
+    pub titles_at: f64,
+    pub height_pt: f64,
+}
+
+impl PlacedPanel {
+    fn new(chart: &Chart, x: AxisScale, y: AxisScale, ticks: Ticks, title: (String, f64)) -> Self {
+        Self {
+            frame: PageRectangle {
+                left: x.places.0,
+                top: y.places.1,
+                right: x.places.1,
+                bottom: y.places.0,
+            },
+            below: x.ticks_below(&chart.x),
+            x,
+            y,
+            ticks,
+            title,
+        }
+    }
+}
+
+impl ChartLayout {
+    /// The places of the parts of `chart`, `above` pt below the upper edge of the page.
+    pub fn new(chart: &Chart, above: f64) -> Self {
+        let label = ink::height(LABEL_PT);
+        let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
+        let (left, right, height) = sides(chart, x_range(chart), &y_ranges);
+        let top = above + PAGE_EDGE + 0.5 * label;
+        let place = |chart: &Chart, x: AxisScale| {
+            let ticks = ticks_of(chart, &y_ranges, height);
+            let panels = chart.panels.iter().zip(&y_ranges).zip(ticks).enumerate();
+            let panels = panels.map(|(index, ((panel, range), ticks))| {
+                let top = top + index as f64 * (height + label + PANEL_GAP);
+                let y = AxisScale::of(&panel.y, *range, (top + height, top));
+                let title = fitted(panel.y.title(&ticks), height + 0.7 * (label + PANEL_GAP));
+                PlacedPanel::new(chart, x, y, ticks, title)
+            });
+            panels.collect::<Vec<_>>()
+        };
+        let [x, beside] = columns(chart, left, right);
+        let panels = place(chart, x);
+        let bottom = panels.last().map_or(top, |panel| panel.frame.bottom);
+        let magnified = chart.magnified.iter();
+        Self {
+            titles_at: PAGE_EDGE + ink::height(TITLE_PT) + 1.0,
+            height_pt: bottom
+                + TICK_LABEL_GAP
+                + 1.5 * label
+                + TITLE_BELOW
+                + title_height()
+                + PAGE_EDGE,
+            magnified: magnified.flat_map(|chart| place(chart, beside)).collect(),
+            panels,
+        }
+    }
+
+    pub fn labels_at(&self) -> f64 {
+        let bottom = self.panels.last().map_or(0.0, |panel| panel.frame.bottom);
+        bottom + TICK_LABEL_GAP + 1.5 + ink::height(LABEL_PT)
+    }
+
+    pub fn title_at(&self) -> f64 {
+        self.labels_at() + TITLE_BELOW + ink::height(TITLE_PT)
+    }
+}
+
+fn x_range(chart: &Chart) -> (f64, f64) {
+    let all = chart.panels.iter().flat_map(|panel| &panel.series);
+    chart.x.range_of(all.flat_map(|series| series.reach(0)))
+}
+
+/// The axes x of `chart` and of what it magnifies, from `left` to `right`: so far apart that their labels do not touch.
+fn columns(chart: &Chart, left: f64, right: f64) -> [AxisScale; 2] {
+    let scale = |chart: &Chart, places| AxisScale::of(&chart.x, x_range(chart), places);
+    let Some(magnified) = &chart.magnified else {
+        return [scale(chart, (left, right)); 2];
+    };
+    let half = 0.5 * (left + right);
+    let [from, to] = [scale(chart, (left, half)), scale(magnified, (half, right))];
+    let over = |scale: &AxisScale, axis, tick: fn(&[Tick]) -> Option<&Tick>, edge: f64| {
+        let ticks = scale.ticks_below(axis);
+        let label = tick(&ticks.major);
+        label.map_or(0.0, |tick| {
+            0.5 * ink::width(&tick.label, LABEL_PT) - (edge - scale.place(tick.at)).abs()
+        })
+    };
+    let over = over(&from, &chart.x, <[Tick]>::last, half).max(0.0)
+        + over(&to, &magnified.x, <[Tick]>::first, half).max(0.0);
+    let apart = 0.5 * (over + BESIDE);
+    [
+        scale(chart, (left, half - apart)),
+        scale(magnified, (half + apart, right)),
+    ]
+}
+
+/// Where the panels begin and end, and how high each is, pt.
+fn sides(chart: &Chart, x_range: (f64, f64), y_ranges: &[(f64, f64)]) -> (f64, f64, f64) {
+    let mut height = panel_height(chart);
+    let (mut left, mut right) = (PAGE_EDGE, chart.width_pt - PAGE_EDGE - 1.0);
+    // Which ticks there are depends on the room, and the room on their labels: three rounds settle both.
+    for _ in 0..3 {
+        let ticks = ticks_of(chart, y_ranges, height);
+        let widest = ticks.iter().map(widest).fold(0.0, f64::max);
+        left = PAGE_EDGE + title_height() + AXIS_TITLE_GAP + widest + TICK_LABEL_GAP;
+        right = right.min(right_edge(chart, x_range, left, right));
+        if let Some(magnified) = &chart.magnified {
+            let half = 0.5 * (left + right);
+            let range = self::x_range(magnified);
+            right = right.min(right_edge(magnified, range, half, right));
+        }
+        if chart.is_true_to_scale {
+            let (width, span) = (right - left, x_range.1 - x_range.0);
+            height = width / span * (y_ranges[0].1 - y_ranges[0].0);
+        }
+    }
+    (left, right, height)
+}
+
+/// Height of a title with what hangs below its baseline, pt.
+fn title_height() -> f64 {
+    1.35 * ink::height(TITLE_PT)
+}
+
+/// `title` with the size of letters at which it is no longer than `room`, pt.
+pub fn fitted(title: String, room: f64) -> (String, f64) {
+    let size = TITLE_PT * (room / ink::width(&title, TITLE_PT)).min(1.0);
+    (title, size.max(LEAST_TITLE_PT))
+}
+
+fn panel_height(chart: &Chart) -> f64 {
+    let count = chart.panels.len();
+    let height = HEIGHTS[count.clamp(1, HEIGHTS.len()) - 1];
+    let is_log = chart.panels.iter().any(|panel| panel.y.is_log);
+    let height = if is_log { LOG * height } else { height };
+    // A wide figure is lower for its width than a narrow one.
+    let wide = libm::pow((chart.width_pt / COLUMN_PT).clamp(0.6, 3.0), 0.6);
+    // Numbers in the panels' titles are the same for all: the longest title decides.
+    let longest = chart.panels.iter().map(|panel| {
+        let title = panel.y.title(&Ticks::default());
+        ink::width(&title, TITLE_PT)
+    });
+    let most = 1.8 * height * wide;
+    (height * wide).max(longest.fold(0.0, f64::max).min(most))
+}
+
+fn y_range(panel: &Panel) -> (f64, f64) {
+    let values = panel.series.iter().flat_map(|series| series.reach(1));
+    panel.y.range_of(values)
+}
+
+fn ticks_of(chart: &Chart, ranges: &[(f64, f64)], height: f64) -> Vec<Ticks> {
+    let panels = chart.panels.iter().zip(ranges);
+    let ticks = panels.map(|(panel, &range)| {
+        AxisScale::of(&panel.y, range, (height, 0.0)).ticks_beside(&panel.y)
+    });
+    ticks.collect()
+}
+
+/// Where the panels end at the right, so that half of the last label has room.
+fn right_edge(chart: &Chart, range: (f64, f64), left: f64, right: f64) -> f64 {
+    let scale = AxisScale::of(&chart.x, range, (left, right));
+    let ticks = scale.ticks_below(&chart.x);
+    let over = ticks.major.last().map_or(0.0, |tick| {
+        let end = scale.place(tick.at) + 0.5 * ink::width(&tick.label, LABEL_PT);
+        end - (chart.width_pt - PAGE_EDGE)
+    });
+    right - over.max(0.0)
+}

@@ -1,0 +1,191 @@
+//! Which line is what: in a corner of the panel where nothing is drawn, or above the panels.
+
+use super::curve::BAND_WHITE;
+use super::layout::{ChartLayout, PAGE_EDGE};
+use super::{Chart, SeriesStyle};
+use crate::plot::ink::{self, LABEL_PT, PageRectangle, WHITE, at, paler};
+use crate::plot::scene::{PageScene, Point, StrokeStyle, VectorPath};
+
+/// Length of the line of an entry, and its distance from the name, pt.
+const KEY: f64 = 17.0;
+const AFTER_KEY: f64 = 3.5;
+/// Half the height of a band beside its name, pt.
+const LEGEND_BAND: f64 = 2.6;
+const LEGEND_ROW_PT: f64 = 9.6;
+const LEGEND_ENTRY_GAP: f64 = 11.0;
+/// Between the legend and the panel's frame, and what must be free around it, pt.
+const INSET: f64 = 4.5;
+const LEGEND_CLEARANCE: f64 = 2.5;
+/// The part of a panel's width that a legend inside may take.
+const LEGEND_WIDTH_SHARE: f64 = 0.62;
+
+#[derive(Clone, Debug)]
+pub struct Legend {
+    entries: Vec<LegendEntry>,
+}
+
+#[derive(Clone, Debug)]
+struct LegendEntry {
+    /// How the series is drawn; `None` for a remark.
+    style: Option<SeriesStyle>,
+    name: String,
+    width_pt: f64,
+}
+
+/// The longest name of an entry on a page of this width, pt.
+pub fn longest_name(width_pt: f64) -> f64 {
+    width_pt - 2.0 * PAGE_EDGE - KEY - AFTER_KEY
+}
+
+impl Legend {
+    /// The legend of `series`, by name and style: every name once, and what there is to remark.
+    pub fn new<'a>(
+        series: impl Iterator<Item = (&'a str, &'a SeriesStyle)>,
+        remarks: impl IntoIterator<Item = String>,
+    ) -> Self {
+        let mut entries: Vec<LegendEntry> = Vec::new();
+        for (name, style) in series.filter(|(name, _)| !name.is_empty()) {
+            if entries.iter().any(|entry| entry.name == name) {
+                continue;
+            }
+            entries.push(LegendEntry {
+                style: Some(style.clone()),
+                width_pt: KEY + AFTER_KEY + ink::width(name, LABEL_PT),
+                name: name.to_owned(),
+            });
+        }
+        entries.extend(remarks.into_iter().map(|remark| LegendEntry {
+            style: None,
+            width_pt: ink::width(&remark, LABEL_PT),
+            name: remark,
+        }));
+        Self { entries }
+    }
+
+    pub fn of(chart: &Chart, remarks: impl IntoIterator<Item = String>) -> Self {
+        let series = chart.panels.iter().flat_map(|panel| &panel.series);
+        let series = series.map(|series| (series.name.as_str(), &series.style));
+        Self::new(series, remarks)
+    }
+
+    /// The rows in which it stands above the panels, within `room` pt.
+    fn rows(&self, room: f64) -> Vec<Vec<&LegendEntry>> {
+        let mut rows: Vec<Vec<&LegendEntry>> = Vec::new();
+        let mut used = 0.0;
+        for entry in &self.entries {
+            match rows.last_mut() {
+                Some(row) if used + LEGEND_ENTRY_GAP + entry.width_pt <= room => {
+                    row.push(entry);
+                    used += LEGEND_ENTRY_GAP + entry.width_pt;
+                }
+                _ => {
+                    rows.push(vec![entry]);
+                    used = entry.width_pt;
+                }
+            }
+        }
+        rows
+    }
+
+    /// The height that it needs above the picture on a page of that width, pt.
+    pub fn height_above(&self, width_pt: f64) -> f64 {
+        let rows = self.rows(width_pt - 2.0 * PAGE_EDGE).len();
+        rows as f64 * LEGEND_ROW_PT + rows.min(1) as f64
+    }
+
+    /// A corner of the panel, where there is one panel, in which nothing is drawn.
+    pub fn free_corner(&self, chart: &Chart, layout: &ChartLayout) -> Option<PageRectangle> {
+        let ([panel], [placed], []) =
+            (&chart.panels[..], &layout.panels[..], &layout.magnified[..])
+        else {
+            return None;
+        };
+        let widest = self.entries.iter().map(|entry| entry.width_pt);
+        let width = widest.fold(0.0, f64::max);
+        let height = self.entries.len() as f64 * LEGEND_ROW_PT - 1.0;
+        let frame = placed.frame.grown(-INSET);
+        let is_small = width <= LEGEND_WIDTH_SHARE * frame.width()
+            && height <= LEGEND_WIDTH_SHARE * frame.height();
+        if !is_small || self.entries.is_empty() {
+            return None;
+        }
+        let lefts = [frame.right - width, frame.left];
+        let tops = [frame.top, frame.bottom - height];
+        let corners = tops.iter().flat_map(|&top| {
+            lefts.map(|left| PageRectangle {
+                left,
+                top,
+                right: left + width,
+                bottom: top + height,
+            })
+        });
+        let is_free =
+            |corner: &PageRectangle| placed.is_clear(&corner.grown(LEGEND_CLEARANCE), panel);
+        corners.into_iter().find(is_free)
+    }
+
+    pub fn draw_in(&self, corner: &PageRectangle, scene: &mut PageScene) {
+        scene.fill(corner.outline(), WHITE);
+        let label = ink::height(LABEL_PT);
+        for (row, entry) in self.entries.iter().enumerate() {
+            let base =
+                corner.top + row as f64 * LEGEND_ROW_PT + 0.5 * (LEGEND_ROW_PT - 1.0 + label);
+            entry.draw(at(corner.left, base), scene);
+        }
+    }
+
+    /// Draws it above the picture on a page of that width, from `left` on where there is room, pt.
+    pub fn draw_above(&self, width_pt: f64, left: f64, scene: &mut PageScene) {
+        let label = ink::height(LABEL_PT);
+        for (index, row) in self.rows(width_pt - 2.0 * PAGE_EDGE).iter().enumerate() {
+            let width: f64 = row.iter().map(|entry| entry.width_pt).sum::<f64>()
+                + LEGEND_ENTRY_GAP * (row.len() as f64 - 1.0);
+            let mut x = left.min(width_pt - PAGE_EDGE - width).max(PAGE_EDGE);
+            let base = PAGE_EDGE + index as f64 * LEGEND_ROW_PT + 0.5 * (LEGEND_ROW_PT + label);
+            for entry in row {
+                entry.draw(at(x, base), scene);
+                x += entry.width_pt + LEGEND_ENTRY_GAP;
+            }
+        }
+    }
+}
+
+impl LegendEntry {
+    /// Draws it with its name's baseline at the height of `place`.
+    fn draw(&self, place: Point, scene: &mut PageScene) {
+        let Some(style) = &self.style else {
+            scene.write(&self.name, LABEL_PT, place, 0.0);
+            return;
+        };
+        let y = place.y - 0.5 * ink::height(LABEL_PT);
+        if style.is_band {
+            let (from, to) = (
+                at(place.x, y - LEGEND_BAND),
+                at(place.x + KEY, y + LEGEND_BAND),
+            );
+            let corners = [from, at(to.x, from.y), to, at(from.x, to.y)];
+            scene.fill(VectorPath::polygon(corners), paler(style.color, BAND_WHITE));
+        }
+        if style.width_pt > 0.0 {
+            let ends = [at(place.x, y), at(place.x + KEY, y)];
+            let pen = StrokeStyle {
+                is_round: false,
+                dash_pt: if style.is_dots {
+                    vec![style.width_pt, 2.0 * style.width_pt]
+                } else {
+                    style.dash_pt.to_vec()
+                },
+                ..style.pen()
+            };
+            scene.stroke(VectorPath::polyline(ends), pen, None);
+            if let Some(core) = style.core_pen() {
+                scene.stroke(VectorPath::polyline(ends), core, None);
+            }
+        }
+        if let Some(mark) = style.mark {
+            scene.mark(mark, at(place.x + 0.5 * KEY, y), style.color);
+        }
+        let name = at(place.x + KEY + AFTER_KEY, place.y);
+        scene.write(&self.name, LABEL_PT, name, 0.0);
+    }
+}

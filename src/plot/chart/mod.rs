@@ -1,0 +1,400 @@
+//! What a figure with axes shows, before anything of it has a place: panels one above the other over one axis.
+//!
+//! [`axis`] and [`ticks`] say what stands at an axis, [`layout`] gives the parts their places, and [`draw`] puts them on a
+//! page: [`curve`] the curves, [`legend`] their names.
+
+pub mod axis;
+pub mod curve;
+pub mod draw;
+pub mod layout;
+pub mod legend;
+pub mod ticks;
+
+use crate::plot::extent;
+use crate::plot::ink::{BLACK, PointMark, grey, paler};
+use crate::plot::scene::{Color, StrokeStyle};
+use ticks::{Ticks, power_of_ten};
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Chart {
+    pub title: String,
+    pub width_pt: f64,
+    pub x: ChartAxis,
+    /// The panels, from the top; one at least.
+    pub panels: Vec<Panel>,
+    /// Whether a unit is as long on both axes; then there is one panel.
+    pub is_true_to_scale: bool,
+    /// A stretch of the axis x that is magnified, to the right: its panels have the axes y of these.
+    pub magnified: Option<Box<Chart>>,
+    /// Whether its errors are those of reading a number off a run: they do not hold what the scheme does to the run.
+    pub are_read_off: bool,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ChartAxis {
+    /// What is measured on it, as markup.
+    pub name: String,
+    /// Its unit, as markup; empty for a pure number.
+    pub unit: String,
+    pub is_log: bool,
+    /// From where to where it goes; `None`: as the data need it.
+    pub range: Option<(f64, f64)>,
+    /// How large the quantity is by its nature, in its unit: differences far below that are rounding. 0: not known.
+    pub size: f64,
+    /// Differences below this part of that size are drawn flat, where it is more than rounding.
+    pub flat_below: f64,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Panel {
+    pub y: ChartAxis,
+    pub series: Vec<ChartSeries>,
+}
+
+impl Panel {
+    pub fn new(y: ChartAxis, series: Vec<ChartSeries>) -> Self {
+        Self { y, series }
+    }
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ChartSeries {
+    /// Its name in the legend, as markup; empty for none.
+    pub name: String,
+    /// Its points in order; the line is interrupted where one is not finite.
+    pub points: Vec<[f64; 2]>,
+    /// One standard error of each point's first and of its second number; empty where there are none, NaN where one is not
+    /// known.
+    pub errors: [Vec<f64>; 2],
+    /// Where its line turns too often to be told apart: along the axis x, from where to where it goes.
+    pub band: Vec<[f64; 3]>,
+    pub style: SeriesStyle,
+}
+
+impl ChartSeries {
+    pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>, style: SeriesStyle) -> Self {
+        Self {
+            name: name.into(),
+            points,
+            style,
+            ..Self::default()
+        }
+    }
+
+    /// A line of the legend without a curve.
+    pub fn named(name: String) -> Self {
+        let style = SeriesStyle {
+            width_pt: 0.0,
+            ..SeriesStyle::default()
+        };
+        Self::new(name, Vec::new(), style)
+    }
+
+    /// The line of zero across `range`.
+    pub fn level((begin, end): (f64, f64)) -> Self {
+        let points = vec![[begin, 0.0], [end, 0.0]];
+        Self::new("", points, SeriesStyle::theory(0, 0))
+    }
+
+    /// The ends of the error bar of a point along the axis x (0) or y (1); without an error, the point.
+    pub fn ends(&self, index: usize, axis: usize) -> [[f64; 2]; 2] {
+        let error = self.errors[axis].get(index).copied();
+        let error = error.filter(|error| error.is_finite()).unwrap_or(0.0);
+        [error, -error].map(|error| {
+            let mut end = self.points[index];
+            end[axis] += error;
+            end
+        })
+    }
+
+    /// The numbers of the points along an axis, and those of the ends of their error bars.
+    pub fn reach(&self, axis: usize) -> impl Iterator<Item = f64> {
+        (0..self.points.len()).flat_map(move |index| {
+            let [high, low] = self.ends(index, axis);
+            [high, low, self.points[index]].map(|point| point[axis])
+        })
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeriesStyle {
+    pub color: Color,
+    /// Width of its line, pt; 0 for points alone.
+    pub width_pt: f64,
+    /// Lengths of strokes and gaps, pt; empty for a solid line.
+    pub dash_pt: &'static [f64],
+    pub mark: Option<PointMark>,
+    /// Whether it is drawn behind the others, and behind those of its kind that come before it.
+    pub is_behind: bool,
+    /// Whether its line is a dot at each of its points, which are not joined.
+    pub is_dots: bool,
+    /// Whether it is a band where its series has one.
+    pub is_band: bool,
+    /// The colour of a thin line along its middle, on top of the first curve where that would hide it.
+    pub core: Option<Color>,
+}
+
+impl Default for SeriesStyle {
+    fn default() -> Self {
+        Self {
+            color: BLACK,
+            width_pt: 0.7,
+            dash_pt: &[],
+            mark: None,
+            is_behind: false,
+            is_dots: false,
+            is_band: false,
+            core: None,
+        }
+    }
+}
+
+/// The number of curves, or series of points, that can be distinguished.
+pub const KINDS_OF_LINE: usize = 6;
+
+/// Colours that people with any colour vision tell apart (Okabe and Ito, 2008), in the order in which their greys, too, are
+/// told apart from the ones before.
+const COLORS: [Color; KINDS_OF_LINE] = [
+    BLACK,
+    Color([213, 94, 0]),
+    Color([0, 114, 178]),
+    Color([230, 159, 0]),
+    Color([0, 158, 115]),
+    Color([204, 121, 167]),
+];
+const DASHES: [&[f64]; KINDS_OF_LINE] = [
+    &[],
+    &[3.2, 1.6],
+    &[1.0, 1.2],
+    &[5.0, 1.4, 1.0, 1.4],
+    &[6.5, 2.0],
+    &[2.0, 1.0, 2.0, 3.0],
+];
+const MARKS: [PointMark; KINDS_OF_LINE] = [
+    PointMark::Dot,
+    PointMark::Square,
+    PointMark::Triangle,
+    PointMark::Diamond,
+    PointMark::Ring,
+    PointMark::Tip,
+];
+
+/// Width of the dots of a path whose points are not joined, pt.
+const DOT_PT: f64 = 1.1;
+
+impl SeriesStyle {
+    /// The line of the curve `index` of several: the first is on top, each other one beneath those before it, and made wide
+    /// where they cover it (`curve::Above`).
+    pub fn curve(index: usize) -> Self {
+        let color = COLORS[index % KINDS_OF_LINE];
+        Self {
+            color,
+            is_behind: index > 0,
+            core: (index > 0).then_some(color),
+            ..Self::default()
+        }
+    }
+
+    /// The exact motion, as the curve `index`: pale where it is wide, so that a run on top of it is seen wherever it goes.
+    pub fn exact(index: usize) -> Self {
+        let curve = Self::curve(index);
+        Self {
+            color: paler(curve.color, 0.4),
+            ..curve
+        }
+    }
+
+    /// Points on a thin line, for the series `index` of several.
+    pub fn marked_line(index: usize) -> Self {
+        Self {
+            width_pt: 0.5,
+            ..Self::points(index)
+        }
+    }
+
+    pub fn points(index: usize) -> Self {
+        Self {
+            color: COLORS[index % COLORS.len()],
+            width_pt: 0.0,
+            mark: Some(MARKS[index % MARKS.len()]),
+            ..Self::default()
+        }
+    }
+
+    /// What was measured, so many points of it: empty circles, which no run has, over the run's line. Many of them would
+    /// hide that line: they are grey and behind it.
+    pub fn measured(count: usize) -> Self {
+        const MANY_MARKS: usize = 150;
+        let are_many = count > MANY_MARKS;
+        Self {
+            color: if are_many { grey(160) } else { BLACK },
+            width_pt: 0.0,
+            mark: Some(PointMark::Ring),
+            is_behind: are_many,
+            ..Self::default()
+        }
+    }
+
+    /// A faint line behind the others, for a limit.
+    pub fn limit() -> Self {
+        Self {
+            color: grey(165),
+            width_pt: 0.4,
+            is_behind: true,
+            ..Self::default()
+        }
+    }
+
+    /// A thin line of theory beside the series `index` of several; `place` tells it from other theory of the same quantity.
+    pub fn theory(index: usize, place: usize) -> Self {
+        Self {
+            color: if index == 0 {
+                grey(70)
+            } else {
+                Self::points(index).color
+            },
+            dash_pt: DASHES[place % DASHES.len()],
+            ..Self::default()
+        }
+    }
+
+    /// The same as marks, which fine strokes join.
+    pub fn theory_marked(index: usize, place: usize) -> Self {
+        Self {
+            width_pt: 0.35,
+            mark: Some([PointMark::Cross, PointMark::Plus][place % 2]),
+            ..Self::theory(index, 2 + place)
+        }
+    }
+
+    /// Small points of what was neither measured nor is theory, for the series `index` of several.
+    pub fn specks(index: usize) -> Self {
+        Self {
+            mark: Some(PointMark::Speck),
+            ..Self::points(index)
+        }
+    }
+
+    /// The same with a dot at each point in place of a line.
+    pub fn as_dots(self) -> Self {
+        Self {
+            dash_pt: &[],
+            width_pt: DOT_PT,
+            is_dots: true,
+            core: None,
+            ..self
+        }
+    }
+
+    /// The pen of its core.
+    pub fn core_pen(&self) -> Option<StrokeStyle> {
+        Some(StrokeStyle {
+            width_pt: Self::default().width_pt,
+            color: self.core?,
+            ..self.pen()
+        })
+    }
+
+    pub fn pen(&self) -> StrokeStyle {
+        StrokeStyle {
+            width_pt: self.width_pt,
+            color: self.color,
+            dash_pt: self.dash_pt.to_vec(),
+            is_round: true,
+        }
+    }
+}
+
+/// The farthest that an axis reaches: the distance of its ends is still finite.
+const FARTHEST_AXIS_END: f64 = 1e306;
+/// The room beyond the data, of their span, and where that is rounding, of their size.
+const DATA_MARGIN: f64 = 0.045;
+const CONSTANT_MARGIN: f64 = 0.1;
+
+impl ChartAxis {
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            ..Self::default()
+        }
+    }
+
+    pub fn within(self, range: (f64, f64)) -> Self {
+        Self {
+            range: Some(range),
+            ..self
+        }
+    }
+
+    /// Name, offset and unit, as it is written along the axis with these ticks.
+    pub fn title(&self, ticks: &Ticks) -> String {
+        let offset = ticks.offset.as_deref();
+        let offset = offset.map_or_else(String::new, |offset| match offset.strip_prefix('−') {
+            Some(size) => format!(" + {size}"),
+            None => format!(" − {offset}"),
+        });
+        let power = match ticks.power {
+            0 => String::new(),
+            power => power_of_ten(power),
+        };
+        match format!("{power} {}", self.unit).trim() {
+            "" => format!("{}{offset}", self.name),
+            unit => format!("{}{offset} ({unit})", self.name),
+        }
+    }
+
+    /// From where to where the axis goes for these `values`; those that it cannot show are passed over. Without a value: any
+    /// stretch.
+    pub fn range_of(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
+        /// Values that differ by less than this part of themselves, or of the quantity's own size, differ by rounding.
+        const VALUE_ROUNDING: f64 = 1e-10;
+        if let Some(range) = self.range {
+            return range;
+        }
+        let is_shown = |value: &f64| value.is_finite() && (!self.is_log || *value > 0.0);
+        let values = values.filter(is_shown);
+        let values = values.map(|value| value.clamp(-FARTHEST_AXIS_END, FARTHEST_AXIS_END));
+        let Some((low, high)) = extent(values) else {
+            return if self.is_log { (0.1, 10.0) } else { (0.0, 1.0) };
+        };
+        if self.is_log {
+            return decades_around(low, high);
+        }
+        let largest = low.abs().max(high.abs());
+        let span = high - low;
+        if span > (VALUE_ROUNDING * largest.max(self.size)).max(self.flat_below * self.size) {
+            return (low - DATA_MARGIN * span, high + DATA_MARGIN * span);
+        }
+        if self.size > 0.0 && largest <= VALUE_ROUNDING.max(self.flat_below) * self.size {
+            // Zero, as well as the numbers tell it.
+            return (-CONSTANT_MARGIN * self.size, CONSTANT_MARGIN * self.size);
+        }
+        let half = if largest > 1e-290 {
+            CONSTANT_MARGIN * largest
+        } else {
+            1.0
+        };
+        let middle = 0.5 * low + 0.5 * high;
+        (middle - half, middle + half)
+    }
+}
+
+/// A logarithmic axis for values from `low` to `high`, with some room.
+fn decades_around(low: f64, high: f64) -> (f64, f64) {
+    let (low, high) = (
+        low.max(1.0 / FARTHEST_AXIS_END),
+        high.max(1.0 / FARTHEST_AXIS_END),
+    );
+    let decades = libm::log10(high / low);
+    let margin = if decades > 0.1 {
+        DATA_MARGIN * decades
+    } else {
+        CONSTANT_MARGIN
+    };
+    let factor = libm::exp10(margin);
+    (
+        (low / factor).max(0.1 / FARTHEST_AXIS_END),
+        (high * factor).min(10.0 * FARTHEST_AXIS_END),
+    )
+}

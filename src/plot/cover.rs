@@ -1,0 +1,288 @@
+//! The area that the ink of a line covers, as outlines.
+//!
+//! The ink is put into a grid of square cells, the boundary of the inked cells is followed, and its steps are made straight
+//! again. The grid is finer than the dots of a printer, and what it cannot tell apart is one area.
+
+use super::line::simplified;
+use super::scene::{Point, Segment, VectorPath, at};
+use crate::plot::extent;
+
+/// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one where the finer one gives too many points.
+const CELLS_PT: [f64; 2] = [0.06, 0.12];
+/// Points of an outline beyond which the grid is made coarser: a file of 800 kB.
+const MANY_OUTLINE_POINTS: usize = 100_000;
+const MOST_GRID_CELLS: f64 = 32e6;
+/// How far an outline may leave the middles of the cells' sides, in cells.
+const OUTLINE_TOLERANCE: f64 = 1.0;
+/// An outline of no more sides of cells than this is a dot that cannot be seen.
+const SMALLEST_OUTLINE: usize = 8;
+
+/// The outline of the ink of lines with round corners and ends, `width_pt` wide; inked is what it winds about.
+pub fn area(lines: &[Vec<Point>], width_pt: f64) -> VectorPath {
+    let mut area = VectorPath::default();
+    for cell_pt in CELLS_PT {
+        let Some(mut grid) = Grid::inked(lines, cell_pt, width_pt) else {
+            continue;
+        };
+        grid.widen(0.5 * width_pt / cell_pt);
+        area = grid.outlines();
+        if area.0.len() <= MANY_OUTLINE_POINTS {
+            break;
+        }
+    }
+    area
+}
+
+/// Cells in rows from the top, with an empty one at each edge.
+pub struct Grid {
+    origin: Point,
+    cell_pt: f64,
+    columns: usize,
+    is_inked: Vec<bool>,
+}
+
+impl Grid {
+    /// A grid with room for lines `width_pt` wide, in which the cells that `lines` pass through are inked. `None` where nothing
+    /// is drawn, where a place is not a number, or where the grid would be too large.
+    pub fn inked(lines: &[Vec<Point>], cell_pt: f64, width_pt: f64) -> Option<Self> {
+        let mut grid = Self::around(lines, width_pt, cell_pt)?;
+        for pair in lines.iter().flat_map(|line| line.windows(2)) {
+            grid.trace(pair[0], pair[1]);
+        }
+        Some(grid)
+    }
+
+    pub fn area_pt2(&self) -> f64 {
+        let inked = self.is_inked.iter().filter(|inked| **inked).count();
+        inked as f64 * self.cell_pt * self.cell_pt
+    }
+
+    /// The area of the inked cells that are the lower right corner of a square of ink with sides of more than `inside` cells, pt².
+    pub fn area_inside_pt2(&self, inside: usize) -> f64 {
+        // Ink to the left without a gap, up to the cell; the same to the top gives squares.
+        let mut sides = vec![0_u16; self.is_inked.len()];
+        let mut count = 0;
+        let cells = self.is_inked.iter().enumerate();
+        for (here, _) in cells.filter(|(_, inked)| **inked) {
+            let side = |back: usize| here.checked_sub(back).map_or(0, |before| sides[before]);
+            let (left, above) = (side(1), side(self.columns));
+            let side = 1 + left.min(above).min(side(self.columns + 1));
+            sides[here] = side;
+            count += usize::from(usize::from(side) > inside);
+        }
+        count as f64 * self.cell_pt * self.cell_pt
+    }
+
+    fn around(lines: &[Vec<Point>], width_pt: f64, cell_pt: f64) -> Option<Self> {
+        let points = || lines.iter().flatten();
+        let (left, right) = range(points().map(|p| p.x))?;
+        let (top, bottom) = range(points().map(|p| p.y))?;
+        let margin = 0.5 * width_pt + 2.0 * cell_pt;
+        let count = |from: f64, to: f64| libm::ceil((to - from + 2.0 * margin) / cell_pt);
+        let (columns, rows) = (count(left, right), count(top, bottom));
+        let fits = columns * rows <= MOST_GRID_CELLS;
+        fits.then(|| Self {
+            origin: at(left - margin, top - margin),
+            cell_pt,
+            columns: columns as usize,
+            is_inked: vec![false; columns as usize * rows as usize],
+        })
+    }
+
+    /// Inks the cells that a straight line passes through, a run of them in each row.
+    fn trace(&mut self, from: Point, to: Point) {
+        let cells = |length: f64| length / self.cell_pt;
+        let place = |p: Point| (cells(p.x - self.origin.x), cells(p.y - self.origin.y));
+        let (mut upper, mut lower) = (place(from), place(to));
+        if upper.1 > lower.1 {
+            std::mem::swap(&mut upper, &mut lower);
+        }
+        let slope = (lower.0 - upper.0) / (lower.1 - upper.1);
+        if !(upper.0 + upper.1 + lower.0 + lower.1).is_finite() {
+            return;
+        }
+        let mut enters = upper.0;
+        for row in upper.1 as usize..=lower.1 as usize {
+            let leaves = if row == lower.1 as usize {
+                lower.0
+            } else {
+                upper.0 + ((row + 1) as f64 - upper.1) * slope
+            };
+            let (left, right) = (enters.min(leaves) as usize, enters.max(leaves) as usize);
+            let begin = row * self.columns;
+            if let Some(cells) = self.is_inked.get_mut(begin + left..=begin + right) {
+                cells.fill(true);
+            }
+            enters = leaves;
+        }
+    }
+
+    /// Inks all cells whose middle is at most `radius` (in cells) from the middle of an inked one.
+    fn widen(&mut self, radius: f64) {
+        let blank = vec![false; self.is_inked.len()];
+        let traced = std::mem::replace(&mut self.is_inked, blank);
+        let reach = libm::floor(radius) as usize;
+        let half = |down: usize| (radius * radius - (down * down) as f64).max(0.0).sqrt() as usize;
+        let halves: Vec<usize> = (0..=reach).map(half).collect();
+        for (row, cells) in traced.chunks(self.columns).enumerate() {
+            let mut column = 0;
+            for run in cells.chunk_by(|a, b| a == b) {
+                let end = column + run.len();
+                if run[0] {
+                    for other in row.saturating_sub(reach)..=row + reach {
+                        let half = halves[other.abs_diff(row)];
+                        let begin = other * self.columns + column.saturating_sub(half);
+                        let end = other * self.columns + (end + half).min(self.columns);
+                        if let Some(cells) = self.is_inked.get_mut(begin..end) {
+                            cells.fill(true);
+                        }
+                    }
+                }
+                column = end;
+            }
+        }
+    }
+
+    /// Whether the cell right of and below the corner of cells is inked.
+    fn at(&self, x: isize, y: isize) -> bool {
+        let is_inside = x >= 0 && y >= 0 && (x as usize) < self.columns;
+        let cell = || self.is_inked.get(y as usize * self.columns + x as usize);
+        is_inside && cell() == Some(&true)
+    }
+
+    /// All outlines, with the ink to their right. Each runs to the right somewhere, along the upper side of an inked cell. The
+    /// uppermost row is empty.
+    fn outlines(&self) -> VectorPath {
+        let mut path = VectorPath::default();
+        let mut is_done = vec![false; self.is_inked.len()];
+        for start in self.columns..self.is_inked.len() {
+            let begins = self.is_inked[start] && !self.is_inked[start - self.columns];
+            if !begins || is_done[start] {
+                continue;
+            }
+            let (column, row) = (start % self.columns, start / self.columns);
+            let outline = self.outline((column as isize, row as isize), &mut is_done);
+            if outline.len() <= SMALLEST_OUTLINE {
+                continue;
+            }
+            let corners = simplified(&outline, OUTLINE_TOLERANCE);
+            let cells = |count: f64| count * self.cell_pt;
+            let place = |p: &Point| at(self.origin.x + cells(p.x), self.origin.y + cells(p.y));
+            let corners = corners[..corners.len() - 1].iter().map(place);
+            path.0.extend(VectorPath::polyline(corners).0);
+            path.0.push(Segment::Close);
+        }
+        path
+    }
+
+    /// The middles of the sides of cells along one outline, the first once more at its end. The sides where it runs to the
+    /// right are marked.
+    fn outline(&self, start: (isize, isize), is_done: &mut [bool]) -> Vec<Point> {
+        let (mut at, mut step) = (start, (1, 0));
+        let mut middles = Vec::new();
+        loop {
+            let (x, y) = at;
+            if step == (1, 0) {
+                is_done[y as usize * self.columns + x as usize] = true;
+            }
+            middles.push(Point {
+                x: x as f64 + 0.5 * step.0 as f64,
+                y: y as f64 + 0.5 * step.1 as f64,
+            });
+            at = (x + step.0, y + step.1);
+            let right = (-step.1, step.0);
+            let ahead = |side: (isize, isize)| {
+                // The cell ahead on one side of the corner: the corner's cell is to its right and below.
+                let to = |a: isize, b: isize| if a + b < 0 { -1 } else { 0 };
+                self.at(at.0 + to(step.0, side.0), at.1 + to(step.1, side.1))
+            };
+            step = match (ahead(right), ahead((-right.0, -right.1))) {
+                (false, _) => right,
+                (true, true) => (-right.0, -right.1),
+                (true, false) => step,
+            };
+            if at == start && step == (1, 0) {
+                middles.extend(middles.first().copied());
+                return middles;
+            }
+        }
+    }
+}
+
+/// The least and the greatest of `numbers`; `None` where there is none, or one is not finite.
+fn range(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    extent(numbers).filter(|(low, high)| (high - low).is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// How often the outlines wind about a place; whether to the right or to the left does not matter.
+    fn winding(area: &VectorPath, x: f64, y: f64) -> i32 {
+        let (mut count, mut start) = (0, at(0.0, 0.0));
+        let mut at = start;
+        for segment in &area.0 {
+            let to = segment.end().unwrap_or(start);
+            if let Segment::Move(_) = segment {
+                start = to;
+            } else if (at.y <= y) != (to.y <= y) {
+                let crossing = at.x + (y - at.y) / (to.y - at.y) * (to.x - at.x);
+                count += i32::from(crossing > x) * if to.y > at.y { 1 } else { -1 };
+            }
+            at = to;
+        }
+        count
+    }
+
+    fn distance(lines: &[Vec<Point>], x: f64, y: f64) -> f64 {
+        let to = |pair: &[Point]| {
+            let (dx, dy) = (pair[1].x - pair[0].x, pair[1].y - pair[0].y);
+            let (px, py) = (x - pair[0].x, y - pair[0].y);
+            let square = dx * dx + dy * dy;
+            let share = if square > 0.0 {
+                ((px * dx + py * dy) / square).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
+            libm::hypot(px - share * dx, py - share * dy)
+        };
+        lines
+            .iter()
+            .flat_map(|line| line.windows(2))
+            .map(to)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        #[test]
+        fn inside_is_what_is_inked(
+            places in prop::collection::vec((0.0_f64..12.0, 0.0_f64..12.0), 2..12),
+            tries in prop::collection::vec((-2.0_f64..14.0, -2.0_f64..14.0), 300),
+            width in 0.4_f64..3.0,
+        ) {
+            let line: Vec<Point> = places.into_iter().map(|(x, y)| at(x, y)).collect();
+            let lines = [line[..line.len() / 2].to_vec(), line[line.len() / 2..].to_vec()];
+            let area = area(&lines, width);
+            for (x, y) in tries {
+                let beyond = distance(&lines, x, y) - 0.5 * width;
+                // The diagonal of a cell, half of it on the line and half at the edge, and what the smoothing takes.
+                if beyond.abs() > CELLS_PT[0] * (1.42 + OUTLINE_TOLERANCE) {
+                    prop_assert_eq!(winding(&area, x, y).abs(), i32::from(beyond < 0.0), "{} {}: {}", x, y, beyond);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_no_place_covers_nothing() {
+        let far = |x: f64| vec![at(0.0, 0.0), at(x, 1.0)];
+        let nowhere = far(f64::NAN)[1..].to_vec();
+        for line in [vec![], nowhere, far(f64::INFINITY), far(1e12)] {
+            assert_eq!(area(&[line], 0.7), VectorPath::default());
+        }
+        assert!(!area(&[far(f64::NAN), far(3.0)], 0.7).0.is_empty());
+    }
+}

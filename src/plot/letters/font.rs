@@ -1,0 +1,279 @@
+//! The letters of a page as a TrueType font, for a file whose text can be searched and copied: the outlines of the table,
+//! and no others.
+//!
+//! Source: Microsoft, OpenType specification 1.9: otff, head, hhea, hmtx, maxp, loca, glyf.
+
+use super::setter::missing;
+use super::table::{FontStyle, Letter, UNITS_PER_EM};
+use crate::plot::{Point, Segment};
+use std::collections::BTreeSet;
+
+/// A font of some letters. Glyph 0 is the box for a letter that there is not; the letters follow in the order of their codes.
+pub struct Font {
+    letters: Vec<char>,
+    glyphs: Vec<Glyph>,
+}
+
+/// A letter in the units of the font, y up.
+struct Glyph {
+    advance: u16,
+    /// The contours, each without its first point at its end: a place, and whether the outline runs through it.
+    contours: Vec<Vec<(i16, i16, bool)>>,
+    /// Left, lowest, right and highest place.
+    bounds: [i16; 4],
+}
+
+impl Font {
+    pub fn of(style: &FontStyle, letters: &BTreeSet<char>) -> Self {
+        let known = letters
+            .iter()
+            .filter_map(|&letter| Some((letter, style.letter(letter)?)));
+        let (letters, mut glyphs): (Vec<_>, Vec<_>) = known
+            .map(|(letter, drawn)| (letter, Glyph::of(&drawn)))
+            .unzip();
+        glyphs.insert(0, Glyph::of(&missing()));
+        Self { letters, glyphs }
+    }
+
+    /// The number of a letter's glyph; 0 where there is none.
+    pub fn glyph(&self, letter: char) -> u16 {
+        let place = self.letters.binary_search(&letter);
+        place.map_or(0, |place| place as u16 + 1)
+    }
+
+    pub fn letters(&self) -> impl Iterator<Item = (u16, char)> + '_ {
+        (1..).zip(self.letters.iter().copied())
+    }
+
+    /// From each glyph's origin to the next letter's origin, thousandths of the size.
+    pub fn advances(&self) -> impl Iterator<Item = f32> + '_ {
+        self.glyphs.iter().map(|glyph| f32::from(glyph.advance))
+    }
+
+    /// Left, lowest, right and highest place of any letter, thousandths of the size.
+    pub fn bounds(&self) -> [i16; 4] {
+        let all = self.glyphs.iter().map(|glyph| glyph.bounds);
+        all.fold([0; 4], |[left, low, right, high], b| {
+            let (left, low) = (left.min(b[0]), low.min(b[1]));
+            [left, low, right.max(b[2]), high.max(b[3])]
+        })
+    }
+
+    pub fn file(&self) -> Vec<u8> {
+        let (mut outlines, mut places) = (Vec::new(), Vec::new());
+        for glyph in &self.glyphs {
+            places.extend((outlines.len() as u32).to_be_bytes());
+            glyph.write(&mut outlines);
+        }
+        places.extend((outlines.len() as u32).to_be_bytes());
+        let widths = self.glyphs.iter().flat_map(|glyph| {
+            let left = glyph.bounds[0].to_be_bytes();
+            [glyph.advance.to_be_bytes(), left].concat()
+        });
+        // In the order of their names.
+        file([
+            (*b"glyf", outlines),
+            (*b"head", self.head()),
+            (*b"hhea", self.hhea()),
+            (*b"hmtx", widths.collect()),
+            (*b"loca", places),
+            (*b"maxp", self.maxp()),
+        ])
+    }
+
+    fn head(&self) -> Vec<u8> {
+        shorts(&[
+            &[1, 0], // version
+            &[1, 0], // revision of the font
+            &[0, 0], // the sum of the file, which nobody asks for of a font within a file
+            &[0x5F0F, 0x3CF5],
+            &[0b11], // the baseline is at 0, and letters begin at 0
+            &[UNITS_PER_EM as u16],
+            &[0; 8], // dates
+            &self.bounds().map(|bound| bound as u16),
+            &[0, 6],    // no style; legible from 6 dots on
+            &[2, 1, 0], // from left to right; long places; the one form of outlines
+        ])
+    }
+
+    fn hhea(&self) -> Vec<u8> {
+        let [left, low, right, high] = self.bounds().map(|bound| bound as u16);
+        let widest = self.glyphs.iter().map(|glyph| glyph.advance).max();
+        shorts(&[
+            &[1, 0, high, low, 0, widest.unwrap_or(0), left, 0, right, 1],
+            &[0; 7], // an upright cursor at 0, and what is reserved
+            &[self.glyphs.len() as u16],
+        ])
+    }
+
+    fn maxp(&self) -> Vec<u8> {
+        let points = |glyph: &Glyph| glyph.contours.iter().map(Vec::len).sum::<usize>() as u16;
+        let contours = |glyph: &Glyph| glyph.contours.len() as u16;
+        let most = |count: &dyn Fn(&Glyph) -> u16| self.glyphs.iter().map(count).max().unwrap_or(0);
+        let count = self.glyphs.len() as u16;
+        // No letters made of others, no instructions.
+        shorts(&[
+            &[1, 0, count, most(&points), most(&contours), 0, 0, 2],
+            &[0; 8],
+        ])
+    }
+}
+
+fn shorts(parts: &[&[u16]]) -> Vec<u8> {
+    let numbers = parts.iter().copied().flatten();
+    numbers.flat_map(|number| number.to_be_bytes()).collect()
+}
+
+impl Glyph {
+    fn of(letter: &Letter) -> Self {
+        let mut contours: Vec<Vec<(i16, i16, bool)>> = Vec::new();
+        let point = |p: Point, is_on: bool| (p.x as i16, -p.y as i16, is_on);
+        for segment in &letter.outline.0 {
+            if let Segment::Move(_) = segment {
+                contours.push(Vec::new());
+            }
+            let contour = contours.last_mut().into_iter();
+            let points = match *segment {
+                Segment::Move(to) | Segment::Line(to) => vec![point(to, true)],
+                Segment::Quadratic(control, to) => vec![point(control, false), point(to, true)],
+                // The table has none, and a contour is closed by itself.
+                Segment::Cubic(..) | Segment::Close => vec![],
+            };
+            contour.for_each(|contour| contour.extend(&points));
+        }
+        for contour in &mut contours {
+            if contour.len() > 1 && contour.first() == contour.last() {
+                contour.pop();
+            }
+        }
+        let ends = |of: fn(&(i16, i16, bool)) -> i16| {
+            let places = || contours.iter().flatten().map(of);
+            (places().min().unwrap_or(0), places().max().unwrap_or(0))
+        };
+        let ((left, right), (low, high)) = (ends(|point| point.0), ends(|point| point.1));
+        Self {
+            advance: letter.advance as u16,
+            bounds: [left, low, right, high],
+            contours,
+        }
+    }
+
+    /// Adds it to the table of outlines; a blank has none.
+    fn write(&self, table: &mut Vec<u8>) {
+        if self.contours.is_empty() {
+            return;
+        }
+        table.extend((self.contours.len() as i16).to_be_bytes());
+        table.extend(self.bounds.into_iter().flat_map(i16::to_be_bytes));
+        let mut count = 0;
+        for contour in &self.contours {
+            count += contour.len() as u16;
+            table.extend((count - 1).to_be_bytes());
+        }
+        table.extend([0, 0]); // no instructions
+        let points = || self.contours.iter().flatten();
+        table.extend(points().map(|point| u8::from(point.2)));
+        for of in [
+            |point: &(i16, i16, bool)| point.0,
+            |point: &(i16, i16, bool)| point.1,
+        ] {
+            let mut before = 0;
+            for place in points().map(of) {
+                table.extend((place - before).to_be_bytes());
+                before = place;
+            }
+        }
+        table.resize(table.len().next_multiple_of(4), 0);
+    }
+}
+
+fn file<const N: usize>(tables: [([u8; 4], Vec<u8>); N]) -> Vec<u8> {
+    let largest = N.ilog2() as u16; // of the powers of two up to N
+    let range = 16 << largest;
+    let mut file = 0x0001_0000_u32.to_be_bytes().to_vec();
+    let counts = [N as u16, range, largest, 16 * N as u16 - range];
+    file.extend(counts.into_iter().flat_map(u16::to_be_bytes));
+    let mut place = 12 + 16 * N;
+    for (name, table) in &tables {
+        file.extend(name);
+        let numbers = [sum(table), place as u32, table.len() as u32];
+        file.extend(numbers.into_iter().flat_map(u32::to_be_bytes));
+        place += table.len().next_multiple_of(4);
+    }
+    for (_, mut table) in tables {
+        table.resize(table.len().next_multiple_of(4), 0);
+        file.extend(table);
+    }
+    file
+}
+
+/// The sum of a table as numbers of four bytes.
+fn sum(table: &[u8]) -> u32 {
+    table.chunks(4).fold(0, |sum: u32, chunk| {
+        let mut word = [0; 4];
+        word[..chunk.len()].copy_from_slice(chunk);
+        sum.wrapping_add(u32::from_be_bytes(word))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::extent;
+    use crate::plot::letters::table::REGULAR;
+
+    /// The tables of a font file by their names.
+    fn tables(file: &[u8]) -> Vec<(String, &[u8])> {
+        let word = |at: usize| u32::from_be_bytes(file[at..at + 4].try_into().unwrap()) as usize;
+        let count = usize::from(file[5]);
+        let entry = |number: usize| {
+            let at = 12 + 16 * number;
+            let name = String::from_utf8_lossy(&file[at..at + 4]).into_owned();
+            let table = &file[word(at + 8)..][..word(at + 12)];
+            assert_eq!(sum(table) as usize, word(at + 4), "{name}");
+            (name, table)
+        };
+        (0..count).map(entry).collect()
+    }
+
+    #[test]
+    fn a_font_has_its_letters_and_the_box_and_no_others() {
+        let font = Font::of(&REGULAR, &"Äo 速".chars().collect());
+        assert_eq!(
+            ["Ä", "o", " ", "速"].map(|c| font.glyph(c.chars().next().unwrap())),
+            [3, 2, 1, 0]
+        );
+        let file = font.file();
+        let tables = tables(&file);
+        let names: Vec<_> = tables.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["glyf", "head", "hhea", "hmtx", "loca", "maxp"]);
+        let sizes: Vec<_> = tables.iter().map(|(_, table)| table.len()).collect();
+        assert_eq!(sizes[1..], [54, 36, 4 * 4, 4 * 5, 32]);
+        let (glyphs, places) = (tables[0].1, tables[4].1);
+        let places: Vec<usize> = places
+            .chunks(4)
+            .map(|place| u32::from_be_bytes(place.try_into().unwrap()) as usize)
+            .collect();
+        assert_eq!((places[0], places[4]), (0, glyphs.len()));
+        assert_eq!(places[1], places[2], "a blank has no outline");
+        // The letter with two dots has an outline of its own for each of them.
+        let contours = |glyph: usize| glyphs[places[glyph] + 1];
+        assert_eq!([0, 2, 3].map(contours), [2, 2, 4]);
+    }
+
+    #[test]
+    fn an_outline_is_that_of_the_table() {
+        let drawn = REGULAR.letter('g').unwrap();
+        let glyph = Glyph::of(&drawn);
+        let [left, low, right, high] = glyph.bounds;
+        let points = || drawn.outline.points();
+        let (x, y) = (
+            extent(points().map(|p| p.x)),
+            extent(points().map(|p| -p.y)),
+        );
+        assert_eq!(x, Some((left.into(), right.into())));
+        assert_eq!(y, Some((low.into(), high.into())));
+        assert_eq!(f64::from(glyph.advance), drawn.advance);
+        assert!(glyph.contours.iter().all(|contour| contour[0].2));
+    }
+}

@@ -1,0 +1,201 @@
+//! Letters set one behind another: kerning, scripts, and what a slanted letter needs to its right.
+
+use super::SetLabel;
+use super::table::{self, ITALIC, REGULAR, UNITS_PER_EM};
+use crate::plot::scene::PlacedLetter;
+use crate::plot::scene::at;
+use crate::plot::scene::{Point, VectorPath};
+
+/// Size of a sub- or superscript, as a share of its text's size.
+const SCRIPT: f64 = 0.7;
+/// How far a subscript's baseline lies below its text's baseline, as a share of the text's size.
+const SUBSCRIPT_DROP: f64 = 0.18;
+/// How far a superscript's baseline lies above its text's baseline, as a share of the text's size.
+const SUPERSCRIPT_RISE: f64 = 0.36;
+/// Advance of the box that stands for a letter which the table does not have, thousandths of the size.
+pub const BOX: f64 = 600.0;
+
+/// A sub- or superscript that has been begun and not ended.
+struct RaisedText {
+    is_above: bool,
+    /// Where it began, and where the text before it ended, pt.
+    began_pt: f64,
+    behind_pt: f64,
+    /// How much of `words` came before it.
+    words_before: usize,
+    /// The size and the baseline of the text around it, pt.
+    outer_size_pt: f64,
+    outer_baseline_pt: f64,
+}
+
+/// The letter before the next one, if they stand in one line.
+struct PrecedingLetter {
+    letter: char,
+    is_italic: bool,
+    /// How far its ink reaches beyond its advance, pt.
+    overhang_pt: f64,
+}
+
+#[derive(Default)]
+pub struct Setter {
+    label: SetLabel,
+    /// Where the next letter begins, pt.
+    x_pt: f64,
+    size_pt: f64,
+    /// Below the baseline of the whole label, pt.
+    baseline_pt: f64,
+    pub is_italic: bool,
+    scripts: Vec<RaisedText>,
+    before: Option<PrecedingLetter>,
+    /// The script that has just ended: another one, above or below it, begins where it began.
+    ended: Option<RaisedText>,
+}
+
+impl Setter {
+    pub fn new(size_pt: f64) -> Self {
+        Self {
+            size_pt,
+            ..Self::default()
+        }
+    }
+
+    /// What comes between the letter before and the next one, pt.
+    fn gap(&mut self, style: &table::FontStyle, letter: char) -> f64 {
+        match self.before.take() {
+            Some(before) if before.is_italic == self.is_italic => {
+                self.size_pt / UNITS_PER_EM * style.kerning(before.letter, letter)
+            }
+            Some(before) if !letter.is_whitespace() => before.overhang_pt,
+            _ => 0.0,
+        }
+    }
+
+    /// Sets a letter, or a box where the table has none.
+    pub fn letter(&mut self, letter: char) {
+        let style = if self.is_italic { &*ITALIC } else { &*REGULAR };
+        let slanted = ITALIC.letter(letter).filter(|_| self.is_italic);
+        let is_italic = slanted.is_some();
+        let drawn = slanted.or_else(|| REGULAR.letter(letter));
+        let drawn = drawn.unwrap_or_else(missing);
+        let scale = self.size_pt / UNITS_PER_EM;
+        self.x_pt += self.gap(style, letter);
+        let origin = at(self.x_pt, self.baseline_pt);
+        let placed = |p: Point| at(origin.x + p.x * scale, origin.y + p.y * scale);
+        let outline = drawn.outline.mapped(placed);
+        self.x_pt += drawn.advance * scale;
+        let mut right_pt = self.x_pt;
+        for point in outline.points() {
+            self.label.ascent_pt = self.label.ascent_pt.max(-point.y);
+            self.label.descent_pt = self.label.descent_pt.max(point.y);
+            right_pt = right_pt.max(point.x);
+        }
+        let is_slanted = f64::from(u8::from(self.is_italic));
+        self.before = Some(PrecedingLetter {
+            letter,
+            is_italic: self.is_italic,
+            overhang_pt: is_slanted * (right_pt - self.x_pt),
+        });
+        self.ended = None;
+        self.label.path.0.extend(outline.0);
+        self.label.words.push(letter);
+        self.label.letters.push(PlacedLetter {
+            letter,
+            is_italic,
+            origin,
+            size_pt: self.size_pt,
+        });
+    }
+
+    pub fn is_in_script(&self) -> bool {
+        !self.scripts.is_empty()
+    }
+
+    /// Goes on smaller, above or below the line.
+    pub fn begin_script(&mut self, is_above: bool) {
+        let overhang_pt = self.before.take().map_or(0.0, |before| before.overhang_pt);
+        let (began_pt, behind_pt) = match self.ended.take() {
+            Some(other) if other.is_above != is_above => (other.began_pt, self.x_pt),
+            _ if is_above => (self.x_pt + overhang_pt, self.x_pt),
+            _ => (self.x_pt, self.x_pt),
+        };
+        self.x_pt = began_pt;
+        self.scripts.push(RaisedText {
+            is_above,
+            began_pt,
+            behind_pt,
+            words_before: self.label.words.len(),
+            outer_size_pt: self.size_pt,
+            outer_baseline_pt: self.baseline_pt,
+        });
+        self.baseline_pt += self.size_pt
+            * if is_above {
+                -SUPERSCRIPT_RISE
+            } else {
+                SUBSCRIPT_DROP
+            };
+        self.size_pt *= SCRIPT;
+    }
+
+    /// Goes back to the line around the script.
+    pub fn end_script(&mut self) {
+        let Some(script) = self.scripts.pop() else {
+            return;
+        };
+        self.x_pt = self.x_pt.max(script.behind_pt);
+        (self.size_pt, self.baseline_pt) = (script.outer_size_pt, script.outer_baseline_pt);
+        let words = self.label.words.split_off(script.words_before);
+        self.label.words += &script_words(&words, script.is_above);
+        self.before = None;
+        self.ended = Some(script);
+    }
+
+    /// The label, with what was not ended.
+    pub fn finish(mut self) -> SetLabel {
+        while !self.scripts.is_empty() {
+            self.end_script();
+        }
+        let overhang_pt = self.before.map_or(0.0, |before| before.overhang_pt);
+        SetLabel {
+            width_pt: self.x_pt + overhang_pt,
+            ..self.label
+        }
+    }
+}
+
+/// An upright box, drawn as a line around nothing: the inner contour runs against the outer one.
+pub fn missing() -> table::Letter {
+    let contour = |corners: [[f64; 2]; 4]| VectorPath::polygon(corners.map(|[x, y]| at(x, y)));
+    let mut outline = contour([[70.0, 0.0], [530.0, 0.0], [530.0, -656.0], [70.0, -656.0]]);
+    let inner = [
+        [110.0, -40.0],
+        [110.0, -616.0],
+        [490.0, -616.0],
+        [490.0, -40.0],
+    ];
+    outline.0.extend(contour(inner).0);
+    table::Letter {
+        advance: BOX,
+        outline,
+    }
+}
+
+/// A script in a line of plain text: `⁻³`, `₂`, `_p`, `^(a+b)`.
+fn script_words(words: &str, is_above: bool) -> String {
+    let characters = words.chars().map(|c| script_character(c, is_above));
+    let characters: Option<String> = characters.collect();
+    let sign = if is_above { '^' } else { '_' };
+    characters.unwrap_or_else(|| match words.chars().nth(1) {
+        None => format!("{sign}{words}"),
+        Some(_) => format!("{sign}({words})"),
+    })
+}
+
+/// The character for a digit or a sign as a superscript or a subscript.
+fn script_character(c: char, is_above: bool) -> Option<char> {
+    let above = "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻⁻";
+    let below = "₀₁₂₃₄₅₆₇₈₉₊₋₋";
+    let place = "0123456789+-\u{2212}"
+        .chars()
+        .position(|known| known == c)?;
+    (if is_above { above } else { below }).chars().nth(place)
+}

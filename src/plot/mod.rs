@@ -1,0 +1,37 @@
+//! Charts and pages: what stands on a page, and the page as the bytes of a file. Nothing here knows a run or a body.
+//!
+//! - [`chart`]: the axes, curves, marks and legends of a chart, and its place on a page.
+//! - [`camera`]: positions in space in a plane picture.
+//! - [`scene`]: filled and stroked paths; no form of file is named there.
+//! - [`ink`]: the pens, marks and lines of text of which figures are made.
+//! - [`letters`]: text as outlines, and as a font of them.
+//! - [`line`](mod@line): lines that end at a frame, and lines through fewer points; [`cover`]: the outline of what a line covers.
+//! - [`format`](mod@format): the forms of file, by [`svg`], [`pdf`] and [`png`].
+
+pub mod camera;
+pub mod chart;
+pub mod cover;
+pub mod format;
+pub mod ink;
+pub mod letters;
+pub mod line;
+pub mod pdf;
+pub mod png;
+pub mod scene;
+pub mod svg;
+
+pub use format::{PageFormat, write};
+pub use scene::{
+    Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, Unwritable, VectorPath,
+};
+
+/// Points (1/72 inch) of a millimetre.
+pub const PT_PER_MM: f64 = 72.0 / 25.4;
+/// Width of a column of a journal's page, 86 mm, pt.
+pub const COLUMN_PT: f64 = 86.0 * PT_PER_MM;
+
+/// Returns the least and the greatest of `values`; `None` where there is none.
+pub fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let ends = values.map(|value| (value, value));
+    ends.reduce(|(low, high), (value, _)| (low.min(value), high.max(value)))
+}

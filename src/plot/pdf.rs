@@ -1,0 +1,160 @@
+//! Pages as PDF 1.4: paths and words, without a font from elsewhere, a date or an identifier.
+
+mod words;
+
+use pdf_writer::types::{LineCapStyle, LineJoinStyle};
+use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
+
+use super::scene::{at, hundredths};
+use super::svg::MITER_LIMIT;
+use super::{Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath};
+use crate::engine::text::printable::printable;
+use words::{FIRST_FREE_OBJECT, Fonts};
+
+const CATALOG: Ref = Ref::new(1);
+const PAGES: Ref = Ref::new(2);
+const INFORMATION: Ref = Ref::new(5);
+const PDF_COMPRESSION: u8 = 9;
+
+/// A page and its content: the first stand before the fonts, the others behind them.
+fn refs(page: i32) -> (Ref, Ref) {
+    let first = if page == 0 {
+        3
+    } else {
+        FIRST_FREE_OBJECT + 2 * page
+    };
+    (Ref::new(first), Ref::new(first + 1))
+}
+
+/// Pages whose places are whole hundredths of a point, written by this `version` of the program; the first one's title is
+/// the file's.
+pub fn written(scenes: &[PageScene], version: &str) -> Vec<u8> {
+    let fonts = Fonts::of(scenes);
+    let packed = |bytes: &[u8]| miniz_oxide::deflate::compress_to_vec_zlib(bytes, PDF_COMPRESSION);
+    let mut pdf = Pdf::new();
+    // The version which every pdflatex includes without a warning.
+    pdf.set_version(1, 4);
+    pdf.catalog(CATALOG).pages(PAGES);
+    let count = scenes.len() as i32;
+    let kids = (0..count).map(|page| refs(page).0);
+    pdf.pages(PAGES).kids(kids).count(count);
+    for (scene, (id, drawn)) in scenes.iter().zip((0..).map(refs)) {
+        let mut page = pdf.page(id);
+        let sheet = Rect::new(0.0, 0.0, scene.width_pt as f32, scene.height_pt as f32);
+        page.media_box(sheet).parent(PAGES).contents(drawn);
+        fonts.name_in(&mut page.resources());
+        page.finish();
+        let content = packed(&content(scene, &fonts));
+        pdf.stream(drawn, &content).filter(Filter::FlateDecode);
+    }
+    fonts.write(&mut pdf, packed);
+    let title = scenes.first().map_or("", |scene| &scene.title);
+    let mut information = pdf.document_info(INFORMATION);
+    information.title(TextStr(&printable(title)));
+    information.producer(TextStr(&format!("gyrolab {}", printable(version))));
+    information.finish();
+    pdf.finish()
+}
+
+fn content(scene: &PageScene, fonts: &Fonts) -> Vec<u8> {
+    let mut content = Content::new();
+    // The origin goes to the upper left corner, y down.
+    content.transform([1.0, 0.0, 0.0, -1.0, 0.0, scene.height_pt as f32]);
+    content.set_miter_limit(MITER_LIMIT as f32);
+    for group in scene.groups() {
+        put_group(&mut content, group, fonts);
+    }
+    content.finish().into_vec()
+}
+
+/// Items that are drawn and cut off alike.
+fn put_group(content: &mut Content, items: &[SceneItem], fonts: &Fonts) {
+    let Some(first) = items.first() else {
+        return;
+    };
+    content.save_state();
+    if let Some([from, to]) = first.clip {
+        let (width, height) = (to.x - from.x, to.y - from.y);
+        content.rect(from.x as f32, from.y as f32, width as f32, height as f32);
+        content.clip_nonzero().end_path();
+    }
+    put_color(content, &first.paint);
+    if let Paint::Stroke(pen) = &first.paint {
+        put_pen(content, pen);
+    }
+    for item in items {
+        if let Some(words) = &item.words {
+            // A line of plain text for what is read aloud or copied: the letters alone do not say what is a power.
+            let mut span = content.begin_marked_content_with_properties(Name(b"Span"));
+            let text = printable(&words.text);
+            span.properties().actual_text(TextStr(&text));
+            drop(span);
+            fonts.put(words, content);
+            content.end_marked_content();
+            continue;
+        }
+        put_path(content, &item.path);
+        match item.paint {
+            Paint::Fill(_) => content.fill_nonzero(),
+            Paint::Stroke(_) => content.stroke(),
+        };
+    }
+    content.restore_state();
+}
+
+fn put_color(content: &mut Content, paint: &Paint) {
+    let color = paint.color();
+    let [red, green, blue] = shares(color);
+    match (paint, color.is_grey()) {
+        (Paint::Fill(_), true) => content.set_fill_gray(red),
+        (Paint::Fill(_), false) => content.set_fill_rgb(red, green, blue),
+        (Paint::Stroke(_), true) => content.set_stroke_gray(red),
+        (Paint::Stroke(_), false) => content.set_stroke_rgb(red, green, blue),
+    };
+}
+
+fn put_pen(content: &mut Content, pen: &StrokeStyle) {
+    content.set_line_width(pen.width_pt as f32);
+    if !pen.dash_pt.is_empty() {
+        content.set_dash_pattern(pen.dash_pt.iter().map(|length| *length as f32), 0.0);
+    }
+    if pen.is_round {
+        content.set_line_join(LineJoinStyle::RoundJoin);
+    }
+    if pen.has_round_ends() {
+        content.set_line_cap(LineCapStyle::RoundCap);
+    }
+}
+
+/// Red, green and blue as shares of white, in thousandths: as exact as 256 steps need.
+fn shares(Color(parts): Color) -> [f32; 3] {
+    parts.map(|part| (libm::round(f64::from(part) / 0.255) / 1000.0) as f32)
+}
+
+fn put_path(content: &mut Content, path: &VectorPath) {
+    let mut at = at(0.0, 0.0);
+    for segment in &path.0 {
+        match *segment {
+            Segment::Move(to) => content.move_to(to.x as f32, to.y as f32),
+            Segment::Line(to) => content.line_to(to.x as f32, to.y as f32),
+            Segment::Quadratic(control, to) => put_cubic(
+                content,
+                [two_thirds(at, control), two_thirds(to, control), to],
+            ),
+            Segment::Cubic(first, second, to) => put_cubic(content, [first, second, to]),
+            Segment::Close => content.close_path(),
+        };
+        at = segment.end().unwrap_or(at);
+    }
+}
+
+fn put_cubic(content: &mut Content, points: [Point; 3]) -> &mut Content {
+    let [a, b, to] = points.map(|p| (p.x as f32, p.y as f32));
+    content.cubic_to(a.0, a.1, b.0, b.1, to.0, to.1)
+}
+
+/// The control point of a cubic curve that is the parabola with this one, in hundredths.
+fn two_thirds(end: Point, control: Point) -> Point {
+    let between = |from: f64, to: f64| hundredths(from + (to - from) * 2.0 / 3.0);
+    at(between(end.x, control.x), between(end.y, control.y))
+}

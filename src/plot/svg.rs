@@ -1,0 +1,227 @@
+//! A page as SVG 1.1: paths alone, no font, no script, no style sheet; where it is asked for, text as text.
+
+use std::fmt::Write; // which cannot fail on a `String`
+
+use super::scene::{PlacedLetter, TextItem};
+use super::{Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath};
+use crate::engine::text::printable::xml;
+use crate::plot::PT_PER_MM;
+
+/// How much farther a sharp corner may reach than half the line's width: what SVG takes if nothing is said.
+pub const MITER_LIMIT: f64 = 4.0;
+
+/// A page whose places are whole hundredths of a point. The words of a text are its label for readers of the screen; with
+/// `has_text` they are text.
+pub fn written(scene: &PageScene, has_text: bool) -> String {
+    let mut out = String::new();
+    let (width, height) = (number(scene.width_pt), number(scene.height_pt));
+    let sides_mm = [scene.width_pt, scene.height_pt].map(|pt| number(pt / PT_PER_MM));
+    let _ = writeln!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {width} {height}\" role=\"img\">",
+        sides_mm[0], sides_mm[1]
+    );
+    let _ = writeln!(out, "<title>{}</title>", xml(&scene.title));
+    let _ = writeln!(out, "<path fill=\"#fff\" d=\"M0 0h{width}v{height}H0z\"/>");
+    for clip in clips(scene) {
+        let name = name(&clip);
+        let [left, top, right, bottom] = [clip[0].x, clip[0].y, clip[1].x, clip[1].y].map(number);
+        let _ = writeln!(
+            out,
+            "<clipPath id=\"{name}\"><path d=\"M{left} {top}H{right}V{bottom}H{left}z\"/></clipPath>"
+        );
+    }
+    for group in scene.groups() {
+        put_group(&mut out, group, has_text);
+    }
+    out += "</svg>\n";
+    out
+}
+
+/// The rectangles that something is cut off at, each once.
+fn clips(scene: &PageScene) -> Vec<[Point; 2]> {
+    let mut clips: Vec<[Point; 2]> = Vec::new();
+    for clip in scene.items.iter().filter_map(|item| item.clip) {
+        if !clips.contains(&clip) {
+            clips.push(clip);
+        }
+    }
+    clips
+}
+
+/// The name of a rectangle says where it is: where two figures are put into one document, equal names mean the same.
+fn name(clip: &[Point; 2]) -> String {
+    let parts = clip.iter().flat_map(|p| [p.x, p.y]).map(number);
+    format!("clip_{}", parts.collect::<Vec<_>>().join("_"))
+}
+
+/// Items that are drawn and cut off alike.
+fn put_group(out: &mut String, items: &[SceneItem], has_text: bool) {
+    let Some(first) = items.first() else {
+        return;
+    };
+    *out += "<g";
+    if let Some(clip) = &first.clip {
+        let _ = write!(out, " clip-path=\"url(#{})\"", name(clip));
+    }
+    match &first.paint {
+        Paint::Fill(color) => *out += &format!(" fill=\"{}\"", hex(*color)),
+        Paint::Stroke(pen) => put_pen(out, pen),
+    }
+    *out += ">\n";
+    for item in items {
+        if let Some(words) = item.words.as_ref().filter(|_| has_text) {
+            put_text(out, words);
+            continue;
+        }
+        *out += "<path";
+        if let Some(words) = &item.words {
+            let words = xml(&words.text);
+            let _ = write!(out, " role=\"img\" aria-label=\"{words}\"");
+        }
+        let _ = writeln!(out, " d=\"{}\"/>", data(&item.path));
+    }
+    *out += "</g>\n";
+}
+
+/// The fonts of text, the one of the outlines first.
+const SVG_TEXT_FONTS: &str =
+    "STIX Two Text,STIXTwoText,Times New Roman,Times,Liberation Serif,serif";
+
+/// Words as text: a part of one style and height begins where its outlines do.
+fn put_text(out: &mut String, words: &TextItem) {
+    let turned = if words.is_upward {
+        " transform=\"rotate(-90)\""
+    } else {
+        ""
+    };
+    let _ = write!(
+        out,
+        "<text xml:space=\"preserve\" font-family=\"{SVG_TEXT_FONTS}\"{turned}>"
+    );
+    let place = |letter: &PlacedLetter| {
+        let Point { x, y } = letter.origin;
+        if words.is_upward { (-y, x) } else { (x, y) }
+    };
+    let look = |letter: &PlacedLetter| {
+        (
+            letter.is_italic,
+            letter.size_pt,
+            hundredths(place(letter).1),
+        )
+    };
+    for part in words.letters.chunk_by(|a, b| look(a) == look(b)) {
+        let ((x, y), size) = (place(&part[0]), number(part[0].size_pt));
+        let style = if part[0].is_italic {
+            " font-style=\"italic\""
+        } else {
+            ""
+        };
+        let text: String = part.iter().map(|placed| placed.letter).collect();
+        let (x, y, text) = (number(x), number(y), xml(&text));
+        let _ = write!(
+            out,
+            "<tspan x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{style}>{text}</tspan>"
+        );
+    }
+    *out += "</text>\n";
+}
+
+fn put_pen(out: &mut String, pen: &StrokeStyle) {
+    let (color, width) = (hex(pen.color), number(pen.width_pt));
+    let _ = write!(
+        out,
+        " fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\""
+    );
+    if !pen.dash_pt.is_empty() {
+        let lengths: Vec<String> = pen.dash_pt.iter().copied().map(number).collect();
+        let _ = write!(out, " stroke-dasharray=\"{}\"", lengths.join(" "));
+    }
+    if pen.is_round {
+        *out += " stroke-linejoin=\"round\"";
+    }
+    if pen.has_round_ends() {
+        *out += " stroke-linecap=\"round\"";
+    }
+}
+
+/// The data of a path. Each line begins at its place on the page and goes on by steps, which are short numbers.
+fn data(path: &VectorPath) -> String {
+    let mut data = PathData::default();
+    for segment in &path.0 {
+        match *segment {
+            Segment::Move(to) => {
+                data.at = [0, 0];
+                data.step('M', &[to], &[0, 1]);
+                data.start = data.at;
+            }
+            Segment::Line(to) if hundredths(to.y) == data.at[1] => data.step('h', &[to], &[0]),
+            Segment::Line(to) if hundredths(to.x) == data.at[0] => data.step('v', &[to], &[1]),
+            Segment::Line(to) => data.step('l', &[to], &[0, 1]),
+            Segment::Quadratic(control, to) => data.step('q', &[control, to], &[0, 1]),
+            Segment::Cubic(first, second, to) => data.step('c', &[first, second, to], &[0, 1]),
+            Segment::Close => {
+                data.step('z', &[], &[]);
+                data.at = data.start;
+            }
+        }
+    }
+    data.text
+}
+
+#[derive(Default)]
+struct PathData {
+    text: String,
+    /// The command that is repeated where only numbers follow.
+    command: char,
+    /// Where the line is and where it began, in hundredths.
+    at: [i64; 2],
+    start: [i64; 2],
+}
+
+impl PathData {
+    /// A command with the steps from where the line is to `points`, of which the last is where it goes; `axes` are those
+    /// of x (0) and y (1) that the command takes.
+    fn step(&mut self, command: char, points: &[Point], axes: &[usize]) {
+        if command != self.command || axes.is_empty() || command == 'M' {
+            self.text.push(command);
+            self.command = command;
+        }
+        let from = self.at;
+        for point in points {
+            self.at = [hundredths(point.x), hundredths(point.y)];
+            for &axis in axes {
+                let number = number((self.at[axis] - from[axis]) as f64 / 100.0);
+                // A blank where one number would run into the next.
+                if self.text.ends_with(|c: char| c.is_ascii_digit()) && !number.starts_with('-') {
+                    self.text.push(' ');
+                }
+                self.text += &number;
+            }
+        }
+    }
+}
+
+fn hundredths(pt: f64) -> i64 {
+    libm::round(pt * 100.0) as i64
+}
+
+/// A number with two decimals at most, in as few characters as possible: `12.5`, `-.25`, `0`.
+fn number(value: f64) -> String {
+    let cents = hundredths(value);
+    let (whole, rest) = (cents.abs() / 100, cents.abs() % 100);
+    let sign = if cents < 0 { "-" } else { "" };
+    match rest {
+        0 => format!("{sign}{whole}"),
+        _ => sign.to_owned() + format!("{whole}.{rest:02}").trim_matches('0'),
+    }
+}
+
+/// `#rgb` where that says it all, else `#rrggbb`.
+fn hex(Color([red, green, blue]): Color) -> String {
+    if [red, green, blue].iter().all(|part| part % 17 == 0) {
+        format!("#{:x}{:x}{:x}", red / 17, green / 17, blue / 17)
+    } else {
+        format!("#{red:02x}{green:02x}{blue:02x}")
+    }
+}

@@ -1,0 +1,425 @@
+//! The numbers of a figure, from a run that is stepped through: once more, or while something else is read off it.
+
+use super::path::{self, TracedPath};
+use crate::engine::analysis::{ExactReference, Health};
+use crate::engine::export::CsvColumn;
+use crate::engine::export::stream::{self, Ended};
+use crate::engine::recording::{Extent, Recording, RecordingBin};
+use crate::engine::run::{Clock, NotFinite, Sample, Simulation, Step, Truth};
+use crate::engine::scenario::Scenario;
+use crate::physics::State;
+use crate::physics::exact::LagrangeTop;
+use crate::physics::observables::{self, Azimuth};
+use nalgebra::Vector3;
+use std::io;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+const EXACT_TOGETHER: usize = 4;
+/// A curve over time is drawn by the extremes of this many parts of its time: more than the widest page has dots across.
+const CURVE_BINS: f64 = 8192.0;
+
+#[derive(Clone, Debug)]
+pub struct SampleRequest {
+    pub columns: Vec<&'static CsvColumn>,
+    pub path: bool,
+    pub from_s: f64,
+    pub to_s: Option<f64>,
+}
+
+#[derive(Clone, Debug)]
+pub struct SampledRun {
+    wanted: SampleRequest,
+    curves: Arc<Vec<Recording>>,
+    pub path: Arc<TracedPath>,
+    /// The same from above, with z = 0: a path that goes up and down in one place is not interrupted there.
+    pub above: Arc<TracedPath>,
+    pub end_s: f64,
+    /// Whether no moment lay in the stretch.
+    pub is_empty: bool,
+    /// Where its numbers stopped being finite, if they did.
+    pub broke: Option<NotFinite>,
+    /// Its health at its last step; `None` where it was not compared with the exact motion.
+    pub health: Option<Health>,
+    /// The period of its nutation, s, of the exact motion where it is known: its moments may be too few to count them.
+    pub swing_s: Option<f64>,
+}
+
+/// A column in a part of the time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bin {
+    /// Its first and last time, s.
+    pub times_s: [f64; 2],
+    pub extent: Extent,
+    last: f64,
+    /// How often the curve turned up or down.
+    pub turns: u32,
+}
+
+impl SampleRequest {
+    /// Whether something is wanted that the exact motion has not: the number of the step, or of the stretch between edits.
+    pub fn counts_steps(&self) -> bool {
+        let mut columns = self.columns.iter();
+        columns.any(|column| ["step", "segment"].contains(&column.name))
+    }
+
+    pub fn end_s(&self, scenario: &Scenario) -> f64 {
+        let end_s = Clock::end_s(scenario);
+        self.to_s.map_or(end_s, |to_s| to_s.min(end_s))
+    }
+}
+
+impl SampledRun {
+    /// The part of the run of `scenario` that is `wanted`, where it has all of that.
+    pub(super) fn part(&self, scenario: &Scenario, wanted: &SampleRequest) -> Option<Self> {
+        let end_s = wanted.end_s(scenario);
+        let mut columns = wanted.columns.iter();
+        let is_all = self.wanted.from_s == wanted.from_s
+            && self.end_s <= end_s + rounding_s(end_s)
+            && end_s <= self.wanted.end_s(scenario)
+            && (self.wanted.path || !wanted.path)
+            && columns.all(|column| self.place(column).is_some());
+        is_all.then(|| Self {
+            end_s: self.end_s.min(end_s),
+            ..self.clone()
+        })
+    }
+
+    fn place(&self, column: &CsvColumn) -> Option<usize> {
+        let mut columns = self.wanted.columns.iter();
+        columns.position(|it| it.name == column.name)
+    }
+
+    /// `column` part by part, in the order of time.
+    pub(super) fn parts(&self, column: &CsvColumn) -> Vec<Bin> {
+        let Some(place) = self.place(column) else {
+            return Vec::new();
+        };
+        let blocks = in_parts(&self.curves[place / EXACT_TOGETHER]);
+        let curve = place % EXACT_TOGETHER;
+        let parts = blocks.iter().map(|block| Bin {
+            times_s: [block.begin_s, block.end_s],
+            extent: block.extents[curve],
+            last: block.last[curve],
+            turns: block.turned[curve],
+        });
+        let are_finite = |part: &Bin| (part.extent.min + part.extent.max + part.last).is_finite();
+        parts.filter(are_finite).collect()
+    }
+
+    /// The points of `column`, every extreme among them.
+    pub fn points(&self, column: &CsvColumn) -> Vec<[f64; 2]> {
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        for part in self.parts(column) {
+            let ([begin_s, end_s], Extent { min, max }) = (part.times_s, part.extent);
+            let before = points.last().map_or(min, |point| point[1]);
+            let (early, late) = if max - before < before - min {
+                (max, min)
+            } else {
+                (min, max)
+            };
+            let middle = (late != part.last).then_some([0.5 * (begin_s + end_s), late]);
+            let part = [Some([begin_s, early]), middle, Some([end_s, part.last])];
+            for point in part.into_iter().flatten() {
+                if points.last() != Some(&point) {
+                    points.push(point);
+                }
+            }
+        }
+        points
+    }
+}
+
+/// The blocks of `curves`, those of one part of the time together.
+fn in_parts(curves: &Recording) -> Vec<RecordingBin> {
+    let mut blocks: Vec<RecordingBin> = Vec::new();
+    let Some(whole) = curves.whole() else {
+        return blocks;
+    };
+    let length_s = (whole.end_s - whole.begin_s).max(f64::MIN_POSITIVE);
+    let part = |time_s: f64| (CURVE_BINS * ((time_s - whole.begin_s) / length_s)) as u64;
+    for block in curves.finest() {
+        match blocks.last_mut() {
+            Some(last) if part(last.begin_s) == part(block.end_s) => *last = last.and(block),
+            _ => blocks.push(block),
+        }
+    }
+    blocks
+}
+
+#[derive(Clone, Debug)]
+pub struct RunSampler {
+    wanted: SampleRequest,
+    scenario: Arc<Scenario>,
+    stretch_end_s: f64,
+    curves: Vec<Recording>,
+    path: path::PathRecorder,
+    above: path::PathRecorder,
+    end_s: f64,
+    is_empty: bool,
+}
+
+impl RunSampler {
+    /// A recorder of what is `wanted` of the run of `scenario`, before its start.
+    pub fn new(scenario: &Arc<Scenario>, wanted: SampleRequest) -> Self {
+        Self::of(scenario, wanted, false)
+    }
+
+    /// The same; `is_exact` says whether it is of the exact motion, whose path is a line.
+    fn of(scenario: &Arc<Scenario>, wanted: SampleRequest, is_exact: bool) -> Self {
+        Self {
+            stretch_end_s: wanted.end_s(scenario),
+            curves: vec![Recording::default(); wanted.columns.len().div_ceil(EXACT_TOGETHER)],
+            path: path::PathRecorder::new(is_exact),
+            above: path::PathRecorder::new(is_exact),
+            end_s: 0.0,
+            is_empty: true,
+            scenario: Arc::clone(scenario),
+            wanted,
+        }
+    }
+
+    /// Takes in `step`; to be shown the start and every step up to the first one at the end of the stretch or behind it. The
+    /// curves have that one too, and the last one before the stretch, so that they come from one edge and go on to the other.
+    pub fn follow(&mut self, step: &Step) {
+        let beyond_s = step.motion().time_step_s;
+        self.take(step.time_s(), beyond_s, step.position(), || step.sample());
+    }
+
+    /// Takes the numbers of one moment, those of the curves if it is less than `beyond_s` (s) outside of the stretch; `sample`
+    /// is asked for them where they are needed.
+    fn take(
+        &mut self,
+        time_s: f64,
+        beyond_s: f64,
+        position: &Vector3<f64>,
+        sample: impl FnOnce() -> Sample,
+    ) {
+        let rounding = rounding_s(self.stretch_end_s);
+        let outside_s = (self.wanted.from_s - time_s).max(time_s - self.stretch_end_s);
+        if outside_s > rounding && outside_s >= beyond_s - rounding {
+            return;
+        }
+        self.end_s = time_s.min(self.stretch_end_s);
+        let is_inside = outside_s <= rounding;
+        self.is_empty &= !is_inside;
+        if self.wanted.path && is_inside {
+            self.path.push([position.x, position.y, position.z]);
+            self.above.push([position.x, position.y, 0.0]);
+        }
+        if self.curves.is_empty() {
+            return;
+        }
+        let sample = sample();
+        let columns = self.wanted.columns.chunks(EXACT_TOGETHER);
+        for (columns, curves) in columns.zip(&mut self.curves) {
+            let mut values = [0.0; EXACT_TOGETHER];
+            for (value, column) in values.iter_mut().zip(columns) {
+                *value = column.value(&self.scenario, &sample);
+            }
+            curves.push_values(time_s, values);
+        }
+    }
+
+    /// What was written down; `broke` says why the run ended before the stretch, where it did.
+    pub fn end(self, broke: Option<NotFinite>) -> SampledRun {
+        SampledRun {
+            wanted: self.wanted,
+            curves: Arc::new(self.curves),
+            path: Arc::new(self.path.end()),
+            above: Arc::new(self.above.end()),
+            end_s: self.end_s,
+            is_empty: self.is_empty,
+            broke,
+            health: None,
+            swing_s: None,
+        }
+    }
+}
+
+/// Times that are so near to the ends of a stretch up to `end_s` belong to it, s.
+fn rounding_s(end_s: f64) -> f64 {
+    1e-9 * end_s.abs()
+}
+
+/// Steps through the run of `scenario` and gives what is `wanted` of it. `watch` is told the step reached and the last one, and
+/// says whether to go on; `None` where it said no.
+pub fn play(
+    scenario: &Arc<Scenario>,
+    wanted: &SampleRequest,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Option<SampledRun> {
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    let mut recorder = RunSampler::new(scenario, wanted.clone());
+    let last = Simulation::step_at(scenario, wanted.end_s(scenario)).min(scenario.steps);
+    let mut beside = ExactReference::new(scenario);
+    recorder.follow(simulation.now());
+    let each = |step: &Step| {
+        recorder.follow(step);
+        beside.hold(step.after());
+    };
+    let ended = stream::play::<io::Sink>(&mut simulation, last, None, each, &mut watch);
+    let broke = match ended {
+        Ok((Ended::Stopped, _)) => return None,
+        Ok((Ended::NotFinite(error), _)) => Some(error),
+        Ok((Ended::Done, _)) | Err(_) => None, // nothing is written that could fail
+    };
+    Some(SampledRun {
+        health: Some(Health::new(simulation.now(), &mut beside)),
+        ..recorder.end(broke)
+    })
+}
+
+/// Moments of the exact motion within the shortest of its periods that is known, and at least over the whole stretch; and at
+/// most, whatever the periods are.
+const A_PERIOD: f64 = 32.0;
+const LEAST_EXACT_SAMPLES: f64 = 3000.0;
+const MOST_EXACT_SAMPLES: f64 = 400_000.0;
+/// The part of a period, beside whole ones, between moments that are farther apart than it: the golden section, which meets
+/// ever other phases. Another part could meet the same ones again, and show a slow swing that the motion does not have.
+const OTHER_PHASE: f64 = 0.381_966;
+
+/// As [`play`], of the exact motion beside the run: between the time steps too, where these are too long to show it.
+pub fn exact(
+    scenario: &Arc<Scenario>,
+    wanted: &SampleRequest,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Option<SampledRun> {
+    let mut truth = Truth::new(Arc::clone(scenario));
+    // The azimuth is counted on from the start, and nothing else needs what came before.
+    let mut columns = wanted.columns.iter();
+    let is_counted = columns.any(|column| column.name == "azimuth_deg");
+    let begin_s = if is_counted {
+        0.0
+    } else {
+        wanted.from_s.max(0.0)
+    };
+    let end_s = wanted.end_s(scenario);
+    truth.state_at(begin_s);
+    let closed = truth.motion().closed_form();
+    let period_s = closed.and_then(LagrangeTop::nutation_period);
+    let look_every = if closed.is_some() { 1024 } else { 1 };
+    let apart_s = apart_s(end_s - begin_s, scenario.motion.time_step_s, period_s);
+    let count = ((end_s - begin_s) / apart_s)
+        .ceil()
+        .max(LEAST_EXACT_SAMPLES) as u64;
+    let mut recorder = RunSampler::of(scenario, wanted.clone(), true);
+    let mut azimuth = Azimuth::start(&scenario.start.axle());
+    for number in 0..=count {
+        let time_s = begin_s + (end_s - begin_s) * (number as f64 / count as f64);
+        let state = truth.state_at(time_s);
+        if !state.is_finite() {
+            break; // what comes after it is no number either
+        }
+        azimuth.follow(&state.axle());
+        let sample = sample(scenario, &state, &azimuth, truth.loads().gravity);
+        recorder.take(time_s, 0.0, &sample.position, || sample);
+        if number.is_multiple_of(look_every) && watch(number, count).is_break() {
+            return None;
+        }
+    }
+    Some(SampledRun {
+        swing_s: period_s,
+        ..recorder.end(None)
+    })
+}
+
+/// How far the moments of a stretch of the exact motion are apart, s.
+fn apart_s(length_s: f64, time_step_s: f64, period_s: Option<f64>) -> f64 {
+    let period_s = period_s.unwrap_or(f64::INFINITY);
+    let apart_s = (period_s / A_PERIOD)
+        .min(time_step_s)
+        .max(length_s / MOST_EXACT_SAMPLES);
+    if apart_s <= OTHER_PHASE * period_s {
+        return apart_s;
+    }
+    ((apart_s / period_s - OTHER_PHASE).floor() + OTHER_PHASE) * period_s
+}
+
+fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, gravity: f64) -> Sample {
+    let body = &scenario.body.mechanics;
+    let weight = gravity * observables::weight_height(body, state);
+    Sample {
+        step: 0,
+        time_s: state.time_s,
+        orientation: state.orientation,
+        position: observables::position(body, state, scenario.trace),
+        momentum: state.momentum,
+        angular_velocity: observables::angular_velocity(body, state),
+        tilt_deg: observables::tilt_deg(state),
+        azimuth_deg: azimuth.degrees(),
+        energy: observables::kinetic_energy(body, state) + weight,
+        rotor_turn: 0.0, // no curve shows it
+        segment: 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::scenario::Document;
+
+    /// A stretch of `scenario`, and the points of its curve of z.
+    fn of_z(
+        scenario: &Arc<Scenario>,
+        from_s: f64,
+        to_s: Option<f64>,
+    ) -> (SampledRun, Vec<[f64; 2]>) {
+        let column = CsvColumn::find("z_m").unwrap();
+        let wanted = SampleRequest {
+            columns: vec![column],
+            path: to_s.is_some(),
+            from_s,
+            to_s,
+        };
+        let course = play(scenario, &wanted, |_, _| ControlFlow::Continue(())).unwrap();
+        let points = course.points(column);
+        (course, points)
+    }
+
+    #[test]
+    fn a_curve_reaches_both_ends_of_its_stretch() {
+        // Its steps are of 0.1 s.
+        let scenario = Document::open("wobble-push").unwrap().scenario().unwrap();
+        let scenario = Arc::new(scenario);
+        for (from_s, to_s, times, places) in [
+            (20.05, 20.25, vec![20.0, 20.1, 20.2, 20.3], 2),
+            // No step lies between them.
+            (20.02, 20.08, vec![20.0, 20.1], 0),
+            // They are at steps: nothing more is needed.
+            (20.0, 20.2, vec![20.0, 20.1, 20.2], 3),
+            (0.0, 0.15, vec![0.0, 0.1, 0.2], 2),
+        ] {
+            let (course, points) = of_z(&scenario, from_s, Some(to_s));
+            let rounded = points.iter().map(|at| (at[0] * 1e6).round() / 1e6);
+            assert_eq!(rounded.collect::<Vec<_>>(), times);
+            assert_eq!((course.path.points.len(), course.end_s), (places, to_s));
+            assert_eq!(course.is_empty, course.path.points.is_empty());
+        }
+    }
+
+    #[test]
+    fn no_extreme_of_a_long_run_is_lost() {
+        let mut document = Document::open("wobble-push").unwrap();
+        document.set("motion.steps=50000").unwrap();
+        let scenario = Arc::new(document.scenario().unwrap());
+        let (_, points) = of_z(&scenario, 0.0, None);
+        assert!(points.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
+        let mut run = Simulation::new(Arc::clone(&scenario));
+        // Each fiftieth of the run has its extremes near.
+        for fiftieth in 0..50 {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            let begin_s = run.now().time_s();
+            for _ in 0..1000 {
+                let z = run.step().unwrap().position().z;
+                (low, high) = (low.min(z), high.max(z));
+            }
+            let end_s = run.now().time_s();
+            let near = |point: &&[f64; 2]| (begin_s - 2.0..=end_s + 2.0).contains(&point[0]);
+            for extreme in [low, high] {
+                let mut near = points.iter().filter(near);
+                assert!(near.any(|point| point[1] == extreme), "{fiftieth}");
+            }
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Curves and paths whose turns are not told apart on paper: a band from the least to the greatest, and a stretch of time in
+//! which they are.
+
+use super::course::{Bin, SampledRun};
+use super::path::TracedPath;
+use super::request::{Dense, FigureRequest, SampledRunNumbers};
+use crate::engine::export::CsvColumn;
+use crate::engine::recording::Extent;
+use crate::engine::text::ladder;
+use crate::plot::chart::Chart;
+use crate::plot::chart::curve;
+use crate::plot::chart::layout::{ChartLayout, PlacedPanel};
+use crate::plot::cover::Grid;
+use crate::plot::scene::Point;
+
+/// Parts of a panel's width that are looked at, pt.
+const PART_PT: f64 = 1.0;
+/// The turns of a curve are not told apart where its lines take so much of such a part's width, and reach over so much of the
+/// panel's height.
+const FILLED: f64 = 0.75;
+const HIGH: f64 = 0.05;
+/// A curve is dense where more than this share of its parts is, a path where this share of its places is inside of the ink.
+const DENSE_SHARE: f64 = 0.5;
+const MAGNIFIED_SWINGS: f64 = 20.0;
+
+/// A curve over time in parts of a panel's width: how often it turns, and from where to where it goes.
+struct Columns(Vec<(u32, Option<Extent>)>);
+
+impl Columns {
+    fn new(parts: &[Bin], placed: &PlacedPanel) -> Self {
+        let count = (placed.frame.width() / PART_PT).ceil() as usize;
+        let mut columns: Vec<(u32, Option<Extent>)> = vec![(0, None); count.max(1)];
+        for part in parts {
+            let time_s = 0.5 * (part.times_s[0] + part.times_s[1]);
+            let column = (placed.x.place(time_s) - placed.frame.left) / PART_PT;
+            let column = (column.max(0.0) as usize).min(columns.len() - 1);
+            let (turns, extent) = &mut columns[column];
+            *turns += part.turns;
+            *extent = Some(extent.map_or(part.extent, |extent| extent.and(part.extent)));
+        }
+        Self(columns)
+    }
+
+    fn turns(&self) -> u64 {
+        self.0.iter().map(|(turns, _)| u64::from(*turns)).sum()
+    }
+
+    /// Whether a line `width_pt` wide is too dense in most of them.
+    fn are_dense(&self, width_pt: f64, placed: &PlacedPanel) -> bool {
+        let high = HIGH * (placed.y.range.1 - placed.y.range.0);
+        let dense = self.0.iter().filter(|(turns, extent)| {
+            let is_high = extent.is_some_and(|extent| extent.max - extent.min >= high);
+            f64::from(*turns) * width_pt >= FILLED * PART_PT && is_high
+        });
+        dense.count() as f64 > DENSE_SHARE * self.0.len() as f64
+    }
+
+    /// The band between the extremes of each part and its neighbours.
+    fn band(&self, placed: &PlacedPanel) -> Vec<[f64; 3]> {
+        let (low, high) = placed.x.range;
+        let apart = (high - low) / self.0.len() as f64;
+        let extent = |index: usize| {
+            let near = &self.0[index.saturating_sub(1)..(index + 2).min(self.0.len())];
+            near.iter()
+                .filter_map(|(_, extent)| *extent)
+                .reduce(Extent::and)
+        };
+        let places = (0..self.0.len()).filter_map(|index| Some((index, extent(index)?)));
+        let places = places.map(|(index, extent)| {
+            let x = low + apart * (index as f64 + 0.5);
+            [x, extent.min, extent.max]
+        });
+        let mut band: Vec<_> = places.collect();
+        let (begin, end) = (low + 0.5 * apart, high - 0.5 * apart);
+        if let [first, .., last] = &mut band[..] {
+            // The outermost ones reach to the ends of the axis.
+            first[0] -= if first[0] <= begin { 0.5 * apart } else { 0.0 };
+            last[0] += if last[0] >= end { 0.5 * apart } else { 0.0 };
+        }
+        band
+    }
+}
+
+/// Which stretch of time shows the curves of `chart` apart, where one of them, of the `columns` of `drawn`, is too dense.
+pub(super) fn over_time(
+    chart: &Chart,
+    columns: &[&'static CsvColumn],
+    drawn: &[SampledRunNumbers],
+    request: &FigureRequest,
+) -> Option<Dense> {
+    if chart.x.is_log {
+        return None; // swings are ever denser along it
+    }
+    let layout = ChartLayout::new(chart, 0.0);
+    let panels = columns.iter().zip(chart.panels.iter().zip(&layout.panels));
+    let all = panels.flat_map(|(column, (panel, placed))| {
+        let series = drawn.iter().zip(&panel.series);
+        series.filter_map(|(drawn, series)| {
+            let columns = Columns::new(&drawn.course.parts(column), placed);
+            let is_dense = columns.are_dense(series.style.width_pt, placed);
+            let swing_s = drawn.course.swing_s.unwrap_or(f64::INFINITY);
+            let swings = (drawn.course.end_s - request.from_s) / swing_s;
+            is_dense.then(|| columns.turns().max((2.0 * swings) as u64))
+        })
+    });
+    // What shows the most swings shows those of the other curves too.
+    let turns = all.max()?;
+    let (_, end_s) = layout.panels.first()?.x.range;
+    // The axis may begin before the run, so that a measured point at 0 has room.
+    let window_s = 2.0 * MAGNIFIED_SWINGS * (end_s - request.from_s) / turns as f64;
+    let what = format!(
+        "on {} mm about {} swings are not told apart: they are drawn as a band from the least to the greatest, with a stretch of it magnified",
+        width_mm(request),
+        turns / 2
+    );
+    Some(proposal(window_s, request, what))
+}
+
+/// Makes those curves of `chart` bands that are too dense in its places; in a panel with one of them the others too that
+/// would be in a line as wide.
+pub(super) fn draw_bands(
+    chart: &mut Chart,
+    columns: &[&'static CsvColumn],
+    drawn: &[SampledRunNumbers],
+) {
+    let layout = ChartLayout::new(chart, 0.0);
+    let panels = chart.panels.iter_mut().zip(&layout.panels);
+    for (column, (panel, placed)) in columns.iter().zip(panels) {
+        let all = drawn
+            .iter()
+            .map(|it| Columns::new(&it.course.parts(column), placed));
+        let all: Vec<Columns> = all.collect();
+        let widths = panel.series.iter().map(|series| series.style.width_pt);
+        let dense = all
+            .iter()
+            .zip(widths)
+            .filter(|(it, width_pt)| it.are_dense(*width_pt, placed));
+        let widest = dense.map(|(_, width_pt)| width_pt).fold(0.0, f64::max);
+        for (columns, series) in all.iter().zip(&mut panel.series) {
+            if columns.are_dense(series.style.width_pt.max(widest), placed) {
+                series.band = columns.band(placed);
+                (series.style.is_band, series.style.core) = (true, None);
+            }
+        }
+    }
+}
+
+/// Side of the places of a path that are looked at, pt, and how many places from the edge of the ink make its inside.
+const PLACE_PT: f64 = 0.5;
+const INSIDE: usize = 3;
+/// About the width of a path's line, pt, and the part of the black places that the lines of a proposed stretch are to cover.
+const LINE_PT: f64 = 0.9;
+const LOOSE: f64 = 0.3;
+
+/// As [`over_time`], of each `path` of `drawn`, whose points stand at a `place` on the page: of the runs, and where none of them
+/// is dense, of the exact motion.
+pub(super) fn of_paths(
+    drawn: &[SampledRunNumbers],
+    request: &FigureRequest,
+    path: fn(&SampledRun) -> &TracedPath,
+    place: impl Fn(&[f64; 3]) -> Point,
+) -> Option<Dense> {
+    let dense = |drawn: &SampledRunNumbers| {
+        let path = path(&drawn.course);
+        if path.points.len() < 2000 {
+            return None;
+        }
+        let lines = path.lines(&place);
+        let grid = Grid::inked(&lines, PLACE_PT, 0.0)?;
+        let area_pt2 = grid.area_pt2();
+        if grid.area_inside_pt2(INSIDE) < DENSE_SHARE * area_pt2 {
+            return None;
+        }
+        let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();
+        let share = (LOOSE * area_pt2 / (path.times * length_pt * LINE_PT)).min(0.5);
+        let window_s = share * (drawn.course.end_s - request.from_s);
+        let what = format!(
+            "on {} mm its turns cover the paper, so that nothing of them is told apart",
+            width_mm(request)
+        );
+        Some(proposal(window_s, request, what))
+    };
+    let earliest = |is_exact: bool| {
+        let drawn = drawn.iter().filter(|drawn| drawn.is_exact == is_exact);
+        let dense = drawn.filter_map(dense);
+        dense.min_by(|a, b| a.to_s.total_cmp(&b.to_s))
+    };
+    earliest(false).or_else(|| earliest(true))
+}
+
+fn width_mm(request: &FigureRequest) -> f64 {
+    (request.width_pt / crate::plot::PT_PER_MM).round()
+}
+
+fn proposal(window_s: f64, request: &FigureRequest, what: String) -> Dense {
+    Dense {
+        what,
+        from_s: request.from_s,
+        to_s: request.from_s + ladder::at_or_below(window_s),
+    }
+}

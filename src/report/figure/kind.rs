@@ -1,0 +1,138 @@
+//! The kinds of figures of a run, by the names of the lab's panes and of a CSV's columns.
+
+use crate::engine::analysis::readouts;
+use crate::engine::data::TimeSeries;
+use crate::engine::export::CsvColumn;
+use crate::engine::recording::RecordedCurve;
+use crate::engine::scenario::problem;
+use crate::engine::scenario::screen::{ABOVE, THREE_D, TRACES};
+
+#[derive(Clone, Debug)]
+pub enum FigureKind {
+    OverTime(Vec<&'static CsvColumn>),
+    /// What was measured less what the run says, a panel for each quantity.
+    Residuals,
+    Above,
+    ThreeD,
+}
+
+const MOST_FIGURE_COLUMNS: usize = 30;
+
+pub const RESIDUALS: &str = "residuals";
+
+/// The names that stand alone; a list of columns is the other way to name a figure.
+pub const FIGURE_KIND_NAMES: [&str; 4] = [TRACES, ABOVE, THREE_D, RESIDUALS];
+
+fn find(name: &str) -> Option<&'static CsvColumn> {
+    CsvColumn::all().find(|column| column.name == name)
+}
+
+impl FigureKind {
+    pub fn traces() -> Self {
+        let columns = RecordedCurve::OF_POINT.iter().map(|curve| curve.column());
+        Self::OverTime(columns.filter_map(find).collect())
+    }
+
+    pub fn columns(&self) -> &[&'static CsvColumn] {
+        match self {
+            Self::OverTime(columns) => columns,
+            Self::Above | Self::ThreeD | Self::Residuals => &[],
+        }
+    }
+
+    pub fn name(&self) -> String {
+        match self {
+            Self::OverTime(columns) => {
+                let names: Vec<_> = columns.iter().map(|column| column.name).collect();
+                names.join(",")
+            }
+            Self::Above => ABOVE.to_owned(),
+            Self::ThreeD => THREE_D.to_owned(),
+            Self::Residuals => RESIDUALS.to_owned(),
+        }
+    }
+
+    /// What was measured in `series`, over time.
+    pub fn measured(series: &TimeSeries) -> Self {
+        let names = series.curves.iter().map(|curve| curve.quantity.name);
+        Self::OverTime(names.filter_map(find).collect())
+    }
+
+    /// The kind of that name: `traces`, `above`, `3d`, `residuals`, or columns with commas between them.
+    ///
+    /// # Errors
+    /// When there is no such kind or column: what was meant, perhaps.
+    pub fn named(name: &str) -> Result<Self, String> {
+        match name {
+            TRACES => return Ok(Self::traces()),
+            ABOVE => return Ok(Self::Above),
+            THREE_D => return Ok(Self::ThreeD),
+            RESIDUALS => return Ok(Self::Residuals),
+            _ => {}
+        }
+        let is_list = name.contains(',');
+        let count = name.split(',').count();
+        if count > MOST_FIGURE_COLUMNS {
+            return Err(format!(
+                "names {count} columns: a figure shows at most {MOST_FIGURE_COLUMNS}"
+            ));
+        }
+        let columns = name.split(',').map(str::trim).map(|name| {
+            // Whoever shows the refusal names the whole list.
+            column(name).map_err(|rule| {
+                if is_list {
+                    format!("{name} {rule}")
+                } else {
+                    rule
+                }
+            })
+        });
+        columns.collect::<Result<_, _>>().map(Self::OverTime)
+    }
+}
+
+fn column(name: &str) -> Result<&'static CsvColumn, String> {
+    if name.is_empty() {
+        return Err("lacks a name: traces, above, 3d, residuals, or columns of the CSV with commas between them".to_owned());
+    }
+    if FIGURE_KIND_NAMES.contains(&name) {
+        return Err("is a figure of its own: no columns can stand beside it".to_owned());
+    }
+    let columns = || CsvColumn::all().map(|column| column.name);
+    find(name).ok_or_else(|| if readouts::find(name).is_some() {
+        format!(
+            "is a readout, one number of a run, and no column: a sweep's table is drawn by its readouts; over time there is {}",
+            columns().collect::<Vec<_>>().join(", ")
+        )
+    } else {
+        let near = problem::nearest(name, FIGURE_KIND_NAMES.into_iter().chain(columns()));
+        format!("is no kind of figure (traces, above, 3d, residuals) and no column of the CSV: {near}")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_have_the_names_of_panes_and_columns() {
+        assert_eq!(FigureKind::named("traces").unwrap().name(), "x_m,y_m,z_m");
+        let two = FigureKind::named("tilt_deg, energy_J").unwrap();
+        assert_eq!(two.name(), "tilt_deg,energy_J");
+        assert!(matches!(FigureKind::named("above"), Ok(FigureKind::Above)));
+        assert!(matches!(FigureKind::named("3d"), Ok(FigureKind::ThreeD)));
+    }
+
+    #[test]
+    fn an_unknown_name_is_told_the_nearest() {
+        for (wrong, near) in [
+            ("tilt_dg", "tilt_deg"),
+            ("abov", "above"),
+            ("x_m,energy", "energy_J"),
+            ("x_m,above", "of its own"),
+        ] {
+            let refusal = FigureKind::named(wrong).unwrap_err();
+            assert!(refusal.contains(near), "{refusal}");
+        }
+    }
+}

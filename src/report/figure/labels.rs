@@ -1,0 +1,119 @@
+//! Words and axes that a figure has instead of its own.
+
+use crate::plot::chart::{Chart, ChartAxis};
+use crate::plot::ink::{self, TITLE_PT, at};
+use crate::plot::letters;
+use crate::plot::scene::PageScene;
+use serde::{Deserialize, Serialize};
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FigureLabels {
+    /// Written above the figure.
+    pub title: Option<String>,
+    /// What the legend calls the runs, in order.
+    pub names: Vec<String>,
+    pub x: Option<String>,
+    /// Of the panels, from the top.
+    pub y: Vec<String>,
+    /// Whether the axes x and y are logarithmic.
+    pub is_log: [bool; 2],
+    pub y_range: Option<(f64, f64)>,
+}
+
+/// The longest title of an axis y, pt.
+const LONGEST_PT: f64 = 130.0;
+/// The longest title of an axis x, of the page's width.
+const AXIS_TITLE_SHARE: f64 = 0.62;
+/// Above and below the title of a figure, pt.
+const AROUND_PT: f64 = 4.0;
+
+impl FigureLabels {
+    /// # Errors
+    /// Where something is asked for that a path in space does not have.
+    pub fn check_in_space(&self) -> Result<(), String> {
+        let is_named = self.x.is_some() || !self.y.is_empty();
+        if is_named || self.is_log != [false; 2] || self.y_range.is_some() {
+            return Err(
+                "--x-label, --y-label, --log and --y-range are not for a path in space".to_owned(),
+            );
+        }
+        Ok(())
+    }
+
+    fn check(&self, chart: &Chart) -> Result<(), String> {
+        let count = chart.panels.len();
+        if self.y.len() > count {
+            return Err(format!(
+                "--y-label is given {} times, and this figure has {count} panels: give it once per panel",
+                self.y.len()
+            ));
+        }
+        if chart.is_true_to_scale && (self.is_log != [false; 2] || self.y_range.is_some()) {
+            return Err(
+                "--log and --y-range are not for a path from above: its axes have one scale"
+                    .to_owned(),
+            );
+        }
+        if let (Some((low, _)), [_, true]) = (self.y_range, self.is_log)
+            && low <= 0.0
+        {
+            return Err("--y-range of a logarithmic axis begins above 0".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Gives `chart` these axes. Returns what is to be said of values that a logarithmic one does not show.
+    ///
+    /// # Errors
+    /// Where the chart cannot have them.
+    pub fn apply(&self, chart: &mut Chart) -> Result<Option<String>, String> {
+        self.check(chart)?;
+        let renamed = |text: &String, axis: &mut ChartAxis, room_pt: f64| {
+            axis.name = letters::shortened(text, TITLE_PT, room_pt);
+            axis.unit.clear();
+        };
+        if let Some(text) = &self.x {
+            renamed(text, &mut chart.x, AXIS_TITLE_SHARE * chart.width_pt);
+        }
+        chart.x.is_log |= self.is_log[0];
+        chart.x.range = chart
+            .x
+            .range
+            .filter(|range| !chart.x.is_log || range.0 > 0.0);
+        for (panel, text) in chart.panels.iter_mut().zip(&self.y) {
+            renamed(text, &mut panel.y, LONGEST_PT);
+        }
+        for panel in &mut chart.panels {
+            panel.y.is_log |= self.is_log[1];
+            panel.y.range = self.y_range.or(panel.y.range);
+        }
+        let series = || chart.panels.iter().flat_map(|panel| &panel.series);
+        let mut points = series().flat_map(|series| &series.points);
+        let is_hidden = |(value, is_log): (&f64, &bool)| *is_log && *value <= 0.0;
+        let hides = points.any(|point| point.iter().zip(&self.is_log).any(is_hidden));
+        let hidden = "values that are not above 0 have no place on a logarithmic axis";
+        Ok(hides.then(|| hidden.to_owned()))
+    }
+
+    /// Writes the title above all that is on the page.
+    pub fn write_title(&self, scene: &mut PageScene) {
+        let Some(title) = &self.title else {
+            return;
+        };
+        scene.title.clone_from(title);
+        let height = ink::height(TITLE_PT);
+        let down = height + 2.0 * AROUND_PT;
+        for item in &mut scene.items {
+            *item = item.clone().mapped(|p| at(p.x, p.y + down));
+            item.clip = item
+                .clip
+                .map(|corners| corners.map(|p| at(p.x, p.y + down)));
+        }
+        scene.height_pt += down;
+        let room = scene.width_pt - 2.0 * AROUND_PT;
+        let markup = letters::shortened(title, TITLE_PT, room);
+        let place = at(0.5 * scene.width_pt, AROUND_PT + height);
+        scene.write(&markup, TITLE_PT, place, 0.5);
+    }
+}

@@ -1,0 +1,288 @@
+//! What was measured, drawn with runs: points with error bars over time and from above, and their residuals.
+
+use super::names::names;
+use super::quantity;
+use super::request::{DrawnFigure, FigureJob, FigureRequest, FigureRun};
+use crate::engine::data::{
+    self, MeasuredCurve, MeasuredData, MeasuredPoint, Residual, at_times, places,
+    residuals as held_against,
+};
+use crate::engine::export::CsvColumn;
+use crate::engine::text::number::shortest;
+use crate::plot::chart::legend::longest_name;
+use crate::plot::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
+use crate::plot::ink::LABEL_PT;
+use crate::plot::letters;
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// The room before the first and after the last residual, of the time between them.
+const RESIDUAL_MARGIN: f64 = 0.02;
+
+/// The room before a first and after a last point that would stand on the frame, of the time that is drawn.
+const BESIDE_POINTS: f64 = 0.015;
+
+/// Adds the points to the panels of `columns`, and the time in which they were measured to the axis of the time. Returns
+/// what is to be said where no panel shows what was measured.
+///
+/// # Errors
+/// Where the data are no series, or the numbers of a run stop being finite.
+pub(super) fn over_time(
+    job: &FigureJob<'_>,
+    chart: &mut Chart,
+    columns: &[&'static CsvColumn],
+) -> Result<Option<String>, String> {
+    let request = job.request;
+    let Some(measured) = &request.measured else {
+        return Ok(None);
+    };
+    let series = series(measured)?;
+    let mut added = Vec::new();
+    for (index, column) in columns.iter().enumerate() {
+        let mut curves = series.curves.iter();
+        if let Some(place) = curves.position(|curve| curve.quantity.name == column.name) {
+            let points = turned(job, series, place)?;
+            added.push((index, drawn(job, series, &points)));
+        }
+    }
+    let times = || {
+        added
+            .iter()
+            .flat_map(|(_, it)| it.points.iter().map(|at| at[0]))
+    };
+    if let Some(range) = &mut chart.x.range {
+        if request.to_s.is_none() {
+            range.1 = times().fold(range.1, f64::max);
+        }
+        make_room(range, times);
+    }
+    let count = times().count();
+    for (index, it) in added {
+        chart.panels[index].series.push(ChartSeries {
+            name: name(measured, count, request),
+            style: SeriesStyle::measured(it.points.len()),
+            ..it
+        });
+    }
+    let columns: Vec<_> = series.curves.iter().map(|it| it.quantity.name).collect();
+    Ok((count == 0).then(|| {
+        format!(
+            "no point of {} is in this figure: it has {}; --kind {} shows them",
+            measured.origin,
+            columns.join(", "),
+            columns.join(",")
+        )
+    }))
+}
+
+/// Widens the `range` of an axis where one of `times` would stand on the frame: its error bar would lie on it.
+fn make_room<Times: Iterator<Item = f64>>(range: &mut (f64, f64), times: impl Fn() -> Times) {
+    let room = BESIDE_POINTS * (range.1 - range.0);
+    let (least, most) = (range.0 + room, range.1 - room);
+    if times().any(|time_s| time_s < least) {
+        range.0 -= room;
+    }
+    if times().any(|time_s| time_s > most) {
+        range.1 += room;
+    }
+}
+
+/// The places from above, or what is to be said where the data do not tell any.
+///
+/// # Errors
+/// Where the data are no series.
+pub(super) fn above(job: &FigureJob<'_>) -> Result<(Option<ChartSeries>, Option<String>), String> {
+    let (Some(measured), Some(run)) = (&job.request.measured, job.runs.first()) else {
+        return Ok((None, None));
+    };
+    let scenario = &run.scenario;
+    let traced = scenario.body.mechanics.points()[scenario.trace].at;
+    let mut shown = places(series(measured)?, &traced);
+    shown.retain(|place| job.has(place.time_s));
+    if shown.is_empty() {
+        let origin = &measured.origin;
+        return Ok((
+            None,
+            Some(format!(
+                "no point of {origin} is in this figure: from above are x_m and y_m, or tilt_deg and azimuth_deg of a point on the axle"
+            )),
+        ));
+    }
+    let errors = |part: usize| {
+        let sigmas = shown.iter().map(|place| place.sigmas[part]);
+        sigmas.map(|sigma| sigma.unwrap_or(f64::NAN)).collect()
+    };
+    let places = ChartSeries {
+        name: name(measured, shown.len(), job.request),
+        points: shown.iter().map(|place| [place.at.x, place.at.y]).collect(),
+        errors: [errors(0), errors(1)],
+        style: SeriesStyle::measured(shown.len()),
+        ..ChartSeries::default()
+    };
+    Ok((Some(places), None))
+}
+
+/// What is said where the runs end before the last point of a figure.
+pub(super) fn beyond_runs(job: &FigureJob<'_>) -> Option<String> {
+    let measured = job.request.measured.as_ref()?;
+    let series = measured.series().ok()?;
+    let end_s = job.end_s();
+    let is_beyond = |time_s: &&f64| **time_s > end_s && job.has(**time_s);
+    let last_s = shortest(*series.times_s.iter().rfind(is_beyond)?);
+    Some(format!(
+        "the run ends at {} s, before the last point of {} at {last_s} s: --duration {last_s} draws the run up to there",
+        shortest(end_s),
+        measured.origin
+    ))
+}
+
+/// What is said where measured points are asked for in space.
+pub(super) fn in_space(request: &FigureRequest) -> Option<String> {
+    let measured = request.measured.as_ref()?;
+    Some(format!(
+        "the points of {} are not drawn in space: --kind above or columns show them",
+        measured.origin
+    ))
+}
+
+/// The figure of what was measured less what each of the runs says.
+///
+/// # Errors
+/// Where there is nothing measured, or the numbers of a run stop being finite.
+pub(super) fn residuals(
+    job: &FigureJob<'_>,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<DrawnFigure>, String> {
+    let &FigureJob { runs, request, .. } = job;
+    let Some(measured) = &request.measured else {
+        return Err("residuals are of measured data: --measured FILE".to_owned());
+    };
+    let series = series(measured)?;
+    let last_s = series.times_s.last().copied().unwrap_or(0.0);
+    let end_s = request.to_s.unwrap_or(job.end_s().max(last_s));
+    let margin_s = RESIDUAL_MARGIN * (end_s - request.from_s);
+    let range = (request.from_s - margin_s, end_s + margin_s);
+    let curves = || series.curves.iter();
+    let mut panels: Vec<Panel> = curves().map(|curve| empty(curve, range)).collect();
+    let shown = curves().map(|curve| drawn(job, series, &curve.points));
+    let count = shown.map(|shown| shown.points.len()).sum();
+    for (index, (run, run_name)) in runs.iter().zip(names(job)).enumerate() {
+        let Some(model) = said(job, series, run, &mut watch)? else {
+            return Ok(None);
+        };
+        let (name, style) = match runs {
+            [_] => (name(measured, count, request), SeriesStyle::measured(0)),
+            _ => (run_name, SeriesStyle::points(index)),
+        };
+        for ((panel, curve), model) in panels.iter_mut().zip(&series.curves).zip(&model) {
+            let points = beside(curve, model, Residual::value);
+            panel.series.push(ChartSeries {
+                name: name.clone(),
+                style: style.clone(),
+                ..drawn(job, series, &points)
+            });
+        }
+    }
+    let mut chart = job.chart(quantity::axis("t_s").within(range), panels);
+    request.labels.apply(&mut chart)?;
+    let mut scene = chart.scene();
+    request.labels.write_title(&mut scene);
+    Ok(Some(DrawnFigure::of(scene)))
+}
+
+/// The panel of the residuals of `curve` with the line of zero alone.
+fn empty(curve: &MeasuredCurve, range: (f64, f64)) -> Panel {
+    let axis = quantity::axis(curve.quantity.name);
+    let y = ChartAxis::new(format!("{}, measured − run", axis.name), axis.unit);
+    Panel::new(y, vec![ChartSeries::level(range)])
+}
+
+/// What `run` says of each curve of `series`; `None` where `watch` stopped it.
+fn said(
+    job: &FigureJob<'_>,
+    series: &data::TimeSeries,
+    run: &FigureRun,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Vec<Vec<f64>>>, String> {
+    if let Some(said) = &job.known.said {
+        return Ok(Some(said.clone()));
+    }
+    let watch = RefCell::new(watch);
+    let go_on = || watch.borrow_mut()(0, run.scenario.steps).is_continue();
+    at_times(series, &run.scenario, &go_on).map_err(|error| error.to_string())
+}
+
+/// The points of `curve` with what `value` makes of each and of what the run says of it, `model`.
+fn beside(
+    curve: &MeasuredCurve,
+    model: &[f64],
+    value: impl Fn(&Residual) -> f64,
+) -> Vec<MeasuredPoint> {
+    let pairs = held_against(Some(curve.quantity), &curve.points, model);
+    let point = |pair: &Residual| MeasuredPoint {
+        row: pair.row,
+        value: value(pair),
+        sigma: pair.sigma,
+    };
+    pairs.iter().map(point).collect()
+}
+
+fn series(measured: &MeasuredData) -> Result<&data::TimeSeries, String> {
+    let series = measured.series();
+    series.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))
+}
+
+/// The name of the data in the legend, as markup, with the `count` of the points that the figure has of them.
+fn name(measured: &MeasuredData, count: usize, request: &FigureRequest) -> String {
+    let file = Path::new(&measured.origin).file_stem();
+    let file = file.map_or(measured.origin.as_str().into(), |file| {
+        file.to_string_lossy()
+    });
+    let count = match count {
+        1 => "1 point".to_owned(),
+        count => format!("{count} points"),
+    };
+    let name = format!("measured: {file} ({count})");
+    letters::shortened(&name, LABEL_PT, longest_name(request.width_pt))
+}
+
+/// `points` in the stretch of time that is drawn, with their errors: NaN where none is stated.
+fn drawn(job: &FigureJob<'_>, series: &data::TimeSeries, points: &[MeasuredPoint]) -> ChartSeries {
+    let time_s = |point: &MeasuredPoint| series.times_s[point.row];
+    let points = points.iter();
+    let points = points.filter(|point| job.has(time_s(point)));
+    let (points, errors) = points
+        .map(|point| {
+            (
+                [time_s(point), point.value],
+                point.sigma.unwrap_or(f64::NAN),
+            )
+        })
+        .unzip();
+    ChartSeries {
+        points,
+        errors: [Vec::new(), errors],
+        ..ChartSeries::default()
+    }
+}
+
+/// The points of the curve at `place`: of directions each with the number of full turns at which it is nearest to the first of
+/// the runs.
+fn turned(
+    job: &FigureJob<'_>,
+    series: &data::TimeSeries,
+    place: usize,
+) -> Result<Vec<MeasuredPoint>, String> {
+    let curve = &series.curves[place];
+    match job.runs.first() {
+        Some(run) if curve.quantity.is_direction => {
+            let said = said(job, series, run, |_, _| ControlFlow::Continue(()))?;
+            let model = said.and_then(|mut said| said.get_mut(place).map(std::mem::take));
+            Ok(beside(curve, &model.unwrap_or_default(), |pair| {
+                pair.measured
+            }))
+        }
+        _ => Ok(curve.points.clone()),
+    }
+}

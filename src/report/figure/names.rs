@@ -1,0 +1,71 @@
+//! What runs are called beside each other: by what differs.
+
+use super::chords::EVERY_STEP;
+use super::request::{FigureJob, FigureRun};
+use crate::engine::text::number::significant;
+use crate::plot::chart::legend::longest_name;
+use crate::plot::ink::{self, LABEL_PT};
+use crate::plot::letters;
+
+/// A name for each of the runs, as markup with room in the legend; empty where there is nothing to tell apart.
+pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
+    let &FigureJob { runs, request, .. } = job;
+    let room_pt = longest_name(request.width_pt) - ink::width(EVERY_STEP, LABEL_PT);
+    let shortened = |text: &str| letters::shortened(text, LABEL_PT, room_pt);
+    let given = &request.labels.names;
+    if !given.is_empty() {
+        return given.iter().map(|name| shortened(name)).collect();
+    }
+    let title = |run: &FigureRun| run.scenario.file.title.clone();
+    let scheme = |run: &FigureRun| scheme_in_words(run.scenario.motion.scheme.name).to_owned();
+    let parts: [&dyn Fn(&FigureRun) -> String; 3] = [&title, &scheme, &step];
+    let mut differs = parts.map(|of| runs.iter().any(|run| of(run) != of(&runs[0])));
+    if let ([run], true) = (runs, request.is_beside()) {
+        differs = [false, true, run.scenario.motion.scheme.order.is_some()];
+    }
+    let name = |run: &FigureRun| -> String {
+        if differs == [false; 3] {
+            let is_alone = runs.len() == 1;
+            return if is_alone {
+                String::new()
+            } else {
+                shortened(&run.named)
+            };
+        }
+        let words = (0..2).filter(|part| differs[*part]);
+        let words: Vec<_> = words.map(|part| parts[part](run)).collect();
+        // The step comes as markup, and keeps its room; the title is cut.
+        let step = match (differs[2], words.is_empty()) {
+            (false, _) => String::new(),
+            (true, true) => step(run),
+            (true, false) => format!(", {}", step(run)),
+        };
+        let rest = room_pt - ink::width(&step, LABEL_PT);
+        letters::shortened(&words.join(", "), LABEL_PT, rest) + &step
+    };
+    runs.iter().map(name).collect()
+}
+
+/// What a reader who does not know the program calls the motion of a scheme.
+pub(super) fn scheme_in_words(name: &str) -> &str {
+    match name {
+        "report" => "the report's scheme",
+        "exact" => EXACT_CURVE_NAME,
+        name => name,
+    }
+}
+
+pub(super) const EXACT_CURVE_NAME: &str = "exact motion";
+
+/// "Δt = 10 ms" as markup.
+fn step(run: &FigureRun) -> String {
+    let seconds = run.scenario.motion.time_step_s;
+    let (number, unit) = match seconds {
+        s if s >= 0.1 => (s, "s"),
+        s if s >= 1e-4 => (s * 1e3, "ms"),
+        s if s >= 1e-7 => (s * 1e6, "µs"),
+        s => (s, "s"),
+    };
+    let number = letters::escape(&significant(number, 6));
+    format!("Δ*t* = {number} {unit}")
+}

@@ -1,0 +1,435 @@
+//! Figures of runs: their curves over time, their paths from above and in space.
+
+pub(super) mod charts;
+
+use super::chords;
+use super::course::{self, SampleRequest, SampledRun};
+use super::dense;
+use super::kind::FigureKind;
+use super::measured;
+use super::names::{EXACT_CURVE_NAME, names};
+use super::request::{Dense, FigureJob, SampledRunNumbers};
+pub use super::request::{DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
+use super::space;
+use crate::engine::analysis::Predictability;
+use crate::engine::analysis::health::LEAST_SWING_DEG;
+use crate::engine::export::CsvColumn;
+use crate::engine::run::Truth;
+use crate::engine::scenario::Scenario;
+use crate::engine::text::ladder;
+use crate::engine::text::number::{short, shortest};
+use crate::physics::exact::LagrangeTop;
+use crate::plot::chart::legend::longest_name;
+use crate::plot::chart::{Chart, KINDS_OF_LINE, SeriesStyle};
+use crate::plot::letters;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+struct SampledRuns {
+    drawn: Vec<SampledRunNumbers>,
+    warnings: Vec<String>,
+    broke: Option<String>,
+}
+
+/// The figure of `runs`, one at least. `watch` is told the step reached and the last one, and says whether to go on; `None`
+/// where it said no.
+///
+/// # Errors
+/// When the stretch of time lies beyond the ends of the runs.
+pub fn figure(
+    runs: &[FigureRun],
+    request: &FigureRequest,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<DrawnFigure>, String> {
+    let requests = std::slice::from_ref(request);
+    let figures = figures(runs, requests, &KnownNumbers::default(), watch)?;
+    Ok(figures.and_then(|mut figures| figures.pop()))
+}
+
+/// As [`figure`], one for each of `requests`: for those of one stretch of time the runs are played once, and not at all where
+/// there is a single one of which enough is `known`.
+///
+/// # Errors
+/// As [`figure`].
+pub fn figures(
+    runs: &[FigureRun],
+    requests: &[FigureRequest],
+    known: &KnownNumbers,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Vec<DrawnFigure>>, String> {
+    let nothing = KnownNumbers::default();
+    let known = if runs.len() == 1 { known } else { &nothing };
+    let mut figures = Vec::new();
+    let mut all_played: Vec<(&FigureRequest, SampledRuns)> = Vec::new();
+    for request in requests {
+        let job = FigureJob {
+            runs,
+            request,
+            known,
+        };
+        check_range(&job)?;
+        if let FigureKind::Residuals = &request.kind {
+            match measured::residuals(&job, &mut watch)? {
+                Some(figure) => figures.push(figure),
+                None => return Ok(None),
+            }
+            continue;
+        }
+        if !all_played.iter().any(|(it, _)| it.is_alike(request)) {
+            let alike = requests.iter().filter(|it| it.is_alike(request));
+            let wanted = wanted(request, alike.map(|it| &it.kind));
+            match play(&job, &wanted, &mut watch)? {
+                Some(played) => all_played.push((request, played)),
+                None => return Ok(None),
+            }
+        }
+        for (_, played) in all_played.iter().filter(|(it, _)| it.is_alike(request)) {
+            let Some(figure) = draw(&job, played, &mut watch)? else {
+                return Ok(None);
+            };
+            figures.push(figure);
+        }
+    }
+    Ok(Some(figures))
+}
+
+fn play(
+    job: &FigureJob<'_>,
+    wanted: &SampleRequest,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<SampledRuns>, String> {
+    let &FigureJob { runs, request, .. } = job;
+    let Some(mut drawn) = play_runs(job, wanted, &mut watch) else {
+        return Ok(None);
+    };
+    let mut broke = None;
+    let mut warnings = Vec::new();
+    for (run, SampledRunNumbers { course, .. }) in runs.iter().zip(&drawn) {
+        if let Some(error) = course.broke {
+            broke.get_or_insert_with(|| format!("{}: {error}", run.named));
+        }
+        let is_shown =
+            !wanted.columns.is_empty() && (!is_exact(&run.scenario) || wanted.counts_steps());
+        let few = || few_a_swing(run).filter(|_| is_shown);
+        warnings.extend(not_believed(run, course, request.exact).or_else(few));
+        warnings.extend(limited(run, course));
+    }
+    if request.exact {
+        let is_exact = |run: &FigureRun| is_exact(&run.scenario);
+        warnings.extend(runs.iter().any(is_exact).then(|| IS_EXACT.to_owned()));
+        let Some(truths) = play_truths(job, wanted, watch) else {
+            return Ok(None);
+        };
+        drawn.extend(truths);
+    }
+    warnings.extend(look_alike(&drawn));
+    if drawn.iter().all(|drawn| drawn.course.is_empty) {
+        let none = || "there is no step of the run in that stretch of time".to_owned();
+        return Err(broke.unwrap_or_else(none));
+    }
+    Ok(Some(SampledRuns {
+        drawn,
+        warnings,
+        broke,
+    }))
+}
+
+/// Plays the runs as far as nothing is known of them; `None` where `watch` said no.
+fn play_runs(
+    job: &FigureJob<'_>,
+    wanted: &SampleRequest,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Option<Vec<SampledRunNumbers>> {
+    let named = job.runs.iter().zip(names(job)).enumerate();
+    let drawn = named.map(|(index, (run, name))| {
+        let recorded = job.known.recorded.as_ref();
+        let recorded = recorded.and_then(|all| all.part(&run.scenario, wanted));
+        let is_exact = is_exact(&run.scenario);
+        Some(SampledRunNumbers {
+            name,
+            style: if is_exact && index > 0 {
+                SeriesStyle::exact(index)
+            } else {
+                SeriesStyle::curve(index)
+            },
+            course: if is_exact && !wanted.counts_steps() && is_coarse(run) {
+                // The exact motion is known between its steps too.
+                course::exact(&run.scenario, wanted, &mut watch)?
+            } else {
+                recorded.or_else(|| course::play(&run.scenario, wanted, &mut watch))?
+            },
+            is_exact: false,
+        })
+    });
+    drawn.collect()
+}
+
+/// Plays the exact motions beside the runs; `None` where `watch` said no.
+fn play_truths(
+    job: &FigureJob<'_>,
+    wanted: &SampleRequest,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Option<Vec<SampledRunNumbers>> {
+    let room_pt = longest_name(job.request.width_pt);
+    let truths = (job.runs.len()..).zip(truths(job.runs, room_pt));
+    let drawn = truths.map(|(place, (run, name))| {
+        Some(SampledRunNumbers {
+            name,
+            style: SeriesStyle::exact(place),
+            course: course::exact(&run.scenario, wanted, &mut watch)?,
+            is_exact: true,
+        })
+    });
+    drawn.collect()
+}
+
+/// The figure that the request asks for; `None` where `watch` said no.
+///
+/// # Errors
+/// When what was measured cannot be drawn so.
+fn draw(
+    job: &FigureJob<'_>,
+    played: &SampledRuns,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<DrawnFigure>, String> {
+    let drawn = &played.drawn;
+    let mut warnings = played.warnings.clone();
+    let labels = &job.request.labels;
+    let dense;
+    let mut scene = match &job.request.kind {
+        FigureKind::OverTime(columns) => {
+            let (mut chart, told) = over_time(job, columns, drawn)?;
+            warnings.extend(told);
+            warnings.extend(measured::beyond_runs(job));
+            dense = dense::over_time(&chart, columns, drawn, job.request);
+            if let Some(dense) = &dense {
+                let Some(magnified) = magnified(job, columns, dense, watch)? else {
+                    return Ok(None);
+                };
+                chart.magnified = Some(Box::new(magnified));
+                dense::draw_bands(&mut chart, columns, drawn);
+            }
+            chart.scene()
+        }
+        FigureKind::Above => {
+            let (measured, none) = measured::above(job)?;
+            warnings.extend(none);
+            let mut chart = charts::above(job, drawn, measured);
+            labels.apply(&mut chart)?;
+            dense = charts::path_warning(&chart, drawn, job.request);
+            warnings.extend(chords::warning(drawn, |course| &course.above));
+            chart.scene()
+        }
+        FigureKind::ThreeD | FigureKind::Residuals => {
+            labels.check_in_space()?;
+            let scene;
+            (scene, dense) = space::scene(job, drawn);
+            warnings.extend(chords::warning(drawn, |course| &course.path));
+            warnings.extend(measured::in_space(job.request));
+            scene
+        }
+    };
+    labels.write_title(&mut scene);
+    Ok(Some(DrawnFigure {
+        scene,
+        warnings,
+        dense,
+        broke: played.broke.clone(),
+    }))
+}
+
+/// The chart of `columns` with what was measured of them and the axes that were asked for, and what is to be said of it.
+fn over_time(
+    job: &FigureJob<'_>,
+    columns: &[&'static CsvColumn],
+    drawn: &[SampledRunNumbers],
+) -> Result<(Chart, Vec<String>), String> {
+    let mut chart = charts::over_time(job, columns, drawn);
+    let none = measured::over_time(job, &mut chart, columns)?;
+    let hidden = job.request.labels.apply(&mut chart)?;
+    Ok((chart, none.into_iter().chain(hidden).collect()))
+}
+
+/// The chart of the stretch in which what is `dense` is told apart; `None` where `watch` said no.
+fn magnified(
+    job: &FigureJob<'_>,
+    columns: &[&'static CsvColumn],
+    dense: &Dense,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Chart>, String> {
+    let request = FigureRequest {
+        to_s: Some(dense.to_s),
+        ..job.request.clone()
+    };
+    let part = FigureJob {
+        request: &request,
+        ..*job
+    };
+    let wanted = wanted(&request, [&request.kind].into_iter());
+    let Some(played) = play(&part, &wanted, watch)? else {
+        return Ok(None);
+    };
+    let (chart, _) = over_time(&part, columns, &played.drawn)?;
+    Ok(Some(chart))
+}
+
+fn wanted<'a>(
+    request: &FigureRequest,
+    kinds: impl Iterator<Item = &'a FigureKind>,
+) -> SampleRequest {
+    let mut wanted = SampleRequest {
+        columns: Vec::new(),
+        path: false,
+        from_s: request.from_s,
+        to_s: request.to_s,
+    };
+    for kind in kinds {
+        wanted.columns.extend(kind.columns());
+        wanted.path |= matches!(kind, FigureKind::Above | FigureKind::ThreeD);
+    }
+    wanted
+}
+
+fn check_range(job: &FigureJob<'_>) -> Result<(), String> {
+    let (from_s, end_s) = (job.request.from_s, job.end_s());
+    let from = shortest(from_s);
+    if let Some(to_s) = job.request.to_s.filter(|to_s| *to_s <= from_s) {
+        let to = shortest(to_s);
+        return Err(format!("--from {from} is not before --to {to}"));
+    }
+    if from_s >= end_s {
+        let end = shortest(end_s);
+        return Err(format!(
+            "--from {from} is not before the end of the run, {end} s"
+        ));
+    }
+    Ok(())
+}
+
+/// What draws the exact motion beside the runs, on the command line.
+pub const EXACT_BESIDE: &str = "--exact draws that beside it";
+
+/// What is said of `run` where it is not to be believed.
+fn not_believed(run: &FigureRun, course: &SampledRun, exact: bool) -> Option<String> {
+    let health = course
+        .health
+        .filter(|health| health.is_believed() == Some(false))?;
+    let (most_m, swing) = (health.most_distance_m?, health.swing?);
+    let of = format!(
+        "{} with the scheme {} at {} s",
+        run.named,
+        run.scenario.motion.scheme.name,
+        shortest(run.scenario.motion.time_step_s),
+    );
+    let what = if health.point_holds() == Some(true) {
+        format!("the nutation of {of}: {swing}, as in the exact motion")
+    } else {
+        format!(
+            "{of}: its traced point is up to {} m ({} % of its arm) off the exact motion",
+            short(most_m),
+            short(100.0 * most_m / health.arm_m),
+        )
+    };
+    let beside = if exact {
+        String::new()
+    } else {
+        format!("; {EXACT_BESIDE}")
+    };
+    Some(format!("do not believe {what}{beside}"))
+}
+
+/// Returns what limits every computation of the motion of `run`, where something does.
+fn limited(run: &FigureRun, course: &SampledRun) -> Option<String> {
+    let limits = course.health?.limits();
+    (limits != Predictability::default())
+        .then(|| format!("the motion of {} is {limits}", run.named))
+}
+
+/// A nutation with fewer time steps than these is not seen in the lines from one to the next.
+const LEAST_A_SWING: f64 = 6.0;
+/// Time steps in a nutation that show it as a smooth curve.
+const A_SMOOTH_SWING: f64 = 20.0;
+
+/// Whether the time steps of `run` do not show its nutation as a smooth curve.
+fn is_coarse(run: &FigureRun) -> bool {
+    let truth = Truth::new(Arc::clone(&run.scenario));
+    let period_s = truth
+        .motion()
+        .closed_form()
+        .and_then(LagrangeTop::nutation_period);
+    period_s.is_some_and(|period_s| period_s < A_SMOOTH_SWING * run.scenario.motion.time_step_s)
+}
+
+/// What is said of `run` where it has too few time steps in a nutation for a curve over time.
+fn few_a_swing(run: &FigureRun) -> Option<String> {
+    let truth = Truth::new(Arc::clone(&run.scenario));
+    let motion = truth.motion().closed_form()?;
+    let ((low, high), period_s) = (motion.tilt_range(), motion.nutation_period()?);
+    let time_step_s = run.scenario.motion.time_step_s;
+    let steps = period_s / time_step_s;
+    let is_there = (high - low).to_degrees() > LEAST_SWING_DEG;
+    (is_there && steps < LEAST_A_SWING).then(|| {
+        format!(
+            "{} has {} time steps in a nutation of {} s: the lines between them show slow swings that the motion does not have; a time step of {} s would show the nutation",
+            run.named,
+            short(steps),
+            short(period_s),
+            shortest(ladder::at_or_below(period_s / A_SMOOTH_SWING))
+        )
+    })
+}
+
+/// What is said of more curves than there are kinds of line.
+fn look_alike(drawn: &[SampledRunNumbers]) -> Option<String> {
+    let repeated = drawn.get(KINDS_OF_LINE)?;
+    Some(format!(
+        "{} curves have {KINDS_OF_LINE} kinds of line: {} looks like {}, and those after it like the next ones; fewer curves in a figure are told apart",
+        drawn.len(),
+        repeated.name,
+        drawn[0].name
+    ))
+}
+
+/// Whether every step of `scenario` is the exact motion's.
+pub(crate) fn is_exact(scenario: &Scenario) -> bool {
+    let edited = scenario.edits.iter().map(|edit| &edit.motion);
+    let mut motions = edited.chain([&scenario.motion]);
+    motions.all(|motion| motion.scheme.order.is_none())
+}
+
+/// What is said of a run that is no less exact than what is drawn beside it.
+const IS_EXACT: &str =
+    "the scheme exact gives the exact motion itself: no second curve of it is drawn";
+
+/// The runs whose exact motions differ and are drawn by none of `runs`, each with the name of that motion.
+fn truths(runs: &[FigureRun], room_pt: f64) -> Vec<(&FigureRun, String)> {
+    let motion = |run: &FigureRun| {
+        let mut file = run.scenario.file.clone();
+        let motion = &mut file.motion;
+        (motion.scheme, motion.time_step_s, motion.steps) = (None, 0.0, 0);
+        (file.title, file.about, file.source) = (String::new(), None, None);
+        (file.view, file.gyrolab) = (None, None);
+        file.expected.clear();
+        file
+    };
+    let mut distinct: Vec<&FigureRun> = Vec::new();
+    for run in runs {
+        if distinct.iter().all(|other| motion(other) != motion(run)) {
+            distinct.push(run);
+        }
+    }
+    let is_drawn = |run: &&FigureRun| {
+        let mut exact = runs.iter().filter(|other| is_exact(&other.scenario));
+        exact.any(|other| motion(other) == motion(run))
+    };
+    let count = distinct.len();
+    distinct.retain(|run| !is_drawn(run));
+    let name = |run: &FigureRun| {
+        if count == 1 {
+            return EXACT_CURVE_NAME.to_owned();
+        }
+        let title = format!("{}, {EXACT_CURVE_NAME}", run.scenario.file.title);
+        letters::shortened(&title, crate::plot::ink::LABEL_PT, room_pt)
+    };
+    distinct.iter().map(|run| (*run, name(run))).collect()
+}

@@ -1,0 +1,132 @@
+//! The charts of runs: their curves over time, their paths from above.
+
+use crate::engine::export::CsvColumn;
+use crate::engine::run::Truth;
+use crate::plot::chart::layout::ChartLayout;
+use crate::plot::chart::{Chart, ChartSeries, Panel, SeriesStyle};
+use crate::report::figure::request::{
+    Dense, FigureJob, FigureRequest, FigureRun, SampledRunNumbers,
+};
+use crate::report::figure::{chords, dense, quantity, size};
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// Columns of the runs over time, a panel each.
+pub(super) fn over_time(
+    job: &FigureJob<'_>,
+    columns: &[&'static CsvColumn],
+    drawn: &[SampledRunNumbers],
+) -> Chart {
+    let from_s = job.request.from_s;
+    let ends = drawn.iter().map(|drawn| drawn.course.end_s);
+    let end_s = ends.fold(0.0, f64::max);
+    let mut x = quantity::axis("t_s");
+    x.range = (end_s > from_s).then_some((from_s, end_s));
+    let panel = |column: &&CsvColumn| {
+        let curve = |drawn: &SampledRunNumbers| {
+            let points = drawn.course.points(column);
+            let mut style = drawn.style.clone();
+            // Only thin lines show many swings beside each other.
+            if points.len() > 600 && columns.len() > 1 {
+                style.width_pt *= 0.75;
+            }
+            ChartSeries::new(&drawn.name, points, style)
+        };
+        let y = size::axis(job.runs, column.name);
+        Panel::new(y, drawn.iter().map(curve).collect())
+    };
+    job.chart(x, columns.iter().map(panel).collect())
+}
+
+/// The paths of the runs from above, and the places that were `measured`.
+pub(super) fn above(
+    job: &FigureJob<'_>,
+    drawn: &[SampledRunNumbers],
+    measured: Option<ChartSeries>,
+) -> Chart {
+    let path = |drawn: &SampledRunNumbers| {
+        let path = &drawn.course.above;
+        let (name, style) = chords::as_drawn(drawn, path);
+        let points = path.points.iter().map(|at| [at[0], at[1]]);
+        ChartSeries::new(name, points.collect(), style)
+    };
+    let mut series: Vec<_> = drawn.iter().map(path).chain(measured).collect();
+    let [x, y] = both_ranges(&series, job.runs);
+    if let (true, [run]) = (job.request.exact, job.runs) {
+        series.extend(limits(run, job.request.width_pt / (x.1 - x.0)));
+    }
+    let panel = Panel::new(quantity::axis("y_m").within(y), series);
+    Chart {
+        is_true_to_scale: true,
+        ..job.chart(quantity::axis("x_m").within(x), vec![panel])
+    }
+}
+
+pub(super) fn path_warning(
+    chart: &Chart,
+    drawn: &[SampledRunNumbers],
+    request: &FigureRequest,
+) -> Option<Dense> {
+    let layout = ChartLayout::new(chart, 0.0);
+    let placed = layout.panels.first()?;
+    let place = |at: &[f64; 3]| placed.place(&[at[0], at[1]]);
+    dense::of_paths(drawn, request, |course| &course.above, place)
+}
+
+/// The circles between which the exact motion of the traced point stays, from above; none where it is one circle, pushes or
+/// edits change it, or it has no closed form. A metre is `pt_per_m` long on the page.
+fn limits(run: &FigureRun, pt_per_m: f64) -> Vec<ChartSeries> {
+    const SAME_CURVE: f64 = 0.01;
+    let scenario = &run.scenario;
+    let at = scenario.body.mechanics.points()[scenario.trace].at;
+    let is_on_axle = at.xy().norm() <= 1e-9 * at.norm();
+    let truth = Truth::new(Arc::clone(scenario));
+    let closed = truth.motion().closed_form();
+    let is_steady = scenario.pushes.is_empty() && scenario.edits.is_empty();
+    let is_heavy = scenario.motion.gravity > 0.0;
+    let Some(motion) = closed.filter(|_| is_steady && is_on_axle && is_heavy) else {
+        return Vec::new();
+    };
+    let (low, high) = motion.tilt_range();
+    let radius = |tilt: f64| at.norm() * libm::sin(tilt);
+    let (inner, outer) = (radius(low), radius(high));
+    if (outer - inner).abs() <= SAME_CURVE * outer.max(inner) {
+        return Vec::new(); // the exact motion itself is the circle
+    }
+    let circle = |radius| {
+        let points = circle(radius, pt_per_m);
+        ChartSeries::new("limits of exact motion", points, SeriesStyle::limit())
+    };
+    [inner, outer].map(circle).into()
+}
+
+/// A circle about the origin, as straight lines: it may be far larger than the page.
+fn circle(radius_m: f64, pt_per_m: f64) -> Vec<[f64; 2]> {
+    /// How far the lines are off it, pt, and how many there are at most.
+    const OFF_PT: f64 = 0.02;
+    const MOST_CURVE_STEPS: f64 = 1e5;
+    let count = PI * (0.5 * radius_m * pt_per_m / OFF_PT).sqrt();
+    let count = count.ceil().clamp(8.0, MOST_CURVE_STEPS);
+    let places = (0..=count as u32).map(|number| {
+        let angle = TAU * f64::from(number) / count;
+        [radius_m * libm::cos(angle), radius_m * libm::sin(angle)]
+    });
+    places.collect()
+}
+
+/// The stretches of both axes of paths: one is never less than half of the other, so that a path along a line has a picture
+/// too.
+fn both_ranges(series: &[ChartSeries], runs: &[FigureRun]) -> [(f64, f64); 2] {
+    const LEAST_MAGNIFIED_SHARE: f64 = 0.5;
+    let size = size::axis(runs, "x_m");
+    let ranges = [0, 1].map(|axis| {
+        let values = series.iter().flat_map(|series| series.reach(axis));
+        size.range_of(values)
+    });
+    let longest = ranges.iter().map(|(low, high)| high - low);
+    let least = LEAST_MAGNIFIED_SHARE * longest.fold(0.0, f64::max);
+    ranges.map(|(low, high)| {
+        let missing = (least - (high - low)).max(0.0);
+        (low - 0.5 * missing, high + 0.5 * missing)
+    })
+}

@@ -1,0 +1,257 @@
+//! What was measured, on the model that was fitted to it; below, what is left of it.
+
+use super::{RowIndices, grouped, numbers, points, within_room};
+use crate::engine::data::quantity::TIME_COLUMN;
+use crate::engine::data::{self, MeasuredCurve, MeasuredPoint, RunQuantity};
+use crate::engine::scenario::Document;
+use crate::engine::text::number::{significant, uncertain};
+use crate::plot::chart::legend::longest_name;
+use crate::plot::chart::ticks::{power_of_ten, with_minus};
+use crate::plot::chart::{ChartAxis, ChartSeries, Panel, SeriesStyle};
+use crate::plot::extent;
+use crate::plot::letters;
+use crate::report::figure::quantity;
+use crate::studies::table::{FitTable, FittedKey, TableSource};
+use std::sync::Arc;
+
+/// Points on the curve of a model over time: several for each dot of a column's width.
+const MODEL_CURVE_POINTS: u32 = 1500;
+/// The most runs under several settings that can be distinguished.
+const MOST_GROUPS: usize = 6;
+
+/// What is drawn.
+struct FitFigure<'a> {
+    table: &'a TableSource,
+    fit: &'a FitTable,
+    /// The run file, in which the keys have their names.
+    scenario: toml::Table,
+    /// The longest name in the legend, pt.
+    room_pt: f64,
+    /// The column over which it is drawn, and its numbers.
+    along: &'a str,
+    x: Vec<f64>,
+}
+
+/// The axis of the time or of a setting, and for each quantity a panel with its values and one with what is left of them.
+pub(super) fn drawn(
+    table: &TableSource,
+    fit: &FitTable,
+    columns: &[&str],
+    width_pt: f64,
+) -> Result<(ChartAxis, Vec<Panel>), String> {
+    let (along, x) = along(table, &fit.settings)?;
+    let drawing = FitFigure {
+        table,
+        fit,
+        scenario: fit.run_file.parse().unwrap_or_default(),
+        room_pt: longest_name(width_pt),
+        along,
+        x,
+    };
+    let mut panels = Vec::new();
+    for (name, rows) in grouped(&table.texts("quantity").unwrap_or_default()) {
+        if columns.is_empty() || columns.contains(&name.as_str()) {
+            let groups = drawing.groups(rows);
+            panels.push(drawing.values(&name, &groups)?);
+            panels.push(drawing.residuals(&name, &groups)?);
+        }
+    }
+    if panels.is_empty() {
+        Err("none of these is a quantity that was fitted".to_owned())
+    } else {
+        Ok((quantity::axis(along), panels))
+    }
+}
+
+impl FitFigure<'_> {
+    /// `key` with what stands for its value, such as "*z* of weight = 0.1555 m".
+    fn said(&self, key: &str, value: &str) -> String {
+        let axes = key
+            .split('+')
+            .map(|key| quantity::axis_in(&self.scenario, key));
+        let (names, units): (Vec<_>, Vec<_>) = axes.map(|axis| (axis.name, axis.unit)).unzip();
+        let unit = units.first().map_or("", String::as_str);
+        let said = format!("{} = {value} {unit}", names.join(" = "));
+        said.trim_end().to_owned()
+    }
+
+    /// What the legend says of the model: the value of each free key.
+    fn model(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        for found in &self.fit.found {
+            let model = if lines.is_empty() { "model: " } else { "" };
+            let said = format!("{model}{}", self.said(&found.key, &stated(found)));
+            let value = significant(found.value, FIT_VALUE_DIGITS);
+            let plain = format!("{model}{} = {value}", found.key);
+            lines.push(within_room(said, &plain, self.room_pt));
+        }
+        if lines.is_empty() {
+            lines.push("model".to_owned());
+        }
+        let scheme = self.scenario.get("motion").and_then(|it| it.get("scheme"));
+        if let Some(scheme) = scheme.and_then(toml::Value::as_str) {
+            let said = format!("scheme: {}", letters::escape(scheme));
+            lines.push(within_room(said, scheme, self.room_pt));
+        }
+        lines
+    }
+}
+
+/// Digits of a value whose uncertainty cannot be stated.
+const FIT_VALUE_DIGITS: usize = 6;
+
+/// The value with its uncertainty, as markup.
+fn stated(found: &FittedKey) -> String {
+    let stated = found
+        .uncertainty
+        .and_then(|sigma| uncertain(found.value, sigma));
+    match stated {
+        Some(stated) if stated.exponent == 0 => with_minus(&stated.digits),
+        Some(stated) => {
+            let power = power_of_ten(stated.exponent);
+            format!("{} · {power}", with_minus(&stated.digits))
+        }
+        None => with_minus(&significant(found.value, FIT_VALUE_DIGITS)),
+    }
+}
+
+/// The column over which a fit is drawn, the one with the most different numbers, and these.
+fn along<'a>(table: &TableSource, settings: &'a [String]) -> Result<(&'a str, Vec<f64>), String> {
+    let count = |numbers: &[f64]| {
+        let mut sorted = numbers.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        sorted.dedup();
+        sorted.len()
+    };
+    let numbers = settings.iter().rev().filter_map(|name| {
+        let numbers = table.numbers(name)?;
+        let is_whole = numbers.iter().all(|number| number.is_finite());
+        is_whole.then_some((name.as_str(), numbers))
+    });
+    // Of columns with as many, the first.
+    let most = numbers.max_by_key(|(_, numbers)| count(numbers));
+    most.ok_or_else(|| "no column that says where its values were measured is a number".to_owned())
+}
+
+/// The fitted run's own curve of the quantity `name` over the times that `x` spans.
+fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
+    let scenario = Document::parse_header("", run_file).ok()?.scenario().ok()?;
+    let quantity = RunQuantity::find(name)?;
+    let (begin, end) = extent(x.iter().copied())?;
+    let time =
+        |index: u32| begin + (end - begin) * (f64::from(index) / f64::from(MODEL_CURVE_POINTS));
+    let times_s: Vec<f64> = (0..=MODEL_CURVE_POINTS).map(time).collect();
+    let point = |row| MeasuredPoint {
+        row,
+        value: 0.0,
+        sigma: None,
+    };
+    let series = data::TimeSeries {
+        curves: vec![MeasuredCurve {
+            quantity,
+            points: (0..times_s.len()).map(point).collect(),
+        }],
+        times_s,
+    };
+    let values = data::at_times(&series, &Arc::new(scenario), &|| true);
+    let values = values.ok()??.pop()?;
+    let pairs = series.times_s.iter().zip(values);
+    Some(pairs.map(|(&time_s, value)| [time_s, value]).collect())
+}
+
+impl FitFigure<'_> {
+    /// `rows` by what else was set, each with its values as its name; all of them where that are too many.
+    fn groups(&self, rows: RowIndices) -> Vec<(String, RowIndices)> {
+        let others = self.fit.settings.iter().filter(|name| *name != self.along);
+        let columns: Vec<(&str, Vec<&str>)> = others
+            .filter_map(|name| Some((name.as_str(), self.table.texts(name)?)))
+            .collect();
+        // What is the same in every row tells no two apart.
+        let differs = |texts: &Vec<&str>| rows.iter().any(|&row| texts[row] != texts[rows[0]]);
+        let named = |row: &usize| {
+            let parts = columns.iter().filter(|(_, texts)| differs(texts));
+            let (said, values): (Vec<_>, Vec<_>) = parts
+                .map(|(key, texts)| {
+                    let value = texts[*row].trim_end_matches(".0");
+                    (self.said(key, &letters::escape(value)), value)
+                })
+                .unzip();
+            within_room(said.join(", "), &values.join(", "), self.room_pt)
+        };
+        let names: Vec<String> = rows.iter().map(named).collect();
+        let mut groups = grouped(&names);
+        if groups.len() > MOST_GROUPS {
+            return vec![(String::new(), rows)];
+        }
+        let places = groups.iter_mut().flat_map(|(_, places)| places);
+        places.for_each(|place| *place = rows[*place]);
+        groups
+    }
+
+    /// The numbers of `column` in `rows`, from left to right, with the errors of what was measured.
+    fn series(&self, column: &str, rows: &RowIndices) -> Result<ChartSeries, String> {
+        let values = numbers(self.table, column)?;
+        let errors = numbers(self.table, "uncertainty")?;
+        let errors = points(rows, &self.x, &errors).into_iter();
+        Ok(ChartSeries {
+            points: points(rows, &self.x, &values),
+            errors: [Vec::new(), errors.map(|[_, error]| error).collect()],
+            ..ChartSeries::default()
+        })
+    }
+
+    /// The panel of the values on the model.
+    fn values(&self, name: &str, groups: &[(String, RowIndices)]) -> Result<Panel, String> {
+        let curve = (self.along == TIME_COLUMN).then(|| curve(&self.fit.run_file, name, &self.x));
+        let curve = curve.flatten();
+        let mut series = Vec::new();
+        let mut said = self.model().into_iter();
+        for (index, (group, rows)) in groups.iter().enumerate() {
+            let points = self.series("model", rows)?.points;
+            let style = SeriesStyle {
+                dash_pt: &[],
+                ..SeriesStyle::theory(index, 0)
+            };
+            let model = curve.clone().unwrap_or(points);
+            series.push(ChartSeries::new(
+                said.next().unwrap_or_default(),
+                model,
+                style,
+            ));
+            // The values of further keys, each on a line of the legend without a curve.
+            series.extend(said.by_ref().map(ChartSeries::named));
+            series.push(ChartSeries {
+                name: match groups {
+                    [_] => "measured".to_owned(),
+                    _ => group.clone(),
+                },
+                style: SeriesStyle::points(index),
+                ..self.series("measured", rows)?
+            });
+        }
+        Ok(Panel::new(quantity::axis(name), series))
+    }
+
+    /// The panel of what is left, in units of the uncertainties where all are stated.
+    fn residuals(&self, name: &str, groups: &[(String, RowIndices)]) -> Result<Panel, String> {
+        let all = || groups.iter().flat_map(|(_, rows)| rows);
+        let errors = numbers(self.table, "uncertainty")?;
+        let are_stated = all().all(|&row| errors[row].is_finite());
+        let (column, unit) = if are_stated {
+            ("residual_sigmas", letters::escape("σ"))
+        } else {
+            ("residual", quantity::axis(name).unit)
+        };
+        let ends = extent(all().map(|&row| self.x[row]));
+        let mut series: Vec<_> = ends.map(ChartSeries::level).into_iter().collect();
+        for (index, (_, rows)) in groups.iter().enumerate() {
+            let mut left = self.series(column, rows)?;
+            if are_stated {
+                left.errors[1].fill(1.0);
+            }
+            left.style = SeriesStyle::points(index);
+            series.push(left);
+        }
+        Ok(Panel::new(ChartAxis::new("residual", unit), series))
+    }
+}

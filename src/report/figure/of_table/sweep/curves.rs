@@ -1,0 +1,171 @@
+//! The curves of a sweep: its rows by what else was varied, and what each is called; and the lines of theory, one for all
+//! curves of which it says the same.
+
+use crate::engine::text::number::shortest;
+use crate::plot::COLUMN_PT;
+use crate::plot::chart::SeriesStyle;
+use crate::plot::chart::ticks::with_minus;
+use crate::plot::letters;
+use crate::report::figure::of_table::{RowIndices, grouped, within_room};
+use crate::report::figure::quantity;
+use crate::studies::table::{SweepTable, TableSource};
+
+/// The key whose values are names.
+const SCHEME_KEY: &str = "motion.scheme";
+/// Numbers that differ by no more than this part of themselves are the same.
+const SAME_NUMBER: f64 = 1e-6;
+/// From this many rows on a line looks smooth at the width of a column; with fewer its points are marked.
+const SMOOTH_CURVE_ROWS: f64 = 40.0;
+
+/// The rows of one curve.
+#[derive(Clone, Debug)]
+pub(super) struct SweepCurve {
+    /// Which of the curves it is, from 0.
+    pub index: usize,
+    /// Its rows.
+    pub rows: RowIndices,
+    /// The values of what else was varied.
+    pub settings: Vec<CurveSetting>,
+}
+
+/// A key and its value: as at an axis, "*θ*_{0} = 20°", and in full.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CurveSetting {
+    markup: String,
+    plain: String,
+}
+
+/// The curves of a sweep, of whose keys `along` is on the axis below.
+pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Vec<SweepCurve> {
+    let others = swept.varied.iter().filter(|key| *key != along);
+    let others: Vec<(&String, Vec<&str>)> = others
+        .filter_map(|key| Some((key, table.texts(key)?)))
+        .collect();
+    let values = |row: usize| {
+        let texts: Vec<_> = others.iter().map(|(_, texts)| texts[row]).collect();
+        texts.join("\n")
+    };
+    let values: Vec<String> = (0..table.count()).map(values).collect();
+    let groups = grouped(&values).into_iter().enumerate();
+    let curve = |(index, (_, rows)): (usize, (String, RowIndices))| {
+        let setting = |(key, texts): &(&String, Vec<&str>)| {
+            CurveSetting::new(&swept.scenario, key, texts[rows[0]])
+        };
+        SweepCurve {
+            index,
+            settings: others.iter().map(setting).collect(),
+            rows,
+        }
+    };
+    groups.map(curve).collect()
+}
+
+/// What a curve with these `settings` is called, as markup no longer than `room_pt`; `word` stands before.
+pub(super) fn name(word: &str, settings: &[CurveSetting], room_pt: f64) -> String {
+    let joined = |of: fn(&CurveSetting) -> &str| {
+        let word = Some(word).filter(|word| !word.is_empty());
+        let said = word.into_iter().chain(settings.iter().map(of));
+        said.collect::<Vec<_>>().join(", ")
+    };
+    let (markup, plain) = (joined(|it| &it.markup), joined(|it| &it.plain));
+    within_room(markup, &plain, room_pt)
+}
+
+impl CurveSetting {
+    fn new(scenario: &toml::Table, key: &str, value: &str) -> Self {
+        if key == SCHEME_KEY {
+            return Self {
+                markup: letters::escape(value),
+                plain: value.to_owned(),
+            };
+        }
+        let axis = quantity::axis_in(scenario, key);
+        let said = match value.parse() {
+            Ok(number) => {
+                let unit = axis.unit;
+                let space = if unit.is_empty() || unit == "°" {
+                    ""
+                } else {
+                    " "
+                };
+                format!("{}{space}{unit}", with_minus(&shortest(number)))
+            }
+            Err(_) => letters::escape(value),
+        };
+        Self {
+            markup: format!("{} = {said}", axis.name),
+            plain: format!("{key} = {value}"),
+        }
+    }
+}
+
+/// A line of theory.
+pub(super) struct TheoryLine {
+    /// The first of the curves that it is for.
+    index: usize,
+    /// Its points from left to right.
+    pub points: Vec<[f64; 2]>,
+    /// What is set alike for all of them.
+    pub settings: Vec<CurveSetting>,
+}
+
+/// The lines of what theory says of each of these curves, whose points run from left to right. A curve of which it says
+/// nothing has none.
+pub(super) fn lines<'a>(
+    curves: impl Iterator<Item = (&'a SweepCurve, Vec<[f64; 2]>)>,
+) -> Vec<TheoryLine> {
+    let mut lines: Vec<TheoryLine> = Vec::new();
+    for (curve, points) in curves {
+        if !points.iter().any(|point| point[1].is_finite()) {
+            continue;
+        }
+        match lines.iter_mut().find(|line| line.says(&points)) {
+            Some(line) => line.take_in(curve, points),
+            None => lines.push(TheoryLine {
+                index: curve.index,
+                points,
+                settings: curve.settings.clone(),
+            }),
+        }
+    }
+    lines
+}
+
+impl TheoryLine {
+    fn place(&self, x: f64) -> Result<usize, usize> {
+        self.points.binary_search_by(|point| point[0].total_cmp(&x))
+    }
+
+    /// Whether it has the values of `points`, wherever both have one, and they do somewhere.
+    fn says(&self, points: &[[f64; 2]]) -> bool {
+        let pairs = points.iter().filter_map(|&[x, value]| {
+            let own = self.points[self.place(x).ok()?][1];
+            (own.is_finite() && value.is_finite()).then_some((own, value))
+        });
+        let is_same = |(a, b): (f64, f64)| (a - b).abs() <= SAME_NUMBER * a.abs().max(b.abs());
+        let mut pairs = pairs.peekable();
+        pairs.peek().is_some() && pairs.all(is_same)
+    }
+
+    /// Takes in a curve of which theory says the same, and the `points` that were missing.
+    fn take_in(&mut self, curve: &SweepCurve, points: Vec<[f64; 2]>) {
+        self.settings.retain(|it| curve.settings.contains(it));
+        for point in points.into_iter().filter(|point| point[1].is_finite()) {
+            match self.place(point[0]) {
+                Ok(place) if self.points[place][1].is_nan() => self.points[place] = point,
+                Ok(_) => {}
+                Err(place) => self.points.insert(place, point),
+            }
+        }
+    }
+
+    /// How it is drawn on a page of that width, the theory at `place` of its panel: as a line where the rows are close, else
+    /// as marks at the rows, since theory goes another way between them than the fine strokes that join them.
+    pub fn style(&self, place: usize, width_pt: f64) -> SeriesStyle {
+        if self.points.len() as f64 > SMOOTH_CURVE_ROWS * width_pt / COLUMN_PT {
+            SeriesStyle::theory(self.index, place)
+        } else {
+            SeriesStyle::theory_marked(self.index, place)
+        }
+    }
+}

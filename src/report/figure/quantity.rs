@@ -1,0 +1,194 @@
+//! What is written along the axis of a quantity: symbol and unit of a column, a readout or a key of a scenario.
+
+use crate::engine::analysis::readouts;
+use crate::engine::text::unit::Unit;
+use crate::plot::chart::ChartAxis;
+use crate::plot::chart::ticks::with_minus;
+use crate::plot::letters;
+
+/// How the names of a run's own numbers begin, and what they are called: what is measured is data.
+pub const MEASURED_PREFIX: &str = "measured_";
+pub const SIMULATED: &str = "simulated";
+
+/// The parts of a vector, by the numbers that keys give them.
+const VECTOR_PARTS: [(&str, &str); 3] = [("0", "*x*"), ("1", "*y*"), ("2", "*z*")];
+
+/// The axis of a column, of a readout, or of a dotted key of a scenario: of the readout's value at the start, where there is
+/// such a readout.
+pub fn axis(name: &str) -> ChartAxis {
+    let last = name.rsplit('.').next().unwrap_or(name);
+    let readout = readouts::find(if last == "step" { "steps" } else { last });
+    let (words, unit) = words(name);
+    match readout {
+        Some(readout) if !readout.symbol.is_empty() => {
+            let symbol = if name.starts_with("start.") {
+                at_start(readout.symbol)
+            } else {
+                readout.symbol.to_owned()
+            };
+            ChartAxis::new(symbol, unit_markup(readout.unit))
+        }
+        Some(readout) if last == name => ChartAxis::new(words, unit_markup(readout.unit)),
+        _ => ChartAxis::new(words, unit_markup(unit)),
+    }
+}
+
+/// The axis of a key of this `scenario`: a point or a part of the body is called by its name, "mass of weight", and L has the
+/// axes of its frame.
+pub fn axis_in(scenario: &toml::Table, key: &str) -> ChartAxis {
+    if let Some(axis) = of_momentum(scenario, key) {
+        return axis;
+    }
+    let mut steps = key.splitn(4, '.');
+    let steps = [(); 4].map(|()| steps.next().unwrap_or_default());
+    let [body, list @ ("point" | "part"), number, rest] = steps else {
+        return axis(key);
+    };
+    let number = number.parse::<usize>().ok();
+    let named = number.and_then(|number| scenario.get(body)?.get(list)?.get(number)?.get("name"));
+    let Some(name) = named.and_then(toml::Value::as_str) else {
+        return axis(key);
+    };
+    let own = axis(rest.strip_prefix("at_m.").unwrap_or(rest));
+    let unit = axis(rest).unit;
+    ChartAxis::new(format!("{} of {}", own.name, letters::escape(name)), unit)
+}
+
+/// The axis of a part of L at the start: along x, y, z of the world, or along 1, 2, 3 of the body. `None` where `key` is
+/// another one, or `scenario` has no start.
+fn of_momentum(scenario: &toml::Table, key: &str) -> Option<ChartAxis> {
+    let number = key.strip_prefix("start.momentum_Js.")?;
+    let part = VECTOR_PARTS
+        .iter()
+        .position(|(other, _)| *other == number)?;
+    let frame = scenario.get("start")?.get("momentum_frame");
+    let index = match frame.and_then(toml::Value::as_str) {
+        Some("body") => (part + 1).to_string(),
+        _ => VECTOR_PARTS[part].1.to_owned(),
+    };
+    let unit = unit_markup(Unit::of("momentum_Js").map_or("", |unit| unit.name));
+    Some(ChartAxis::new(at_start(&format!("*L*_{{{index}}}")), unit))
+}
+
+/// The symbol of a quantity's value at the start: with the index 0, behind the one that it may have.
+fn at_start(symbol: &str) -> String {
+    match symbol.strip_suffix('}') {
+        Some(indexed) => format!("{indexed},0}}"),
+        None => format!("{symbol}_{{0}}"),
+    }
+}
+
+/// A name as words in markup, and its unit.
+pub fn words(name: &str) -> (String, &'static str) {
+    let mut unit = "";
+    let mut in_words = |part: &str| -> String {
+        let (bare, of_part) = match Unit::of(part) {
+            Some(unit) => (&part[..part.len() - unit.end.len()], unit.name),
+            None => (part, ""),
+        };
+        if !of_part.is_empty() {
+            unit = of_part;
+        }
+        let bare = match bare.strip_prefix(MEASURED_PREFIX) {
+            Some(bare) => format!("{SIMULATED} {bare}"),
+            None => bare.to_owned(),
+        };
+        letters::escape(&bare.replace('_', " "))
+    };
+    let mut parts: Vec<&str> = name.split('.').collect();
+    if parts.len() > 1 && ["motion", "body"].contains(&parts[0]) {
+        parts.remove(0);
+    }
+    // A number at the end is a component, elsewhere a point, a part or a push.
+    let mut components = VECTOR_PARTS.iter();
+    let component = components.find(|(number, _)| parts.last() == Some(number));
+    if component.is_some() {
+        parts.pop();
+    }
+    let mut words: Vec<String> = parts.into_iter().map(&mut in_words).collect();
+    words.extend(component.map(|(_, letter)| (*letter).to_owned()));
+    (words.join(" "), unit)
+}
+
+/// A unit in markup: rad/s becomes rad s^{−1}.
+pub fn unit_markup(unit: &str) -> String {
+    let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
+    let power = |word: &str, sign: &str| -> String {
+        let digits = word.trim_start_matches(|c: char| !c.is_ascii_digit());
+        let base = &word[..word.len() - digits.len()];
+        let base = if base == "deg" { "°" } else { base };
+        match (digits, sign) {
+            ("", "") => base.to_owned(),
+            ("", sign) => format!("{base}^{{{}}}", with_minus(&format!("{sign}1"))),
+            (digits, sign) => format!("{base}^{{{}}}", with_minus(&format!("{sign}{digits}"))),
+        }
+    };
+    let above = above
+        .split(' ')
+        .filter(|word| !word.is_empty() && *word != "1");
+    let below = below.split(' ').filter(|word| !word.is_empty());
+    let all = above
+        .map(|word| power(word, ""))
+        .chain(below.map(|word| power(word, "-")));
+    all.collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::export::columns::COLUMNS;
+
+    #[test]
+    fn columns_have_symbols_and_units() {
+        for (column, name, unit) in [
+            ("Lx_Js", "*L*_{*x*}", "J s"),
+            ("start.spin_rpm", "*ω*_{3,0}", "rpm"),
+            ("wz_rad_per_s", "*ω*_{*z*}", "rad s^{−1}"),
+            ("tilt_deg", "*θ*", "°"),
+            ("steps_per_second", "steps per second", "s^{−1}"),
+            ("start.tilt_deg", "*θ*_{0}", "°"),
+            ("motion.time_step_s", "Δ*t*", "s"),
+            ("start.momentum_Js.2", "start momentum *z*", "J s"),
+            ("motion.gravity_m_per_s2", "gravity", "m s^{−2}"),
+        ] {
+            let axis = axis(column);
+            assert_eq!((&*axis.name, &*axis.unit), (name, unit), "{column}");
+        }
+    }
+
+    #[test]
+    fn a_part_of_the_body_is_called_by_its_name() {
+        let text =
+            "[[body.point]]\nname = \"a_b\"\n[[body.part]]\n[[body.part]]\nname = \"ball\"\n";
+        let [world, body] = [
+            "start.momentum_frame='world'",
+            "start.momentum_frame='body'",
+        ];
+        for (scenario, key, written) in [
+            (text, "body.point.0.at_m.2", "*z* of a\\_b (m)"),
+            (text, "body.point.0.mass_kg", "mass of a\\_b (kg)"),
+            (
+                text,
+                "body.part.1.moments_kg_m2.2",
+                "moments *z* of ball (kg m^{2})",
+            ),
+            (text, "start.momentum_Js.2", "start momentum *z* (J s)"),
+            (world, "start.momentum_Js.2", "*L*_{*z*,0} (J s)"),
+            (body, "start.momentum_Js.2", "*L*_{3,0} (J s)"),
+            // Without a name it is called by its number.
+            (text, "body.part.0.mass_kg", "part 0 mass (kg)"),
+            (text, "start.tilt_deg", "*θ*_{0} (°)"),
+        ] {
+            let axis = axis_in(&scenario.parse().unwrap(), key);
+            assert_eq!(format!("{} ({})", axis.name, axis.unit), written, "{key}");
+        }
+    }
+
+    #[test]
+    fn every_column_of_a_run_has_a_name_and_no_underscore_in_it() {
+        for column in COLUMNS {
+            let name = axis(column.name).name;
+            assert!(!name.is_empty() && !name.contains("_m"), "{name}");
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! A figure, drawn again from what its file carries.
+
+use crate::engine::provenance::{FigureFile, FileFormat, Payload, SCREEN};
+use crate::plot::{PageFormat, write};
+use crate::report::figure::FigureSource;
+use crate::studies::verify::{Unverified, other_version};
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// What differs in a figure, and what else there is to say, a line each.
+type Redrawn = (Option<String>, Vec<String>);
+
+/// Draws the figure in the file `path` again: what differs, where something does, and what else there is to say, a line each.
+/// `None` where the file is no figure. `watch` is as for a CSV.
+pub fn redraw(
+    path: &Path,
+    watch: impl Fn(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Redrawn>, Unverified> {
+    let Some(figure) = FigureFile::open(path)? else {
+        return Ok(None);
+    };
+    let mut notes = Vec::from_iter(other_version(&figure.origin.gyrolab));
+    if let Some(changed) = figure.changed {
+        return Ok(Some((Some(changed.to_owned()), notes)));
+    }
+    if figure.origin.figure.contains_key(SCREEN) {
+        let rule = "is a picture of the lab's screen, which is not drawn again; picture and run are as they were written, and gyrolab run takes the run";
+        return Err(rule.to_owned().into());
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let source = FigureSource::of(&figure.origin, folder);
+    let source = source.map_err(|problems| {
+        let versions = notes.first().map(|note| format!(" ({note})"));
+        problems.in_one_line() + &versions.unwrap_or_default()
+    })?;
+    let drawn = source.draw(watch)?.ok_or(Unverified::Stopped)?;
+    let again = write(&drawn.scene, format(&figure, &source), Some(&figure.origin));
+    let again = FigureFile::of(again.map_err(|error| error.to_string())?)?;
+    if figure.origin.all(Payload::Table).next().is_some() {
+        notes.push("drawn from the table in it; gyrolab verify computes that where it has a file of its own".to_owned());
+    }
+    let (there, drawn) = (&figure.picture, &again.picture);
+    let mut difference = None;
+    if there != drawn {
+        let is_same = || {
+            let drawn = pixels(drawn, MOST_PIXELS)?;
+            Some(pixels(there, drawn.1.len())? == drawn)
+        };
+        if figure.form == FileFormat::Png && is_same() == Some(true) {
+            notes.push("its pixels are the same, compressed otherwise".to_owned());
+        } else {
+            difference = Some("its run, drawn again, gives another picture".to_owned());
+        }
+    }
+    Ok(Some((difference, notes)))
+}
+
+fn format(figure: &FigureFile, source: &FigureSource) -> PageFormat {
+    match figure.form {
+        FileFormat::Svg if source.asked.text => PageFormat::SvgText,
+        FileFormat::Svg => PageFormat::Svg,
+        FileFormat::Pdf => PageFormat::Pdf,
+        FileFormat::Png => PageFormat::Png,
+    }
+}
+
+/// The most bytes of the pixels of a PNG that is drawn.
+const MOST_PIXELS: usize = 300_000_000;
+
+/// The size and the pixels of a PNG whose pixels take no more than `most` bytes.
+fn pixels(file: &[u8], most: usize) -> Option<(png::OutputInfo, Vec<u8>)> {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(file))
+        .read_info()
+        .ok()?;
+    let length = reader
+        .output_buffer_size()
+        .filter(|length| *length <= most)?;
+    let mut pixels = vec![0; length];
+    let info = reader.next_frame(&mut pixels).ok()?;
+    Some((info, pixels))
+}

@@ -1,0 +1,322 @@
+//! The path in space: a box with grids on its far sides, axes along its near edges, the path's shadow on the floor, and depth
+//! by weight and grey of the line.
+//!
+//! x and y have one scale; z has its own, since a swing is often small beside the precession.
+
+mod path;
+
+use super::chords;
+use super::dense;
+use super::quantity;
+use super::request::{Dense, FigureJob, FigureRun, SampledRunNumbers};
+use super::size;
+use crate::engine::text::number::significant;
+use crate::plot::camera::{Camera, CameraView};
+use crate::plot::chart::layout::PAGE_EDGE;
+use crate::plot::chart::legend::Legend;
+use crate::plot::chart::ticks::{Tick, Ticks};
+use crate::plot::chart::{ChartAxis, SeriesStyle, curve};
+use crate::plot::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
+use crate::plot::scene::{Color, PageScene, Point, StrokeStyle};
+use nalgebra::Vector3;
+
+/// Height of the box, of the length of its sides.
+const TALL: f64 = 0.72;
+/// Distance of the eye from the middle of the box, in the same.
+const EYE: f64 = 5.0;
+/// The lowest and the highest eye with which both floor and walls are seen, degrees.
+const PITCHES_DEG: (f64, f64) = (8.0, 65.0);
+/// Length of a tick, and of the gap between it and its label, pt.
+const SPACE_TICK_LENGTH: f64 = 2.5;
+const TICK_GAP: f64 = 2.2;
+/// Between labels and title, pt.
+const SPACE_TITLE_GAP: f64 = 3.0;
+
+/// z is said to be stretched from this factor on.
+const STATED_STRETCH: f64 = 1.1;
+
+/// Lengths of the box's sides.
+const SIZES: [f64; 3] = [1.0, 1.0, TALL];
+
+struct Space {
+    view: CameraView,
+    /// What the three sides of the box show.
+    ranges: [(f64, f64); 3],
+    side_pt: f64,
+}
+
+/// The figure of paths in space; and of one that is solid black, what it is and which stretch of time is not.
+pub(super) fn scene(
+    job: &FigureJob<'_>,
+    drawn: &[SampledRunNumbers],
+) -> (PageScene, Option<Dense>) {
+    let width_pt = job.request.width_pt;
+    let space = Space::fitted(job.runs, drawn, width_pt);
+    let looks = drawn.iter();
+    let looks = looks.map(|drawn| chords::as_drawn(drawn, &drawn.course.path));
+    let (names, mut styles): (Vec<_>, Vec<_>) = looks.unzip();
+    let mut above = curve::Above::default();
+    for (drawn, style) in drawn.iter().zip(&mut styles) {
+        let lines = drawn.course.path.lines(|at| space.place(&space.boxed(at)));
+        above.add(&lines, style);
+    }
+    let series = names.iter().map(String::as_str).zip(&styles);
+    let legend = Legend::new(series, space.stretched());
+    let mut items = space.draw(drawn, &styles);
+    let (left, top, right, bottom) = extent(&items);
+    let above = legend.height_above(width_pt) + PAGE_EDGE;
+    let shift = at(0.5 * (width_pt - left - right), above - top);
+    for item in &mut items.items {
+        *item = item.clone().mapped(|p| at(p.x + shift.x, p.y + shift.y));
+    }
+    items.title = job.title();
+    items.width_pt = width_pt;
+    items.height_pt = above + bottom - top + PAGE_EDGE;
+    legend.draw_above(width_pt, PAGE_EDGE, &mut items);
+    let place = |at: &[f64; 3]| space.place(&space.boxed(at));
+    let dense = dense::of_paths(drawn, job.request, |course| &course.path, place);
+    (items, dense)
+}
+
+/// The direction that the first run's file asks for, or the usual one; never so low or so high that a side of the box vanishes.
+fn camera(runs: &[FigureRun]) -> Camera {
+    let file = runs
+        .first()
+        .and_then(|run| run.scenario.file.viewed("camera"));
+    let camera = file.and_then(|camera| camera.clone().try_into().ok());
+    let camera: Camera = camera.unwrap_or_default();
+    Camera {
+        yaw_deg: camera.yaw_deg,
+        pitch_deg: camera.pitch_deg.clamp(PITCHES_DEG.0, PITCHES_DEG.1),
+    }
+}
+
+fn ranges(drawn: &[SampledRunNumbers], size: &ChartAxis) -> [(f64, f64); 3] {
+    let range = |index: usize| {
+        let paths = drawn.iter().flat_map(|drawn| &drawn.course.path.points);
+        size.range_of(paths.map(|point| point[index]))
+    };
+    let [x, y, z] = [0, 1, 2].map(range);
+    let half = 0.5 * (x.1 - x.0).max(y.1 - y.0);
+    let square = |(low, high): (f64, f64)| (0.5 * (low + high) - half, 0.5 * (low + high) + half);
+    [square(x), square(y), z]
+}
+
+/// Left, upper, right and lower end of what is drawn, pt.
+fn extent(scene: &PageScene) -> (f64, f64, f64, f64) {
+    let points = || scene.items.iter().flat_map(|item| item.path.points());
+    let ends = |of: fn(Point) -> f64| crate::plot::extent(points().map(of)).unwrap_or_default();
+    let ((left, right), (top, bottom)) = (ends(|p| p.x), ends(|p| p.y));
+    (left, top, right, bottom)
+}
+
+impl Space {
+    /// The space in which the box and its labels are as wide as the page.
+    fn fitted(runs: &[FigureRun], drawn: &[SampledRunNumbers], width_pt: f64) -> Self {
+        let mut space = Self {
+            view: camera(runs).view(),
+            ranges: ranges(drawn, &size::axis(runs, "z_m")),
+            side_pt: 0.5 * width_pt,
+        };
+        // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
+        for _ in 0..4 {
+            let (left, _, right, _) = extent(&space.draw(&[], &[]));
+            let over = right - left - (width_pt - 2.0 * PAGE_EDGE);
+            space.side_pt = (space.side_pt - over / 1.45).max(0.1 * width_pt);
+            if over.abs() < 0.2 {
+                break;
+            }
+        }
+        space
+    }
+
+    /// How much longer z is drawn than x and y, where that is to be seen, as markup.
+    fn stretched(&self) -> Option<String> {
+        let [x, _, z] = self.ranges.map(|(low, high)| high - low);
+        let factor = TALL * x / z;
+        if factor >= STATED_STRETCH {
+            return Some(format!("*z* stretched {}-fold", significant(factor, 2)));
+        }
+        let is_shorter = factor.recip() >= STATED_STRETCH;
+        is_shorter.then(|| format!("*z* shortened to {} of its length", significant(factor, 2)))
+    }
+
+    /// A place in the box: from −1/2 to 1/2 along each side, but for its height.
+    fn boxed(&self, point: &[f64; 3]) -> Vector3<f64> {
+        Vector3::from_fn(|axis, _| SIZES[axis] * (self.share(axis, point[axis]) - 0.5))
+    }
+
+    /// Where a place in the box stands on the page, pt.
+    fn place(&self, boxed: &Vector3<f64>) -> Point {
+        let (right, up) = self.view.project(boxed);
+        let size = self.side_pt * EYE / (EYE + self.view.depth(boxed));
+        at(size * right, -size * up)
+    }
+
+    /// The end of an axis that is nearer to the eye.
+    fn near(&self, axis: usize) -> f64 {
+        let mut ahead = Vector3::zeros();
+        ahead[axis] = 1.0;
+        if self.view.depth(&ahead) < 0.0 {
+            0.5
+        } else {
+            -0.5
+        }
+    }
+
+    /// The box with the paths of `drawn`, each in one of `styles`.
+    fn draw(&self, drawn: &[SampledRunNumbers], styles: &[SeriesStyle]) -> PageScene {
+        let mut scene = PageScene::new(0.0, 0.0, "");
+        let edges = [self.edge(0), self.edge(1), self.edge(2)];
+        let ticks = [0, 1, 2].map(|axis| self.ticks(axis, &edges[axis]));
+        self.walls(&ticks, &mut scene);
+        self.paths(drawn, styles, &mut scene);
+        for axis in 0..3 {
+            self.axis(axis, &edges[axis], &ticks[axis], &mut scene);
+        }
+        scene
+    }
+
+    /// The ends of the edge along which the axis runs.
+    fn edge(&self, axis: usize) -> [Vector3<f64>; 2] {
+        let (x, y) = (self.near(0), self.near(1));
+        let mut foot = Vector3::new(x, y, -0.5 * TALL);
+        if axis == 2 {
+            // The one farther to the left of the two uprights between a near and a far side.
+            let [a, b] = [(x, -y), (-x, y)].map(|(x, y)| Vector3::new(x, y, 0.0));
+            foot = if self.place(&b).x < self.place(&a).x {
+                b
+            } else {
+                a
+            };
+        }
+        [-0.5, 0.5].map(|side| {
+            let mut end = foot;
+            end[axis] = side * SIZES[axis];
+            end
+        })
+    }
+
+    /// Where the value `share` of the way along an edge stands.
+    fn along(edge: &[Vector3<f64>; 2], share: f64) -> Vector3<f64> {
+        edge[0] + (edge[1] - edge[0]) * share
+    }
+
+    fn share(&self, axis: usize, value: f64) -> f64 {
+        let (low, high) = self.ranges[axis];
+        (value - low) / (high - low)
+    }
+
+    fn ticks(&self, axis: usize, edge: &[Vector3<f64>; 2]) -> Ticks {
+        /// Between two labels, beside and above each other, pt.
+        const LABEL_DISTANCE: (f64, f64) = (6.0, 6.5);
+        let (low, high) = self.ranges[axis];
+        let place = |tick: &Tick| self.place(&Self::along(edge, self.share(axis, tick.at)));
+        let height = ink::height(LABEL_PT);
+        let fits = |ticks: &[Tick]| {
+            ticks.len() <= 6
+                && ticks.windows(2).all(|pair| {
+                    let (a, b) = (place(&pair[0]), place(&pair[1]));
+                    let half = |tick: &Tick| 0.5 * ink::width(&tick.label, LABEL_PT);
+                    let wide = half(&pair[0]) + half(&pair[1]) + LABEL_DISTANCE.0;
+                    (a.x - b.x).abs() >= wide || (a.y - b.y).abs() >= height + LABEL_DISTANCE.1
+                })
+        };
+        let mut ticks = Ticks::linear(low, high, fits);
+        // Labels at a corner would stand beside those of another axis.
+        let is_inside = |tick: &Tick| (0.03..=0.97).contains(&self.share(axis, tick.at));
+        if ticks.major.iter().filter(|tick| is_inside(tick)).count() >= 2 {
+            ticks.major.retain(is_inside);
+        }
+        ticks
+    }
+
+    /// The far sides: their grids, and their outlines.
+    fn walls(&self, ticks: &[Ticks; 3], scene: &mut PageScene) {
+        /// Along which sides the grid of each axis runs.
+        const ALONG: [[usize; 2]; 3] = [[1, 2], [0, 2], [1, 0]];
+        let far = Vector3::new(-self.near(0), -self.near(1), -0.5 * TALL);
+        let opposite = |mut place: Vector3<f64>, axis: usize| {
+            place[axis] = -place[axis];
+            place
+        };
+        let mut line = |ends: [Vector3<f64>; 2], width: f64, level: u8| {
+            scene.line(ends.map(|end| self.place(&end)), width, grey(level));
+        };
+        for (axis, ticks) in ticks.iter().enumerate() {
+            for tick in &ticks.major {
+                for along in ALONG[axis] {
+                    let mut from = far;
+                    from[axis] = SIZES[axis] * (self.share(axis, tick.at) - 0.5);
+                    from[along] = -0.5 * SIZES[along];
+                    line([from, opposite(from, along)], 0.35, 215);
+                }
+            }
+        }
+        for corner in [far, opposite(far, 2)] {
+            line([corner, opposite(corner, 0)], 0.4, 140);
+            line([corner, opposite(corner, 1)], 0.4, 140);
+        }
+        for foot in [far, opposite(far, 0), opposite(far, 1)] {
+            line([foot, opposite(foot, 2)], 0.4, 140);
+        }
+    }
+
+    /// An axis with its ticks, labels and title, outside of the box.
+    fn axis(&self, axis: usize, edge: &[Vector3<f64>; 2], ticks: &Ticks, scene: &mut PageScene) {
+        let ends = edge.map(|end| self.place(&end));
+        scene.line(ends, 0.6, BLACK);
+        let out = self.outwards(axis, edge);
+        let height = ink::height(LABEL_PT);
+        let mut reach: f64 = 0.0;
+        for tick in &ticks.major {
+            let foot = self.place(&Self::along(edge, self.share(axis, tick.at)));
+            let to = |length: f64| at(foot.x + out.x * length, foot.y + out.y * length);
+            scene.line([foot, to(SPACE_TICK_LENGTH)], 0.5, BLACK);
+            // As far out as the label needs to be clear of the tick.
+            let half = at(0.5 * ink::width(&tick.label, LABEL_PT), 0.5 * height);
+            let clear = SPACE_TICK_LENGTH + TICK_GAP + half.x * out.x.abs() + half.y * out.y.abs();
+            let middle = to(clear);
+            reach = reach.max(clear + half.x * out.x.abs() + half.y * out.y.abs());
+            let base = at(middle.x, middle.y + half.y);
+            scene.write(&tick.label, LABEL_PT, base, 0.5);
+        }
+        let name = ["x_m", "y_m", "z_m"][axis];
+        let title = quantity::axis(name).title(ticks);
+        let middle = self.place(&Self::along(edge, 0.5));
+        let (size, cap) = (TITLE_PT, ink::height(TITLE_PT));
+        if axis == 2 {
+            let x = middle.x - reach - SPACE_TITLE_GAP - 0.4 * cap;
+            scene.write_up(&title, size, at(x, middle.y));
+            return;
+        }
+        let half = at(0.5 * ink::width(&title, size), 0.6 * cap);
+        let clear = reach + SPACE_TITLE_GAP + half.x * out.x.abs() + half.y * out.y.abs();
+        let base = at(
+            middle.x + out.x * clear,
+            middle.y + out.y * clear + 0.5 * cap,
+        );
+        scene.write(&title, size, base, 0.5);
+    }
+
+    /// The direction on the page that leads from an axis out of the box.
+    fn outwards(&self, axis: usize, edge: &[Vector3<f64>; 2]) -> Point {
+        if axis == 2 {
+            return at(-1.0, 0.0);
+        }
+        let middle = Self::along(edge, 0.5);
+        let mut outside = middle;
+        let across = 1 - axis;
+        outside[across] += 0.1 * middle[across].signum();
+        let (a, b) = (self.place(&middle), self.place(&outside));
+        let length = libm::hypot(b.x - a.x, b.y - a.y).max(1e-9);
+        at((b.x - a.x) / length, (b.y - a.y) / length)
+    }
+}
+
+fn round_pen(width_pt: f64, color: Color) -> StrokeStyle {
+    StrokeStyle {
+        is_round: true,
+        ..pen(width_pt, color)
+    }
+}

@@ -1,0 +1,113 @@
+//! The paths in the box: what is near is wide and dark.
+
+use super::{Space, TALL, round_pen};
+use crate::plot::chart::SeriesStyle;
+use crate::plot::chart::axis::AxisScale;
+use crate::plot::chart::curve;
+use crate::plot::extent;
+use crate::plot::ink::{grey, paler};
+use crate::plot::scene::{PageScene, Point, StrokeStyle};
+use crate::report::figure::request::SampledRunNumbers;
+use nalgebra::Vector3;
+
+const DEPTHS: usize = 6;
+/// Width of the nearest and of the farthest line, pt, and the part of white in the farthest.
+const WIDTHS: (f64, f64) = (0.95, 0.5);
+const FARTHEST_WHITE: f64 = 0.58;
+
+/// A path, or its shadow on the floor: places on the page and their depths, in pieces.
+type PathPieces = Vec<Vec<(Point, f64)>>;
+
+impl Space {
+    /// The paths, the farthest parts first, and their shadows behind them.
+    pub(super) fn paths(
+        &self,
+        drawn: &[SampledRunNumbers],
+        styles: &[SeriesStyle],
+        scene: &mut PageScene,
+    ) {
+        for (drawn, style) in drawn.iter().zip(styles).rev() {
+            let on_floor = |at: &[f64; 3]| {
+                let boxed = self.boxed(at);
+                self.place(&Vector3::new(boxed.x, boxed.y, -0.5 * TALL))
+            };
+            let shadow = drawn.course.above.lines(on_floor);
+            draw(&shadow, &round_pen(0.45, grey(198)), style, scene);
+        }
+        let placed = |at: &[f64; 3]| {
+            let boxed = self.boxed(at);
+            (self.place(&boxed), self.view.depth(&boxed))
+        };
+        let paths = drawn.iter().map(|drawn| drawn.course.path.lines(placed));
+        let paths: Vec<PathPieces> = paths.collect();
+        let depths = paths.iter().flatten().flatten().map(|(_, depth)| *depth);
+        let (near, far) = extent(depths).unwrap_or_default();
+        let share = AxisScale {
+            range: (far, near),
+            is_log: false,
+            places: (0.0, DEPTHS as f64),
+        };
+        let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
+        let by_degree: Vec<_> = paths.iter().map(|path| by_degree(path, degree)).collect();
+        // The first run is on top of all others.
+        let pens: [fn(&SeriesStyle) -> Option<StrokeStyle>; 2] =
+            [|style| Some(style.pen()), SeriesStyle::core_pen];
+        for pen in pens {
+            for (by_degree, style) in by_degree.iter().zip(styles).rev() {
+                for (nearness, pieces) in by_degree.iter().enumerate() {
+                    if let Some(pen) = pen(style) {
+                        draw_at(nearness, pieces, pen, style, scene);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Draws pieces of that nearness: what is near is wide and dark.
+fn draw_at(
+    nearness: usize,
+    pieces: &[Vec<Point>],
+    pen: StrokeStyle,
+    style: &SeriesStyle,
+    scene: &mut PageScene,
+) {
+    let part = nearness as f64 / (DEPTHS - 1) as f64;
+    let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
+    let pen = StrokeStyle {
+        width_pt: pen.width_pt * width / SeriesStyle::default().width_pt,
+        color: paler(pen.color, FARTHEST_WHITE * (1.0 - part)),
+        ..pen
+    };
+    draw(pieces, &pen, style, scene);
+}
+
+fn draw(pieces: &[Vec<Point>], pen: &StrokeStyle, style: &SeriesStyle, scene: &mut PageScene) {
+    if style.is_dots {
+        let dots = curve::dots(pieces.iter().flatten().copied());
+        curve::draw_curve(&dots, pen, None, scene);
+    } else {
+        curve::draw_curve(pieces, pen, None, scene);
+    }
+}
+
+/// A path's lines by the degree of depth at which they begin: those that follow each other are one piece.
+fn by_degree(
+    path: &[Vec<(Point, f64)>],
+    degree: impl Fn(f64) -> usize,
+) -> [Vec<Vec<Point>>; DEPTHS] {
+    let mut pieces: [Vec<Vec<Point>>; DEPTHS] = Default::default();
+    for path in path {
+        let mut last = None;
+        for pair in path.windows(2) {
+            let degree = degree(pair[0].1);
+            let pieces = &mut pieces[degree];
+            match pieces.last_mut() {
+                Some(piece) if last == Some(degree) => piece.push(pair[1].0),
+                _ => pieces.push(vec![pair[0].0, pair[1].0]),
+            }
+            last = Some(degree);
+        }
+    }
+    pieces
+}

@@ -1,0 +1,220 @@
+//! The figures of a write-up.
+
+use super::{MeasuredComparison, RUN_FILE};
+use crate::engine::analysis::Readouts;
+use crate::engine::analysis::cost::is_affordable;
+use crate::engine::data::TimeSeries;
+use crate::engine::run::Clock;
+use crate::engine::scenario::Scenario;
+use crate::engine::scenario::screen::{ABOVE, THREE_D, TRACES};
+use crate::engine::text::number::{rounded, significant};
+use crate::plot::{COLUMN_PT, PageScene};
+use crate::report::figure::FigureSource;
+use crate::report::figure::course::{RunSampler, SampleRequest, SampledRun};
+use crate::report::figure::kind::FigureKind;
+use crate::report::figure::labels::FigureLabels;
+use crate::report::figure::of_runs::{self, DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+#[derive(Clone, Debug)]
+pub struct WriteupFigure {
+    /// The name of its files, without their endings.
+    pub name: &'static str,
+    pub caption: String,
+    /// What its reader must know of it besides, as a sentence.
+    pub remark: Option<String>,
+    pub scene: PageScene,
+    pub source: FigureSource,
+}
+
+/// The figures of what was measured, and of measured less run.
+const MEASURED_FIGURE: &str = "measured";
+const RESIDUALS_FIGURE: &str = "residuals";
+/// The figure of the first swings of a run.
+const SWINGS_FIGURE: &str = "swings";
+/// Least number of swings of a run that has this figure.
+const MANY_SWINGS: f64 = 15.0;
+const FEW_FIGURE_SWINGS: f64 = 8.0;
+/// Least number of steps a swing of a curve without corners.
+const SMOOTH_SWING_STEPS: f64 = 40.0;
+/// Figures of measured data end where the data do, and this factor later.
+const BEYOND_DATA: f64 = 1.05;
+
+struct Planned {
+    name: &'static str,
+    caption: String,
+    request: FigureRequest,
+}
+
+/// What is to be shown the start and every step of the run of `scenario`, so that its figures need not play it once more.
+pub fn recorder(scenario: &Arc<Scenario>, beside: Option<&MeasuredComparison>) -> RunSampler {
+    let measured = beside.and_then(|beside| beside.measured.series().ok());
+    let kinds = [
+        Some(FigureKind::traces()),
+        measured.map(FigureKind::measured),
+    ];
+    let columns = kinds.iter().flatten().flat_map(FigureKind::columns);
+    let wanted = SampleRequest {
+        columns: columns.copied().collect(),
+        path: true,
+        from_s: 0.0,
+        to_s: None,
+    };
+    RunSampler::new(scenario, wanted)
+}
+
+/// The figures of the run of `scenario`, whose `readouts` were read at its end, and of which the [`recorder`] has `recorded`
+/// what they need; with the exact motion where it is to be had in reasonable time. `watch` is told the step reached and the
+/// last one, and says whether to go on; `None` where it said no.
+///
+/// # Errors
+/// When no step of the run can be drawn.
+pub fn figures(
+    scenario: &Arc<Scenario>,
+    readouts: &Readouts,
+    recorded: SampledRun,
+    beside: Option<&MeasuredComparison>,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Vec<WriteupFigure>>, String> {
+    let runs = [FigureRun {
+        scenario: Arc::clone(scenario),
+        named: scenario.file.title.clone(),
+    }];
+    let is_exact = of_runs::is_exact(scenario);
+    let exact = is_affordable(scenario) && !is_exact;
+    let also = also(scenario, readouts, is_exact, exact);
+    let whole = FigureRequest {
+        kind: FigureKind::traces(),
+        from_s: 0.0,
+        to_s: None,
+        // A run of the exact motion is drawn once, with the circles that bound it.
+        exact: exact || is_exact,
+        measured: None,
+        width_pt: COLUMN_PT,
+        labels: FigureLabels::default(),
+    };
+    let mut planned = beside.map_or(Vec::new(), |beside| of_data(beside, &whole, &also));
+    planned.extend(of_run(scenario, readouts, beside, &whole, &also)?);
+    let requests = planned.iter().map(|planned| planned.request.clone());
+    let requests: Vec<_> = requests.collect();
+    let known = KnownNumbers {
+        recorded: Some(recorded),
+        said: beside.map(|beside| beside.said.clone()),
+    };
+    let drawn = of_runs::figures(&runs, &requests, &known, watch)?;
+    let drawing = |(planned, figure): (Planned, DrawnFigure)| {
+        WriteupFigure {
+        name: planned.name,
+        remark: figure.dense.map(|dense| {
+            let exact = if exact { " --exact" } else { "" };
+            let (kind, part) = (planned.request.kind.name(), dense.options());
+            format!(
+                "In this figure, {dense}: `gyrolab figure {RUN_FILE} --kind {kind}{exact} {part} -o part.pdf`."
+            )
+        }),
+        caption: planned.caption,
+        scene: figure.scene,
+        source: FigureSource::new(&runs, &planned.request),
+    }
+    };
+    Ok(drawn.map(|drawn| planned.into_iter().zip(drawn).map(drawing).collect()))
+}
+
+/// What captions say of the exact motion and of the lines that join the steps.
+fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -> String {
+    let beneath = match (exact, is_exact) {
+        (true, _) => ", the exact motion in another colour",
+        (_, true) => "; the run is the exact motion itself",
+        _ => "",
+    };
+    let steps = readouts
+        .swing_s()
+        .map(|swing_s| swing_s / scenario.motion.time_step_s);
+    let joined = steps
+        .filter(|steps| *steps < SMOOTH_SWING_STEPS && !is_exact)
+        .map(|steps| format!("; straight lines join the run's steps, about {steps:.0} a swing"));
+    format!("{beneath}{}", joined.unwrap_or_default())
+}
+
+/// The figures of what was measured, and of measured less run.
+fn of_data(beside: &MeasuredComparison, whole: &FigureRequest, also: &str) -> Vec<Planned> {
+    let measured = beside.reached();
+    let has_points = |it: &&TimeSeries| it.curves.iter().any(|curve| !curve.points.is_empty());
+    let Some(series) = measured.series().ok().filter(has_points) else {
+        return Vec::new();
+    };
+    let last_s = series.times_s.last().copied().unwrap_or_default();
+    let of_data = |name, kind, caption| Planned {
+        name,
+        caption,
+        request: FigureRequest {
+            kind,
+            to_s: Some(beside.end_s.min(BEYOND_DATA * last_s)),
+            measured: Some(Arc::clone(&measured)),
+            ..whole.clone()
+        },
+    };
+    let name = beside.name();
+    let over_time = format!("What was measured, `{name}`, and the run{also}");
+    let less = format!("What was measured, `{name}`, less what the run says");
+    vec![
+        of_data(MEASURED_FIGURE, FigureKind::measured(series), over_time),
+        of_data(RESIDUALS_FIGURE, FigureKind::Residuals, less),
+    ]
+}
+
+fn of_run(
+    scenario: &Scenario,
+    readouts: &Readouts,
+    beside: Option<&MeasuredComparison>,
+    whole: &FigureRequest,
+    also: &str,
+) -> Result<Vec<Planned>, String> {
+    let plan = |name, kind, caption: &str| Planned {
+        name,
+        caption: format!("{caption}{also}"),
+        request: FigureRequest {
+            kind,
+            ..whole.clone()
+        },
+    };
+    let over_time = "x, y and z of the traced point over time";
+    let mut planned = vec![plan(TRACES, FigureKind::traces(), over_time)];
+    if let Some((from_s, to_s)) = few_swings_s(scenario, readouts) {
+        let to = significant(to_s, 9);
+        let tilt = if from_s > 0.0 {
+            let from = significant(from_s, 9);
+            format!("Tilt from {from} s, when the forces last changed, to {to} s")
+        } else {
+            format!("Tilt in the first {to} s")
+        };
+        let mut swings = plan(SWINGS_FIGURE, FigureKind::named("tilt_deg")?, &tilt);
+        (swings.request.from_s, swings.request.to_s) = (from_s, Some(to_s));
+        planned.push(swings);
+    }
+    let mut above = plan(
+        ABOVE,
+        FigureKind::Above,
+        "Path of the traced point from above",
+    );
+    let beside = beside.filter(|beside| !beside.compared.places.is_empty());
+    above.request.measured = beside.map(MeasuredComparison::reached);
+    planned.push(above);
+    let in_space = "Path of the traced point in space";
+    planned.push(plan(THREE_D, FigureKind::ThreeD, in_space));
+    Ok(planned)
+}
+
+/// Where the run has many swings, the begin and the end of a few of them, s: of the first after the forces last changed, if that
+/// leaves enough of the run.
+fn few_swings_s(scenario: &Scenario, readouts: &Readouts) -> Option<(f64, f64)> {
+    let swing_s = readouts.swing_s()?;
+    let end_s = Clock::end_s(scenario);
+    let few_s = rounded(FEW_FIGURE_SWINGS * swing_s, 2);
+    // The first step under other forces: they changed where it began.
+    let changed = readouts.since.saturating_sub(1);
+    let from_s = Clock::at(scenario, changed).time_s(changed);
+    let from_s = if from_s + few_s <= end_s { from_s } else { 0.0 };
+    (end_s > MANY_SWINGS * swing_s).then_some((from_s, from_s + few_s))
+}

@@ -1,0 +1,255 @@
+//! The parameters in which the search goes on, and their limits.
+//!
+//! A key is a parameter itself, but for moments of a part. No moment of a body is larger than the two others together; a flat
+//! body, for which the two are equal, lies on that edge. Half the difference is the second moment of mass along an axis, the
+//! integral of x^2 dm, which is at least 0. Where several moments are free, the search takes as many second moments in
+//! their place: a step that changes one of them up or down is always possible, also for a flat body or a rod.
+
+use super::free::Free;
+use super::within::Limit;
+use crate::engine::scenario::Scenario;
+use crate::physics::part::PlacedSolid;
+use nalgebra::{DMatrix, DVector, Vector3};
+use std::collections::BTreeSet;
+
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// The parameters are matrix . keys + offset.
+    pub matrix: DMatrix<f64>,
+    offset: DVector<f64>,
+    pub inverse: DMatrix<f64>,
+    /// The moments of each part of which some are free.
+    moments: Vec<(usize, [Row; 3])>,
+    pub rules: Vec<Rule>,
+    /// The limits of the parameters, one a rule.
+    pub limits: Vec<Limit>,
+}
+
+/// What limits the keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// The least value of a key, by its place.
+    Least(usize),
+    Greatest(usize),
+    /// The second moment of mass of a part along one of its axes is at least 0.
+    SecondMoment {
+        part: usize,
+        axis: usize,
+    },
+    /// A moment of a part is above 0, by [`LEAST_MOMENT`].
+    Moment {
+        part: usize,
+        axis: usize,
+    },
+}
+
+impl Rule {
+    /// Whether nothing beyond the limit can be, whoever draws limits.
+    pub fn is_of_nature(self, free: &[Free]) -> bool {
+        match self {
+            Self::Least(key) => free[key].from == free[key].least,
+            Self::Greatest(_) => false,
+            Self::SecondMoment { .. } | Self::Moment { .. } => true,
+        }
+    }
+}
+
+/// The least moment of a part as a share of all three: a rod without any thickness has no motion about its axis.
+pub const LEAST_MOMENT: f64 = 1e-6;
+
+/// A linear function of the keys.
+#[derive(Clone, Debug)]
+struct Row {
+    slopes: DVector<f64>,
+    at_zero: f64,
+}
+
+impl Chart {
+    /// The parameters for the keys `free` of `scenario`, whose other values stay as they are.
+    pub fn new(free: &[Free], scenario: &Scenario) -> Self {
+        let count = free.len();
+        let unit =
+            |place: usize| DVector::from_fn(count, |row, _| f64::from(u8::from(row == place)));
+        let mut moments = Vec::new();
+        for part in parts(free) {
+            moments.push((part, of_part(free, part, scenario)));
+        }
+        let is_moment = |place: &usize| free[*place].keys.iter().any(|key| moment(key).is_some());
+        let places: Vec<usize> = (0..count).filter(is_moment).collect();
+        let mut chart = Self {
+            matrix: DMatrix::identity(count, count),
+            offset: DVector::zeros(count),
+            inverse: DMatrix::identity(count, count),
+            moments: Vec::new(),
+            rules: Vec::new(),
+            limits: Vec::new(),
+        };
+        let second: Vec<Row> = moments.iter().flat_map(|(_, rows)| second(rows)).collect();
+        if places.len() > 1 {
+            for (&place, &row) in places.iter().zip(&independent(&second, places.len())) {
+                chart.matrix.set_row(place, &second[row].slopes.transpose());
+                chart.offset[place] = second[row].at_zero;
+            }
+            match chart.matrix.clone().try_inverse() {
+                Some(inverse) => chart.inverse = inverse,
+                None => {
+                    chart.matrix = DMatrix::identity(count, count);
+                    chart.offset = DVector::zeros(count);
+                }
+            }
+        }
+        for (place, key) in free.iter().enumerate() {
+            chart.limit(Rule::Least(place), &unit(place), key.from);
+            chart.limit(Rule::Greatest(place), &-unit(place), -key.to);
+        }
+        for ((part, moments), second) in moments.iter().zip(second.chunks(3)) {
+            let sum: DVector<f64> = moments.iter().map(|row| &row.slopes).sum();
+            let sum_at_zero: f64 = moments.iter().map(|row| row.at_zero).sum();
+            for axis in 0..3 {
+                let (part, of_second, of_moment) = (*part, &second[axis], &moments[axis]);
+                let rule = Rule::SecondMoment { part, axis };
+                chart.limit(rule, &of_second.slopes, -of_second.at_zero);
+                let slopes = &of_moment.slopes - LEAST_MOMENT * &sum;
+                let at_zero = of_moment.at_zero - LEAST_MOMENT * sum_at_zero;
+                chart.limit(Rule::Moment { part, axis }, &slopes, -at_zero);
+            }
+        }
+        chart.moments = moments;
+        chart
+    }
+
+    /// Adds the limit that `slopes` . keys is at least `least`.
+    fn limit(&mut self, rule: Rule, slopes: &DVector<f64>, least: f64) {
+        if slopes.amax() == 0.0 || !least.is_finite() {
+            return;
+        }
+        // What is a parameter itself is limited exactly, without the rounding of the inverse.
+        let own = (0..slopes.len()).find(|&place| self.matrix.row(place).transpose() == *slopes);
+        let limit = match own {
+            Some(place) => Limit {
+                normal: DVector::from_fn(slopes.len(), |row, _| f64::from(u8::from(row == place))),
+                least: least + self.offset[place],
+            },
+            None => Limit {
+                least: least + self.inverse.tr_mul(slopes).dot(&self.offset),
+                normal: self.inverse.tr_mul(slopes),
+            },
+        };
+        self.rules.push(rule);
+        self.limits.push(limit);
+    }
+
+    /// The parameters for these values of the keys.
+    pub fn parameters(&self, keys: &[f64]) -> Vec<f64> {
+        let keys = DVector::from_column_slice(keys);
+        (&self.matrix * keys + &self.offset).as_slice().to_vec()
+    }
+
+    /// The values of the keys for these parameters.
+    pub fn keys(&self, parameters: &[f64]) -> Vec<f64> {
+        let parameters = DVector::from_column_slice(parameters);
+        (&self.inverse * (parameters - &self.offset))
+            .as_slice()
+            .to_vec()
+    }
+
+    /// The limits, of which those that `parameters` are outside of by rounding begin there.
+    pub fn limits_around(&self, parameters: &[f64]) -> Vec<Limit> {
+        let around = |limit: &Limit| Limit {
+            least: limit.least + limit.room(parameters).min(0.0),
+            normal: limit.normal.clone(),
+        };
+        self.limits.iter().map(around).collect()
+    }
+
+    /// The moment of `part` about `axis` for these values of the keys; `None` where none of the part's is free.
+    pub fn moment(&self, part: usize, axis: usize, keys: &[f64]) -> Option<f64> {
+        let (_, rows) = self.moments.iter().find(|(own, _)| *own == part)?;
+        let row = &rows[axis];
+        let free = row.slopes.iter().zip(keys).map(|(slope, key)| slope * key);
+        Some(row.at_zero + free.sum::<f64>())
+    }
+
+    /// Whether these values of the keys are within all limits.
+    pub fn holds(&self, keys: &[f64]) -> bool {
+        let parameters = self.parameters(keys);
+        self.limits
+            .iter()
+            .all(|limit| limit.room(&parameters) >= 0.0)
+    }
+}
+
+/// The part and the axis of the key of a moment.
+pub fn moment(key: &str) -> Option<(usize, usize)> {
+    let (part, axis) = key
+        .strip_prefix("body.part.")?
+        .split_once(".moments_kg_m2.")?;
+    Some((
+        part.parse().ok()?,
+        axis.parse().ok().filter(|axis| *axis < 3)?,
+    ))
+}
+
+/// The parts of which a moment is free.
+fn parts(free: &[Free]) -> BTreeSet<usize> {
+    let keys = free.iter().flat_map(|free| &free.keys);
+    keys.filter_map(|key| Some(moment(key)?.0)).collect()
+}
+
+/// The three moments of `part` about its center as functions of the keys.
+fn of_part(free: &[Free], part: usize, scenario: &Scenario) -> [Row; 3] {
+    let own = scenario.file.body.part.get(part);
+    let own = Vector3::from(own.and_then(|part| part.moments_kg_m2).unwrap_or_default());
+    let about_center = scenario
+        .body
+        .parts
+        .get(part)
+        .map_or(own, PlacedSolid::moments);
+    let shift = own - about_center; // 0, unless the file gives the moments about the pivot
+    [0, 1, 2].map(|axis| {
+        let is_it = |free: &Free| {
+            free.keys
+                .iter()
+                .any(|key| moment(key) == Some((part, axis)))
+        };
+        let slope = |row, _| f64::from(u8::from(is_it(&free[row])));
+        let is_free = free.iter().any(is_it);
+        Row {
+            slopes: DVector::from_fn(free.len(), slope),
+            at_zero: if is_free { 0.0 } else { own[axis] } - shift[axis],
+        }
+    })
+}
+
+/// The second moments of mass of the body that has these moments.
+fn second(moments: &[Row; 3]) -> [Row; 3] {
+    [0, 1, 2].map(|axis| {
+        let [own, next, last] = [0, 1, 2].map(|turn| &moments[(axis + turn) % 3]);
+        Row {
+            slopes: 0.5 * (&next.slopes + &last.slopes - &own.slopes),
+            at_zero: 0.5 * (next.at_zero + last.at_zero - own.at_zero),
+        }
+    })
+}
+
+/// The places of so many of the `rows` that do not depend on each other.
+fn independent(rows: &[Row], count: usize) -> Vec<usize> {
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    let mut places = Vec::new();
+    for (place, row) in rows.iter().enumerate() {
+        let mut rest = row.slopes.clone();
+        basis.iter().for_each(|it| rest -= it * it.dot(&rest));
+        if let Some(rest) = rest.try_normalize(1e-6)
+            && places.len() < count
+        {
+            basis.push(rest);
+            places.push(place);
+        }
+    }
+    places
+}
+
+/// The second moments of mass along the axes of the body with these moments.
+pub fn second_moments(moments: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::repeat(0.5 * moments.sum()) - moments
+}

@@ -1,0 +1,268 @@
+//! The limits at which a search has ended, and how far inside of them the truth may be.
+//!
+//! Beyond such a limit the fit would be better. There the distance s to the limit is 0, and the data would have it negative:
+//! their normal distribution of s has its mean outside. Only what is inside can be; the upper limit of s at 68 % is the value
+//! below which 68.27 % of this inside part are, as if each s from 0 on were as likely before. It is never 0, and it holds
+//! the truth at least as often as it says, since those throws whose s came out above 0 are stated as usual.
+
+use super::chart::{Chart, Rule, moment};
+use super::free::Free;
+use super::levenberg::{Minimum, SINGULAR};
+use super::search::Fitted;
+use super::solution::COMBINATION_ROUNDING;
+use super::within::complement;
+use crate::engine::text::number::significant;
+use nalgebra::DVector;
+use serde_json::{Value, json};
+
+/// A limit that holds keys.
+#[derive(Clone, Debug)]
+pub struct Edge {
+    pub rule: Rule,
+    /// Whether nothing beyond it can be, whoever draws limits.
+    pub is_of_nature: bool,
+    /// The keys that it holds.
+    pub holds: Vec<bool>,
+    /// How much each key changes where the distance to the limit is 1, the other limits held.
+    pub moves: Vec<f64>,
+    /// The greatest distance; `None` where the user drew the limit, which says nothing of nature, or the data do not say.
+    pub most: Option<Most>,
+    /// The moment that the distance is compared with, kg m^2: of a flat body the one across it, of a rod one across it.
+    pub moment: Option<f64>,
+}
+
+/// The upper limits of a distance at 68.27 % and at 95.45 %, in its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Most {
+    pub at_68: f64,
+    pub at_95: f64,
+}
+
+const LEVEL_68: f64 = 0.682_689_492;
+const LEVEL_95: f64 = 0.954_499_736;
+
+/// What holds a part, in words: which axes it has no extent along.
+const FLAT: [&str; 3] = ["B + C = A", "A + C = B", "A + B = C"];
+const ROD: [&str; 3] = ["A = 0", "B = 0", "C = 0"];
+
+impl Edge {
+    /// The part that it limits, and what it makes of it: "flat: A + B = C".
+    pub fn of_part(&self) -> Option<(usize, String)> {
+        match self.rule {
+            Rule::Least(_) | Rule::Greatest(_) => None,
+            Rule::SecondMoment { part, axis } => Some((part, format!("flat: {}", FLAT[axis]))),
+            Rule::Moment { part, axis } => Some((part, format!("rod: {}", ROD[axis]))),
+        }
+    }
+
+    /// How far from the limit the body may be, at both levels, in percent of [`moment`](Self::moment).
+    fn percents(&self) -> Option<[f64; 2]> {
+        let times = match self.rule {
+            Rule::SecondMoment { .. } => 200.0, // A + B - C is twice the second moment
+            _ => 100.0,
+        };
+        let Most { at_68, at_95 } = self.most?;
+        Some([at_68, at_95].map(|most| times * most / self.moment.unwrap_or(f64::NAN)))
+    }
+
+    /// What is to be known of it, in words.
+    pub fn remark(&self, keys: &[Fitted]) -> String {
+        let key = |place: usize| (&keys[place].free.key, significant(keys[place].value, 6));
+        let drawn = |place: usize| {
+            let (key, value) = key(place);
+            format!(
+                "{key} stands at its bound {value}: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within."
+            )
+        };
+        let most = |least: String, end: String| {
+            format!(", at most {least} with 68 % probability and {end} with 95 %")
+        };
+        match (self.rule, self.most) {
+            (Rule::Least(place) | Rule::Greatest(place), None) => drawn(place),
+            (Rule::Least(place) | Rule::Greatest(place), Some(Most { at_68, at_95 })) => {
+                let (key, value) = key(place);
+                let [at_68, at_95] =
+                    [at_68, at_95].map(|it| significant(keys[place].value + it, 2));
+                let most = most(at_68, at_95);
+                format!("{key} is at {value}, the least that it can be{most}.")
+            }
+            (Rule::SecondMoment { part, axis }, _) => {
+                let (sum, moment) = FLAT[axis].split_once(" = ").unwrap_or_default();
+                let most = self.percents().map(|[a, b]| most(percent(a), percent(b)));
+                let most = most.map_or(String::new(), |most| {
+                    format!(" {sum} is above {moment} by{}", &most[1..])
+                });
+                format!(
+                    "body.part.{part} is flat: {}, at the physical limit (A, B, C: its moments .0, .1, .2 about its center).{most}{} The other values have the uncertainty of an exactly flat body to one side; to the other, that of the thickness is added in quadrature.",
+                    FLAT[axis],
+                    if most.is_empty() { "" } else { "." }
+                )
+            }
+            (Rule::Moment { part, axis }, _) => {
+                let (moment, _) = ROD[axis].split_once(" = ").unwrap_or_default();
+                let other = ["A", "B", "C"][(axis + 1) % 3];
+                let most = self.percents().map(|[a, b]| most(percent(a), percent(b)));
+                let most = most.map_or(String::new(), |most| {
+                    format!(" {moment} is{} of {other}.", &most[1..])
+                });
+                format!(
+                    "body.part.{part} is a rod: {}, at the physical limit (A, B, C: its moments .0, .1, .2 about its center).{most} The other values have the uncertainty of an exact rod to one side; to the other, that of the thickness is added in quadrature.",
+                    ROD[axis]
+                )
+            }
+        }
+    }
+
+    pub fn json(&self, keys: &[Fitted]) -> Value {
+        let held = keys.iter().zip(&self.holds).filter(|(_, holds)| **holds);
+        let held: Vec<&String> = held.map(|(key, _)| &key.free.key).collect();
+        let (rule, unit) = match self.of_part() {
+            Some((_, rule)) => (rule, Some("kg m^2")),
+            None => ("bound of the key".to_owned(), None),
+        };
+        json!({
+            "rule": rule, "keys": held, "unit": unit, "is_of_nature": self.is_of_nature,
+            "distance_at_most_68": self.most.map(|most| most.at_68), "distance_at_most_95": self.most.map(|most| most.at_95),
+        })
+    }
+}
+
+fn percent(percent: f64) -> String {
+    format!("{} %", significant(percent, 2))
+}
+
+/// The limits that hold the keys at the `minimum`. `variance` is the factor of the covariances.
+pub fn edges(minimum: &Minimum, chart: &Chart, free: &[Free], variance: Option<f64>) -> Vec<Edge> {
+    let keys = chart.keys(&minimum.p);
+    let edge = |&place: &usize| {
+        let rule = chart.rules[place];
+        let inside = Inside::of(minimum, chart, place);
+        let moves = match &inside {
+            Some(inside) => (&chart.inverse * &inside.moves).as_slice().to_vec(),
+            None => vec![0.0; free.len()],
+        };
+        let holds = |key: usize| match rule {
+            Rule::Least(held) | Rule::Greatest(held) => held == key,
+            Rule::SecondMoment { part, .. } | Rule::Moment { part, .. } => {
+                let mut moments = free[key].keys.iter().filter_map(|key| moment(key));
+                moments.any(|(own, _)| own == part)
+            }
+        };
+        let is_of_nature = rule.is_of_nature(free);
+        let inside = inside.filter(|_| is_of_nature);
+        let moment = match rule {
+            Rule::Least(_) | Rule::Greatest(_) => None,
+            Rule::SecondMoment { part, axis } => chart.moment(part, axis, &keys),
+            Rule::Moment { part, axis } => chart.moment(part, (axis + 1) % 3, &keys),
+        };
+        Edge {
+            moment,
+            is_of_nature,
+            rule,
+            holds: (0..free.len()).map(holds).collect(),
+            moves,
+            most: inside
+                .zip(variance)
+                .and_then(|(it, variance)| it.most(variance)),
+        }
+    };
+    minimum.held.iter().map(edge).collect()
+}
+
+/// The normal distribution of the distance to a limit, by the data alone.
+struct Inside {
+    mean: f64,
+    /// Its standard deviation, for data whose uncertainty is 1.
+    sigma: f64,
+    /// How much each parameter changes where the distance is 1.
+    moves: DVector<f64>,
+}
+
+impl Inside {
+    /// The distribution for the limit at `place`, the others held; `None` where the data do not say.
+    fn of(minimum: &Minimum, chart: &Chart, place: usize) -> Option<Self> {
+        let slopes = &minimum.slopes;
+        let unit = |norm: f64| if norm > 0.0 { norm.recip() } else { 1.0 };
+        let units = slopes.column_iter().map(|column| unit(column.norm()));
+        let units = DVector::from_iterator(slopes.ncols(), units);
+        let scaled = |place: usize| chart.limits[place].normal.component_mul(&units);
+        let others = minimum.held.iter().filter(|other| **other != place);
+        let others: Vec<DVector<f64>> = others.map(|&other| scaled(other)).collect();
+        let free = complement(others.iter(), slopes.ncols());
+        let columns = slopes * nalgebra::DMatrix::from_diagonal(&units) * &free;
+        let svd = columns.svd(true, true);
+        let (u, v_t) = (svd.u?, svd.v_t?);
+        let least = SINGULAR * svd.singular_values.amax();
+        let normal = scaled(place);
+        let (mut mean, mut square) = (0.0, 0.0);
+        let mut moves = DVector::zeros(slopes.ncols());
+        for (k, &singular) in svd.singular_values.iter().enumerate() {
+            let way = &free * v_t.row(k).transpose();
+            let along = normal.dot(&way);
+            if singular > least {
+                mean += along * u.column(k).dot(&minimum.residuals) / singular;
+                square += (along / singular).powi(2);
+                moves += along / singular.powi(2) * way;
+            } else if along.abs() > COMBINATION_ROUNDING * normal.norm() {
+                return None;
+            }
+        }
+        (square > 0.0).then(|| Self {
+            mean: mean.min(0.0),
+            sigma: square.sqrt(),
+            moves: moves.component_mul(&units) / square,
+        })
+    }
+
+    fn most(&self, variance: f64) -> Option<Most> {
+        let sigma = self.sigma * variance.sqrt();
+        let at = |level| sigma * sigmas_to_most(-self.mean / sigma, level);
+        let most = Most {
+            at_68: at(LEVEL_68),
+            at_95: at(LEVEL_95),
+        };
+        (most.at_68 > 0.0 && most.at_95.is_finite()).then_some(most)
+    }
+}
+
+/// How far above 0, in standard deviations, the value is below which `level` of that part of a normal distribution lies that
+/// is above 0, where its mean is `below` standard deviations below 0.
+fn sigmas_to_most(below: f64, level: f64) -> f64 {
+    /// Beyond this the part above 0 is an exponential to 0.2 %, and is too small for numbers soon.
+    const FAR: f64 = 30.0;
+    if below > FAR {
+        return -libm::log(1.0 - level) / below;
+    }
+    let part = |from: f64| libm::erfc(from * std::f64::consts::FRAC_1_SQRT_2);
+    let wanted = (1.0 - level) * part(below);
+    let (mut from, mut to) = (0.0, 3.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (from + to);
+        if part(below + middle) > wanted {
+            from = middle;
+        } else {
+            to = middle;
+        }
+    }
+    to
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_upper_limit_is_that_of_the_part_inside() {
+        // Of a mean at the limit, one and two standard deviations; of one far outside, those of an exponential.
+        for (below, level, wanted) in [
+            (0.0, LEVEL_68, 1.0),
+            (0.0, LEVEL_95, 2.0),
+            (1.0, LEVEL_68, 0.641_5),
+            (29.999_9, LEVEL_68, 0.038_2),
+            (30.000_1, LEVEL_68, 0.038_3),
+        ] {
+            let found = sigmas_to_most(below, level);
+            assert!((found - wanted).abs() < 2e-4, "{below}: {found}");
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! Where a recording of the three rates of a body has free flights.
+//!
+//! In free flight Euler's equations hold without a torque: w1 changes by g1 times the integral of w2 w3, with g1 = (B - C)/A,
+//! and so on about the other axes. No body has a g beyond -1..1, whatever its moments are. A flight is a longest run of
+//! rows that one such g about each axis explains within the noise, where the body turns fast. A hand that turns or catches the
+//! body changes the rates without such a product.
+
+use super::thrown::{flies, recorded};
+use crate::engine::data::TimeSeries;
+use crate::engine::scenario::Scenario;
+use nalgebra::Vector3;
+use std::ops::Range;
+
+/// A free flight of a recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flight {
+    /// The times of its first and its last row, s.
+    pub from_s: f64,
+    pub to_s: f64,
+    pub rows: usize,
+    /// The mean of |omega|, rad/s.
+    pub rate: f64,
+}
+
+/// What a recording has of free flight.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Found {
+    /// The data are not the three rates of a body that flies freely in the scenario.
+    NotThrown,
+    /// All of the recording is one flight.
+    Whole,
+    Flights(Vec<Flight>),
+}
+
+/// The shortest flight, s, and the fewest rows of one.
+const SHORTEST_S: f64 = 0.2;
+const FEWEST_ROWS: usize = 12;
+/// The least share of the shortest flight that the ends may leave.
+const LEFT: f64 = 0.75;
+/// The least mean of |omega| of a flight, rad/s: slower turns look like any other rest.
+const LEAST_RATE: f64 = 2.0;
+/// The rates may be off by their noise and this share of |omega|: sensors are a little askew.
+const SHARE: f64 = 0.01;
+/// The mean square of noise may be above the expected one by so many of its own standard deviations.
+const SCATTERS: f64 = 4.0;
+/// The rows of this time at an end are not of the flight where their mean is off by more than so many standard deviations,
+/// and by more than many of a whole recording.
+const END_S: f64 = 0.02;
+const OFF: f64 = 3.0;
+const FAR_OFF: f64 = 6.0;
+/// What is left out at each end, s, besides: a row at least. There a hand still pushes a little.
+const MARGIN_S: f64 = 0.015;
+/// A pause of more than so many times the usual time between rows ends a flight.
+const PAUSE: f64 = 4.5;
+
+/// Looks for the free flights of `series`, in the order of time.
+pub fn find(series: &TimeSeries, scenario: &Scenario) -> Found {
+    let Some(recorded) = recorded(series).filter(|_| flies(scenario)) else {
+        return Found::NotThrown;
+    };
+    let recording = Recording::of(recorded);
+    let count = recording.times_s.len();
+    if count < FEWEST_ROWS || recording.is_one_flight() {
+        return Found::Whole;
+    }
+    let mut flights = Vec::new();
+    let mut first = 0;
+    while first < count {
+        match recording
+            .longest_from(first)
+            .and_then(|rows| recording.trimmed(rows))
+        {
+            Some(rows) => {
+                flights.push(recording.flight(&rows));
+                first = rows.end;
+            }
+            None => first += 1,
+        }
+    }
+    Found::Flights(flights)
+}
+
+struct Recording {
+    times_s: Vec<f64>,
+    rates: Vec<Vector3<f64>>,
+    /// The products w2 w3, w3 w1, w1 w2 summed up from the first row on.
+    sums: Vec<Vector3<f64>>,
+    /// The standard deviation of the noise of a rate.
+    noise: f64,
+    /// The usual time between rows.
+    apart_s: f64,
+}
+
+/// Sums over rows, of differences from the first one. About each axis they give the line w = offset + growth . sum of least
+/// squares, for a growth that a body can have.
+#[derive(Default)]
+struct Squares {
+    count: f64,
+    speed: f64,
+    rates: Vector3<f64>,
+    sums: Vector3<f64>,
+    rates_rates: Vector3<f64>,
+    sums_sums: Vector3<f64>,
+    rates_sums: Vector3<f64>,
+}
+
+impl Squares {
+    fn add(&mut self, rates: &Vector3<f64>, sums: &Vector3<f64>) {
+        self.count += 1.0;
+        self.rates += rates;
+        self.sums += sums;
+        self.rates_rates += rates.component_mul(rates);
+        self.sums_sums += sums.component_mul(sums);
+        self.rates_sums += rates.component_mul(sums);
+    }
+
+    /// The covariance of two of the columns, by the sum of their products.
+    fn covariance(
+        &self,
+        products: &Vector3<f64>,
+        a: &Vector3<f64>,
+        b: &Vector3<f64>,
+    ) -> Vector3<f64> {
+        products / self.count - a.component_mul(b) / (self.count * self.count)
+    }
+
+    fn growth(&self) -> Vector3<f64> {
+        let own = self.covariance(&self.sums_sums, &self.sums, &self.sums);
+        let both = self.covariance(&self.rates_sums, &self.rates, &self.sums);
+        both.zip_map(&own, |both, own| {
+            if own > 0.0 {
+                (both / own).clamp(-1.0, 1.0)
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// The largest mean square about the lines, of the three axes.
+    fn mean_square(&self) -> f64 {
+        let growth = self.growth();
+        let rates = self.covariance(&self.rates_rates, &self.rates, &self.rates);
+        let both = self.covariance(&self.rates_sums, &self.rates, &self.sums);
+        let sums = self.covariance(&self.sums_sums, &self.sums, &self.sums);
+        let of_axis = |axis: usize| {
+            let growth = growth[axis];
+            rates[axis] + growth * (growth * sums[axis] - 2.0 * both[axis])
+        };
+        [0, 1, 2].map(of_axis).into_iter().fold(0.0, f64::max)
+    }
+}
+
+impl Recording {
+    fn of(recorded: Vec<(f64, Vector3<f64>)>) -> Self {
+        let (times_s, rates): (Vec<f64>, Vec<Vector3<f64>>) = recorded.into_iter().unzip();
+        let product = |w: &Vector3<f64>| Vector3::new(w.y * w.z, w.z * w.x, w.x * w.y);
+        let mut sum = Vector3::zeros();
+        let mut sums = Vec::with_capacity(rates.len());
+        for row in 0..rates.len() {
+            if let Some(before) = row.checked_sub(1) {
+                let time_s = times_s[row] - times_s[before];
+                sum += 0.5 * time_s * (product(&rates[before]) + product(&rates[row]));
+            }
+            sums.push(sum);
+        }
+        let apart_s = median(times_s.windows(2).map(|pair| pair[1] - pair[0]).collect());
+        // Of white noise the third differences have 20 times the variance; smooth motion hardly has any.
+        let third = |row: &[Vector3<f64>]| row[3] - 3.0 * row[2] + 3.0 * row[1] - row[0];
+        let thirds = rates
+            .windows(4)
+            .flat_map(|row| <[f64; 3]>::from(third(row).abs()));
+        Self {
+            noise: median(thirds.collect()) / (0.6745 * 20.0_f64.sqrt()),
+            times_s,
+            rates,
+            sums,
+            apart_s,
+        }
+    }
+
+    fn squares(&self, rows: Range<usize>) -> Squares {
+        let first = rows.start;
+        let mut squares = Squares::default();
+        for row in rows {
+            self.add(&mut squares, first, row);
+        }
+        squares
+    }
+
+    fn add(&self, squares: &mut Squares, first: usize, row: usize) {
+        squares.speed += self.rates[row].norm();
+        let (rates, sums) = (
+            self.rates[row] - self.rates[first],
+            self.sums[row] - self.sums[first],
+        );
+        squares.add(&rates, &sums);
+    }
+
+    fn is_explained(&self, squares: &Squares) -> bool {
+        let askew = SHARE * squares.speed / squares.count;
+        let scatter = 1.0 + SCATTERS * (2.0 / squares.count).sqrt();
+        squares.mean_square() <= self.noise * self.noise * scatter + askew * askew
+    }
+
+    /// Whether free flight explains all rows, to their ends, however slow the body turns.
+    fn is_one_flight(&self) -> bool {
+        let all = 0..self.times_s.len();
+        let pairs = self.times_s.windows(2);
+        pairs
+            .map(|pair| pair[1] - pair[0])
+            .all(|it| it <= PAUSE * self.apart_s)
+            && self.is_explained(&self.squares(all.clone()))
+            && self.without_ends(all.clone(), FAR_OFF) == all
+    }
+
+    /// The longest of the flights that begin at row `first` or soon after it, with what is left of hands at its ends.
+    fn longest_from(&self, first: usize) -> Option<Range<usize>> {
+        let mut longest = self.explained_from(first)?;
+        let until_s = self.times_s[first] + SHORTEST_S;
+        for later in first + 1..longest.end {
+            if self.times_s[later] > until_s {
+                break;
+            }
+            let rows = self.explained_from(later);
+            longest = rows
+                .filter(|rows| rows.len() > longest.len())
+                .unwrap_or(longest);
+        }
+        Some(longest)
+    }
+
+    /// The longest flight that begins at row `first`.
+    fn explained_from(&self, first: usize) -> Option<Range<usize>> {
+        let mut squares = Squares::default();
+        let mut found = None;
+        for row in first..self.times_s.len() {
+            let before = row.max(first + 1) - 1;
+            if self.times_s[row] - self.times_s[before] > PAUSE * self.apart_s {
+                break;
+            }
+            self.add(&mut squares, first, row);
+            let rows = first..row + 1;
+            if rows.len() < FEWEST_ROWS || self.seconds(&rows) < SHORTEST_S {
+                continue;
+            }
+            if !self.is_explained(&squares) {
+                break;
+            }
+            found = Some(rows);
+        }
+        found.filter(|rows| self.speed(rows) >= LEAST_RATE)
+    }
+
+    /// The same without the rows at the ends that are off, and a margin.
+    fn trimmed(&self, rows: Range<usize>) -> Option<Range<usize>> {
+        let rows = self.without_ends(rows, OFF);
+        let margin = (MARGIN_S / self.apart_s).ceil().max(1.0) as usize;
+        let last = self.times_s.len();
+        // Where the recording itself begins or ends in flight, there is no hand.
+        let start = if rows.start == 0 {
+            0
+        } else {
+            rows.start + margin
+        };
+        let end = if rows.end == last {
+            last
+        } else {
+            rows.end.saturating_sub(margin)
+        };
+        let rows = start..end.max(start);
+        let is_long = rows.len() >= FEWEST_ROWS && self.seconds(&rows) >= LEFT * SHORTEST_S;
+        is_long.then_some(rows)
+    }
+
+    /// `rows` without those at the ends that are off the lines of all by more than `most` standard deviations.
+    fn without_ends(&self, mut rows: Range<usize>, most: f64) -> Range<usize> {
+        let block = (END_S / self.apart_s).clamp(1.0, FEWEST_ROWS as f64 / 2.0) as usize;
+        while rows.len() > FEWEST_ROWS {
+            let squares = self.squares(rows.clone());
+            let growth = squares.growth();
+            let offset = squares.rates - growth.component_mul(&squares.sums);
+            let offset = offset / squares.count;
+            let askew = SHARE * squares.speed / squares.count;
+            let is_off = |end: Range<usize>| {
+                let count = end.len() as f64;
+                let first = rows.start;
+                let off = |row: usize| {
+                    let sums = self.sums[row] - self.sums[first];
+                    self.rates[row] - self.rates[first] - offset - growth.component_mul(&sums)
+                };
+                let mean = end.map(off).sum::<Vector3<f64>>() / count;
+                mean.amax() > most * self.noise / count.sqrt() + askew
+            };
+            let starts = is_off(rows.start..rows.start + block);
+            let ends = is_off(rows.end - block..rows.end);
+            if !starts && !ends {
+                break;
+            }
+            rows = rows.start + usize::from(starts)..rows.end - usize::from(ends);
+        }
+        rows
+    }
+
+    fn seconds(&self, rows: &Range<usize>) -> f64 {
+        self.times_s[rows.end - 1] - self.times_s[rows.start]
+    }
+
+    fn speed(&self, rows: &Range<usize>) -> f64 {
+        let speeds = self.rates[rows.clone()].iter().map(Vector3::norm);
+        speeds.sum::<f64>() / rows.len() as f64
+    }
+
+    fn flight(&self, rows: &Range<usize>) -> Flight {
+        Flight {
+            from_s: self.times_s[rows.start],
+            to_s: self.times_s[rows.end - 1],
+            rows: rows.len(),
+            rate: self.speed(rows),
+        }
+    }
+}
+
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
+}

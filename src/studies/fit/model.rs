@@ -1,0 +1,314 @@
+//! The runs of a scenario for given values of its free keys, beside the data.
+
+use super::free::Free;
+use super::levenberg::Stop;
+use crate::engine::analysis::readouts::{self, Readout};
+use crate::engine::cores;
+use crate::engine::data::{
+    DataKind, MeasuredData, MeasuredPoint, Residual, RunQuantity, RunSetting, RunTable, TimeSeries,
+    at_times, doubts, is_within_reach, residuals,
+};
+use crate::engine::run::Clock;
+use crate::engine::scenario::dotted::overlap;
+use crate::engine::scenario::{Document, Problem, Problems, Scenario};
+use crate::engine::text::number::shortest;
+use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use toml::Value;
+
+pub type FitProgress<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// A scenario, its free keys, and the data that its runs are held against.
+#[derive(Debug)]
+pub struct Model {
+    base: Document,
+    pub free: Vec<Free>,
+    pub measured: MeasuredData,
+    pub title: String,
+    pub scheme: &'static str,
+    pub columns: Vec<Measurand>,
+    /// Every measured value: column by column, and in each in the order of the rows.
+    pub data: Vec<Datum>,
+    runs: AtomicU64,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Measurand {
+    pub readout: &'static Readout,
+    /// The quantity, of a time series.
+    pub quantity: Option<&'static RunQuantity>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Datum {
+    pub column: usize,
+    pub point: MeasuredPoint,
+}
+
+impl Model {
+    /// The model that `scenario` is with these keys free, beside `measured`.
+    ///
+    /// # Errors
+    /// When the scenario is wrong, a key is free that a column sets, or the run would take too many steps to the last row.
+    pub fn new(
+        scenario: &Document,
+        free: Vec<Free>,
+        measured: MeasuredData,
+    ) -> Result<Self, Problems> {
+        let checked = scenario.scenario()?;
+        are_apart(&free, settings(&measured.data))?;
+        if let DataKind::Series(series) = &measured.data
+            && !is_within_reach(series, &checked)
+        {
+            return Err(too_far(&measured, series, &checked));
+        }
+        let file = checked.file.bare();
+        let (columns, data) = listed(&measured.data);
+        Ok(Self {
+            title: file.title.clone(),
+            scheme: checked.motion.scheme.name,
+            base: Document::from_file(scenario.origin(), &file)?,
+            free,
+            measured,
+            columns,
+            data,
+            runs: AtomicU64::new(0),
+        })
+    }
+
+    /// Says what in the data cannot be right for the scenario's body.
+    pub fn doubts(&self) -> Vec<String> {
+        let scenario = self.base.scenario();
+        scenario.map_or_else(
+            |_| Vec::new(),
+            |scenario| doubts(&self.measured, &Arc::new(scenario)),
+        )
+    }
+
+    pub fn runs(&self) -> u64 {
+        self.runs.load(Ordering::Relaxed)
+    }
+
+    pub fn scenario(&self, p: &[f64]) -> Result<Scenario, String> {
+        Ok(self.document(p)?.scenario()?)
+    }
+
+    /// The same, as long as it was measured: at least up to the last time of a time series.
+    pub fn as_long_as_measured(&self, p: &[f64]) -> Result<Scenario, String> {
+        let scenario = self.scenario(p)?;
+        let last_s = match &self.measured.data {
+            DataKind::Series(series) => series.times_s.last().copied().unwrap_or(0.0),
+            DataKind::Table(_) => 0.0,
+        };
+        let steps = Clock::at(&scenario, scenario.steps).step_at(last_s);
+        match i64::try_from(steps) {
+            Ok(steps) if last_s > Clock::end_s(&scenario) => {
+                let mut document = self.document(p)?;
+                document.set_value("motion.steps", Value::Integer(steps))?;
+                Ok(document.scenario()?)
+            }
+            _ => Ok(scenario),
+        }
+    }
+
+    fn document(&self, p: &[f64]) -> Result<Document, String> {
+        let mut document = self.base.clone();
+        for (free, &value) in self.free.iter().zip(p) {
+            for key in &free.keys {
+                document.set_value(key, Value::Float(value))?;
+            }
+        }
+        Ok(document)
+    }
+
+    /// What the runs with these values say of each datum, in its unit. Of a table of runs, the value of a setting, by its
+    /// place, may be `changed` by a multiple of its uncertainty in every row.
+    ///
+    /// # Errors
+    /// Why there is no such run, or which number it does not have.
+    pub fn values(
+        &self,
+        p: &[f64],
+        changed: Option<(usize, f64)>,
+        go_on: FitProgress<'_>,
+    ) -> Result<Vec<f64>, Stop> {
+        match &self.measured.data {
+            DataKind::Series(series) => self.of_series(series, p, go_on),
+            DataKind::Table(table) => self.of_table(table, p, changed, go_on),
+        }
+    }
+
+    fn of_series(
+        &self,
+        series: &TimeSeries,
+        p: &[f64],
+        go_on: FitProgress<'_>,
+    ) -> Result<Vec<f64>, Stop> {
+        let scenario = self.scenario(p).map_err(Stop::Impossible)?;
+        self.runs.fetch_add(1, Ordering::Relaxed);
+        let values = at_times(series, &Arc::new(scenario), go_on);
+        let values = values.map_err(|error| Stop::Impossible(error.to_string()))?;
+        let values = values.ok_or(Stop::Interrupted)?;
+        let named = self.data.iter().zip(values.into_iter().flatten());
+        named
+            .map(|(datum, value)| self.finite(datum, Some(value)))
+            .collect()
+    }
+
+    fn of_table(
+        &self,
+        table: &RunTable,
+        p: &[f64],
+        changed: Option<(usize, f64)>,
+        go_on: FitProgress<'_>,
+    ) -> Result<Vec<f64>, Stop> {
+        let document = self.document(p).map_err(Stop::Impossible)?;
+        let wanted: Vec<&Readout> = self.columns.iter().map(|column| column.readout).collect();
+        let rows: BTreeSet<usize> = self.data.iter().map(|datum| datum.point.row).collect();
+        let rows: Vec<usize> = rows.into_iter().collect();
+        let of_row = |&row: &usize| {
+            let impossible = |why| Stop::Impossible(format!("in {}: {why}", self.row(row)));
+            let document = with_settings(&document, table, row, changed);
+            let scenario = document.and_then(|document| Ok(document.scenario()?));
+            let scenario = scenario.map_err(impossible)?;
+            self.runs.fetch_add(1, Ordering::Relaxed);
+            let read = readouts::at_end(scenario, &wanted, &|| go_on());
+            let read = read.map_err(impossible)?.ok_or(Stop::Interrupted)?;
+            let values = read.iter().map(readouts::ReadoutValue::number);
+            Ok((row, values.collect()))
+        };
+        let of_rows: Result<HashMap<usize, Vec<Option<f64>>>, Stop> = cores::map(&rows, of_row);
+        let of_rows = of_rows?;
+        let of = |datum: &Datum| self.finite(datum, of_rows[&datum.point.row][datum.column]);
+        self.data.iter().map(of).collect()
+    }
+
+    fn finite(&self, datum: &Datum, value: Option<f64>) -> Result<f64, Stop> {
+        let name = self.columns[datum.column].readout.name;
+        value.filter(|value| value.is_finite()).ok_or_else(|| {
+            let row = self.row(datum.point.row);
+            Stop::Impossible(format!(
+                "{name} is null in {row}: the run of the scenario does not have this number (gyrolab readouts says when)"
+            ))
+        })
+    }
+
+    /// A row in words: its number, from 1, and its line in the file.
+    pub fn row(&self, row: usize) -> String {
+        let line = self.measured.lines.get(row).copied().unwrap_or_default();
+        format!("row {} (line {line} of the data)", row + 1)
+    }
+
+    /// The data held against `values`, one residual each.
+    pub fn residuals(&self, values: &[f64]) -> Vec<Residual> {
+        let mut all = Vec::with_capacity(values.len());
+        for (column, measurand) in self.columns.iter().enumerate() {
+            let of_column = self.data.iter().zip(values);
+            let (points, model): (Vec<MeasuredPoint>, Vec<f64>) = of_column
+                .filter(|(datum, _)| datum.column == column)
+                .map(|(datum, value)| (datum.point, *value))
+                .unzip();
+            all.extend(residuals(measurand.quantity, &points, &model));
+        }
+        all
+    }
+}
+
+/// The columns that were measured, and every value in them.
+fn listed(data: &DataKind) -> (Vec<Measurand>, Vec<Datum>) {
+    let (mut columns, mut all) = (Vec::new(), Vec::new());
+    let mut add = |readout, quantity, points: &[MeasuredPoint]| {
+        let column = columns.len();
+        columns.push(Measurand { readout, quantity });
+        all.extend(points.iter().map(|&point| Datum { column, point }));
+    };
+    match data {
+        DataKind::Series(series) => {
+            for curve in &series.curves {
+                if let Some(readout) = curve.quantity.readout() {
+                    add(readout, Some(curve.quantity), &curve.points);
+                }
+            }
+        }
+        DataKind::Table(table) => {
+            for column in &table.readouts {
+                add(column.readout, None, &column.points);
+            }
+        }
+    }
+    (columns, all)
+}
+
+/// `document` with the settings of the `row` of `table`, one of them changed by a multiple of its uncertainty.
+fn with_settings(
+    document: &Document,
+    table: &RunTable,
+    row: usize,
+    changed: Option<(usize, f64)>,
+) -> Result<Document, String> {
+    let mut document = document.clone();
+    for (index, setting) in table.settings.iter().enumerate() {
+        let Some(value) = &setting.values[row] else {
+            continue;
+        };
+        let by = changed.filter(|(key, _)| *key == index);
+        let value = match (value, by, setting.sigmas[row]) {
+            (Value::Float(number), Some((_, by)), Some(sigma)) => Value::Float(number + by * sigma),
+            _ => value.clone(),
+        };
+        document.set_value(&setting.key, value)?;
+    }
+    Ok(document)
+}
+
+/// Refuses data whose last row the run of `scenario` takes too many steps to come to.
+fn too_far(measured: &MeasuredData, series: &TimeSeries, scenario: &Scenario) -> Problems {
+    let [first_s, last_s] = [series.times_s.first(), series.times_s.last()];
+    let [first_s, last_s] = [first_s, last_s].map(|time_s| time_s.copied().unwrap_or(0.0));
+    let begin = if first_s > 0.5 * last_s {
+        format!(
+            "; the recording begins at {0} s: --from {0} counts the time from there",
+            shortest(first_s)
+        )
+    } else {
+        String::new()
+    };
+    let mut problem = Problem::at(
+        "t_s",
+        format!(
+            "{} s is too many time steps of {} s away: a run is followed for 10 000 000 steps (2^12 times as many where the scheme is exact); leave the row out, or give a longer motion.time_step_s{begin}",
+            shortest(last_s),
+            shortest(scenario.motion.time_step_s)
+        ),
+    );
+    problem.place = measured.lines.last().map(|line| format!("line {line}"));
+    Problems::one(measured.origin.clone(), problem)
+}
+
+/// The settings at which `data` were measured.
+pub(super) fn settings(data: &DataKind) -> &[RunSetting] {
+    match data {
+        DataKind::Table(table) => &table.settings,
+        DataKind::Series(_) => &[],
+    }
+}
+
+/// Refuses free keys that write into the same value, or into one that a column sets.
+fn are_apart(free: &[Free], settings: &[RunSetting]) -> Result<(), Problems> {
+    let keys: Vec<&String> = free.iter().flat_map(|free| &free.keys).collect();
+    for (index, key) in keys.iter().enumerate() {
+        let rule = if keys[..index].iter().any(|other| overlap(key, other)) {
+            "is free twice: name it once".to_owned()
+        } else if let Some(column) = settings.iter().find(|it| overlap(key, &it.key)) {
+            let column = &column.key;
+            format!("is set by the column {column} in every row: it cannot be free")
+        } else {
+            continue;
+        };
+        let mut problem = Problem::at((*key).clone(), rule);
+        problem.place = Some("--free".to_owned());
+        return Err(Problems::one("", problem));
+    }
+    Ok(())
+}

@@ -1,0 +1,395 @@
+//! A fit as people read it, as programs do, and as a CSV.
+
+use super::free::shown;
+use super::model::Model;
+use super::search::{Fit, Fitted, Sides};
+use super::solution::student;
+use crate::engine::data::quantity::TIME_COLUMN;
+use crate::engine::data::{DataKind, Residual};
+use crate::engine::export::layout::commented;
+use crate::engine::scenario::Scenario;
+use crate::engine::text::number::{NOT_AVAILABLE, short, shortest, significant, uncertain};
+use crate::engine::text::printable::{printable, printable_lines};
+use crate::engine::text::wrap::columns;
+use crate::studies::table::{FIT_COLUMNS, FittedKey};
+use serde::ser::Serializer;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::fmt;
+use std::io::{self, Write};
+
+#[derive(Clone, Copy, Debug)]
+pub struct FitReport<'a> {
+    pub fit: &'a Fit,
+    pub model: &'a Model,
+    /// The scheme of the scenario, where the runs have another.
+    pub instead_of: Option<&'static str>,
+}
+
+/// Uncertainties to both sides that differ by no more than this part are one.
+const ALIKE: f64 = 0.05;
+/// Digits of a value whose uncertainty cannot be stated.
+const REPORT_VALUE_DIGITS: usize = 7;
+
+/// Returns `number` to the second digit of `uncertainty`: 3.040e-4, where that is 2.2e-6.
+fn to_the_digit_of(number: f64, uncertainty: f64) -> String {
+    let stated = uncertain(number, uncertainty).filter(|_| number != 0.0);
+    stated.map_or_else(
+        || significant(number, REPORT_VALUE_DIGITS),
+        |stated| stated.to_the_same_digit(number),
+    )
+}
+
+impl Fitted {
+    /// The value with its uncertainty, as people read it: 0.003920(38), or where that differs 0.003920 +0.000042 -0.000038.
+    pub fn stated(&self) -> String {
+        if let Some(Sides { below, above }) = self.sides
+            && (below - above).abs() > ALIKE * below.max(above)
+        {
+            let value = to_the_digit_of(self.value, below.max(above));
+            let [above, below] = [above, below].map(|side| to_the_digit_of(side, side));
+            return format!("{value} +{above} -{below}");
+        }
+        let stated = self.sigma.and_then(|sigma| uncertain(self.value, sigma));
+        match stated {
+            Some(stated) => stated.to_string(),
+            None => significant(self.value, REPORT_VALUE_DIGITS),
+        }
+    }
+
+    fn json(&self) -> Value {
+        let bound = |bound: f64| bound.is_finite().then_some(bound);
+        json!({
+            "key": self.free.key, "value": self.value, "uncertainty": self.sigma, "start": self.free.start,
+            "uncertainty_below": self.sides.map(|sides| sides.below), "uncertainty_above": self.sides.map(|sides| sides.above),
+            "from": bound(self.free.from), "to": bound(self.free.to), "is_at_bound": self.is_held,
+        })
+    }
+}
+
+impl FitReport<'_> {
+    /// What is to be known beside the values, a sentence each.
+    fn remarks(&self) -> Vec<String> {
+        let other = self.instead_of.map(|own| {
+            format!(
+                "The fitted runs have the scheme {}; the scenario's own is {own} (--scheme {own} fits the runs of that).",
+                self.model.scheme
+            )
+        });
+        let remarks = other.into_iter().chain(self.fit.remarks());
+        remarks.chain(self.fit.aliased(self.model)).collect()
+    }
+
+    /// What is to be known of a key beside its value; empty where there is nothing.
+    fn remark(&self, index: usize) -> String {
+        let key = &self.fit.keys[index];
+        let held = self.fit.edges.iter().filter(|edge| edge.holds[index]);
+        let of_part: Vec<String> = held.filter_map(|edge| Some(edge.of_part()?.1)).collect();
+        match (&of_part[..], key.is_held, key.sigma) {
+            ([_, ..], ..) => format!("{}, at the bound", of_part.join(", ")),
+            ([], true, _) => "at its bound".to_owned(),
+            ([], false, None) => "no uncertainty can be stated".to_owned(),
+            ([], false, Some(_)) => String::new(),
+        }
+    }
+
+    fn keys(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rows = self.fit.keys.iter().enumerate().map(|(index, key)| {
+            let free = &key.free;
+            let bounds = match (free.from.is_finite(), free.to.is_finite()) {
+                (false, false) => String::new(),
+                _ => format!("{}..{}", shown(free.from), shown(free.to)),
+            };
+            [
+                free.key.clone(),
+                key.stated(),
+                shortest(free.start),
+                bounds,
+                self.remark(index),
+            ]
+        });
+        write_table(f, ["key", "value", "start", "bounds", ""], rows)
+    }
+
+    fn correlations(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let count = self.fit.keys.len();
+        if count < 2 {
+            return Ok(());
+        }
+        writeln!(f, "\nCorrelations, the keys in that order:")?;
+        for i in 0..count {
+            let cell = |j: usize| match self.fit.solution.correlation(i, j) {
+                Some(correlation) => format!("{correlation:>9.4}"),
+                None => format!("{NOT_AVAILABLE:>9}"),
+            };
+            let cells: String = (0..=i).map(cell).collect();
+            writeln!(f, " {cells}")?;
+        }
+        Ok(())
+    }
+
+    fn furthest(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const MOST_REPORTED_ROWS: usize = 5;
+        let mut all: Vec<(usize, &Residual)> = self.fit.residuals.iter().enumerate().collect();
+        let size = |residual: &Residual| residual.in_sigmas().unwrap_or(residual.value()).abs();
+        all.sort_by(|a, b| size(b.1).total_cmp(&size(a.1)));
+        let rows = all
+            .iter()
+            .take(MOST_REPORTED_ROWS)
+            .map(|(index, residual)| {
+                let readout = self.model.columns[self.model.data[*index].column].readout;
+                let sigmas = residual.in_sigmas();
+                [
+                    (residual.row + 1).to_string(),
+                    readout.name.to_owned(),
+                    significant(residual.measured, 6),
+                    residual.sigma.map(short).unwrap_or_default(),
+                    significant(residual.model, 6),
+                    significant(residual.value(), 3),
+                    sigmas.map_or(String::new(), |sigmas| format!("{sigmas:+.1}")),
+                ]
+            });
+        let head = [
+            "row",
+            "quantity",
+            "measured",
+            "sigma",
+            "model",
+            "residual",
+            "in sigmas",
+        ];
+        match all.len() {
+            0..=MOST_REPORTED_ROWS => writeln!(f, "\nResiduals:")?,
+            count => writeln!(
+                f,
+                "\nThe {MOST_REPORTED_ROWS} of {count} residuals that are furthest off:"
+            )?,
+        }
+        write_table(f, head, rows)
+    }
+
+    fn json(&self) -> Value {
+        let (fit, quality) = (self.fit, self.fit.quality);
+        let keys = fit.keys.iter().map(Fitted::json);
+        let each = 0..fit.keys.len();
+        let matrix = |cell: &dyn Fn(usize, usize) -> Option<f64>| -> Vec<Vec<Option<f64>>> {
+            let row = |i| each.clone().map(|j| cell(i, j)).collect();
+            each.clone().map(row).collect()
+        };
+        let covariance = matrix(&|i, j| Some(fit.solution.covariance[i][j]? * fit.variance?));
+        let alike = fit.solution.alike.iter().map(|alike| {
+            let parts = alike.iter().map(|(index, part)| {
+                json!({ "key": fit.keys[*index].free.key, "relative_change": part })
+            });
+            parts.collect::<Vec<_>>()
+        });
+        let silent = fit.solution.silent.iter();
+        let silent = silent.map(|&index| &fit.keys[index].free.key);
+        let residuals = fit.residuals.iter().zip(&self.model.data);
+        let residuals = residuals.map(|(residual, datum)| {
+            let mut row = json!(ValueColumns::of(residual));
+            row["row"] = json!(residual.row + 1);
+            row["quantity"] = json!(self.model.columns[datum.column].readout.name);
+            row
+        });
+        let freedom = quality.degrees_of_freedom;
+        json!({
+            "measured": self.model.measured.origin, "scenario": self.model.title, "scheme": self.model.scheme,
+            "keys": keys.collect::<Vec<_>>(),
+            "correlation": matrix(&|i, j| fit.solution.correlation(i, j)), "covariance": covariance,
+            "chi_squared": quality.chi_squared, "degrees_of_freedom": freedom,
+            "chi_squared_per_degree_of_freedom": quality.chi_squared.filter(|_| freedom > 0).map(|sum| sum / freedom as f64),
+            "probability": quality.probability, "scatter": quality.scatter,
+            "student_factor": quality.scatter.and(fit.variance).map(|_| student(freedom)),
+            "fits": quality.fits(), "verdict": fit.sentence(self.model), "remarks": self.remarks(),
+            "bounds": fit.edges.iter().map(|edge| edge.json(&fit.keys)).collect::<Vec<_>>(),
+            "cannot_be_told_apart": alike.collect::<Vec<_>>(), "no_influence": silent.collect::<Vec<_>>(),
+            "residuals": residuals.collect::<Vec<_>>(), "steps": fit.steps,
+        })
+    }
+}
+
+impl fmt::Display for FitReport<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let quality = self.fit.quality;
+        writeln!(
+            f,
+            "{} in {}, scheme {}: {} values, {} free\n",
+            printable(&self.model.measured.origin),
+            printable(&self.model.title),
+            self.model.scheme,
+            self.model.data.len(),
+            self.fit.keys.len()
+        )?;
+        self.keys(f)?;
+        self.correlations(f)?;
+        self.furthest(f)?;
+        writeln!(f)?;
+        if let (Some(sum), freedom @ 1..) = (quality.chi_squared, quality.degrees_of_freedom) {
+            let each = significant(sum / freedom as f64, 3);
+            let probability = quality
+                .probability
+                .map_or(NOT_AVAILABLE.to_owned(), |p| significant(p, 2));
+            writeln!(
+                f,
+                "chi^2/degree of freedom: {each}, probability of so much or more: {probability}"
+            )?;
+        }
+        for remark in self.remarks() {
+            writeln!(f, "{}", printable_lines(&remark))?;
+        }
+        f.write_str(&self.fit.sentence(self.model))
+    }
+}
+
+impl Serialize for FitReport<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.json().serialize(serializer)
+    }
+}
+
+/// A head and rows of cells in columns that are as wide as their widest cell.
+fn write_table<const N: usize>(
+    f: &mut fmt::Formatter<'_>,
+    head: [&str; N],
+    rows: impl Iterator<Item = [String; N]>,
+) -> fmt::Result {
+    let rows: Vec<_> = std::iter::once(head.map(str::to_owned))
+        .chain(rows)
+        .collect();
+    let width = |cell: &String| columns(&printable(cell));
+    let widest = |column: usize| rows.iter().map(|row| width(&row[column])).max();
+    let widths: Vec<usize> = (0..N).filter_map(widest).collect();
+    for row in &rows {
+        let cells = row.iter().zip(&widths);
+        let cells = cells.map(|(cell, most)| {
+            let room = " ".repeat(most - width(cell));
+            format!("  {}{room}", printable(cell))
+        });
+        writeln!(f, "{}", cells.collect::<String>().trim_end())?;
+    }
+    Ok(())
+}
+
+/// The comments above the run file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Header {
+    pub fit: FitCommand,
+    pub key: Vec<FittedKey>,
+}
+
+/// The command of a fit, and how well the model fits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitCommand {
+    /// The whole command, without its output.
+    pub command: String,
+    pub measured: String,
+    #[serde(rename = "in")]
+    pub scenario: String,
+    pub scheme: String,
+    pub free: Vec<String>,
+    /// The rows that were fitted, where these are not all.
+    pub rows: Option<String>,
+    /// chi^2, of data with uncertainties.
+    pub chi_squared: Option<f64>,
+    pub degrees_of_freedom: u64,
+    /// The scatter of data without uncertainties, in their unit.
+    pub scatter: Option<f64>,
+    pub verdict: String,
+}
+
+/// Writes a row for each measured value, below the run file of the fitted scenario. What was fitted to what, and what was
+/// found, stands above the run file as TOML in TOML's comments: the CSV opens as the run that it fitted, `scenario`. `asked`
+/// has what was asked for.
+pub fn write_csv(
+    mut out: impl Write,
+    report: &FitReport<'_>,
+    scenario: &Scenario,
+    asked: FitCommand,
+) -> io::Result<()> {
+    let found = report.fit.keys.iter().map(|key| FittedKey {
+        key: key.free.key.clone(),
+        value: key.value,
+        uncertainty: key.sigma,
+    });
+    let header = Header {
+        fit: asked,
+        key: found.collect(),
+    };
+    let text = toml::to_string(&header).map_err(io::Error::other)?;
+    out.write_all(commented(&commented(&text)).as_bytes())?;
+    out.write_all(commented(&scenario.to_toml()).as_bytes())?;
+    let mut rows = csv::WriterBuilder::new()
+        .has_headers(false)
+        .from_writer(out);
+    let data = &report.model.measured.data;
+    let mut names = vec!["row"];
+    names.extend(at_names(data));
+    names.extend(FIT_COLUMNS);
+    rows.write_record(&names).map_err(io::Error::other)?;
+    for (residual, datum) in report.fit.residuals.iter().zip(&report.model.data) {
+        let quantity = report.model.columns[datum.column].readout.name;
+        let row = (
+            residual.row + 1,
+            at_cells(data, residual.row),
+            quantity,
+            ValueColumns::of(residual),
+        );
+        rows.serialize(row).map_err(io::Error::other)?;
+    }
+    rows.flush()
+}
+
+/// The columns of a row behind its quantity.
+#[derive(Serialize)]
+struct ValueColumns {
+    measured: f64,
+    uncertainty: Option<f64>,
+    model: f64,
+    residual: f64,
+    residual_sigmas: Option<f64>,
+}
+
+impl ValueColumns {
+    fn of(residual: &Residual) -> Self {
+        Self {
+            measured: residual.measured,
+            uncertainty: residual.sigma,
+            model: residual.model,
+            residual: residual.value(),
+            residual_sigmas: residual.in_sigmas(),
+        }
+    }
+}
+
+/// The names of what says where a value was measured.
+fn at_names(data: &DataKind) -> Vec<&str> {
+    match data {
+        DataKind::Series(_) => vec![TIME_COLUMN],
+        DataKind::Table(table) => table.settings.iter().map(|it| it.key.as_str()).collect(),
+    }
+}
+
+/// The same of a row, from 0.
+fn at_cells(data: &DataKind, row: usize) -> Vec<String> {
+    match data {
+        DataKind::Series(series) => vec![number(series.times_s[row])],
+        DataKind::Table(table) => {
+            let values = table.settings.iter().map(|setting| &setting.values[row]);
+            let cell = |value: &Option<toml::Value>| match value {
+                None => String::new(),
+                Some(toml::Value::Float(value)) => number(*value),
+                Some(toml::Value::String(text)) => text.clone(),
+                Some(other) => other.to_string(),
+            };
+            values.map(cell).collect()
+        }
+    }
+}
+
+/// A number as CSVs of runs have it.
+fn number(number: f64) -> String {
+    ryu::Buffer::new().format(number).to_owned()
+}

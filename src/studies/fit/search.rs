@@ -1,0 +1,433 @@
+//! The whole of a fit: from the start values to the minimum, and what the data say there.
+
+use super::chart::Chart;
+use super::edge::{Edge, edges};
+use super::free::Free;
+use super::levenberg::{self, Failure, LeastSquares, Minimum, Stop};
+use super::model::{FitProgress, Model};
+use super::solution::{FitSolution, Quality, SILENT_KEY, variance};
+use super::thrown;
+use super::weights::Weights;
+use super::within::Limit;
+use crate::engine::cores;
+use crate::engine::data::Residual;
+use crate::engine::text::number::significant;
+use nalgebra::{DMatrix, DVector};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The keys with their values, in the order in which they were asked for.
+    pub keys: Vec<Fitted>,
+    /// What the data say of the keys; its covariances are for the uncertainties of `weights`.
+    pub solution: FitSolution,
+    /// Measured less model, one a datum; the uncertainty is that by which it was weighed, `None` where none is stated.
+    pub residuals: Vec<Residual>,
+    pub quality: Quality,
+    pub weights: Weights,
+    pub steps: u64,
+    /// The factor of the covariances: 1, or for unweighted data (scatter times Student's factor) squared.
+    pub variance: Option<f64>,
+    /// The limits that hold the keys.
+    pub edges: Vec<Edge>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// The key, where the search began, and its bounds.
+    pub free: Free,
+    pub value: f64,
+    /// One standard uncertainty of it, of two sides the larger one; `None` where it cannot be stated.
+    pub sigma: Option<f64>,
+    /// The uncertainties to both sides, which differ where a limit of nature holds the key.
+    pub sides: Option<Sides>,
+    /// Whether it is held at a bound, beyond which the fit would be better.
+    pub is_held: bool,
+}
+
+/// How far below and above its value a key may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sides {
+    pub below: f64,
+    pub above: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoFit {
+    #[error(
+        "{data} measured {} cannot say {keys} values: free fewer keys, or measure more",
+        if *data == 1 { "value" } else { "values" }
+    )]
+    TooFew { data: usize, keys: usize },
+    #[error("the model cannot be held against the data: {0}")]
+    Impossible(String),
+    #[error(
+        "the fit did not converge in {most} steps, the last values are {at}: begin nearer by --set KEY=VALUE, give bounds by --free KEY=FROM..TO, or free fewer keys"
+    )]
+    TooLong { at: String, most: u64 },
+    #[error(
+        "the fit got stuck at {0}, where no step makes it better though the slopes say so: begin elsewhere by --set KEY=VALUE, or give bounds by --free KEY=FROM..TO that keep it where the scenario is possible"
+    )]
+    Stuck(String),
+    #[error(
+        "the fit did not converge: the weights that the uncertainties of the settings make go on changing; leave their columns out"
+    )]
+    Unsettled,
+    #[error("the fit was ended before it converged")]
+    Interrupted,
+}
+
+impl From<Stop> for NoFit {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::Impossible(why) => Self::Impossible(why),
+            Stop::Interrupted => Self::Interrupted,
+        }
+    }
+}
+
+/// The change of a key by which slopes are taken, of its size.
+const SLOPE_CHANGE: f64 = 1e-4;
+/// A change that moves a datum by more than this part of its uncertainty may be too large for a slope.
+const LARGE_SLOPE_CHANGE: f64 = 0.5;
+/// The part that is aimed at then.
+const AIM: f64 = 0.1;
+/// A change is no larger than this part of the way to a limit that is not yet reached: there the data may bend.
+const OF_WAY: f64 = 1e-3;
+/// A limit that is nearer than this part of a change has been reached.
+const REACHED: f64 = 1e-4;
+/// From how many starts the search begins at most.
+const MOST_STARTS: usize = 4;
+/// How often the weights are computed anew.
+const MOST_ROUNDS: u32 = 40;
+
+/// Fits the free keys of `model` to its data. `tell` hears of each step: how many, and chi^2.
+pub fn fit(
+    model: &Model,
+    go_on: FitProgress<'_>,
+    tell: &(dyn Fn(u64, f64) + Sync),
+) -> Result<Fit, NoFit> {
+    let (data, keys) = (model.data.len(), model.free.len());
+    if data < keys {
+        return Err(NoFit::TooFew { data, keys });
+    }
+    let own: Vec<f64> = model.free.iter().map(|free| free.start).collect();
+    let scenario = model.scenario(&own).map_err(Stop::Impossible)?;
+    let chart = Chart::new(&model.free, &scenario);
+    let mut first_failure = None;
+    for start in starts(model, &chart, own, go_on)? {
+        match fit_from(model, &chart, start, go_on, tell) {
+            Err(failure @ (NoFit::Stuck(_) | NoFit::TooLong { .. })) => {
+                first_failure.get_or_insert(failure);
+            }
+            ended => return ended,
+        }
+    }
+    Err(first_failure.unwrap_or(NoFit::Interrupted))
+}
+
+/// The values from which the search begins, one after the other until it ends well: the nearest to the data first.
+fn starts(
+    model: &Model,
+    chart: &Chart,
+    own: Vec<f64>,
+    go_on: FitProgress<'_>,
+) -> Result<Vec<Vec<f64>>, Stop> {
+    let thrown = thrown::starts(model, &own);
+    let mut all = vec![own];
+    all.extend(thrown.into_iter().filter(|start| chart.holds(start)));
+    if all.len() == 1 {
+        return Ok(all);
+    }
+    let mut summed = Vec::with_capacity(all.len());
+    for start in all {
+        summed.push((sum_of_squares(model, &start, go_on)?, start));
+    }
+    summed.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let nearest = summed.into_iter().take(MOST_STARTS);
+    Ok(nearest.map(|(_, start)| start).collect())
+}
+
+fn fit_from(
+    model: &Model,
+    chart: &Chart,
+    mut p: Vec<f64>,
+    go_on: FitProgress<'_>,
+    tell: &(dyn Fn(u64, f64) + Sync),
+) -> Result<Fit, NoFit> {
+    let mut weights = Weights::at(model, &p, go_on)?;
+    let changes = model.free.iter().map(|free| SLOPE_CHANGE * free.scale);
+    let changes = Mutex::new(changes.collect::<Vec<f64>>());
+    let mut steps = 0;
+    for _ in 0..MOST_ROUNDS {
+        let start = chart.parameters(&p);
+        let limits = chart.limits_around(&start);
+        let weighed = Weighed {
+            model,
+            chart,
+            limits: &limits,
+            weights: &weights,
+            changes: &changes,
+            go_on,
+            tell: &|step, sum| tell(steps + step, sum),
+        };
+        let minimum = levenberg::search(&weighed, &start, &limits)?;
+        steps += minimum.steps;
+        p = chart.keys(&minimum.p);
+        if let Some(failure) = minimum.failure {
+            return Err(NoFit::at(model, &p, failure));
+        }
+        let Some(next) = weights.renewed(model, &p, go_on)? else {
+            return finished(model, &minimum, chart, weights, steps, go_on);
+        };
+        weights = next;
+    }
+    Err(NoFit::Unsettled)
+}
+
+/// How far the data are from the run with these values; infinitely where there is no such run.
+fn sum_of_squares(model: &Model, p: &[f64], go_on: FitProgress<'_>) -> Result<f64, Stop> {
+    match model.values(p, None, go_on) {
+        Ok(values) => {
+            let residuals = model.residuals(&values);
+            Ok(residuals.iter().map(|it| it.value() * it.value()).sum())
+        }
+        Err(Stop::Impossible(_)) => Ok(f64::INFINITY),
+        Err(stop) => Err(stop),
+    }
+}
+
+impl NoFit {
+    /// The search has ended by `failure` at these values of the keys.
+    fn at(model: &Model, p: &[f64], failure: Failure) -> Self {
+        let pairs = model.free.iter().zip(p);
+        let pairs = pairs.map(|(free, value)| format!("{} = {}", free.key, significant(*value, 6)));
+        let at = pairs.collect::<Vec<_>>().join(", ");
+        match failure {
+            Failure::TooManySteps => Self::TooLong {
+                at,
+                most: levenberg::MOST_ITERATIONS,
+            },
+            Failure::Stuck => Self::Stuck(at),
+        }
+    }
+}
+
+fn finished(
+    model: &Model,
+    minimum: &Minimum,
+    chart: &Chart,
+    weights: Weights,
+    steps: u64,
+    go_on: FitProgress<'_>,
+) -> Result<Fit, NoFit> {
+    let p = chart.keys(&minimum.p);
+    let solution = FitSolution::of(minimum, chart, &model.free);
+    let values = model.values(&p, None, go_on)?;
+    let mut residuals = model.residuals(&values);
+    for (residual, sigma) in residuals.iter_mut().zip(&weights.sigma) {
+        residual.sigma = weights.are_stated.then_some(*sigma);
+    }
+    let freedom = model.data.len().saturating_sub(solution.rank) as u64;
+    let sum = minimum.residuals.norm_squared();
+    let quality = Quality::of(sum, freedom, &weights);
+    let scattered = || variance(sum, freedom);
+    let variance = weights.are_stated.then_some(1.0).or_else(scattered);
+    let edges = edges(minimum, chart, &model.free, variance);
+    let places = model.free.iter().enumerate();
+    let keys = places.map(|(index, free)| {
+        let sides = sides(index, p[index], &solution, &edges, variance);
+        Fitted {
+            free: free.clone(),
+            value: p[index],
+            sigma: sides.map(|sides| sides.below.max(sides.above)),
+            sides,
+            is_held: edges.iter().any(|edge| edge.holds[index]),
+        }
+    });
+    Ok(Fit {
+        keys: keys.collect(),
+        solution,
+        residuals,
+        quality,
+        weights,
+        steps,
+        variance,
+        edges,
+    })
+}
+
+/// The uncertainties of a key: those along the limits that hold it, and to the inside of each limit as far as it may be.
+fn sides(
+    index: usize,
+    value: f64,
+    solution: &FitSolution,
+    edges: &[Edge],
+    variance: Option<f64>,
+) -> Option<Sides> {
+    let along = solution.sigma(index).zip(variance);
+    let along = along.map(|(sigma, variance)| sigma * variance.sqrt());
+    let mut squares = [along.unwrap_or(0.0).powi(2); 2];
+    let is_silent = |edge: &&Edge| edge.is_of_nature && edge.most.is_none() && edge.holds[index];
+    let is_unknown =
+        along.is_none() && solution.is_moving[index] || edges.iter().any(|edge| is_silent(&edge));
+    let of_part = edges
+        .iter()
+        .filter(|edge| edge.holds[index] && edge.of_part().is_some());
+    let is_corner = of_part.count() > 1;
+    for edge in edges {
+        let moved = edge.most.map_or(0.0, |most| most.at_68 * edge.moves[index]);
+        squares[usize::from(moved > 0.0)] += moved * moved;
+    }
+    let [below, above] = squares.map(f64::sqrt);
+    // Inside of a corner of limits a key may move either way.
+    let most = below.max(above);
+    let [below, above] = if is_corner { [most; 2] } else { [below, above] };
+    let is_rounding = most <= f64::EPSILON * value.abs();
+    let is_stated = !is_unknown && !is_rounding && most > 0.0 && most.is_finite();
+    is_stated.then_some(Sides { below, above })
+}
+
+/// The model with its data weighed, as the search sees it.
+struct Weighed<'a> {
+    model: &'a Model,
+    chart: &'a Chart,
+    limits: &'a [Limit],
+    weights: &'a Weights,
+    /// The change of each parameter by which slopes are taken, in its unit.
+    changes: &'a Mutex<Vec<f64>>,
+    go_on: FitProgress<'a>,
+    tell: &'a (dyn Fn(u64, f64) + Sync),
+}
+
+impl Weighed<'_> {
+    fn kept(&self) -> MutexGuard<'_, Vec<f64>> {
+        self.changes.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn values(&self, p: &[f64]) -> Result<Vec<f64>, Stop> {
+        self.model.values(&self.chart.keys(p), None, self.go_on)
+    }
+
+    /// How far the `index`-th parameter alone can be changed from `p`, to its least and its greatest value. Limits of several
+    /// together are left to the scenario, which refuses what cannot be: at one that the user drew no parameter is stuck.
+    fn ends(&self, p: &[f64], index: usize) -> (f64, f64) {
+        let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+        for limit in self.limits.iter().filter(|it| it.only() == Some(index)) {
+            let edge = p[index] - limit.room(p) / limit.normal[index];
+            if limit.normal[index] > 0.0 {
+                from = from.max(edge);
+            } else {
+                to = to.min(edge);
+            }
+        }
+        (from, to)
+    }
+
+    /// `change` of the `index`-th parameter from `p`, or a smaller one where a limit is near.
+    fn before_limits(&self, p: &[f64], index: usize, change: f64) -> f64 {
+        let ways = self
+            .limits
+            .iter()
+            .map(|limit| limit.room(p) / limit.normal[index].abs());
+        let near = ways.filter(|way| *way > REACHED * change);
+        near.fold(change, |change, way| change.min(OF_WAY * way))
+    }
+
+    /// The change of every datum with the `index`-th parameter by central differences, as far as the limits and the scenario
+    /// allow, and the change of the parameter by which it was found.
+    fn slope(&self, p: &[f64], index: usize, mut change: f64) -> Result<(Vec<f64>, f64), Stop> {
+        /// How often a change that was too large is made smaller.
+        const TRIES: u32 = 4;
+        for try_ in 0.. {
+            let near = self.before_limits(p, index, change);
+            let (slope, width) = self.slope_by(p, index, near)?;
+            let moved = slope.iter().zip(&self.weights.resolution);
+            let most = moved.map(|(slope, size)| (slope * width / size).abs());
+            let most = most.fold(0.0, f64::max);
+            if most <= LARGE_SLOPE_CHANGE || try_ == TRIES || !most.is_finite() {
+                return Ok((slope, change));
+            }
+            change *= AIM / most;
+        }
+        Err(Stop::Interrupted) // not reached: the tries are counted
+    }
+
+    /// The same by this change, and how far apart the two values of the parameter were.
+    fn slope_by(&self, p: &[f64], index: usize, change: f64) -> Result<(Vec<f64>, f64), Stop> {
+        let (from, to) = self.ends(p, index);
+        let at = |value: f64| {
+            let mut there = p.to_vec();
+            there[index] = value.max(from).min(to);
+            Ok((there[index], self.values(&there)?))
+        };
+        let (high, low) = (at(p[index] + change), at(p[index] - change));
+        let why = match (&high, &low) {
+            (Err(Stop::Impossible(why)), _) | (_, Err(Stop::Impossible(why))) => why.clone(),
+            _ => "the data depend on digits of it beyond its last one".to_owned(),
+        };
+        let either = |side: Result<_, Stop>| match side {
+            Err(Stop::Impossible(_)) => at(p[index]),
+            side => side,
+        };
+        let ((high, above), (low, below)) = (either(high)?, either(low)?);
+        let width = high - low;
+        if width == 0.0 {
+            return Err(Stop::Impossible(format!(
+                "{} can be changed neither up nor down from {}: {why}",
+                self.model.free[index].key,
+                significant(self.chart.keys(p)[index], 6)
+            )));
+        }
+        let pairs = above.iter().zip(&below);
+        let slope = pairs.map(|(above, below)| (above - below) / width);
+        Ok((slope.collect(), width))
+    }
+}
+
+impl LeastSquares for Weighed<'_> {
+    fn residuals(&self, p: &[f64]) -> Result<DVector<f64>, Stop> {
+        let residuals = self.model.residuals(&self.values(p)?);
+        let residuals: Vec<f64> = residuals.iter().map(Residual::value).collect();
+        let white = self.weights.whitened(&residuals);
+        are_numbers(white.norm_squared())?;
+        Ok(white)
+    }
+
+    fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop> {
+        let changes = self.kept().clone();
+        let of = |(index, change): &(usize, _)| self.slope(p, *index, *change);
+        let changes: Vec<_> = changes.into_iter().enumerate().collect();
+        let found: Result<Vec<(Vec<f64>, f64)>, Stop> = cores::map(&changes, of);
+        let found = found?;
+        let keys = self.chart.keys(p);
+        let column = |(index, (slope, _)): (usize, &(Vec<f64>, f64))| {
+            let column = self.weights.whitened(slope);
+            // The slope of what does not move is rounding, and would lead anywhere.
+            if column.norm() * self.model.free[index].size(keys[index]) <= SILENT_KEY {
+                DVector::zeros(column.len())
+            } else {
+                column
+            }
+        };
+        let columns: Vec<DVector<f64>> = found.iter().enumerate().map(column).collect();
+        *self.kept() = found.iter().map(|(_, change)| *change).collect();
+        let slopes = DMatrix::from_columns(&columns);
+        // The decomposition of a matrix with a NaN would not end.
+        are_numbers(slopes.norm_squared())?;
+        Ok(slopes)
+    }
+
+    fn tell(&self, step: u64, sum: f64) {
+        (self.tell)(step, sum);
+    }
+}
+
+fn are_numbers(sum: f64) -> Result<(), Stop> {
+    if sum.is_finite() {
+        return Ok(());
+    }
+    Err(Stop::Impossible(
+        "the residuals in units of their uncertainties are beyond the range of numbers".to_owned(),
+    ))
+}

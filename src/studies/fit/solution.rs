@@ -1,0 +1,253 @@
+//! What a minimum says of the keys: their uncertainties, how these hang together, and what cannot be told apart; and how
+//! well the model fits, in numbers.
+
+use super::chart::Chart;
+use super::free::Free;
+use super::levenberg::{Minimum, SINGULAR};
+use super::weights::Weights;
+use super::within::complement;
+use crate::engine::text::number::significant;
+use nalgebra::{DMatrix, DVector};
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitSolution {
+    /// The covariances of the keys along the limits that hold them, in their units, for data whose uncertainty is 1; `None`
+    /// of a key whose value the data do not say, or that is held at a bound.
+    pub covariance: Vec<Vec<Option<f64>>>,
+    pub rank: usize,
+    /// The keys on which no datum depends.
+    pub silent: Vec<usize>,
+    /// The combinations of keys that change no datum: the keys by their places, and the change of each, relative to its
+    /// value, the largest of them 1; relative to [`Free::scale`](super::free::Free::scale) where the value is 0.
+    pub alike: Vec<Vec<(usize, f64)>>,
+    /// Which keys change any datum along the limits that hold them.
+    pub is_moving: Vec<bool>,
+}
+
+/// A key that moves no datum by this part of its uncertainty when it changes by its own size moves none.
+pub(super) const SILENT_KEY: f64 = 1e-5;
+/// Parts of a combination below this are rounding.
+pub(super) const COMBINATION_ROUNDING: f64 = 1e-2;
+/// The part of a key in a direction is rounding below this.
+const ROUNDING: f64 = 1e-9;
+
+/// The combination of the keys in the direction `way`, for keys in `units`: those that take part, with their changes, the
+/// largest of them 1.
+fn alike(way: &DVector<f64>, moving: &[usize], units: &[f64]) -> Vec<(usize, f64)> {
+    let parts: Vec<f64> = way
+        .iter()
+        .zip(units)
+        .map(|(way, unit)| way / unit)
+        .collect();
+    // Of equal ones the first.
+    let sizes = parts.iter().copied().rev();
+    let largest = sizes.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let largest = largest.unwrap_or_default();
+    let places = (0..moving.len()).filter(|&place| way[place].abs() > COMBINATION_ROUNDING);
+    let combined = places.map(|place| (moving[place], parts[place] / largest));
+    combined.collect()
+}
+
+/// A direction of the keys along the limits that hold them, for keys in units in which the slope of each is 1.
+struct Way {
+    singular: f64,
+    parts: DVector<f64>,
+}
+
+/// The directions along which the keys can move, within the limits that hold them.
+fn ways(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<Way> {
+    let free = complement(normals.iter(), slopes.ncols());
+    if free.is_empty() {
+        return Vec::new();
+    }
+    let svd = (slopes * &free).svd(false, true);
+    let Some(v_t) = svd.v_t else {
+        return Vec::new();
+    };
+    let way = |k: usize| Way {
+        // With fewer data than keys some directions have no singular value at all.
+        singular: svd.singular_values.get(k).copied().unwrap_or(0.0),
+        parts: &free * v_t.row(k).transpose(),
+    };
+    (0..v_t.nrows()).map(way).collect()
+}
+
+impl FitSolution {
+    pub fn of(minimum: &Minimum, chart: &Chart, free: &[Free]) -> Self {
+        let slopes = &minimum.slopes * &chart.matrix;
+        let keys = chart.keys(&minimum.p);
+        let norms: Vec<f64> = slopes.column_iter().map(|column| column.norm()).collect();
+        let size = |index: usize| free[index].size(keys[index]);
+        let is_silent = |index: usize| norms[index] * size(index) <= SILENT_KEY;
+        let silent: Vec<usize> = (0..free.len()).filter(|&index| is_silent(index)).collect();
+        let heard: Vec<usize> = (0..free.len()).filter(|index| !is_silent(*index)).collect();
+        let mut solution = Self {
+            covariance: vec![vec![None; free.len()]; free.len()],
+            rank: 0,
+            silent,
+            alike: Vec::new(),
+            is_moving: vec![false; free.len()],
+        };
+        if heard.is_empty() {
+            return solution;
+        }
+        let columns = heard.iter();
+        let columns = columns.map(|&index| slopes.column(index) / norms[index]);
+        let columns = DMatrix::from_columns(&columns.collect::<Vec<DVector<f64>>>());
+        let normal = |&place: &usize| {
+            let normal = chart.matrix.tr_mul(&chart.limits[place].normal);
+            let parts = heard.iter().map(|&index| normal[index] / norms[index]);
+            DVector::from_iterator(heard.len(), parts)
+        };
+        let normals: Vec<DVector<f64>> = minimum.held.iter().map(normal).collect();
+        let ways = ways(&columns, &normals);
+        let largest = ways.iter().map(|way| way.singular).fold(0.0, f64::max);
+        let (seen, unseen): (Vec<&Way>, Vec<&Way>) =
+            (ways.iter()).partition(|way| way.singular > SINGULAR * largest);
+        solution.rank = seen.len();
+        let units = heard.iter().map(|&index| norms[index] * size(index));
+        let units: Vec<f64> = units.collect();
+        let alike = unseen.iter().map(|way| alike(&way.parts, &heard, &units));
+        solution.alike = alike.collect();
+        for (place, &index) in heard.iter().enumerate() {
+            solution.is_moving[index] = ways.iter().any(|way| way.parts[place].abs() > ROUNDING);
+        }
+        let is_known = |place: &usize| {
+            let mut unseen = unseen.iter();
+            solution.is_moving[heard[*place]]
+                && unseen.all(|way| way.parts[*place].abs() <= COMBINATION_ROUNDING)
+        };
+        let known: Vec<usize> = (0..heard.len()).filter(is_known).collect();
+        for (&i, &j) in known.iter().flat_map(|i| known.iter().map(move |j| (i, j))) {
+            let term = |way: &&Way| way.parts[i] * way.parts[j] / way.singular.powi(2);
+            let covariance = seen.iter().map(term).sum::<f64>();
+            let covariance = covariance / (norms[heard[i]] * norms[heard[j]]);
+            solution.covariance[heard[i]][heard[j]] =
+                Some(covariance).filter(|covariance| covariance.is_finite());
+        }
+        solution
+    }
+
+    /// One standard uncertainty of the `index`-th key.
+    pub fn sigma(&self, index: usize) -> Option<f64> {
+        self.covariance[index][index].map(f64::sqrt)
+    }
+
+    pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
+        let correlation = self.covariance[i][j]? / (self.sigma(i)? * self.sigma(j)?);
+        if i == j {
+            Some(1.0)
+        } else {
+            Some(correlation.clamp(-1.0, 1.0))
+        }
+    }
+}
+
+/// Below this probability a model does not fit; above 1 less this, the uncertainties are too large.
+pub(super) const RARE: f64 = 0.01;
+/// The fewest degrees of freedom from which the scatter of data without uncertainties says how uncertain they are: with
+/// fewer, two data that agree by chance would make the keys as sure as one likes.
+pub(super) const LEAST_FREEDOM: u64 = 3;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Quality {
+    /// The sum of the squared residuals in units of their uncertainties; `None` where none are stated.
+    pub chi_squared: Option<f64>,
+    /// How many data there are beyond those that the fitted values take up.
+    pub degrees_of_freedom: u64,
+    /// The probability that a model that is right has so large a chi^2 or a larger one.
+    pub probability: Option<f64>,
+    /// The scatter of data without uncertainties about the model, in their unit: the root of the sum of the squared residuals
+    /// over the degrees of freedom.
+    pub scatter: Option<f64>,
+}
+
+/// The variance of data without uncertainties, from their scatter (`sum` is the sum of the squared residuals), times the
+/// square of Student's factor; `None` where it cannot be stated.
+pub(super) fn variance(sum: f64, freedom: u64) -> Option<f64> {
+    (freedom >= LEAST_FREEDOM).then(|| sum / freedom as f64 * student(freedom).powi(2))
+}
+
+/// Student's factor: an uncertainty made of the scatter of few data is itself uncertain, and times this factor twice of it
+/// still holds the truth in 95.45 % of all cases. The expansion of the quantile in 1/`freedom` (M. Abramowitz, I. Stegun,
+/// Handbook of Mathematical Functions, 26.7.5), within 0.2 % from three degrees of freedom on.
+pub(super) fn student(freedom: u64) -> f64 {
+    let x = 1.0 / freedom as f64;
+    1.0 + x * (1.25 + x * (1.53125 + x * (1.429_687_5 + x * 0.922_037)))
+}
+
+/// The probability that chi^2 of `freedom` degrees of freedom is `chi_squared` or larger (M. Abramowitz, I. Stegun, Handbook
+/// of Mathematical Functions, 26.4.4 and 26.4.5).
+fn at_least(chi_squared: f64, freedom: u64) -> f64 {
+    let half = 0.5 * chi_squared;
+    if half == 0.0 {
+        return 1.0;
+    }
+    let (begin, first) = match freedom % 2 {
+        0 => (0.0, 0.0),
+        _ => (0.5, libm::erfc(half.sqrt())),
+    };
+    let term = |index: u64| {
+        let power = begin + index as f64;
+        libm::exp(power * libm::log(half) - half - libm::lgamma(power + 1.0))
+    };
+    first + (0..freedom / 2).map(term).sum::<f64>()
+}
+
+/// What is said of uncertainties for which chi^2 of `freedom` degrees of freedom is hardly ever so small.
+pub fn too_large(chi_squared: f64, freedom: u64) -> Option<String> {
+    let is_rare = freedom > 0 && chi_squared > 0.0 && at_least(chi_squared, freedom) > 1.0 - RARE;
+    is_rare.then(|| {
+        let times = significant((freedom as f64 / chi_squared).sqrt(), 2);
+        format!("the uncertainties given look too large: by their scatter the data are about {times} times as good as stated")
+    })
+}
+
+impl Quality {
+    /// How well a model fits: `sum` is the sum of the squared residuals in the units of `weights`.
+    pub(super) fn of(sum: f64, freedom: u64, weights: &Weights) -> Self {
+        let mut quality = Self {
+            degrees_of_freedom: freedom,
+            ..Self::default()
+        };
+        if weights.are_stated {
+            let probability = (freedom > 0).then(|| at_least(sum, freedom));
+            quality.chi_squared = Some(sum);
+            quality.probability = probability.filter(|probability| probability.is_finite());
+        } else if freedom > 0 {
+            let unit = weights.sigma.first().copied().unwrap_or(1.0);
+            quality.scatter = Some(sum.sqrt() * unit / (freedom as f64).sqrt());
+        }
+        quality
+    }
+
+    /// Whether the model fits, where that can be said: its chi^2 is not rare. Uncertainties that are too large are no reason
+    /// against it.
+    pub fn fits(&self) -> Option<bool> {
+        self.probability.map(|probability| probability >= RARE)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::at_least;
+
+    #[test]
+    fn chi_squared_is_as_rare_as_the_tables_say() {
+        // Percentage points of the tables: 5 %, 1 %, 95 % and 50 %.
+        let rows = [
+            (3.841_458_821, 1, 0.05),
+            (5.991_464_547, 2, 0.05),
+            (24.724_970_311, 11, 0.01),
+            (3.940_299_136, 10, 0.95),
+            (99.334_129_24, 100, 0.5),
+        ];
+        for (chi_squared, freedom, expected) in rows {
+            let found = at_least(chi_squared, freedom);
+            assert!((found - expected).abs() < 1e-9, "{freedom}: {found}");
+        }
+        assert_eq!(at_least(0.0, 7), 1.0);
+        assert!((at_least(1e6, 1_000_000) - 0.4998).abs() < 1e-3);
+        assert!(at_least(f64::NAN, 4).is_nan());
+    }
+}

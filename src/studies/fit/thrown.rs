@@ -1,0 +1,199 @@
+//! Where to begin for a body that was thrown: its rates about its own axes tell the ratios of its moments and the rates at
+//! the start, without a search.
+//!
+//! Euler's equations A dw1 = (B - C) w2 w3 dt and so on, summed up over the recording, are linear in A, B, C, which are known
+//! up to a factor: the vector that comes nearest to fulfilling all of them.
+
+use super::Free;
+use super::chart::{moment, second_moments};
+use super::model::Model;
+use crate::engine::data::{DataKind, TimeSeries};
+use crate::engine::scenario::Scenario;
+use crate::engine::scenario::file::VectorFrame;
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+
+const RATES: [&str; 3] = ["w1_rad_per_s", "w2_rad_per_s", "w3_rad_per_s"];
+const START_OMEGA_KEY: &str = "start.omega_rad_per_s.";
+
+/// The least share of a second moment of mass in all three with which the search begins.
+const LEAST_SHARE: f64 = 1e-3;
+
+/// Shares of the second moments of mass of bodies with which the search may begin too, where noise hides the ratios: compact,
+/// long and flat ones.
+const SHARES: [[f64; 3]; 13] = [
+    [1.0, 1.0, 1.0],
+    [2.0, 1.0, 1.0],
+    [1.0, 2.0, 1.0],
+    [1.0, 1.0, 2.0],
+    [8.0, 1.0, 1.0],
+    [1.0, 8.0, 1.0],
+    [1.0, 1.0, 8.0],
+    [4.0, 1.0, 0.1],
+    [1.0, 4.0, 0.1],
+    [4.0, 0.1, 1.0],
+    [1.0, 0.1, 4.0],
+    [0.1, 4.0, 1.0],
+    [0.1, 1.0, 4.0],
+];
+
+/// Values of the free keys to begin from in place of `p`, the likeliest first; none where the data are not the three rates of
+/// a body that flies freely.
+pub(super) fn starts(model: &Model, p: &[f64]) -> Vec<Vec<f64>> {
+    let recorded = match &model.measured.data {
+        DataKind::Series(series) => recorded(series).unwrap_or_default(),
+        DataKind::Table(_) => Vec::new(),
+    };
+    let scenario = model.scenario(p).ok().filter(flies);
+    let own = scenario.and_then(|it| it.file.body.part.first()?.moments_kg_m2);
+    let (Some(own), Some(sums)) = (own, Sums::of(&recorded)) else {
+        return Vec::new();
+    };
+    let is_moment = |free: &Free| free.keys.iter().any(|key| moment(key).is_some());
+    let mut all: Vec<Vector3<f64>> = sums.moments().into_iter().collect();
+    if model.free.iter().any(is_moment) {
+        all.extend(SHARES.map(|shares| moments_of(&Vector3::from(shares))));
+    }
+    let start = |moments: &Vector3<f64>| start(model, p, &own.into(), &sums, moments);
+    all.iter().map(start).collect()
+}
+
+/// Values of the free keys for a body with these moments, known up to a factor.
+fn start(
+    model: &Model,
+    p: &[f64],
+    own: &Vector3<f64>,
+    sums: &Sums,
+    moments: &Vector3<f64>,
+) -> Vec<f64> {
+    let axes = |free: &Free| -> Vec<usize> {
+        let axes = free.keys.iter().filter_map(|key| moment(key));
+        axes.filter(|(part, _)| *part == 0)
+            .map(|(_, axis)| axis)
+            .collect()
+    };
+    // The moments that are held are what they are; where none is, their sum stays.
+    let is_free = |axis: &usize| model.free.iter().any(|free| axes(free).contains(axis));
+    let mut held: Vec<usize> = (0..3).filter(|axis| !is_free(axis)).collect();
+    if held.is_empty() {
+        held = vec![0, 1, 2];
+    }
+    let sum = |of: &Vector3<f64>| held.iter().map(|axis| of[*axis]).sum::<f64>();
+    let factor = sum(own) / sum(moments);
+    let rates = sums.rates_at_start(moments);
+    let value = |(free, own): (&Free, &f64)| {
+        let axes = axes(free);
+        let rate = free
+            .key
+            .strip_prefix(START_OMEGA_KEY)
+            .and_then(|axis| axis.parse::<usize>().ok());
+        let value = match (&axes[..], rate) {
+            ([_, ..], _) => {
+                let sum: f64 = axes.iter().map(|axis| moments[*axis]).sum();
+                factor * sum / axes.len() as f64
+            }
+            ([], Some(axis)) => rates[axis.min(2)],
+            ([], None) => *own,
+        };
+        value.clamp(free.from, free.to)
+    };
+    model.free.iter().zip(p).map(value).collect()
+}
+
+/// The moments of a body with these second moments of mass, in which none is too small.
+fn moments_of(second: &Vector3<f64>) -> Vector3<f64> {
+    let least = LEAST_SHARE * second.map(|it| it.max(0.0)).sum();
+    let second = second.map(|it| it.max(least));
+    Vector3::repeat(second.sum()) - second
+}
+
+/// Whether nothing turns the body of `scenario`, and its start is stated by rates about its own axes.
+pub(super) fn flies(scenario: &Scenario) -> bool {
+    scenario.motion.gravity == 0.0
+        && scenario.pushes.is_empty()
+        && scenario.edits.is_empty()
+        && scenario.friction.is_none()
+        && scenario.file.start.omega_frame == Some(VectorFrame::Body)
+}
+
+/// The times, s, with the three rates, rad/s.
+pub(super) fn recorded(series: &TimeSeries) -> Option<Vec<(f64, Vector3<f64>)>> {
+    let points = |name| {
+        let mut curves = series.curves.iter();
+        let curve = curves.find(|curve| curve.quantity.name == name)?;
+        Some(curve.points.iter())
+    };
+    let rows = points(RATES[0])?
+        .zip(points(RATES[1])?)
+        .zip(points(RATES[2])?);
+    let whole = rows.filter(|((a, b), c)| a.row == b.row && b.row == c.row);
+    let rates = whole.map(|((a, b), c)| {
+        let rates = Vector3::new(a.value, b.value, c.value);
+        (series.times_s[a.row], rates)
+    });
+    Some(rates.collect())
+}
+
+/// The rates of a recording, and their products summed up from time 0 on.
+struct Sums {
+    mean_rate: Vector3<f64>,
+    mean_sum: Vector3<f64>,
+    /// The rates and the sums of each row, less the means.
+    rows: Vec<(Vector3<f64>, Vector3<f64>)>,
+}
+
+impl Sums {
+    fn of(recorded: &[(f64, Vector3<f64>)]) -> Option<Self> {
+        let product = |w: &Vector3<f64>| Vector3::new(w.y * w.z, w.z * w.x, w.x * w.y);
+        let (mut before_s, mut before) = (0.0, product(&recorded.first()?.1));
+        let mut sum = Vector3::zeros();
+        let mut rows = Vec::with_capacity(recorded.len());
+        for (time_s, rates) in recorded {
+            let now = product(rates);
+            sum += 0.5 * (time_s - before_s) * (before + now);
+            (before_s, before) = (*time_s, now);
+            rows.push((*rates, sum));
+        }
+        let count = rows.len() as f64;
+        let mean_rate = rows.iter().map(|row| row.0).sum::<Vector3<f64>>() / count;
+        let mean_sum = rows.iter().map(|row| row.1).sum::<Vector3<f64>>() / count;
+        for row in &mut rows {
+            row.0 -= mean_rate;
+            row.1 -= mean_sum;
+        }
+        Some(Self {
+            mean_rate,
+            mean_sum,
+            rows,
+        })
+    }
+
+    /// The moments about the body's axes, up to a factor; `None` where the rates say nothing of them.
+    fn moments(&self) -> Option<Vector3<f64>> {
+        let mut squares = Matrix3::zeros();
+        for (w, s) in &self.rows {
+            for equation in [
+                Vector3::new(w.x, -s.x, s.x),
+                Vector3::new(s.y, w.y, -s.y),
+                Vector3::new(-s.z, s.z, w.z),
+            ] {
+                squares += equation * equation.transpose();
+            }
+        }
+        if !squares.iter().all(|number| number.is_finite()) {
+            return None;
+        }
+        let all = SymmetricEigen::new(squares);
+        let nearest = all.eigenvectors.column(all.eigenvalues.imin());
+        let moments = nearest * nearest.sum().signum();
+        // Noise makes second moments of mass of a flat body negative, or moments of a thin one.
+        let is_body = moments.iter().all(|moment| *moment > 0.0);
+        is_body.then(|| moments_of(&second_moments(&moments)))
+    }
+
+    /// The rates at time 0 of a body with these `moments`, known up to a factor, rad/s.
+    fn rates_at_start(&self, moments: &Vector3<f64>) -> Vector3<f64> {
+        let [a, b, c] = (*moments).into();
+        let growth = Vector3::new((b - c) / a, (c - a) / b, (a - b) / c);
+        self.mean_rate - growth.component_mul(&self.mean_sum)
+    }
+}

@@ -1,0 +1,428 @@
+//! Which slips make the rows of a file: each alone, then two together.
+
+use super::follow::{ReferenceRun, Rounding, RowAgreement, difference, follow};
+use super::plan::{PLAN_PARTS, Plan};
+use super::rows::ProgramRows;
+use super::slips::{Mutations, Other, SLIPS};
+use super::step::{MutantStepper, Order, Real};
+use super::times::RowSteps;
+use crate::engine::cores;
+use crate::engine::scenario::{Document, Scenario};
+use crate::engine::text::number::shortest;
+use std::sync::Arc;
+
+const ANOTHER_STEP: &str = "another-dt";
+const ANOTHER_START: &str = "start-of-another-preset";
+/// The number of slips that are looked for.
+pub const SLIP_COUNT: usize = SLIPS.len() + 2;
+
+/// The presets whose start may be left in a program: those that a plan can be made of, the report's own first.
+const STARTS: [&str; 4] = ["method-1", "method-2", "wobble-push", "every-slip"];
+
+/// The least number of steps for which a slip must last to come closest, and how many times as long as the scheme itself.
+const LASTS: (i64, i64) = (20, 10);
+
+/// How many rows after the first that differs must agree with a pair, and with a slip that is stated as fact.
+const ROWS_AFTER: usize = 2;
+/// The same of a pair about whose motion rounding decides before the last row.
+const ROWS_BEFORE_PARTING: usize = 20;
+/// The same of one slip, in rows with the digits of single precision.
+const ROWS_OF_ONE_BEFORE_PARTING: usize = 8;
+/// Rows are evidence of a slip where they differ from the run without it by this many times what may be off.
+const EVIDENCE: f64 = 50.0;
+
+/// The last step at which rows may begin to differ, where pairs are tried.
+pub const MOST_FOR_PAIRS: i64 = 4000;
+
+/// A variant of a slip.
+#[derive(Clone, Debug)]
+pub struct Variant {
+    pub name: &'static str,
+    /// What the program does.
+    program: String,
+    /// What the report does instead, a sentence.
+    report: String,
+    change: SlipChange,
+    /// Its place among all variants.
+    place: usize,
+}
+
+#[derive(Clone, Debug)]
+enum SlipChange {
+    Of(fn(&mut Mutations)),
+    /// The time step, s, and its place among the file's others.
+    TimeStep(f64, usize),
+    /// It begins so, with the values of another preset: whether with one of them.
+    Start(Arc<Plan>, bool),
+}
+
+/// Slips with which all rows agree that could be compared.
+#[derive(Clone, Debug)]
+pub struct Explanation {
+    pub variants: Vec<Variant>,
+    /// Other variants of the same slips with which the rows agree too.
+    alternatives: Vec<Vec<Variant>>,
+    pub followed: RowAgreement,
+    /// Whether the program computes in single precision.
+    pub is_single: bool,
+    /// By how much the rows differ from the runs without one of the slips, in units of what may be off.
+    evidence: f64,
+}
+
+impl Explanation {
+    pub fn names(&self) -> Vec<&'static str> {
+        self.variants.iter().map(|variant| variant.name).collect()
+    }
+
+    /// The program with these slips; `None` where its time step is another one.
+    pub fn program(&self, plan: &Plan) -> Option<MutantStepper<f64>> {
+        let program = || program(plan, &self.variants, Order::Forward);
+        (!self.names().contains(&ANOTHER_STEP)).then(program)
+    }
+
+    /// Returns what the program does, and what the report does.
+    pub fn words(&self) -> String {
+        let of_place = |place: usize| {
+            let all = std::iter::once(&self.variants).chain(&self.alternatives);
+            let mut programs: Vec<&str> = Vec::new();
+            for variants in all {
+                let program = variants[place].program.as_str();
+                if !programs.contains(&program) {
+                    programs.push(program);
+                }
+            }
+            format!(
+                "{}. {}",
+                programs.join(", or "),
+                self.variants[place].report
+            )
+        };
+        let words: Vec<_> = (0..self.variants.len()).map(of_place).collect();
+        words.join(" Second: ")
+    }
+}
+
+fn changes<'a>(variants: impl IntoIterator<Item = &'a Variant>) -> Mutations {
+    let mut changes = Mutations::default();
+    for variant in variants {
+        match variant.change {
+            SlipChange::Of(change) => change(&mut changes),
+            SlipChange::TimeStep(time_step_s, _) => changes.time_step_s = Some(time_step_s),
+            SlipChange::Start(..) => {}
+        }
+    }
+    changes
+}
+
+fn program<T: Real>(plan: &Plan, variants: &[Variant], order: Order) -> MutantStepper<T> {
+    let start = variants.iter().find_map(|variant| match &variant.change {
+        SlipChange::Start(plan, _) => Some(&**plan),
+        _ => None,
+    });
+    MutantStepper::new(start.unwrap_or(plan), &changes(variants), order)
+}
+
+/// The slips that explain rows, and the closest of the others, if one is close.
+type SearchOutcome = (Vec<Explanation>, Option<Explanation>);
+
+/// The search among programs of one plan for that which has made the rows.
+pub struct Search<'a> {
+    pub plan: &'a Plan,
+    pub rows: &'a ProgramRows,
+    /// The first row that differs from the scheme, and its step.
+    pub first: (usize, i64),
+    /// Whether the programs compute in single precision.
+    pub is_single: bool,
+    /// Whether the digits of the rows are too few to tell double from single precision.
+    pub has_few_digits: bool,
+    pub go_on: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl Variant {
+    fn all(plan: &Plan, rows: &ProgramRows) -> Vec<Self> {
+        let mut all = Vec::new();
+        for (name, program, report, variants) in SLIPS {
+            for (note, change) in *variants {
+                let change = SlipChange::Of(*change);
+                let Some(note) = Self::note(note, &change, plan) else {
+                    continue;
+                };
+                all.push(Self {
+                    name,
+                    program: format!("{program}{note}"),
+                    report: format!("The report {report}."),
+                    change,
+                    place: 0,
+                });
+            }
+        }
+        let dt = shortest(plan.time_step_s);
+        let others = rows.times.others.iter().enumerate();
+        all.extend(others.map(|(place, (own, _))| Self {
+            name: ANOTHER_STEP,
+            program: format!("its time step is {own} s"),
+            report: format!("The scenario's is {dt} s."),
+            change: SlipChange::TimeStep(*own, place),
+            place: 0,
+        }));
+        all.extend(Self::other_starts(plan));
+        for (place, variant) in all.iter_mut().enumerate() {
+            variant.place = place;
+        }
+        all
+    }
+
+    /// Returns `note` in parentheses, with the name of the point that it is about; `None` if the plan has no such point.
+    fn note(note: &str, change: &SlipChange, plan: &Plan) -> Option<String> {
+        let changes = match change {
+            SlipChange::Of(change) => {
+                let mut changes = Mutations::default();
+                change(&mut changes);
+                changes
+            }
+            _ => Mutations::default(),
+        };
+        if changes.hub_in_plane && plan.hub().is_none() {
+            return None;
+        }
+        let pushed = plan.pushes.first().map_or(0, |push| push.point);
+        let other = match (changes.traced, changes.push_point) {
+            (Some(Other::OfAxle(nth)), _) => Some(plan.other_of_axle(nth, plan.traced)?),
+            (_, Some(Other::OfAxle(nth))) => Some(plan.other_of_axle(nth, pushed)?),
+            _ => None,
+        };
+        Some(match (other, note) {
+            (Some(name), _) => format!(" ({name})"),
+            (None, "") => String::new(),
+            (None, note) => format!(" ({note})"),
+        })
+    }
+
+    fn other_starts(plan: &Plan) -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        for preset in STARTS {
+            let scenario = Document::open(preset).and_then(|it| it.scenario());
+            let Some(other) = scenario.ok().and_then(|it: Scenario| Plan::of(&it)) else {
+                continue;
+            };
+            for parts in 1..1_u8 << PLAN_PARTS {
+                let Some(start) = plan.with_parts(&other, parts) else {
+                    break;
+                };
+                let places = (0..PLAN_PARTS).filter(|part| parts & (1 << part) != 0);
+                let both = places.map(|part| (other.part(part), plan.part(part)));
+                let (theirs, own): (Vec<_>, Vec<_>) = both.unzip();
+                let is_other = theirs.iter().zip(&own).all(|(theirs, own)| theirs != own);
+                let has = format!("it still has {}", theirs.join(", "));
+                if is_other && !all.iter().any(|known| known.program.starts_with(&has)) {
+                    all.push(Self {
+                        name: ANOTHER_START,
+                        program: format!("{has}, as {preset} has"),
+                        report: format!("The scenario has {}.", own.join(", ")),
+                        change: SlipChange::Start(Arc::new(start), parts.is_power_of_two()),
+                        place: 0,
+                    });
+                }
+            }
+        }
+        all
+    }
+}
+
+impl Search<'_> {
+    pub fn alone(&self) -> SearchOutcome {
+        let variants = Variant::all(self.plan, self.rows);
+        let candidates: Vec<_> = variants.into_iter().map(|variant| vec![variant]).collect();
+        self.try_all(&candidates)
+    }
+
+    /// Tries two slips together. A pair with one of those that explain the rows `alone` is no other explanation: its second slip
+    /// changes nothing.
+    pub fn in_pairs(&self, alone: &[Explanation]) -> SearchOutcome {
+        let has_own_step = self.rows.times.own_s.is_some();
+        let all_alone = || {
+            alone
+                .iter()
+                .flat_map(|it| it.alternatives.iter().chain([&it.variants]))
+        };
+        let mut variants = Variant::all(self.plan, self.rows);
+        variants.retain(|it| match it.change {
+            SlipChange::Of(_) => true,
+            SlipChange::TimeStep(..) => has_own_step,
+            SlipChange::Start(_, is_one) => is_one,
+        });
+        variants.retain(|it| !all_alone().any(|known| known[0].place == it.place));
+        let mut pairs = Vec::new();
+        for (place, one) in variants.iter().enumerate() {
+            for other in &variants[place + 1..] {
+                let [together, turned] = [[one, other], [other, one]].map(changes);
+                let has_start = [one, other].iter().any(|it| it.name == ANOTHER_START);
+                let is_pair =
+                    together == turned && ![[one], [other]].map(changes).contains(&together);
+                if one.name != other.name && (is_pair || has_start) {
+                    pairs.push(vec![one.clone(), other.clone()]);
+                }
+            }
+        }
+        let (mut found, closest) = self.try_all(&pairs);
+        // With few digits anything agrees with a run about which rounding decides soon.
+        let needs_all_rows = self.has_few_digits || self.is_single;
+        found.retain(|pair| {
+            let has_all_rows = pair.followed.parted.is_none();
+            pair.evidence >= EVIDENCE && (has_all_rows || !needs_all_rows)
+        });
+        (found, closest)
+    }
+
+    /// Whether the rows are enough for `explanation`, the only one, to be stated as fact. A shift by a row is another difference.
+    pub fn is_proof_of(&self, explanation: &Explanation) -> bool {
+        let followed = &explanation.followed;
+        let after = match (followed.parted, self.has_few_digits) {
+            (None, _) => ROWS_AFTER,
+            (Some(_), false) => ROWS_OF_ONE_BEFORE_PARTING,
+            (Some(_), true) => ROWS_BEFORE_PARTING,
+        };
+        // Without axes two slips together make the rows of many others.
+        let shows_pairs = || program::<f64>(self.plan, &[], Order::Forward).has_axes();
+        explanation.evidence >= EVIDENCE
+            && (explanation.variants.len() == 1 || shows_pairs())
+            && followed.offset == 0
+            && followed.explains(self.first.0 + after)
+            && !(self.is_single && self.has_few_digits)
+    }
+
+    /// Returns those of `candidates` that explain the rows, each list of names once; and of the others the closest, if one is
+    /// close.
+    fn try_all(&self, candidates: &[Vec<Variant>]) -> SearchOutcome {
+        let tried: Vec<Option<Explanation>> = cores::map(candidates, |variants| {
+            let followed = (self.go_on)().then(|| self.followed(variants))?;
+            Some(Explanation {
+                variants: variants.clone(),
+                alternatives: Vec::new(),
+                followed,
+                is_single: self.is_single,
+                evidence: 0.0,
+            })
+        });
+        let lasts = |tried: &Explanation| tried.followed.differs.map_or(0, |differs| differs.step);
+        let (mut found, mut closest) = (Vec::<Explanation>::new(), None);
+        let mut most = LASTS.0.max(LASTS.1 * self.first.1) - 1;
+        for mut tried in tried.into_iter().flatten() {
+            if self.is_explained_by(&tried) {
+                let known = found.iter_mut().find(|it| it.names() == tried.names());
+                match known {
+                    Some(known) => known.alternatives.push(tried.variants),
+                    None => {
+                        tried.evidence = self.evidence(&tried);
+                        found.push(tried);
+                    }
+                }
+            } else if lasts(&tried) > most {
+                most = lasts(&tried);
+                closest = Some(tried);
+            }
+        }
+        (found, closest)
+    }
+
+    /// Whether the rows that can be compared agree with `tried`, and are enough. Two slips explain anything where hardly a row
+    /// can be compared.
+    fn is_explained_by(&self, tried: &Explanation) -> bool {
+        let after = match (tried.variants.len(), tried.followed.parted) {
+            (1, _) => 0,
+            (_, None) => ROWS_AFTER,
+            (_, Some(_)) => ROWS_BEFORE_PARTING,
+        };
+        let last = (self.first.0 + after).min(self.rows.count - 1);
+        tried.followed.explains(last)
+    }
+
+    /// Returns how far the rows agree with the program that has the changes of `variants`.
+    fn followed(&self, variants: &[Variant]) -> RowAgreement {
+        let (rows, steps) = (self.rows, steps(self.rows, variants));
+        if self.is_single {
+            follow(rows, steps, single(self.plan, variants))
+        } else {
+            follow(rows, steps, double(self.plan, variants))
+        }
+    }
+
+    /// Returns by how much the rows that `explanation` explains differ from the runs without one of its slips.
+    fn evidence(&self, explanation: &Explanation) -> f64 {
+        let (plan, rows, followed) = (self.plan, self.rows, &explanation.followed);
+        let without = match &explanation.variants[..] {
+            [one, other] => vec![vec![one.clone()], vec![other.clone()]],
+            _ => vec![Vec::new()],
+        };
+        let differences = without.iter().map(|variants| {
+            let steps = steps(rows, variants);
+            let (count, offset) = (followed.next, followed.offset);
+            if self.is_single {
+                let run = single(plan, variants);
+                difference(rows, count, steps, offset, run)
+            } else {
+                difference(rows, count, steps, offset, double(plan, variants))
+            }
+        });
+        differences.fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Returns the steps of the rows, by the time step of `variants`.
+fn steps<'a>(rows: &'a ProgramRows, variants: &[Variant]) -> &'a RowSteps {
+    let others = variants.iter().find_map(|variant| match variant.change {
+        SlipChange::TimeStep(_, place) => Some(&rows.times.others[place].1),
+        _ => None,
+    });
+    others.unwrap_or(&rows.times.steps)
+}
+
+fn double(
+    plan: &Plan,
+    variants: &[Variant],
+) -> ReferenceRun<MutantStepper<f64>, MutantStepper<f64>> {
+    let [one, other] =
+        [Order::Forward, Order::Backward].map(|order| program(plan, variants, order));
+    ReferenceRun::of(one, vec![other], Rounding::Double)
+}
+
+/// Returns the run of the program with `variants`, with room for the errors of single precision.
+fn single(
+    plan: &Plan,
+    variants: &[Variant],
+) -> ReferenceRun<MutantStepper<f64>, MutantStepper<f32>> {
+    let run = program(plan, variants, Order::Forward);
+    ReferenceRun::of(run, in_single(plan, variants), Rounding::SingleOfSlip)
+}
+
+/// Returns copies of the program with `variants` that compute in single precision, each in another order.
+pub fn in_single(plan: &Plan, variants: &[Variant]) -> Vec<MutantStepper<f32>> {
+    let orders = [Order::Forward, Order::Backward, Order::EvenThenOdd];
+    orders.map(|order| program(plan, variants, order)).into()
+}
+
+/// The slips that could hide in `rows`, which are the scheme's own: those that change none of them.
+/// `parted` is the step at which rounding decides about the scheme's own motion.
+pub fn hidden(
+    plan: &Plan,
+    rows: &ProgramRows,
+    parted: Option<i64>,
+    go_on: &(dyn Fn() -> bool + Sync),
+) -> Vec<&'static str> {
+    let mut variants = Variant::all(plan, rows);
+    variants.retain(|variant| matches!(variant.change, SlipChange::Of(_)));
+    let hides: Vec<bool> = cores::map(&variants, |variant| {
+        if !go_on() {
+            return false;
+        }
+        let variants = std::slice::from_ref(variant);
+        let followed = follow(rows, steps(rows, variants), double(plan, variants));
+        // A run that parts from its copy long before the scheme does is another one.
+        let parts_with = |step: i64| parted.is_some_and(|own| step + 10 >= own);
+        followed.is_whole() && followed.parted.is_none_or(parts_with)
+    });
+    let hidden = variants.iter().zip(hides).filter(|(_, hides)| *hides);
+    let mut names: Vec<_> = hidden.map(|(variant, _)| variant.name).collect();
+    names.dedup();
+    names
+}

@@ -1,0 +1,294 @@
+//! Rows of a file beside a run: up to which of them they agree.
+
+use super::rows::{ProgramRows, within};
+use super::step::{MutantStepper, Real};
+use super::times::RowSteps;
+use crate::engine::run::Simulation;
+use std::ops::Range;
+
+/// Two copies of a run have parted where they differ by more than this share of the tolerance of a column of the file.
+const PARTED: f64 = 0.1;
+/// Errors of single precision are at most this many times those of the copies in single precision.
+const ERRORS: f64 = 10.0;
+/// Rounding of numbers in single precision, in units of the largest: of the start, and of what is written.
+const SINGLE_ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
+/// The same of the whole vector, which few digits cannot tell from single precision.
+const ROUNDING_OF_ALL: f64 = 2.0 * SINGLE_ROUNDING;
+/// The largest room for errors of single precision that leaves something to compare, as a share of the vector.
+const MOST_SLACK: f64 = 0.02;
+/// The offsets that are tried, in rows.
+const OFFSETS: [i64; 3] = [0, 1, -1];
+
+/// What a run is at one of its steps: the six numbers that may be compared, and what is not known of each.
+#[derive(Clone, Copy, Debug)]
+struct At {
+    values: [f64; 6],
+    slack: [f64; 6],
+}
+
+/// Something that makes rows of six numbers.
+pub trait Stepper {
+    fn row(&self) -> [f64; 6];
+    fn advance(&mut self);
+}
+
+impl<T: Real> Stepper for MutantStepper<T> {
+    fn row(&self) -> [f64; 6] {
+        Self::row(self)
+    }
+
+    fn advance(&mut self) {
+        self.step();
+    }
+}
+
+/// The scenario's own run; NaN once it has ended.
+impl Stepper for Simulation {
+    fn row(&self) -> [f64; 6] {
+        if self.has_ended() {
+            return [f64::NAN; 6];
+        }
+        let (at, momentum) = (self.now().position(), self.now().after().momentum);
+        [at.x, at.y, at.z, momentum.x, momentum.y, momentum.z]
+    }
+
+    fn advance(&mut self) {
+        // The row says it where the run has ended.
+        let _ = self.step();
+    }
+}
+
+/// What the copies of a run are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounding {
+    /// Copies in double precision: where they differ, rounding decides about the motion.
+    Double,
+    /// Copies in single precision: their errors are allowed.
+    Single,
+    /// The same, as long as they are small beside the numbers themselves.
+    SingleOfSlip,
+    /// The same, and besides the rounding of the whole of L in each of its components.
+    FewDigits,
+}
+
+/// A run that rows are compared with, from step 0 on, and copies of it that add up in other orders.
+pub struct ReferenceRun<A, B> {
+    run: A,
+    copies: Vec<B>,
+    rounding: Rounding,
+    /// The largest error of the copies so far, and the largest number, of each place.
+    so_far: [[f64; 2]; 6],
+}
+
+impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
+    pub fn of(run: A, copies: Vec<B>, rounding: Rounding) -> Self {
+        let so_far = [[0.0; 2]; 6];
+        Self {
+            run,
+            copies,
+            rounding,
+            so_far,
+        }
+    }
+
+    /// Returns its state now; `None` once rounding has grown so much that the digits of `rows` cannot be compared.
+    fn now(&mut self, rows: &ProgramRows) -> Option<At> {
+        let values = self.run.row();
+        let copies: Vec<_> = self.copies.iter().map(Stepper::row).collect();
+        let is_finite = values.iter().all(|value| value.is_finite());
+        if self.rounding == Rounding::Double {
+            let mut columns = rows.columns.iter().map(|it| (it, values[it.place]));
+            let is_known = columns.all(|(column, value)| {
+                let room = PARTED * column.room(value);
+                let mut copies = copies.iter().map(|copy| copy[column.place]);
+                copies.all(|copy| (value - copy).abs() <= room)
+            });
+            let slack = [0.0; 6];
+            return (is_finite && is_known).then_some(At { values, slack });
+        }
+        for (place, [error, scale]) in self.so_far.iter_mut().enumerate() {
+            let errors = copies
+                .iter()
+                .map(|copy| (copy[place] - values[place]).abs());
+            *error = errors.fold(*error, f64::max);
+            *scale = scale.max(values[place].abs());
+        }
+        // Errors of the turn are those of the whole arm. Each component of L is a sum of its own.
+        let slack = std::array::from_fn(|place| {
+            let (vector, own) = (place / 3 * 3..place / 3 * 3 + 3, place..place + 1);
+            let most = |places: Range<usize>, which: usize| {
+                let numbers = self.so_far[places].iter().map(|it| it[which]);
+                numbers.fold(0.0, f64::max)
+            };
+            let places = if place < 3 { vector.clone() } else { own };
+            let slack = ERRORS * most(places.clone(), 0) + SINGLE_ROUNDING * most(places, 1);
+            match self.rounding {
+                Rounding::FewDigits => slack + ROUNDING_OF_ALL * most(vector, 1),
+                _ => slack,
+            }
+        });
+        let is_large = |place: usize| {
+            let scales = self.so_far[place / 3 * 3..place / 3 * 3 + 3].iter();
+            let scale = scales.fold(0.0, |most: f64, it| most.max(it[1]));
+            slack[place] > MOST_SLACK * scale
+        };
+        let is_lost = self.rounding == Rounding::SingleOfSlip && (0..6).any(is_large);
+        (is_finite && !is_lost).then_some(At { values, slack })
+    }
+
+    fn step(&mut self) {
+        self.run.advance();
+        self.copies.iter_mut().for_each(Stepper::advance);
+    }
+}
+
+/// How far rows agree with a run.
+#[derive(Clone, Debug, Default)]
+pub struct RowAgreement {
+    /// By how many rows the file is late.
+    pub offset: i64,
+    /// How many rows were compared and agree.
+    pub agreeing: usize,
+    /// The first row that differs, with the step and what the run is there.
+    pub differs: Option<RowDifference>,
+    /// The step from which on nothing could be compared, because rounding has grown too much.
+    pub parted: Option<i64>,
+    /// The largest difference in x, y, z, m, and that in L, J s, over the rows that were compared: each with column and step.
+    pub worst: [Option<Worst>; 2],
+    /// The first row that was not compared.
+    pub next: usize,
+    /// Whether a row after the start agrees.
+    moves: bool,
+    /// Whether a value of the column of this place is farther from the run than right programs with all digits are.
+    pub is_rounded: [bool; 6],
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct RowDifference {
+    pub row: usize,
+    pub step: i64,
+    pub scheme: [f64; 6],
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Worst {
+    pub off: f64,
+    pub place: usize,
+    pub step: i64,
+}
+
+impl RowAgreement {
+    /// Whether every row that could be compared agrees, and row `row` is one of them.
+    pub fn explains(&self, row: usize) -> bool {
+        self.is_whole() && self.next > row
+    }
+
+    pub fn is_whole(&self) -> bool {
+        self.differs.is_none() && self.agreeing > 0
+    }
+
+    /// Takes in what the run is at `step`.
+    fn take(&mut self, rows: &ProgramRows, steps: &RowSteps, step: i64, at: &At) {
+        let (offset, count) = (self.offset * steps.stride, rows.count);
+        // A row before the start repeats the start, or the rows do not begin there.
+        let is_due = |row: usize| steps.of_rows[row].saturating_add(offset) <= step;
+        while self.next < count && is_due(self.next) && self.compare(rows, self.next, step, at) {
+            self.next += 1;
+        }
+    }
+
+    /// Compares a row. Returns whether it agrees.
+    fn compare(&mut self, rows: &ProgramRows, row: usize, step: i64, at: &At) -> bool {
+        let mut agrees = true;
+        for column in &rows.columns {
+            let (yours, scheme) = (column.values[row], at.values[column.place]);
+            agrees &= column.agrees(yours, scheme, at.slack[column.place]);
+            let off = (yours - scheme).abs();
+            self.is_rounded[column.place] |= off > within(column.place, scheme);
+            let worst = &mut self.worst[column.place / 3];
+            if worst.is_none_or(|worst| off > worst.off) {
+                let place = column.place;
+                *worst = Some(Worst { off, place, step });
+            }
+        }
+        if agrees {
+            self.agreeing += 1;
+            self.moves |= step > 0;
+        } else {
+            let scheme = at.values;
+            self.differs = Some(RowDifference { row, step, scheme });
+        }
+        agrees
+    }
+}
+
+/// Follows `run` along the rows, which are the `steps` of it, at each offset at once, and gives the one at which the
+/// most rows agree.
+pub fn follow<A: Stepper, B: Stepper>(
+    rows: &ProgramRows,
+    steps: &RowSteps,
+    mut run: ReferenceRun<A, B>,
+) -> RowAgreement {
+    let lane = |offset| RowAgreement {
+        offset,
+        ..RowAgreement::default()
+    };
+    let mut lanes = OFFSETS.map(lane);
+    let count = rows.count;
+    let goes_on = |lane: &RowAgreement| lane.next < count && lane.differs.is_none();
+    let mut step = 0;
+    let is_found = |lanes: &[RowAgreement]| lanes[0].is_whole() && !goes_on(&lanes[0]);
+    while lanes.iter().any(goes_on) && !is_found(&lanes) {
+        let Some(at) = run.now(rows) else {
+            let unfinished = lanes.iter_mut().filter(|lane| goes_on(lane));
+            unfinished.for_each(|lane| lane.parted = Some(step));
+            break;
+        };
+        let going = lanes.iter_mut().filter(|lane| goes_on(lane));
+        going.for_each(|lane| lane.take(rows, steps, step, &at));
+        run.step();
+        step += 1;
+    }
+    // Of equals the first.
+    let best = |best: RowAgreement, lane: RowAgreement| match (best.is_whole(), lane.is_whole()) {
+        (true, _) => best,
+        (false, true) => lane,
+        _ if lane.agreeing > best.agreeing => lane,
+        _ => best,
+    };
+    // That the start stands there twice is no agreement with the run.
+    let says_more = |lane: &RowAgreement| lane.offset >= 0 || lane.moves;
+    let lanes = lanes.into_iter().filter(says_more);
+    lanes.reduce(best).unwrap_or_default()
+}
+
+/// Returns the largest difference between `run` and the first `count` rows, which are the `steps` of it at `offset`, in units
+/// of what may be off. Rows at which rounding decides about the run are not counted.
+pub fn difference<A: Stepper, B: Stepper>(
+    rows: &ProgramRows,
+    count: usize,
+    steps: &RowSteps,
+    offset: i64,
+    mut run: ReferenceRun<A, B>,
+) -> f64 {
+    let (mut most, mut step): (f64, i64) = (0.0, 0);
+    let late = offset * steps.stride;
+    for (row, of_row) in steps.of_rows[..count].iter().enumerate() {
+        while step < of_row.saturating_add(late) {
+            run.step();
+            step += 1;
+            if run.rounding != Rounding::Double {
+                run.now(rows); // errors of every step count
+            }
+        }
+        let Some(at) = run.now(rows) else {
+            break;
+        };
+        for column in &rows.columns {
+            let (yours, value) = (column.values[row], at.values[column.place]);
+            let room = column.room(value) + at.slack[column.place];
+            most = most.max((yours - value).abs() / room);
+        }
+    }
+    most
+}

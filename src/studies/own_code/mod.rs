@@ -1,0 +1,339 @@
+//! Rows that somebody's own program of the report's scheme has written, held against the scheme: do they agree, and if not,
+//! which slip has made them?
+//!
+//! `rows` reads the file, `times` finds the time step of each row, `follow` compares them with a run. `step` has the
+//! report's step in plain code, `slips` the table of slips, `plan` what it begins with, `explain` the search among them.
+//! `words` says what has come out.
+
+mod explain;
+mod follow;
+mod plan;
+pub mod rows;
+mod slips;
+mod step;
+mod times;
+mod words;
+
+use crate::engine::run::Simulation;
+use crate::engine::scenario::presets::PRESETS;
+use crate::engine::scenario::{Document, Problem, Problems, Scenario};
+use crate::physics::workings::WorkedQuantity;
+use crate::studies::verify::Unverified;
+use explain::{Explanation, MOST_FOR_PAIRS, Search};
+use follow::{ReferenceRun, Rounding, RowAgreement, follow};
+use plan::Plan;
+pub use rows::ProgramRows;
+use rows::{ProgramColumn, SINGLE_DIGITS};
+use serde::Serialize;
+use slips::Mutations;
+use std::sync::Arc;
+pub use step::TRACED_SYMBOL;
+use step::{MutantStepper, Order};
+
+/// The precision in which a program computes, as far as its rows show it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    Double,
+    Single,
+    Unknown,
+}
+
+/// How many explanations the rows have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Explanations {
+    Unique,
+    /// More than one, or one beside which the rows allow others that are not known.
+    Several,
+    None,
+}
+
+/// What has come out of the comparison, as `--json` gives it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verdict {
+    pub agrees: bool,
+    pub precision: Precision,
+    /// The significant digits of the column that has the fewest.
+    pub digits: i32,
+    /// The rows that were compared: where they differ all of the file, else those that agree.
+    pub rows: usize,
+    /// The rows that agree with the scheme, or else with the first explanation; without one, those up to the first difference.
+    pub rows_compared: usize,
+    /// By how many rows the file is late.
+    pub offset: i64,
+    pub first_step: Option<i64>,
+    /// The columns that differ there, with the values of the file and of the scheme.
+    pub columns: Vec<&'static str>,
+    pub yours: Vec<f64>,
+    pub scheme: Vec<f64>,
+    /// The largest difference of x, y, z, m.
+    pub worst_m: Option<f64>,
+    pub explanations: Explanations,
+    pub slips: Vec<Vec<&'static str>>,
+    pub unseen: Vec<&'static str>,
+    /// The same in words, a line each, the first of which begins behind the file's name.
+    #[serde(skip)]
+    pub lines: Vec<String>,
+    /// Whether nothing that is known makes the rows.
+    #[serde(skip)]
+    pub is_unexplained: bool,
+    #[serde(skip)]
+    pub trial: Option<SlipTrial>,
+}
+
+/// The program with the slip that makes the rows, as it stands before the first step at which they differ.
+#[derive(Clone, Debug)]
+pub struct SlipTrial {
+    /// The step that differs.
+    pub first: u64,
+    program: MutantStepper<f64>,
+    /// What the program does, and the slip's name.
+    pub words: String,
+}
+
+impl SlipTrial {
+    /// The numbers of its step `step`, phase by phase; `None` for the steps before the first that differs, and for those so
+    /// much later that they take long to compute.
+    pub fn numbers(&self, step: u64) -> Option<Vec<(&'static str, WorkedQuantity)>> {
+        const MOST_OFFSET_ROWS: u64 = 1000;
+        let later = step
+            .checked_sub(self.first)
+            .filter(|later| *later < MOST_OFFSET_ROWS)?;
+        let mut program = self.program.clone();
+        for _ in 0..later {
+            program.step();
+        }
+        Some(program.numbers())
+    }
+}
+
+/// What was found, before it is put into words.
+struct CheckOutcome<'a> {
+    name: &'a str,
+    scenario: &'a Arc<Scenario>,
+    rows: &'a ProgramRows,
+    /// The rows beside the scheme.
+    beside: RowAgreement,
+    precision: Precision,
+    /// Whether the rows agree only as far as single precision can, or as far as their few digits show.
+    is_lenient: bool,
+    /// The preset whose own rows these are.
+    other: Option<&'static str>,
+    explanations: Vec<Explanation>,
+    /// Whether the only explanation is proved by the rows.
+    is_proved: bool,
+    closest: Option<Explanation>,
+    unseen: Vec<&'static str>,
+    /// Whether slips could be looked for, and two together.
+    has_plan: bool,
+    has_pairs: bool,
+}
+
+/// Holds `rows` against the run of `scenario`, which is called `name`. `go_on` says whether to go on.
+pub fn compare(
+    rows: &ProgramRows,
+    name: &str,
+    scenario: &Arc<Scenario>,
+    go_on: &(dyn Fn() -> bool + Sync),
+) -> Result<Verdict, Unverified> {
+    let plan = Plan::of(scenario);
+    let copy = |plan| MutantStepper::<f64>::new(plan, &Mutations::default(), Order::Forward);
+    let copies = plan.iter().map(copy).collect();
+    let run = Simulation::new(Arc::clone(scenario));
+    let run = ReferenceRun::of(run, copies, Rounding::Double);
+    let beside = follow(rows, &rows.times.steps, run);
+    if beside.differs.is_none() && beside.agreeing == 0 {
+        let mut rule = "has no row of a step that there is: steps count from 0".to_owned();
+        if let Some(step) = beside.parted {
+            rule = format!("has no row before step {step}, from which on rounding decides");
+        }
+        return Err(Problems::one("", Problem::at("", rule)).into());
+    }
+    let mut found = CheckOutcome {
+        name,
+        scenario,
+        rows,
+        beside,
+        precision: Precision::Unknown,
+        is_lenient: false,
+        other: None,
+        explanations: Vec::new(),
+        is_proved: false,
+        closest: None,
+        unseen: Vec::new(),
+        has_plan: plan.is_some(),
+        has_pairs: false,
+    };
+    if let Some(plan) = &plan {
+        found.explain(plan, go_on);
+        found.precision = found.precision(plan);
+        if found.beside.is_whole() && !found.is_lenient {
+            found.unseen = explain::hidden(plan, rows, found.beside.parted, go_on);
+        }
+    }
+    if !go_on() {
+        return Err(Unverified::Stopped);
+    }
+    Ok(Verdict {
+        trial: plan.as_ref().and_then(|plan| found.trial(plan)),
+        ..found.verdict()
+    })
+}
+
+impl CheckOutcome<'_> {
+    /// Looks for what makes the rows, where they differ from the scheme: a slip, single precision, two slips.
+    fn explain(&mut self, plan: &Plan, go_on: &(dyn Fn() -> bool + Sync)) {
+        let rows = self.rows;
+        let Some(differs) = self.beside.differs else {
+            return; // numbers that are not finite after rows of the scheme's own are no slip's
+        };
+        self.other = self.other_preset();
+        if self.other.is_some() {
+            return;
+        }
+        let first = (differs.row, differs.step);
+        // Each pair is computed up to the first row that differs.
+        self.has_pairs = differs.step <= MOST_FOR_PAIRS;
+        let mut search = Search {
+            plan,
+            rows,
+            first,
+            is_single: false,
+            has_few_digits: self.has_few_digits(),
+            go_on,
+        };
+        let (explanations, closest) = search.alone();
+        (self.explanations, self.closest) = (explanations, closest);
+        let may_be_single = self.explanations.is_empty() && rows.not_finite.is_none();
+        let single = may_be_single.then(|| self.single(plan)).flatten();
+        if let Some(single) = single.as_ref().filter(|it| it.is_whole()) {
+            self.is_lenient = true;
+            self.beside = single.clone();
+            return;
+        }
+        self.try_pairs(&search);
+        let differs = single.and_then(|single| single.differs);
+        if let Some(differs) = differs.filter(|_| self.explanations.is_empty()) {
+            search.is_single = true;
+            search.first = (differs.row, differs.step);
+            self.explanations = search.alone().0;
+            self.try_pairs(&search);
+        }
+        if let [only] = &self.explanations[..] {
+            self.is_proved = self.has_pairs && search.is_proof_of(only);
+        }
+    }
+
+    /// Adds the pairs of slips that explain the rows, where pairs are tried.
+    fn try_pairs(&mut self, search: &Search<'_>) {
+        if self.has_pairs {
+            let (pairs, closest) = search.in_pairs(&self.explanations);
+            self.explanations.extend(pairs);
+            self.closest = self.closest.take().or(closest);
+        }
+    }
+
+    /// Compares the rows with the scheme as far as single precision can, or as far as their few digits show; `None` where they
+    /// cannot be of single precision.
+    fn single(&self, plan: &Plan) -> Option<RowAgreement> {
+        let rounding = if self.has_few_digits() {
+            Rounding::FewDigits
+        } else if self.rows.may_be_single() {
+            Rounding::Single
+        } else {
+            return None;
+        };
+        let scheme = Simulation::new(Arc::clone(self.scenario));
+        let run = ReferenceRun::of(scheme, explain::in_single(plan, &[]), rounding);
+        Some(follow(self.rows, &self.rows.times.steps, run))
+    }
+
+    /// Returns the precision of the program, after slips have been looked for.
+    fn precision(&self, plan: &Plan) -> Precision {
+        let rows = self.rows;
+        if self.has_few_digits() {
+            return Precision::Unknown;
+        }
+        if self.is_lenient || self.explanations.first().is_some_and(|it| it.is_single) {
+            return Precision::Single;
+        }
+        if !rows.may_be_single() || self.is_proved {
+            return Precision::Double;
+        }
+        if self.beside.differs.is_some() {
+            return Precision::Unknown;
+        }
+        let single = explain::in_single(plan, &[]).swap_remove(0);
+        let alone = ReferenceRun::of(single, Vec::<MutantStepper<f64>>::new(), Rounding::Double);
+        match follow(rows, &rows.times.steps, alone).differs {
+            Some(_) => Precision::Double,
+            None => Precision::Unknown,
+        }
+    }
+
+    /// Returns the column that has the fewest digits. Of constant columns only those count that agree by their few digits alone.
+    fn coarsest(&self) -> Option<&ProgramColumn> {
+        let agrees = self.beside.differs.is_none();
+        let counts = |column: &&ProgramColumn| {
+            column.varies() || agrees && self.beside.is_rounded[column.place]
+        };
+        let columns = &self.rows.columns;
+        let fewest = columns.iter().filter(counts).min_by_key(|it| it.digits());
+        fewest.or_else(|| columns.iter().min_by_key(|it| it.digits()))
+    }
+
+    fn digits(&self) -> i32 {
+        self.coarsest().map_or(0, ProgramColumn::digits)
+    }
+
+    /// Whether the digits are fewer than those of single precision.
+    fn has_few_digits(&self) -> bool {
+        self.digits() < SINGLE_DIGITS
+    }
+
+    /// The preset with which all rows agree.
+    fn other_preset(&self) -> Option<&'static str> {
+        self.rows.columns.iter().find(|column| column.varies())?;
+        let is_its = |scenario: Scenario| {
+            let (times, dt) = (&self.rows.times, scenario.motion.time_step_s);
+            let mut others = times.others.iter();
+            let steps = if dt == self.scenario.motion.time_step_s {
+                &times.steps
+            } else {
+                &others.find(|(own, _)| *own == dt)?.1
+            };
+            let none = Vec::<MutantStepper<f64>>::new();
+            let run = ReferenceRun::of(Simulation::new(scenario.into()), none, Rounding::Double);
+            Some(follow(self.rows, steps, run))
+        };
+        let names = PRESETS.iter().map(|preset| preset.name);
+        names.into_iter().find(|name| {
+            let scenario = Document::open(name).and_then(|it| it.scenario());
+            let followed = scenario.ok().and_then(is_its);
+            followed.is_some_and(|it| it.is_whole() && it.agreeing == self.rows.count)
+        })
+    }
+
+    /// The program that makes the rows; `None` where that is not known, or where its steps are others than the run's.
+    fn trial(&self, plan: &Plan) -> Option<SlipTrial> {
+        let (explanation, differs) = (self.explanations.first()?, self.beside.differs?);
+        if !self.is_proved {
+            return None;
+        }
+        let mut program = explanation.program(plan)?;
+        let first = u64::try_from(differs.step.max(1)).ok()?;
+        for _ in 1..first {
+            program.step();
+        }
+        Some(SlipTrial {
+            first,
+            program,
+            words: format!(
+                "{}: {}",
+                explanation.names().join(" + "),
+                explanation.words()
+            ),
+        })
+    }
+}

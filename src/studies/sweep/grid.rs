@@ -1,0 +1,369 @@
+//! A checked sweep: its points in their order, the scenario of each, and its row.
+
+use super::axis::{SweepAxis, axes};
+use super::file::{Base, Shard, SweepFile};
+use crate::engine::analysis::readouts::{
+    self, READOUTS, Readout, ReadoutSource, ReadoutValue as Readable,
+};
+use crate::engine::export::layout::commented;
+use crate::engine::run::{Clock, resampled};
+use crate::engine::scenario::document::Document;
+use crate::engine::scenario::dotted::{find, join, number_of_push};
+use crate::engine::scenario::head::is_file;
+use crate::engine::scenario::rescale::{MOST_RUN_STEPS_BY_TIME, accumulates};
+use crate::engine::scenario::{Problem, Problems, Scenario};
+use crate::engine::text::number::{decimal, shortest};
+use serde::Serialize;
+use std::path::Path;
+use toml::Value;
+
+/// The key that, as it varies, leaves the seconds of a run as they are and not its steps.
+const TIME_STEP: &str = "motion.time_step_s";
+
+/// The keys of a push in steps, and those that say the same in seconds.
+const IN_STEPS_OR_SECONDS: [(&str, &str); 2] = [("first_step", "from_s"), ("steps", "for_s")];
+
+const MOST_GRID_POINTS: u64 = 1_000_000_000;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepRow {
+    /// The line of the file, with its end.
+    pub line: String,
+    /// Why it holds no readouts; `None` where it holds some.
+    pub empty: Option<String>,
+    pub has_failed: bool,
+}
+
+/// A grid of runs whose keys, values and readouts have been checked.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// As it stands in the header of its CSV.
+    file: SweepFile,
+    base: Document,
+    /// The keys that vary, the last fastest.
+    pub axes: Vec<SweepAxis>,
+    pub measure: Vec<&'static Readout>,
+    pub shard: Shard,
+    points: u64,
+}
+
+impl Sweep {
+    /// The sweep that `document` tells, a sweep file or the header of a sweep's CSV.
+    pub fn open(document: &Document) -> Result<Self, Problems> {
+        let file = SweepFile::read(document)?;
+        let base = Self::base(&file, document, |_| Ok(()))?;
+        Self::new(file, &base, &|problems| document.placed(problems))
+    }
+
+    /// The sweep `file` from `base` on, whatever `file` says of its scenario; `placed` knows where things stand.
+    pub fn new(
+        file: SweepFile,
+        base: &Scenario,
+        placed: &dyn Fn(Vec<Problem>) -> Problems,
+    ) -> Result<Self, Problems> {
+        let mut problems = Vec::new();
+        let axes = axes(&file.vary, &mut problems);
+        let measure = measured(file.measure.as_deref(), &axes, &mut problems);
+        let shard = file.shard.as_deref().map_or(Ok(Shard::WHOLE), str::parse);
+        let shard = shard.map_err(|rule| problems.push(Problem::at("shard", rule)));
+        let counts = axes.iter().map(|axis| axis.values.len() as u64);
+        let points = counts.fold(1, u64::saturating_mul);
+        if points > MOST_GRID_POINTS {
+            let rule =
+                format!("is a grid of {points} points: at most {MOST_GRID_POINTS} are allowed");
+            problems.push(Problem::at("vary", rule));
+        }
+        if !problems.is_empty() {
+            return Err(placed(problems));
+        }
+        let base_file = base.file.clone().bare();
+        let names = measure.iter().map(|readout| readout.name.to_owned());
+        let sweep = Self {
+            base: Document::from_file("", &base_file)?,
+            file: SweepFile {
+                gyrolab: Some(env!("CARGO_PKG_VERSION").to_owned()),
+                title: Some(file.title.unwrap_or_else(|| base_file.title.clone())),
+                measure: Some(names.collect()),
+                scenario: Base::Checked(Box::new(base_file)),
+                ..file
+            },
+            axes,
+            measure,
+            shard: Shard::WHOLE,
+            points,
+        };
+        let sweep = sweep.with_shard(shard.unwrap_or(Shard::WHOLE));
+        let led = sweep.keys_lead_somewhere();
+        led.map_err(|problem| placed(vec![problem]))?;
+        Ok(sweep)
+    }
+
+    /// The scenario that `file`, which stands in `document`, begins from, with what `change` changes in it.
+    pub fn base(
+        file: &SweepFile,
+        document: &Document,
+        change: impl FnOnce(&mut Document) -> Result<(), Problems>,
+    ) -> Result<Scenario, Problems> {
+        let (mut base, is_inside) = match &file.scenario {
+            Base::Name(name) if is_file(name) => {
+                let folder = Path::new(document.origin()).parent();
+                let path = folder.unwrap_or(Path::new("")).join(name);
+                (Document::read(&path)?, false)
+            }
+            Base::Name(name) => (Document::open(name)?, false),
+            Base::Written(table) => (Document::from_table(document.origin(), table.clone()), true),
+            Base::Checked(file) => (Document::from_file(document.origin(), file)?, true),
+        };
+        change(&mut base)?;
+        base.scenario().map_err(|problems| {
+            if is_inside {
+                inside(problems, document)
+            } else {
+                problems
+            }
+        })
+    }
+
+    #[must_use]
+    pub fn with_shard(mut self, shard: Shard) -> Self {
+        self.file.shard = (shard != Shard::WHOLE).then(|| shard.to_string());
+        self.shard = shard;
+        self
+    }
+
+    /// Whether every key has a place in the scenario: the key of a push that is not there, say, has none.
+    fn keys_lead_somewhere(&self) -> Result<(), Problem> {
+        let mut document = self.base.clone();
+        for axis in &self.axes {
+            let names: Vec<_> = axis.key.split('.').collect();
+            let number = names.iter().position(|name| name.parse::<usize>().is_ok());
+            let entry = number.map(|at| names[..=at].join("."));
+            if let Some(entry) = entry.filter(|entry| find(self.base.table(), entry).is_none()) {
+                let rule = format!("leads nowhere: the scenario has no {entry}");
+                return Err(Problem::at(axis.key.clone(), rule));
+            }
+            if let Some(rule) = self.counts_otherwise(&axis.key) {
+                return Err(Problem::at(axis.key.clone(), rule));
+            }
+            document.set_value(&axis.key, axis.values[0].clone())?;
+        }
+        Ok(())
+    }
+
+    /// What is wrong with `key` where it is in steps and its push in seconds, or the reverse.
+    fn counts_otherwise(&self, key: &str) -> Option<String> {
+        number_of_push(key)?;
+        let (entry, name) = key.rsplit_once('.')?;
+        let has = |name: &str| find(self.base.table(), &join(entry, name)).is_some();
+        let (in_steps, in_seconds) = (has("steps"), has("for_s"));
+        IN_STEPS_OR_SECONDS.into_iter().find_map(|(steps, seconds)| {
+            if name == steps && in_seconds {
+                return Some(format!(
+                    "the push counts in seconds (--time-step turns steps into seconds): vary {entry}.{seconds}"
+                ));
+            }
+            (name == seconds && in_steps)
+                .then(|| format!("the push counts in steps: vary {entry}.{steps}"))
+        })
+    }
+
+    pub fn title(&self) -> &str {
+        self.file.title.as_deref().unwrap_or_default()
+    }
+
+    pub fn about(&self) -> Option<&str> {
+        self.file.about.as_deref()
+    }
+
+    /// How many rows its shard has.
+    pub fn rows(&self) -> u64 {
+        let points = self.shard.range(self.points);
+        points.end - points.start
+    }
+
+    /// The sweep file in `# ` lines, and the line of the columns' names.
+    pub fn header(&self) -> String {
+        let keys = self.axes.iter().map(|axis| axis.key.as_str());
+        let readouts = self.measure.iter().map(|readout| readout.name);
+        commented(&self.file.to_toml()) + &line(&keys.chain(readouts).collect::<Vec<_>>())
+    }
+
+    /// The values of the point behind the `row`-th row, from 0, one of each axis.
+    pub fn values(&self, row: u64) -> Vec<&Value> {
+        let mut rest = self.shard.range(self.points).start + row;
+        let mut values = Vec::new();
+        for axis in self.axes.iter().rev() {
+            let count = axis.values.len() as u64;
+            values.insert(0, &axis.values[(rest % count) as usize]);
+            rest /= count;
+        }
+        values
+    }
+
+    /// Returns the readouts in `text`, the line of the `row`-th row, from 0, with its end; `None` where it is not such a line:
+    /// other values vary, a field is no value of its readout, or it would be written in other bytes.
+    pub fn parse_row(&self, row: u64, text: &[u8]) -> Option<Vec<Readable>> {
+        let labels = self.labels(row);
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .from_reader(text);
+        let record = reader.records().next()?.ok()?;
+        if record.len() != labels.len() + self.measure.len() {
+            return None;
+        }
+        let cells = record.iter().skip(labels.len());
+        let cells = self.measure.iter().zip(cells);
+        let cells = cells.map(|(readout, cell)| readout.parse(cell));
+        let cells: Vec<_> = cells.collect::<Option<_>>()?;
+        (line(&(labels, &cells)).as_bytes() == text).then_some(cells)
+    }
+
+    fn labels(&self, row: u64) -> Vec<String> {
+        self.values(row).into_iter().map(label).collect()
+    }
+
+    /// The point behind the `row`-th row in words: `motion.time_step_s = 0.1, motion.scheme = "rk4"`.
+    pub fn point_in_words(&self, row: u64) -> String {
+        let values = self.axes.iter().zip(self.values(row));
+        let pairs = values.map(|(axis, value)| format!("{} = {}", axis.key, in_words(value)));
+        pairs.collect::<Vec<_>>().join(", ")
+    }
+
+    pub fn scenario(&self, row: u64) -> Result<Scenario, String> {
+        let mut document = self.base.clone();
+        let mut time_step_s = None;
+        for (axis, value) in self.axes.iter().zip(self.values(row)) {
+            if axis.key == TIME_STEP {
+                time_step_s = value.as_float();
+            } else {
+                document.set_value(&axis.key, value.clone())?;
+            }
+        }
+        let scenario = document.scenario()?;
+        match time_step_s {
+            Some(time_step_s) => at_time_step(&scenario, time_step_s),
+            None => Ok(scenario),
+        }
+    }
+
+    /// The `row`-th row, from 0; `None` where `go_on` said no on the way.
+    pub fn row(&self, row: u64, go_on: &dyn Fn() -> bool) -> Option<SweepRow> {
+        let found = self
+            .scenario(row)
+            .and_then(|scenario| readouts::at_end(scenario, &self.measure, go_on));
+        let (cells, failure) = match found {
+            Ok(cells) => (cells?, None),
+            Err(why) => (vec![Readable::Nothing; self.measure.len()], Some(why)),
+        };
+        let is_empty = cells.iter().all(|cell| *cell == Readable::Nothing);
+        let none = || "none of its readouts can be stated".to_owned();
+        Some(SweepRow {
+            line: line(&(self.labels(row), cells)),
+            empty: is_empty.then(|| failure.clone().unwrap_or_else(none)),
+            has_failed: failure.is_some(),
+        })
+    }
+}
+
+/// The readouts called `names`; without any, every number that is the same each time.
+fn measured(
+    names: Option<&[String]>,
+    axes: &[SweepAxis],
+    problems: &mut Vec<Problem>,
+) -> Vec<&'static Readout> {
+    let Some(names) = names else {
+        let is_number =
+            |readout: &&Readout| readout.source != ReadoutSource::Clock && !readout.is_text;
+        return READOUTS.iter().filter(is_number).collect();
+    };
+    if names.is_empty() {
+        problems.push(Problem::at("measure", "must name at least one readout"));
+    }
+    let mut found: Vec<&Readout> = Vec::new();
+    for name in names {
+        let mut refuse = |rule: &str| {
+            let value = Value::String(name.clone());
+            problems.push(Problem::with_value("measure", &value, rule));
+        };
+        match readouts::find(name) {
+            None => refuse(&format!("is no readout: {}", readouts::nearest(name))),
+            Some(readout) if readout.source == ReadoutSource::Clock => {
+                refuse(
+                    "is told by the clock: it is another number each time, and so would be the file",
+                );
+            }
+            Some(readout) if found.iter().any(|other| other.name == readout.name) => {
+                refuse("is named twice");
+            }
+            Some(readout) if axes.iter().any(|axis| axis.key == readout.name) => {
+                refuse("varies, and has its column already");
+            }
+            Some(readout) => found.push(readout),
+        }
+    }
+    found
+}
+
+/// The `problems` of the table `[scenario]` of `document`, with their lines there.
+fn inside(problems: Problems, document: &Document) -> Problems {
+    if problems.list.iter().any(|problem| problem.place.is_some()) {
+        return problems; // they are those of an option
+    }
+    let whole = |problem: Problem| Problem {
+        key: join("scenario", &problem.key),
+        ..problem
+    };
+    let list: Vec<_> = problems.list.into_iter().map(whole).collect();
+    document.placed(list)
+}
+
+fn line(cells: &impl Serialize) -> String {
+    let mut writer = csv::WriterBuilder::new()
+        .has_headers(false)
+        .from_writer(Vec::new());
+    // Writing plain values to memory does not fail.
+    let _ = writer.serialize(cells);
+    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+}
+
+/// A varied value as TOML has it, but for large numbers without their zeros.
+fn in_words(value: &Value) -> String {
+    match value {
+        Value::Float(_) => label(value),
+        other => other.to_string(),
+    }
+}
+
+/// A varied value as its column has it.
+fn label(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        // As the readouts' numbers are written.
+        Value::Float(number) => line(&[number]).trim_end().to_owned(),
+        other => other.to_string(),
+    }
+}
+
+/// `scenario` at another time step, s, with its length and its pushes held in seconds.
+fn at_time_step(scenario: &Scenario, time_step_s: f64) -> Result<Scenario, String> {
+    let duration_s = Clock::end_s(scenario);
+    if accumulates(scenario) && time_step_s != scenario.motion.time_step_s {
+        return Err(
+            "a push accumulates step by step: at another time step it is another force".to_owned(),
+        );
+    }
+    if time_step_s > duration_s * (1.0 + 1e-9) {
+        return Err(format!(
+            "{TIME_STEP} ({}) must not be longer than the whole run, {} s",
+            shortest(time_step_s),
+            decimal(duration_s)
+        ));
+    }
+    if duration_s / time_step_s > MOST_RUN_STEPS_BY_TIME {
+        return Err(format!(
+            "{TIME_STEP} ({}) would be more than {MOST_RUN_STEPS_BY_TIME:e} steps",
+            shortest(time_step_s)
+        ));
+    }
+    Ok(resampled(scenario, time_step_s, scenario.motion.scheme))
+}

@@ -1,0 +1,98 @@
+//! One CSV of a sweep's shards.
+
+use super::file::Shard;
+use super::grid::Sweep;
+use super::part::{
+    EmptyRows, SweepFileError, There, cannot_read, cannot_write, first_difference, refused, whole,
+};
+use crate::engine::export::Destination;
+use crate::engine::scenario::document::Document;
+use crate::engine::text::printable::PrintablePath;
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// Writes to `path` the sweep whose shards are `parts`, in any order; the bytes are those of the sweep made at once. A file
+/// that is there and has them already is left as it is. Gives the sweep and its rows without readouts.
+pub fn join(
+    parts: &[PathBuf],
+    path: &Path,
+    may_replace: bool,
+) -> Result<(Sweep, EmptyRows), SweepFileError> {
+    let mut shards = Vec::new();
+    for part in parts {
+        shards.push((Sweep::open(&Document::read(part)?)?, part.as_path()));
+    }
+    shards.sort_by_key(|(sweep, _)| sweep.shard.number);
+    let sweep = of_one_sweep(&shards)?;
+    if let Some(empty) = whole(path, &sweep, may_replace)? {
+        return Ok((sweep, empty));
+    }
+    let mut output = Destination::open_file(path, may_replace)?;
+    let cannot_write = |error| cannot_write(path, &error);
+    let written = output.write_all(sweep.header().as_bytes());
+    written.map_err(cannot_write)?;
+    let (mut rows, mut empty) = (0, EmptyRows::default());
+    for (shard, part) in &shards {
+        let (of_shard, mut lines) = rows_of(shard, part)?;
+        empty.append(of_shard, rows);
+        rows += shard.rows();
+        io::copy(&mut lines, &mut output).map_err(cannot_write)?;
+    }
+    output.keep()?;
+    Ok((sweep, empty))
+}
+
+/// The rows without readouts in the file `path` of the whole `shard`, and a reader of its lines.
+fn rows_of(shard: &Sweep, path: &Path) -> Result<(EmptyRows, impl Read), SweepFileError> {
+    let cannot_read = |error| cannot_read(path, &error);
+    let file = File::open(path).map_err(cannot_read)?;
+    let there = There::of(&file, shard).map_err(cannot_read)?;
+    let empty = there.whole(shard).map_err(|why| {
+        let shard = shard.shard;
+        let why = format!("is not the whole shard {shard}: {why}; run its command again");
+        refused(path, why)
+    })?;
+    let mut lines = BufReader::new(file);
+    let begin = SeekFrom::Start(shard.header().len() as u64);
+    lines.seek(begin).map_err(cannot_read)?;
+    Ok((empty, lines))
+}
+
+/// The sweep whose shards these are, all of them and each once.
+fn of_one_sweep(shards: &[(Sweep, &Path)]) -> Result<Sweep, SweepFileError> {
+    const MOST_MISSING_ROWS: usize = 12;
+    let Some((first, first_path)) = shards.first() else {
+        return Err(SweepFileError::Refused("there are no shards".to_owned()));
+    };
+    let (of, first_path) = (first.shard.of, PrintablePath(first_path));
+    let whole = first.clone().with_shard(Shard::WHOLE);
+    let mut numbers = BTreeSet::new();
+    for (sweep, path) in shards {
+        let shard = sweep.shard;
+        let other = sweep.clone().with_shard(Shard::WHOLE).header();
+        let why = if shard.of != of {
+            format!("is shard {shard}, and {first_path} is one of {of}")
+        } else if let Some(what) = first_difference(&other, &whole.header()) {
+            format!("is no shard of the sweep of {first_path}: {what}")
+        } else if !numbers.insert(shard.number) {
+            format!("is shard {shard}, and so is another")
+        } else {
+            continue;
+        };
+        return Err(refused(path, why));
+    }
+    let mut missing = (1..=of).filter(|number| !numbers.contains(number));
+    let named = missing.by_ref().take(MOST_MISSING_ROWS);
+    let named: Vec<_> = named.map(|number| number.to_string()).collect();
+    if named.is_empty() {
+        return Ok(whole);
+    }
+    let (named, more) = (
+        named.join(", "),
+        missing.next().map_or("", |_| ", and more"),
+    );
+    let why = format!("the sweep has {of} shards, and these are missing: {named}{more}");
+    Err(SweepFileError::Refused(why))
+}

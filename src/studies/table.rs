@@ -1,0 +1,193 @@
+//! A CSV that is no run: the table of a comparison, of a sweep, or of a fit.
+
+use crate::engine::export::layout::above_run_file;
+use crate::engine::scenario::csv::{self, Csv};
+use crate::engine::scenario::head::Head;
+use crate::engine::scenario::{Problem, Problems};
+use crate::engine::text::advice::unread;
+use crate::engine::text::number::NOT_AVAILABLE;
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// The most values of a table, rows times columns: those of a sweep of some hundred thousand runs.
+const MOST_TABLE_VALUES: usize = 4_000_000;
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum TableSubject {
+    Comparison,
+    Sweep(SweepTable),
+    /// What was measured, and what a fitted model says of it.
+    Fit(FitTable),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepTable {
+    /// The keys that were varied; the last runs fastest.
+    pub varied: Vec<String>,
+    /// The scenario, in which the keys have their names.
+    pub scenario: toml::Table,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitTable {
+    /// The columns that say where each value was measured: the time, or settings.
+    pub settings: Vec<String>,
+    /// The run file of the fitted scenario.
+    pub run_file: String,
+    /// What was found for the free keys.
+    pub found: Vec<FittedKey>,
+}
+
+/// A fitted key, as the header of a fit's CSV has it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FittedKey {
+    pub key: String,
+    pub value: f64,
+    /// One standard uncertainty of it.
+    pub uncertainty: Option<f64>,
+}
+
+/// The columns of a fit, behind those that say where each value was measured.
+pub const FIT_COLUMNS: [&str; 6] = [
+    "quantity",
+    "measured",
+    "uncertainty",
+    "model",
+    "residual",
+    "residual_sigmas",
+];
+
+#[derive(Clone, Debug)]
+pub struct TableSource {
+    pub subject: TableSubject,
+    /// The title in its header, or empty.
+    pub title: String,
+    /// The file, as the user named it, and its content.
+    pub origin: String,
+    pub text: String,
+    csv: Csv,
+}
+
+impl TableSource {
+    /// The table in the file `path`; `None` where that is a run or no CSV.
+    pub fn read(path: &Path) -> Result<Option<Self>, Problems> {
+        let refused = |problem| Problems::one(path.display().to_string(), problem);
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let is_part = ending == Some("part");
+        if !(ending == Some("csv") || is_part) || !path.is_file() {
+            return Ok(None);
+        }
+        let head = File::open(path).and_then(|file| Head::read(&mut BufReader::new(file)));
+        let head = head.map_err(|error| refused(Problem::at("", unread(&error))))?;
+        if subject(&head).is_none() {
+            return Ok(None);
+        }
+        if is_part {
+            let rule = "holds the rows of a sweep that is not whole yet: the command that began it goes on with it, and the file gets its name";
+            return Err(refused(Problem::at("", rule)));
+        }
+        let text = csv::text(path).map_err(refused)?;
+        Self::of(&path.display().to_string(), text)
+    }
+
+    /// The table in `text`, the content of the file `origin`; `None` where it is none.
+    pub fn of(origin: &str, text: String) -> Result<Option<Self>, Problems> {
+        let head = Head::read(&mut text.as_bytes()).ok();
+        let Some((subject, title)) = head.and_then(|head| subject(&head)) else {
+            return Ok(None);
+        };
+        let csv = Csv::of(&text, MOST_TABLE_VALUES).map_err(|found| found.of(origin))?;
+        let origin = origin.to_owned();
+        Ok(Some(Self {
+            subject,
+            title,
+            origin,
+            text,
+            csv,
+        }))
+    }
+
+    pub fn names(&self) -> &[String] {
+        &self.csv.names
+    }
+
+    pub fn count(&self) -> usize {
+        self.csv.rows.len()
+    }
+
+    /// The texts of the column of that name.
+    pub fn texts(&self, name: &str) -> Option<Vec<&str>> {
+        Some(self.csv.column(name)?.collect())
+    }
+
+    /// The numbers of the column of that name, NaN where there is none; `None` where the column has texts that are no numbers.
+    pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
+        let number = |text: &str| match text.trim() {
+            "" | NOT_AVAILABLE => Some(f64::NAN),
+            "true" => Some(1.0),
+            "false" => Some(0.0),
+            text => text.parse().ok(),
+        };
+        self.csv.column(name)?.map(number).collect()
+    }
+}
+
+/// What the table with this head is, and its title; `None` where it is none.
+fn subject(head: &Head) -> Option<(TableSubject, String)> {
+    let names = String::from_utf8_lossy(head.names()).into_owned();
+    let names: Vec<&str> = names
+        .split(',')
+        .map(|name| name.trim_matches('"'))
+        .collect();
+    let (header, names) = (head.header().unwrap_or_default(), names.as_slice());
+    let table: Option<toml::Table> = header.parse().ok();
+    let title = |table: &toml::Table| {
+        let title = table.get("title").and_then(toml::Value::as_str);
+        title.unwrap_or_default().to_owned()
+    };
+    let has = |name: &str| names.contains(&name);
+    if has("scheme") && has("time_step_s") && has("error_m") {
+        let title = table.as_ref().map(title).unwrap_or_default();
+        return Some((TableSubject::Comparison, title));
+    }
+    let table = table?;
+    if let Some(settings) = settings_of_fit(names) {
+        let fit = FitTable {
+            settings,
+            found: found(&header),
+            run_file: header,
+        };
+        return Some((TableSubject::Fit(fit), title(&table)));
+    }
+    let vary = table.get("vary")?.as_array()?;
+    let keys = vary.iter().filter_map(|vary| vary.get("key")?.as_str());
+    let varied: Vec<String> = keys.map(str::to_owned).collect();
+    let of_scenario = table.get("scenario").and_then(toml::Value::as_table);
+    let title = match title(&table) {
+        own if own.is_empty() => of_scenario.map(title).unwrap_or_default(),
+        own => own,
+    };
+    let scenario = of_scenario.cloned().unwrap_or_default();
+    Some((TableSubject::Sweep(SweepTable { varied, scenario }), title))
+}
+
+/// What was found by the fit in whose CSV this is the `header`; nothing where that does not tell.
+fn found(header: &str) -> Vec<FittedKey> {
+    #[derive(Deserialize)]
+    struct AboveRunFile {
+        key: Vec<FittedKey>,
+    }
+    let above: Option<AboveRunFile> = toml::from_str(&above_run_file(header)).ok();
+    above.map(|above| above.key).unwrap_or_default()
+}
+
+/// The columns of the CSV of a fit that say where its values were measured; `None` where it is none.
+fn settings_of_fit(names: &[&str]) -> Option<Vec<String>> {
+    let (row, rest) = names.split_first()?;
+    let count = rest.len().checked_sub(FIT_COLUMNS.len())?;
+    let settings = rest[..count].iter().map(|name| (*name).to_owned());
+    (*row == "row" && rest[count..] == FIT_COLUMNS).then(|| settings.collect())
+}

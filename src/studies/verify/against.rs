@@ -1,0 +1,277 @@
+//! The lines of a file, compared with those that are computed.
+
+use crate::engine::scenario::head::Head;
+use crate::engine::text::printable::brief;
+use std::cell::OnceCell;
+use std::fmt;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
+use std::path::Path;
+use std::rc::Rc;
+
+/// The most bytes of a line that are read beyond its computed length.
+const MOST_LINE_EXCESS: u64 = 4096;
+/// The most characters of a line or a field that are shown.
+const MOST_SHOWN: usize = 60;
+/// The header's line with the version, which may be another one.
+const CSV_VERSION_LINE: &[u8] = b"# gyrolab = ";
+
+/// The first thing in a file that is not as it is computed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FileDifference {
+    pub line: u64,
+    text: String,
+}
+
+impl fmt::Display for FileDifference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+/// Takes what is computed, and compares it with a file line by line up to the first difference.
+pub struct Against {
+    file: Box<dyn BufRead>,
+    pub delimiter: u8,
+    /// How many of the first columns say which row it is.
+    pub keys: usize,
+    /// The columns that are not compared.
+    pub left_out: &'static [&'static str],
+    /// The computed line, as far as it has come.
+    computed: Vec<u8>,
+    line: u64,
+    names: Option<Vec<String>>,
+    rows: u64,
+    /// The first line that ends in CR LF.
+    rewritten: Option<u64>,
+    difference: Rc<OnceCell<FileDifference>>,
+}
+
+impl Against {
+    /// The CSV of a run with all its rows and columns.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        let mut file = BufReader::new(File::open(path)?);
+        let head = Head::read(&mut file)?;
+        Ok(Self {
+            keys: 1,
+            ..Self::new(&head, file)
+        })
+    }
+
+    /// A file of which `head` has been read, and `rest` not.
+    pub fn new(head: &Head, rest: impl Read + 'static) -> Self {
+        let head = Cursor::new(head.bytes().to_vec());
+        Self {
+            file: Box::new(BufReader::new(head.chain(rest))),
+            delimiter: b',',
+            keys: 0,
+            left_out: &[],
+            computed: Vec::new(),
+            line: 0,
+            names: None,
+            rows: 0,
+            rewritten: None,
+            difference: Rc::default(),
+        }
+    }
+
+    /// The first difference, which is there as soon as it is found.
+    pub fn difference(&self) -> Rc<OnceCell<FileDifference>> {
+        Rc::clone(&self.difference)
+    }
+
+    /// How many rows are the same, and what differs first.
+    pub fn end(mut self) -> io::Result<(u64, Option<FileDifference>)> {
+        if self.difference.get().is_none() {
+            let more = self.next(MOST_LINE_EXCESS)?;
+            if !more.is_empty() {
+                let (line, text) = (self.line, shown(&more));
+                self.differ(format!(
+                    "line {line} is \"{text}\", where the computed rows have come to their end"
+                ));
+            }
+        }
+        if let Some(line) = self.rewritten {
+            self.line = line;
+            self.differ(format!(
+                "every row is the same, but the lines end in CR LF from line {line} on, where gyrolab writes LF: \
+                 another program has rewritten the file"
+            ));
+        }
+        Ok((self.rows, self.difference.get().cloned()))
+    }
+
+    /// This line of the file differs. Only the first difference counts.
+    fn differ(&self, text: String) {
+        let line = self.line;
+        self.difference
+            .get_or_init(|| FileDifference { line, text });
+    }
+
+    /// The next line of the file with its end, of which no more than `most` bytes are read; empty behind the last.
+    fn next(&mut self, most: u64) -> io::Result<Vec<u8>> {
+        let mut line = Vec::new();
+        self.line += 1;
+        (&mut self.file).take(most).read_until(b'\n', &mut line)?;
+        Ok(line)
+    }
+
+    /// Compares the computed line with the next one of the file.
+    fn compare(&mut self) -> io::Result<()> {
+        let computed = std::mem::take(&mut self.computed);
+        let mut there = self.next(computed.len() as u64 + MOST_LINE_EXCESS)?;
+        let is_whole = there.pop_if(|byte| *byte == b'\n').is_some();
+        if is_whole && there.pop_if(|byte| *byte == b'\r').is_some() {
+            self.rewritten.get_or_insert(self.line);
+        }
+        let [computed, there] = [&computed, &there].map(|text| self.without_mark(text));
+        let is_header = self.names.is_none() && computed.starts_with(b"#");
+        let are_versions = is_header
+            && [computed, there]
+                .iter()
+                .all(|it| it.starts_with(CSV_VERSION_LINE));
+        let line = self.line;
+        let text = if !is_whole && there.is_empty() {
+            let computed = shown(computed);
+            Some(format!(
+                "the file ends before line {line}, computed \"{computed}\": it is cut off"
+            ))
+        } else if !is_whole && computed.starts_with(there) {
+            Some(format!(
+                "line {line}, the last one, is cut off before its end"
+            ))
+        } else if there == computed || are_versions {
+            None
+        } else {
+            self.fields_differ(there, computed)
+        };
+        match (text, &self.names) {
+            (Some(text), _) => self.differ(text),
+            (None, Some(_)) => self.rows += 1,
+            (None, None) if is_header => {}
+            (None, None) => self.names = Some(fields(computed, self.delimiter)),
+        }
+        Ok(())
+    }
+
+    /// `line` without a byte order mark, which only the first one may have.
+    fn without_mark<'a>(&self, line: &'a [u8]) -> &'a [u8] {
+        let marked = line.strip_prefix("\u{feff}".as_bytes());
+        marked.filter(|_| self.line == 1).unwrap_or(line)
+    }
+
+    /// What differs between two lines that are not the same; `None` where only columns that are left out do.
+    fn fields_differ(&self, there: &[u8], computed: &[u8]) -> Option<String> {
+        let line = self.line;
+        let names = self.names.as_deref().unwrap_or_default();
+        let [cells, wanted] = [there, computed].map(|line| fields(line, self.delimiter));
+        let mut differing = Vec::new();
+        if cells.len() == wanted.len() && names.len() == wanted.len() {
+            differing.extend((0..names.len()).filter(|&at| cells[at] != wanted[at]));
+        }
+        if differing.is_empty() {
+            let (there, computed) = (shown(there), shown(computed));
+            return Some(format!(
+                "line {line} is \"{there}\", computed \"{computed}\""
+            ));
+        }
+        let is_compared = |at: &&usize| !self.left_out.contains(&names[**at].as_str());
+        let at = *differing.iter().find(is_compared)?;
+        let [there, computed] = [&cells[at], &wanted[at]].map(|text| match text.as_str() {
+            "" => "empty".to_owned(),
+            text => brief(text, MOST_SHOWN),
+        });
+        let (row, column) = (self.row_of(names, &wanted), &names[at]);
+        let field = format!("line {line}{row}: {column} is {there}, computed {computed}");
+        if self.rows == 0 && differing.len() > 1 {
+            let why = "its rows are not those of the scenario in its header: already in the first";
+            return Some(format!("{why}, {field}"));
+        }
+        Some(field)
+    }
+
+    /// Which row the one with these fields is: by its first columns.
+    fn row_of(&self, names: &[String], fields: &[String]) -> String {
+        let keys = names.iter().zip(fields).take(self.keys);
+        let keys: Vec<_> = keys
+            .map(|(name, value)| format!("{name} {value}"))
+            .collect();
+        if keys.is_empty() {
+            return String::new();
+        }
+        let keys = brief(&keys.join(", "), 2 * MOST_SHOWN);
+        format!(", the row of {keys}")
+    }
+}
+
+impl Write for Against {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        for part in bytes.split_inclusive(|&byte| byte == b'\n') {
+            if self.difference.get().is_some() {
+                break;
+            }
+            self.computed.extend_from_slice(part);
+            if self.computed.pop_if(|byte| *byte == b'\n').is_some() {
+                self.compare()?;
+            }
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// The first line of `there` that is not as in the text that was `made`, and how many lines differ.
+pub fn first_difference(there: &str, made: &str) -> Option<String> {
+    if there == made {
+        return None;
+    }
+    let [mut there, mut made] = [there, made].map(|text| text.lines().collect::<Vec<_>>());
+    let are_same = there.iter().zip(&made).take_while(|(a, b)| a == b);
+    let first = are_same.count();
+    while there.len().min(made.len()) > first && there.last() == made.last() {
+        there.pop();
+        made.pop();
+    }
+    let lines = [&there, &made].map(|lines| lines.get(first).copied());
+    if lines == [None, None] {
+        return Some("its line ends: another program has rewritten it".to_owned());
+    }
+    let [a, b] = lines.map(Option::unwrap_or_default);
+    let same = a.chars().zip(b.chars()).take_while(|(a, b)| a == b).count();
+    let [there_is, made_is] = lines.map(|line| match (line, same.saturating_sub(MOST_SHOWN / 2)) {
+        (None, _) => "nothing".to_owned(),
+        (Some(line), 0) => format!("\"{}\"", brief(line, 2 * MOST_SHOWN)),
+        (Some(line), from) => {
+            let rest: String = line.chars().skip(from).collect();
+            format!("\"...{}\"", brief(&rest, 2 * MOST_SHOWN))
+        }
+    });
+    let (line, last) = (first + 1, there.len());
+    let lines = if last > line {
+        format!("lines {line} to {last}, of which line {line}")
+    } else {
+        format!("line {line}")
+    };
+    Some(format!("{lines} is {there_is}, made again {made_is}"))
+}
+
+/// The fields of a line; none where it is not text.
+fn fields(line: &[u8], delimiter: u8) -> Vec<String> {
+    let mut reader = csv::ReaderBuilder::new();
+    let mut reader = reader
+        .has_headers(false)
+        .delimiter(delimiter)
+        .from_reader(line);
+    let record = reader.records().next().and_then(Result::ok);
+    record.map_or(Vec::new(), |record| {
+        record.iter().map(str::to_owned).collect()
+    })
+}
+
+fn shown(line: &[u8]) -> String {
+    let text = String::from_utf8_lossy(line);
+    brief(text.trim_end_matches(['\r', '\n']), MOST_SHOWN)
+}

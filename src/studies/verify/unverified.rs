@@ -1,0 +1,41 @@
+//! Why a file cannot be made again, and which version wrote it.
+
+use crate::engine::scenario::{Problem, Problems};
+use crate::engine::text::advice::unread;
+use crate::engine::text::printable::printable;
+use std::io;
+
+#[derive(Debug, thiserror::Error)]
+pub enum Unverified {
+    /// It is no CSV of gyrolab's, or what its header holds cannot be computed.
+    #[error("{0}")]
+    Refused(Problems),
+    #[error("stopped")]
+    Stopped,
+}
+
+impl From<Problems> for Unverified {
+    fn from(problems: Problems) -> Self {
+        Self::Refused(problems)
+    }
+}
+
+impl From<String> for Unverified {
+    fn from(rule: String) -> Self {
+        Problems::one("", Problem::at("", rule)).into()
+    }
+}
+
+impl From<io::Error> for Unverified {
+    fn from(error: io::Error) -> Self {
+        unread(&error).into()
+    }
+}
+
+/// Says that another version has written the file.
+pub fn other_version(version: &str) -> Option<String> {
+    let own = env!("CARGO_PKG_VERSION");
+    let version = printable(version);
+    (version != own)
+        .then(|| format!("written by gyrolab {version}, computed again by gyrolab {own}"))
+}
