@@ -286,11 +286,10 @@ fn report_edit() {
         thread::sleep(Duration::from_millis(537));
         let (begin, spent) = (Instant::now(), lab.own_processor_ms());
         lab.press("\x1b[C");
-        let is_redrawn = |picture: &str| {
+        let picture = lab.wait_for_picture(|picture| {
             let new = tilt(picture);
             new.is_some() && new != before && picture.contains(STEP)
-        };
-        let picture = lab.wait_for_picture(is_redrawn);
+        });
         times.push(begin.elapsed().as_secs_f64() * 1e3);
         computing.push(lab.own_processor_ms() - spent);
         before = tilt(&picture);
@@ -315,13 +314,14 @@ fn bare_steps_ms() -> f64 {
     const STEPS: u64 = 100_000;
     let scenario = Document::open("method-2").and_then(|document| document.scenario());
     let scenario = Arc::new(scenario.unwrap());
-    let play = |_| {
-        let mut run = Simulation::new(Arc::clone(&scenario));
-        let begin = Instant::now();
-        run.step_to(STEPS).unwrap();
-        begin.elapsed().as_secs_f64() * 1e3
-    };
-    (0..20).map(play).fold(f64::INFINITY, f64::min)
+    (0..20)
+        .map(|_| {
+            let mut run = Simulation::new(Arc::clone(&scenario));
+            let begin = Instant::now();
+            run.step_to(STEPS).unwrap();
+            begin.elapsed().as_secs_f64() * 1e3
+        })
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Every preset at 10 frames a second, alone and with the exact motion, on a small and a large screen, with the 3-D view

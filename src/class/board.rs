@@ -44,11 +44,13 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
             board.extend(of_seats(&state, &seats, width));
         }
     }
-    let fitted = |line: &String| match columns(line) {
-        fits if fits <= width => vec![line.clone()], // with its blanks
-        _ => wrapped(line, width),
-    };
-    board.iter().flat_map(fitted).collect()
+    board
+        .iter()
+        .flat_map(|line| match columns(line) {
+            fits if fits <= width => vec![line.clone()], // with its blanks
+            _ => wrapped(line, width),
+        })
+        .collect()
 }
 
 /// The page in words, with the votes on its questions.
@@ -88,10 +90,9 @@ fn of_seats(state: &ClassState, seats: &[SeatStatus], width: usize) -> Vec<Strin
     };
     let cells: Vec<_> = seats.iter().map(cell).collect();
     let widest = cells.iter().map(|cell| columns(cell)).max().unwrap_or(0) + 2;
-    let row = |row: &[String]| {
+    let rows = cells.chunks((width / widest).max(1)).map(|row| {
         let row: String = row.iter().map(|cell| format!("{cell:<widest$}")).collect();
         row.trim_end().to_owned()
-    };
-    let rows = cells.chunks((width / widest).max(1)).map(row);
+    });
     rows.collect()
 }

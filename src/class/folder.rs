@@ -236,10 +236,11 @@ impl ClassState {
 
     pub(super) fn question_mut(&mut self, name: &str) -> &mut QuestionState {
         let questions = self.questions.entry(self.lesson.clone()).or_default();
-        let new = || QuestionState {
-            since_ms: unix_ms(),
-            ..QuestionState::default()
-        };
-        questions.entry(name.to_owned()).or_insert_with(new)
+        questions
+            .entry(name.to_owned())
+            .or_insert_with(|| QuestionState {
+                since_ms: unix_ms(),
+                ..QuestionState::default()
+            })
     }
 }

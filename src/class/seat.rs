@@ -58,10 +58,9 @@ pub enum Presence {
 }
 
 pub(super) fn is_name(name: &str) -> bool {
-    let is_allowed = |c: char| c.is_alphanumeric() || c == '-';
     let length = name.chars().count();
     (1..=LONGEST_SEAT_NAME).contains(&length)
-        && name.chars().all(is_allowed)
+        && name.chars().all(|c| c.is_alphanumeric() || c == '-')
         && !name.starts_with('-')
 }
 

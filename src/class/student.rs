@@ -71,14 +71,15 @@ type PlaybackSnapshot = (
 
 fn stand(lab: &Lab, lessons: &Lessons) -> PlaybackSnapshot {
     let playback = &lab.player().playback;
-    let page = |taken: &OpenLesson| (taken.lesson.name.clone(), taken.place.page);
     (
         lab.runs().depth(),
         playback.step_number(),
         playback.steps_to_go(),
         playback.is_running() || !lab.script().is_done(),
         playback.speed(),
-        lessons.taken().map(page),
+        lessons
+            .taken()
+            .map(|taken| (taken.lesson.name.clone(), taken.place.page)),
     )
 }
 

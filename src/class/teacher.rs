@@ -99,9 +99,10 @@ impl Teacher {
         if let Some((predict, question)) = page.and_then(|page| votes::question(page, &self.state))
         {
             let (lesson, round) = (&self.state.lesson, question.round());
-            let has_answered = |it: &&SeatStatus| it.vote(lesson, predict, round).is_some();
             let here = self.seats.iter().filter(|sitting| sitting.is_here());
-            self.state.answered = here.filter(has_answered).count();
+            self.state.answered = here
+                .filter(|it| it.vote(lesson, predict, round).is_some())
+                .count();
             let tally = Tally::of(&self.seats, lesson, predict, round);
             let is_shown = question.stage == VoteStage::All && tally.votes >= FEWEST_VOTES_SHOWN;
             let bars = if is_shown { tally.bars } else { Vec::new() };

@@ -169,9 +169,13 @@ fn advice(right: &Right, choices: &[f64]) -> Option<String> {
 }
 
 fn of_choices(count: usize, choices: &[f64]) -> Vec<(String, usize)> {
-    let given = |number: usize| choices.iter().filter(|it| **it == number as f64).count();
     (1..=count)
-        .map(|number| (number.to_string(), given(number)))
+        .map(|number| {
+            (
+                number.to_string(),
+                choices.iter().filter(|it| **it == number as f64).count(),
+            )
+        })
         .collect()
 }
 
@@ -198,13 +202,14 @@ fn of_numbers(mut numbers: Vec<f64>) -> Vec<(String, usize)> {
 pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
     let most = bars.iter().map(|bar| bar.1).max().unwrap_or(0).max(1);
     let width = bars.iter().map(|bar| bar.0.len()).max().unwrap_or(0);
-    let line = |(name, count): &(String, usize)| {
-        let bar = "█".repeat((count * LONGEST_BAR).div_ceil(most));
-        format!("{name:<width$} {bar} {count}\n")
-    };
     Paragraph::new(
         SheetLineKind::Code,
-        bars.iter().map(line).collect::<String>(),
+        bars.iter()
+            .map(|(name, count)| {
+                let bar = "█".repeat((count * LONGEST_BAR).div_ceil(most));
+                format!("{name:<width$} {bar} {count}\n")
+            })
+            .collect::<String>(),
     )
 }
 
@@ -213,8 +218,9 @@ pub fn question<'a>(
     page: &'a LessonPage,
     state: &ClassState,
 ) -> Option<(&'a Predict, QuestionState)> {
-    let asked = |predict: &'a Predict| (predict, state.question(&predict.name));
-    let mut all = page.predicts().map(asked);
+    let mut all = page
+        .predicts()
+        .map(|predict| (predict, state.question(&predict.name)));
     let first = all.next()?;
     if first.1.stage != VoteStage::Closed {
         return Some(first);

@@ -331,10 +331,9 @@ const ROWS_HEADING: &str = "Rows and columns of the CSV";
 
 /// A time from the beginning of the run on, s.
 pub(super) fn time(text: &str) -> Result<f64, String> {
-    let fits = |seconds: &f64| *seconds >= 0.0 && seconds.is_finite();
     bare(
         text,
-        fits,
+        |seconds| *seconds >= 0.0 && seconds.is_finite(),
         IN_SECONDS,
         "must be a time in seconds, 0 or more",
     )
@@ -406,8 +405,12 @@ pub(super) fn setting(text: &str) -> Result<String, String> {
 }
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {
-    let fits = |number: &f64| *number > 0.0 && number.is_finite();
-    bare(text, fits, IN_SECONDS, "must be a number greater than zero")
+    bare(
+        text,
+        |number| *number > 0.0 && number.is_finite(),
+        IN_SECONDS,
+        "must be a number greater than zero",
+    )
 }
 
 pub(super) fn size(text: &str) -> Result<(u16, u16), String> {

@@ -13,14 +13,13 @@ use crate::lessons::shipped::LESSONS;
 use crate::report::figure::kind;
 use crate::studies::sweep::SWEEPS;
 use anyhow::{Context, bail};
-use clap::{Arg, Command};
+use clap::Command;
 use clap_complete::Shell;
 use clap_complete::engine::{
     ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter,
 };
 use clap_complete::env::{CompleteEnv, Shells};
 use std::ffi::OsStr;
-use std::path::Path;
 use std::process::ExitCode;
 
 /// The environment variable by which the script asks; its value is the name of the shell.
@@ -77,13 +76,14 @@ pub(super) fn answered() -> Result<bool, clap::Error> {
 /// `command` and all of its commands with what completes their values.
 pub(super) fn with_completers(command: Command) -> Command {
     let name = command.get_name().to_owned();
-    let complete = |arg: Arg| match completing(&name, arg.get_id().as_str()) {
-        Some((names, endings)) => arg.add(ArgValueCompleter::new(move |current: &OsStr| {
-            completed(current, names, endings)
-        })),
-        None => arg,
-    };
-    command.mut_args(complete).mut_subcommands(with_completers)
+    command
+        .mut_args(|arg| match completing(&name, arg.get_id().as_str()) {
+            Some((names, endings)) => arg.add(ArgValueCompleter::new(move |current: &OsStr| {
+                completed(current, names, endings)
+            })),
+            None => arg,
+        })
+        .mut_subcommands(with_completers)
 }
 
 /// Scripts in place of clap's own, which part a value at `=` (bash), or do nothing at the first use (zsh).
@@ -132,11 +132,14 @@ fn completed(
         })
         .collect();
     if !endings.is_empty() {
-        let ends_so = |path: &Path| {
-            let ending = path.extension().and_then(OsStr::to_str);
-            path.is_dir() || ending.is_some_and(|ending| endings.contains(&ending))
-        };
-        candidates.extend(PathCompleter::any().filter(ends_so).complete(current));
+        candidates.extend(
+            PathCompleter::any()
+                .filter(|path| {
+                    let ending = path.extension().and_then(OsStr::to_str);
+                    path.is_dir() || ending.is_some_and(|ending| endings.contains(&ending))
+                })
+                .complete(current),
+        );
     }
     candidates
 }

@@ -169,8 +169,7 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     }
     let figure = source.draw(interruption.meter());
     let figure = figure.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?;
-    let write = || source.write(&figure.scene, format);
-    let bytes = progress::with_clock("writing the figure", write)?;
+    let bytes = progress::with_clock("writing the figure", || source.write(&figure.scene, format))?;
     interruption.keep(output, &bytes)?;
     for warning in figure.told() {
         tell(format_args!("gyrolab: {warning}"));

@@ -88,17 +88,19 @@ impl std::str::FromStr for RowRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || "must be rows counted from 1, such as 1,3,5-8".to_owned();
         let number = |text: &str| text.trim().parse().ok().filter(|&row: &usize| row > 0);
-        let range = |part: &str| {
-            let (first, last) = part.split_once('-').unwrap_or((part, part));
-            let (first, last) = (number(first)?, number(last)?);
-            (first <= last).then_some((first, last))
-        };
-        let ranges: Option<Vec<_>> = text.split(',').map(range).collect();
+        let ranges: Option<Vec<_>> = text
+            .split(',')
+            .map(|part| {
+                let (first, last) = part.split_once('-').unwrap_or((part, part));
+                let (first, last) = (number(first)?, number(last)?);
+                (first <= last).then_some((first, last))
+            })
+            .collect();
         Ok(Self {
             text: text.to_owned(),
-            ranges: ranges.ok_or_else(wrong)?,
+            ranges: ranges
+                .ok_or_else(|| "must be rows counted from 1, such as 1,3,5-8".to_owned())?,
         })
     }
 }
@@ -273,8 +275,8 @@ impl Task {
         let of = flights.len();
         let throws = flights.into_iter().zip(1..);
         let throws = throws.map(|(flight, number)| Throw { number, of, flight });
-        let is_chosen = |throw: &Throw| args.flight.is_none_or(|it| it == throw.number as u64);
-        let (chosen, others): (Vec<Throw>, Vec<Throw>) = throws.partition(is_chosen);
+        let (chosen, others): (Vec<Throw>, Vec<Throw>) =
+            throws.partition(|throw| args.flight.is_none_or(|it| it == throw.number as u64));
         if chosen.is_empty() {
             let list: Vec<String> = others.iter().map(Throw::to_string).collect();
             return Err(refused(format!(
@@ -308,11 +310,10 @@ impl Task {
         interruption: &Interruption,
     ) -> anyhow::Result<Fit> {
         let meter = Meter::counting("run");
-        let told = |step: u64, sum: f64| {
+        let found = fitted(model, &|| !interruption.has_come(), &|step, sum| {
             let (runs, sum) = (model.runs(), significant(sum, 4));
             meter.say(&format!("{runs} runs, step {step}, chi^2 {sum}"));
-        };
-        let found = fitted(model, &|| !interruption.has_come(), &told);
+        });
         drop(meter);
         match found {
             Err(NoFit::Interrupted) => bail!(Interrupted),

@@ -27,8 +27,11 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     if args.template {
         return write(args, |_| Ok(shipped::TEMPLATE.to_owned()));
     }
-    let enter = |folder| Confined::enter(folder).with_context(|| sessions::named(folder));
-    let confined = args.folder.as_deref().map(enter).transpose()?;
+    let confined = args
+        .folder
+        .as_deref()
+        .map(|folder| Confined::enter(folder).with_context(|| sessions::named(folder)))
+        .transpose()?;
     let Some(name) = &args.name else {
         return print(&list(confined.as_ref())?);
     };
@@ -71,8 +74,8 @@ pub(super) fn admit(name: &str, folder: &Confined) -> anyhow::Result<()> {
 }
 
 fn print_frame(args: &LessonArgs, name: &str, language: &str) -> anyhow::Result<ExitCode> {
-    let none = || format!("{name}: asks for no program; write-it-yourself does");
-    let frame = shipped::frame(name, language).with_context(none)?;
+    let frame = shipped::frame(name, language)
+        .with_context(|| format!("{name}: asks for no program; write-it-yourself does"))?;
     write(args, |_| Ok(frame.to_owned()))
 }
 

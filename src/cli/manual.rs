@@ -95,8 +95,8 @@ fn in_plain(sections: &[ManualSection]) -> String {
 
 /// Writes the page of the program and that of each command into `folder`.
 fn write_pages(gyrolab: &Command, folder: &Path, replace: bool) -> anyhow::Result<ExitCode> {
-    let cannot = || format!("cannot make the folder {}", PrintablePath(folder));
-    std::fs::create_dir_all(folder).with_context(cannot)?;
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("cannot make the folder {}", PrintablePath(folder)))?;
     let mut pages = vec![page(gyrolab, "gyrolab", &of_program()?)?];
     for command in commands(gyrolab) {
         let name = format!("gyrolab-{}", command.get_name());

@@ -144,11 +144,16 @@ pub(super) fn played<W: Write>(
         also(step);
     };
     let meter = interruption.meter();
-    let watch = |step, steps| {
-        monitor.borrow_mut().catch_up(&mut || meter(step, steps))?;
-        meter(step, steps)
-    };
-    let ended = stream::play(&mut simulation, scenario.steps, csv.as_mut(), each, watch);
+    let ended = stream::play(
+        &mut simulation,
+        scenario.steps,
+        csv.as_mut(),
+        each,
+        |step, steps| {
+            monitor.borrow_mut().catch_up(&mut || meter(step, steps))?;
+            meter(step, steps)
+        },
+    );
     drop(meter);
     let (ended, wall) = ended.map_err(|error| advised(&error))?;
     let rows = csv.as_ref().map(CsvWriter::count);

@@ -4,7 +4,6 @@
 use super::args::{DisplayArgs, WorkbenchArgs};
 use super::new_lab::{DEFAULT, marker, of_workbench, theme};
 use super::{print, tell};
-use crate::engine::scenario::Scenario;
 use crate::engine::text::printable::{PrintablePath, printable};
 use crate::lab::storage::confined::Confined;
 use crate::lab::storage::session::{self, LeftAlone, Listed, Session};
@@ -22,8 +21,9 @@ use std::time::{Duration, SystemTime};
 const SESSION_SAVE_LIMIT: Duration = Duration::from_secs(3);
 
 pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
-    let within = |folder| Confined::within(folder).with_context(|| named(folder));
-    let confined = folder.map(within).transpose()?;
+    let confined = folder
+        .map(|folder| Confined::within(folder).with_context(|| named(folder)))
+        .transpose()?;
     let folder = folder_of(confined.as_ref()).map_err(anyhow::Error::msg)?;
     let sessions = session::list(&folder)?;
     if sessions.is_empty() {
@@ -37,8 +37,12 @@ pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
     let head = ["NAME", "WRITTEN", "STEP", "IN USE", "RUN"].map(str::to_owned);
     let rows = sessions.iter().map(|session| row(session, now));
     let rows: Vec<_> = [head].into_iter().chain(rows).collect();
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let [a, b, c, d] = [0, 1, 2, 3].map(|column| width(column).unwrap_or(0));
+    let [a, b, c, d] = [0, 1, 2, 3].map(|column| {
+        rows.iter()
+            .map(|row| row[column].chars().count())
+            .max()
+            .unwrap_or(0)
+    });
     let mut text = String::new();
     for [name, written, step, in_use, run] in &rows {
         writeln!(
@@ -135,9 +139,10 @@ fn resumed(
     look: DisplayArgs,
     confined: Option<&Confined>,
 ) -> Result<Lab, String> {
-    let view =
-        |scenario: &Scenario| View::new(scenario, marker(look.markers), theme(look), &panes::IDS);
-    Lab::resumed(content, confined, view).map_err(|error| error.to_string())
+    Lab::resumed(content, confined, |scenario| {
+        View::new(scenario, marker(look.markers), theme(look), &panes::IDS)
+    })
+    .map_err(|error| error.to_string())
 }
 
 /// The session called `name`, or an error that says why it cannot be had.
@@ -149,9 +154,10 @@ pub(super) fn come_back_to(
 ) -> anyhow::Result<(Lab, Result<Session, String>)> {
     let folder = folder.map_err(anyhow::Error::msg)?;
     let name_shown = printable(name);
-    let read = |content: &session::SessionContent| resumed(content, args.look, confined);
-    let found = session::resume(&folder, Some(name), read)
-        .with_context(|| format!("--resume {name_shown} (gyrolab sessions lists what there is)"))?;
+    let found = session::resume(&folder, Some(name), |content| {
+        resumed(content, args.look, confined)
+    })
+    .with_context(|| format!("--resume {name_shown} (gyrolab sessions lists what there is)"))?;
     let passed_over = left_alone(&found.left_alone);
     let why = match (found.resumed, found.in_use_by.first()) {
         (Some((session, lab)), _) => return Ok((lab, Ok(session))),
@@ -169,10 +175,12 @@ pub(super) fn come_back(
     confined: Option<&Confined>,
     folder: Result<PathBuf, String>,
 ) -> anyhow::Result<(Lab, Result<Session, String>)> {
-    let read = |content: &session::SessionContent| resumed(content, args.look, confined);
-    let found = folder
-        .clone()
-        .and_then(|folder| session::resume(&folder, None, read).map_err(|error| error.to_string()));
+    let found = folder.clone().and_then(|folder| {
+        session::resume(&folder, None, |content| {
+            resumed(content, args.look, confined)
+        })
+        .map_err(|error| error.to_string())
+    });
     let why_none = match found {
         Ok(found) => {
             let passed_over = left_alone(&found.left_alone) + &in_use(&found.in_use_by);

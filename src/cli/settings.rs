@@ -35,8 +35,9 @@ impl Chosen {
         settings.extend(self.config.settings.clone());
         let value = |key: &str| settings.get(key);
         let mut args = args.clone();
-        let fps = || u32::try_from(value("fps")?.as_integer()?).ok();
-        args.fps = args.fps.or_else(fps);
+        args.fps = args
+            .fps
+            .or_else(|| u32::try_from(value("fps")?.as_integer()?).ok());
         args.look = DisplayArgs {
             color: args.look.color.or_else(|| option(value("colour"))),
             background: args.look.background.or_else(|| option(value("background"))),
@@ -108,8 +109,10 @@ mod tests {
         let Some((_, ValueKind::OneOf(words), _)) = row else {
             return false;
         };
-        let is_option = |word: &&str| option::<T>(Some(&(*word).into())).is_some();
-        words.iter().all(is_option) && words.len() == T::value_variants().len()
+        words
+            .iter()
+            .all(|word| option::<T>(Some(&(*word).into())).is_some())
+            && words.len() == T::value_variants().len()
     }
 
     #[test]

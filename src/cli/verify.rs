@@ -206,8 +206,11 @@ fn made_again(file: &Path, interruption: &Interruption) -> anyhow::Result<bool> 
         let same = "the same: drawn again from what it carries";
         return say(file, same, difference.as_ref(), &notes);
     }
-    let fit = |command: &str| fit::again(command, interruption);
-    let result = verified(file, fit, interruption.meter())?;
+    let result = verified(
+        file,
+        |command| fit::again(command, interruption),
+        interruption.meter(),
+    )?;
     say_of_rows(file, result.rows, result.difference.as_ref(), &result.notes)
 }
 
@@ -261,8 +264,9 @@ fn verdict(
     let time_step_s = scenario.motion.time_step_s;
     let rows = own_code::rows::read(&text, &args.map, every, time_step_s)?;
     let name = args.against.as_deref().unwrap_or_default();
-    let compare = || own_code::compare(&rows, name, scenario, &|| !interruption.has_come());
-    progress::with_clock("comparing the rows with the scheme", compare)
+    progress::with_clock("comparing the rows with the scheme", || {
+        own_code::compare(&rows, name, scenario, &|| !interruption.has_come())
+    })
 }
 
 /// As [`say`], of a file whose rows were computed again.

@@ -12,7 +12,6 @@ use crate::lab::command;
 use crate::lab::storage::confined::Confined;
 use crate::lab::storage::exporting;
 use crate::lab::view::FPS;
-use crate::lessons::taken::OpenLesson;
 use crate::lessons::{Lesson, LessonPage, Lessons};
 use crate::tui::app;
 use crate::tui::theme::{self, ColourChoice};
@@ -42,8 +41,11 @@ pub(super) fn open_lesson(
 
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
-    let enter = |folder| Confined::enter(folder).with_context(|| sessions::named(folder));
-    let confined = args.folder.as_deref().map(enter).transpose()?;
+    let confined = args
+        .folder
+        .as_deref()
+        .map(|folder| Confined::enter(folder).with_context(|| sessions::named(folder)))
+        .transpose()?;
     if let Some(folder) = &confined {
         folder
             .check(Path::new(name))
@@ -149,8 +151,9 @@ fn lessons(lab: &mut Lab, lesson: Option<(&Lesson, usize)>) -> anyhow::Result<Le
     if let Err(reason) = taken {
         lab.tell(format!("the lesson cannot be taken again: {reason}"));
     }
-    let stands = |taken: &OpenLesson| (taken.lesson.name.clone(), taken.place.page);
-    let stands = lessons.taken().map(stands);
+    let stands = lessons
+        .taken()
+        .map(|taken| (taken.lesson.name.clone(), taken.place.page));
     if let Some((lesson, page)) = lesson
         && stands != Some((lesson.name.clone(), page))
     {

@@ -9,7 +9,6 @@ use crate::engine::data::{self, MeasuredData, doubts};
 use crate::engine::export::stream::Ended;
 use crate::engine::export::{CsvWriter, OutputFolder};
 use crate::engine::journal::changed::Original;
-use crate::engine::run::Step;
 use crate::engine::scenario::{Document, Scenario};
 use crate::engine::text::advice::advised;
 use crate::engine::text::printable::{PrintablePath, printable};
@@ -121,16 +120,16 @@ fn made<W: Write>(
     interruption: &Interruption,
 ) -> anyhow::Result<(Writeup, Option<W>)> {
     let mut recorder = recorder(&scenario, beside.as_ref());
-    let also = |step: &Step| recorder.follow(step);
-    let played = played(&scenario, csv, also, interruption);
+    let played = played(&scenario, csv, |step| recorder.follow(step), interruption);
     let mut played = played.with_context(cannot)?;
     ensure!(played.ended != Ended::Stopped, Interrupted);
     let broken = played.ended.not_finite();
     let readouts = progress::with_clock(CHECKING, || played.readouts());
     if let Some(beside) = &mut beside {
         let end_s = readouts.sample.time_s;
-        let hold = || beside.hold(&scenario, end_s, &|| !interruption.has_come());
-        let held = progress::with_clock("comparing the run with the measured data", hold);
+        let held = progress::with_clock("comparing the run with the measured data", || {
+            beside.hold(&scenario, end_s, &|| !interruption.has_come())
+        });
         ensure!(held.map_err(anyhow::Error::msg)?, Interrupted);
     }
     let (recorded, meter) = (recorder.end(broken), interruption.meter());

@@ -362,13 +362,12 @@ mod tests {
             let column = |time_s: f64| (time_s / length as f64 * columns as f64) as usize;
             let single: Vec<_> = recording.between(since, until).collect();
             let joined: Vec<_> = recording.in_columns(since, until, Some(column)).collect();
-            let is_inside = |block: &RecordingBin| column(block.begin_s) == column(block.end_s);
             let mut rest = single.iter();
             for block in &joined {
                 let parts: Vec<_> = rest.by_ref().take_while(|part| part.end_s < block.end_s).collect();
                 // take_while() has taken the last part too.
                 prop_assert!(parts.first().is_none_or(|part| part.begin_s == block.begin_s));
-                prop_assert!(parts.is_empty() || is_inside(block));
+                prop_assert!(parts.is_empty() || column(block.begin_s) == column(block.end_s));
             }
             prop_assert_eq!(rest.count(), 0);
             let moments = |blocks: &[RecordingBin]| blocks.iter().map(RecordingBin::moments).sum::<u64>();
@@ -434,8 +433,9 @@ mod tests {
     fn a_block_knows_how_often_the_curve_turns() {
         let turns = |recording: &Recording| recording.whole().unwrap().turns(RecordedCurve::X);
         // Ten swings of a triangle about 5, from 0 to 10 and back in 20 steps each.
-        let triangle = |step: u64| (10.0 - (step % 20) as f64).abs();
-        let values: Vec<f64> = (0..=200).map(triangle).collect();
+        let values: Vec<f64> = (0..=200)
+            .map(|step: u64| (10.0 - (step % 20) as f64).abs())
+            .collect();
         let recording = recorded(&values);
         assert_eq!(recording.whole().unwrap().moments(), 201);
         assert_eq!(turns(&recording), 19);

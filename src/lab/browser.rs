@@ -69,11 +69,14 @@ impl Browser {
         self.list(&to, may_be_read);
         self.filter.clear();
         let from = std::fs::canonicalize(&from).unwrap_or(from);
-        let of_folder = || self.entries.iter().skip(PRESETS.len());
         let came_from =
             |entry: &BrowserEntry| is_up && Path::new(&entry.name).file_name() == from.file_name();
         let is_below = |entry: &BrowserEntry| !is_up && entry.name != PARENT_FOLDER;
-        let found = of_folder().position(|entry| came_from(entry) || is_below(entry));
+        let found = self
+            .entries
+            .iter()
+            .skip(PRESETS.len())
+            .position(|entry| came_from(entry) || is_below(entry));
         let last = self.entries.len().saturating_sub(1);
         self.selected = (PRESETS.len() + found.unwrap_or(0)).min(last);
         self.load_preview();
@@ -159,8 +162,11 @@ impl Browser {
 
     /// Selects the first entry that is shown; without a filter, the one that is open.
     fn refilter(&mut self) {
-        let is_open = |entry: &BrowserEntry| self.filter.is_empty() && entry.name == self.open;
-        self.selected = self.entries.iter().position(is_open).unwrap_or(0);
+        self.selected = self
+            .entries
+            .iter()
+            .position(|entry| self.filter.is_empty() && entry.name == self.open)
+            .unwrap_or(0);
         self.load_preview();
     }
 

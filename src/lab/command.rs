@@ -404,8 +404,10 @@ impl SeekTarget {
 fn whole(text: &str) -> Option<u64> {
     /// Floats are exact whole numbers up to here.
     const LARGEST_WHOLE_ARGUMENT: f64 = 9e15;
-    let is_whole =
-        |number: &f64| number.fract() == 0.0 && (0.0..=LARGEST_WHOLE_ARGUMENT).contains(number);
-    let float = || text.parse().ok().filter(is_whole);
+    let float = || {
+        text.parse().ok().filter(|number: &f64| {
+            number.fract() == 0.0 && (0.0..=LARGEST_WHOLE_ARGUMENT).contains(number)
+        })
+    };
     text.parse().ok().or_else(|| Some(float()? as u64))
 }

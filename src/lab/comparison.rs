@@ -80,8 +80,10 @@ impl Comparison {
                 self.leave_ghost(run, false);
             }
         }
-        let is_left = |ghost: &Ghost| Arc::ptr_eq(&ghost.scenario, run.scenario());
-        let is_ghost = self.ghost.as_ref().is_some_and(is_left);
+        let is_ghost = self
+            .ghost
+            .as_ref()
+            .is_some_and(|ghost| Arc::ptr_eq(&ghost.scenario, run.scenario()));
         if let Some(data) = &mut self.data {
             match change {
                 RunChange::Described => {}
@@ -184,8 +186,10 @@ impl Comparison {
         )?;
         measured.series()?;
         let time_step_s = player.motion().time_step_s;
-        let rows = || rows::read(text, &[], None, time_step_s).err();
-        Ok(own.is_none().then(rows).flatten())
+        Ok(own
+            .is_none()
+            .then(|| rows::read(text, &[], None, time_step_s).err())
+            .flatten())
     }
 
     /// To be called after the run went over from `before` to another scenario, or another `[view]`. Puts the data that its

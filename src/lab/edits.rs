@@ -152,11 +152,10 @@ impl Edits {
     /// Sets all keys of `table` as one act, with `is_again` together with the act before. Keys of body and start begin a new
     /// run; the others act from the next step on.
     fn set(&mut self, table: &Table, is_again: bool, player: &Player) -> Edited {
-        let is_of_a_new_run = |key: &str| Effect::of(key) == Effect::NewRun;
         let (new, rest): (Table, Table) = table
             .clone()
             .into_iter()
-            .partition(|(key, _)| is_of_a_new_run(key));
+            .partition(|(key, _)| Effect::of(key) == Effect::NewRun);
         let acts = acts(rest);
         if new.is_empty() {
             let said = match table.len() {
@@ -454,8 +453,9 @@ fn is_of_a_push_that_is_over(key: &str, player: &Player) -> bool {
 
 /// The acts that set the keys of `table`: an edit, a description, or both.
 fn acts(table: Table) -> Vec<Act> {
-    let is_idle = |key: &str| Effect::of(key) == Effect::None;
-    let (idle, acting): (Table, Table) = table.into_iter().partition(|(key, _)| is_idle(key));
+    let (idle, acting): (Table, Table) = table
+        .into_iter()
+        .partition(|(key, _)| Effect::of(key) == Effect::None);
     let edit = (!acting.is_empty()).then_some(Act::Edit(acting));
     let description = (!idle.is_empty()).then_some(Act::Describe(idle));
     edit.into_iter().chain(description).collect()

@@ -61,13 +61,13 @@ impl Files {
 
     /// Whether the file `path` may be read; in the lab of a seat also one of the class's folder.
     pub fn admit_reading(&self, path: &Path) -> Result<(), String> {
-        let check = |folder: &Confined| folder.check_reading(path);
-        self.confined().map_or(Ok(()), check)
+        self.confined()
+            .map_or(Ok(()), |folder| folder.check_reading(path))
     }
 
     fn admit_writing(&self, path: &Path) -> Result<(), String> {
-        let check = |folder: &Confined| folder.check_writing(path);
-        self.confined().map_or(Ok(()), check)
+        self.confined()
+            .map_or(Ok(()), |folder| folder.check_writing(path))
     }
 
     /// Reads the preset or the file called `name`.
@@ -90,8 +90,8 @@ impl Files {
         may_wait: bool,
     ) -> Result<Cow<'static, str>, Problems> {
         if data::find_shipped(name).is_none() {
-            let refused = |rule: String| Problems::one(name, Problem::at("", rule));
-            self.admit(Path::new(name)).map_err(refused)?;
+            self.admit(Path::new(name))
+                .map_err(|rule| Problems::one(name, Problem::at("", rule)))?;
             if !may_wait {
                 refuse_waiting(name, "gyrolab --measured can read it")?;
             }

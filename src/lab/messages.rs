@@ -168,11 +168,12 @@ pub(super) fn next<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Op
     let file = &player.run().scenario().file;
     let set = view.next.as_deref();
     let set = set.or_else(|| file.viewed_text("next"));
-    let preset = || match runs.changed_from_file() {
-        None => presets::find(runs.name()).map(|preset| preset.next),
-        Some(_) => None,
-    };
-    let next = set.or_else(preset).filter(|next| !next.is_empty())?;
+    let next = set
+        .or_else(|| match runs.changed_from_file() {
+            None => presets::find(runs.name()).map(|preset| preset.next),
+            Some(_) => None,
+        })
+        .filter(|next| !next.is_empty())?;
     // What is on the screen already is not to be asked for.
     match player.run().overlay() {
         Some(_) => Some(next.replace(ASKS_FOR_EXACT, HAS_EXACT).into()),

@@ -200,9 +200,8 @@ impl Lab {
     /// The message at the bottom of the screen: the steps that are being taken, the message, or the export's progress.
     pub fn notice(&self) -> Option<String> {
         let stepping = self.player.in_words();
-        let said = || self.messages.text().map(str::to_owned);
         stepping
-            .or_else(said)
+            .or_else(|| self.messages.text().map(str::to_owned))
             .or_else(|| self.files.export_in_words())
     }
 

@@ -80,8 +80,9 @@ fn nearest_to(wrong: &str) -> String {
 /// The value of `key` in the scenario of `run`.
 fn number_in(run: &LiveRun, key: &str) -> Option<f64> {
     let table = table_at(run.scenario(), run.simulation().step_number());
-    let usual = || ZERO_BY_ITSELF.contains(&key).then_some(0.0);
-    dotted::find(&table, key).and_then(float).or_else(usual)
+    dotted::find(&table, key)
+        .and_then(float)
+        .or_else(|| ZERO_BY_ITSELF.contains(&key).then_some(0.0))
 }
 
 /// The keys that are 0 where a scenario does not have them.

@@ -266,8 +266,9 @@ impl Player {
         };
         let wall_s = self.run().simulation().motion().time_step_s / speed;
         let is_long = wall_s > LONG_STEP_S;
-        let said = || format!("a step takes {wall_s:.0} s at this speed; . takes one now");
-        Done::saying_any(is_long.then(said))
+        Done::saying_any(
+            is_long.then(|| format!("a step takes {wall_s:.0} s at this speed; . takes one now")),
+        )
     }
 
     /// The speed `notches` places higher, or lower, in the list of speeds.

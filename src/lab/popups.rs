@@ -7,7 +7,6 @@ use super::dialog::Dialog;
 use super::files::Files;
 use super::form::{edit_line, type_into};
 use crate::lab::storage::confined::Confined;
-use std::path::Path;
 
 pub const MOST_COUNTED: u64 = 999_999_999;
 
@@ -72,9 +71,10 @@ impl Popups {
 
     /// Opens the browser in the folder of `files`, with `name` selected.
     pub(super) fn browse(&mut self, name: &str, files: &Files) {
-        let may_be_read = |path: &Path| files.admit_reading(path).is_ok();
         self.browser.also = files.confined().and_then(Confined::class);
-        self.browser.begin(files.folder(), name, may_be_read);
+        self.browser.begin(files.folder(), name, |path| {
+            files.admit_reading(path).is_ok()
+        });
         self.mode = Mode::Browser;
     }
 

@@ -275,9 +275,10 @@ impl Lab {
         let is_filtered = self.popups.mode == Mode::Lab && self.view.focus == Pane::PARAMETERS;
         // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
         let is_left = is_filtered && self.view.sheet.is_some();
-        let forget = |line: &mut String| !std::mem::take(line).is_empty();
         let list = &mut self.edits.values.list;
-        let is_shown = (is_found || is_filtered) && list.filter_by(forget) && !is_left;
+        let is_shown = (is_found || is_filtered)
+            && list.filter_by(|line| !std::mem::take(line).is_empty())
+            && !is_left;
         self.popups.close() || is_shown
     }
 

@@ -140,8 +140,9 @@ impl Runs {
             self.kept_reference = reference;
         }
         let (history, reference) = (&self.history, self.kept_reference.as_ref());
-        let written = || written(history, reference);
-        self.kept.get_or_insert_with(written).clone()
+        self.kept
+            .get_or_insert_with(|| written(history, reference))
+            .clone()
     }
 
     fn change(&mut self) -> &mut History {

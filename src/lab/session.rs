@@ -139,8 +139,9 @@ pub(super) type KeptContent = (History, Arc<Scenario>, Option<KeptPinned>, KeptP
 pub(super) fn kept(content: &SessionContent) -> Result<KeptContent, Unreadable> {
     let KeptRuns { history, pinned } = read("the run", &content.work)?;
     let place = read("the place in it", &content.place)?;
-    let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
-    let scenario = history.scenario().map_err(unreadable)?;
+    let scenario = history
+        .scenario()
+        .map_err(|problems| Unreadable(problems.in_one_line()))?;
     Ok((history, scenario, pinned, place))
 }
 
@@ -187,8 +188,8 @@ impl KeptPlace {
         }
         view.take(self.look.clone());
         let focus = view.panes.iter().find(|pane| pane.id() == self.focus);
-        let unknown = || Unreadable(format!("there is no pane {}", self.focus));
-        view.focus = *focus.ok_or_else(unknown)?;
+        view.focus =
+            *focus.ok_or_else(|| Unreadable(format!("there is no pane {}", self.focus)))?;
         view.filled = self.filled;
         Ok(())
     }

@@ -59,11 +59,12 @@ impl Values {
         // A push that is given at a later step cannot be edited here: an edit here would discard it.
         let pushes = journal.pushes_by(step);
         let first_added = scenario.file.push.len(); // by an edit, which stands in the table once it is made
-        let is_given = |parameter: &Parameter| {
-            number_of_push(&parameter.key)
-                .is_none_or(|number| number < pushes || number >= first_added)
-        };
-        let parameters = parameters(&table, scenario).into_iter().filter(is_given);
+        let parameters = parameters(&table, scenario)
+            .into_iter()
+            .filter(|parameter| {
+                number_of_push(&parameter.key)
+                    .is_none_or(|number| number < pushes || number >= first_added)
+            });
         let values = parameters.map(ListedValue::from);
         let mut values: Vec<_> = values.chain(ListedValue::all_of(&self.next_push)).collect();
         values.sort_by_key(|value| rank(&value.group)); // stable: within a group nothing moves
@@ -101,9 +102,9 @@ impl Values {
 
     /// Whether a nudge of `key` at `now` joins the nudge before into one act.
     pub(super) fn is_nudged_again(&self, key: &str, now: Duration) -> bool {
-        let belongs =
-            |(last, at): &(String, Duration)| *last == key && now.saturating_sub(*at) < BELONGS;
-        self.last_nudged.as_ref().is_some_and(belongs)
+        self.last_nudged
+            .as_ref()
+            .is_some_and(|(last, at)| *last == key && now.saturating_sub(*at) < BELONGS)
     }
 
     pub(super) fn note_nudge(&mut self, key: &str, now: Duration) {

@@ -322,8 +322,10 @@ fn goals(content: &mut BlockContent) -> Vec<String> {
     let Some(items) = value.as_array() else {
         return vec![content.line("goal", false)];
     };
-    let line = |item: &Value| Some(item.as_str()?.trim().to_owned());
-    let lines: Vec<String> = items.iter().filter_map(line).collect();
+    let lines: Vec<String> = items
+        .iter()
+        .filter_map(|item| Some(item.as_str()?.trim().to_owned()))
+        .collect();
     if lines.len() != items.len()
         || lines
             .iter()

@@ -63,8 +63,9 @@ impl KeptLessons {
 pub fn files_in(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let is_meant = |name: &String| name.ends_with(".md") && !name.starts_with('.');
-    let paths = names.filter(is_meant).map(|name| folder.join(name));
+    let paths = names
+        .filter(|name| name.ends_with(".md") && !name.starts_with('.'))
+        .map(|name| folder.join(name));
     // A FIFO would be waited for.
     let paths = paths.filter(|path| path.is_file() && reading::read_again(path).is_ok());
     let mut paths: Vec<_> = paths.map(|path| path.display().to_string()).collect();
@@ -208,8 +209,9 @@ impl Lessons {
         let own = self.own.iter().cloned();
         let shipped = shipped::LESSONS.iter().map(|lesson| lesson.name.to_owned());
         let files = self.left.keys();
-        let is_other = |name: &&String| shipped::find(name).is_none() && !self.own.contains(name);
-        let files = files.filter(is_other).cloned();
+        let files = files
+            .filter(|name| shipped::find(name).is_none() && !self.own.contains(name))
+            .cloned();
         own.chain(shipped).chain(files).collect()
     }
 

@@ -146,11 +146,14 @@ impl Sheets {
 fn words(paragraph: &Paragraph) -> Vec<String> {
     let marked = paragraph.words.iter().map(|part| {
         let slant = ["", "*"][usize::from(part.emphasis == Emphasis::Strong)];
-        let word = |word: &str| match word {
-            "" => String::new(),
-            word => format!("{slant}{}{slant}", escape(&word.replace('═', "="))),
-        };
-        let words: Vec<_> = part.text.split(' ').map(word).collect();
+        let words: Vec<_> = part
+            .text
+            .split(' ')
+            .map(|word| match word {
+                "" => String::new(),
+                word => format!("{slant}{}{slant}", escape(&word.replace('═', "="))),
+            })
+            .collect();
         words.join(" ").replace('ᵀ', "^{T}")
     });
     let text: String = marked.collect();

@@ -105,12 +105,15 @@ impl<'a> LessonWalk<'a> {
 
     /// The numbers in `expression` as they are now: `steps is 10, z_m is 0.8`.
     fn numbers_of(&self, expression: &Expression) -> String {
-        let number = |name: &str| {
-            let number = names::number(name, &self.lab, &self.kept);
-            let number = number.map_or(NOT_AVAILABLE.to_owned(), |number| significant(number, 6));
-            format!("{name} is {number}")
-        };
-        let all: Vec<_> = expression.names().map(number).collect();
+        let all: Vec<_> = expression
+            .names()
+            .map(|name| {
+                let number = names::number(name, &self.lab, &self.kept);
+                let number =
+                    number.map_or(NOT_AVAILABLE.to_owned(), |number| significant(number, 6));
+                format!("{name} is {number}")
+            })
+            .collect();
         all.join(", ")
     }
 
@@ -195,8 +198,9 @@ impl<'a> LessonWalk<'a> {
         let has_task = page.task().is_some();
         let block = if has_task { "task" } else { "lab block" };
         let states = |walk: &Self| -> Vec<(bool, String)> {
-            let state = |check: &Check| (walk.holds(check), walk.numbers_of(&check.that));
-            page.checks().map(state).collect()
+            page.checks()
+                .map(|check| (walk.holds(check), walk.numbers_of(&check.that)))
+                .collect()
         };
         let mut before = states(self);
         self.enter(page, go_on)?;

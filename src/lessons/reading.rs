@@ -227,11 +227,10 @@ impl Assembly {
     fn add_block(&mut self, word: &str, inside: &str, line: usize) {
         let reader = self.reader(word, inside, line);
         let page = self.lesson.pages.len();
-        let find = |name: &str| self.names.find(name, page);
         let read = match word {
             "lesson" => return self.add_head(&reader),
             "lab" | "task" => return self.add_setup(word, line),
-            _ => blocks::block(&reader, find),
+            _ => blocks::block(&reader, |name| self.names.find(name, page)),
         };
         match read {
             Ok(block) => {
@@ -310,12 +309,11 @@ impl Assembly {
 
     /// Checks that the prediction of `compare` is asked for before it.
     fn check_compare(&mut self, compare: &Compare) {
-        let line_of = |page: &LessonPage| {
+        let asked = self.lesson.pages.iter().find_map(|page| {
             let mut asked = page.predicts();
             let asked = asked.find(|predict| predict.name == compare.prediction)?;
             Some(asked.line)
-        };
-        let asked = self.lesson.pages.iter().find_map(line_of);
+        });
         let rule = match asked {
             Some(line) if line < compare.line => return,
             Some(line) => format!("is asked for later, on line {line}"),

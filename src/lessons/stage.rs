@@ -81,14 +81,16 @@ fn needed<'a>(stages: Vec<Stage<'a>>, kept: &KeptNumbers) -> Vec<Stage<'a>> {
         }
     }
     let last = runs.len().saturating_sub(1);
-    let lacks = |stage: &Stage<'_>| {
-        let mut names = stage.setup.keep.iter();
-        names.any(|keep| !kept.contains_key(&keep.name))
-    };
     let mut needed = Vec::new();
     for (index, mut run) in runs.into_iter().enumerate() {
         if index < last {
-            let end = run.iter().rposition(lacks).map_or(0, |at| at + 1);
+            let end = run
+                .iter()
+                .rposition(|stage| {
+                    let mut names = stage.setup.keep.iter();
+                    names.any(|keep| !kept.contains_key(&keep.name))
+                })
+                .map_or(0, |at| at + 1);
             run.truncate(end);
         }
         needed.extend(run);

@@ -120,8 +120,9 @@ impl OpenLesson {
 
     /// Whether an answer to the open question is marked, and not locked.
     fn has_marked(&self) -> bool {
-        let pointed = |asked: &Predict| self.pointed.get(&asked.name);
-        self.asked().and_then(pointed).is_some_and(|it| it.1)
+        self.asked()
+            .and_then(|asked| self.pointed.get(&asked.name))
+            .is_some_and(|it| it.1)
     }
 
     /// Whether an answer to `predict` is wanted: there is none, or none of the round that a class is at.
@@ -429,12 +430,9 @@ fn before_task<'a>(
 ) -> impl Iterator<Item = &'a LessonBlock> {
     let page = lesson.page(place.page);
     let blocks = page.into_iter().flat_map(|page| &page.blocks);
-    let is_before =
-        |block: &&LessonBlock| !matches!(block, LessonBlock::Task(_) | LessonBlock::Check(_));
-    lesson
-        .introduction
-        .iter()
-        .chain(blocks.take_while(is_before))
+    lesson.introduction.iter().chain(
+        blocks.take_while(|block| !matches!(block, LessonBlock::Task(_) | LessonBlock::Check(_))),
+    )
 }
 
 fn compared(compare: &Compare, lesson: &Lesson, place: &LessonProgress, lab: &Lab) -> String {

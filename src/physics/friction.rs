@@ -160,13 +160,15 @@ impl Damping {
         if rubbing == 0.0 {
             return Vector3::zeros();
         }
-        let along_one = |(direction, moment): &(Vector3<f64>, f64)| {
-            let (rate, torque) = (omega.dot(direction), torque.dot(direction));
-            // The rate goes to the one at which friction balances the torque.
-            let change = libm::expm1(-rubbing * time_s / moment) * (rate - torque / rubbing);
-            direction * (moment * change - torque * time_s)
-        };
-        across.iter().map(along_one).sum()
+        across
+            .iter()
+            .map(|(direction, moment)| {
+                let (rate, torque) = (omega.dot(direction), torque.dot(direction));
+                // The rate goes to the one at which friction balances the torque.
+                let change = libm::expm1(-rubbing * time_s / moment) * (rate - torque / rubbing);
+                direction * (moment * change - torque * time_s)
+            })
+            .sum()
     }
 }
 

@@ -122,8 +122,9 @@ impl Grid {
         let blank = vec![false; self.is_inked.len()];
         let traced = std::mem::replace(&mut self.is_inked, blank);
         let reach = libm::floor(radius) as usize;
-        let half = |down: usize| (radius * radius - (down * down) as f64).max(0.0).sqrt() as usize;
-        let halves: Vec<usize> = (0..=reach).map(half).collect();
+        let halves: Vec<usize> = (0..=reach)
+            .map(|down| (radius * radius - (down * down) as f64).max(0.0).sqrt() as usize)
+            .collect();
         for (row, cells) in traced.chunks(self.columns).enumerate() {
             let mut column = 0;
             for run in cells.chunk_by(|a, b| a == b) {
@@ -146,8 +147,7 @@ impl Grid {
     /// Whether the cell right of and below the corner of cells is inked.
     fn at(&self, x: isize, y: isize) -> bool {
         let is_inside = x >= 0 && y >= 0 && (x as usize) < self.columns;
-        let cell = || self.is_inked.get(y as usize * self.columns + x as usize);
-        is_inside && cell() == Some(&true)
+        is_inside && self.is_inked.get(y as usize * self.columns + x as usize) == Some(&true)
     }
 
     /// All outlines, with the ink to their right. Each runs to the right somewhere, along the upper side of an inked cell. The
@@ -167,8 +167,9 @@ impl Grid {
             }
             let corners = simplified(&outline, OUTLINE_TOLERANCE);
             let cells = |count: f64| count * self.cell_pt;
-            let place = |p: &Point| at(self.origin.x + cells(p.x), self.origin.y + cells(p.y));
-            let corners = corners[..corners.len() - 1].iter().map(place);
+            let corners = corners[..corners.len() - 1]
+                .iter()
+                .map(|p| at(self.origin.x + cells(p.x), self.origin.y + cells(p.y)));
             path.0.extend(VectorPath::polyline(corners).0);
             path.0.push(Segment::Close);
         }

@@ -84,20 +84,23 @@ pub fn rounded(scene: &PageScene) -> Result<PageScene, Unwritable> {
             height_pt,
         });
     }
-    let is_drawn = |(_, item): &(usize, &SceneItem)| !item.path.0.is_empty();
-    let numbered = scene.items.iter().enumerate().filter(is_drawn);
-    let item = |(index, item)| rounded_item(item).ok_or(Unwritable::Place(index));
+    let numbered = scene
+        .items
+        .iter()
+        .enumerate()
+        .filter(|(_, item)| !item.path.0.is_empty());
     Ok(PageScene {
         width_pt: hundredths(width_pt),
         height_pt: hundredths(height_pt),
         title: scene.title.clone(),
-        items: numbered.map(item).collect::<Result<_, _>>()?,
+        items: numbered
+            .map(|(index, item)| rounded_item(item).ok_or(Unwritable::Place(index)))
+            .collect::<Result<_, _>>()?,
     })
 }
 
 fn rounded_item(item: &SceneItem) -> Option<SceneItem> {
     let is_length = |length: &f64| (0.0..=LARGEST_PT).contains(length);
-    let is_place = |p: Point| p.x.abs() <= LARGEST_PT && p.y.abs() <= LARGEST_PT;
     let mut item = item.clone().mapped(hundredths_of);
     item.clip = item.clip.map(|corners| corners.map(hundredths_of));
     if let Paint::Stroke(pen) = &mut item.paint {
@@ -114,7 +117,11 @@ fn rounded_item(item: &SceneItem) -> Option<SceneItem> {
         }
     }
     let clip = item.clip.into_iter().flatten();
-    let is_sound = item.path.points().chain(clip).all(is_place);
+    let is_sound = item
+        .path
+        .points()
+        .chain(clip)
+        .all(|p| p.x.abs() <= LARGEST_PT && p.y.abs() <= LARGEST_PT);
     is_sound.then_some(item)
 }
 

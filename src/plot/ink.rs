@@ -19,8 +19,7 @@ pub const fn grey(level: u8) -> Color {
 
 /// `color` mixed with white; `white` is the part of that.
 pub fn paler(Color(parts): Color, white: f64) -> Color {
-    let mixed = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
-    Color(parts.map(mixed))
+    Color(parts.map(|part| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -140,8 +140,10 @@ mod tests {
             bottom: 10.0,
         };
         let parts = clipped(points.iter().map(|&(x, y)| at(x, y)), &frame);
-        let plain = |part: &Vec<Point>| part.iter().map(|p| (p.x, p.y)).collect();
-        parts.iter().map(plain).collect()
+        parts
+            .iter()
+            .map(|part| part.iter().map(|p| (p.x, p.y)).collect())
+            .collect()
     }
 
     #[test]

@@ -101,11 +101,16 @@ impl VectorPath {
     }
 
     pub fn polyline(points: impl IntoIterator<Item = Point>) -> Self {
-        let segment = |(index, point)| match index {
-            0 => Segment::Move(point),
-            _ => Segment::Line(point),
-        };
-        Self(points.into_iter().enumerate().map(segment).collect())
+        Self(
+            points
+                .into_iter()
+                .enumerate()
+                .map(|(index, point)| match index {
+                    0 => Segment::Move(point),
+                    _ => Segment::Line(point),
+                })
+                .collect(),
+        )
     }
 
     /// The path with each of its points, control points too, moved to where `to` says.
@@ -122,13 +127,15 @@ impl VectorPath {
 
     /// The points of the path, control points among them: what it covers lies inside of their hull.
     pub fn points(&self) -> impl Iterator<Item = Point> {
-        let of = |segment: &Segment| match *segment {
-            Segment::Move(end) | Segment::Line(end) => [Some(end), None, None],
-            Segment::Quadratic(control, end) => [Some(control), Some(end), None],
-            Segment::Cubic(first, second, end) => [Some(first), Some(second), Some(end)],
-            Segment::Close => [None; 3],
-        };
-        self.0.iter().flat_map(of).flatten()
+        self.0
+            .iter()
+            .flat_map(|segment| match *segment {
+                Segment::Move(end) | Segment::Line(end) => [Some(end), None, None],
+                Segment::Quadratic(control, end) => [Some(control), Some(end), None],
+                Segment::Cubic(first, second, end) => [Some(first), Some(second), Some(end)],
+                Segment::Close => [None; 3],
+            })
+            .flatten()
     }
 }
 
@@ -214,7 +221,7 @@ pub struct PageScene {
 impl PageScene {
     /// The items in their order; those of one slice are drawn and cut off alike.
     pub fn groups(&self) -> impl Iterator<Item = &[SceneItem]> {
-        let is_alike = |a: &SceneItem, b: &SceneItem| a.paint == b.paint && a.clip == b.clip;
-        self.items.chunk_by(is_alike)
+        self.items
+            .chunk_by(|a, b| a.paint == b.paint && a.clip == b.clip)
     }
 }

@@ -125,13 +125,15 @@ impl TableSource {
 
     /// The numbers of the column of that name, NaN where there is none; `None` where the column has texts that are no numbers.
     pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
-        let number = |text: &str| match text.trim() {
-            "" | NOT_AVAILABLE => Some(f64::NAN),
-            "true" => Some(1.0),
-            "false" => Some(0.0),
-            text => text.parse().ok(),
-        };
-        self.csv.column(name)?.map(number).collect()
+        self.csv
+            .column(name)?
+            .map(|text| match text.trim() {
+                "" | NOT_AVAILABLE => Some(f64::NAN),
+                "true" => Some(1.0),
+                "false" => Some(0.0),
+                text => text.parse().ok(),
+            })
+            .collect()
     }
 }
 

@@ -9,7 +9,7 @@ use crate::engine::analysis::{Monitor, cost};
 use crate::engine::export::layout::{above_run_file, commented};
 use crate::engine::export::stream::{self, Ended};
 use crate::engine::export::{CsvLayout, CsvWriter};
-use crate::engine::run::{Clock, Simulation, Step};
+use crate::engine::run::{Clock, Simulation};
 use crate::engine::scenario::csv::{self, Csv};
 use crate::engine::scenario::head::Head;
 use crate::engine::scenario::rescale::MOST_RUN_STEPS_BY_TIME;
@@ -124,7 +124,6 @@ fn play_run(
     let mut csv = CsvWriter::with_layout(against, scenario, layout)?;
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let monitor = RefCell::new(Monitor::new(simulation.now()));
-    let each = |step: &Step| monitor.borrow_mut().follow_ahead(step);
     let go_on = |step, steps: u64| {
         let mut go_on = || watch(step, steps);
         monitor.borrow_mut().catch_up(&mut go_on)?;
@@ -134,7 +133,13 @@ fn play_run(
         go_on()
     };
     let steps = scenario.steps;
-    let (ended, _) = stream::play(&mut simulation, steps, Some(&mut csv), each, go_on)?;
+    let (ended, _) = stream::play(
+        &mut simulation,
+        steps,
+        Some(&mut csv),
+        |step| monitor.borrow_mut().follow_ahead(step),
+        go_on,
+    )?;
     if ended == Ended::Stopped && !differs() {
         return Err(Unverified::Stopped);
     }
@@ -142,8 +147,7 @@ fn play_run(
     if let Ended::NotFinite(end) = ended {
         notes.push(format!("its run ends early: {end}"));
     }
-    let verdict = || monitor.into_inner().health(simulation.now()).sentence(None);
-    Ok((!differs()).then(verdict))
+    Ok((!differs()).then(|| monitor.into_inner().health(simulation.now()).sentence(None)))
 }
 
 /// Computes the rows of `sweep` on all cores, and compares them.
@@ -158,20 +162,26 @@ fn play_sweep(
     let difference = against.difference();
     let differs = || difference.get().is_some();
     let (done, total) = (AtomicU64::new(0), sweep.rows());
-    let watched = || watch(done.load(Ordering::Relaxed), total).is_continue();
-    let of = |row: u64, goes_on: &dyn Fn() -> bool| sweep.row(row, &|| goes_on() && watched());
     let (mut failures, mut written) = (0, Ok(()));
-    in_order(0..if differs() { 0 } else { total }, of, |rows| {
-        for row in rows {
-            failures += u64::from(row.has_failed);
-            written = against.write_all(row.line.as_bytes());
-            if written.is_err() || differs() {
-                return ControlFlow::Break(());
+    in_order(
+        0..if differs() { 0 } else { total },
+        |row: u64, goes_on| {
+            sweep.row(row, &|| {
+                goes_on() && watch(done.load(Ordering::Relaxed), total).is_continue()
+            })
+        },
+        |rows| {
+            for row in rows {
+                failures += u64::from(row.has_failed);
+                written = against.write_all(row.line.as_bytes());
+                if written.is_err() || differs() {
+                    return ControlFlow::Break(());
+                }
+                done.fetch_add(1, Ordering::Relaxed);
             }
-            done.fetch_add(1, Ordering::Relaxed);
-        }
-        ControlFlow::Continue(())
-    });
+            ControlFlow::Continue(())
+        },
+    );
     written?;
     if !differs() && done.into_inner() < total {
         return Err(Unverified::Stopped);

@@ -293,8 +293,9 @@ fn mouse(parameters: &[u8], is_down: bool) -> Option<Mouse> {
 fn meaning(parameters: &[u8], last: u8) -> Decoded {
     let text = std::str::from_utf8(parameters).unwrap_or("?");
     // A number may have sub-parameters after a colon.
-    let number = |text: &str| text.split(':').next().and_then(|text| text.parse().ok());
-    let mut numbers = text.split(';').map(number);
+    let mut numbers = text
+        .split(';')
+        .map(|text| text.split(':').next().and_then(|text| text.parse().ok()));
     let first: Option<u32> = numbers.next().flatten();
     let modifiers = numbers.next().flatten().unwrap_or(1);
     match (first, last) {

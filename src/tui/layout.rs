@@ -110,8 +110,9 @@ impl ScreenLayout {
     }
 
     pub fn place_of(&self, pane: Pane) -> Option<Rect> {
-        let place = |&(other, place): &(Pane, Rect)| (other == pane).then_some(place);
-        self.panes.iter().find_map(place)
+        self.panes
+            .iter()
+            .find_map(|&(other, place)| (other == pane).then_some(place))
     }
 
     /// The panes that stand side by side on `area`, with the lines of the whole lab around them, while none fills it.
@@ -203,8 +204,9 @@ fn beside_page(view: &View) -> View {
 
 /// The panes that are shown without being asked for, but for the page of a lesson.
 fn usual() -> impl Iterator<Item = &'static PaneRow> {
-    let usual = |row: &&PaneRow| row.id != Pane::LESSON && !row.id.is_on_request;
-    PANES.iter().filter(usual)
+    PANES
+        .iter()
+        .filter(|row| row.id != Pane::LESSON && !row.id.is_on_request)
 }
 
 /// The pane that was asked for; of several the one in focus, or else the first.
@@ -239,10 +241,12 @@ fn halves(area: Rect, focus: Pane) -> Vec<(Pane, Rect)> {
 fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     // The panes that would stand side by side if all were shown, on at least the width that the whole lab wants.
     let joined = joined(area.width.max(FULL_LAB_WIDTH));
-    let has_room = |row: &PaneRow| joined.iter().any(|other| other.id == row.id);
-    let is_chosen =
-        |row: &&PaneRow| view.may_show(row.id) && (view.shown.contains(&row.id) || has_room(row));
-    let mut panes: Vec<_> = usual().filter(is_chosen).collect();
+    let mut panes: Vec<_> = usual()
+        .filter(|row| {
+            view.may_show(row.id)
+                && (view.shown.contains(&row.id) || joined.iter().any(|other| other.id == row.id))
+        })
+        .collect();
     if panes.is_empty() {
         return Vec::new();
     }
@@ -257,8 +261,9 @@ fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
 /// The pane `asked` at the right, as wide as its numbers are, and beside it as many of the other panes that were chosen as
 /// have room; where none has, the one in focus.
 fn with_asked(asked: &'static PaneRow, area: Rect, view: &View) -> Vec<(Pane, Rect)> {
-    let is_other = |row: &&PaneRow| ![Pane::LESSON, asked.id].contains(&row.id);
-    let others = PANES.iter().filter(is_other);
+    let others = PANES
+        .iter()
+        .filter(|row| ![Pane::LESSON, asked.id].contains(&row.id));
     let mut panes: Vec<_> = others.filter(|row| view.may_show(row.id)).collect();
     let least = asked.least.0;
     let room = area.width.saturating_sub(least) / BESIDE_ASKED;
@@ -277,21 +282,26 @@ fn with_asked(asked: &'static PaneRow, area: Rect, view: &View) -> Vec<(Pane, Re
 
 /// `panes` side by side, each on at most `share` columns; the pane at the index `rest` has what the others leave.
 fn side_by_side(area: Rect, panes: &[&PaneRow], share: u16, rest: usize) -> Vec<(Pane, Rect)> {
-    let width = |row: &&PaneRow| match row.width {
-        Width::Fixed => share.min(row.least.0),
-        Width::Wide => share,
-        Width::Round => share.min(2 * area.height),
-    };
-    let mut widths: Vec<_> = panes.iter().map(width).collect();
+    let mut widths: Vec<_> = panes
+        .iter()
+        .map(|row| match row.width {
+            Width::Fixed => share.min(row.least.0),
+            Width::Wide => share,
+            Width::Round => share.min(2 * area.height),
+        })
+        .collect();
     widths[rest] = 0;
     widths[rest] = area.width - widths.iter().sum::<u16>();
     let mut right = area;
-    let place = |(row, width): (&&PaneRow, u16)| {
-        let [place, others] = split_columns(right, width);
-        right = others;
-        (row.id, place)
-    };
-    panes.iter().zip(widths).map(place).collect()
+    panes
+        .iter()
+        .zip(widths)
+        .map(|(row, width)| {
+            let [place, others] = split_columns(right, width);
+            right = others;
+            (row.id, place)
+        })
+        .collect()
 }
 
 /// All of `rows` side by side. Where the screen is high enough, two round ones stand one above the other.

@@ -116,11 +116,12 @@ impl LabelCells {
         let cells = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
         let free = cells.filter(|cell| self.is_free(*cell, width));
         // A row is about twice as high as a column is wide; of two places as near, the one to the right.
-        let far = |&(column, row): &(u16, u16)| {
-            let distance = column.abs_diff(x) + 2 * row.abs_diff(y);
-            (distance, row != y, column < x)
-        };
-        let place = free.min_by_key(far).unwrap_or((x, y));
+        let place = free
+            .min_by_key(|&(column, row)| {
+                let distance = column.abs_diff(x) + 2 * row.abs_diff(y);
+                (distance, row != y, column < x)
+            })
+            .unwrap_or((x, y));
         self.taken.push((place, width));
         place
     }

@@ -114,8 +114,7 @@ impl DotScene {
 
     /// The dots of the ends of a line, with their depths less `nearer` (of the scene's reach).
     fn ends(&self, from: &Vector3<f64>, to: &Vector3<f64>, nearer: f64) -> [((f64, f64), f64); 2] {
-        let depth = |end| self.camera.depth(end) - nearer * self.reach;
-        [from, to].map(|end| (self.dot(end), depth(end)))
+        [from, to].map(|end| (self.dot(end), self.camera.depth(end) - nearer * self.reach))
     }
 
     fn line_of_dots(&mut self, ends: [((f64, f64), f64); 2], stroke: LineStroke, ink: Ink) {
@@ -232,8 +231,11 @@ impl DotScene {
                 }
             }
         }
-        let is_near = |(_, depth): &(usize, &f64)| depth.is_finite();
-        for (place, _) in nearest.iter().enumerate().filter(is_near) {
+        for (place, _) in nearest
+            .iter()
+            .enumerate()
+            .filter(|(_, depth)| depth.is_finite())
+        {
             dots.clear(place % width, place / width);
         }
         // The nearest last: it decides how a cell looks that several lines cross.

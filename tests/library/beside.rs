@@ -76,8 +76,13 @@ fn nudges_that_follow_each_other_keep_the_first_ones_time_and_ghost() {
         let key = "motion.gravity_m_per_s2";
         desk.commands(&format!("nudge = {{ key = '{key}', times = {times} }}"));
         assert_eq!((desk.step(), ghost_s(&desk.lab)), (400, Some(40.0)));
-        let highest = |ghost: &Ghost| ghost.recording.moments();
-        assert_eq!(desk.lab.comparison().ghost().map(highest), Some(401));
+        assert_eq!(
+            desk.lab
+                .comparison()
+                .ghost()
+                .map(|ghost| ghost.recording.moments()),
+            Some(401)
+        );
     }
     let edits = desk.scenario().file.edit;
     assert!(edits.iter().all(|edit| edit.step == 0), "{edits:?}");

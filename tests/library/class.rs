@@ -117,8 +117,10 @@ fn hostile_names_make_no_seat() {
 /// A word of this name that is none of `seats`.
 fn wrong_word(name: &str, seats: &[&Seat]) -> String {
     let words = (0..).map(|code| format!("{name}-{code:06}"));
-    let is_wrong = |word: &String| seats.iter().all(|seat| seat.word != *word);
-    words.into_iter().find(is_wrong).unwrap()
+    words
+        .into_iter()
+        .find(|word| seats.iter().all(|seat| seat.word != *word))
+        .unwrap()
 }
 
 #[track_caller]

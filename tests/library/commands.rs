@@ -135,8 +135,7 @@ fn a_command() -> impl Strategy<Value = Command> {
             file
         },
     );
-    let to_step = || prop::option::of(1..1_000_000u64);
-    let file = || (a_name(), to_step(), any::<bool>());
+    let file = || (a_name(), prop::option::of(1..1_000_000u64), any::<bool>());
     let export = (file(), layout).prop_map(|((path, to_step, force), layout)| {
         Command::Export(Export {
             path,

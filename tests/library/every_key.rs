@@ -29,13 +29,15 @@ impl Picture {
     fn of(stage: &Stage) -> Self {
         let width = stage.size.width as usize;
         let text = stage.picture();
-        let row = |line: &str| {
-            let mut row: Vec<char> = line.chars().collect();
-            assert!(row.len() <= width, "wider than the screen:\n{text}");
-            row.resize(width, ' ');
-            row
-        };
-        let rows: Vec<_> = text.lines().map(row).collect();
+        let rows: Vec<_> = text
+            .lines()
+            .map(|line| {
+                let mut row: Vec<char> = line.chars().collect();
+                assert!(row.len() <= width, "wider than the screen:\n{text}");
+                row.resize(width, ' ');
+                row
+            })
+            .collect();
         assert!(rows.len() <= stage.size.height as usize, "{text}");
         Self { rows }
     }

@@ -21,8 +21,14 @@ fn csv(scenario: &Scenario, file: LayoutFile) -> Vec<u8> {
     let layout = file.check().unwrap();
     let mut csv = CsvWriter::with_layout(Vec::new(), &scenario, layout).unwrap();
     let mut run = Simulation::new(Arc::clone(&scenario));
-    let go_on = |_, _| ControlFlow::Continue(());
-    stream::play(&mut run, scenario.steps, Some(&mut csv), |_| {}, go_on).unwrap();
+    stream::play(
+        &mut run,
+        scenario.steps,
+        Some(&mut csv),
+        |_| {},
+        |_, _| ControlFlow::Continue(()),
+    )
+    .unwrap();
     csv.finish().unwrap()
 }
 
@@ -93,8 +99,9 @@ fn a_cut_csv_has_the_lines_of_the_whole_one() {
         };
         rows(&csv(&scenario, file))[1..].to_vec()
     };
-    let wanted = |steps: &[usize]| steps.iter().map(|&step| all[step + 1].clone()).collect();
-    let of = |steps: &[usize]| -> Vec<String> { wanted(steps) };
+    let of = |steps: &[usize]| -> Vec<String> {
+        steps.iter().map(|&step| all[step + 1].clone()).collect()
+    };
     // 0.3 s is 3 x 0.1 s.
     assert_eq!(cut(1, Some(0.3), Some(0.5)), of(&[3, 4, 5]));
     assert_eq!(cut(30, None, None), of(&[0, 30, 60, 90, 100]));
@@ -113,8 +120,14 @@ fn chosen_columns_are_those_of_the_whole_csv() {
         columns: names(&chosen),
         ..whole()
     };
-    let place = |name: &str| COLUMNS.iter().position(|column| column.name == name);
-    let places: Vec<_> = chosen.map(|name| place(name).unwrap()).to_vec();
+    let places: Vec<_> = chosen
+        .map(|name| {
+            COLUMNS
+                .iter()
+                .position(|column| column.name == name)
+                .unwrap()
+        })
+        .to_vec();
     for (part, row) in rows(&csv(&scenario, file)).iter().zip(&whole_rows) {
         let fields: Vec<_> = row.split(',').collect();
         let wanted: Vec<_> = places.iter().map(|&place| fields[place]).collect();
@@ -396,8 +409,9 @@ fn what_cannot_be_computed_again_is_refused_with_the_reason() {
     ] {
         has(refused(bytes.as_bytes()), words);
     }
-    let go_on = |_, _| ControlFlow::Continue(());
-    let missing = verify("nowhere/a.csv".as_ref(), no_fit, go_on);
+    let missing = verify("nowhere/a.csv".as_ref(), no_fit, |_, _| {
+        ControlFlow::Continue(())
+    });
     let missing = missing.unwrap_err().to_string();
     has(missing, "there is no such file");
 }
@@ -436,8 +450,10 @@ fn who_stops_it_is_obeyed() {
 fn the_errors_of_a_comparison_are_computed_again() {
     let scenario = preset("cusps", &["motion.steps=200"]);
     let schemes = ["report", "rk4"].map(|name| SchemeInfo::find(name).unwrap());
-    let go_on = |_, _| ControlFlow::Continue(());
-    let table = compare::compare(&scenario, &schemes, &[0.002, 0.001], go_on).unwrap();
+    let table = compare::compare(&scenario, &schemes, &[0.002, 0.001], |_, _| {
+        ControlFlow::Continue(())
+    })
+    .unwrap();
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in &table {
         writer.serialize(row).unwrap();

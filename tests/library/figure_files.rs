@@ -111,8 +111,11 @@ fn svg_has_a_size_on_paper_a_title_and_the_words_and_nothing_that_it_would_have_
     let name = name.strip_suffix(')').unwrap();
     let with_value = |attribute: &str, value: &str| {
         let mut nodes = root.descendants();
-        let is_it = |node: &roxmltree::Node<'_, '_>| node.attribute(attribute) == Some(value);
-        nodes.find(is_it).unwrap().first_element_child().unwrap()
+        nodes
+            .find(|node| node.attribute(attribute) == Some(value))
+            .unwrap()
+            .first_element_child()
+            .unwrap()
     };
     let rectangle = with_value("id", name);
     assert_eq!(rectangle.attribute("d"), Some("M10 40H60V50H10z"));
@@ -249,8 +252,12 @@ fn png_has_the_dots_of_the_page() {
     }
     let in_label = (480..760)
         .flat_map(|x| (540..600).map(move |y| (f64::from(x) / 10.0 - 10.0, f64::from(y) / 10.0)));
-    let is_black = |(x, y): &(f64, f64)| picture.at(*x, *y) == black;
-    assert!(in_label.filter(is_black).count() > 100);
+    assert!(
+        in_label
+            .filter(|(x, y)| picture.at(*x, *y) == black)
+            .count()
+            > 100
+    );
     let grey = PageScene::new(10.0, 10.0, "");
     let bytes = write(&grey, PageFormat::Png, None).unwrap();
     assert_eq!(bytes[25], 0, "a page without colour is in grey");
@@ -264,8 +271,11 @@ fn words_cannot_break_a_file() {
         let scene = page(hostile, &hostile.chars().take(500).collect::<String>());
         let text = svg(&scene);
         let document = roxmltree::Document::parse(&text).unwrap();
-        let is_script = |node: roxmltree::Node<'_, '_>| node.tag_name().name() == "script";
-        assert!(!document.descendants().any(is_script));
+        assert!(
+            !document
+                .descendants()
+                .any(|node| node.tag_name().name() == "script")
+        );
         assert!(!text.chars().any(|c| c.is_control() && c != '\n'));
         let title = document.root_element().first_element_child().unwrap();
         if hostile == HOSTILE {

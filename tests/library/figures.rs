@@ -228,8 +228,10 @@ fn traces_show_x_y_and_z_with_units_and_every_extreme() {
     let panels = panels(&figure.scene);
     assert_eq!(panels.len(), 3);
     let left = panels[0][0].x;
-    let is_left = |panel: &[Point; 2]| panel[0].x == left;
-    assert!(panels.iter().all(is_left), "one left edge");
+    assert!(
+        panels.iter().all(|panel| panel[0].x == left),
+        "one left edge"
+    );
     let seen = places(&runs[0]);
     for (axis, [top_left, bottom_right]) in panels.into_iter().enumerate() {
         let values = || seen.iter().map(|position| position[axis]);
@@ -268,11 +270,15 @@ fn a_path_from_above_is_true_to_scale() {
 fn a_path_in_space_has_three_axes_and_a_shadow() {
     let figure = drawn(&[run("cusps", &[])], &request("3d"));
     says(&figure.scene, &["x (m)", "y (m)", "z (m)"]);
-    let grey = |item: &SceneItem| match &item.paint {
-        Paint::Stroke(pen) if item.path.0.len() > 20 => Some(pen.color.0[0]),
-        _ => None,
-    };
-    let greys: BTreeSet<u8> = figure.scene.items.iter().filter_map(grey).collect();
+    let greys: BTreeSet<u8> = figure
+        .scene
+        .items
+        .iter()
+        .filter_map(|item| match &item.paint {
+            Paint::Stroke(pen) if item.path.0.len() > 20 => Some(pen.color.0[0]),
+            _ => None,
+        })
+        .collect();
     assert!(greys.len() >= 5, "depths and a shadow: {greys:?}");
 }
 
@@ -325,19 +331,31 @@ fn the_circles_of_the_exact_motion_have_a_name_that_hides_none_of_them() {
         let runs = [run(preset, &["motion.steps=300"])];
         let figure = drawn(&runs, &with_exact("above"));
         says(&figure.scene, &["limits of exact motion"]);
-        let circle = |item: &&SceneItem| {
-            item.clip.is_some()
-                && matches!(item.paint, Paint::Stroke(ref pen) if pen.width_pt == 0.4)
-        };
-        let white = |item: &&SceneItem| matches!(item.paint, Paint::Fill(color) if color == WHITE);
-        let circles: Vec<_> = figure.scene.items.iter().filter(circle).collect();
+        let circles: Vec<_> = figure
+            .scene
+            .items
+            .iter()
+            .filter(|item| {
+                item.clip.is_some()
+                    && matches!(item.paint, Paint::Stroke(ref pen) if pen.width_pt == 0.4)
+            })
+            .collect();
         assert!(!circles.is_empty(), "{preset}");
-        for legend in figure.scene.items.iter().filter(white).map(extent) {
+        for legend in figure
+            .scene
+            .items
+            .iter()
+            .filter(|item| matches!(item.paint, Paint::Fill(color) if color == WHITE))
+            .map(extent)
+        {
             for circle in &circles {
-                let is_hidden = |p: Point| {
-                    (legend[0]..=legend[2]).contains(&p.x) && (legend[1]..=legend[3]).contains(&p.y)
-                };
-                assert!(!circle.path.points().any(is_hidden), "{preset}");
+                assert!(
+                    !circle.path.points().any(|p| {
+                        (legend[0]..=legend[2]).contains(&p.x)
+                            && (legend[1]..=legend[3]).contains(&p.y)
+                    }),
+                    "{preset}"
+                );
             }
         }
     }
@@ -507,9 +525,11 @@ fn curves_that_are_not_told_apart_are_bands_beside_a_magnified_stretch() {
     let seen = places(&runs[0]);
     for (axis, panel) in panels[..3].iter().enumerate() {
         // The edges of the band are the extremes, however long it is.
-        let band =
-            |item: &&SceneItem| item.clip == Some(*panel) && matches!(item.paint, Paint::Fill(_));
-        let bands: Vec<_> = scene.items.iter().filter(band).collect();
+        let bands: Vec<_> = scene
+            .items
+            .iter()
+            .filter(|item| item.clip == Some(*panel) && matches!(item.paint, Paint::Fill(_)))
+            .collect();
         assert_eq!(bands.len(), 2);
         let values = || seen.iter().map(|place| place[axis]);
         let (low, high) = ChartAxis::default().range_of(values());
@@ -671,11 +691,10 @@ fn figures_that_are_drawn_together_are_those_drawn_alone() {
     let [energy, above, traces] = ["energy_J", "above", "traces"].map(request);
     let requests = [energy, part, above, traces];
     let mut ends = 0;
-    let watch = |step: u64, last: u64| {
+    let together = of_runs::figures(&runs, &requests, &KnownNumbers::default(), |step, last| {
         ends += u32::from(step == last);
         ControlFlow::Continue(())
-    };
-    let together = of_runs::figures(&runs, &requests, &KnownNumbers::default(), watch);
+    });
     let together = together.unwrap().unwrap();
     // Each run once for the whole of it, and once for its beginning.
     assert!(ends <= 4, "{ends}");

@@ -124,8 +124,7 @@ fn values_are_found_by_their_names() {
     stage.press("→").shows("gravity 9.9");
     stage.press("\n").shows("motion.gravity_m_per_s2");
     stage.press("1.6\n");
-    let gravity = |stage: &Stage| stage.lab.player().motion().gravity;
-    assert_eq!(gravity(&stage), 1.6);
+    assert_eq!(stage.lab.player().motion().gravity, 1.6);
     stage.shows("/grav 1 of 1").press(ESC).shows_no("/grav");
     stage.shows("parameters ");
     assert_eq!(stage.focus(), "parameters");

@@ -98,15 +98,14 @@ fn noisy(seed: u64) -> String {
     }
     let values = truth();
     let head = "t_s,tilt_deg,tilt_uncertainty_deg,x_m,x_uncertainty_m\n".to_owned();
-    let row = |(index, time_s): (usize, &f64)| {
-        let tilt_deg = values[0][index] + 0.1 * normal(&mut dice);
-        let x_m = values[1][index] + 0.002 * normal(&mut dice);
-        format!("{time_s},{tilt_deg},0.1,{x_m},0.002\n")
-    };
     TIMES
         .iter()
         .enumerate()
-        .map(row)
+        .map(|(index, time_s)| {
+            let tilt_deg = values[0][index] + 0.1 * normal(&mut dice);
+            let x_m = values[1][index] + 0.002 * normal(&mut dice);
+            format!("{time_s},{tilt_deg},0.1,{x_m},0.002\n")
+        })
         .fold(head, |text, row| text + &row)
 }
 
@@ -161,8 +160,10 @@ fn the_truth_lies_within_two_sigma_as_often_as_it_should() {
     is_near("chi^2 per degree of freedom", each, 1.0, 0.03);
     let probability = mean(&|fit| fit.quality.probability.unwrap());
     is_near("mean probability", probability, 0.5, 0.03);
-    let is_good = |fit: &&Fit| fit.quality.fits() == Some(true);
-    let fits_count = fits.iter().filter(is_good).count();
+    let fits_count = fits
+        .iter()
+        .filter(|fit| fit.quality.fits() == Some(true))
+        .count();
     assert!((980..=1000).contains(&fits_count), "{fits_count}");
 }
 
@@ -359,8 +360,9 @@ fn a_key_at_its_bound_is_said_to_be() {
     // One that is inside of its bounds is not said to be at one.
     let inside = format!("{MOMENT}=0.003..0.005");
     let (_, fit) = heidelberg("heidelberg-precession", &[&inside], &|_| true);
-    let is_of_bound = |remark: &String| remark.contains("bound");
-    assert!(fit.keys[0].sigma.is_some() && !fit.remarks().iter().any(is_of_bound));
+    assert!(
+        fit.keys[0].sigma.is_some() && !fit.remarks().iter().any(|remark| remark.contains("bound"))
+    );
 }
 
 /// The data tell the ratio of moment and gravity alone, 0.00392 to 9.81.
@@ -562,8 +564,7 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     };
     assert_eq!((points(values), points(residuals)), (16, 16));
     let errors = &values.series[2].errors[1];
-    let is_stated = |error: &f64| (2.0..2.5).contains(error);
-    assert!(!errors.is_empty() && errors.iter().all(is_stated));
+    assert!(!errors.is_empty() && errors.iter().all(|error| (2.0..2.5).contains(error)));
     assert!(residuals.y.unit.contains('σ'));
 }
 

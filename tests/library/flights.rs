@@ -37,12 +37,13 @@ fn flight(omega: [f64; 3], seconds: f64) -> Vec<[f64; 3]> {
 /// Rates that a hand brings from `from` to `to`.
 fn by_hand(from: [f64; 3], to: [f64; 3], seconds: f64) -> Vec<[f64; 3]> {
     let rows = (seconds * RATE) as u32;
-    let at = |row: u32| {
-        let part = f64::from(row) / f64::from(rows);
-        let part = part * part * (3.0 - 2.0 * part);
-        [0, 1, 2].map(|axis| from[axis] + part * (to[axis] - from[axis]))
-    };
-    (0..rows).map(at).collect()
+    (0..rows)
+        .map(|row: u32| {
+            let part = f64::from(row) / f64::from(rows);
+            let part = part * part * (3.0 - 2.0 * part);
+            [0, 1, 2].map(|axis| from[axis] + part * (to[axis] - from[axis]))
+        })
+        .collect()
 }
 
 /// A recording of throws by these rates, each with where its flight begins and ends, s. Before each the hand waves.

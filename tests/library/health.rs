@@ -141,15 +141,18 @@ fn the_largest_distance_is_that_of_every_step() {
         let scenario = preset(name, set);
         let most = strays(scenario.clone()) * scenario.arm_m();
         let health = health(scenario);
-        let close = |seen: f64| (seen / most - 1.0).abs() < 1e-12;
         let seen = health.most_distance_m.unwrap();
-        assert!(close(seen), "{name}: {seen}, and {most} at some step");
+        assert!(
+            (seen / most - 1.0).abs() < 1e-12,
+            "{name}: {seen}, and {most} at some step"
+        );
     }
 }
 
 fn compared(scenario: &Scenario, time_step_s: f64, scheme: &'static SchemeInfo) -> ComparisonRow {
-    let go_on = |_, _| ControlFlow::Continue(());
-    let rows = compare(scenario, &[scheme], &[time_step_s], go_on);
+    let rows = compare(scenario, &[scheme], &[time_step_s], |_, _| {
+        ControlFlow::Continue(())
+    });
     rows.unwrap().remove(0)
 }
 
@@ -516,8 +519,11 @@ fn distances_are_those_from_the_reference_motions() {
 fn lz_drifts_where_a_push_from_the_side_meets_the_wrong_axle() {
     let push = "push.0={point='top',force_N=[30,0,0],from_s=0.5,for_s=2}";
     let scenario = preset("cusps", &[push]);
-    let row = |step, scheme| compared(&scenario, step, find_scheme(scheme));
-    let drift = |step, scheme| row(step, scheme).lz_drift.unwrap();
+    let drift = |step, scheme| {
+        compared(&scenario, step, find_scheme(scheme))
+            .lz_drift
+            .unwrap()
+    };
     let (report, better) = (drift(0.01, "report"), drift(0.01, "srkn11b"));
     assert!(report > 1e-3 && better < 1e-10, "{report} {better}");
 }
@@ -653,11 +659,13 @@ fn a_search_for_advice_that_nobody_waits_for_any_more_ends() {
     let asked = Cell::new(0);
     let wanted_for = |times: u32| {
         asked.set(0);
-        let is_wanted = || {
-            asked.set(asked.get() + 1);
-            asked.get() <= times
-        };
-        (advise_while(&scenario, &is_wanted), asked.get())
+        (
+            advise_while(&scenario, &|| {
+                asked.set(asked.get() + 1);
+                asked.get() <= times
+            }),
+            asked.get(),
+        )
     };
     let (advice, whole) = wanted_for(u32::MAX);
     assert_eq!(advice, Some(advise(&scenario)));

@@ -303,8 +303,14 @@ fn the_azimuth_counts_every_turn_however_few_rows_there_are() {
         let layout = CsvLayout::every(NonZeroU64::new(every).unwrap());
         let scenario = Arc::clone(simulation.scenario());
         let mut csv = CsvWriter::with_layout(Vec::new(), &scenario, layout).unwrap();
-        let watch = |_, _| ControlFlow::Continue(());
-        stream::play(&mut simulation, 4000, Some(&mut csv), |_| {}, watch).unwrap();
+        stream::play(
+            &mut simulation,
+            4000,
+            Some(&mut csv),
+            |_| {},
+            |_, _| ControlFlow::Continue(()),
+        )
+        .unwrap();
         let bytes = csv.finish().unwrap();
         let mut rows = csv::ReaderBuilder::new()
             .comment(Some(b'#'))

@@ -130,8 +130,9 @@ const SYMBOLS: [&str; 2] = ["the arrow F shows", "R turns every"];
 
 /// The keys that `text` names: in backticks or parentheses, before a verb or a colon, or in the first column of a list.
 fn named(text: &str) -> Vec<String> {
-    let without = |text: String, symbol: &&str| text.replace(symbol, "");
-    let text = SYMBOLS.iter().fold(text.to_owned(), without);
+    let text = SYMBOLS
+        .iter()
+        .fold(text.to_owned(), |text, symbol| text.replace(symbol, ""));
     let is_letter = |word: &str| word.len() == 1 && word.chars().all(|c| c.is_ascii_alphabetic());
     let words: Vec<_> = text.split_whitespace().collect();
     let mut named = Vec::new();
@@ -161,11 +162,14 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap();
     let entries = entries.map(|entry| entry.unwrap().path());
     let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
-    let is_wanted = |path: &PathBuf| path.extension().is_some_and(|end| end == extension);
     let below = folders
         .iter()
         .flat_map(|folder| self::files(folder, extension));
-    files.into_iter().filter(is_wanted).chain(below).collect()
+    files
+        .into_iter()
+        .filter(|path| path.extension().is_some_and(|end| end == extension))
+        .chain(below)
+        .collect()
 }
 
 #[test]

@@ -390,9 +390,8 @@ fn what_became_of_tasks_and_late_predictions_is_kept() {
 #[test]
 fn a_push_that_is_tried_again_takes_the_place_of_the_first() {
     let (mut stage, _folder, _) = taken(2);
-    let pushes = |stage: &Stage| stage.lab.player().run().scenario().pushes.len();
     stage.press("rp10.").arrive().press("rp").arrive();
-    assert_eq!(pushes(&stage), 1);
+    assert_eq!(stage.lab.player().run().scenario().pushes.len(), 1);
 }
 
 #[test]

@@ -147,7 +147,6 @@ fn many_pushes_with_many_edits_are_what_their_edits_make_of_them() {
 
 #[test]
 fn an_edit_is_refused_for_what_it_sets() {
-    let text = |set: &str| format!("{GOOD}{PUSH}{PUSH}[[edit]]\nstep = 1\nset = {{ {set} }}\n");
     for (set, key) in [
         ("'push.1.steps' = -1", "edit.0.set.push.1.steps"),
         ("'push.1' = { point = 'a' }", "edit.0.set.push.1.force_N"),
@@ -159,7 +158,11 @@ fn an_edit_is_refused_for_what_it_sets() {
         ("'motion.scheme' = 'euler'", "edit.0.set.motion.scheme"),
         ("'push.0.colour' = 1", "edit.0.set.push.0.colour"),
     ] {
-        let problems = checked(&text(set)).map(drop).unwrap_err();
+        let problems = checked(&format!(
+            "{GOOD}{PUSH}{PUSH}[[edit]]\nstep = 1\nset = {{ {set} }}\n"
+        ))
+        .map(drop)
+        .unwrap_err();
         assert!(problems.list[0].key.starts_with(key), "{set}: {problems}");
     }
 }
@@ -230,11 +233,11 @@ fn the_clock_is_looked_at_after_every_step_that_may_be_integrated() {
     ] {
         let mut run = LiveRun::new(Arc::new(preset(name, set)));
         let mut looks = 0;
-        let look = || {
+        run.step_to(50, || {
             looks += 1;
             false
-        };
-        run.step_to(50, look).unwrap();
+        })
+        .unwrap();
         assert_eq!(looks, looks_expected, "{name}");
     }
 }

@@ -92,12 +92,14 @@ fn parts(text: &str, belongs: impl Fn(char) -> bool) -> Vec<(usize, usize)> {
 
 /// Where the numbers behind the `=` signs stand.
 fn numbers(text: &str) -> Vec<(usize, usize)> {
-    let is_value = |&(begin, end): &(usize, usize)| {
-        let line = &text[..begin].rsplit('\n').next().unwrap_or_default();
-        line.contains('=') && text[begin..end].starts_with(|c: char| c.is_ascii_digit() || c == '-')
-    };
     let all = parts(text, |c| c.is_ascii_alphanumeric() || ".-+_".contains(c));
-    all.into_iter().filter(is_value).collect()
+    all.into_iter()
+        .filter(|&(begin, end)| {
+            let line = &text[..begin].rsplit('\n').next().unwrap_or_default();
+            line.contains('=')
+                && text[begin..end].starts_with(|c: char| c.is_ascii_digit() || c == '-')
+        })
+        .collect()
 }
 
 fn happen(text: &mut String, accident: &Accident) {
@@ -237,11 +239,13 @@ fn check_round_trip(scenario: &Scenario, samples: &[Sample]) -> Result<(), TestC
 }
 
 fn bits(scenario: &Scenario, samples: &[Sample]) -> Vec<u64> {
-    let of = |sample| {
-        let columns = COLUMNS.iter();
-        columns.map(move |column| column.value(scenario, sample).to_bits())
-    };
-    samples.iter().flat_map(of).collect()
+    samples
+        .iter()
+        .flat_map(|sample| {
+            let columns = COLUMNS.iter();
+            columns.map(move |column| column.value(scenario, sample).to_bits())
+        })
+        .collect()
 }
 
 #[test]

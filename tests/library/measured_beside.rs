@@ -92,8 +92,9 @@ fn what_a_run_says_is_what_it_is_compared_with() {
 #[test]
 fn the_numbers_are_those_of_the_residuals() {
     let scenario = preset("method-2", &[]);
-    let off = |number: usize| if number == 7 { -3.0 } else { 0.5 };
-    let (_folder, path) = file(&data(&scenario, &[("z_m", 0.01)], off));
+    let (_folder, path) = file(&data(&scenario, &[("z_m", 0.01)], |number| {
+        if number == 7 { -3.0 } else { 0.5 }
+    }));
     let mut desk = Desk::with("method-2", scenario);
     desk.commands(&format!("measured = '{}'\ngo_to = 200", path.display()));
     let sum = sum(&desk.lab);
@@ -106,9 +107,10 @@ fn the_numbers_are_those_of_the_residuals() {
 #[test]
 fn points_stand_on_strips_and_from_above_and_residuals_about_zero() {
     let scenario = preset("method-2", &[]);
-    let off = |number: usize| [0.0, 2.0, -1.0][number % 3];
     let columns = [("x_m", 0.05), ("y_m", 0.05), ("spin_rpm", 1.0)];
-    let (_folder, path) = file(&data(&scenario, &columns, off));
+    let (_folder, path) = file(&data(&scenario, &columns, |number| {
+        [0.0, 2.0, -1.0][number % 3]
+    }));
     for (name, size) in [("small", SMALL), ("large", LARGE)] {
         let mut stage = Stage::open("method-2", &["motion.steps=200"], size);
         stage.commands(&format!(
@@ -236,8 +238,7 @@ fn figure_with(kind: Option<&str>, text: &str, known: &KnownNumbers) -> DrawnFig
         scenario: Arc::new(preset("method-2", &["motion.steps=200"])),
         named: "method-2".to_owned(),
     };
-    let go_on = |_, _| ControlFlow::Continue(());
-    let figures = of_runs::figures(&[run], &[request], known, go_on);
+    let figures = of_runs::figures(&[run], &[request], known, |_, _| ControlFlow::Continue(()));
     figures.unwrap().unwrap().remove(0)
 }
 
@@ -328,13 +329,13 @@ fn is_in_proportion(values: &[f64], places: &[[f64; 2]], part: usize) {
 #[test]
 fn a_point_without_uncertainty_has_no_bar() {
     // The ends of a bar are 3.4 pt long, and no tick is.
-    let ends = |figure: &DrawnFigure| {
-        let is_end = |item: &&SceneItem| {
+    let ends =
+        |figure: &DrawnFigure| {
+            figure.scene.items.iter().filter(|item| {
             let points: Vec<_> = item.path.points().collect();
             matches!(points[..], [a, b] if a.y == b.y && ((a.x - b.x).abs() - 3.4).abs() < 1e-6)
+        }).count()
         };
-        figure.scene.items.iter().filter(is_end).count()
-    };
     let with = figure(None, "t_s,x_m,x_uncertainty_m\n5,0.5,0.3\n10,0,0.3\n");
     let one = figure(None, "t_s,x_m,x_uncertainty_m\n5,0.5,0.3\n10,0,\n");
     assert_eq!((ends(&with), ends(&one)), (4, 2));

@@ -224,10 +224,10 @@ fn space_pauses_commands_and_lets_them_go_on() {
 
 #[test]
 fn a_pause_keeps_what_is_left_of_a_wait_and_a_run_that_plays() {
-    let read = |text: &str| command::read(&Document::parse("demo.toml", text).unwrap()).unwrap();
     let mut desk = Desk::open("method-2");
     let commands = "[[do]]\nrun = true\n[[do]]\nwait_s = 3\n[[do]]\nstep = 7";
-    desk.lab.take_commands(read(commands));
+    desk.lab
+        .take_commands(command::read(&Document::parse("demo.toml", commands).unwrap()).unwrap());
     desk.pass(Duration::from_secs(1));
     desk.press(&[Key::Char(' ')]);
     let paused = desk.step();

@@ -57,13 +57,17 @@ fn named(file: &str) -> Vec<&str> {
 
 /// Whether the rows of `file` have this explanation, and are said to have no other if it is the only one that they prove.
 fn is_explained(verdict: &Verdict, file: &str) -> bool {
-    let sorted = |mut slips: Vec<&'static str>| {
-        slips.sort_unstable();
-        slips
-    };
     let mut expected = named(file);
     expected.sort_unstable();
-    let slips: Vec<_> = verdict.slips.iter().cloned().map(sorted).collect();
+    let slips: Vec<_> = verdict
+        .slips
+        .iter()
+        .cloned()
+        .map(|mut slips| {
+            slips.sort_unstable();
+            slips
+        })
+        .collect();
     let is_unique = verdict.explanations == Explanations::Unique;
     slips.contains(&expected) && (!is_unique || slips.len() == 1)
 }

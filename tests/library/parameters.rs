@@ -218,16 +218,22 @@ fn the_values_of_a_run_are_those_after_its_edits() {
 
 #[test]
 fn of_many_points_the_first_fifty_are_listed() {
-    let point = |index: usize| {
-        format!("[[body.point]]\nname = 'p{index}'\nat_m = [0, {index}, 1]\nmass_kg = 1\n")
-    };
-    let points: String = (0..120).map(point).collect();
+    let points: String = (0..120)
+        .map(|index| {
+            format!("[[body.point]]\nname = 'p{index}'\nat_m = [0, {index}, 1]\nmass_kg = 1\n")
+        })
+        .collect();
     let text = format!(
         "title = 'x'\ntrace = 'p99'\n{points}[start]\nmomentum_Js = [0, 0, 1]\n[motion]\ntime_step_s = 0.1\nsteps = 1\n"
     );
     let scenario = parse(&text);
-    let is_name = |row: &&Parameter| row.key.ends_with(".name");
-    assert_eq!(listed(&scenario).iter().filter(is_name).count(), 50);
+    assert_eq!(
+        listed(&scenario)
+            .iter()
+            .filter(|row| row.key.ends_with(".name"))
+            .count(),
+        50
+    );
     let trace = named(&scenario, "trace");
     assert_eq!(trace.nudged(1), Ok(Value::from("p0")));
     assert_eq!(trace.nudged(-1), Ok(Value::from("p49")));

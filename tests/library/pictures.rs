@@ -63,9 +63,16 @@ fn drawn(widget: impl Widget, (width, height): (u16, u16)) -> String {
 /// The cells of the buffer as text, one line for each row.
 fn text(buf: &Buffer) -> String {
     let lines = buf.content.chunks(buf.area.width.into());
-    let line = |cells: &[Cell]| cells.iter().map(Cell::symbol).collect::<String>();
     lines
-        .map(|cells| line(cells).trim_end().to_owned() + "\n")
+        .map(|cells| {
+            cells
+                .iter()
+                .map(Cell::symbol)
+                .collect::<String>()
+                .trim_end()
+                .to_owned()
+                + "\n"
+        })
         .collect()
 }
 
@@ -130,13 +137,14 @@ fn the_run_before_lies_under_the_run() {
 
 /// The columns of `picture` that contain one of `signs`, without the border.
 fn columns_with(picture: &str, signs: &str) -> Vec<usize> {
-    let inside = |line: &str| -> Vec<usize> {
-        let cells = line.chars().enumerate();
-        let cells = cells.filter(|(_, c)| signs.contains(*c));
-        cells.map(|(x, _)| x - 1).collect()
-    };
     let lines = picture.lines().filter(|line| line.starts_with(['│', '|']));
-    let mut columns: Vec<_> = lines.flat_map(inside).collect();
+    let mut columns: Vec<_> = lines
+        .flat_map(|line| -> Vec<usize> {
+            let cells = line.chars().enumerate();
+            let cells = cells.filter(|(_, c)| signs.contains(*c));
+            cells.map(|(x, _)| x - 1).collect()
+        })
+        .collect();
     columns.sort_unstable();
     columns.dedup();
     columns
@@ -158,8 +166,10 @@ fn the_run_before_is_seen_wherever_the_run_does_not_hide_it() {
         let picture = traces(&now, Some(&Ghost::of(&before)), None, Marker::Braille);
         let lines = picture.lines().skip_while(|line| !line.starts_with("│z"));
         let of_run = "⠉⠒⠤⣀";
-        let is_dot = |c: &char| ('\u{2801}'..='\u{28ff}').contains(c) && !of_run.contains(*c);
-        let dots = lines.flat_map(str::chars).filter(is_dot).count();
+        let dots = lines
+            .flat_map(str::chars)
+            .filter(|c| ('\u{2801}'..='\u{28ff}').contains(c) && !of_run.contains(*c))
+            .count();
         assert!(dots >= 10, "{tilt_deg} degrees: {dots}\n{picture}");
     }
 }
@@ -299,8 +309,11 @@ fn the_dashes_of_the_exact_motion_are_seen_over_the_run() {
     let mut buf = Buffer::empty(Rect::new(0, 0, 27, 19));
     divided(&now, Marker::Braille, &mut buf);
     let exact = view(&now, Marker::Braille).theme.style(Role::Exact).fg;
-    let is_dash = |cell: &&Cell| Some(cell.fg) == exact && cell.symbol() != " ";
-    let dashes = buf.content.iter().filter(is_dash).count();
+    let dashes = buf
+        .content
+        .iter()
+        .filter(|cell| Some(cell.fg) == exact && cell.symbol() != " ")
+        .count();
     assert!(dashes >= 15, "{dashes} cells\n{}", text(&buf));
 }
 
@@ -432,11 +445,13 @@ fn the_point_stays_in_the_picture_however_large_it_is() {
             let edge = usize::from(zoom > 1.0);
             let lines: Vec<_> = picture.lines().skip(1 + edge).collect();
             let inner = &lines[..lines.len() - 2 - edge];
-            let is_here = |line: &&str| {
-                let mut signs = line.chars().skip(1 + edge).take(34 - 2 * edge);
-                signs.any(|sign| sign == 'o')
-            };
-            assert!(inner.iter().any(is_here), "{steps} ×{zoom}\n{picture}");
+            assert!(
+                inner.iter().any(|line| {
+                    let mut signs = line.chars().skip(1 + edge).take(34 - 2 * edge);
+                    signs.any(|sign| sign == 'o')
+                }),
+                "{steps} ×{zoom}\n{picture}"
+            );
         }
     }
 }
@@ -560,8 +575,11 @@ fn the_selected_line_is_seen_at_every_place_and_size() {
                 assert_eq!(marked.len(), 1, "{key} at {size:?}\n{shown}");
                 assert!(marked[0].starts_with(label), "{key}\n{shown}");
                 let reversed = COLOURS.style(Role::Selected).add_modifier;
-                let is_reversed = |cell: &&Cell| cell.modifier.contains(reversed);
-                let count = buf.content.iter().filter(is_reversed).count();
+                let count = buf
+                    .content
+                    .iter()
+                    .filter(|cell| cell.modifier.contains(reversed))
+                    .count();
                 assert!(count >= 20, "{shown}");
             }
         }

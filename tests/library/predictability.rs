@@ -263,8 +263,10 @@ fn the_readouts_say_until_when_a_run_is_reliable() {
 #[test]
 fn a_comparison_has_the_errors_up_to_the_time() {
     let scenario = parse(TOP);
-    let go_on = |_, _| ControlFlow::Continue(());
-    let rows = compare(&scenario, &[find_scheme("srkn11b")], &[0.002], go_on).unwrap();
+    let rows = compare(&scenario, &[find_scheme("srkn11b")], &[0.002], |_, _| {
+        ControlFlow::Continue(())
+    })
+    .unwrap();
     assert!(
         rows[0].error_m.unwrap() < 0.01 * scenario.arm_m(),
         "{rows:?}"

@@ -312,7 +312,9 @@ fn the_figures_in_the_texts_are_those_of_the_runs() {
     assert!(words("wobble-push").contains(&note), "{note}");
     let push = preset_named("wobble-push", &[]);
     assert_eq!(advise(&push), Advice::TimeStep(step));
-    let go_on = |_, _| ControlFlow::Continue(());
-    let rows = compare(&push, &[push.motion.scheme], &[step], go_on).unwrap();
+    let rows = compare(&push, &[push.motion.scheme], &[step], |_, _| {
+        ControlFlow::Continue(())
+    })
+    .unwrap();
     assert!(rows[0].error_m.unwrap() < 0.002 * push.arm_m(), "{rows:?}");
 }

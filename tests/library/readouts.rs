@@ -265,12 +265,11 @@ fn the_drift_of_a_balanced_body_is_measured_by_its_kinetic_energy() {
         let motion = ["motion.time_step_s=0.01", "motion.steps=1000"];
         preset("cusps", &[&[&*height, &momentum], &motion[..]].concat())
     };
-    let drift = |scenario: &Scenario| readouts(scenario).number("energy_drift").unwrap();
     for height in ["0", "1e-15", "1e-11"] {
         let scenario = balanced(height, "[0,-30,60]");
         let scale = EnergyScale::of(&scenario).unwrap();
         assert_eq!(scale.unit, EnergyUnit::KineticAtStart, "{height}");
-        let off = drift(&scenario).abs();
+        let off = readouts(&scenario).number("energy_drift").unwrap().abs();
         println!("rim at {height} m: {off:e}");
         assert!(off < 1e-2, "{height}: {off:e}");
         let text = summary(readouts(&scenario)).to_string();
@@ -297,13 +296,14 @@ fn the_drift_of_a_balanced_body_is_measured_by_its_kinetic_energy() {
 /// A text for people that shows something that is no number, or digits that nobody reads.
 fn blemish(text: &str) -> Option<String> {
     let mut words = text.split(|c: char| !(c.is_alphanumeric() || "._+-".contains(c)));
-    let bad = |word: &&str| {
-        let bare = word.trim_matches(['+', '-', '.']).to_lowercase();
-        let numbers = word.split(|c: char| !c.is_ascii_digit());
-        let digits = numbers.map(str::len).max();
-        ["nan", "inf", "-inf", "null"].contains(&bare.as_str()) || digits > Some(30)
-    };
-    words.find(bad).map(str::to_owned)
+    words
+        .find(|word| {
+            let bare = word.trim_matches(['+', '-', '.']).to_lowercase();
+            let numbers = word.split(|c: char| !c.is_ascii_digit());
+            let digits = numbers.map(str::len).max();
+            ["nan", "inf", "-inf", "null"].contains(&bare.as_str()) || digits > Some(30)
+        })
+        .map(str::to_owned)
 }
 
 #[test]
@@ -429,8 +429,10 @@ fn no_table_shows_what_is_no_number() {
         if step / 2.0 == 0.0 {
             continue;
         }
-        let go_on = |_, _| ControlFlow::Continue(());
-        let rows = compare(&scenario, &schemes, &[step, step / 2.0], go_on).unwrap();
+        let rows = compare(&scenario, &schemes, &[step, step / 2.0], |_, _| {
+            ControlFlow::Continue(())
+        })
+        .unwrap();
         let energy_unit = EnergyScale::of(&scenario).map(|scale| scale.unit);
         let table = ComparisonTable {
             rows: &rows,

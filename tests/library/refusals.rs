@@ -71,8 +71,9 @@ fn with_line(text: &str, number: usize, new: &str) -> String {
 
 /// The refusal of the whole file with these lines replaced.
 fn mistakes(lines: &[(usize, &str)]) -> String {
-    let replace = |text: String, (at, new): &(usize, &str)| with_line(&text, *at, new);
-    refusal(&lines.iter().fold(WHOLE.to_owned(), replace))
+    refusal(&lines.iter().fold(WHOLE.to_owned(), |text, (at, new)| {
+        with_line(&text, *at, new)
+    }))
 }
 
 /// The line that is replaced, what stands there instead, and the refusal: its line (0: the file as a whole), how it goes on (the

@@ -70,11 +70,10 @@ fn numbers_of_theory_of_the_exact_motion_and_of_measuring() {
             let expression =
                 gyrolab::engine::journal::expression::Expression::parse(condition).unwrap();
             let motion = desk.lab.player().motion();
-            let value = |name: &str| match name {
+            expression.value(|name| match name {
                 "motion.time_step_s" => Some(motion.time_step_s),
                 _ => readouts.number(name),
-            };
-            expression.value(value) == Some(1.0)
+            }) == Some(1.0)
         };
         assert!(desk.step() > 0 && holds(&desk), "{condition}");
         let step = desk.step();

@@ -195,7 +195,6 @@ fn the_axle_is_a_heavy_line_from_the_stand_to_its_top() {
     assert!(has_stand(&picture), "{picture}");
     let rows = rows(&picture);
     let (pivot, top) = (place(&rows, '+'), place(&rows, '*'));
-    let dots = |x: usize, y: usize| u32::from(rows[y][x]).saturating_sub(0x2800).count_ones();
     let between = |from: usize, to: usize, share: f64| {
         (from as f64 + share * (to as f64 - from as f64)).round() as usize
     };
@@ -204,7 +203,9 @@ fn the_axle_is_a_heavy_line_from_the_stand_to_its_top() {
             between(pivot.0, top.0, share),
             between(pivot.1, top.1, share),
         );
-        let across: u32 = (x - 2..=x + 2).map(|x| dots(x, y)).sum();
+        let across: u32 = (x - 2..=x + 2)
+            .map(|x| u32::from(rows[y][x]).saturating_sub(0x2800).count_ones())
+            .sum();
         assert!(across >= 10, "{across} dots at {share}:\n{picture}");
     }
 }

@@ -65,8 +65,10 @@ steps = 15
 
 /// The error at the end, m.
 fn error(scenario: &Scenario, scheme: &'static SchemeInfo, time_step_s: f64) -> f64 {
-    let go_on = |_, _| ControlFlow::Continue(());
-    let rows = compare(scenario, &[scheme], &[time_step_s], go_on).unwrap();
+    let rows = compare(scenario, &[scheme], &[time_step_s], |_, _| {
+        ControlFlow::Continue(())
+    })
+    .unwrap();
     rows[0].error_at_end_m.unwrap()
 }
 
@@ -264,8 +266,14 @@ fn a_scheme_takes_over_where_another_left_off() {
 fn csv(simulation: &mut Simulation) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut writer = CsvWriter::new(&mut bytes, simulation.scenario()).unwrap();
-    let watch = |_, _| ControlFlow::Continue(());
-    stream::play(simulation, 300, Some(&mut writer), |_| (), watch).unwrap();
+    stream::play(
+        simulation,
+        300,
+        Some(&mut writer),
+        |_| (),
+        |_, _| ControlFlow::Continue(()),
+    )
+    .unwrap();
     writer.finish().unwrap();
     bytes
 }

@@ -331,8 +331,10 @@ fn a_phase_shows_its_own_arrows_in_space() {
     ] {
         stage.commands(&format!("phase = {page}"));
         let picture = stage.picture();
-        let first = |line: &str| line.split("││").next().unwrap().to_owned() + "\n";
-        let scene: String = picture.lines().map(first).collect();
+        let scene: String = picture
+            .lines()
+            .map(|line| line.split("││").next().unwrap().to_owned() + "\n")
+            .collect();
         has_all(&scene, shown.split('|'));
         hidden.split('|').for_each(|words| has_no(&scene, words));
     }

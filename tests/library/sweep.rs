@@ -26,8 +26,9 @@ fn no_fit(_: &str) -> Result<Vec<u8>, Unverified> {
 }
 
 fn csv(sweep: &Sweep) -> String {
-    let row = |row| sweep.row(row, &|| true).unwrap().line;
-    let rows: String = (0..sweep.rows()).map(row).collect();
+    let rows: String = (0..sweep.rows())
+        .map(|row| sweep.row(row, &|| true).unwrap().line)
+        .collect();
     sweep.header() + &rows
 }
 

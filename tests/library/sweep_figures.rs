@@ -163,8 +163,9 @@ fn a_curve_whose_runs_all_failed_says_so() {
 
 #[test]
 fn many_rows_of_theory_are_a_line() {
-    let row = |row: usize| format!("report,{row},0.9,0.8,0.1\n");
-    let rows: String = (0..60).map(row).collect();
+    let rows: String = (0..60)
+        .map(|row| format!("report,{row},0.9,0.8,0.1\n"))
+        .collect();
     let chart = chart(&two_keys("motion.scheme", &rows));
     assert_eq!(chart.panels[0].series[0].style.mark, None);
     assert!(chart.panels[0].series[0].style.dash_pt.is_empty());

@@ -26,11 +26,14 @@ struct Turn {
 
 fn turns(samples: &[Sample], lowest: bool) -> Vec<Turn> {
     let sign = if lowest { 1.0 } else { -1.0 };
-    let is_turn = |w: &&[Sample]| {
-        let [a, b, c] = [0, 1, 2].map(|i| sign * w[i].tilt_deg);
-        b < a && b <= c
-    };
-    samples.windows(3).filter(is_turn).map(turn).collect()
+    samples
+        .windows(3)
+        .filter(|w| {
+            let [a, b, c] = [0, 1, 2].map(|i| sign * w[i].tilt_deg);
+            b < a && b <= c
+        })
+        .map(turn)
+        .collect()
 }
 
 fn turn(w: &[Sample]) -> Turn {

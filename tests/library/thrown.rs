@@ -72,11 +72,12 @@ fn covered(trials: u64) -> [usize; 2] {
     let fits: Vec<Fit> = seeds.map(|seed| thrown(seed * 0x9E37_79B9)).collect();
     // The third moment is held, so the first two are the ratios.
     [0, 1].map(|axis| {
-        let is_near = |fit: &&Fit| {
-            let key = &fit.keys[axis];
-            (key.value - MOMENTS[axis]).abs() <= 2.0 * key.sigma.unwrap()
-        };
-        fits.iter().filter(is_near).count()
+        fits.iter()
+            .filter(|fit| {
+                let key = &fit.keys[axis];
+                (key.value - MOMENTS[axis]).abs() <= 2.0 * key.sigma.unwrap()
+            })
+            .count()
     })
 }
 

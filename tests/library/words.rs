@@ -207,8 +207,9 @@ fn the_browser_goes_into_folders_and_comes_back() {
     let shown = |browser: &Browser| -> Vec<String> {
         let all = browser.shown().into_iter();
         let listed = all.filter(|entry| entry.is_file || entry.is_folder);
-        let below = |name: &str| name.replace(root.path().to_str().unwrap(), "");
-        listed.map(|entry| below(&entry.name)).collect()
+        listed
+            .map(|entry| entry.name.replace(root.path().to_str().unwrap(), ""))
+            .collect()
     };
     // No way out of it.
     assert_eq!(shown(&browser), ["/runs/", "/first.toml"]);

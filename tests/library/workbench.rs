@@ -474,19 +474,17 @@ fn the_header_keeps_the_clock_before_the_title() {
 
 #[test]
 fn the_help_says_everything_at_every_size() {
-    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     for (width, height) in [(200, 50), (80, 24), (60, 18), (40, 10), (24, 60)] {
         let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, width, height));
         stage.press("?");
         let mut seen = String::new();
         for _ in 0..250 {
             let picture = stage.picture();
-            let inside = |line: &str| line.trim_matches('│').trim().to_owned() + " ";
             let lines = picture.lines().filter(|line| line.contains('│'));
-            seen.extend(lines.map(inside));
+            seen.extend(lines.map(|line| line.trim_matches('│').trim().to_owned() + " "));
             stage.press("↓");
         }
-        let seen = words(&seen);
+        let seen = seen.split_whitespace().collect::<Vec<_>>().join(" ");
         has_all(&seen, ["Backspace Ctrl-H", "Shift-Tab"]);
         for word in BINDINGS.iter().flat_map(|row| row.help.split(' ')) {
             assert!(seen.contains(word), "{word} at {width}x{height}");
@@ -516,9 +514,14 @@ fn half_blocks_need_no_rare_glyphs() {
     for keys in ["t", "d", "?", "o/loops"] {
         let mut stage = Stage::open("method-2", &[], LARGE);
         stage.wait(2.0).press(&dots(1)).press(keys);
-        let rare = |c: &char| !c.is_ascii() && !"─│┌┐└┘├┤═▀▄█■·°×►◄▲▼Ωτ".contains(*c);
         let picture = stage.picture();
-        assert_eq!(picture.chars().find(rare), None, "{picture}");
+        assert_eq!(
+            picture
+                .chars()
+                .find(|c| !c.is_ascii() && !"─│┌┐└┘├┤═▀▄█■·°×►◄▲▼Ωτ".contains(*c)),
+            None,
+            "{picture}"
+        );
     }
 }
 
@@ -540,10 +543,12 @@ fn a_circle_is_round() {
 
 /// Width and height of the path, cells.
 fn extent_of_the_path(picture: &str) -> (f64, f64) {
-    let is_dot = |c: char| ('\u{2800}'..='\u{28ff}').contains(&c) || "▀▄█•".contains(c);
     let (mut columns, mut rows) = (BTreeSet::new(), BTreeSet::new());
     for (y, line) in picture.lines().enumerate() {
-        let dots = line.chars().enumerate().filter(|(_, c)| is_dot(*c));
+        let dots = line
+            .chars()
+            .enumerate()
+            .filter(|(_, c)| ('\u{2800}'..='\u{28ff}').contains(&*c) || "▀▄█•".contains(*c));
         // Not the timeline.
         for (x, _) in dots.filter(|_| line.starts_with('│')) {
             columns.insert(x);

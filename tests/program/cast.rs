@@ -36,12 +36,16 @@ fn parsed(text: &str) -> (Value, Vec<(u64, String, String)>) {
     let mut lines = text.lines();
     let head = serde_json::from_str(lines.next().unwrap()).unwrap();
     let mut now = 0;
-    let event = |line: &str| {
-        let event: (f64, String, String) = serde_json::from_str(line).unwrap();
-        now += (event.0 * 1000.0).round() as u64;
-        (now, event.1, event.2)
-    };
-    (head, lines.map(event).collect())
+    (
+        head,
+        lines
+            .map(|line| {
+                let event: (f64, String, String) = serde_json::from_str(line).unwrap();
+                now += (event.0 * 1000.0).round() as u64;
+                (now, event.1, event.2)
+            })
+            .collect(),
+    )
 }
 
 fn recorded(ground: &Ground, name: &str, more: &[&str]) -> String {
@@ -101,11 +105,13 @@ fn a_recording_has_its_size_its_chapters_and_the_picture() {
         "{}",
         seen.last().unwrap()
     );
-    let colours = |row: u16| (0..90).map(move |column| (row, column));
-    let is_coloured = |(row, column)| {
-        screen.screen().cell(row, column).unwrap().fgcolor() != vt100::Color::Default
-    };
-    assert!((0..25).flat_map(colours).any(is_coloured));
+    assert!(
+        (0..25)
+            .flat_map(|row: u16| (0..90).map(move |column| (row, column)))
+            .any(|(row, column)| {
+                screen.screen().cell(row, column).unwrap().fgcolor() != vt100::Color::Default
+            })
+    );
     assert!(screen.screen().hide_cursor());
 }
 

@@ -25,8 +25,11 @@ fn parts(csv: &str) -> (String, &str, Vec<Vec<f64>>) {
     });
     let mut lines = csv.lines().skip_while(is_header);
     let columns = lines.next().unwrap();
-    let number = |field: &str| field.parse().unwrap();
-    let rows = lines.map(|line| line.split(',').map(number).collect());
+    let rows = lines.map(|line| {
+        line.split(',')
+            .map(|field| field.parse().unwrap())
+            .collect()
+    });
     (header.collect(), columns, rows.collect())
 }
 
@@ -234,9 +237,8 @@ fn every_nth_row_and_always_the_last() {
     }
     // Longer than a block of steps between two looks at the signals.
     let (all, some) = (run(10000, 1), run(10000, 999));
-    let is_wanted = |row: &Vec<f64>| row[0] % 999.0 == 0.0 || row[0] == 10000.0;
     let mut expected = parts(&all).2;
-    expected.retain(is_wanted);
+    expected.retain(|row| row[0] % 999.0 == 0.0 || row[0] == 10000.0);
     // --every changes which rows there are, and nothing in them.
     assert_eq!(parts(&some).2, expected);
 }
@@ -771,8 +773,12 @@ fn the_measured_extremes_are_those_of_the_csv_and_theory_has_its_own_names() {
     );
     let listed = lab.stdout("readouts");
     for name in json.as_object().unwrap().keys() {
-        let begins = |line: &str| line.split(' ').next() == Some(name);
-        assert!(listed.lines().any(begins), "{name}");
+        assert!(
+            listed
+                .lines()
+                .any(|line| line.split(' ').next() == Some(name)),
+            "{name}"
+        );
     }
 }
 

@@ -215,8 +215,13 @@ fn a_scheme_whose_numbers_break_has_no_error_to_show() {
         format!("cusps --schemes report,rk4 --time-steps 0.1,0.05 --duration 1 --set {set}")
     };
     let text = told(&lab, &args("1e50"));
-    let broke = |line: &&str| line.starts_with("rk4") && line.contains("n/a");
-    assert_eq!(text.lines().filter(broke).count(), 2, "{text}");
+    assert_eq!(
+        text.lines()
+            .filter(|line| line.starts_with("rk4") && line.contains("n/a"))
+            .count(),
+        2,
+        "{text}"
+    );
     let csv = told(&lab, &format!("{} -o -", args("1e50")));
     for row in rows(&csv) {
         let broke = row[0] == "rk4";

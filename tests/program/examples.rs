@@ -73,19 +73,24 @@ fn carry_out(of: &str, commands: &[String]) -> usize {
     let bin = ground.file("bin");
     std::fs::create_dir(&bin).unwrap();
     symlink(GYROLAB, bin.join("gyrolab")).unwrap();
-    let is_skipped = |command: &&String| {
-        !NOT_CARRIED_OUT
-            .iter()
-            .any(|(words, _)| command.contains(words))
-    };
-    let script: String = commands.iter().filter(is_skipped).cloned().collect();
+    let script: String = commands
+        .iter()
+        .filter(|command| {
+            !NOT_CARRIED_OUT
+                .iter()
+                .any(|(words, _)| command.contains(words))
+        })
+        .cloned()
+        .collect();
     let script = format!("set -e\nPATH={}:$PATH HOME=$PWD\n{script}", bin.display());
     let output = ground.shell(&script);
     assert!(output.status.success(), "{of}:\n{script}{output:?}");
     let has_empty_rows = stderr(&output).contains("without readouts");
     assert!(!has_empty_rows, "{of}: {}", stderr(&output));
-    let is_command = |line: &&str| line.starts_with("gyrolab ");
-    script.lines().filter(is_command).count()
+    script
+        .lines()
+        .filter(|line| line.starts_with("gyrolab "))
+        .count()
 }
 
 #[test]

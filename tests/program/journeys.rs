@@ -715,8 +715,10 @@ fn is_used_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kep
     }
     let killed = Instant::now();
     lab.kill();
-    let is_old = |seen: &&Observed| seen.at + Duration::from_secs(1) <= killed;
-    let old = seen.iter().rfind(is_old).unwrap();
+    let old = seen
+        .iter()
+        .rfind(|seen| seen.at + Duration::from_secs(1) <= killed)
+        .unwrap();
     Kept {
         step,
         run,

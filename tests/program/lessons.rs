@@ -2,7 +2,6 @@
 
 use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
 use crate::support::words::{has, has_all, has_no};
-use gyrolab::engine::text::shipped::Shipped;
 use gyrolab::lessons::shipped::{LESSONS, TEMPLATE};
 use std::fs;
 
@@ -58,11 +57,13 @@ fn a_full_disk_is_told_with_the_file() {
 
 #[test]
 fn without_a_name_there_is_a_line_for_each_lesson_and_nothing_else() {
-    let line = |lesson: &Shipped| {
-        let title = lesson.text.lines().next().unwrap();
-        format!("{}: {}\n", lesson.name, title.strip_prefix("# ").unwrap())
-    };
-    let known: String = LESSONS.iter().map(line).collect();
+    let known: String = LESSONS
+        .iter()
+        .map(|lesson| {
+            let title = lesson.text.lines().next().unwrap();
+            format!("{}: {}\n", lesson.name, title.strip_prefix("# ").unwrap())
+        })
+        .collect();
     assert_eq!(Ground::new().stdout("lesson"), known);
 }
 

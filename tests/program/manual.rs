@@ -48,8 +48,11 @@ fn the_manual_is_printed_as_text() {
     has(&whole, "\n\nGYROLAB RUN\n\n");
     has(&page, "\nUsage: gyrolab run [OPTIONS] <SCENARIO>\n");
     for text in [&whole, &page] {
-        let roff = |line: &&str| line.starts_with(".S") || line.contains("\\f");
-        assert_eq!(text.lines().find(roff), None);
+        assert_eq!(
+            text.lines()
+                .find(|line| line.starts_with(".S") || line.contains("\\f")),
+            None
+        );
     }
     for section in ["ENVIRONMENT", "FILES", "EXIT STATUS", "KEYS IN THE LAB"] {
         has(&whole, format!("\n{section}\n"));
@@ -66,8 +69,12 @@ fn no_line_is_wider_than_80_columns() {
     let topics = " class csv fit friction lab numbers scenario schemes sweep run";
     for topic in topics.split(' ') {
         let text = ground.stdout(&format!("man {topic}"));
-        let is_wide = |line: &&str| line.chars().count() > 80 && !line.starts_with("Usage: ");
-        assert_eq!(text.lines().find(is_wide), None, "{topic}");
+        assert_eq!(
+            text.lines()
+                .find(|line| line.chars().count() > 80 && !line.starts_with("Usage: ")),
+            None,
+            "{topic}"
+        );
     }
 }
 
@@ -103,8 +110,12 @@ fn the_topics_hold_the_tables_of_the_program() {
     ] {
         let page = ground.stdout(&format!("man {topic}"));
         has(&page, words);
-        let is_unfilled = |line: &str| line.starts_with('{') && line.ends_with('}');
-        assert!(!page.lines().any(is_unfilled), "{topic}");
+        assert!(
+            !page
+                .lines()
+                .any(|line| line.starts_with('{') && line.ends_with('}')),
+            "{topic}"
+        );
     }
 }
 

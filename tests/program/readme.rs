@@ -154,6 +154,9 @@ fn the_settings_are_good_and_all_of_them_are_shown() {
     ground.write("config.toml", &example("lab", "marker = "));
     let read = settings::read_config(&ground.file("config.toml"));
     assert_eq!(read.problems, None);
-    let is_shown = |(key, ..): &(&str, _, _)| read.settings.contains_key(*key);
-    assert!(settings::SETTINGS_KEYS.iter().all(is_shown));
+    assert!(
+        settings::SETTINGS_KEYS
+            .iter()
+            .all(|(key, ..)| read.settings.contains_key(*key))
+    );
 }

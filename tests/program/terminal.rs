@@ -402,8 +402,11 @@ fn show_prints_plain_text_of_the_size_asked_for() {
     for (size, lines, columns) in [("80x24", 24, 80), ("200x50", 50, 200), ("1x1", 1, 1)] {
         let text = ground.stdout(&format!("show method-2 --size {size}"));
         assert_eq!(text.lines().count(), lines, "{size}");
-        let fits = |line: &str| line.chars().count() <= columns && !line.contains('\u{1b}');
-        assert!(text.lines().all(fits), "{size}");
+        assert!(
+            text.lines()
+                .all(|line| line.chars().count() <= columns && !line.contains('\u{1b}')),
+            "{size}"
+        );
     }
     let text = ground.stdout("show method-2");
     has_all(&text, ["step 2300", "0.8109"]);

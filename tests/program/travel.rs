@@ -95,8 +95,11 @@ fn two_hundred_figures_are_drawn_again_from_their_files() {
     ];
     let mut whats: Vec<String> = Vec::new();
     for preset in presets {
-        let of = |option: &&str| format!("{preset} --duration 2 {option}");
-        whats.extend(options.iter().map(of));
+        whats.extend(
+            options
+                .iter()
+                .map(|option| format!("{preset} --duration 2 {option}")),
+        );
     }
     for kind in ["", "--kind residuals", "--kind traces --exact", "--from 1"] {
         let data = "--measured heidelberg-spin-decay";

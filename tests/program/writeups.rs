@@ -8,11 +8,13 @@ use std::path::Path;
 
 /// Every file of the folder with its bytes, in the order of the names.
 fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let read = |name: String| {
-        let bytes = fs::read(folder.join(&name)).unwrap();
-        (name, bytes)
-    };
-    names(folder).into_iter().map(read).collect()
+    names(folder)
+        .into_iter()
+        .map(|name| {
+            let bytes = fs::read(folder.join(&name)).unwrap();
+            (name, bytes)
+        })
+        .collect()
 }
 
 fn row_of(page: &str, what: &str) -> Vec<String> {

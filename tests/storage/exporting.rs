@@ -31,9 +31,15 @@ fn bytes(scenario: &Arc<Scenario>, every: u64) -> Vec<u8> {
     let layout = CsvLayout::every(NonZeroU64::new(every).unwrap());
     let mut csv = CsvWriter::with_layout(Vec::new(), scenario, layout).unwrap();
     let mut simulation = Simulation::new(Arc::clone(scenario));
-    let go_on = |_, _| ControlFlow::Continue(());
     let steps = scenario.steps;
-    stream::play(&mut simulation, steps, Some(&mut csv), |_| {}, go_on).unwrap();
+    stream::play(
+        &mut simulation,
+        steps,
+        Some(&mut csv),
+        |_| {},
+        |_, _| ControlFlow::Continue(()),
+    )
+    .unwrap();
     csv.finish().unwrap()
 }
 
@@ -235,8 +241,11 @@ fn a_dash_is_a_file_in_the_lab() {
         false,
     )
     .unwrap();
-    let is_part = |name: &String| name.starts_with(".gyrolab-") && name.ends_with(".part");
-    assert!(names(Path::new(".")).iter().any(is_part));
+    assert!(
+        names(Path::new("."))
+            .iter()
+            .any(|name| name.starts_with(".gyrolab-") && name.ends_with(".part"))
+    );
     drop(exporting);
 }
 

@@ -91,8 +91,9 @@ fn only(folder: &Path, end: &str) -> PathBuf {
 fn file_of(folder: &Path, text: &str) -> PathBuf {
     let mut names = names(folder, ".session").into_iter();
     let end = format!("\n{text}");
-    let is_it = |path: &PathBuf| fs::read_to_string(path).unwrap().ends_with(&end);
-    names.find(is_it).unwrap()
+    names
+        .find(|path| fs::read_to_string(path).unwrap().ends_with(&end))
+        .unwrap()
 }
 
 /// Sets the modification time of the file `path` so many `seconds` into the past.
@@ -420,10 +421,9 @@ fn child() {
         return;
     };
     let found = any(Path::new(&folder));
-    let begin = || Session::begin(Path::new(&folder)).unwrap();
     let (session, (_, was)) = match found.resumed {
         Some(resumed) => resumed,
-        None => (begin(), pair("", "new")),
+        None => (Session::begin(Path::new(&folder)).unwrap(), pair("", "new")),
     };
     println!("\nbegins at {was}");
     for line in std::io::stdin().lines().map(Result::unwrap) {

@@ -225,13 +225,13 @@ impl Terminal {
         let screen = self.screen();
         let cells = screen.split(['│', '\n']);
         // The strips of the traces are headed by a name and a range.
-        let is_headed = |cell: &&str| cell.contains(" .. ");
-        let value = |cell: &str| {
-            let mut words = cell.trim_start_matches(['►', ' ']).split_whitespace();
-            (words.next()? == label).then(|| words.next().unwrap_or_default().to_owned())
-        };
-        let cells = cells.filter(|cell| !is_headed(cell));
-        cells.filter_map(value).collect()
+        let cells = cells.filter(|cell| !cell.contains(" .. "));
+        cells
+            .filter_map(|cell| {
+                let mut words = cell.trim_start_matches(['►', ' ']).split_whitespace();
+                (words.next()? == label).then(|| words.next().unwrap_or_default().to_owned())
+            })
+            .collect()
     }
 
     #[track_caller]
@@ -292,8 +292,10 @@ impl Terminal {
     /// Waits for the last bytes. There is no end of them where the terminal is stopped, or a shell has left a program.
     fn read_the_rest(&self) {
         let begin = Instant::now();
-        let is_stopped = || self.stopped.load(Ordering::Relaxed);
-        while !self.reader.is_finished() && !is_stopped() && begin.elapsed() < LAST_BYTES {
+        while !self.reader.is_finished()
+            && !self.stopped.load(Ordering::Relaxed)
+            && begin.elapsed() < LAST_BYTES
+        {
             thread::sleep(Duration::from_millis(2));
         }
     }

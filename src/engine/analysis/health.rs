@@ -336,11 +336,12 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
 
 /// The scheme that is tried where a time step is not to be mended.
 fn better_scheme(scenario: &Scenario) -> &'static SchemeInfo {
-    let able = |scheme: &&SchemeInfo| scheme.admits.objection(&scenario.friction).is_none();
     let mut better = BETTER_SCHEMES
         .iter()
         .filter_map(|name| SchemeInfo::find(name));
-    better.find(able).unwrap_or(scenario.motion.scheme)
+    better
+        .find(|scheme| scheme.admits.objection(&scenario.friction).is_none())
+        .unwrap_or(scenario.motion.scheme)
 }
 
 /// The length of `vector`, also where its squares leave the range of numbers.

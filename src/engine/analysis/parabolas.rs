@@ -193,9 +193,10 @@ impl Parabolas {
 
     /// Counts the candidate once the axle has truly sunk below it.
     fn confirm(&mut self) {
-        let is_below =
-            |(_, height): &(HeightExtreme, f64)| height - self.lowest_since > HEIGHT_SWING_ROUNDING;
-        let Some((turn, _)) = self.candidate.filter(is_below) else {
+        let Some((turn, _)) = self
+            .candidate
+            .filter(|(_, height)| height - self.lowest_since > HEIGHT_SWING_ROUNDING)
+        else {
             return;
         };
         self.candidate = None;

@@ -213,11 +213,10 @@ impl Readouts {
     /// shows the nutation as it is; `None` where there are no swings.
     pub fn swing_s(&self) -> Option<f64> {
         let measured = self.nutation.filter(MeasuredNumber::is_settled);
-        let predicted = || {
+        let swing_s = measured.map(|measured| measured.value).or_else(|| {
             let is_seen = self.nutation_is_resolved() != Some(false);
             self.theory_about_z()?.nutation_period_s.filter(|_| is_seen)
-        };
-        let swing_s = measured.map(|measured| measured.value).or_else(predicted);
+        });
         swing_s.filter(|swing_s| *swing_s > 0.0 && swing_s.is_finite())
     }
 
@@ -324,11 +323,13 @@ pub fn at_end(
 /// Whether the `wanted` numbers are the same however the run gets to its end: those of theory, where nothing happens at
 /// certain steps on the way, and the scheme needs none.
 fn needs_no_steps(scenario: &Scenario, wanted: &[&Readout]) -> bool {
-    let counts_steps = |window: Window| matches!(window, Window::Steps { .. });
     scenario.motion.scheme.order.is_none()
         && wanted
             .iter()
             .all(|readout| readout.source == ReadoutSource::Theory)
         && scenario.edits.is_empty()
-        && !scenario.pushes.iter().any(|push| counts_steps(push.window))
+        && !scenario
+            .pushes
+            .iter()
+            .any(|push| matches!(push.window, Window::Steps { .. }))
 }

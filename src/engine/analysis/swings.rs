@@ -361,7 +361,8 @@ mod tests {
         assert!(!is_right(|time| 30.01 + wave(time)));
         assert!(!is_right(|time| 30.0 + wave(1.08 * time)));
         // It dies so slowly that the whole run's least and greatest tilt are right.
-        let dying = |time: f64| 30.05 - (0.05 - wave(time)) * libm::exp(-time / 300.0);
-        assert!(!is_right(dying));
+        assert!(!is_right(
+            |time| 30.05 - (0.05 - wave(time)) * libm::exp(-time / 300.0)
+        ));
     }
 }

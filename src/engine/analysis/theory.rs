@@ -149,8 +149,9 @@ impl Theory {
     ) -> Self {
         let axle = state.axle();
         // Without a load the axle turns about L.
-        let free = || -state.momentum.try_normalize(0.0).unwrap_or(axle);
-        let up = -load.try_normalize(0.0).unwrap_or_else(free);
+        let up = -load
+            .try_normalize(0.0)
+            .unwrap_or_else(|| -state.momentum.try_normalize(0.0).unwrap_or(axle));
         let (size, spin) = (load.norm(), state.momentum.dot(&axle));
         let momenta = state.momentum.norm() + (top.across * size).sqrt();
         let spins = spin.abs() > SAME_PART * momenta;
@@ -235,12 +236,12 @@ fn body_cone_period_s(top: &SymmetricTop, spin: f64, load: f64) -> Option<f64> {
 }
 
 fn path((low, high): (f64, f64), cusp: Option<f64>) -> AxlePath {
-    let inside = |tilt: f64| tilt > low + SAME_DEG && tilt < high - SAME_DEG;
-    let at_end = |tilt: f64| (tilt - low).abs() <= SAME_DEG || (tilt - high).abs() <= SAME_DEG;
     match cusp {
         _ if high - low <= SAME_DEG => AxlePath::Circle,
-        Some(tilt) if inside(tilt) => AxlePath::Loops,
-        Some(tilt) if at_end(tilt) => AxlePath::Cusps,
+        Some(tilt) if tilt > low + SAME_DEG && tilt < high - SAME_DEG => AxlePath::Loops,
+        Some(tilt) if (tilt - low).abs() <= SAME_DEG || (tilt - high).abs() <= SAME_DEG => {
+            AxlePath::Cusps
+        }
         _ => AxlePath::Waves,
     }
 }

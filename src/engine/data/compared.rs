@@ -75,8 +75,9 @@ impl Compared {
 
 /// How many of the points of `curve` were measured at `now_s` or before.
 fn reached(series: &TimeSeries, curve: &MeasuredCurve, now_s: f64) -> usize {
-    let is_reached = |point: &MeasuredPoint| series.times_s[point.row] <= now_s;
-    curve.points.partition_point(is_reached)
+    curve
+        .points
+        .partition_point(|point| series.times_s[point.row] <= now_s)
 }
 
 /// The points of `curve`. The first of them have the values `model` in the run.
@@ -226,12 +227,15 @@ mod tests {
     }
 
     fn between(name: &str, values: &[f64], model: &[f64]) -> Vec<Residual> {
-        let point = |(row, &value)| MeasuredPoint {
-            row,
-            value,
-            sigma: Some(2.0),
-        };
-        let points: Vec<_> = values.iter().enumerate().map(point).collect();
+        let points: Vec<_> = values
+            .iter()
+            .enumerate()
+            .map(|(row, &value)| MeasuredPoint {
+                row,
+                value,
+                sigma: Some(2.0),
+            })
+            .collect();
         residuals(RunQuantity::find(name), &points, model)
     }
 

@@ -52,11 +52,13 @@ fn point_beyond_arm(series: &TimeSeries, arm_m: f64) -> Option<String> {
     let cure = match unit {
         "" => "check the unit and the origin of the coordinates".to_owned(),
         unit => {
-            let column = |name: &&str| {
-                let axis = name.trim_end_matches("_m");
-                format!("{axis}={axis}_{unit}")
-            };
-            let columns: Vec<String> = names.iter().map(column).collect();
+            let columns: Vec<String> = names
+                .iter()
+                .map(|name| {
+                    let axis = name.trim_end_matches("_m");
+                    format!("{axis}={axis}_{unit}")
+                })
+                .collect();
             format!("are they in {unit}? --map {}", columns.join(","))
         }
     };
@@ -70,11 +72,10 @@ fn point_beyond_arm(series: &TimeSeries, arm_m: f64) -> Option<String> {
 
 /// A tilt that never exceeds pi, where the run's does.
 fn tilt_in_radians(series: &TimeSeries, scenario: &Arc<Scenario>) -> Option<String> {
-    let is_tilt = |name: &str| name == "tilt_deg";
     let curve = series
         .curves
         .iter()
-        .find(|curve| is_tilt(curve.quantity.name))?;
+        .find(|curve| curve.quantity.name == "tilt_deg")?;
     let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
     let most_deg = most(&mut curve.points.iter().map(|point| point.value.abs()));
     if most_deg > MOST_TILT_RAD || curve.points.is_empty() {

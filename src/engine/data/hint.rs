@@ -31,11 +31,13 @@ pub(super) fn hint(cells: &Csv, map: &[Renaming], origin: &str) -> String {
         let map = completed(cells, map, origin, None);
         return map.map_or_else(String::new, |map| format!("; this reads the file: {map}"));
     }
-    let of_track = |title: &&str| {
-        let map = completed(cells, map, origin, Some(title))?;
-        Some(format!("{map} reads the track \"{}\"", brief(title, 40)))
-    };
-    let all: Vec<String> = tracks.iter().filter_map(of_track).collect();
+    let all: Vec<String> = tracks
+        .iter()
+        .filter_map(|title| {
+            let map = completed(cells, map, origin, Some(title))?;
+            Some(format!("{map} reads the track \"{}\"", brief(title, 40)))
+        })
+        .collect();
     if all.is_empty() {
         String::new()
     } else {
@@ -72,8 +74,10 @@ pub fn map_option(cells: &Csv, map: &[Renaming], added: &[(usize, String)]) -> O
     let added = added.iter();
     let added = added.map(|(place, name)| format!("{}={name}", label(cells, *place)));
     let all = given.chain(added).collect::<Vec<_>>().join(",");
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_=,.:/+-@".contains(c);
-    if all.chars().all(is_plain) {
+    if all
+        .chars()
+        .all(|c| c.is_ascii_alphanumeric() || "_=,.:/+-@".contains(c))
+    {
         return Some(format!("--map {all}"));
     }
     let quoted = shlex::try_quote(&all).ok()?;
@@ -167,12 +171,14 @@ impl Guess<'_> {
 
     /// Of a table of runs: the key or readout that was meant, or nothing.
     fn add_of_table(&mut self, places: &[usize]) {
-        let known = || KEYS.iter().map(|key| key.path).chain(readouts::names());
         for &place in places {
             let name = &self.cells.names[place];
             if super::names::is_refused_in_table(name) {
-                let meant =
-                    near(name, known()).filter(|meant| !meant.contains('*') && *meant != name);
+                let meant = near(
+                    name,
+                    KEYS.iter().map(|key| key.path).chain(readouts::names()),
+                )
+                .filter(|meant| !meant.contains('*') && *meant != name);
                 let meant = meant.unwrap_or(LEFT_OUT).to_owned();
                 self.added.push((place, meant));
             }
@@ -205,9 +211,11 @@ impl Guess<'_> {
             let numbers = self.numbers(place);
             numbers.len() > 1 && numbers.windows(2).all(|pair| pair[0] < pair[1])
         };
-        let is_unknown = |place: &usize| RunQuantity::find(&self.cells.names[*place]).is_none();
         let is_called_so = |&place: &usize| time_like(&self.cells.own[place].name);
-        let mut columns = places.iter().copied().filter(is_unknown);
+        let mut columns = places
+            .iter()
+            .copied()
+            .filter(|place| RunQuantity::find(&self.cells.names[*place]).is_none());
         let of_both = columns
             .clone()
             .find(|place| is_called_so(place) && increases(place));
@@ -268,8 +276,12 @@ impl Guess<'_> {
         }
         let axis = ["x", "y", "z"].iter().position(|axis| {
             let mut words = lower.split(|c: char| !c.is_alphanumeric());
-            let is_short = |front: &str| ["g", "w", "gyro", "gyr", "omega", "ω"].contains(&front);
-            words.any(|word| word == *axis || word.strip_suffix(axis).is_some_and(is_short))
+            words.any(|word| {
+                word == *axis
+                    || word.strip_suffix(axis).is_some_and(|front| {
+                        ["g", "w", "gyro", "gyr", "omega", "ω"].contains(&front)
+                    })
+            })
         });
         let has_foreign_word = ["acc", "mag", "grav", "linear"]
             .iter()

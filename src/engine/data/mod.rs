@@ -81,8 +81,11 @@ pub struct TimeSeries {
 impl TimeSeries {
     /// The same as a CSV with the program's names.
     pub fn to_csv(&self) -> String {
-        let with_sigma = |curve| (curve, has_sigma(curve));
-        let curves: Vec<(&MeasuredCurve, bool)> = self.curves.iter().map(with_sigma).collect();
+        let curves: Vec<(&MeasuredCurve, bool)> = self
+            .curves
+            .iter()
+            .map(|curve| (curve, has_sigma(curve)))
+            .collect();
         let mut text = String::from("t_s");
         for (curve, has_sigma) in &curves {
             let name = curve.quantity.name;

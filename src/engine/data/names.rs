@@ -82,8 +82,10 @@ pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
         }
     }
     for (place, (name, own)) in names.iter().zip(&cells.own).enumerate() {
-        let is_of = |column: &NamedColumn| column.uncertainty == Some(place);
-        let is_read = columns.read.iter().any(is_of);
+        let is_read = columns
+            .read
+            .iter()
+            .any(|column| column.uncertainty == Some(place));
         match uncertainty_of(name) {
             Some(of) if of == TIME_COLUMN && !is_mapped => {
                 let rule = format!(

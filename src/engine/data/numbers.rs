@@ -3,7 +3,7 @@
 use super::names::{ColumnRole, NamedColumn};
 use super::{MeasuredCurve, MeasuredPoint, MeasuredReadout, RunSetting, RunTable, TimeSeries};
 use crate::scenario::Problem;
-use crate::scenario::csv::{Csv, OwnColumn};
+use crate::scenario::csv::Csv;
 use crate::scenario::document::toml_or_text;
 use crate::scenario::keys::ValueKind;
 use crate::scenario::problem::{Problems, at_line};
@@ -97,9 +97,8 @@ impl<'a> CellParser<'a> {
 
     /// The values of a measured column, with their uncertainties; `None` for a column that is left out.
     fn points(&mut self, column: &NamedColumn) -> Option<Vec<MeasuredPoint>> {
-        let is_mapped = |own: &OwnColumn| own.is_mapped;
         let own = &self.cells.own[column.place];
-        if own.is_mapped || !self.cells.own.iter().any(is_mapped) {
+        if own.is_mapped || !self.cells.own.iter().any(|own| own.is_mapped) {
             return Some(self.every_point(column));
         }
         let before = (self.found.clone(), self.uses_points, self.uses_commas);

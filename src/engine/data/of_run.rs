@@ -134,7 +134,6 @@ pub fn is_within_reach(series: &TimeSeries, scenario: &Scenario) -> bool {
 /// Whether the motion at a time does not depend on the steps that lead there.
 fn needs_no_steps(series: &TimeSeries, scenario: &Scenario) -> bool {
     let is_exact = scenario.motion.scheme.order.is_none();
-    let counts_steps = |window: Window| matches!(window, Window::Steps { .. });
     // Full turns are counted step by step.
     let counts_turns = series
         .curves
@@ -143,5 +142,8 @@ fn needs_no_steps(series: &TimeSeries, scenario: &Scenario) -> bool {
     is_exact
         && !counts_turns
         && scenario.edits.is_empty()
-        && !scenario.pushes.iter().any(|push| counts_steps(push.window))
+        && !scenario
+            .pushes
+            .iter()
+            .any(|push| matches!(push.window, Window::Steps { .. }))
 }

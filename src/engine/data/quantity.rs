@@ -23,14 +23,14 @@ pub struct RunQuantity {
 
 /// Every quantity that can be measured over time.
 pub static QUANTITIES: LazyLock<Vec<RunQuantity>> = LazyLock::new(|| {
-    let is_measured =
-        |column: &&CsvColumn| column.name != TIME_COLUMN && !COUNTS.contains(&column.name);
-    let quantity = |column: &'static CsvColumn| RunQuantity {
-        name: column.name,
-        is_direction: column.name == "azimuth_deg",
-        column,
-    };
-    CsvColumn::all().filter(is_measured).map(quantity).collect()
+    CsvColumn::all()
+        .filter(|column| column.name != TIME_COLUMN && !COUNTS.contains(&column.name))
+        .map(|column| RunQuantity {
+            name: column.name,
+            is_direction: column.name == "azimuth_deg",
+            column,
+        })
+        .collect()
 });
 
 impl RunQuantity {

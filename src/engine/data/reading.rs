@@ -60,9 +60,10 @@ pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
 fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
     const OF_SCENARIOS: [&str; 3] = ["body", "start", "motion"];
     let document = Document::parse_header(origin, text).ok()?;
-    let is_table = |name: &str| document.table().get(name).is_some_and(Value::is_table);
     let rule = "is a scenario, and no measured data: it stands where SCENARIO does (gyrolab SCENARIO --measured FILE.csv, gyrolab fit FILE.csv --in SCENARIO); measured data are a CSV, which gyrolab man fit describes";
-    let is_scenario = OF_SCENARIOS.into_iter().any(is_table);
+    let is_scenario = OF_SCENARIOS
+        .into_iter()
+        .any(|name| document.table().get(name).is_some_and(Value::is_table));
     is_scenario.then(|| Problems::one(origin, Problem::at("", rule)))
 }
 
@@ -123,11 +124,10 @@ pub fn read_with(
         return Ok(measured);
     }
     // Columns are read one after the other, and a file is corrected from its top to its end.
-    let line = |problem: &Problem| {
+    found.list.sort_by_key(|problem| {
         let place = problem.place.as_deref()?.strip_prefix("line ")?;
         place.parse::<u64>().ok()
-    };
-    found.list.sort_by_key(line);
+    });
     Err(found.of(origin))
 }
 
@@ -147,6 +147,9 @@ fn taken_apart(
     if let Some(last) = problems.last_mut() {
         last.rule += &hint(&cells, &options.map, origin);
     }
-    let place = |problem| at_line(cells.line_of_names, problem);
-    Err(problems.into_iter().map(place).collect::<Vec<_>>().into())
+    Err(problems
+        .into_iter()
+        .map(|problem| at_line(cells.line_of_names, problem))
+        .collect::<Vec<_>>()
+        .into())
 }

@@ -245,18 +245,15 @@ fn with_unit(stem: &str, unit: &Unit) -> Option<&'static str> {
         }
         // Which axes wx (rad/s) is about cannot be known.
         UnitKind::Rate if axis_after(&letters, &["w"]).is_some() => None,
-        kind => {
-            let is_same = |name: &&str| {
+        kind => QUANTITIES
+            .iter()
+            .map(|quantity| quantity.name)
+            .find(|name| {
                 Unit::of(name).is_some_and(|unit| {
                     unit.kind == kind
                         && self::letters(&name[..name.len() - unit.end.len()]) == letters
                 })
-            };
-            QUANTITIES
-                .iter()
-                .map(|quantity| quantity.name)
-                .find(is_same)
-        }
+            }),
     }
 }
 

@@ -268,7 +268,6 @@ impl OutputFolder {
     /// files of the same names are replaced, and its others stay.
     pub fn begin(path: &Path, replace: bool) -> Result<Self, DestinationError> {
         let path: PathBuf = path.components().collect(); // without a slash at its end
-        let refused = |error| DestinationError::refused(&path, error);
         let in_folder = folder_of(&path);
         if !in_folder.is_dir() {
             return Err(DestinationError::NoFolder {
@@ -278,7 +277,8 @@ impl OutputFolder {
         }
         may_be_written(&path, replace)?;
         let permissions = fs::Permissions::from_mode(0o777); // before the umask
-        let (temporary, lock) = temporary::folder_in(in_folder, &permissions).map_err(refused)?;
+        let (temporary, lock) = temporary::folder_in(in_folder, &permissions)
+            .map_err(|error| DestinationError::refused(&path, error))?;
         Ok(Self {
             temporary,
             path,

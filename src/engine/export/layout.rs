@@ -179,9 +179,8 @@ impl CsvLayout {
     /// The layout that stands above the run file in the header of a CSV, whose lines have lost their `# `.
     pub fn read(header: &str) -> Result<Self, Problem> {
         let file: Result<LayoutFile, _> = toml::from_str(&above_run_file(header));
-        let wrong =
-            |error: toml::de::Error| Problem::at("the lines above the run file", error.message());
-        file.map_err(wrong)?.check()
+        file.map_err(|error| Problem::at("the lines above the run file", error.message()))?
+            .check()
     }
 }
 

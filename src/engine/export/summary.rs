@@ -79,8 +79,10 @@ impl RunSummary {
             Some(kind) => format!("{} ({kind})", readouts.scheme),
             None => readouts.scheme.to_owned(),
         };
-        let steps = || format!("{} of {} s", sample.step, shortest(readouts.time_step_s));
-        let steps = self.steps.clone().unwrap_or_else(steps);
+        let steps = self
+            .steps
+            .clone()
+            .unwrap_or_else(|| format!("{} of {} s", sample.step, shortest(readouts.time_step_s)));
         let number = |name, write: fn(f64) -> String| {
             readouts
                 .number(name)
@@ -322,8 +324,8 @@ fn steady(theory: &Theory) -> String {
     if slow.or(fast).is_none() {
         return format!("none at this tilt: the top is too slow for a steady precession{about}");
     }
-    let rate = |rate: Option<f64>| rate.map_or("none".to_owned(), |rate| fixed(rate, 6));
-    let [slow, fast] = [slow, fast].map(rate);
+    let [slow, fast] =
+        [slow, fast].map(|rate| rate.map_or("none".to_owned(), |rate| fixed(rate, 6)));
     format!("precession of {slow} (slow) or {fast} (fast) rad/s at this tilt{about}")
 }
 

@@ -66,8 +66,7 @@ impl Original {
     /// Lists the differences that make `now` move differently; `None` where there are none.
     fn change(&self, now: &Scenario) -> Option<String> {
         let changes = changes(&self.scenario, now);
-        let list = || format!("differs from {}: {}", self.name, changes.join(", "));
-        (!changes.is_empty()).then(list)
+        (!changes.is_empty()).then(|| format!("differs from {}: {}", self.name, changes.join(", ")))
     }
 
     /// `now` as it is to be written to a file: where it moves differently, the words say of which motion they were
@@ -127,8 +126,7 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
     let [old, new] = [before, now].map(|run| in_force(run, u64::MAX).0);
     let (old_file, new_file) = (&before.file, &now.file);
     let motion = |name: &str, unit: &str, [new, old]: [f64; 2]| {
-        let words = || format!("{name} {} {unit}, not {}", shortest(new), shortest(old));
-        (new != old).then(words)
+        (new != old).then(|| format!("{name} {} {unit}, not {}", shortest(new), shortest(old)))
     };
     let [scheme, old_scheme] = [new, old].map(|motion| motion.scheme.name);
     let changes = [
@@ -154,14 +152,16 @@ fn values<T: Serialize + PartialEq>(name: &str, before: &T, now: &T) -> Option<S
     }
     // What is not there, as friction may be, is an empty table.
     let [before, now] = [before, now].map(|table| Table::try_from(table).unwrap_or_default());
-    let is_new = |(key, value): &(&String, &Value)| before.get(*key) != Some(*value);
-    let new = now.iter().filter(is_new).map(|(key, value)| {
-        let is_plain = |value: &&Value| float(value).is_some() || value.is_array();
-        let old = before.get(key).filter(is_plain);
-        let old = old.filter(|_| is_plain(&value)).map(written);
-        let old = old.map_or(String::new(), |old| format!(", not {old}"));
-        format!("{name}.{key} {}{old}", written(value))
-    });
+    let new = now
+        .iter()
+        .filter(|(key, value)| before.get(*key) != Some(*value))
+        .map(|(key, value)| {
+            let is_plain = |value: &&Value| float(value).is_some() || value.is_array();
+            let old = before.get(key).filter(is_plain);
+            let old = old.filter(|_| is_plain(&value)).map(written);
+            let old = old.map_or(String::new(), |old| format!(", not {old}"));
+            format!("{name}.{key} {}{old}", written(value))
+        });
     let new: Vec<_> = new.collect();
     Some(match new.len() {
         1..=MOST_LISTED_CHANGES => new.join(", "),
@@ -185,8 +185,9 @@ fn written(value: &Value) -> String {
 /// How the pushes have changed, in words, by more than the rescaling that a new time step causes.
 fn push_change(before: &Scenario, now: &Scenario) -> Option<&'static str> {
     let (old, new) = (&before.file, &now.file);
-    let rescaled = || at_time_step(old, now.motion.time_step_s);
-    if new.push == old.push || rescaled().is_ok_and(|rescaled| rescaled.push == new.push) {
+    if new.push == old.push
+        || at_time_step(old, now.motion.time_step_s).is_ok_and(|rescaled| rescaled.push == new.push)
+    {
         return None;
     }
     Some(match new.push.len().saturating_sub(old.push.len()) {

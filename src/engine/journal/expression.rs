@@ -142,13 +142,15 @@ impl Expression {
         &'a self,
         find: impl Fn(&'a str) -> Result<T, String>,
     ) -> Result<Vec<T>, Fault> {
-        let look_up = |(name, column): &'a (String, usize)| {
-            find(name).map_err(|rule| Fault {
-                column: *column,
-                rule,
+        self.names
+            .iter()
+            .map(|(name, column)| {
+                find(name).map_err(|rule| Fault {
+                    column: *column,
+                    rule,
+                })
             })
-        };
-        self.names.iter().map(look_up).collect()
+            .collect()
     }
 
     /// Its value, with the values of the names from `value_of`; `None` where a number that it needs has no value. A
@@ -308,11 +310,10 @@ impl<'a> Parser<'a> {
     fn operator(&mut self) -> Option<&'static Operator> {
         let rest = self.rest();
         let word = word(rest);
-        let is_here = |operator: &&Operator| match word {
+        OPERATORS.iter().find(|operator| match word {
             "" => rest.starts_with(operator.name),
             word => operator.name == word,
-        };
-        OPERATORS.iter().find(is_here)
+        })
     }
 
     fn fault<T>(column: usize, rule: impl Into<String>) -> Result<T, Fault> {
@@ -436,13 +437,12 @@ mod tests {
     use super::*;
 
     fn value(text: &str) -> Option<f64> {
-        let numbers = |name: &str| match name {
+        Expression::parse(text).unwrap().value(|name| match name {
             "t_s" => Some(60.0),
             "tilt_deg" => Some(-3.0),
             "push.0.force_N.2" => Some(-50.0),
             _ => None,
-        };
-        Expression::parse(text).unwrap().value(numbers)
+        })
     }
 
     fn fault(text: &str) -> (usize, String) {

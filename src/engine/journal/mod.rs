@@ -340,8 +340,6 @@ impl Journal {
     /// The base with gravity, scheme, time step and its own pushes as they are at `step`, without added pushes. The base
     /// keeps its time step where its pushes cannot be rescaled to the new one.
     fn settings_at(&self, step: u64) -> Result<ScenarioFile, Problems> {
-        let is_added =
-            |key: &str| number_of_push(key).is_some_and(|number| number >= self.base.push.len());
         let mut document = Document::from_file(ORIGIN, &self.base)?;
         let mut time_step_s = self.base.motion.time_step_s;
         for entry in self.in_force_by(step) {
@@ -351,7 +349,7 @@ impl Journal {
             for (key, value) in set {
                 if key == "motion.time_step_s" {
                     time_step_s = float(value).unwrap_or(time_step_s);
-                } else if !is_added(key) {
+                } else if number_of_push(key).is_none_or(|number| number < self.base.push.len()) {
                     document.write(key, value.clone())?;
                 }
             }

@@ -79,12 +79,13 @@ impl NextPush {
         };
         let size = push.force.norm();
         let unit = push.force / size;
-        let is_same = |toward: &Toward| toward.direction(&Vector3::zeros()) == Ok(unit);
         let mut named = Toward::NAMED.into_iter().map(|(_, toward)| toward);
         Self {
             point: file.point.clone(),
             size_N: size,
-            toward: named.find(is_same).unwrap_or(Toward::Along(unit.into())),
+            toward: named
+                .find(|toward| toward.direction(&Vector3::zeros()) == Ok(unit))
+                .unwrap_or(Toward::Along(unit.into())),
             from_s: 0.0,
             for_s: match push.window {
                 Window::Steps { count, .. } => count as f64 * scenario.written_for_s,
@@ -99,8 +100,10 @@ impl NextPush {
         let weight = body.mass() * scenario.motion.gravity.abs().max(1.0);
         let length_s = scenario.steps as f64 * scenario.motion.time_step_s;
         let names = scenario.body.names();
-        let is_traced = |name: &&&str| scenario.body.point(name) == Some(scenario.trace);
-        let point = names.iter().find(is_traced).or(names.first());
+        let point = names
+            .iter()
+            .find(|name| scenario.body.point(name) == Some(scenario.trace))
+            .or(names.first());
         Self {
             point: point.copied().unwrap_or_default().to_owned(),
             size_N: at_or_below(WEIGHTS * weight),

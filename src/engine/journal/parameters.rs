@@ -113,8 +113,8 @@ fn length(table: &Table, array: &str) -> usize {
 }
 
 fn names(table: &Table, array: &str) -> Vec<String> {
-    let name = |index| find(table, &format!("{array}.{index}.name"))?.as_str();
-    let names = (0..length(table, array)).filter_map(name);
+    let names = (0..length(table, array))
+        .filter_map(|index| find(table, &format!("{array}.{index}.name"))?.as_str());
     names.map(str::to_owned).collect()
 }
 
@@ -129,8 +129,10 @@ fn parameters_of(
         return Vec::new();
     };
     let written = find(table, place);
-    let unwritten = || present(key, place, table, scenario).or_else(|| key.default());
-    let Some(value) = written.cloned().or_else(unwritten) else {
+    let Some(value) = written
+        .cloned()
+        .or_else(|| present(key, place, table, scenario).or_else(|| key.default()))
+    else {
         return Vec::new();
     };
     let parameter = Parameter {
@@ -264,8 +266,9 @@ impl Parameter {
             (Value::Integer(value), _) => Value::Integer(nudge::whole(*value, times)),
             (value, rule) => {
                 let number = float(value);
-                let nudged = |number| nudge::number(number, self.size, rule, times);
-                let nudged = number.and_then(nudged).ok_or("cannot be nudged: type it")?;
+                let nudged = number
+                    .and_then(|number| nudge::number(number, self.size, rule, times))
+                    .ok_or("cannot be nudged: type it")?;
                 Value::Float(nudged)
             }
         };

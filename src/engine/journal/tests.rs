@@ -92,11 +92,12 @@ fn the_run_up_to_a_step_ends_there_and_has_its_description() {
 #[test]
 fn an_act_that_passes_a_limit_is_refused() {
     let mut file = journal("method-2").file();
-    let one = |step| EditFile {
-        step,
-        set: one("motion.gravity_m_per_s2", 1.0),
-    };
-    file.edit = (0..limits::MOST_EDITS as u64).map(one).collect();
+    file.edit = (0..limits::MOST_EDITS as u64)
+        .map(|step| EditFile {
+            step,
+            set: one("motion.gravity_m_per_s2", 1.0),
+        })
+        .collect();
     let mut journal = Journal::of(file);
     let refusal = |done: Result<_, Problems>| done.map(drop).unwrap_err().in_one_line();
     let edit = journal.act(1_000_000, gravity(2.0), false);

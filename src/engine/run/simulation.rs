@@ -243,8 +243,11 @@ impl Simulation {
         let now = &self.now;
         let body = &now.scenario.body.mechanics;
         let at = |state: &State, push: &PointForce| observables::position(body, state, push.point);
-        let moved = |push: &PointForce| push.force.dot(&(at(&now.after, push) - at(&before, push)));
-        now.loads.pushes.iter().map(moved).sum()
+        now.loads
+            .pushes
+            .iter()
+            .map(|push| push.force.dot(&(at(&now.after, push) - at(&before, push))))
+            .sum()
     }
 
     /// Lets the scheme take the state `length_s` further under the present loads.

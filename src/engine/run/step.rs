@@ -115,23 +115,27 @@ impl Step {
     #[inline]
     pub fn position(&self) -> &Vector3<f64> {
         let body = &self.scenario.body.mechanics;
-        let read = || observables::position(body, &self.after, self.scenario.trace);
-        self.derived.position.get_or_init(read)
+        self.derived
+            .position
+            .get_or_init(|| observables::position(body, &self.after, self.scenario.trace))
     }
 
     /// ω = I⁻¹L after it, world frame, rad/s.
     #[inline]
     pub fn angular_velocity(&self) -> &Vector3<f64> {
         let body = &self.scenario.body.mechanics;
-        let read = || observables::angular_velocity(body, &self.after);
-        self.derived.angular_velocity.get_or_init(read)
+        self.derived
+            .angular_velocity
+            .get_or_init(|| observables::angular_velocity(body, &self.after))
     }
 
     /// Angle of the axle from +z, degrees.
     #[inline]
     pub fn tilt_deg(&self) -> f64 {
-        let read = || observables::tilt_deg(&self.after);
-        *self.derived.tilt_deg.get_or_init(read)
+        *self
+            .derived
+            .tilt_deg
+            .get_or_init(|| observables::tilt_deg(&self.after))
     }
 
     /// Kinetic and potential energy, from the pivot, J.

@@ -120,8 +120,9 @@ fn traced(body: &NamedBody) -> usize {
     };
     let named = body.names().into_iter().filter_map(|name| body.point(name));
     let named = named.reduce(farther).filter(|&place| distance(place) > 0.0);
-    let any = || (0..body.mechanics.points().len()).reduce(farther);
-    named.or_else(any).unwrap_or(0)
+    named
+        .or_else(|| (0..body.mechanics.points().len()).reduce(farther))
+        .unwrap_or(0)
 }
 
 /// The edits of `file`, whose pushes are `pushes` and whose friction is `friction`.

@@ -197,8 +197,10 @@ impl Csv {
         // With every line ended alike, the reader's own count of lines is right.
         let mut text = text.replace("\r\n", "\n") + "\n";
         if self.separator == ' ' {
-            let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n";
-            text = text.lines().map(words).collect();
+            text = text
+                .lines()
+                .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n")
+                .collect();
         }
         let mut reader = ReaderBuilder::new()
             .has_headers(false)
@@ -337,8 +339,7 @@ impl Csv {
 
     /// The place of a column, by its own name or its number from 1.
     fn place_of(&self, column: &str) -> Result<usize, String> {
-        let of_name = |own: &&OwnColumn| own.name == column;
-        let named: Vec<&OwnColumn> = self.own.iter().filter(of_name).collect();
+        let named: Vec<&OwnColumn> = self.own.iter().filter(|own| own.name == column).collect();
         match named[..] {
             [own] => Ok(own.number - 1),
             [] => {

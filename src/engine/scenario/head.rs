@@ -57,14 +57,17 @@ impl Head {
 
     /// Whether it is the head of a CSV that gyrolab wrote. Nothing in TOML is a line of names without a value.
     pub fn is_of_csv(&self) -> bool {
-        let is_of_name = |byte: &u8| byte.is_ascii_alphanumeric() || b"_.,;\"".contains(byte);
         let names = self.names();
         let tells_version = || {
             let mut lines = self.comments().split(|&byte| byte == b'\n');
             lines.any(|line| line.starts_with(VERSION_LINE))
         };
         names.starts_with(EVERY_COLUMN)
-            || !names.is_empty() && names.iter().all(is_of_name) && tells_version()
+            || !names.is_empty()
+                && names
+                    .iter()
+                    .all(|byte| byte.is_ascii_alphanumeric() || b"_.,;\"".contains(byte))
+                && tells_version()
     }
 
     /// The lines that begin with `#`, without a byte order mark.
@@ -84,12 +87,14 @@ impl Head {
     /// The lines above the line of names without their `# `; none where there are none.
     pub fn header(&self) -> Result<String, Problem> {
         let lines = utf8(self.comments().to_vec(), "")?;
-        let stripped = |line: &str| {
-            let line = line.trim_start_matches('\u{feff}');
-            let line = line.strip_prefix('#').unwrap_or(line);
-            line.strip_prefix(' ').unwrap_or(line).to_owned()
-        };
-        Ok(lines.split_inclusive('\n').map(stripped).collect())
+        Ok(lines
+            .split_inclusive('\n')
+            .map(|line| {
+                let line = line.trim_start_matches('\u{feff}');
+                let line = line.strip_prefix('#').unwrap_or(line);
+                line.strip_prefix(' ').unwrap_or(line).to_owned()
+            })
+            .collect())
     }
 }
 

@@ -214,10 +214,13 @@ const SCHEME_NAMES: [&str; scheme::SCHEMES.len()] = scheme::names();
 
 /// The dotted `key` with `*` in the place of each number.
 fn pattern(key: &str) -> String {
-    let is_number = |name: &str| !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
-    let names = key
-        .split('.')
-        .map(|name| if is_number(name) { "*" } else { name });
+    let names = key.split('.').map(|name| {
+        if !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit()) {
+            "*"
+        } else {
+            name
+        }
+    });
     names.collect::<Vec<_>>().join(".")
 }
 
@@ -446,8 +449,11 @@ mod tests {
             let is_told = key.about.contains("(default: ");
             let default = key.default();
             assert_eq!(default.is_some(), is_told, "{}", key.path);
-            let is_allowed = |value: Value| key.kind.check(&value).is_ok();
-            assert!(default.is_none_or(is_allowed), "{}", key.path);
+            assert!(
+                default.is_none_or(|value| key.kind.check(&value).is_ok()),
+                "{}",
+                key.path
+            );
             let about = key.about.replace("^2", "2").replace("degrees", "deg");
             let is_told = about.contains(lab.unit) || lab.unit == "s/s";
             assert!(is_told, "{}: {}", key.path, lab.unit);

@@ -123,8 +123,9 @@ fn text(value: &Value) -> Result<&str, String> {
 }
 
 pub fn float(value: &Value) -> Option<f64> {
-    let whole = || value.as_integer().map(|whole| whole as f64);
-    value.as_float().or_else(whole)
+    value
+        .as_float()
+        .or_else(|| value.as_integer().map(|whole| whole as f64))
 }
 
 fn number(value: &Value) -> Result<f64, String> {

@@ -58,10 +58,9 @@ pub fn typed(text: &str, unit: &str) -> Result<f64, String> {
         _ => format!("must be a number, not \"{}\"", brief(text, 20)),
     };
     let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
-    let read = |end: usize| Some((text[..end].trim_end().parse().ok()?, text[end..].trim()));
     let (number, rest) = ends
         .take(LONGEST_TYPED_NUMBER)
-        .find_map(read)
+        .find_map(|end| Some((text[..end].trim_end().parse().ok()?, text[end..].trim())))
         .ok_or_else(wrong)?;
     if rest.is_empty() || plain(rest) == plain(unit) {
         return Ok(number);

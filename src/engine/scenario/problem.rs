@@ -242,8 +242,9 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
         return format!("did you mean {}?", brief(name, LONGEST_COMPARED_NAME));
     }
     // Of "precession" all that have to do with it.
-    let has_it = |name: &&str| bare.len() > 2 && letters(name).contains(&bare);
-    let having_it = known.clone().filter(has_it);
+    let having_it = known
+        .clone()
+        .filter(|name| bare.len() > 2 && letters(name).contains(&bare));
     match having_it.clone().next() {
         Some(_) => format!("there is {}", listed(having_it)),
         None => format!("there is {}", listed(known)),
@@ -280,8 +281,13 @@ fn closest<'a>(
         // A name that differs in length by more than this differs in as many letters.
         let may_be_near = name.len() <= LONGEST_COMPARED_NAME
             && name.chars().count().abs_diff(length) <= furthest;
-        let distance = || strsim::damerau_levenshtein(&lower, &name.to_lowercase());
-        may_be_near.then(|| (distance(), furthest, name))
+        may_be_near.then(|| {
+            (
+                strsim::damerau_levenshtein(&lower, &name.to_lowercase()),
+                furthest,
+                name,
+            )
+        })
     });
     let (distance, furthest, name) = distances.min_by_key(|(distance, ..)| *distance)?;
     (distance <= furthest).then_some(name)

@@ -322,10 +322,12 @@ pub(super) fn tell_other_way(
         Some("body") => vector(&start.orientation.tr_mul(&in_world)),
         _ => vector(&in_world),
     };
-    let omega = || angular_velocity(&now.body.mechanics, start);
     let told: Vec<(&str, Value)> = match own[0] {
         "spin_rpm" => vec![("spin_rad_per_s", now.spin_rad_per_s(start).into())],
-        "omega_rad_per_s" => vec![("omega_rad_per_s", framed(omega()))],
+        "omega_rad_per_s" => vec![(
+            "omega_rad_per_s",
+            framed(angular_velocity(&now.body.mechanics, start)),
+        )],
         "precession_rad_per_s" => {
             let rates = euler_rates(now).ok_or_else(|| Problem::at(key, NO_RATES))?;
             EULER.into_iter().zip(rates.map(Value::from)).collect()

@@ -15,8 +15,10 @@ pub fn rung_below(value: f64) -> i64 {
     const FARTHEST_DECADE: i64 = 400; // decades; beyond them there are no numbers
     let decade = (libm::log10(value).floor() as i64).clamp(-FARTHEST_DECADE, FARTHEST_DECADE);
     let top = 3 * decade + 3;
-    let is_above = |number: &i64| rung(*number) <= value * (1.0 + RUNG_ROUNDING);
-    (top - 4..=top).rev().find(is_above).unwrap_or(top - 4)
+    (top - 4..=top)
+        .rev()
+        .find(|number| rung(*number) <= value * (1.0 + RUNG_ROUNDING))
+        .unwrap_or(top - 4)
 }
 
 /// The largest number of the ladder that is not above `value`; 0 where there is none above zero.

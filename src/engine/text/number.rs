@@ -127,11 +127,10 @@ pub fn uncertain(number: f64, uncertainty: f64) -> Option<Uncertain> {
     let (two_digits, first) = scientific(uncertainty, 1);
     let last = first - 1;
     let two_digits = two_digits.replace('.', "");
-    let power = |number: f64| scientific(number, 16).1;
     let top = if number == 0.0 {
         first
     } else {
-        power(number).max(first)
+        scientific(number, 16).1.max(first)
     };
     // Of an uncertainty such as 1.2 the point stands between its digits.
     let behind = |decimals: usize| match decimals {

@@ -113,17 +113,16 @@ impl Unit {
     pub fn written(text: &str) -> Option<&'static Self> {
         let plain = plain(text);
         let known = || OURS.iter().chain(&OTHER_UNITS);
-        let is_written = |unit: &&Self| unit.name.replace(' ', "") == plain;
         let in_lower_case = plain.to_lowercase();
-        let is_same = |unit: &&Self| unit.name.replace(' ', "").to_lowercase() == in_lower_case;
         let alias = ALIASES
             .iter()
             .find(|(written, _)| *written == in_lower_case);
-        let of_alias = || known().find(|unit| alias.is_some_and(|(_, end)| unit.end == *end));
         known()
-            .find(is_written)
-            .or_else(of_alias)
-            .or_else(|| known().find(is_same))
+            .find(|unit| unit.name.replace(' ', "") == plain)
+            .or_else(|| known().find(|unit| alias.is_some_and(|(_, end)| unit.end == *end)))
+            .or_else(|| {
+                known().find(|unit| unit.name.replace(' ', "").to_lowercase() == in_lower_case)
+            })
     }
 
     /// Splits the name of a column into the name alone and the unit that it states: `x (cm)`, `t [ms]`, `x / cm`, `x in cm`,
@@ -328,8 +327,11 @@ mod tests {
 
     #[test]
     fn a_name_in_another_unit_is_known() {
-        let is_known = |name: &str| ["t_s", "x_m", "body.point.0.at_m.2"].contains(&name);
-        let known = |name| in_known_unit(name, is_known);
+        let known = |name| {
+            in_known_unit(name, |name| {
+                ["t_s", "x_m", "body.point.0.at_m.2"].contains(&name)
+            })
+        };
         assert_eq!(known("t_ms"), Some(("t_s".to_owned(), 1e-3)));
         assert_eq!(known("x_m"), Some(("x_m".to_owned(), 1.0)));
         assert_eq!(known("x_deg"), None);

@@ -74,11 +74,10 @@ fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
     let Value::Table(table) = value else {
         return Err(vec![Problem::with_value(here, value, "must be a table")]);
     };
-    let known = |name: &&String| COMMANDS.iter().any(|row| row.name == name.as_str());
     let beside = COMMANDS.iter().find(|row| table.contains_key(row.name));
     let unknown: Vec<_> = table
         .keys()
-        .filter(|name| !known(name))
+        .filter(|name| !COMMANDS.iter().any(|row| row.name == name.as_str()))
         .map(|name| below(&here, unknown(name, beside)))
         .collect();
     if !unknown.is_empty() {

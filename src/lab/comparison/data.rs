@@ -153,10 +153,11 @@ impl DataComparison {
             .collect();
         let (time_s, axle_height) = (now.time_s(), now.after().axle().z);
         for (values, recording) in values.chunks(IN_A_RECORDING).zip(&mut self.recorded) {
-            let value = |place, _| values.get(place).copied().unwrap_or_default();
             recording.push(&Moment {
                 time_s,
-                position: Vector3::from_fn(value),
+                position: Vector3::from_fn(|place, _| {
+                    values.get(place).copied().unwrap_or_default()
+                }),
                 axle_height,
             });
         }

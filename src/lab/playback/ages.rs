@@ -50,8 +50,9 @@ impl Ages {
     /// The ages of the motion that `readouts` tell of: by what was measured, or else by what theory predicts.
     pub fn of(readouts: &Readouts) -> Self {
         let measured = readouts.precession.filter(MeasuredNumber::is_settled);
-        let predicted = || readouts.theory_about_z()?.precession;
-        let rate = measured.map(|measured| measured.value).or_else(predicted);
+        let rate = measured
+            .map(|measured| measured.value)
+            .or_else(|| readouts.theory_about_z()?.precession);
         let turn_s = rate.map(|rate| TAU / rate.abs());
         Self::new(readouts.swing_s(), turn_s)
     }

@@ -24,13 +24,12 @@ impl<T: Send + Sync + 'static> BackgroundJob<T> {
     ) -> Self {
         let answer = Arc::new(OnceLock::new());
         let asker = Arc::downgrade(&answer);
-        let work = move || {
+        let _ = thread::Builder::new().name(name.to_owned()).spawn(move || {
             let found = work(&|| asker.strong_count() > 0);
             if let (Some(answer), Some(found)) = (asker.upgrade(), found) {
                 let _ = answer.set(found); // it is set only here, so this succeeds
             }
-        };
-        let _ = thread::Builder::new().name(name.to_owned()).spawn(work);
+        });
         Self {
             answer,
             is_reported: false,

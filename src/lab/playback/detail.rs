@@ -170,13 +170,15 @@ fn turns(recording: &Recording, long_s: f64) -> Option<(f64, [f64; 2])> {
 /// A length of 1, 2 or 5 times a power of ten for swings of `swing_s`; `before_s` as long as that is right (all s).
 fn length_s(swing_s: Option<f64>, before_s: Option<f64>) -> Option<f64> {
     let swing_s = swing_s?;
-    let holds = |length_s: &f64| {
-        let swings = length_s / swing_s;
-        (FEWEST_SWINGS..=MOST_SWINGS + 1.0).contains(&swings)
-            && ladder::at_or_below(*length_s) == *length_s
-    };
-    let chosen = || ladder::at_or_below(MOST_SWINGS * swing_s);
-    Some(before_s.filter(holds).unwrap_or_else(chosen))
+    Some(
+        before_s
+            .filter(|length_s| {
+                let swings = length_s / swing_s;
+                (FEWEST_SWINGS..=MOST_SWINGS + 1.0).contains(&swings)
+                    && ladder::at_or_below(*length_s) == *length_s
+            })
+            .unwrap_or_else(|| ladder::at_or_below(MOST_SWINGS * swing_s)),
+    )
 }
 
 /// The time between `begin_s - swing_s` and `begin_s` (s) at which `curve` is highest; before the first swing the

@@ -433,8 +433,8 @@ impl Checkpoints {
         if self.stored.len() > self.most + 1 {
             self.spacing *= 2;
             let spacing = self.spacing;
-            let stays = |stored: &Checkpoint| stored.step().is_multiple_of(spacing);
-            self.stored.retain(stays);
+            self.stored
+                .retain(|stored| stored.step().is_multiple_of(spacing));
         }
     }
 

@@ -140,8 +140,9 @@ mod tests {
     fn turns_of_the_tilt_are_found_on_both_sides() {
         // It is highest at the cusps, every 0.8225 s, and lowest between them.
         let run = LiveRun::played("cusps", 3000);
-        let next = |&at: &u64| turn(&run, at, true).ok();
-        let turns: Vec<_> = std::iter::successors(Some(0), next).skip(1).collect();
+        let turns: Vec<_> = std::iter::successors(Some(0), |&at| turn(&run, at, true).ok())
+            .skip(1)
+            .collect();
         assert_eq!(turns.len(), 7, "{turns:?}");
         for (index, &turn) in turns.iter().enumerate() {
             let expected = 411.25 * (index + 1) as f64;

@@ -178,8 +178,9 @@ impl Playback {
         } else {
             let begin_s = self.run.now().time_s;
             let mut until = self.until.as_mut();
-            let is_fulfilled = |run: &mut LiveRun| until.as_mut().is_some_and(|until| until(run));
-            let end = self.run.play(owed_s, self.stop, enough, is_fulfilled);
+            let end = self.run.play(owed_s, self.stop, enough, |run| {
+                until.as_mut().is_some_and(|until| until(run))
+            });
             let stepped_s = self.run.now().time_s - begin_s;
             self.pace.spend(stepped_s, wall, end == PlayEnd::CutShort);
             end

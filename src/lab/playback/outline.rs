@@ -89,12 +89,14 @@ fn round(ends: [(f64, f64); 2], hole: Option<f64>) -> Vec<Polyline> {
 }
 
 fn circle(radius: f64, z: f64) -> Polyline {
-    let point = |part: usize| {
-        let (sin, cos) = libm::sincos(TAU * (part % OUTLINE_PARTS) as f64 / OUTLINE_PARTS as f64);
-        Vector3::new(radius * cos, radius * sin, z)
-    };
     Polyline {
-        points: (0..=OUTLINE_PARTS).map(point).collect(),
+        points: (0..=OUTLINE_PARTS)
+            .map(|part| {
+                let (sin, cos) =
+                    libm::sincos(TAU * (part % OUTLINE_PARTS) as f64 / OUTLINE_PARTS as f64);
+                Vector3::new(radius * cos, radius * sin, z)
+            })
+            .collect(),
         is_mark: false,
     }
 }

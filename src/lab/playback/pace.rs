@@ -115,12 +115,13 @@ mod tests {
     /// The time stepped in this many frames at this speed by a machine that keeps up, in steps of `step_s`.
     fn stepped_s(speed: f64, frames: u32, step_s: f64) -> f64 {
         let mut pace = Pace::new(speed, true);
-        let frame = |_| {
-            let stepped_s = (pace.earn(LONGEST_PACE_FRAME) / step_s).floor() * step_s;
-            pace.spend(stepped_s, LONGEST_PACE_FRAME, false);
-            stepped_s
-        };
-        (0..frames).map(frame).sum()
+        (0..frames)
+            .map(|_| {
+                let stepped_s = (pace.earn(LONGEST_PACE_FRAME) / step_s).floor() * step_s;
+                pace.spend(stepped_s, LONGEST_PACE_FRAME, false);
+                stepped_s
+            })
+            .sum()
     }
 
     #[test]

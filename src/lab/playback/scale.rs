@@ -61,22 +61,21 @@ impl StripScale {
     pub fn decimals(&self) -> usize {
         let range = self.high - self.low;
         let most = decimals(range / 100.0);
-        let is_exact = |digits: &usize| {
-            let unit = libm::exp10(-(*digits as f64));
-            let rest = |end: f64| (end / unit - (end / unit).round()).abs() * unit;
-            rest(self.low).max(rest(self.high)) < 1e-6 * range && unit < 0.5 * range
-        };
-        (0..most).find(is_exact).unwrap_or(most)
+        (0..most)
+            .find(|digits| {
+                let unit = libm::exp10(-(*digits as f64));
+                let rest = |end: f64| (end / unit - (end / unit).round()).abs() * unit;
+                rest(self.low).max(rest(self.high)) < 1e-6 * range && unit < 0.5 * range
+            })
+            .unwrap_or(most)
     }
 
     /// Both ends in at most `width` columns: close together where there is no room for spaces, else as the middle and the
     /// distance of the ends from it, a middle of 0 left out if need be, and then with fewer digits, as long as no end is
     /// seen to be elsewhere. `None` where that has no room either.
     pub fn in_words_within(&self, width: usize) -> Option<String> {
-        let fits = |words: &String| words.chars().count() <= width;
         let digits = self.decimals();
         let (middle, half) = (0.5 * (self.low + self.high), 0.5 * (self.high - self.low));
-        let about = |digits| format!("{} ± {}", fixed(middle, digits), fixed(half, digits));
         let is_true = |value: f64, digits: &usize| {
             let unit = libm::exp10(-(*digits as f64));
             (value - (value / unit).round() * unit).abs()
@@ -89,9 +88,12 @@ impl StripScale {
             let around = is_true(middle, &digits) && is_true(half, &digits);
             let about_zero =
                 (around && middle == 0.0).then(|| format!("± {}", fixed(half, digits)));
-            both.chain(around.then(|| about(digits))).chain(about_zero)
+            both.chain(
+                around.then(|| format!("{} ± {}", fixed(middle, digits), fixed(half, digits))),
+            )
+            .chain(about_zero)
         });
-        forms.find(fits)
+        forms.find(|words| words.chars().count() <= width)
     }
 
     fn with_digits(&self, digits: usize, between: &str) -> String {
@@ -122,13 +124,16 @@ pub fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
         );
         (apart, from, to)
     };
-    let fits = |&(_, from, to): &(f64, f64, f64)| to - from < most as f64;
-    let Some((apart, from, to)) = (first..first + 4).map(all).find(fits) else {
+    let Some((apart, from, to)) = (first..first + 4)
+        .map(all)
+        .find(|&(_, from, to)| to - from < most as f64)
+    else {
         return Vec::new();
     };
     let count = (to - from + 1.0).max(0.0) as usize;
-    let tick = |index: usize| rounded((from + index as f64) * apart, STRIP_TICK_DIGITS);
-    (0..count).map(tick).collect()
+    (0..count)
+        .map(|index| rounded((from + index as f64) * apart, STRIP_TICK_DIGITS))
+        .collect()
 }
 
 /// The smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value` (> 0).

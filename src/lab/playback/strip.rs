@@ -87,15 +87,16 @@ impl Strip {
     /// Where the blocks of `recording` are on the columns: for all its curves at once.
     pub fn blocks(&self, recording: &Recording) -> Blocks {
         let column = |time_s: f64| self.place(time_s.max(self.begin_s));
-        let place = |block: RecordingBin| {
-            let shown = self.column(block.end_s);
-            let last = shown.unwrap_or_else(|| self.place(block.end_s));
-            (block, column(block.begin_s).min(last), last)
-        };
         let blocks = recording.in_columns(self.begin_s, self.end_s(), Some(column));
         Blocks {
             columns: self.columns,
-            placed: blocks.map(place).collect(),
+            placed: blocks
+                .map(|block| {
+                    let shown = self.column(block.end_s);
+                    let last = shown.unwrap_or_else(|| self.place(block.end_s));
+                    (block, column(block.begin_s).min(last), last)
+                })
+                .collect(),
         }
     }
 }
@@ -345,8 +346,9 @@ mod tests {
 
     /// On 100 columns the bands, where there are any, of 1000 steps of a sine of `period` steps.
     fn bands(period: f64) -> Vec<Option<Extent>> {
-        let sine = |step: u32| libm::sin(f64::from(step) / period * std::f64::consts::TAU);
-        let values: Vec<f64> = (0..1000).map(sine).collect();
+        let values: Vec<f64> = (0..1000)
+            .map(|step: u32| libm::sin(f64::from(step) / period * std::f64::consts::TAU))
+            .collect();
         let columns = drawn(Strip::new(0.0, 1000.0, 100), &values);
         columns
             .iter()
@@ -394,8 +396,10 @@ mod tests {
         ] {
             let bands: Vec<_> = bands(period).into_iter().flatten().collect();
             assert_eq!(bands.len(), count, "{period}");
-            let is_whole = |band: &Extent| band.max > 0.9 && band.min < -0.9;
-            assert!(bands.iter().all(is_whole), "{bands:?} of {period}");
+            assert!(
+                bands.iter().all(|band| band.max > 0.9 && band.min < -0.9),
+                "{bands:?} of {period}"
+            );
         }
     }
 

@@ -77,8 +77,10 @@ impl Exporting {
         let path = std::path::absolute(path).map_err(refused)?;
         let steps = scenario.steps;
         let written = path.clone();
-        let write = move |shared: &Shared| write(scenario, csv, written, shared);
-        Self::spawn(path, steps, write).map_err(refused)
+        Self::spawn(path, steps, move |shared| {
+            write(scenario, csv, written, shared)
+        })
+        .map_err(refused)
     }
 
     /// Starts drawing a figure of the run of `scenario`, a column of a page wide, to the file `path`. It writes the same bytes
@@ -93,8 +95,10 @@ impl Exporting {
         let output = Destination::open_file(path, replace)?;
         let path = std::path::absolute(path).map_err(refused)?;
         let (steps, drawn_to) = (scenario.steps, path.clone());
-        let draw = move |shared: &Shared| draw(scenario, output, drawn_to, drawn, shared);
-        Self::spawn(path, steps, draw).map_err(refused)
+        Self::spawn(path, steps, move |shared| {
+            draw(scenario, output, drawn_to, drawn, shared)
+        })
+        .map_err(refused)
     }
 
     fn spawn(
@@ -107,14 +111,13 @@ impl Exporting {
             ..Shared::default()
         });
         let (at_work, at_end) = (Arc::clone(&shared), Arc::clone(&shared));
-        let work = move || {
-            let result = write(&at_work);
-            at_work.has_ended.store(true, Ordering::SeqCst);
-            result
-        };
         let worker = thread::Builder::new()
             .name("export".to_owned())
-            .spawn(work)?;
+            .spawn(move || {
+                let result = write(&at_work);
+                at_work.has_ended.store(true, Ordering::SeqCst);
+                result
+            })?;
         Ok(Self {
             path,
             shared,
@@ -144,8 +147,11 @@ impl Exporting {
             return None;
         }
         let worker = self.worker.take_if(|worker| worker.is_finished())?;
-        let broken = || Err("the export broke off, and nothing was written".to_owned());
-        Some(worker.join().unwrap_or_else(|_| broken()))
+        Some(
+            worker.join().unwrap_or_else(|_| {
+                Err("the export broke off, and nothing was written".to_owned())
+            }),
+        )
     }
 }
 
@@ -198,9 +204,14 @@ fn write(
     shared: &Shared,
 ) -> Result<Written, String> {
     let mut simulation = Simulation::new(scenario);
-    let watch = |step, _| shared.reach(step);
     let cannot_write = |error| DestinationError::refused(&path, error).fact();
-    let played = stream::play(&mut simulation, shared.steps, Some(&mut csv), |_| {}, watch);
+    let played = stream::play(
+        &mut simulation,
+        shared.steps,
+        Some(&mut csv),
+        |_| {},
+        |step, _| shared.reach(step),
+    );
     let (ended, _) = played.map_err(cannot_write)?;
     let rows = csv.count();
     let destination = csv.finish().map_err(cannot_write)?;
@@ -248,12 +259,13 @@ fn draw(
         .write_and_keep(&bytes)
         .map_err(|error| error.fact())?;
     let told = figure.broke.iter().cloned().chain(figure.told());
-    let in_the_lab = |text: String| text.replace(EXACT_BESIDE, "t, then X draws that beside it");
     Ok(Written {
         path,
         rows: None,
         bytes: bytes.len() as u64,
-        warnings: told.map(in_the_lab).collect(),
+        warnings: told
+            .map(|text| text.replace(EXACT_BESIDE, "t, then X draws that beside it"))
+            .collect(),
         not_finite: None,
     })
 }
@@ -361,9 +373,13 @@ fn scp_line_from(
 
 /// `text` if it is a name of a user or a machine that scp does not mistake for an option or a path.
 fn name(text: &OsStr) -> Option<&str> {
-    let is_plain = |c: char| c.is_alphanumeric() || "._-@+%\\$".contains(c);
-    text.to_str()
-        .filter(|name| !name.is_empty() && !name.starts_with('-') && name.chars().all(is_plain))
+    text.to_str().filter(|name| {
+        !name.is_empty()
+            && !name.starts_with('-')
+            && name
+                .chars()
+                .all(|c| c.is_alphanumeric() || "._-@+%\\$".contains(c))
+    })
 }
 
 #[cfg(test)]
@@ -372,13 +388,13 @@ mod tests {
 
     /// An export that does nothing until it is cancelled.
     fn waiting() -> Exporting {
-        let write = |shared: &Shared| {
+        Exporting::spawn(PathBuf::from("run.csv"), 10, |shared| {
             while shared.reach(0).is_continue() {
                 thread::yield_now();
             }
             Err("stopped".to_owned())
-        };
-        Exporting::spawn(PathBuf::from("run.csv"), 10, write).unwrap()
+        })
+        .unwrap()
     }
 
     fn wait(exporting: &Exporting) {

@@ -239,10 +239,12 @@ impl Session {
     pub fn close(mut self, patience: Duration) -> Closed {
         let is_in_time = self.end(patience);
         let state = locked(&self.state);
-        let slow = || "the session cannot be kept: the disk takes too long".to_owned();
         Closed {
             kept: state.kept.clone(),
-            trouble: state.trouble.clone().or_else(|| (!is_in_time).then(slow)),
+            trouble: state.trouble.clone().or_else(|| {
+                (!is_in_time)
+                    .then(|| "the session cannot be kept: the disk takes too long".to_owned())
+            }),
         }
     }
 

@@ -81,8 +81,9 @@ fn names(folder: &Path, kind: &str) -> io::Result<Vec<String>> {
         files => files?,
     };
     let files = files.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let name = |file: String| Some(file.strip_suffix(kind)?.strip_suffix('.')?.to_owned());
-    Ok(files.filter_map(name).collect())
+    Ok(files
+        .filter_map(|file| Some(file.strip_suffix(kind)?.strip_suffix('.')?.to_owned()))
+        .collect())
 }
 
 /// The names of the sessions in `folder`, the one written last first.

@@ -53,8 +53,10 @@ impl ValueList {
 
     /// Selects the value `label` of `group`; returns whether there is one.
     pub fn select(&mut self, group: &str, label: &str) -> bool {
-        let is_it = |value: &ListedValue| value.group == group && value.label == label;
-        let found = self.values.iter().position(is_it);
+        let found = self
+            .values
+            .iter()
+            .position(|value| value.group == group && value.label == label);
         self.selected = found.unwrap_or(self.selected);
         found.is_some()
     }

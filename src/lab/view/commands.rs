@@ -173,8 +173,8 @@ impl View {
     /// The time at the left edge of the traces, s.
     fn begin_s(&self, player: &Player) -> f64 {
         let (now_s, window_s) = (player.run().now().time_s, self.window_s);
-        let following = || Strip::following(now_s, window_s, 1).begin_s;
-        self.since_s.unwrap_or_else(following)
+        self.since_s
+            .unwrap_or_else(|| Strip::following(now_s, window_s, 1).begin_s)
     }
 
     /// The command that shows twice the time in the traces (`wider`), or half of it; where less than two time steps would

@@ -38,8 +38,13 @@ impl View {
     /// The panes that can have the focus: those side by side on the screen, or every pane that may be shown where the
     /// screen holds one or two at a time.
     fn focusable(&self) -> Vec<Pane> {
-        let may_have_it = |pane: &Pane| self.may_show(*pane) || self.is_filled_by(*pane);
-        let among = |panes: &[Pane]| panes.iter().copied().filter(may_have_it).collect();
+        let among = |panes: &[Pane]| {
+            panes
+                .iter()
+                .copied()
+                .filter(|pane| self.may_show(*pane) || self.is_filled_by(*pane))
+                .collect()
+        };
         if !self.filled && self.side_by_side.len() > 2 {
             // A pane that was hidden since the screen was last fitted is still in this list.
             let mut panes: Vec<_> = among(&self.side_by_side);

@@ -283,12 +283,11 @@ impl View {
         let file = &scenario.file;
         let number = |key| file.viewed(key).and_then(Value::as_float);
         // The whole run, or what of it is played in two minutes.
-        let first_s = || {
+        number("window_s").unwrap_or_else(|| {
             let speed = number("speed").unwrap_or(keys::DEFAULT_SPEED);
             let window_s = Clock::end_s(scenario).min(LONGEST_SWEEP_S * speed);
             window_s.max(2.0 * scenario.motion.time_step_s)
-        };
-        number("window_s").unwrap_or_else(first_s)
+        })
     }
 
     pub fn hides(&self, part: HideablePart) -> bool {

@@ -60,8 +60,9 @@ impl BlockContent {
         let key = problem.key.clone();
         for mut problem in self.document.placed(vec![problem]).list {
             problem.key = format!("{}.{key}", self.word);
-            let line = || format!("line {}", self.line);
-            problem.place.get_or_insert_with(line);
+            problem
+                .place
+                .get_or_insert_with(|| format!("line {}", self.line));
             self.problems.push(problem);
         }
     }
@@ -123,11 +124,11 @@ impl BlockContent {
         let line = self.line_of(key);
         let read = LessonText::read(&source, line, find);
         read.unwrap_or_else(|problems| {
-            let inside = |problem: Problem| Problem {
-                key: format!("{}.{key} {}", self.word, problem.key),
-                ..on_line(line, problem)
-            };
-            self.problems.extend(problems.into_iter().map(inside));
+            self.problems
+                .extend(problems.into_iter().map(|problem| Problem {
+                    key: format!("{}.{key} {}", self.word, problem.key),
+                    ..on_line(line, problem)
+                }));
             LessonText::default()
         })
     }

@@ -162,8 +162,7 @@ impl Inertia {
 impl LaneRotation {
     #[inline]
     pub fn of(rotation: &Matrix3<f64>) -> Self {
-        let element = |row, column| f64x2::splat(rotation[(row, column)]);
-        Self([0, 1, 2].map(|row| [0, 1, 2].map(|column| element(row, column))))
+        Self([0, 1, 2].map(|row| [0, 1, 2].map(|column| f64x2::splat(rotation[(row, column)]))))
     }
 
     /// R X of two points.
@@ -182,9 +181,8 @@ impl LaneRotation {
     /// R Q, by the columns of Q.
     #[inline]
     pub fn times(&self, matrix: &Matrix3<f64>) -> Matrix3<f64> {
-        let m = |row, column| matrix[(row, column)];
         let both = |columns: [usize; LANES]| {
-            let rows = [0, 1, 2].map(|row| f64x2::new(columns.map(|column| m(row, column))));
+            let rows = [0, 1, 2].map(|row| f64x2::new(columns.map(|column| matrix[(row, column)])));
             self.of_two(rows).map(f64x2::to_array)
         };
         let [[x0, x1], [y0, y1], [z0, z1]] = both([0, 1]);

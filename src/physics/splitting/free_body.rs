@@ -338,9 +338,11 @@ mod tests {
                 for n in 0..50 {
                     let over = t / steps / (n + 1) as f64;
                     let dm: Vector3<f64> = (0..=n).map(|k| ms[k].cross(&ws[n - k])).sum();
-                    let product =
-                        |k| (Quaternion::from(qs[k]) * Quaternion::from_imag(ws[n - k])).coords;
-                    let dq: Vector4<f64> = (0..=n).map(product).sum();
+                    let dq: Vector4<f64> = (0..=n)
+                        .map(|k| {
+                            (Quaternion::from(qs[k]) * Quaternion::from_imag(ws[n - k])).coords
+                        })
+                        .sum();
                     ms.push(dm * over);
                     ws.push(inverse * ms[n + 1]);
                     qs.push(dq * (0.5 * over));

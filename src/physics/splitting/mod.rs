@@ -385,8 +385,8 @@ mod tests {
                 (SplittingMethod::Strang, 2.0, 400),
                 (SplittingMethod::Srkn11b, 6.0, 40),
             ] {
-                let end = |steps| run(kind, top, general_start(), 2.0, steps);
-                let [a, b, c] = [coarse, 2 * coarse, 4 * coarse].map(end);
+                let [a, b, c] = [coarse, 2 * coarse, 4 * coarse]
+                    .map(|steps| run(kind, top, general_start(), 2.0, steps));
                 let order: f64 = libm::log2(distance(&a, &b) / distance(&b, &c));
                 assert!((order - named).abs() < 0.15, "{name}, {kind:?}: {order}");
             }

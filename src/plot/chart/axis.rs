@@ -60,9 +60,9 @@ impl AxisScale {
     pub fn ticks_beside(&self, axis: &ChartAxis) -> Ticks {
         let apart = ink::height(LABEL_PT) + AXIS_HEADROOM;
         self.ticks(axis, |ticks| {
-            let is_apart =
-                |pair: &[Tick]| (self.place(pair[1].at) - self.place(pair[0].at)).abs() >= apart;
-            ticks.windows(2).all(is_apart)
+            ticks
+                .windows(2)
+                .all(|pair| (self.place(pair[1].at) - self.place(pair[0].at)).abs() >= apart)
         })
     }
 

@@ -98,8 +98,9 @@ impl PlacedPanel {
 
 pub fn dots(places: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     const LENGTH_PT: f64 = 0.02;
-    let dot = |place: Point| vec![place, at(place.x + LENGTH_PT, place.y)];
-    places.map(dot).collect()
+    places
+        .map(|place| vec![place, at(place.x + LENGTH_PT, place.y)])
+        .collect()
 }
 
 /// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
@@ -177,12 +178,14 @@ impl Above {
 
     /// The width of the lines that cover most of `squares`, pt; `None` where none do.
     fn width_over(&self, squares: &HashSet<[i32; 2]>) -> Option<f64> {
-        let over = |[x, y]: &[i32; 2]| {
-            let near = [[*x, *y], [x + 1, *y], [x - 1, *y], [*x, y + 1], [*x, y - 1]];
-            let widths = near.iter().filter_map(|square| self.squares.get(square));
-            widths.copied().reduce(f64::max)
-        };
-        let mut widths: Vec<f64> = squares.iter().filter_map(over).collect();
+        let mut widths: Vec<f64> = squares
+            .iter()
+            .filter_map(|[x, y]| {
+                let near = [[*x, *y], [x + 1, *y], [x - 1, *y], [*x, y + 1], [*x, y - 1]];
+                let widths = near.iter().filter_map(|square| self.squares.get(square));
+                widths.copied().reduce(f64::max)
+            })
+            .collect();
         widths.sort_by(f64::total_cmp);
         (2 * widths.len() > squares.len()).then(|| widths[widths.len() / 2])
     }
@@ -218,8 +221,11 @@ mod tests {
 
     /// A line of 400 points, each so far from the next, every second one so far from a level one at that height, pt.
     fn zigzag(apart: f64, high: f64, from: f64) -> Vec<Vec<Point>> {
-        let place = |i: i32| at(f64::from(i) * apart, from + f64::from(i % 2) * high);
-        vec![(0..400).map(place).collect()]
+        vec![
+            (0..400)
+                .map(|i: i32| at(f64::from(i) * apart, from + f64::from(i % 2) * high))
+                .collect(),
+        ]
     }
 
     #[test]

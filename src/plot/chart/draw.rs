@@ -107,8 +107,11 @@ impl Chart {
     fn remark(&self, layout: &ChartLayout) -> Option<String> {
         let panels = self.panels.iter().zip(&layout.panels);
         let bars = panels.flat_map(|(panel, placed)| {
-            let bars = move |series| [0, 1].map(|axis| placed.bars(series, axis));
-            panel.series.iter().flat_map(bars).flatten()
+            panel
+                .series
+                .iter()
+                .flat_map(move |series| [0, 1].map(|axis| placed.bars(series, axis)))
+                .flatten()
         });
         let (hidden, drawn): (Vec<_>, Vec<_>) = bars.partition(is_covered);
         if hidden.is_empty() {

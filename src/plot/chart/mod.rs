@@ -352,8 +352,7 @@ impl ChartAxis {
         if let Some(range) = self.range {
             return range;
         }
-        let is_shown = |value: &f64| value.is_finite() && (!self.is_log || *value > 0.0);
-        let values = values.filter(is_shown);
+        let values = values.filter(|value| value.is_finite() && (!self.is_log || *value > 0.0));
         let values = values.map(|value| value.clamp(-FARTHEST_AXIS_END, FARTHEST_AXIS_END));
         let Some((low, high)) = extent(values) else {
             return if self.is_log { (0.1, 10.0) } else { (0.0, 1.0) };

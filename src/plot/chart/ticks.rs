@@ -101,8 +101,7 @@ impl Ticks {
             low / step * f64::from(parts),
             high / step * f64::from(parts),
         );
-        let is_minor = |count: &i64| count.rem_euclid(i64::from(parts)) != 0;
-        let minor = (fine.0..=fine.1).filter(is_minor);
+        let minor = (fine.0..=fine.1).filter(|count| count.rem_euclid(i64::from(parts)) != 0);
         Self {
             major: major.collect(),
             minor: minor
@@ -162,10 +161,9 @@ impl Ticks {
             label: RoundMultiples::of_rung(rung).label(1, power),
         });
         let minor = (floor(libm::log10(low))..=floor(libm::log10(high))).flat_map(parts_of_decade);
-        let is_inside = |at: &f64| (low..=high).contains(at);
         Self {
             major: major.collect(),
-            minor: minor.filter(is_inside).collect(),
+            minor: minor.filter(|at| (low..=high).contains(at)).collect(),
             power,
             offset: None,
         }

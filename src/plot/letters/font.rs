@@ -107,13 +107,20 @@ impl Font {
     }
 
     fn maxp(&self) -> Vec<u8> {
-        let points = |glyph: &Glyph| glyph.contours.iter().map(Vec::len).sum::<usize>() as u16;
-        let contours = |glyph: &Glyph| glyph.contours.len() as u16;
         let most = |count: &dyn Fn(&Glyph) -> u16| self.glyphs.iter().map(count).max().unwrap_or(0);
         let count = self.glyphs.len() as u16;
         // No letters made of others, no instructions.
         shorts(&[
-            &[1, 0, count, most(&points), most(&contours), 0, 0, 2],
+            &[
+                1,
+                0,
+                count,
+                most(&|glyph| glyph.contours.iter().map(Vec::len).sum::<usize>() as u16),
+                most(&|glyph| glyph.contours.len() as u16),
+                0,
+                0,
+                2,
+            ],
             &[0; 8],
         ])
     }
@@ -257,8 +264,7 @@ mod tests {
         assert_eq!((places[0], places[4]), (0, glyphs.len()));
         assert_eq!(places[1], places[2], "a blank has no outline");
         // The letter with two dots has an outline of its own for each of them.
-        let contours = |glyph: usize| glyphs[places[glyph] + 1];
-        assert_eq!([0, 2, 3].map(contours), [2, 2, 4]);
+        assert_eq!([0, 2, 3].map(|glyph| glyphs[places[glyph] + 1]), [2, 2, 4]);
     }
 
     #[test]

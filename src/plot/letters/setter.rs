@@ -3,8 +3,8 @@
 use super::SetLabel;
 use super::table::{self, ITALIC, REGULAR, UNITS_PER_EM};
 use crate::plot::scene::PlacedLetter;
+use crate::plot::scene::VectorPath;
 use crate::plot::scene::at;
-use crate::plot::scene::{Point, VectorPath};
 
 /// Size of a sub- or superscript, as a share of its text's size.
 const SCRIPT: f64 = 0.7;
@@ -80,8 +80,9 @@ impl Setter {
         let scale = self.size_pt / UNITS_PER_EM;
         self.x_pt += self.gap(style, letter);
         let origin = at(self.x_pt, self.baseline_pt);
-        let placed = |p: Point| at(origin.x + p.x * scale, origin.y + p.y * scale);
-        let outline = drawn.outline.mapped(placed);
+        let outline = drawn
+            .outline
+            .mapped(|p| at(origin.x + p.x * scale, origin.y + p.y * scale));
         self.x_pt += drawn.advance * scale;
         let mut right_pt = self.x_pt;
         for point in outline.points() {

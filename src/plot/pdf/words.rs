@@ -33,10 +33,12 @@ struct OfPage {
 
 impl Fonts {
     pub fn of(scenes: &[PageScene]) -> Self {
-        let items = || scenes.iter().flat_map(|scene| &scene.items);
-        let words = || items().filter_map(|item| item.words.as_ref());
         Self([false, true].map(|is_italic| {
-            let letters = words().flat_map(|words| &words.letters);
+            let letters = scenes
+                .iter()
+                .flat_map(|scene| &scene.items)
+                .filter_map(|item| item.words.as_ref())
+                .flat_map(|words| &words.letters);
             let letters = letters.filter(|letter| letter.is_italic == is_italic);
             let letters: BTreeSet<char> = letters.map(|letter| letter.letter).collect();
             let (style, name, end) = if is_italic {
@@ -190,8 +192,10 @@ impl OfPage {
 /// Six capital letters that tell a font of some letters from one of others.
 fn tag(letters: &BTreeSet<char>) -> String {
     // FNV-1a: Fowler, Noll and Vo.
-    let mix = |mixed: u64, &c: &char| (mixed ^ u64::from(c)).wrapping_mul(0x0100_0000_01b3);
-    let mixed = letters.iter().fold(0xcbf2_9ce4_8422_2325_u64, mix);
-    let letter = |place: u32| char::from(b'A' + (mixed / 26_u64.pow(place) % 26) as u8);
-    (0..6).map(letter).collect()
+    let mixed = letters.iter().fold(0xcbf2_9ce4_8422_2325_u64, |mixed, &c| {
+        (mixed ^ u64::from(c)).wrapping_mul(0x0100_0000_01b3)
+    });
+    (0..6)
+        .map(|place: u32| char::from(b'A' + (mixed / 26_u64.pow(place) % 26) as u8))
+        .collect()
 }

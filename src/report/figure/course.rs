@@ -103,8 +103,9 @@ impl SampledRun {
             last: block.last[curve],
             turns: block.turned[curve],
         });
-        let are_finite = |part: &Bin| (part.extent.min + part.extent.max + part.last).is_finite();
-        parts.filter(are_finite).collect()
+        parts
+            .filter(|part| (part.extent.min + part.extent.max + part.last).is_finite())
+            .collect()
     }
 
     /// The points of `column`, every extreme among them.
@@ -415,9 +416,10 @@ mod tests {
                 (low, high) = (low.min(z), high.max(z));
             }
             let end_s = run.now().time_s();
-            let near = |point: &&[f64; 2]| (begin_s - 2.0..=end_s + 2.0).contains(&point[0]);
             for extreme in [low, high] {
-                let mut near = points.iter().filter(near);
+                let mut near = points
+                    .iter()
+                    .filter(|point| (begin_s - 2.0..=end_s + 2.0).contains(&point[0]));
                 assert!(near.any(|point| point[1] == extreme), "{fiftieth}");
             }
         }

@@ -88,10 +88,17 @@ impl FigureLabels {
             panel.y.is_log |= self.is_log[1];
             panel.y.range = self.y_range.or(panel.y.range);
         }
-        let series = || chart.panels.iter().flat_map(|panel| &panel.series);
-        let mut points = series().flat_map(|series| &series.points);
-        let is_hidden = |(value, is_log): (&f64, &bool)| *is_log && *value <= 0.0;
-        let hides = points.any(|point| point.iter().zip(&self.is_log).any(is_hidden));
+        let mut points = chart
+            .panels
+            .iter()
+            .flat_map(|panel| &panel.series)
+            .flat_map(|series| &series.points);
+        let hides = points.any(|point| {
+            point
+                .iter()
+                .zip(&self.is_log)
+                .any(|(value, is_log)| *is_log && *value <= 0.0)
+        });
         let hidden = "values that are not above 0 have no place on a logarithmic axis";
         Ok(hides.then(|| hidden.to_owned()))
     }

@@ -128,8 +128,12 @@ pub(super) fn beyond_runs(job: &FigureJob<'_>) -> Option<String> {
     let measured = job.request.measured.as_ref()?;
     let series = measured.series().ok()?;
     let end_s = job.end_s();
-    let is_beyond = |time_s: &&f64| **time_s > end_s && job.has(**time_s);
-    let last_s = shortest(*series.times_s.iter().rfind(is_beyond)?);
+    let last_s = shortest(
+        *series
+            .times_s
+            .iter()
+            .rfind(|time_s| **time_s > end_s && job.has(**time_s))?,
+    );
     Some(format!(
         "the run ends at {} s, before the last point of {} at {last_s} s: --duration {last_s} draws the run up to there",
         shortest(end_s),
@@ -209,8 +213,10 @@ fn said(
         return Ok(Some(said.clone()));
     }
     let watch = RefCell::new(watch);
-    let go_on = || watch.borrow_mut()(0, run.scenario.steps).is_continue();
-    at_times(series, &run.scenario, &go_on).map_err(|error| error.to_string())
+    at_times(series, &run.scenario, &|| {
+        watch.borrow_mut()(0, run.scenario.steps).is_continue()
+    })
+    .map_err(|error| error.to_string())
 }
 
 /// The points of `curve` with what `value` makes of each and of what the run says of it, `model`.
@@ -220,12 +226,14 @@ fn beside(
     value: impl Fn(&Residual) -> f64,
 ) -> Vec<MeasuredPoint> {
     let pairs = held_against(Some(curve.quantity), &curve.points, model);
-    let point = |pair: &Residual| MeasuredPoint {
-        row: pair.row,
-        value: value(pair),
-        sigma: pair.sigma,
-    };
-    pairs.iter().map(point).collect()
+    pairs
+        .iter()
+        .map(|pair| MeasuredPoint {
+            row: pair.row,
+            value: value(pair),
+            sigma: pair.sigma,
+        })
+        .collect()
 }
 
 fn series(measured: &MeasuredData) -> Result<&data::TimeSeries, String> {

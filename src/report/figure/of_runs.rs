@@ -110,13 +110,18 @@ fn play(
         }
         let is_shown =
             !wanted.columns.is_empty() && (!is_exact(&run.scenario) || wanted.counts_steps());
-        let few = || few_a_swing(run).filter(|_| is_shown);
-        warnings.extend(not_believed(run, course, request.exact).or_else(few));
+        warnings.extend(
+            not_believed(run, course, request.exact)
+                .or_else(|| few_a_swing(run).filter(|_| is_shown)),
+        );
         warnings.extend(limited(run, course));
     }
     if request.exact {
-        let is_exact = |run: &FigureRun| is_exact(&run.scenario);
-        warnings.extend(runs.iter().any(is_exact).then(|| IS_EXACT.to_owned()));
+        warnings.extend(
+            runs.iter()
+                .any(|run| is_exact(&run.scenario))
+                .then(|| IS_EXACT.to_owned()),
+        );
         let Some(truths) = play_truths(job, wanted, watch) else {
             return Ok(None);
         };
@@ -124,8 +129,8 @@ fn play(
     }
     warnings.extend(look_alike(&drawn));
     if drawn.iter().all(|drawn| drawn.course.is_empty) {
-        let none = || "there is no step of the run in that stretch of time".to_owned();
-        return Err(broke.unwrap_or_else(none));
+        return Err(broke
+            .unwrap_or_else(|| "there is no step of the run in that stretch of time".to_owned()));
     }
     Ok(Some(SampledRuns {
         drawn,

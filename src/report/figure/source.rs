@@ -89,13 +89,18 @@ impl FigureSource {
     /// Refuses what no command line gives, and other names than there are runs.
     pub fn check(&self) -> Result<(), Problems> {
         let (asked, runs, named) = (&self.asked, self.runs.len(), self.asked.labels.names.len());
-        let is_time = |time_s: f64| time_s >= 0.0 && time_s.is_finite();
         let times_s = [Some(asked.from_s), asked.to_s, asked.measured_until_s];
-        let is_width = |pt: f64| WIDTHS_MM.contains(&((pt / PT_PER_MM * 1e6).round() / 1e6));
-        let is_range = |(low, high): (f64, f64)| low < high && (high - low).is_finite();
-        let is_sound = times_s.into_iter().flatten().all(is_time)
-            && asked.width_pt.is_none_or(is_width)
-            && asked.labels.y_range.is_none_or(is_range)
+        let is_sound = times_s
+            .into_iter()
+            .flatten()
+            .all(|time_s| time_s >= 0.0 && time_s.is_finite())
+            && asked
+                .width_pt
+                .is_none_or(|pt| WIDTHS_MM.contains(&((pt / PT_PER_MM * 1e6).round() / 1e6)))
+            && asked
+                .labels
+                .y_range
+                .is_none_or(|(low, high)| low < high && (high - low).is_finite())
             && (runs > 0 || self.table.is_some());
         if !is_sound {
             return Err(refused("was asked for what no figure can have"));
@@ -138,7 +143,6 @@ impl FigureSource {
 
     /// What its file carries.
     pub fn origin(&self, format: PageFormat) -> Origin {
-        let run = |run: &FigureRun| File::new(Payload::Run, &run.named, &run.scenario.to_toml());
         let data = self.measured.iter();
         let data = data.map(|it| File::new(Payload::Data, &it.origin, &it.text));
         let table = self.table.iter();
@@ -147,7 +151,12 @@ impl FigureSource {
             text: format == PageFormat::SvgText,
             ..self.asked.clone()
         };
-        let files = self.runs.iter().map(run).chain(data).chain(table);
+        let files = self
+            .runs
+            .iter()
+            .map(|run| File::new(Payload::Run, &run.named, &run.scenario.to_toml()))
+            .chain(data)
+            .chain(table);
         Origin::new(&asked, files.collect())
     }
 

@@ -73,8 +73,12 @@ pub(super) fn scene(
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + PAGE_EDGE;
     legend.draw_above(width_pt, PAGE_EDGE, &mut items);
-    let place = |at: &[f64; 3]| space.place(&space.boxed(at));
-    let dense = dense::of_paths(drawn, job.request, |course| &course.path, place);
+    let dense = dense::of_paths(
+        drawn,
+        job.request,
+        |course| &course.path,
+        |at| space.place(&space.boxed(at)),
+    );
     (items, dense)
 }
 
@@ -92,11 +96,10 @@ fn camera(runs: &[FigureRun]) -> Camera {
 }
 
 fn ranges(drawn: &[SampledRunNumbers], size: &ChartAxis) -> [(f64, f64); 3] {
-    let range = |index: usize| {
+    let [x, y, z] = [0, 1, 2].map(|index| {
         let paths = drawn.iter().flat_map(|drawn| &drawn.course.path.points);
         size.range_of(paths.map(|point| point[index]))
-    };
-    let [x, y, z] = [0, 1, 2].map(range);
+    });
     let half = 0.5 * (x.1 - x.0).max(y.1 - y.0);
     let square = |(low, high): (f64, f64)| (0.5 * (low + high) - half, 0.5 * (low + high) + half);
     [square(x), square(y), z]
@@ -104,8 +107,16 @@ fn ranges(drawn: &[SampledRunNumbers], size: &ChartAxis) -> [(f64, f64); 3] {
 
 /// Left, upper, right and lower end of what is drawn, pt.
 fn extent(scene: &PageScene) -> (f64, f64, f64, f64) {
-    let points = || scene.items.iter().flat_map(|item| item.path.points());
-    let ends = |of: fn(Point) -> f64| crate::plot::extent(points().map(of)).unwrap_or_default();
+    let ends = |of: fn(Point) -> f64| {
+        crate::plot::extent(
+            scene
+                .items
+                .iter()
+                .flat_map(|item| item.path.points())
+                .map(of),
+        )
+        .unwrap_or_default()
+    };
     let ((left, right), (top, bottom)) = (ends(|p| p.x), ends(|p| p.y));
     (left, top, right, bottom)
 }

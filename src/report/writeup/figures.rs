@@ -3,7 +3,6 @@
 use super::{MeasuredComparison, RUN_FILE};
 use crate::engine::analysis::Readouts;
 use crate::engine::analysis::cost::is_affordable;
-use crate::engine::data::TimeSeries;
 use crate::engine::run::Clock;
 use crate::engine::scenario::Scenario;
 use crate::engine::scenario::screen::{ABOVE, THREE_D, TRACES};
@@ -140,8 +139,11 @@ fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -
 /// The figures of what was measured, and of measured less run.
 fn of_data(beside: &MeasuredComparison, whole: &FigureRequest, also: &str) -> Vec<Planned> {
     let measured = beside.reached();
-    let has_points = |it: &&TimeSeries| it.curves.iter().any(|curve| !curve.points.is_empty());
-    let Some(series) = measured.series().ok().filter(has_points) else {
+    let Some(series) = measured
+        .series()
+        .ok()
+        .filter(|it| it.curves.iter().any(|curve| !curve.points.is_empty()))
+    else {
         return Vec::new();
     };
     let last_s = series.times_s.last().copied().unwrap_or_default();

@@ -167,12 +167,13 @@ fn points(count: usize) -> String {
 fn name_of_copy(origin: &str) -> String {
     const OTHERWISE: &str = "measured.csv";
     let stem = Path::new(origin).file_stem().and_then(|stem| stem.to_str());
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
-    let stem = stem.filter(|stem| stem.chars().all(is_plain) && !stem.starts_with(['-', '.']));
+    let stem = stem.filter(|stem| {
+        stem.chars()
+            .all(|c| c.is_ascii_alphanumeric() || "._-".contains(c))
+            && !stem.starts_with(['-', '.'])
+    });
     let name = stem.map(|stem| format!("{stem}.csv"));
-    let is_taken =
-        |name: &String| [CSV, RUN_FILE, WRITEUP_PAGE, READOUTS_FILE, AGAIN].contains(&&**name);
-    name.filter(|name| !is_taken(name))
+    name.filter(|name| ![CSV, RUN_FILE, WRITEUP_PAGE, READOUTS_FILE, AGAIN].contains(&&**name))
         .unwrap_or_else(|| OTHERWISE.to_owned())
 }
 

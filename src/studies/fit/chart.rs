@@ -74,8 +74,9 @@ impl Chart {
         for part in parts(free) {
             moments.push((part, of_part(free, part, scenario)));
         }
-        let is_moment = |place: &usize| free[*place].keys.iter().any(|key| moment(key).is_some());
-        let places: Vec<usize> = (0..count).filter(is_moment).collect();
+        let places: Vec<usize> = (0..count)
+            .filter(|place| free[*place].keys.iter().any(|key| moment(key).is_some()))
+            .collect();
         let mut chart = Self {
             matrix: DMatrix::identity(count, count),
             offset: DVector::zeros(count),
@@ -155,11 +156,13 @@ impl Chart {
 
     /// The limits, of which those that `parameters` are outside of by rounding begin there.
     pub fn limits_around(&self, parameters: &[f64]) -> Vec<Limit> {
-        let around = |limit: &Limit| Limit {
-            least: limit.least + limit.room(parameters).min(0.0),
-            normal: limit.normal.clone(),
-        };
-        self.limits.iter().map(around).collect()
+        self.limits
+            .iter()
+            .map(|limit| Limit {
+                least: limit.least + limit.room(parameters).min(0.0),
+                normal: limit.normal.clone(),
+            })
+            .collect()
     }
 
     /// The moment of `part` about `axis` for these values of the keys; `None` where none of the part's is free.
@@ -212,10 +215,9 @@ fn of_part(free: &[Free], part: usize, scenario: &Scenario) -> [Row; 3] {
                 .iter()
                 .any(|key| moment(key) == Some((part, axis)))
         };
-        let slope = |row, _| f64::from(u8::from(is_it(&free[row])));
         let is_free = free.iter().any(is_it);
         Row {
-            slopes: DVector::from_fn(free.len(), slope),
+            slopes: DVector::from_fn(free.len(), |row, _| f64::from(u8::from(is_it(&free[row])))),
             at_zero: if is_free { 0.0 } else { own[axis] } - shift[axis],
         }
     })

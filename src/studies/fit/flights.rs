@@ -142,11 +142,13 @@ impl Squares {
         let rates = self.covariance(&self.rates_rates, &self.rates, &self.rates);
         let both = self.covariance(&self.rates_sums, &self.rates, &self.sums);
         let sums = self.covariance(&self.sums_sums, &self.sums, &self.sums);
-        let of_axis = |axis: usize| {
-            let growth = growth[axis];
-            rates[axis] + growth * (growth * sums[axis] - 2.0 * both[axis])
-        };
-        [0, 1, 2].map(of_axis).into_iter().fold(0.0, f64::max)
+        [0, 1, 2]
+            .map(|axis| {
+                let growth = growth[axis];
+                rates[axis] + growth * (growth * sums[axis] - 2.0 * both[axis])
+            })
+            .into_iter()
+            .fold(0.0, f64::max)
     }
 }
 
@@ -284,11 +286,13 @@ impl Recording {
             let is_off = |end: Range<usize>| {
                 let count = end.len() as f64;
                 let first = rows.start;
-                let off = |row: usize| {
-                    let sums = self.sums[row] - self.sums[first];
-                    self.rates[row] - self.rates[first] - offset - growth.component_mul(&sums)
-                };
-                let mean = end.map(off).sum::<Vector3<f64>>() / count;
+                let mean = end
+                    .map(|row| {
+                        let sums = self.sums[row] - self.sums[first];
+                        self.rates[row] - self.rates[first] - offset - growth.component_mul(&sums)
+                    })
+                    .sum::<Vector3<f64>>()
+                    / count;
                 mean.amax() > most * self.noise / count.sqrt() + askew
             };
             let starts = is_off(rows.start..rows.start + block);

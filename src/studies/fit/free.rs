@@ -34,12 +34,11 @@ impl Free {
     /// When there is no such key, no number of a run depends on it, it has no value to begin from, or the bounds are none
     /// or leave the value out.
     pub fn parse(argument: &str, scenario: &Document) -> Result<Self, Problems> {
-        let refused = |rule: String| {
+        Self::read(argument.trim(), scenario).map_err(|rule| {
             let mut problem = Problem::at("", rule);
             problem.place = Some(format!("--free {}", brief(argument, 80)));
             Problems::one("", problem)
-        };
-        Self::read(argument.trim(), scenario).map_err(refused)
+        })
     }
 
     /// The size of the key at `value`, by which relative changes are measured.

@@ -150,8 +150,9 @@ impl<'a> Linear<'a> {
 
     /// Returns the limits that hold the parameters where they are: those that the steepest way down leads beyond.
     fn held(&self) -> Vec<usize> {
-        let is_here = |place: &usize| self.limits[*place].least >= -HERE;
-        let here: Vec<usize> = (0..self.limits.len()).filter(is_here).collect();
+        let here: Vec<usize> = (0..self.limits.len())
+            .filter(|place| self.limits[*place].least >= -HERE)
+            .collect();
         let cone = here.iter().map(|&place| Limit {
             least: 0.0,
             normal: self.limits[place].normal.clone(),

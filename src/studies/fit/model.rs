@@ -180,8 +180,10 @@ impl Model {
         };
         let of_rows: Result<HashMap<usize, Vec<Option<f64>>>, Stop> = cores::map(&rows, of_row);
         let of_rows = of_rows?;
-        let of = |datum: &Datum| self.finite(datum, of_rows[&datum.point.row][datum.column]);
-        self.data.iter().map(of).collect()
+        self.data
+            .iter()
+            .map(|datum| self.finite(datum, of_rows[&datum.point.row][datum.column]))
+            .collect()
     }
 
     fn finite(&self, datum: &Datum, value: Option<f64>) -> Result<f64, Stop> {

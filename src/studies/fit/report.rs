@@ -118,11 +118,12 @@ impl FitReport<'_> {
         }
         writeln!(f, "\nCorrelations, the keys in that order:")?;
         for i in 0..count {
-            let cell = |j: usize| match self.fit.solution.correlation(i, j) {
-                Some(correlation) => format!("{correlation:>9.4}"),
-                None => format!("{NOT_AVAILABLE:>9}"),
-            };
-            let cells: String = (0..=i).map(cell).collect();
+            let cells: String = (0..=i)
+                .map(|j| match self.fit.solution.correlation(i, j) {
+                    Some(correlation) => format!("{correlation:>9.4}"),
+                    None => format!("{NOT_AVAILABLE:>9}"),
+                })
+                .collect();
             writeln!(f, " {cells}")?;
         }
         Ok(())
@@ -173,8 +174,9 @@ impl FitReport<'_> {
         let keys = fit.keys.iter().map(Fitted::json);
         let each = 0..fit.keys.len();
         let matrix = |cell: &dyn Fn(usize, usize) -> Option<f64>| -> Vec<Vec<Option<f64>>> {
-            let row = |i| each.clone().map(|j| cell(i, j)).collect();
-            each.clone().map(row).collect()
+            each.clone()
+                .map(|i| each.clone().map(|j| cell(i, j)).collect())
+                .collect()
         };
         let covariance = matrix(&|i, j| Some(fit.solution.covariance[i][j]? * fit.variance?));
         let alike = fit.solution.alike.iter().map(|alike| {
@@ -258,8 +260,9 @@ fn write_table<const N: usize>(
         .chain(rows)
         .collect();
     let width = |cell: &String| columns(&printable(cell));
-    let widest = |column: usize| rows.iter().map(|row| width(&row[column])).max();
-    let widths: Vec<usize> = (0..N).filter_map(widest).collect();
+    let widths: Vec<usize> = (0..N)
+        .filter_map(|column| rows.iter().map(|row| width(&row[column])).max())
+        .collect();
     for row in &rows {
         let cells = row.iter().zip(&widths);
         let cells = cells.map(|(cell, most)| {
@@ -378,13 +381,14 @@ fn at_cells(data: &DataKind, row: usize) -> Vec<String> {
         DataKind::Series(series) => vec![number(series.times_s[row])],
         DataKind::Table(table) => {
             let values = table.settings.iter().map(|setting| &setting.values[row]);
-            let cell = |value: &Option<toml::Value>| match value {
-                None => String::new(),
-                Some(toml::Value::Float(value)) => number(*value),
-                Some(toml::Value::String(text)) => text.clone(),
-                Some(other) => other.to_string(),
-            };
-            values.map(cell).collect()
+            values
+                .map(|value| match value {
+                    None => String::new(),
+                    Some(toml::Value::Float(value)) => number(*value),
+                    Some(toml::Value::String(text)) => text.clone(),
+                    Some(other) => other.to_string(),
+                })
+                .collect()
         }
     }
 }

@@ -231,8 +231,10 @@ fn finished(
     let freedom = model.data.len().saturating_sub(solution.rank) as u64;
     let sum = minimum.residuals.norm_squared();
     let quality = Quality::of(sum, freedom, &weights);
-    let scattered = || variance(sum, freedom);
-    let variance = weights.are_stated.then_some(1.0).or_else(scattered);
+    let variance = weights
+        .are_stated
+        .then_some(1.0)
+        .or_else(|| variance(sum, freedom));
     let edges = edges(minimum, chart, &model.free, variance);
     let places = model.free.iter().enumerate();
     let keys = places.map(|(index, free)| {
@@ -268,9 +270,10 @@ fn sides(
     let along = solution.sigma(index).zip(variance);
     let along = along.map(|(sigma, variance)| sigma * variance.sqrt());
     let mut squares = [along.unwrap_or(0.0).powi(2); 2];
-    let is_silent = |edge: &&Edge| edge.is_of_nature && edge.most.is_none() && edge.holds[index];
-    let is_unknown =
-        along.is_none() && solution.is_moving[index] || edges.iter().any(|edge| is_silent(&edge));
+    let is_unknown = along.is_none() && solution.is_moving[index]
+        || edges
+            .iter()
+            .any(|edge| edge.is_of_nature && edge.most.is_none() && edge.holds[index]);
     let of_part = edges
         .iter()
         .filter(|edge| edge.holds[index] && edge.of_part().is_some());
@@ -396,9 +399,9 @@ impl LeastSquares for Weighed<'_> {
 
     fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop> {
         let changes = self.kept().clone();
-        let of = |(index, change): &(usize, _)| self.slope(p, *index, *change);
         let changes: Vec<_> = changes.into_iter().enumerate().collect();
-        let found: Result<Vec<(Vec<f64>, f64)>, Stop> = cores::map(&changes, of);
+        let found: Result<Vec<(Vec<f64>, f64)>, Stop> =
+            cores::map(&changes, |(index, change)| self.slope(p, *index, *change));
         let found = found?;
         let keys = self.chart.keys(p);
         let column = |(index, (slope, _)): (usize, &(Vec<f64>, f64))| {

@@ -64,12 +64,13 @@ fn ways(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<Way> {
     let Some(v_t) = svd.v_t else {
         return Vec::new();
     };
-    let way = |k: usize| Way {
-        // With fewer data than keys some directions have no singular value at all.
-        singular: svd.singular_values.get(k).copied().unwrap_or(0.0),
-        parts: &free * v_t.row(k).transpose(),
-    };
-    (0..v_t.nrows()).map(way).collect()
+    (0..v_t.nrows())
+        .map(|k| Way {
+            // With fewer data than keys some directions have no singular value at all.
+            singular: svd.singular_values.get(k).copied().unwrap_or(0.0),
+            parts: &free * v_t.row(k).transpose(),
+        })
+        .collect()
 }
 
 impl FitSolution {
@@ -94,12 +95,15 @@ impl FitSolution {
         let columns = heard.iter();
         let columns = columns.map(|&index| slopes.column(index) / norms[index]);
         let columns = DMatrix::from_columns(&columns.collect::<Vec<DVector<f64>>>());
-        let normal = |&place: &usize| {
-            let normal = chart.matrix.tr_mul(&chart.limits[place].normal);
-            let parts = heard.iter().map(|&index| normal[index] / norms[index]);
-            DVector::from_iterator(heard.len(), parts)
-        };
-        let normals: Vec<DVector<f64>> = minimum.held.iter().map(normal).collect();
+        let normals: Vec<DVector<f64>> = minimum
+            .held
+            .iter()
+            .map(|&place| {
+                let normal = chart.matrix.tr_mul(&chart.limits[place].normal);
+                let parts = heard.iter().map(|&index| normal[index] / norms[index]);
+                DVector::from_iterator(heard.len(), parts)
+            })
+            .collect();
         let ways = ways(&columns, &normals);
         let largest = ways.iter().map(|way| way.singular).fold(0.0, f64::max);
         let (seen, unseen): (Vec<&Way>, Vec<&Way>) =
@@ -112,15 +116,18 @@ impl FitSolution {
         for (place, &index) in heard.iter().enumerate() {
             solution.is_moving[index] = ways.iter().any(|way| way.parts[place].abs() > ROUNDING);
         }
-        let is_known = |place: &usize| {
-            let mut unseen = unseen.iter();
-            solution.is_moving[heard[*place]]
-                && unseen.all(|way| way.parts[*place].abs() <= COMBINATION_ROUNDING)
-        };
-        let known: Vec<usize> = (0..heard.len()).filter(is_known).collect();
+        let known: Vec<usize> = (0..heard.len())
+            .filter(|place| {
+                let mut unseen = unseen.iter();
+                solution.is_moving[heard[*place]]
+                    && unseen.all(|way| way.parts[*place].abs() <= COMBINATION_ROUNDING)
+            })
+            .collect();
         for (&i, &j) in known.iter().flat_map(|i| known.iter().map(move |j| (i, j))) {
-            let term = |way: &&Way| way.parts[i] * way.parts[j] / way.singular.powi(2);
-            let covariance = seen.iter().map(term).sum::<f64>();
+            let covariance = seen
+                .iter()
+                .map(|way| way.parts[i] * way.parts[j] / way.singular.powi(2))
+                .sum::<f64>();
             let covariance = covariance / (norms[heard[i]] * norms[heard[j]]);
             solution.covariance[heard[i]][heard[j]] =
                 Some(covariance).filter(|covariance| covariance.is_finite());
@@ -187,11 +194,13 @@ fn at_least(chi_squared: f64, freedom: u64) -> f64 {
         0 => (0.0, 0.0),
         _ => (0.5, libm::erfc(half.sqrt())),
     };
-    let term = |index: u64| {
-        let power = begin + index as f64;
-        libm::exp(power * libm::log(half) - half - libm::lgamma(power + 1.0))
-    };
-    first + (0..freedom / 2).map(term).sum::<f64>()
+    first
+        + (0..freedom / 2)
+            .map(|index: u64| {
+                let power = begin + index as f64;
+                libm::exp(power * libm::log(half) - half - libm::lgamma(power + 1.0))
+            })
+            .sum::<f64>()
 }
 
 /// What is said of uncertainties for which chi^2 of `freedom` degrees of freedom is hardly ever so small.

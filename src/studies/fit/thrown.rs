@@ -48,13 +48,17 @@ pub(super) fn starts(model: &Model, p: &[f64]) -> Vec<Vec<f64>> {
     let (Some(own), Some(sums)) = (own, Sums::of(&recorded)) else {
         return Vec::new();
     };
-    let is_moment = |free: &Free| free.keys.iter().any(|key| moment(key).is_some());
     let mut all: Vec<Vector3<f64>> = sums.moments().into_iter().collect();
-    if model.free.iter().any(is_moment) {
+    if model
+        .free
+        .iter()
+        .any(|free| free.keys.iter().any(|key| moment(key).is_some()))
+    {
         all.extend(SHARES.map(|shares| moments_of(&Vector3::from(shares))));
     }
-    let start = |moments: &Vector3<f64>| start(model, p, &own.into(), &sums, moments);
-    all.iter().map(start).collect()
+    all.iter()
+        .map(|moments| start(model, p, &own.into(), &sums, moments))
+        .collect()
 }
 
 /// Values of the free keys for a body with these moments, known up to a factor.
@@ -72,8 +76,9 @@ fn start(
             .collect()
     };
     // The moments that are held are what they are; where none is, their sum stays.
-    let is_free = |axis: &usize| model.free.iter().any(|free| axes(free).contains(axis));
-    let mut held: Vec<usize> = (0..3).filter(|axis| !is_free(axis)).collect();
+    let mut held: Vec<usize> = (0..3)
+        .filter(|axis| !model.free.iter().any(|free| axes(free).contains(axis)))
+        .collect();
     if held.is_empty() {
         held = vec![0, 1, 2];
     }

@@ -1,9 +1,9 @@
 //! Whether the model fits, in one sentence.
 
-use super::model::{Measurand, Model};
+use super::model::Model;
 use super::search::Fit;
 use super::solution::{LEAST_FREEDOM, Quality, RARE, student, too_large};
-use crate::engine::data::{DataKind, MeasuredPoint, Residual, is_counted};
+use crate::engine::data::{DataKind, MeasuredPoint, is_counted};
 use crate::engine::text::number::{short, significant};
 use std::collections::BTreeSet;
 
@@ -90,8 +90,11 @@ impl Fit {
     }
 
     fn far(&self) -> String {
-        let sigmas = |residual: &Residual| Some((residual.row + 1, residual.in_sigmas()?.abs()));
-        let all: Vec<(usize, f64)> = self.residuals.iter().filter_map(sigmas).collect();
+        let all: Vec<(usize, f64)> = self
+            .residuals
+            .iter()
+            .filter_map(|residual| Some((residual.row + 1, residual.in_sigmas()?.abs())))
+            .collect();
         let (mut rows, mut least, mut worst) = (BTreeSet::new(), f64::INFINITY, 0.0_f64);
         for (row, sigmas) in all {
             worst = worst.max(sigmas);
@@ -166,8 +169,10 @@ impl Fit {
         let DataKind::Series(series) = &model.measured.data else {
             return None;
         };
-        let is_direction = |column: &Measurand| column.quantity.is_some_and(|q| q.is_direction);
-        let column = model.columns.iter().position(is_direction)?;
+        let column = model
+            .columns
+            .iter()
+            .position(|column| column.quantity.is_some_and(|q| q.is_direction))?;
         let of_column =
             (model.data.iter().zip(&self.residuals)).filter(|(d, _)| d.column == column);
         let (points, at): (Vec<MeasuredPoint>, Vec<[f64; 2]>) = of_column
@@ -182,8 +187,11 @@ impl Fit {
             let times = time_s / apart_s;
             (times - times.round()).abs() < EVEN_TIMES
         };
-        let turns = |[time_s, way]: &[f64; 2]| (way * apart_s / time_s).abs() > 360.0 / MOST_ROWS;
-        let is_aliased = ways.iter().all(is_even) && ways.iter().any(turns) && !is_counted(&points);
+        let is_aliased = ways.iter().all(is_even)
+            && ways
+                .iter()
+                .any(|[time_s, way]| (way * apart_s / time_s).abs() > 360.0 / MOST_ROWS)
+            && !is_counted(&points);
         is_aliased.then(|| {
             let rate = significant(360.0 / apart_s, 3);
             let apart_s = significant(apart_s, 3);

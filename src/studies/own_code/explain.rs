@@ -76,8 +76,8 @@ impl Explanation {
 
     /// The program with these slips; `None` where its time step is another one.
     pub fn program(&self, plan: &Plan) -> Option<MutantStepper<f64>> {
-        let program = || program(plan, &self.variants, Order::Forward);
-        (!self.names().contains(&ANOTHER_STEP)).then(program)
+        (!self.names().contains(&ANOTHER_STEP))
+            .then(|| program(plan, &self.variants, Order::Forward))
     }
 
     /// Returns what the program does, and what the report does.
@@ -283,9 +283,9 @@ impl Search<'_> {
             (Some(_), true) => ROWS_BEFORE_PARTING,
         };
         // Without axes two slips together make the rows of many others.
-        let shows_pairs = || program::<f64>(self.plan, &[], Order::Forward).has_axes();
         explanation.evidence >= EVIDENCE
-            && (explanation.variants.len() == 1 || shows_pairs())
+            && (explanation.variants.len() == 1
+                || program::<f64>(self.plan, &[], Order::Forward).has_axes())
             && followed.offset == 0
             && followed.explains(self.first.0 + after)
             && !(self.is_single && self.has_few_digits)
@@ -418,8 +418,10 @@ pub fn hidden(
         let variants = std::slice::from_ref(variant);
         let followed = follow(rows, steps(rows, variants), double(plan, variants));
         // A run that parts from its copy long before the scheme does is another one.
-        let parts_with = |step: i64| parted.is_some_and(|own| step + 10 >= own);
-        followed.is_whole() && followed.parted.is_none_or(parts_with)
+        followed.is_whole()
+            && followed
+                .parted
+                .is_none_or(|step| parted.is_some_and(|own| step + 10 >= own))
     });
     let hidden = variants.iter().zip(hides).filter(|(_, hides)| *hides);
     let mut names: Vec<_> = hidden.map(|(variant, _)| variant.name).collect();

@@ -191,8 +191,10 @@ impl RowAgreement {
     fn take(&mut self, rows: &ProgramRows, steps: &RowSteps, step: i64, at: &At) {
         let (offset, count) = (self.offset * steps.stride, rows.count);
         // A row before the start repeats the start, or the rows do not begin there.
-        let is_due = |row: usize| steps.of_rows[row].saturating_add(offset) <= step;
-        while self.next < count && is_due(self.next) && self.compare(rows, self.next, step, at) {
+        while self.next < count
+            && steps.of_rows[self.next].saturating_add(offset) <= step
+            && self.compare(rows, self.next, step, at)
+        {
             self.next += 1;
         }
     }

@@ -138,8 +138,10 @@ pub fn compare(
     go_on: &(dyn Fn() -> bool + Sync),
 ) -> Result<Verdict, Unverified> {
     let plan = Plan::of(scenario);
-    let copy = |plan| MutantStepper::<f64>::new(plan, &Mutations::default(), Order::Forward);
-    let copies = plan.iter().map(copy).collect();
+    let copies = plan
+        .iter()
+        .map(|plan| MutantStepper::<f64>::new(plan, &Mutations::default(), Order::Forward))
+        .collect();
     let run = Simulation::new(Arc::clone(scenario));
     let run = ReferenceRun::of(run, copies, Rounding::Double);
     let beside = follow(rows, &rows.times.steps, run);
@@ -275,11 +277,11 @@ impl CheckOutcome<'_> {
     /// Returns the column that has the fewest digits. Of constant columns only those count that agree by their few digits alone.
     fn coarsest(&self) -> Option<&ProgramColumn> {
         let agrees = self.beside.differs.is_none();
-        let counts = |column: &&ProgramColumn| {
-            column.varies() || agrees && self.beside.is_rounded[column.place]
-        };
         let columns = &self.rows.columns;
-        let fewest = columns.iter().filter(counts).min_by_key(|it| it.digits());
+        let fewest = columns
+            .iter()
+            .filter(|column| column.varies() || agrees && self.beside.is_rounded[column.place])
+            .min_by_key(|it| it.digits());
         fewest.or_else(|| columns.iter().min_by_key(|it| it.digits()))
     }
 

@@ -42,12 +42,14 @@ impl Plan {
     /// pushes in seconds.
     pub fn of(scenario: &Scenario) -> Option<Self> {
         let body = &scenario.body.mechanics;
-        let in_steps = |push: &Push| matches!(push.window, Window::Steps { .. });
         let is_plain = scenario.motion.scheme.name == "report"
             && scenario.friction.is_none()
             && body.frame_moment() == 0.0
             && scenario.edits.is_empty()
-            && scenario.pushes.iter().all(in_steps);
+            && scenario
+                .pushes
+                .iter()
+                .all(|push| matches!(push.window, Window::Steps { .. }));
         let (file, start) = (&scenario.file.body, &scenario.file.start);
         let of_body =
             start.momentum_Js.is_none() || start.momentum_frame == Some(VectorFrame::Body);
@@ -177,8 +179,7 @@ impl Plan {
 
     /// Returns the hub, the first of the axle's points, if it is not in the plane of the rim.
     pub(super) fn hub(&self) -> Option<usize> {
-        let is_hub = |hub: &usize| *hub != self.traced && !self.axle.is_empty();
-        let hub = Some(self.rim).filter(is_hub)?;
+        let hub = Some(self.rim).filter(|hub| *hub != self.traced && !self.axle.is_empty())?;
         (self.points[hub].0[2] != self.points[0].0[2]).then_some(hub)
     }
 

@@ -189,10 +189,13 @@ pub fn read(
     });
     let mut columns: Vec<ProgramColumn> = places.collect();
     found.or(())?;
-    let is_finite = |row: &usize| columns.iter().all(|it| it.values[*row].is_finite());
-    let count = (0..cells.rows.len()).take_while(is_finite).count();
-    let is_broken = |it: &&ProgramColumn| it.values.get(count).is_some_and(|it| !it.is_finite());
-    let broken = columns.iter().find(is_broken).map(ProgramColumn::name);
+    let count = (0..cells.rows.len())
+        .take_while(|row| columns.iter().all(|it| it.values[*row].is_finite()))
+        .count();
+    let broken = columns
+        .iter()
+        .find(|it| it.values.get(count).is_some_and(|it| !it.is_finite()))
+        .map(ProgramColumn::name);
     let not_finite = broken.map(|name| (cells.rows[count].0, name));
     if let Some((line, name)) = not_finite.filter(|_| count == 0) {
         let rule = "is no finite number in the first row: there is nothing to compare";
@@ -206,8 +209,9 @@ pub fn read(
     let find = |name| others.iter().find(|column| column.name() == name);
     let step = find(STEP_NAME).map(|column| &column.values[..]);
     let time = find(TIME_NAME).map(|it| (&it.values[..], it.unit(it.values[count - 1])));
-    let line = |row: usize| cells.rows[row].0;
-    let times = times::of(count, step, time, every, time_step_s, &line)?;
+    let times = times::of(count, step, time, every, time_step_s, &|row| {
+        cells.rows[row].0
+    })?;
     let left_out = cells
         .names
         .iter()
@@ -228,8 +232,12 @@ fn renamed(text: &str, map: &[Renaming]) -> Result<Csv, Problems> {
     if cells.titles.is_empty() {
         name_columns(&mut cells, "", |name| ROW_COLUMN_NAMES.contains(&name)).map_err(
             |problems| {
-                let place = |problem| at_line(cells.line_of_names, problem);
-                Problems::from(problems.into_iter().map(place).collect::<Vec<_>>())
+                Problems::from(
+                    problems
+                        .into_iter()
+                        .map(|problem| at_line(cells.line_of_names, problem))
+                        .collect::<Vec<_>>(),
+                )
             },
         )?;
     }
@@ -258,13 +266,12 @@ fn nothing_to_compare(cells: &Csv) -> Vec<Problem> {
 fn coordinates(cells: &Csv) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for axis in ["x", "y", "z"] {
-        let is_axis = |name: &String| {
+        let place = cells.names.iter().position(|name| {
             let lower = name.to_lowercase();
             lower
                 .split(|c: char| !c.is_alphanumeric())
                 .any(|word| word == axis)
-        };
-        let place = cells.names.iter().position(is_axis);
+        });
         found.extend(place.map(|place| (place, format!("{axis}_m"))));
     }
     if found.is_empty() {

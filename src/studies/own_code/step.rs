@@ -176,9 +176,10 @@ impl<T: Real> MutantStepper<T> {
             numbers.push(("axis and angle", "angle", "rad", angle.f64().into()));
             numbers.push(("rotation", "R", "", matrix(rotation)));
         }
-        let quantity =
-            |(phase, symbol, unit, value)| (phase, WorkedQuantity::new(symbol, unit, value));
-        numbers.into_iter().map(quantity).collect()
+        numbers
+            .into_iter()
+            .map(|(phase, symbol, unit, value)| (phase, WorkedQuantity::new(symbol, unit, value)))
+            .collect()
     }
 
     /// Equation (2): I = sum of m (|r|^2 E - r r^T), about the pivot.
@@ -228,8 +229,12 @@ impl<T: Real> MutantStepper<T> {
 
     /// Returns the mass of the whole body, where each point of the rim has it in the sum.
     fn total(&self, has_it: bool) -> Option<T> {
-        let masses = || self.points.iter().map(|(_, mass)| *mass);
-        has_it.then(|| masses().fold(T::zero(), |sum, mass| sum + mass))
+        has_it.then(|| {
+            self.points
+                .iter()
+                .map(|(_, mass)| *mass)
+                .fold(T::zero(), |sum, mass| sum + mass)
+        })
     }
 
     /// Returns the place of point `k`, or of the `other` that takes its place.

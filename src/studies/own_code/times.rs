@@ -66,9 +66,11 @@ impl RowSteps {
 impl Times {
     /// The rows are these steps, at times that the file does not tell.
     fn at(steps: RowSteps, time_step_s: f64) -> Self {
-        let other = |factor: f64| (rounded(time_step_s * factor, 12), steps.clone());
         Self {
-            others: OTHER_TIME_STEPS.into_iter().map(other).collect(),
+            others: OTHER_TIME_STEPS
+                .into_iter()
+                .map(|factor| (rounded(time_step_s * factor, 12), steps.clone()))
+                .collect(),
             own_s: None,
             steps,
         }
@@ -122,12 +124,14 @@ fn by_time(
     let stride = every.unwrap_or_else(|| ((gap / time_step_s).round() as i64).max(1));
     let is_own = is_same(gap / stride as f64, time_step_s, off / stride as f64);
     let first = |dt: f64| (times[0] / dt).round() as i64;
-    let of_own = |steps: i64| {
-        let own = plain(gap / steps as f64, off / steps as f64);
-        (own, RowSteps::evenly(times.len(), first(own), steps))
-    };
     let counts = every.map_or(STEPS_A_ROW.to_vec(), |every| vec![every]);
-    let mut others: Vec<_> = counts.into_iter().map(of_own).collect();
+    let mut others: Vec<_> = counts
+        .into_iter()
+        .map(|steps| {
+            let own = plain(gap / steps as f64, off / steps as f64);
+            (own, RowSteps::evenly(times.len(), first(own), steps))
+        })
+        .collect();
     others.retain(|(own, _)| !is_same(*own, time_step_s, 0.0));
     let begins = if is_own { first(time_step_s) } else { 0 };
     let own = others.first().map(|(own, _)| *own);
@@ -149,9 +153,11 @@ fn even_gap(times: &[f64], unit: f64, time_step_s: f64) -> Option<(f64, f64)> {
         return Some((time_step_s, unit));
     }
     let gap = (times[last] - times[0]) / last as f64;
-    let is_even =
-        |(row, time): (usize, &f64)| (time - times[0] - row as f64 * gap).abs() <= 0.3 * gap + unit;
-    let even = gap > 0.0 && times.iter().enumerate().all(is_even);
+    let even = gap > 0.0
+        && times
+            .iter()
+            .enumerate()
+            .all(|(row, time)| (time - times[0] - row as f64 * gap).abs() <= 0.3 * gap + unit);
     even.then_some((gap, unit / last as f64))
 }
 

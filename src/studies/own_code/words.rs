@@ -25,7 +25,6 @@ impl CheckOutcome<'_> {
         let (rows, beside) = (self.rows, &self.beside);
         let agrees = beside.differs.is_none() && rows.not_finite.is_none();
         let differing = self.differing();
-        let named = |(column, ..): &(&ProgramColumn, f64, f64)| column.name();
         Verdict {
             agrees,
             precision: self.precision,
@@ -34,7 +33,7 @@ impl CheckOutcome<'_> {
             rows_compared: self.rows_compared(),
             offset: beside.offset,
             first_step: beside.differs.map(|differs| differs.step),
-            columns: differing.iter().map(named).collect(),
+            columns: differing.iter().map(|(column, ..)| column.name()).collect(),
             yours: differing.iter().map(|(_, yours, _)| *yours).collect(),
             scheme: differing.iter().map(|(.., scheme)| *scheme).collect(),
             worst_m: beside.worst[0].map(|worst| worst.off),
@@ -262,21 +261,19 @@ impl CheckOutcome<'_> {
         };
         let differs = self.beside.differs.filter(|_| z.place == 2)?;
         let at = |row: usize| Vector3::new(x.values[row], y.values[row], z.values[row]);
-        let place = |at: Vector3<f64>| {
+        let [own, right] = [at(0), Vector3::from_column_slice(&differs.scheme[..3])].map(|at| {
             let tilt = libm::acos(at.z / at.norm()).to_degrees();
             let [radius, tilt] = [at.norm(), tilt].map(short);
             format!("{radius} m from the foot, tilted by {tilt} degrees")
-        };
-        let [own, right] = [at(0), Vector3::from_column_slice(&differs.scheme[..3])].map(place);
+        });
         if differs.step == 0 && own != right {
             return Some(format!("Its top begins {own}, the scenario's {right}."));
         }
-        let is_lost = |row: &usize| {
+        let lost = (1..self.rows.count).find(|row| {
             let [first, now] = [0, *row].map(|row| at(row).norm());
             let room: f64 = [x, y, z].map(|column| column.room(now)).iter().sum();
             (now - first).abs() > 2.0 * room + LENGTHENED * first
-        };
-        let lost = (1..self.rows.count).find(is_lost)?;
+        })?;
         let [first, now] = [0, lost].map(|row| {
             let length = at(row).norm();
             significant(if length < 1e-12 { 0.0 } else { length }, 7)
@@ -312,16 +309,15 @@ impl CheckOutcome<'_> {
 
 /// The largest difference, of x, y, z where there is one of these columns.
 fn worst_of(worst: [Option<Worst>; 2]) -> String {
-    let words = |worst: Worst| {
-        let (off, column, step) = (short(worst.off), bare(worst.place), worst.step);
-        let unit = COLUMN_UNITS[worst.place / 3];
-        format!("worst {off} {unit} in {column} at step {step}")
-    };
     worst
         .into_iter()
         .flatten()
         .next()
-        .map_or(String::new(), words)
+        .map_or(String::new(), |worst| {
+            let (off, column, step) = (short(worst.off), bare(worst.place), worst.step);
+            let unit = COLUMN_UNITS[worst.place / 3];
+            format!("worst {off} {unit} in {column} at step {step}")
+        })
 }
 
 /// States the only explanation.

@@ -45,11 +45,13 @@ impl SweepAxis {
         }
         let (key, values) = (vary.key.clone(), values.into_iter());
         let values: Vec<_> = values.map(|value| as_kind(kind, value)).collect();
-        let problem = |value| {
-            let rule = fits(kind, value).err()?;
-            Some(Problem::with_value(key.clone(), value, rule))
-        };
-        let problems: Vec<_> = values.iter().filter_map(problem).collect();
+        let problems: Vec<_> = values
+            .iter()
+            .filter_map(|value| {
+                let rule = fits(kind, value).err()?;
+                Some(Problem::with_value(key.clone(), value, rule))
+            })
+            .collect();
         if !problems.is_empty() {
             return Err(problems);
         }
@@ -204,11 +206,13 @@ fn listed(text: &str) -> Result<Vec<Value>, String> {
         }
     }
     parts.push(&text[begin..]);
-    let value = |part: &&str| match (part.trim(), toml_or_text(part.trim())) {
-        ("", _) => Err("has an empty place between its commas".to_owned()),
-        (_, (value, mistake)) => mistake.map_or(Ok(value), Err),
-    };
-    parts.iter().map(value).collect()
+    parts
+        .iter()
+        .map(|part| match (part.trim(), toml_or_text(part.trim())) {
+            ("", _) => Err("has an empty place between its commas".to_owned()),
+            (_, (value, mistake)) => mistake.map_or(Ok(value), Err),
+        })
+        .collect()
 }
 
 /// Says of `problem` that it is about that `--vary`.

@@ -256,10 +256,13 @@ impl Sweep {
             Err(why) => (vec![Readable::Nothing; self.measure.len()], Some(why)),
         };
         let is_empty = cells.iter().all(|cell| *cell == Readable::Nothing);
-        let none = || "none of its readouts can be stated".to_owned();
         Some(SweepRow {
             line: line(&(self.labels(row), cells)),
-            empty: is_empty.then(|| failure.clone().unwrap_or_else(none)),
+            empty: is_empty.then(|| {
+                failure
+                    .clone()
+                    .unwrap_or_else(|| "none of its readouts can be stated".to_owned())
+            }),
             has_failed: failure.is_some(),
         })
     }
@@ -272,9 +275,10 @@ fn measured(
     problems: &mut Vec<Problem>,
 ) -> Vec<&'static Readout> {
     let Some(names) = names else {
-        let is_number =
-            |readout: &&Readout| readout.source != ReadoutSource::Clock && !readout.is_text;
-        return READOUTS.iter().filter(is_number).collect();
+        return READOUTS
+            .iter()
+            .filter(|readout| readout.source != ReadoutSource::Clock && !readout.is_text)
+            .collect();
     };
     if names.is_empty() {
         problems.push(Problem::at("measure", "must name at least one readout"));
@@ -309,11 +313,14 @@ fn inside(problems: Problems, document: &Document) -> Problems {
     if problems.list.iter().any(|problem| problem.place.is_some()) {
         return problems; // they are those of an option
     }
-    let whole = |problem: Problem| Problem {
-        key: join("scenario", &problem.key),
-        ..problem
-    };
-    let list: Vec<_> = problems.list.into_iter().map(whole).collect();
+    let list: Vec<_> = problems
+        .list
+        .into_iter()
+        .map(|problem| Problem {
+            key: join("scenario", &problem.key),
+            ..problem
+        })
+        .collect();
     document.placed(list)
 }
 

@@ -84,12 +84,15 @@ impl EmptyRows {
         let begin = Instant::now();
         let goes_on = || begin.elapsed() < EMPTY_ROW_LIMIT && goes_on();
         let again = |row: u64| goes_on().then(|| sweep.row(row, &goes_on)?.empty).flatten();
-        let line = |(row, why): &(u64, Option<String>)| {
-            let why = why.clone().or_else(|| again(*row));
-            let why = why.unwrap_or_else(|| "gyrolab run with these values says why".to_owned());
-            format!("{}: {why}", sweep.point_in_words(*row))
-        };
-        self.first.iter().map(line).collect()
+        self.first
+            .iter()
+            .map(|(row, why)| {
+                let why = why.clone().or_else(|| again(*row));
+                let why =
+                    why.unwrap_or_else(|| "gyrolab run with these values says why".to_owned());
+                format!("{}: {why}", sweep.point_in_words(*row))
+            })
+            .collect()
     }
 }
 

@@ -175,8 +175,9 @@ impl Against {
                 "line {line} is \"{there}\", computed \"{computed}\""
             ));
         }
-        let is_compared = |at: &&usize| !self.left_out.contains(&names[**at].as_str());
-        let at = *differing.iter().find(is_compared)?;
+        let at = *differing
+            .iter()
+            .find(|at| !self.left_out.contains(&names[**at].as_str()))?;
         let [there, computed] = [&cells[at], &wanted[at]].map(|text| match text.as_str() {
             "" => "empty".to_owned(),
             text => brief(text, MOST_SHOWN),

@@ -166,12 +166,14 @@ fn placed(lab: &Lab, area: Rect) -> Vec<(u16, FooterItem)> {
     let screen = Rect::new(0, 0, area.width, area.bottom());
     let (items, gap) = fitted(footer(lab, page_goes_on(lab, screen)), area.width);
     let mut x = 1;
-    let place = |item: FooterItem| {
-        let at = x;
-        x += item.length() + gap;
-        (at, item)
-    };
-    items.into_iter().map(place).collect()
+    items
+        .into_iter()
+        .map(|item| {
+            let at = x;
+            x += item.length() + gap;
+            (at, item)
+        })
+        .collect()
 }
 
 /// As many of `items` as `width` has room for, and the columns between two of them. The spare keys give way first, then
@@ -205,12 +207,13 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
     let mode = lab.popups().mode;
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
-    let is_new = |row: &&Binding| of_mode.clone().all(|other| other.keys[0] != row.keys[0]);
     // The keys of a page and of a pane that was asked for differ in meaning from those of the run, touched or not.
     let focus = lab.view().focus;
     let always = focus == Pane::LESSON || focus.is_on_request;
     let of_touched = of_pane.filter(|_| lab.view().is_touched || always);
-    let of_lab = BINDINGS.iter().filter(is_new);
+    let of_lab = BINDINGS
+        .iter()
+        .filter(|row| of_mode.clone().all(|other| other.keys[0] != row.keys[0]));
     let of_lab = of_lab.map(|row| (row, row.worth));
     let rows = of_touched
         .map(|row| (row, FooterPriority::Own))

@@ -88,8 +88,11 @@ impl FormPane<'_> {
             .collect();
         let quiet = |text: &str| FormLine::Text(text.to_owned(), Role::Quiet);
         lines.extend(info.iter().map(|text| quiet(text)));
-        let warning = |text| FormLine::Text(text, Role::Warning);
-        lines.extend(complaint.into_iter().map(warning));
+        lines.extend(
+            complaint
+                .into_iter()
+                .map(|text| FormLine::Text(text, Role::Warning)),
+        );
         lines.extend(keys.iter().map(|text| quiet(text)));
         lines
     }

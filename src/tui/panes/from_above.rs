@@ -195,8 +195,9 @@ impl FromAbove<'_> {
         let ages = self.ages(plane.scale.0);
         let now = self.now(plane.scale.0);
         let now = (now.time_s, &now.position);
-        let to_dot = |at: &Vector3<f64>| plane.dot((at.x, at.y));
-        trail.follow(self.0.run.recording(), &ages, now, to_dot);
+        trail.follow(self.0.run.recording(), &ages, now, |at| {
+            plane.dot((at.x, at.y))
+        });
         trail.draw(&mut dots);
         if let Some(overlay) = self.0.run.overlay() {
             let exact = overlay.path.dots().map(|at| plane.dot(at));
@@ -225,15 +226,18 @@ impl FromAbove<'_> {
                 )
             };
             let (x, y) = (place.at.x, place.at.y);
-            let level = |sigma: f64| -> Ends { (cell(x - sigma, y).0, cell(x + sigma, y).0) };
-            let upright = |sigma: f64| -> Ends { (cell(x, y + sigma).1, cell(x, y - sigma).1) };
             let role = if place.time_s <= now_s {
                 Role::Measured
             } else {
                 Role::Quiet
             };
             let [of_x, of_y] = place.sigmas;
-            points.add(cell(x, y), of_x.map(level), of_y.map(upright), role);
+            points.add(
+                cell(x, y),
+                of_x.map(|sigma| -> Ends { (cell(x - sigma, y).0, cell(x + sigma, y).0) }),
+                of_y.map(|sigma| -> Ends { (cell(x, y + sigma).1, cell(x, y - sigma).1) }),
+                role,
+            );
         }
         points.render(&self.0.view.theme, buf);
     }

@@ -146,12 +146,13 @@ fn heading(entry: &HelpEntry, width: usize) -> Vec<HelpLine> {
         None => entry.group.to_owned(),
     };
     let lines = wrapped(&text, width.saturating_sub(1)).into_iter();
-    let line = |text| HelpLine {
-        entry: None,
-        is_first: false,
-        pieces: vec![(1, text, Role::Heading)],
-    };
-    lines.map(line).collect()
+    lines
+        .map(|text| HelpLine {
+            entry: None,
+            is_first: false,
+            pieces: vec![(1, text, Role::Heading)],
+        })
+        .collect()
 }
 
 type HelpPieces = Vec<(usize, String, Role)>;

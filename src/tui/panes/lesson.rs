@@ -293,11 +293,13 @@ mod tests {
 
     fn texts(paragraph: &Paragraph, width: u16) -> Vec<String> {
         let lines = lines_of(paragraph, width, &Theme::PLAIN);
-        let text = |line: &LessonLine| {
-            let pieces = line.pieces.iter().map(|(text, _)| text.as_str());
-            " ".repeat(line.x as usize) + &pieces.collect::<String>()
-        };
-        lines.iter().map(text).collect()
+        lines
+            .iter()
+            .map(|line| {
+                let pieces = line.pieces.iter().map(|(text, _)| text.as_str());
+                " ".repeat(line.x as usize) + &pieces.collect::<String>()
+            })
+            .collect()
     }
 
     #[test]
@@ -339,9 +341,10 @@ mod tests {
             .iter()
             .map(|line| {
                 let pieces = line.pieces.iter();
-                let bold = |style: &Style| style.add_modifier.contains(Modifier::BOLD);
                 pieces
-                    .map(|(text, style)| (text.as_str(), bold(style)))
+                    .map(|(text, style)| {
+                        (text.as_str(), style.add_modifier.contains(Modifier::BOLD))
+                    })
                     .collect()
             })
             .collect();

@@ -110,17 +110,16 @@ pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
         _ if is_beside => keys(Pane::STEP).split_at(step::PHASE_KEYS).0,
         _ => &[],
     };
-    let is_free = |row: &&Binding| {
-        let mut keys = own.iter().flat_map(|own| own.keys);
-        keys.all(|key| !row.keys.contains(key))
-    };
     let turns = if view.sheet.is_some() {
         lesson::EVERYWHERE
     } else {
         &[]
     };
     let others = beside.iter().chain(turns);
-    own.iter().chain(others.filter(is_free))
+    own.iter().chain(others.filter(|row| {
+        let mut keys = own.iter().flat_map(|own| own.keys);
+        keys.all(|key| !row.keys.contains(key))
+    }))
 }
 
 /// What the panes of the motion draw: a run, the runs and data beside it, and how they are looked at.
@@ -212,8 +211,10 @@ fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> 
 
 /// The first of `forms`, the longest first, that fits in `width` columns; else the last.
 pub(super) fn longest(forms: impl IntoIterator<Item = String>, width: usize) -> String {
-    let fitting = |kept: String, next| if columns(&kept) <= width { kept } else { next };
-    forms.into_iter().reduce(fitting).unwrap_or_default()
+    forms
+        .into_iter()
+        .reduce(|kept, next| if columns(&kept) <= width { kept } else { next })
+        .unwrap_or_default()
 }
 
 /// The words of a legend in lines of at most `width` columns, with `apart` columns between two words; a word that is wider

@@ -242,12 +242,13 @@ impl<'a> SceneSubject<'a> {
         let stands = self.stands();
         let floor = Vector3::z() * if stands { -STAND * self.reach } else { 0.0 };
         let radius = self.reach * if stands { FOOT } else { GROUND };
-        let around = |part: usize| {
-            let (sin, cos) = libm::sincos(TAU * part as f64 / CIRCLE_PARTS as f64);
-            floor + Vector3::new(radius * cos, radius * sin, 0.0)
-        };
         let ink = Ink::Faint(Role::Quiet);
-        let circle: Vec<_> = (0..CIRCLE_PARTS).map(around).collect();
+        let circle: Vec<_> = (0..CIRCLE_PARTS)
+            .map(|part| {
+                let (sin, cos) = libm::sincos(TAU * part as f64 / CIRCLE_PARTS as f64);
+                floor + Vector3::new(radius * cos, radius * sin, 0.0)
+            })
+            .collect();
         if stands {
             scene.ring(&circle, |_| (LineStroke::Thin, ink));
             scene.line(&Vector3::zeros(), &floor, LineStroke::Thin, ink);
@@ -265,13 +266,15 @@ impl<'a> SceneSubject<'a> {
             ("z", Vector3::zeros(), Vector3::z()),
         ];
         let drawn = &axes[..if stands { 2 } else { 3 }];
-        let label = |(name, from, axis): &(&'static str, Vector3<f64>, Vector3<f64>)| {
-            let tip = from + axis * length;
-            scene.line(from, &tip, LineStroke::Dotted(3), ink);
-            // The colours of the traces of x, y and z are those of arrows here.
-            (*name, Role::Quiet, tip)
-        };
-        drawn.iter().map(label).collect()
+        drawn
+            .iter()
+            .map(|(name, from, axis)| {
+                let tip = from + axis * length;
+                scene.line(from, &tip, LineStroke::Dotted(3), ink);
+                // The colours of the traces of x, y and z are those of arrows here.
+                (*name, Role::Quiet, tip)
+            })
+            .collect()
     }
 
     /// Whether the pivot carries a weight that is off it, so that a stand is seen under it.
@@ -287,8 +290,7 @@ impl<'a> SceneSubject<'a> {
         let ages = self
             .ages
             .on_picture(TAU * self.seen.run.path().radius * scene.plane.scale.0);
-        let to_dot = |at: &Vector3<f64>| scene.dot(at);
-        trail.follow(self.seen.run.recording(), &ages, now, to_dot);
+        trail.follow(self.seen.run.recording(), &ages, now, |at| scene.dot(at));
         trail.draw(dots);
         if let Some(overlay) = self.seen.run.overlay() {
             let exact = overlay.recording.since(0.0);

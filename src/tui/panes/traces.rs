@@ -262,7 +262,6 @@ impl Traces<'_> {
             let (Some(value), Some(column)) = (value, strip.column(point.time_s)) else {
                 continue;
             };
-            let ends = |sigma: f64| -> Ends { (row(value + sigma), row(value - sigma)) };
             let role = if point.model.is_some() {
                 Role::Measured
             } else {
@@ -272,7 +271,14 @@ impl Traces<'_> {
             let at = row(value);
             let at = if at == height { at - 1.0 } else { at };
             let at = ((column / across) as f64, at);
-            points.add(at, None, point.sigma.map(ends), role);
+            points.add(
+                at,
+                None,
+                point
+                    .sigma
+                    .map(|sigma| -> Ends { (row(value + sigma), row(value - sigma)) }),
+                role,
+            );
         }
         points.render(&self.0.view.theme, buf);
     }

@@ -71,13 +71,12 @@ impl Readout {
 
     /// The readout that is the standard error of this one.
     pub fn uncertainty(&self) -> Option<&'static Self> {
-        let is_its_error = |other: &&Self| {
-            let stem = other.name.split_once(ERROR);
-            stem.is_some_and(|(stem, _)| self.name.starts_with(stem))
-        };
         READOUTS
             .iter()
-            .find(is_its_error)
+            .find(|other| {
+                let stem = other.name.split_once(ERROR);
+                stem.is_some_and(|(stem, _)| self.name.starts_with(stem))
+            })
             .filter(|_| !self.is_uncertainty())
     }
 

@@ -44,13 +44,16 @@ pub(super) fn above(
     drawn: &[SampledRunNumbers],
     measured: Option<ChartSeries>,
 ) -> Chart {
-    let path = |drawn: &SampledRunNumbers| {
-        let path = &drawn.course.above;
-        let (name, style) = chords::as_drawn(drawn, path);
-        let points = path.points.iter().map(|at| [at[0], at[1]]);
-        ChartSeries::new(name, points.collect(), style)
-    };
-    let mut series: Vec<_> = drawn.iter().map(path).chain(measured).collect();
+    let mut series: Vec<_> = drawn
+        .iter()
+        .map(|drawn| {
+            let path = &drawn.course.above;
+            let (name, style) = chords::as_drawn(drawn, path);
+            let points = path.points.iter().map(|at| [at[0], at[1]]);
+            ChartSeries::new(name, points.collect(), style)
+        })
+        .chain(measured)
+        .collect();
     let [x, y] = both_ranges(&series, job.runs);
     if let (true, [run]) = (job.request.exact, job.runs) {
         series.extend(limits(run, job.request.width_pt / (x.1 - x.0)));
@@ -69,8 +72,12 @@ pub(super) fn path_warning(
 ) -> Option<Dense> {
     let layout = ChartLayout::new(chart, 0.0);
     let placed = layout.panels.first()?;
-    let place = |at: &[f64; 3]| placed.place(&[at[0], at[1]]);
-    dense::of_paths(drawn, request, |course| &course.above, place)
+    dense::of_paths(
+        drawn,
+        request,
+        |course| &course.above,
+        |at| placed.place(&[at[0], at[1]]),
+    )
 }
 
 /// The circles between which the exact motion of the traced point stays, from above; none where it is one circle, pushes or
@@ -93,11 +100,12 @@ fn limits(run: &FigureRun, pt_per_m: f64) -> Vec<ChartSeries> {
     if (outer - inner).abs() <= SAME_CURVE * outer.max(inner) {
         return Vec::new(); // the exact motion itself is the circle
     }
-    let circle = |radius| {
-        let points = circle(radius, pt_per_m);
-        ChartSeries::new("limits of exact motion", points, SeriesStyle::limit())
-    };
-    [inner, outer].map(circle).into()
+    [inner, outer]
+        .map(|radius| {
+            let points = circle(radius, pt_per_m);
+            ChartSeries::new("limits of exact motion", points, SeriesStyle::limit())
+        })
+        .into()
 }
 
 /// A circle about the origin, as straight lines: it may be far larger than the page.

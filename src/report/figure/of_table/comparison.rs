@@ -79,19 +79,23 @@ fn of_comparison(name: &str) -> ChartAxis {
 fn slope(points: &[[f64; 2]]) -> Option<f64> {
     const LEAST_DECADE_SPAN: f64 = 0.3;
     const EVEN_DECADES: f64 = 1.0 / 16.0;
-    let is_sound = |point: &&[f64; 2]| point[0] > 0.0 && point[1] > 0.0 && point[1].is_finite();
-    let points: Vec<_> = points.iter().filter(is_sound).collect();
+    let points: Vec<_> = points
+        .iter()
+        .filter(|point| point[0] > 0.0 && point[1] > 0.0 && point[1].is_finite())
+        .collect();
     let slope = |pair: &[&[f64; 2]]| {
         libm::log(pair[1][1] / pair[0][1]) / libm::log(pair[1][0] / pair[0][0])
     };
     let slopes: Vec<f64> = points.windows(2).map(slope).collect();
-    let goes_on = |a: &f64, b: &f64| (a - b).abs() <= EVEN_DECADES * a.max(*b);
     let mut first = 0;
-    let even = slopes.chunk_by(goes_on).filter_map(|even| {
-        let place = first..first + even.len();
-        first = place.end;
-        (even.len() >= 2 && even.iter().all(|slope| *slope > LEAST_DECADE_SPAN)).then_some(place)
-    });
+    let even = slopes
+        .chunk_by(|a, b| (a - b).abs() <= EVEN_DECADES * a.max(*b))
+        .filter_map(|even| {
+            let place = first..first + even.len();
+            first = place.end;
+            (even.len() >= 2 && even.iter().all(|slope| *slope > LEAST_DECADE_SPAN))
+                .then_some(place)
+        });
     // Of two that are as long, the one of the shorter steps, which come first.
     let even: Vec<_> = even.collect();
     let longest = even.into_iter().rev().max_by_key(ExactSizeIterator::len)?;

@@ -138,18 +138,21 @@ fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
     let scenario = Document::parse_header("", run_file).ok()?.scenario().ok()?;
     let quantity = RunQuantity::find(name)?;
     let (begin, end) = extent(x.iter().copied())?;
-    let time =
-        |index: u32| begin + (end - begin) * (f64::from(index) / f64::from(MODEL_CURVE_POINTS));
-    let times_s: Vec<f64> = (0..=MODEL_CURVE_POINTS).map(time).collect();
-    let point = |row| MeasuredPoint {
-        row,
-        value: 0.0,
-        sigma: None,
-    };
+    let times_s: Vec<f64> = (0..=MODEL_CURVE_POINTS)
+        .map(|index: u32| {
+            begin + (end - begin) * (f64::from(index) / f64::from(MODEL_CURVE_POINTS))
+        })
+        .collect();
     let series = data::TimeSeries {
         curves: vec![MeasuredCurve {
             quantity,
-            points: (0..times_s.len()).map(point).collect(),
+            points: (0..times_s.len())
+                .map(|row| MeasuredPoint {
+                    row,
+                    value: 0.0,
+                    sigma: None,
+                })
+                .collect(),
         }],
         times_s,
     };
@@ -166,10 +169,11 @@ impl FitFigure<'_> {
         let columns: Vec<(&str, Vec<&str>)> = others
             .filter_map(|name| Some((name.as_str(), self.table.texts(name)?)))
             .collect();
-        // What is the same in every row tells no two apart.
-        let differs = |texts: &Vec<&str>| rows.iter().any(|&row| texts[row] != texts[rows[0]]);
         let named = |row: &usize| {
-            let parts = columns.iter().filter(|(_, texts)| differs(texts));
+            // What is the same in every row tells no two apart.
+            let parts = columns
+                .iter()
+                .filter(|(_, texts)| rows.iter().any(|&row| texts[row] != texts[rows[0]]));
             let (said, values): (Vec<_>, Vec<_>) = parts
                 .map(|(key, texts)| {
                     let value = texts[*row].trim_end_matches(".0");

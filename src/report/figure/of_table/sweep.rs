@@ -30,8 +30,8 @@ pub(super) fn drawn(
         let values = table.numbers(key)?;
         Some((key, values))
     });
-    let none = || format!("none of the varied keys is a number: {}", varied.join(", "));
-    let (key, along) = along.ok_or_else(none)?;
+    let (key, along) = along
+        .ok_or_else(|| format!("none of the varied keys is a number: {}", varied.join(", ")))?;
     let curves = curves::curves(table, swept, key);
     if curves.len() > MOST_SWEEP_SERIES {
         return Err(too_many_curves(curves.len(), varied, key));
@@ -96,8 +96,9 @@ const SIMULATED_LABEL: &str = "simulated, without error";
 fn rows_run(table: &TableSource, varied: &[String]) -> Vec<usize> {
     let readouts = table.names().iter().filter(|name| !varied.contains(name));
     let readouts: Vec<_> = readouts.filter_map(|name| table.texts(name)).collect();
-    let has_run = |row: &usize| readouts.iter().any(|texts| !texts[*row].is_empty());
-    (0..table.count()).filter(has_run).collect()
+    (0..table.count())
+        .filter(|row| readouts.iter().any(|texts| !texts[*row].is_empty()))
+        .collect()
 }
 
 /// Whether a line of theory lacks a value where the run gave numbers.
@@ -178,9 +179,9 @@ impl SweepFigure<'_> {
                 ..ChartSeries::new(name, points(&curve.rows, self.along, values), style)
             }
         });
-        let has_some =
-            |series: &ChartSeries| series.points.iter().any(|point| point[1].is_finite());
-        Ok(curves.filter(has_some).collect())
+        Ok(curves
+            .filter(|series| series.points.iter().any(|point| point[1].is_finite()))
+            .collect())
     }
 
     /// The lines of the theory `part`, the one at `place` of its panel: one for all curves for which it says the same.
@@ -191,8 +192,10 @@ impl SweepFigure<'_> {
         place: usize,
         is_alone: bool,
     ) -> Vec<ChartSeries> {
-        let points = |curve: &SweepCurve| points(&curve.rows, self.along, values);
-        let each = self.curves.iter().map(|curve| (curve, points(curve)));
+        let each = self
+            .curves
+            .iter()
+            .map(|curve| (curve, points(&curve.rows, self.along, values)));
         let gaps = if self.has_gaps { IN_GAPS } else { "" };
         let lines = curves::lines(each).into_iter().map(|line| {
             // The curves are told apart by the points: of theory it is said once how it is drawn.

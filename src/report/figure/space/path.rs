@@ -27,11 +27,10 @@ impl Space {
         scene: &mut PageScene,
     ) {
         for (drawn, style) in drawn.iter().zip(styles).rev() {
-            let on_floor = |at: &[f64; 3]| {
+            let shadow = drawn.course.above.lines(|at| {
                 let boxed = self.boxed(at);
                 self.place(&Vector3::new(boxed.x, boxed.y, -0.5 * TALL))
-            };
-            let shadow = drawn.course.above.lines(on_floor);
+            });
             draw(&shadow, &round_pen(0.45, grey(198)), style, scene);
         }
         let placed = |at: &[f64; 3]| {
@@ -47,8 +46,14 @@ impl Space {
             is_log: false,
             places: (0.0, DEPTHS as f64),
         };
-        let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
-        let by_degree: Vec<_> = paths.iter().map(|path| by_degree(path, degree)).collect();
+        let by_degree: Vec<_> = paths
+            .iter()
+            .map(|path| {
+                by_degree(path, |depth| {
+                    (share.place(depth).max(0.0) as usize).min(DEPTHS - 1)
+                })
+            })
+            .collect();
         // The first run is on top of all others.
         let pens: [fn(&SeriesStyle) -> Option<StrokeStyle>; 2] =
             [|style| Some(style.pen()), SeriesStyle::core_pen];

@@ -306,8 +306,12 @@ pub(super) fn watched_lines(reading: &Reading) -> [ParameterLine; 5] {
 /// `number` beside `label` with `digits` decimals, or fewer; a dash where there is none.
 fn fixed(label: &str, number: Option<f64>, digits: usize) -> String {
     number.map_or("-".to_owned(), |number| {
-        let decimals = |digits| without_minus_zero(format!("{number:.digits$}"));
-        fitted(label, digits, decimals, number)
+        fitted(
+            label,
+            digits,
+            |digits| without_minus_zero(format!("{number:.digits$}")),
+            number,
+        )
     })
 }
 
@@ -315,8 +319,12 @@ fn fixed(label: &str, number: Option<f64>, digits: usize) -> String {
 fn signed(label: &str, number: f64, digits: usize) -> String {
     let is_zero = decimals_of(number, digits).parse() == Ok(0.0);
     let number = if is_zero { 0.0 } else { number }; // no -0.0000
-    let decimals = |digits| format!("{number:+.digits$}");
-    fitted(label, digits, decimals, number)
+    fitted(
+        label,
+        digits,
+        |digits| format!("{number:+.digits$}"),
+        number,
+    )
 }
 
 /// `number` with the most decimals for which `format` leaves a blank after `label`, or with an exponent.
@@ -327,8 +335,7 @@ fn fitted(label: &str, digits: usize, format: impl Fn(usize) -> String, number: 
     let room = (VALUE_END as usize).saturating_sub(label.len() + 2);
     let decimals = (0..=digits).rev().map(format);
     let exponents = (0..=3).rev().map(|digits| exponent(number, digits));
-    let fits = |text: &String| text.len() <= room;
-    let text = decimals.chain(exponents).find(fits);
+    let text = decimals.chain(exponents).find(|text| text.len() <= room);
     text.unwrap_or_else(|| exponent(number, 0))
 }
 
@@ -349,8 +356,11 @@ pub(super) fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {
     };
     let decimals = (1..room).rev().map(|digits| format!("{number:.digits$}"));
     let exponents = (0..room).rev().map(|digits| format!("{number:.digits$e}"));
-    let is_near = |told: f64| (told - number).abs() <= 1e-3 * number.abs();
-    let is_told = |text: &String| text.parse().is_ok_and(is_near);
     let mut fitting = decimals.chain(exponents).filter(|text| text.len() <= room);
-    fitting.find(is_told).map_or(text.into(), Cow::from)
+    fitting
+        .find(|text: &String| {
+            text.parse()
+                .is_ok_and(|told: f64| (told - number).abs() <= 1e-3 * number.abs())
+        })
+        .map_or(text.into(), Cow::from)
 }

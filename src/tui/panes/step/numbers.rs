@@ -57,8 +57,10 @@ impl CellFormat {
     pub fn aligned(self, numbers: &[f64]) -> Vec<String> {
         let sizes = numbers.iter().map(|number| number.abs());
         let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
-        let text = |number: &f64| format!("{:>1$}", self.one(*number, largest), self.cell);
-        numbers.iter().map(text).collect()
+        numbers
+            .iter()
+            .map(|number| format!("{:>1$}", self.one(*number, largest), self.cell))
+            .collect()
     }
 
     /// `number` beside others of which `largest` is the largest.
@@ -105,8 +107,10 @@ pub fn lines(quantity: &WorkedQuantity, format: CellFormat, is_result: bool) -> 
             cells = vec![format!("{text:>0$}", format.cell)];
         }
     }
-    let line = |cells: &[String]| StepPageLine::of(SYMBOL, cells.concat(), role);
-    let mut lines: Vec<_> = cells.chunks(across).map(line).collect();
+    let mut lines: Vec<_> = cells
+        .chunks(across)
+        .map(|cells| StepPageLine::of(SYMBOL, cells.concat(), role))
+        .collect();
     let unit = SYMBOL + across * format.cell + 1;
     let unit = (unit, unit_of(quantity), Role::Quiet);
     lines[0].pieces.push(unit);
@@ -227,9 +231,10 @@ impl TableView<'_> {
     /// Groups of columns that stand side by side. If there are several groups, a row takes a line for each.
     fn groups(&self) -> Vec<Range<usize>> {
         let count = self.table.columns.len();
-        let fits = |count: usize| POINT_NAME_WIDTH + count * LEAST_CELL <= self.width;
         match (count, summed(self.table)) {
-            (count, _) if fits(count) => std::iter::once(0..count).collect(),
+            (count, _) if POINT_NAME_WIDTH + count * LEAST_CELL <= self.width => {
+                std::iter::once(0..count).collect()
+            }
             // The coordinates alone. Their products are only shown in the sum.
             (10, products) => std::iter::once(1..products.start).collect(),
             _ => (0..count.div_ceil(FEW))
@@ -259,11 +264,13 @@ impl TableView<'_> {
     /// The numbers of each column of `group` on the rows `shown`.
     fn texts(&self, group: &Range<usize>, shown: &Range<usize>) -> Vec<Vec<String>> {
         let format = self.format(group);
-        let column = |column: usize| {
-            let cells = shown.clone().map(|row| self.table.row(row)[column]);
-            format.aligned(&cells.collect::<Vec<_>>())
-        };
-        group.clone().map(column).collect()
+        group
+            .clone()
+            .map(|column| {
+                let cells = shown.clone().map(|row| self.table.row(row)[column]);
+                format.aligned(&cells.collect::<Vec<_>>())
+            })
+            .collect()
     }
 
     /// The symbols over the columns of each group with their unit, or under them their units where these differ.

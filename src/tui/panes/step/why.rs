@@ -88,10 +88,9 @@ fn last<'a>(explained: &'a StepWorkings, symbols: &[&str]) -> Option<&'a WorkedQ
         .workings
         .phases()
         .flat_map(|phase| &phase.quantities);
-    let wanted = |quantity: &&WorkedQuantity| {
+    quantities.rev().find(|quantity| {
         symbols.contains(&quantity.symbol) && matches!(quantity.value, WorkedValue::Vector(_))
-    };
-    quantities.rev().find(wanted)
+    })
 }
 
 /// The numbers of the step that the pictures draw.
@@ -104,12 +103,11 @@ fn vectors(explained: &StepWorkings, width: usize) -> Vec<StepPageSection> {
         (2, last(explained, &["dL"])),
         (1, last(explained, &["new L"])),
     ];
-    let section = |(rank, quantity): (u8, Option<&WorkedQuantity>)| {
-        let lines = quantity.map(|quantity| numbers::lines(quantity, format, rank == 1));
-        StepPageSection::new(rank, lines.unwrap_or_default())
-    };
     std::iter::once(numbers::heads(5, format))
-        .chain(all.map(section))
+        .chain(all.map(|(rank, quantity)| {
+            let lines = quantity.map(|quantity| numbers::lines(quantity, format, rank == 1));
+            StepPageSection::new(rank, lines.unwrap_or_default())
+        }))
         .collect()
 }
 
@@ -233,8 +231,9 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     arrows.extend(change.map(|change| (momentum_tip, change, "dL", Role::X)));
     let corners = arrows.iter().map(|(from, along, ..)| from + along);
     let corners: Vec<_> = corners.chain([tip]).collect();
-    let margin = |half| 1.3 * half + 0.05 * length;
-    let mut picture = ArrowDiagram::new(area, view, around(&corners), margin);
+    let mut picture = ArrowDiagram::new(area, view, around(&corners), |half| {
+        1.3 * half + 0.05 * length
+    });
     for (from, along, name, role) in arrows {
         picture.arrow(from, along, name, role);
         if name == "L" {

@@ -160,8 +160,10 @@ impl SceneSubject<'_> {
             (2, Some(2)),
             (1, None),
         ];
-        let fits = |lines: &Vec<LegendLine>| lines.len() <= most;
-        let fitting = forms.into_iter().map(lines).find(fits);
+        let fitting = forms
+            .into_iter()
+            .map(lines)
+            .find(|lines| lines.len() <= most);
         fitting.unwrap_or_else(|| lines((2, None)).into_iter().take(most).collect())
     }
 
@@ -262,8 +264,12 @@ impl<'a> StepArrows<'a> {
 
     /// The direction of the last vector of this `symbol` in the step up to this phase.
     fn direction(&self, symbol: &str) -> Option<Vector3<f64>> {
-        let is_later = |phase: &&Phase| !std::ptr::eq(*phase, self.phase);
-        let phases = self.explained.workings.phases().rev().skip_while(is_later);
+        let phases = self
+            .explained
+            .workings
+            .phases()
+            .rev()
+            .skip_while(|phase| !std::ptr::eq(*phase, self.phase));
         let mut quantities = phases.flat_map(|phase| phase.quantities.iter().rev());
         let found = quantities.find(|quantity| quantity.symbol == symbol)?;
         match found.value {
@@ -350,13 +356,17 @@ impl SceneSubject<'_> {
             ),
             letter => meaning(letter).0,
         };
-        let has = |letter: &&&str| match **letter {
-            "F" => !self.seen.run.simulation().loads().pushes.is_empty(),
-            "u" => shown.direction("u").is_some(),
-            "new L" => false, // the arrow says it
-            _ => true,
-        };
-        let mut words: Vec<_> = shown.letters().iter().filter(has).map(words).collect();
+        let mut words: Vec<_> = shown
+            .letters()
+            .iter()
+            .filter(|letter| match **letter {
+                "F" => !self.seen.run.simulation().loads().pushes.is_empty(),
+                "u" => shown.direction("u").is_some(),
+                "new L" => false, // the arrow says it
+                _ => true,
+            })
+            .map(words)
+            .collect();
         if shown.has_before() {
             words.push((["° dotted: before the step", "° before", "°"], Role::Quiet));
         }

@@ -160,12 +160,13 @@ impl SceneSubject<'_> {
         }
         if let Some(rim) = &self.shape.rim {
             let middle = scene.depth(&(axle * rim.height_m));
-            let look = |depth: f64| match is_near(depth, middle, rim.radius_m) {
-                Some(true) => (LineStroke::Thick, text),
-                None => (LineStroke::Thin, text),
-                Some(false) => (LineStroke::Thin, Ink::Faint(Role::Quiet)),
-            };
-            scene.ring(&rim_circle(rim, state), look);
+            scene.ring(&rim_circle(rim, state), |depth| {
+                match is_near(depth, middle, rim.radius_m) {
+                    Some(true) => (LineStroke::Thick, text),
+                    None => (LineStroke::Thin, text),
+                    Some(false) => (LineStroke::Thin, Ink::Faint(Role::Quiet)),
+                }
+            });
             // One spoke only: it shows that the wheel turns, and more of them would hide the axle.
             let [hub, at] = [HUB, 1.0].map(|share| rim_point(rim, state, 0, 1, share));
             scene.line(&hub, &at, LineStroke::Thin, text);
@@ -241,19 +242,20 @@ impl SceneSubject<'_> {
 
     pub(super) fn masses_before(&self, state: &State, scene: &DotScene) -> Vec<BodySign> {
         let masses = self.places_of_masses(state, scene);
-        let sign = |at: &Vector3<f64>| ("°", Role::Ghost, scene.cell(at));
-        masses.iter().map(sign).collect()
+        masses
+            .iter()
+            .map(|at| ("°", Role::Ghost, scene.cell(at)))
+            .collect()
     }
 
     /// Where the masses are at `state`: those in the picture, and those of the rim only if their signs have room there.
     fn places_of_masses(&self, state: &State, scene: &DotScene) -> Vec<Vector3<f64>> {
-        let has_room = |rim: &&RimFile| {
+        let rim = self.shape.rim.iter().filter(|rim| {
             // From the side the rim is at least as long as twice its width.
             let plane = &scene.plane;
             let length = 4.0 * rim.radius_m * plane.scale.1 / plane.in_cell.1 as f64;
             length * 2.0 >= CLOSEST * rim.points as f64
-        };
-        let rim = self.shape.rim.iter().filter(has_room);
+        });
         let free = self.shape.free.iter().map(|at| state.orientation * at);
         let masses = rim.flat_map(|rim| rim_masses(rim, state)).chain(free);
         masses.filter(|at| scene.shows(at)).collect()

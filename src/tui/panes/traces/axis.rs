@@ -107,9 +107,16 @@ pub fn values(scale: &StripScale, rows: usize) -> Vec<PlacedTick> {
     };
     if let [first, second, ..] = ticks[..] {
         let digits = scale::decimals(second - first);
-        let row = |value: f64| ((scale.from_top(value) * rows as f64) as usize).min(last);
-        let label = |value: f64| (row(value), fixed(value + 0.0, digits));
-        return ticks.into_iter().rev().map(label).collect();
+        return ticks
+            .into_iter()
+            .rev()
+            .map(|value| {
+                (
+                    ((scale.from_top(value) * rows as f64) as usize).min(last),
+                    fixed(value + 0.0, digits),
+                )
+            })
+            .collect();
     }
     let digits = scale.decimals();
     let mut placed = vec![(0, fixed(scale.high + 0.0, digits))];
@@ -145,8 +152,10 @@ mod tests {
     #[test]
     fn late_times_are_told_at_both_ends() {
         let at = |begin_s, width| ends(&Strip::new(begin_s, 230.0, 50), width);
-        let pair = |begin: &str, end: &str| (begin.to_owned(), end.to_owned());
-        assert_eq!(at(1_130_220.0, 25), pair("1130220", "1130450 s"));
+        assert_eq!(
+            at(1_130_220.0, 25),
+            ("1130220".to_owned(), "1130450 s".to_owned())
+        );
         assert_eq!(at(1.1303e12, 25).1, "+ 230 s");
         assert_eq!(at(1.1303e12, 18).0, "1.130e12 s");
     }

@@ -119,9 +119,12 @@ impl Traces<'_> {
         let across = self.0.view.marker.dots().0;
         let before_s = self.0.ghost.map_or(0.0, Ghost::end_s);
         let reach_s = self.0.run.now().time_s.max(before_s);
-        let shown = |&(begin_s, end_s): &(f64, f64)| strip.shown(begin_s, end_s.min(reach_s));
         let mut pushed = vec![false; width as usize];
-        for column in marks.pushes.iter().flat_map(shown) {
+        for column in marks
+            .pushes
+            .iter()
+            .flat_map(|&(begin_s, end_s)| strip.shown(begin_s, end_s.min(reach_s)))
+        {
             if let Some(cell) = pushed.get_mut(column / across) {
                 *cell = true;
             }

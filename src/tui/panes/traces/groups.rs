@@ -157,9 +157,12 @@ impl Traces<'_> {
             room -= if fits { least(content) } else { 0 };
             fits
         });
-        let is_other = |content: &StripContent| matches!(content, StripContent::Measured(_));
         let mut lower = StripContent::of_every_run().to_vec();
-        lower.extend(measured.into_iter().filter(is_other));
+        lower.extend(
+            measured
+                .into_iter()
+                .filter(|content| matches!(content, StripContent::Measured(_))),
+        );
         if !has_zoom {
             lower.sort_by_key(|content| *content != first); // stable
         }

@@ -314,21 +314,24 @@ impl Traces<'_> {
 
 /// The range of values that `points` need: those in the time of `strip`, or all.
 fn extent_of(points: Option<&[ComparedPoint]>, strip: Option<&Strip>) -> Option<Extent> {
-    let is_shown =
-        |point: &&ComparedPoint| strip.is_none_or(|strip| strip.column(point.time_s).is_some());
-    let extent = |point: &ComparedPoint| {
-        let sigma = point.sigma.unwrap_or(0.0);
-        Extent::of(point.value - sigma).and(Extent::of(point.value + sigma))
-    };
-    let points = points?.iter().filter(is_shown);
-    points.map(extent).reduce(Extent::and)
+    let points = points?
+        .iter()
+        .filter(|point| strip.is_none_or(|strip| strip.column(point.time_s).is_some()));
+    points
+        .map(|point| {
+            let sigma = point.sigma.unwrap_or(0.0);
+            Extent::of(point.value - sigma).and(Extent::of(point.value + sigma))
+        })
+        .reduce(Extent::and)
 }
 
 fn residual_scale(points: Option<&[ComparedPoint]>) -> StripScale {
-    let reach =
-        |point: &ComparedPoint| point.residual().unwrap_or(0.0).abs() + point.sigma.unwrap_or(0.0);
     let points = points.unwrap_or_default().iter();
-    StripScale::about_zero(points.map(reach).fold(RESIDUAL_LEAST, f64::max))
+    StripScale::about_zero(
+        points
+            .map(|point| point.residual().unwrap_or(0.0).abs() + point.sigma.unwrap_or(0.0))
+            .fold(RESIDUAL_LEAST, f64::max),
+    )
 }
 
 /// A value this part of a dot above the edge between two dots counts as below it: a value on the edge, such as a constant

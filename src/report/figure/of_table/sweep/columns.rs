@@ -98,26 +98,31 @@ fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
     let mut measured = names
         .iter()
         .filter_map(|other| other.strip_prefix(MEASURED_PREFIX));
-    let is_case_of = |other: &&str| {
-        let case = own.strip_suffix(other);
-        case.is_some_and(|case| case.is_empty() || case.ends_with('_'))
-    };
-    measured.find(is_case_of).unwrap_or(own)
+    measured
+        .find(|other| {
+            let case = own.strip_suffix(other);
+            case.is_some_and(|case| case.is_empty() || case.ends_with('_'))
+        })
+        .unwrap_or(own)
 }
 
 /// The column of the standard errors of `name`: measured_precession_uncertainty_rad_per_s of measured_precession_rad_per_s.
 fn uncertainty_of(table: &TableSource, name: &str) -> Option<String> {
-    let of_name = |other: &&String| {
-        let parts = other.split_once(UNCERTAINTY_INFIX);
-        parts.is_some_and(|(begin, unit)| name.starts_with(begin) && name.ends_with(unit))
-    };
-    table.names().iter().find(of_name).cloned()
+    table
+        .names()
+        .iter()
+        .find(|other| {
+            let parts = other.split_once(UNCERTAINTY_INFIX);
+            parts.is_some_and(|(begin, unit)| name.starts_with(begin) && name.ends_with(unit))
+        })
+        .cloned()
 }
 
 /// The axis of a quantity: named by what was measured where theory stands beside it, else by the column.
 pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
-    let is_theory = |part: &&QuantityColumn| part.role == QuantityOwner::Theory;
-    let named = parts.iter().find(|part| !is_theory(part));
+    let named = parts
+        .iter()
+        .find(|part| !(part.role == QuantityOwner::Theory));
     let named = named.or_else(|| parts.iter().find(|part| bare(&part.name) != part.name));
     let Some(part) = named.or(parts.first()) else {
         return ChartAxis::default();
@@ -128,8 +133,10 @@ pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
         return own;
     }
     let words = [SIMULATED, PREDICTED_PREFIX.trim_end_matches('_')];
-    let without = |word: &&str| own.name.strip_prefix(&format!("{word} "));
-    let name = words.iter().find_map(without).map(str::to_owned);
+    let name = words
+        .iter()
+        .find_map(|word| own.name.strip_prefix(&format!("{word} ")))
+        .map(str::to_owned);
     ChartAxis {
         name: name.unwrap_or(own.name),
         ..own

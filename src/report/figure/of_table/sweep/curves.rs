@@ -47,15 +47,13 @@ pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Ve
     };
     let values: Vec<String> = (0..table.count()).map(values).collect();
     let groups = grouped(&values).into_iter().enumerate();
-    let curve = |(index, (_, rows)): (usize, (String, RowIndices))| {
-        let setting = |(key, texts): &(&String, Vec<&str>)| {
-            CurveSetting::new(&swept.scenario, key, texts[rows[0]])
-        };
-        SweepCurve {
-            index,
-            settings: others.iter().map(setting).collect(),
-            rows,
-        }
+    let curve = |(index, (_, rows)): (usize, (String, RowIndices))| SweepCurve {
+        index,
+        settings: others
+            .iter()
+            .map(|(key, texts)| CurveSetting::new(&swept.scenario, key, texts[rows[0]]))
+            .collect(),
+        rows,
     };
     groups.map(curve).collect()
 }
@@ -142,9 +140,9 @@ impl TheoryLine {
             let own = self.points[self.place(x).ok()?][1];
             (own.is_finite() && value.is_finite()).then_some((own, value))
         });
-        let is_same = |(a, b): (f64, f64)| (a - b).abs() <= SAME_NUMBER * a.abs().max(b.abs());
         let mut pairs = pairs.peekable();
-        pairs.peek().is_some() && pairs.all(is_same)
+        pairs.peek().is_some()
+            && pairs.all(|(a, b)| (a - b).abs() <= SAME_NUMBER * a.abs().max(b.abs()))
     }
 
     /// Takes in a curve of which theory says the same, and the `points` that were missing.
