@@ -165,15 +165,14 @@ mod tests {
             is_on: true,
             ..Adviser::default()
         };
-        let do_now = |player: &mut Player, command| player.carry_out(&command).unwrap().unwrap();
-        do_now(&mut player, Command::Step(1000));
+        player.step(1000).unwrap();
         player
             .destination
             .return_to(100_000_000, &mut player.playback);
         player.read(Duration::ZERO, &view);
         adviser.look(&player);
         assert!(adviser.search.is_none());
-        do_now(&mut player, Command::Pause);
+        player.pause();
         player.read(Duration::ZERO, &view);
         adviser.look(&player);
         assert!(adviser.search.is_some());

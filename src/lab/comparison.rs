@@ -44,21 +44,6 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Carries out what concerns the comparisons; `None` for a command that does not.
-    pub(super) fn carry_out(
-        &mut self,
-        command: &Command,
-        player: &mut Player,
-        files: &Files,
-    ) -> Option<ActionResult> {
-        Some(match command {
-            Command::Exact(shown) => Ok(show_exact(*shown, player)),
-            Command::Pin(pinned) => Ok(self.pin(*pinned)),
-            Command::Measured(name) => self.measure(name.as_deref(), player, files),
-            _ => return None,
-        })
-    }
-
     /// To be called before the run of `player` goes over to `scenario`: keeps its pictures as ghost or pinned run, and
     /// begins to compare the data with the other one.
     pub(super) fn leave(&mut self, player: &Player, change: RunChange, scenario: &Arc<Scenario>) {
@@ -121,7 +106,7 @@ impl Comparison {
         }
     }
 
-    fn pin(&mut self, pinned: bool) -> Done {
+    pub(super) fn pin(&mut self, pinned: bool) -> Done {
         let was_pinned = self.is_pinned();
         self.pinned = pinned.then_some(Pinned::Present);
         Done::saying(match (pinned, was_pinned) {
@@ -135,7 +120,12 @@ impl Comparison {
     }
 
     /// Puts the measured data `name` beside the run, or takes away those that are there.
-    fn measure(&mut self, name: Option<&str>, player: &Player, files: &Files) -> ActionResult {
+    pub(super) fn measure(
+        &mut self,
+        name: Option<&str>,
+        player: &Player,
+        files: &Files,
+    ) -> ActionResult {
         let Some(name) = name else {
             return Ok(Done::saying(if self.data.take().is_some() {
                 "the measured data are taken away"
@@ -365,7 +355,8 @@ impl Comparison {
     }
 }
 
-fn show_exact(shown: bool, player: &mut Player) -> Done {
+/// Draws the exact motion beside the run, or takes it away.
+pub(super) fn show_exact(shown: bool, player: &mut Player) -> Done {
     if shown != player.run().shows_exact() {
         player.playback.set_exact(shown);
     }
@@ -397,7 +388,7 @@ mod tests {
             is_again: false,
         };
         let step = |player: &mut Player, steps| {
-            player.carry_out(&Command::Step(steps)).unwrap().unwrap();
+            player.step(steps).unwrap();
         };
         assert_eq!(go_over(&mut player, anew), None, "it stood at its start");
         step(&mut player, 100);

@@ -1,9 +1,8 @@
 //! What the user does to the run: values and pushes, undo and redo, and the opening of another scenario.
 
-use super::advice::{Adviser, Offer};
-use super::answer::{Done, PendingAction, Refusal};
-use super::command::{Command, Force, PushChoice};
-use super::files::Files;
+use super::advice::Offer;
+use super::answer::{ActionResult, Done, PendingAction, Refusal};
+use super::command::{Force, PushChoice};
 use super::player::{Player, RunChange};
 use super::runs::{HistoryDirection, Runs};
 use super::values::Values;
@@ -58,20 +57,14 @@ enum EditMessage {
     Value(String),
 }
 
-/// What a command has come to.
-pub(super) enum EditOutcome {
-    /// The run is as it was.
-    Done(Done),
-    Edit(ScenarioEdit),
-}
-
 impl EditMessage {
     fn text(text: &str) -> Self {
         Self::Text(text.to_owned())
     }
 }
 
-type Edited = Result<EditOutcome, Refusal>;
+/// What a command has changed; `None` where the run is as it was.
+type Edited = Result<Option<ScenarioEdit>, Refusal>;
 
 impl Edits {
     pub(super) fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
@@ -92,35 +85,6 @@ impl Edits {
         self.runs = Runs::resumed(history, file);
         self.values.next_push = next_push;
         self.values.suit(player.run().scenario());
-    }
-
-    /// Carries out what changes the run of `player`, once; `None` for a command that does not.
-    pub(super) fn carry_out(
-        &mut self,
-        command: &Command,
-        player: &Player,
-        files: &Files,
-        adviser: &mut Adviser,
-        now: Duration,
-    ) -> Option<Edited> {
-        Some(match command {
-            Command::Open(name) => files
-                .open_scenario(name)
-                .map(|scenario| self.open(name, Arc::new(scenario), player))
-                .map(EditOutcome::Edit)
-                .map_err(Refusal::from),
-            Command::Set(table) => self.set(table, false, player),
-            Command::Nudge { key, times } => self.nudge(key, *times, player, now),
-            Command::Push(choice) => self.push(choice, player),
-            Command::NextPush(choice) => self.choose_next_push(choice, player),
-            Command::Undo(_) => self.turn(HistoryDirection::Undo, player),
-            Command::Redo(_) => self.turn(HistoryDirection::Redo, player),
-            Command::TakeAdvice => adviser
-                .take_offer(player)
-                .map(|offer| EditOutcome::Edit(self.take_offer(offer, player)))
-                .map_err(Refusal::from),
-            _ => return None,
-        })
     }
 
     /// Records the step and the push to come with which the present run may be left now. The step is the one that the
@@ -151,7 +115,7 @@ impl Edits {
 
     /// Sets all keys of `table` as one act, with `is_again` together with the act before. Keys of body and start begin a new
     /// run; the others act from the next step on.
-    fn set(&mut self, table: &Table, is_again: bool, player: &Player) -> Edited {
+    pub(super) fn set(&mut self, table: &Table, is_again: bool, player: &Player) -> Edited {
         let (new, rest): (Table, Table) = table
             .clone()
             .into_iter()
@@ -164,13 +128,17 @@ impl Edits {
             };
             self.act(acts, is_again, said, player)
         } else {
-            Ok(EditOutcome::Edit(
-                self.begin_with(&new, acts, is_again, player)?,
-            ))
+            self.begin_with(&new, acts, is_again, player).map(Some)
         }
     }
 
-    fn nudge(&mut self, key: &str, times: i32, player: &Player, now: Duration) -> Edited {
+    pub(super) fn nudge(
+        &mut self,
+        key: &str,
+        times: i32,
+        player: &Player,
+        now: Duration,
+    ) -> Edited {
         let Some(parameter) = self.values.parameter(key) else {
             let listed = self.values.list.values.iter();
             let near = nearest(key, listed.filter_map(|value| value.key.as_deref()));
@@ -187,7 +155,7 @@ impl Edits {
     }
 
     /// Pushes from the next step on: with the push to come, but for the values that `choice` has.
-    fn push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
+    pub(super) fn push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
         let (push, given) = self.given(choice, player)?;
         let said = format!(
             "pushed: {}; u takes it back, P chooses another",
@@ -212,21 +180,23 @@ impl Edits {
         Ok((push, given))
     }
 
-    /// Whether `command` gives a push at the step at which the last one was given, and the run was played on since.
-    pub(super) fn is_push_tried_again(&self, command: &Command, player: &Player) -> bool {
+    /// Whether `choice` is a push at the step at which the last one was given, and the run was played on since.
+    pub(super) fn is_push_tried_again(&self, choice: &PushChoice, player: &Player) -> bool {
         let here = player.playback.step_number();
-        let is_push =
-            matches!(command, Command::Push(choice) if self.given(choice, player).is_ok());
-        is_push
+        self.given(choice, player).is_ok()
             && player.run().furthest() > here
             && self.runs.journal().ends_with_push_at(here)
             && !self.runs.is_at_floor()
     }
 
-    fn choose_next_push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
+    pub(super) fn choose_next_push(
+        &mut self,
+        choice: &PushChoice,
+        player: &Player,
+    ) -> ActionResult {
         self.values.next_push = self.chosen(choice, player)?;
         self.list_values(player);
-        Ok(EditOutcome::Done(Done::SILENT))
+        Ok(Done::SILENT)
     }
 
     fn chosen(&self, choice: &PushChoice, player: &Player) -> Result<NextPush, String> {
@@ -266,7 +236,7 @@ impl Edits {
     }
 
     /// Begins the run anew as the advice says.
-    fn take_offer(&mut self, offer: Offer, player: &Player) -> ScenarioEdit {
+    pub(super) fn take_offer(&mut self, offer: Offer, player: &Player) -> ScenarioEdit {
         let left_at = player.destination.step_to_leave_at(&player.playback);
         let replaced = replaced(player.run().scenario());
         let replaced = replaced.map_or(String::new(), |edits| format!(", in place of {edits}"));
@@ -308,9 +278,9 @@ impl Edits {
         let is_described = acts.iter().all(|act| matches!(act, Act::Describe(_)));
         let later = self.runs.journal().later_than(step);
         let Some(scenario) = self.runs.act(step, acts, is_again, steps)? else {
-            return Ok(EditOutcome::Done(Done::SILENT));
+            return Ok(None);
         };
-        Ok(EditOutcome::Edit(ScenarioEdit {
+        Ok(Some(ScenarioEdit {
             change: if is_described {
                 RunChange::Described
             } else if from_start {
@@ -336,7 +306,11 @@ impl Edits {
     }
 
     /// Undoes the last act, or does the last undone one again.
-    fn turn(&mut self, way: HistoryDirection, player: &Player) -> Edited {
+    pub(super) fn turn(
+        &mut self,
+        way: HistoryDirection,
+        player: &Player,
+    ) -> Result<ScenarioEdit, Refusal> {
         if way == HistoryDirection::Undo && self.runs.is_at_floor() {
             return Err("nothing to undo: the page began here".into());
         }
@@ -366,13 +340,13 @@ impl Edits {
                 )
             }
         };
-        Ok(EditOutcome::Edit(ScenarioEdit {
+        Ok(ScenarioEdit {
             change,
             scenario: turned.scenario,
             end_s: Some(self.runs.present().end_s),
             said: EditMessage::Text(said),
             under_way: Some(PendingAction::Going),
-        }))
+        })
     }
 
     /// Prepares the push with which the run of `scenario`, the present one again, was left.

@@ -1,7 +1,7 @@
 //! The files of the lab: their folder, which of them may be read and written, and the export in progress.
 
 use super::answer::{ActionResult, Done, PendingAction, Refusal};
-use super::command::{Command, Export, FigureCommand, Save};
+use super::command::{Export, FigureCommand, Save};
 use super::player::Player;
 use super::runs::Runs;
 use crate::engine::data::{self, MeasuredData};
@@ -108,24 +108,8 @@ impl Files {
         self.exporting.as_ref().map(Exporting::path)
     }
 
-    /// Carries out what writes a file of the run of `player`, with the data beside it; `None` for a command that does not.
-    pub(super) fn carry_out(
-        &mut self,
-        command: &Command,
-        runs: &Runs,
-        player: &Player,
-        measured: Option<Arc<MeasuredData>>,
-    ) -> Option<ActionResult> {
-        Some(match command {
-            Command::Export(export) => self.export(export, runs, player),
-            Command::Figure(figure) => self.draw(figure, runs, player, measured),
-            Command::Save(save) => self.save_run(save, runs, player),
-            _ => return None,
-        })
-    }
-
     /// Begins to write the rows of the run.
-    fn export(&mut self, export: &Export, runs: &Runs, player: &Player) -> ActionResult {
+    pub(super) fn export(&mut self, export: &Export, runs: &Runs, player: &Player) -> ActionResult {
         let mut layout = export.layout.clone();
         layout.note.clone_from(&self.note);
         let layout = layout.check().map_err(|error| error.to_string())?;
@@ -144,7 +128,7 @@ impl Files {
     }
 
     /// Begins to draw a figure of the run.
-    fn draw(
+    pub(super) fn draw(
         &mut self,
         figure: &FigureCommand,
         runs: &Runs,
@@ -165,7 +149,8 @@ impl Files {
         self.begin(begun, "the figure is drawn in the background")
     }
 
-    fn save_run(&self, save: &Save, runs: &Runs, player: &Player) -> ActionResult {
+    /// Saves the run as a run file, or its present state as a scenario.
+    pub(super) fn save_run(&self, save: &Save, runs: &Runs, player: &Player) -> ActionResult {
         let path = self.path_of(&save.path);
         if save.from_here {
             let content = player.present_as_text()?;

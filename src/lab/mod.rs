@@ -1,7 +1,7 @@
 //! The lab: a run, what the user does to it, and how it is shown. It draws nothing, and reads no clock: the time is
 //! passed to it.
 //!
-//! [`Lab`] consists of parts. Each owns its state and carries out its own [`Command`]s:
+//! [`Lab`] consists of parts. Each owns its state; [`Lab::carry_out`] calls the part that carries out a [`Command`]:
 //!
 //! | part | state | commands |
 //! |---|---|---|
@@ -18,9 +18,10 @@
 //! | [`Settings`] | what is remembered | |
 //!
 //! A command that changes the run comes back from [`Edits`] as an `Edit`, which the other parts follow.
-//! Here commands are led to the parts, in `routing` [actions](action::Action) and time.
+//! `dispatch` leads commands to the parts, `routing` [actions](action::Action) and time.
 //!
-//! A new command stands in two files: [`command`] with its row in the table, and the part that carries it out.
+//! A new command stands in three files: [`command`] with its row in the table, the `match` of `Lab::dispatch`, and the part that
+//! carries it out.
 
 pub mod action;
 mod advice;
@@ -29,6 +30,7 @@ pub mod browser;
 pub mod command;
 pub mod comparison;
 mod dialog;
+mod dispatch;
 mod edits;
 mod files;
 #[cfg(test)]
@@ -55,6 +57,7 @@ pub use action::LabRequest;
 pub use advice::Adviser;
 pub use answer::{ActionResult, Done, PendingAction, Refusal};
 pub use comparison::Comparison;
+pub use dispatch::KeyCommands;
 pub use edits::Edits;
 pub use files::Files;
 pub use messages::{Cleared, Messages};
@@ -73,9 +76,6 @@ use crate::engine::scenario::{Problems, Scenario};
 use crate::engine::text::printable::printable;
 use crate::lab::storage::confined::Confined;
 use crate::lab::storage::session::SessionContent;
-use command::Command;
-use edits::{EditOutcome, ScenarioEdit};
-use player::RunChange;
 use session::{KeptPinned, KeptPlace};
 use sheet::Sheet;
 use std::borrow::Cow;
@@ -302,132 +302,6 @@ impl Lab {
 
     pub fn script(&self) -> &CommandScript {
         &self.script
-    }
-}
-
-/// The commands that a key means now, or why it means none.
-pub type KeyCommands = Result<Vec<Command>, String>;
-
-/// Commands.
-impl Lab {
-    /// Carries `command` out. An action that takes time is only started: [`advance`](Self::advance) continues it.
-    ///
-    /// # Errors
-    /// Why the command was refused. It has then changed nothing; but `undo` and `redo` of more acts than there are have
-    /// undone or redone all.
-    pub fn carry_out(&mut self, command: &Command) -> ActionResult {
-        if !matches!(command, Command::Nudge { .. }) {
-            self.edits.values.forget_nudge();
-        }
-        let answer = self.offer(command);
-        self.view.keep_focus();
-        self.read_now();
-        answer
-    }
-
-    /// Offers `command` to one part after the other.
-    fn offer(&mut self, command: &Command) -> ActionResult {
-        let (player, comparison) = (&mut self.player, &mut self.comparison);
-        let (runs, files, step_pane) = (&self.edits.runs, &mut self.files, &self.step_pane);
-        let answer = player
-            .carry_out(command)
-            .or_else(|| comparison.carry_out(command, player, files))
-            .or_else(|| files.carry_out(command, runs, player, comparison.measured()))
-            .or_else(|| self.script.carry_out(command, self.now))
-            .or_else(|| self.view.carry_out(command, player, step_pane));
-        answer.unwrap_or_else(|| self.edit(command))
-    }
-
-    fn edit(&mut self, command: &Command) -> ActionResult {
-        // In a lesson, a push that is tried again replaces the one that was tried before.
-        if self.view.sheet.is_some() && self.edits.is_push_tried_again(command, &self.player) {
-            self.edit(&Command::Undo(1))?;
-        }
-        let times = match command {
-            Command::Undo(times) | Command::Redo(times) => *times,
-            _ => 1,
-        };
-        let mut done = Done::SILENT.going_on(PendingAction::Going);
-        for _ in 0..times {
-            let (player, files) = (&self.player, &self.files);
-            let outcome = self
-                .edits
-                .carry_out(command, player, files, &mut self.adviser, self.now);
-            done = match outcome.unwrap_or(Err("no part of the lab carries it out".into()))? {
-                EditOutcome::Done(done) => done,
-                EditOutcome::Edit(edit) => self.follow(edit),
-            };
-        }
-        Ok(done)
-    }
-
-    /// Lets every part follow `edit`.
-    fn follow(&mut self, edit: ScenarioEdit) -> Done {
-        let (change, scenario) = (edit.change, &edit.scenario);
-        let before = Arc::clone(self.player.run().scenario());
-        self.adviser.forget();
-        if change.is_of_other_name() {
-            self.view.fit(scenario);
-        }
-        self.comparison.leave(&self.player, change, scenario);
-        self.player.follow(change, scenario, edit.end_s);
-        self.view.keep_cursor(&self.player);
-        self.edits.follow(&self.player);
-        let named = |of: &Scenario| of.file.viewed_text("measured").map(str::to_owned);
-        if change == RunChange::Opens || named(&before) != named(self.player.run().scenario()) {
-            let (player, files) = (&self.player, &self.files);
-            let measured = self.comparison.measure_as_opened(&before, player, files);
-            if let Err(problems) = measured {
-                let why = format!("{}: {}", problems.origin, problems.in_one_line());
-                self.tell(printable(&why));
-            }
-        }
-        self.edits.answer(edit, &self.player)
-    }
-
-    fn one(&mut self, command: Command) {
-        self.carry_out_all(&[command]);
-    }
-
-    /// Carries out `commands` up to the first that is refused, and shows their messages.
-    fn carry_out_all(&mut self, commands: &[Command]) {
-        for command in commands {
-            let answer = self.carry_out(command);
-            let is_refused = answer.is_err();
-            self.tell_answer(answer);
-            if is_refused {
-                return;
-            }
-        }
-    }
-
-    /// Shows the message of a command, or why it was refused.
-    fn tell_answer(&mut self, answer: ActionResult) {
-        self.changed |= self.messages.answer(answer, self.now);
-    }
-
-    /// Carries out `command` as a key does: it removes the present message and shows that of the command.
-    pub fn carry_out_now(&mut self, command: &Command) {
-        self.clear();
-        self.carry_out_all(std::slice::from_ref(command));
-    }
-
-    /// Removes the message and the count, as every key does.
-    pub fn clear(&mut self) -> Cleared {
-        self.messages.clear(self.popups.count.take())
-    }
-
-    /// Carries out the commands that a key means: `meant` returns them for the count that was typed before it, or why it
-    /// means none.
-    pub fn press(&mut self, meant: impl FnOnce(&Self, Option<u64>) -> KeyCommands) {
-        let count = self.clear().count;
-        self.edits.values.forget_nudge();
-        match meant(self, count) {
-            Ok(commands) => self.carry_out_all(&commands),
-            Err(reason) => self.say(reason),
-        }
-        self.view.keep_focus();
-        self.read_now();
     }
 }
 

@@ -142,20 +142,7 @@ impl Player {
         self.destination.return_to(step, &mut self.playback);
     }
 
-    /// Carries out what concerns the course of the run; `None` for a command that does not.
-    pub(super) fn carry_out(&mut self, command: &Command) -> Option<ActionResult> {
-        Some(match command {
-            Command::Step(steps) => self.step(*steps),
-            Command::GoTo(place) => self.go_to(*place),
-            Command::RunUntil(condition) => self.run_until(condition),
-            Command::Run => Ok(self.play()),
-            Command::Pause => Ok(self.pause()),
-            Command::Speed(speed) => Ok(self.set_speed(*speed)),
-            _ => return None,
-        })
-    }
-
-    fn step(&mut self, steps: i64) -> ActionResult {
+    pub(super) fn step(&mut self, steps: i64) -> ActionResult {
         let here = self.playback.step_number();
         self.destination.heading = None;
         match steps {
@@ -173,7 +160,7 @@ impl Player {
         Ok(Done::SILENT.going_on(PendingAction::Going))
     }
 
-    fn go_to(&mut self, place: SeekTarget) -> ActionResult {
+    pub(super) fn go_to(&mut self, place: SeekTarget) -> ActionResult {
         let step = self.step_of(place)?;
         self.destination.heading = None;
         let end = self.playback.end_step();
@@ -225,7 +212,7 @@ impl Player {
         }
     }
 
-    fn run_until(&mut self, condition: &Expression) -> ActionResult {
+    pub(super) fn run_until(&mut self, condition: &Expression) -> ActionResult {
         let run = self.run();
         let sources = condition
             .bind(|name| numbers::find(name, Some(run)))
@@ -259,7 +246,7 @@ impl Player {
         Done::saying_any(to_go.map(|left| format!("stopped with {left} steps to go")))
     }
 
-    fn set_speed(&mut self, speed: Speed) -> Done {
+    pub(super) fn set_speed(&mut self, speed: Speed) -> Done {
         self.playback.set_speed(speed);
         let Speed::Times(speed) = speed else {
             return Done::SILENT;

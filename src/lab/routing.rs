@@ -50,11 +50,11 @@ impl Lab {
         match action {
             Action::TogglePause => self.toggle_pause(),
             Action::GoTo => match count {
-                Some(step) => self.one(Command::GoTo(SeekTarget::Step(step))),
+                Some(step) => self.carry_out_all(&[Command::GoTo(SeekTarget::Step(step))]),
                 None => self.ask(Ask::Place)?,
             },
             Action::GoToCursor => match self.view.cursor {
-                Some(step) => self.one(Command::GoTo(SeekTarget::Step(step))),
+                Some(step) => self.carry_out_all(&[Command::GoTo(SeekTarget::Step(step))]),
                 None => self.turn_to_parameters(),
             },
             Action::ChoosePush => {
@@ -138,7 +138,7 @@ impl Lab {
             Mode::Lab | Mode::Find if of_values && direction.is_sideways() => {
                 let (times, scenario) = (signed(direction, times), self.player.run().scenario());
                 if let Some(nudge) = self.edits.values.selected_nudged(times, scenario)? {
-                    self.one(nudge);
+                    self.carry_out_all(&[nudge]);
                 }
             }
             Mode::Lab | Mode::Find if of_values => {
@@ -286,10 +286,10 @@ impl Lab {
     fn stop(&mut self) -> bool {
         if !self.script.is_done() {
             let left_out = self.script.drop_all();
-            self.one(Command::Pause);
+            self.carry_out_all(&[Command::Pause]);
             self.say(left_out);
         } else if self.player.playback.steps_to_go().is_some() {
-            self.one(Command::Pause);
+            self.carry_out_all(&[Command::Pause]);
         } else {
             return false;
         }
@@ -299,9 +299,9 @@ impl Lab {
     /// Takes the cursor away, or shows all panes again.
     fn unfill(&mut self) -> bool {
         match self.view.cursor {
-            Some(_) => self.one(Command::Cursor(CursorTo::Nowhere)),
+            Some(_) => self.carry_out_all(&[Command::Cursor(CursorTo::Nowhere)]),
             None if self.view.filled => {
-                self.one(Command::Fill(None));
+                self.carry_out_all(&[Command::Fill(None)]);
                 self.view.leave_filled();
             }
             None => return false,
@@ -315,7 +315,7 @@ impl Lab {
             let answer = self.carry_out(&Command::Open(name));
             if answer.is_ok() {
                 self.popups.mode = Mode::Lab;
-                self.one(Command::Run);
+                self.carry_out_all(&[Command::Run]);
             }
             self.tell_answer(answer);
         }
@@ -330,7 +330,7 @@ impl Lab {
         let mut edit = self.edits.open(name, scenario, &self.player);
         edit.end_s = Some(end_s);
         self.edits.runs.set_end(end_s);
-        self.follow(edit);
+        self.apply(edit);
         self.view.keep_focus();
         self.read_now();
     }
@@ -425,7 +425,7 @@ impl Lab {
             }
             (false, false) => {
                 self.script.pause(&self.player, self.now);
-                self.one(Command::Pause);
+                self.carry_out_all(&[Command::Pause]);
                 let is_of_page = self.view.sheet.as_ref().is_some_and(|sheet| sheet.plays);
                 self.tell(if is_of_page {
                     "paused: space goes on".to_owned()
@@ -433,8 +433,8 @@ impl Lab {
                     format!("paused: {}", self.script.left_in_words())
                 });
             }
-            (true, _) if self.player.is_moving() => self.one(Command::Pause),
-            (true, _) => self.one(Command::Run),
+            (true, _) if self.player.is_moving() => self.carry_out_all(&[Command::Pause]),
+            (true, _) => self.carry_out_all(&[Command::Run]),
         }
     }
 

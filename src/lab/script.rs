@@ -56,19 +56,15 @@ impl CommandScript {
         std::mem::take(&mut self.chapters)
     }
 
-    /// Carries out what concerns the script itself; `None` for a command that does not.
-    pub(super) fn carry_out(&mut self, command: &Command, now: Duration) -> Option<ActionResult> {
-        Some(Ok(match command {
-            Command::Wait(seconds) => {
-                let until = now + Duration::try_from_secs_f64(*seconds).unwrap_or_default();
-                Done::SILENT.going_on(PendingAction::Waiting(until))
-            }
-            Command::Chapter(title) => {
-                self.chapters.push(title.clone());
-                Done::saying(title)
-            }
-            _ => return None,
-        }))
+    /// Lets the next command wait until `seconds` have passed since `now`.
+    pub(super) fn wait(seconds: f64, now: Duration) -> Done {
+        let until = now + Duration::try_from_secs_f64(seconds).unwrap_or_default();
+        Done::SILENT.going_on(PendingAction::Waiting(until))
+    }
+
+    pub(super) fn begin_chapter(&mut self, title: &str) -> Done {
+        self.chapters.push(title.to_owned());
+        Done::saying(title)
     }
 
     /// How many commands are not complete, with the one under way.

@@ -24,32 +24,13 @@ const NO_DATA: &str = "there are no measured data beside the run: gyrolab --meas
 const TURN_DEG: f64 = 10.0;
 
 impl View {
-    /// Carries out what changes how the run is looked at; `None` for a command that does not.
-    pub(in crate::lab) fn carry_out(
+    /// Shows the run as `patch`, keys of `[view]` and their values, says.
+    pub(in crate::lab) fn look(
         &mut self,
-        command: &Command,
+        patch: &Table,
         player: &Player,
         step_pane: &StepPane,
-    ) -> Option<ActionResult> {
-        Some(match command {
-            Command::Since(since_s) => Ok(self.set_since(*since_s)),
-            Command::Magnify(times) => Ok(self.magnify(*times)),
-            Command::Cursor(to) => self.set_cursor(*to, player),
-            Command::Fill(pane) => {
-                self.fill(*pane);
-                Ok(Done::SILENT)
-            }
-            Command::PointAt(pane) => {
-                self.pointed_at = *pane;
-                Ok(Done::SILENT)
-            }
-            Command::Look(patch) => self.look(patch, player, step_pane),
-            _ => return None,
-        })
-    }
-
-    /// Shows the run as `patch`, keys of `[view]` and their values, says.
-    fn look(&mut self, patch: &Table, player: &Player, step_pane: &StepPane) -> ActionResult {
+    ) -> ActionResult {
         let look = self.look.patched(patch)?;
         let least_s = 2.0 * player.motion().time_step_s;
         let short = |what| Err(format!("the {what} two time steps at least: {least_s} s").into());
@@ -84,7 +65,7 @@ impl View {
         Ok(Done::saying_any(said))
     }
 
-    fn set_since(&mut self, since_s: Option<f64>) -> Done {
+    pub(in crate::lab) fn set_since(&mut self, since_s: Option<f64>) -> Done {
         self.since_s = since_s;
         Done::saying(match since_s {
             Some(since_s) => format!("the traces begin at {since_s} s; Home shows the run again"),
@@ -92,7 +73,7 @@ impl View {
         })
     }
 
-    fn magnify(&mut self, times: f64) -> Done {
+    pub(in crate::lab) fn magnify(&mut self, times: f64) -> Done {
         self.magnified = times;
         Done::saying(if times > 1.0 {
             format!("values are magnified {times} times; Home shows all of them again")
@@ -101,7 +82,7 @@ impl View {
         })
     }
 
-    fn set_cursor(&mut self, to: CursorTo, player: &Player) -> ActionResult {
+    pub(in crate::lab) fn set_cursor(&mut self, to: CursorTo, player: &Player) -> ActionResult {
         let run = player.run();
         let here = self.cursor_or_here(player);
         let turn = |forward| {

@@ -1,0 +1,178 @@
+//! Carries out commands: each is led to the part of the lab that it concerns.
+
+use super::command::{Command, PushChoice};
+use super::edits::ScenarioEdit;
+use super::player::RunChange;
+use super::runs::HistoryDirection;
+use super::{ActionResult, Cleared, CommandScript, Done, Lab, comparison};
+use crate::engine::scenario::Scenario;
+use crate::engine::text::printable::printable;
+use std::sync::Arc;
+
+/// The commands that a key means now, or why it means none.
+pub type KeyCommands = Result<Vec<Command>, String>;
+
+impl Lab {
+    /// Carries `command` out. An action that takes time is only started: [`advance`](Self::advance) continues it.
+    ///
+    /// # Errors
+    /// Why the command was refused. It has then changed nothing; but `undo` and `redo` of more acts than there are have
+    /// undone or redone all.
+    pub fn carry_out(&mut self, command: &Command) -> ActionResult {
+        if !matches!(command, Command::Nudge { .. }) {
+            self.edits.values.forget_nudge();
+        }
+        let answer = self.dispatch(command);
+        self.view.keep_focus();
+        self.read_now();
+        answer
+    }
+
+    /// Calls the part of the lab that carries out `command`.
+    fn dispatch(&mut self, command: &Command) -> ActionResult {
+        let (player, comparison) = (&mut self.player, &mut self.comparison);
+        let edits = &mut self.edits;
+        let (files, view, script) = (&mut self.files, &mut self.view, &mut self.script);
+        match command {
+            Command::Step(steps) => player.step(*steps),
+            Command::GoTo(target) => player.go_to(*target),
+            Command::RunUntil(condition) => player.run_until(condition),
+            Command::Run => Ok(player.play()),
+            Command::Pause => Ok(player.pause()),
+            Command::Speed(speed) => Ok(player.set_speed(*speed)),
+            Command::Exact(is_shown) => Ok(comparison::show_exact(*is_shown, player)),
+            Command::Pin(is_pinned) => Ok(comparison.pin(*is_pinned)),
+            Command::Measured(name) => comparison.measure(name.as_deref(), player, files),
+            Command::Export(export) => files.export(export, &edits.runs, player),
+            Command::Figure(figure) => {
+                files.draw(figure, &edits.runs, player, comparison.measured())
+            }
+            Command::Save(save) => files.save_run(save, &edits.runs, player),
+            Command::Wait(seconds) => Ok(CommandScript::wait(*seconds, self.now)),
+            Command::Chapter(title) => Ok(script.begin_chapter(title)),
+            Command::Since(since_s) => Ok(view.set_since(*since_s)),
+            Command::Magnify(times) => Ok(view.magnify(*times)),
+            Command::Cursor(to) => view.set_cursor(*to, player),
+            Command::Fill(pane) => {
+                view.fill(*pane);
+                Ok(Done::SILENT)
+            }
+            Command::PointAt(pane) => {
+                view.pointed_at = *pane;
+                Ok(Done::SILENT)
+            }
+            Command::Look(patch) => view.look(patch, player, &self.step_pane),
+            Command::NextPush(choice) => edits.choose_next_push(choice, player),
+            Command::Push(choice) => self.push(choice),
+            Command::Undo(times) => self.undo_or_redo(HistoryDirection::Undo, *times),
+            Command::Redo(times) => self.undo_or_redo(HistoryDirection::Redo, *times),
+            Command::Open(name) => {
+                let scenario = files.open_scenario(name)?;
+                let edit = edits.open(name, Arc::new(scenario), player);
+                Ok(self.apply(edit))
+            }
+            Command::Set(table) => {
+                let edit = edits.set(table, false, player)?;
+                Ok(self.apply_if_any(edit))
+            }
+            Command::Nudge { key, times } => {
+                let edit = edits.nudge(key, *times, player, self.now)?;
+                Ok(self.apply_if_any(edit))
+            }
+            Command::TakeAdvice => {
+                let offer = self.adviser.take_offer(player)?;
+                let edit = edits.take_offer(offer, player);
+                Ok(self.apply(edit))
+            }
+        }
+    }
+
+    /// Gives the push of `choice`. In a lesson, a push that is tried again replaces the one that was tried before.
+    fn push(&mut self, choice: &PushChoice) -> ActionResult {
+        if self.view.sheet.is_some() && self.edits.is_push_tried_again(choice, &self.player) {
+            self.undo_or_redo(HistoryDirection::Undo, 1)?;
+        }
+        let edit = self.edits.push(choice, &self.player)?;
+        Ok(self.apply_if_any(edit))
+    }
+
+    /// Undoes the last `times` acts, or does as many undone ones again.
+    fn undo_or_redo(&mut self, direction: HistoryDirection, times: u32) -> ActionResult {
+        let mut done = Done::SILENT;
+        for _ in 0..times {
+            let edit = self.edits.turn(direction, &self.player)?;
+            done = self.apply(edit);
+        }
+        Ok(done)
+    }
+
+    /// Applies `edit`, if the command has changed something.
+    fn apply_if_any(&mut self, edit: Option<ScenarioEdit>) -> Done {
+        edit.map_or(Done::SILENT, |edit| self.apply(edit))
+    }
+
+    /// Changes every part of the lab to the scenario of `edit`.
+    pub(super) fn apply(&mut self, edit: ScenarioEdit) -> Done {
+        let (change, scenario) = (edit.change, &edit.scenario);
+        let before = Arc::clone(self.player.run().scenario());
+        self.adviser.forget();
+        if change.is_of_other_name() {
+            self.view.fit(scenario);
+        }
+        self.comparison.leave(&self.player, change, scenario);
+        self.player.follow(change, scenario, edit.end_s);
+        self.view.keep_cursor(&self.player);
+        self.edits.follow(&self.player);
+        let named = |of: &Scenario| of.file.viewed_text("measured").map(str::to_owned);
+        if change == RunChange::Opens || named(&before) != named(self.player.run().scenario()) {
+            let (player, files) = (&self.player, &self.files);
+            let measured = self.comparison.measure_as_opened(&before, player, files);
+            if let Err(problems) = measured {
+                let why = format!("{}: {}", problems.origin, problems.in_one_line());
+                self.tell(printable(&why));
+            }
+        }
+        self.edits.answer(edit, &self.player)
+    }
+
+    /// Carries out `commands` up to the first that is refused, and shows their messages.
+    pub(super) fn carry_out_all(&mut self, commands: &[Command]) {
+        for command in commands {
+            let answer = self.carry_out(command);
+            let is_refused = answer.is_err();
+            self.tell_answer(answer);
+            if is_refused {
+                return;
+            }
+        }
+    }
+
+    /// Shows the message of a command, or why it was refused.
+    pub(super) fn tell_answer(&mut self, answer: ActionResult) {
+        self.changed |= self.messages.answer(answer, self.now);
+    }
+
+    /// Carries out `command` as a key does: it removes the present message and shows that of the command.
+    pub fn carry_out_now(&mut self, command: &Command) {
+        self.clear();
+        self.carry_out_all(std::slice::from_ref(command));
+    }
+
+    /// Removes the message and the count, as every key does.
+    pub fn clear(&mut self) -> Cleared {
+        self.messages.clear(self.popups.count.take())
+    }
+
+    /// Carries out the commands that a key means: `meant` returns them for the count that was typed before it, or why it
+    /// means none.
+    pub fn press(&mut self, meant: impl FnOnce(&Self, Option<u64>) -> KeyCommands) {
+        let count = self.clear().count;
+        self.edits.values.forget_nudge();
+        match meant(self, count) {
+            Ok(commands) => self.carry_out_all(&commands),
+            Err(reason) => self.say(reason),
+        }
+        self.view.keep_focus();
+        self.read_now();
+    }
+}
