@@ -25,10 +25,9 @@ mod workbench;
 mod writeup;
 
 use crate::engine::export::destination::{Destination, DestinationError};
-use crate::engine::scenario::{presets, screen};
+use crate::engine::scenario::presets;
 use crate::engine::text::number::counted;
 use crate::engine::text::printable::{PrintablePath, is_steering, printable, printable_lines};
-use crate::tui::panes;
 use anyhow::Context;
 use args::{ClassArgs, LessonArgs, WorkbenchArgs};
 use clap::builder::StyledStr;
@@ -119,7 +118,6 @@ enum CliCommand {
 const INTERRUPTED: u8 = 130;
 
 pub fn main() -> ExitCode {
-    screen::set_panes(&panes::IDS);
     match complete::answered() {
         Ok(false) => {}
         Ok(true) => return ExitCode::SUCCESS,

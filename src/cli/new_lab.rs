@@ -11,7 +11,7 @@ use crate::lab::view::View;
 use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::lessons::{Lesson, paper, play};
-use crate::tui::{panes, theme};
+use crate::tui::theme;
 use anyhow::{Context, bail};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -35,7 +35,7 @@ pub(super) fn lab(
     let file = document.scenario().ok();
     change(&mut document, changes)?;
     let scenario = Arc::new(document.scenario()?);
-    let view = View::new(&scenario, marker(markers), theme, &panes::IDS);
+    let view = View::new(&scenario, marker(markers), theme);
     let mut lab = Lab::new(name, scenario, view, running);
     if let Some(file) = file {
         lab.set_file(&Arc::new(file));

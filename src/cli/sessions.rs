@@ -9,7 +9,6 @@ use crate::lab::storage::confined::Confined;
 use crate::lab::storage::session::{self, LeftAlone, Listed, Session};
 use crate::lab::view::View;
 use crate::lab::{Lab, SessionSummary};
-use crate::tui::panes;
 use anyhow::{Context, bail};
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
@@ -140,7 +139,7 @@ fn resumed(
     confined: Option<&Confined>,
 ) -> Result<Lab, String> {
     Lab::resumed(content, confined, |scenario| {
-        View::new(scenario, marker(look.markers), theme(look), &panes::IDS)
+        View::new(scenario, marker(look.markers), theme(look))
     })
     .map_err(|error| error.to_string())
 }

@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn advice_is_sought_where_the_run_stands_and_not_on_its_way() {
-        let view = view(&[]);
+        let view = view();
         let mut player = Player::new(scenario(), false);
         let mut adviser = Adviser {
             is_on: true,

@@ -265,8 +265,8 @@ impl Comparison {
         let first = first.ok_or_else(|| own.told(&data.name))?;
         let step = u64::try_from(first).unwrap_or(0);
         let mut commands = vec![Command::GoTo(SeekTarget::Step(step))];
-        if !view.shows(Pane::STEP) {
-            commands.extend(view.toggled(Pane::STEP));
+        if !view.shows(Pane::Step) {
+            commands.extend(view.toggled(Pane::Step));
         }
         Ok(commands)
     }

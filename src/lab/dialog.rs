@@ -144,8 +144,8 @@ impl Dialog {
     /// pane in `focus`.
     fn figure(step: u64, path: String, focus: Pane) -> Self {
         let kind = match focus {
-            Pane::FROM_ABOVE | Pane::THREE_D => focus.id(),
-            _ => Pane::TRACES.id(),
+            Pane::Above | Pane::ThreeD => focus.id(),
+            _ => Pane::Traces.id(),
         };
         let fields = [("file", path), ("kind", kind.to_owned())];
         let info = [

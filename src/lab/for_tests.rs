@@ -1,7 +1,7 @@
 //! What the tests of several files of the lab begin with.
 
+use super::view::View;
 use super::view::theme::{Background, Marker, Theme};
-use super::view::{Pane, View};
 use crate::engine::scenario::{Document, Scenario};
 use std::sync::Arc;
 
@@ -21,10 +21,10 @@ pub(in crate::lab) fn preset_with(name: &str, sets: &[&str]) -> Arc<Scenario> {
     Arc::new(document.scenario().unwrap())
 }
 
-pub(in crate::lab) fn view(panes: &'static [Pane]) -> View {
+pub(in crate::lab) fn view() -> View {
     let theme = Theme {
         colour: false,
         background: Background::Dark,
     };
-    View::new(&scenario(), Marker::Braille, theme, panes)
+    View::new(&scenario(), Marker::Braille, theme)
 }

@@ -58,19 +58,19 @@ impl Lab {
                 None => self.turn_to_parameters(),
             },
             Action::ChoosePush => {
-                self.view.turn_to(Pane::PARAMETERS);
+                self.view.turn_to(Pane::Parameters);
                 self.edits.values.select_next_push();
                 self.say("the push to come: p gives it");
             }
             Action::Parameters => self.turn_to_parameters(),
-            Action::Edit if self.view.focus != Pane::PARAMETERS => self.turn_to_parameters(),
+            Action::Edit if self.view.focus != Pane::Parameters => self.turn_to_parameters(),
             Action::Edit => self.ask(Ask::Value)?,
             Action::NextPane => self.view.shift_focus(true),
             Action::PreviousPane => self.view.shift_focus(false),
             Action::ToDifference => {
                 let commands = self.comparison.to_difference(&self.view)?;
                 self.carry_out_all(&commands);
-                self.view.turn_to(Pane::STEP);
+                self.view.turn_to(Pane::Step);
             }
             Action::Toggle(pane) => {
                 let is_shown = self.view.shows(pane);
@@ -96,7 +96,7 @@ impl Lab {
             Action::Digit(digit) => self.popups.add_digit(cleared.count, digit),
             Action::Browse => self.popups.browse(self.edits.runs.name(), &self.files),
             Action::FindValue => {
-                self.view.turn_to(Pane::PARAMETERS);
+                self.view.turn_to(Pane::Parameters);
                 self.edits.values.list.filter_by(String::clear);
                 self.popups.mode = Mode::Find;
             }
@@ -133,7 +133,7 @@ impl Lab {
     /// Does what an arrow or page key does that is pressed `times` times, where that is no command of the pane in focus.
     fn move_by(&mut self, direction: Direction, times: i32) -> Result<(), String> {
         let rows = direction.rows(PAGE_KEY_ROWS) * times as isize;
-        let of_values = self.view.focus == Pane::PARAMETERS;
+        let of_values = self.view.focus == Pane::Parameters;
         match self.popups.mode {
             Mode::Lab | Mode::Find if of_values && direction.is_sideways() => {
                 let (times, scenario) = (signed(direction, times), self.player.run().scenario());
@@ -155,7 +155,7 @@ impl Lab {
     }
 
     fn turn_to_parameters(&mut self) {
-        self.view.turn_to(Pane::PARAMETERS);
+        self.view.turn_to(Pane::Parameters);
         self.say("Up, Down choose a value; Left, Right nudge it; Enter types it; u undoes");
     }
 
@@ -259,7 +259,7 @@ impl Lab {
         }
         if self.files.is_exporting() {
             self.files.stop_export();
-        } else if self.view.focus.is_on_request && self.view.shows(self.view.focus) {
+        } else if self.view.focus.is_on_request() && self.view.shows(self.view.focus) {
             self.carry_out_all(&self.view.toggled(self.view.focus));
         } else if self.view.sheet.is_some() {
             return Some(LabRequest::Lesson(LessonKey::Leave));
@@ -272,7 +272,7 @@ impl Lab {
     /// Closes the topmost popup, or shows all values again; returns whether there was one, or some were left out.
     fn close_popup(&mut self) -> bool {
         let is_found = self.popups.mode == Mode::Find;
-        let is_filtered = self.popups.mode == Mode::Lab && self.view.focus == Pane::PARAMETERS;
+        let is_filtered = self.popups.mode == Mode::Lab && self.view.focus == Pane::Parameters;
         // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
         let is_left = is_filtered && self.view.sheet.is_some();
         let list = &mut self.edits.values.list;

@@ -5,7 +5,7 @@ use super::edits::Edits;
 use super::files::Files;
 use super::player::Player;
 use super::runs::Reference;
-use super::view::{View, ViewSettings};
+use super::view::{Pane, View, ViewSettings};
 use crate::engine::data::{ColumnOptions, ColumnSigma};
 use crate::engine::journal::Journal;
 use crate::engine::journal::history::History;
@@ -187,9 +187,8 @@ impl KeptPlace {
             return Err(Unreadable(problem.to_string()));
         }
         view.take(self.look.clone());
-        let focus = view.panes.iter().find(|pane| pane.id() == self.focus);
-        view.focus =
-            *focus.ok_or_else(|| Unreadable(format!("there is no pane {}", self.focus)))?;
+        view.focus = Pane::named(&self.focus)
+            .ok_or_else(|| Unreadable(format!("there is no pane {}", self.focus)))?;
         view.filled = self.filled;
         Ok(())
     }

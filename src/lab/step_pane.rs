@@ -98,7 +98,7 @@ impl StepPane {
 
     /// Takes the present step apart where the pane is shown.
     pub(super) fn read(&mut self, player: &mut Player, view: &View) {
-        player.keeps_workings = view.shows(Pane::STEP);
+        player.keeps_workings = view.shows(Pane::Step);
         let now = player.run().simulation().now();
         let (number, scenario) = (now.number(), Arc::clone(now.scenario()));
         let is_large = scenario.body.mechanics.points().len() > MOST_POINTS_MOVING;

@@ -77,8 +77,8 @@ impl KeyEffect {
 
 /// What arrows mean in the pane that has the focus.
 fn arrows(lab: &TheLab) -> Option<Arrows> {
-    let is_lab = lab.popups().mode == Mode::Lab;
-    panes::row(lab.view().focus).filter(|_| is_lab)?.arrows
+    let row = panes::row(lab.view().focus);
+    row.arrows.filter(|_| lab.popups().mode == Mode::Lab)
 }
 
 /// How long the footer names a key where there is not room for all: the least go first.
@@ -236,7 +236,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Tab], Action::NextPane, "pane", "the next pane"),
     row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
     does(&[Lab], &[Char('d')], |lab, _| Ok(lab.view().three_d_toggled()), "3-D", "fill the screen with the 3-D view, or show all panes again"),
-    row(&[Lab], &[Char('v')], Action::Toggle(Pane::STEP), "", "one time step, phase by phase, with its numbers; v takes it away again"),
+    row(&[Lab], &[Char('v')], Action::Toggle(Pane::Step), "", "one time step, phase by phase, with its numbers; v takes it away again"),
     row(&[Lab], &[Char('M')], Action::ToDifference, "", "to the first step at which the rows of your own program differ, with its numbers (--measured mine.csv)").found_by("own code verify slip mistake"),
     row(&[Lab], &[Char('c')], Action::Ask(Ask::Settings), "settings", "settings: colours, dots, frames a second, the mouse, a bare screen, what is hidden").found_by("colors theme light dark background markers braille ascii fps health"),
     row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name").to(CHANGE_GROUP),

@@ -4,7 +4,7 @@
 //! 3-D view stand side by side, from 120 columns on that too. On smaller screens there are fewer, and the hint line says
 //! so.
 
-use super::panes::{PANES, PaneRow, Width};
+use super::panes::{PaneRow, Width, rows};
 use super::split::{split_columns, split_rows};
 use crate::lab::view::{HideablePart, Pane, View};
 use ratatui::layout::Rect;
@@ -94,7 +94,7 @@ impl ScreenLayout {
         let hint = (1..lines).fold(hint, |hint, _| hint.union(cut_bottom(&mut rest, true)));
         let health = cut_bottom(&mut rest, has_health);
         // The values have all the lines where they fill a screen that has no more than they need.
-        let is_full = area.height == HEIGHT && view.is_filled_by(Pane::PARAMETERS);
+        let is_full = area.height == HEIGHT && view.is_filled_by(Pane::Parameters);
         let timeline = cut_bottom(&mut rest, area.height >= HEIGHT && !is_full);
         let measured = cut_bottom(&mut rest, view.measured && area.height >= 8);
         Self {
@@ -153,26 +153,26 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     if area.is_empty() {
         return Vec::new();
     }
-    if !view.filled && view.may_show(Pane::LESSON) && area.width >= BESIDE_PAGE_FROM {
+    if !view.filled && view.may_show(Pane::Lesson) && area.width >= BESIDE_PAGE_FROM {
         let share = area.width as usize * PAGE_SHARE / 100;
         let [page, rest] = split_columns(
             area,
             (share as u16).clamp(LESSON_PAGE_COLUMNS.0, LESSON_PAGE_COLUMNS.1),
         );
         let mut panes = panes(rest, &beside_page(view));
-        panes.insert(0, (Pane::LESSON, page));
+        panes.insert(0, (Pane::Lesson, page));
         return panes;
     }
-    if !view.filled && view.may_show(Pane::LESSON) && view.focus == Pane::LESSON {
+    if !view.filled && view.may_show(Pane::Lesson) && view.focus == Pane::Lesson {
         let plays = view.sheet.as_ref().is_some_and(|sheet| sheet.plays);
         if !plays || area.height < 2 * PAGE_ROWS {
-            return vec![(Pane::LESSON, area)];
+            return vec![(Pane::Lesson, area)];
         }
         let [page, rest] = split_rows(area, PAGE_ROWS);
         let mut view = beside_page(view);
         view.filled = true;
         let mut panes = panes(rest, &view);
-        panes.insert(0, (Pane::LESSON, page));
+        panes.insert(0, (Pane::Lesson, page));
         return panes;
     }
     let joined = joined(area.width);
@@ -194,26 +194,24 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
 fn beside_page(view: &View) -> View {
     let mut view = view.clone();
     view.sheet = None;
-    if view.focus == Pane::LESSON {
+    if view.focus == Pane::Lesson {
         let beside = view.beside.filter(|pane| view.may_show(*pane));
         let first = view.to_show().first().copied();
-        view.focus = beside.or(first).unwrap_or(Pane::TRACES);
+        view.focus = beside.or(first).unwrap_or(Pane::Traces);
     }
     view
 }
 
 /// The panes that are shown without being asked for, but for the page of a lesson.
 fn usual() -> impl Iterator<Item = &'static PaneRow> {
-    PANES
-        .iter()
-        .filter(|row| row.id != Pane::LESSON && !row.id.is_on_request)
+    rows().filter(|row| row.id != Pane::Lesson && !row.id.is_on_request())
 }
 
 /// The pane that was asked for; of several the one in focus, or else the first.
 fn asked(view: &View) -> Option<&'static PaneRow> {
-    let asked = PANES.iter();
-    let asked = asked.filter(|row| row.id.is_on_request && view.may_show(row.id));
-    asked.min_by_key(|row| row.id != view.focus)
+    rows()
+        .filter(|row| row.id.is_on_request() && view.may_show(row.id))
+        .min_by_key(|row| row.id != view.focus)
 }
 
 /// The panes that have room beside each other on `width` columns, in the table's order: by their ranks, up to the first
@@ -228,8 +226,9 @@ fn joined(width: u16) -> Vec<&'static PaneRow> {
 
 /// The pane of the first rank, and beside it the pane in focus, or else the pane of the second rank.
 fn halves(area: Rect, focus: Pane) -> Vec<(Pane, Rect)> {
-    let ranked = |rank| PANES.iter().find(|row| row.rank == rank);
-    let (Some(first), Some(second)) = (ranked(0), ranked(1)) else {
+    let first = rows().find(|row| row.rank == 0);
+    let second = rows().find(|row| row.rank == 1);
+    let (Some(first), Some(second)) = (first, second) else {
         return vec![(focus, area)];
     };
     let second = if focus == first.id { second.id } else { focus };
@@ -261,10 +260,9 @@ fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
 /// The pane `asked` at the right, as wide as its numbers are, and beside it as many of the other panes that were chosen as
 /// have room; where none has, the one in focus.
 fn with_asked(asked: &'static PaneRow, area: Rect, view: &View) -> Vec<(Pane, Rect)> {
-    let others = PANES
-        .iter()
-        .filter(|row| ![Pane::LESSON, asked.id].contains(&row.id));
-    let mut panes: Vec<_> = others.filter(|row| view.may_show(row.id)).collect();
+    let mut panes: Vec<_> = rows()
+        .filter(|row| ![Pane::Lesson, asked.id].contains(&row.id) && view.may_show(row.id))
+        .collect();
     let least = asked.least.0;
     let room = area.width.saturating_sub(least) / BESIDE_ASKED;
     if room == 0 && view.focus != asked.id {
@@ -272,7 +270,7 @@ fn with_asked(asked: &'static PaneRow, area: Rect, view: &View) -> Vec<(Pane, Re
     }
     panes.sort_by_key(|row| row.id != view.focus);
     panes.truncate(room.into());
-    panes.sort_by_key(|row| PANES.iter().position(|other| other.id == row.id));
+    panes.sort_by_key(|row| row.id as usize);
     panes.push(asked);
     let count = panes.len() as u16;
     let share = (area.width / count).max(least.min(area.width));

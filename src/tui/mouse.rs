@@ -89,10 +89,10 @@ impl Pointer {
         }
         let (pane, place) = pane_at(layout, at)?;
         lab.turn_to(pane);
-        if pane == Pane::TRACES {
+        if pane == Pane::Traces {
             self.held = Some(Held::Cursor);
             read_off(place, at, lab);
-        } else if pane == Pane::THREE_D {
+        } else if pane == Pane::ThreeD {
             self.held = Some(Held::Camera(at));
         }
         None
@@ -105,7 +105,7 @@ impl Pointer {
         match self.held {
             None => {}
             Some(Held::Cursor) => {
-                if let Some(place) = layout.place_of(Pane::TRACES) {
+                if let Some(place) = layout.place_of(Pane::Traces) {
                     read_off(place, at, lab);
                 }
             }
@@ -167,11 +167,11 @@ fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option
     }
     let (pane, _) = pane_at(layout, at)?;
     let does = match pane {
-        Pane::TRACES if up => KeyEffect::Commands(narrower),
-        Pane::TRACES => KeyEffect::Commands(wider),
-        Pane::FROM_ABOVE | Pane::THREE_D if up => KeyEffect::Commands(zoomed_in),
-        Pane::FROM_ABOVE | Pane::THREE_D => KeyEffect::Commands(zoomed_out),
-        Pane::LESSON => {
+        Pane::Traces if up => KeyEffect::Commands(narrower),
+        Pane::Traces => KeyEffect::Commands(wider),
+        Pane::Above | Pane::ThreeD if up => KeyEffect::Commands(zoomed_in),
+        Pane::Above | Pane::ThreeD => KeyEffect::Commands(zoomed_out),
+        Pane::Lesson => {
             let page = choose(Direction::PageUp, Direction::PageDown);
             KeyEffect::Action(Action::Lesson(LessonKey::Move(page)))
         }

@@ -35,14 +35,14 @@ pub fn refit(lab: &mut Lab, size: Rect) {
 /// Scrolls the page of the lesson, on a screen of this size.
 pub fn scroll_page(lab: &mut Lab, direction: Direction, size: Rect) {
     let layout = layout(lab, true, size);
-    if let Some(place) = layout.place_of(Pane::LESSON) {
+    if let Some(place) = layout.place_of(Pane::Lesson) {
         lesson::scroll(lab, direction, place);
     }
 }
 
 /// Whether the page of the lesson goes on below what a screen of this size shows of it.
 pub fn page_goes_on(lab: &Lab, size: Rect) -> bool {
-    let place = layout(lab, true, size).place_of(Pane::LESSON);
+    let place = layout(lab, true, size).place_of(Pane::Lesson);
     place.is_some_and(|place| lesson::has_more(lab, place))
 }
 
@@ -102,9 +102,7 @@ fn point_at(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
-    if let Some(row) = panes::row(pane) {
-        (row.draw)(lab, area, buf);
-    }
+    (panes::row(pane).draw)(lab, area, buf);
 }
 
 fn draw_popup(lab: &Lab, area: Rect, buf: &mut Buffer) {

@@ -17,7 +17,7 @@ use gyrolab::lab::view::{HideablePart, Pane, ViewSettings};
 use gyrolab::physics::workings::PHASE_NAMES;
 use gyrolab::plot::camera::Camera;
 use gyrolab::tui::keymap::Key;
-use gyrolab::tui::{layout::ScreenLayout, panes, screen};
+use gyrolab::tui::{layout::ScreenLayout, screen};
 use proptest::prelude::*;
 use std::time::Duration;
 use toml::{Table, Value};
@@ -26,11 +26,6 @@ fn read(text: &str) -> Result<Vec<Command>, String> {
     let document = Document::parse("demo.toml", text).map_err(|problems| problems.to_string())?;
     let read = command::read(&document).map_err(|problems| problems.to_string())?;
     Ok(read.list.into_iter().map(|placed| placed.command).collect())
-}
-
-/// The panes that files and commands can name.
-fn named_panes() -> Vec<Pane> {
-    panes::IDS.to_vec()
 }
 
 fn a_name() -> impl Strategy<Value = String> {
@@ -156,8 +151,8 @@ fn a_command() -> impl Strategy<Value = Command> {
         "t_s >= 60",
         "abs(tilt_deg - 3) < 1e-3 or step > motion.steps",
     ]);
-    let pane = || prop::sample::select(named_panes());
-    let parts = named_panes().into_iter().map(HideablePart::Pane);
+    let pane = || prop::sample::select(Pane::ALL.to_vec());
+    let parts = Pane::ALL.into_iter().map(HideablePart::Pane);
     let part = prop::sample::select(
         parts
             .chain([
@@ -737,7 +732,7 @@ fn shown_panes_share_the_screen_at_every_width() {
         let area = ratatui::layout::Rect::new(0, 0, width, height);
         let layout = ScreenLayout::new(area, desk.lab.view(), true);
         let panes: Vec<_> = layout.panes.iter().map(|(pane, _)| *pane).collect();
-        assert_eq!(panes, [Pane::FROM_ABOVE, Pane::THREE_D], "{width}");
+        assert_eq!(panes, [Pane::Above, Pane::ThreeD], "{width}");
         let widths: u16 = layout.panes.iter().map(|(_, place)| place.width).sum();
         assert_eq!(widths, width);
     }
@@ -768,17 +763,9 @@ fn a_pane_is_pointed_at_by_a_heavy_frame() {
 
 #[test]
 fn a_pane_has_the_name_that_files_give_it() {
-    let ids = gyrolab::engine::scenario::screen::panes()
-        .iter()
-        .map(|pane| pane.id());
-    let all = ["lesson", "traces", "above", "3d", "parameters", "step"];
-    assert!(ids.eq(all));
-    for id in all {
-        assert!(
-            panes::row(Pane::named(id).unwrap()).is_some(),
-            "{id} has no row"
-        );
-        assert!(Value::from(id).try_into::<HideablePart>().is_ok());
+    for pane in Pane::ALL {
+        assert_eq!(Pane::named(pane.id()), Some(pane));
+        assert!(Value::from(pane.id()).try_into::<HideablePart>().is_ok());
     }
     let part = |id: &str| Value::from(id).try_into::<HideablePart>();
     assert!(

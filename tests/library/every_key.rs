@@ -128,7 +128,7 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
     let last = picture.rows.get(stage.size.height as usize - 1)?;
     let last: String = last.iter().collect();
     let rows = || {
-        let of_panes = panes::PANES.iter().flat_map(|pane| pane.keys);
+        let of_panes = panes::rows().flat_map(|pane| pane.keys);
         BINDINGS.iter().chain(of_panes)
     };
     let words = |row: &Binding| {
@@ -186,7 +186,7 @@ fn check(stage: &Stage, done: &str) {
 fn stage(pane: Pane, (width, height): (u16, u16)) -> Stage {
     let mut stage = Stage::open("wobble-push", &[], Rect::new(0, 0, width, height));
     stage.wait(0.5).commands("pause = true");
-    if pane == Pane::LESSON {
+    if pane == Pane::Lesson {
         stage.lesson("is-the-wobble-real", 1);
     }
     focus(&mut stage, pane);
@@ -200,13 +200,13 @@ fn focus(stage: &mut Stage, pane: Pane) {
     }
     stage.now += SAID;
     stage.wait(0.0);
-    for _ in 0..panes::PANES.len() {
+    for _ in 0..Pane::ALL.len() {
         if stage.focus() == pane.id() {
             return;
         }
         stage.key(Key::Tab);
     }
-    if pane == Pane::LESSON {
+    if pane == Pane::Lesson {
         stage.lesson("is-the-wobble-real", 1);
         return;
     }
@@ -217,7 +217,7 @@ fn focus(stage: &mut Stage, pane: Pane) {
 /// All keys that mean something in `mode`, with those of `pane` where it has the focus.
 fn keys(mode: Mode, pane: Pane) -> Vec<Key> {
     let own = match mode {
-        Mode::Lab => panes::keys(pane),
+        Mode::Lab => panes::row(pane).keys,
         _ => &[],
     };
     let rows = own.iter().chain(BINDINGS);
@@ -254,7 +254,7 @@ fn a_large_screen_stays_whole_whatever_is_pressed() {
 
 /// Presses every key twice or more in every pane.
 fn press_everything(size: (u16, u16)) {
-    for pane in panes::IDS {
+    for pane in Pane::ALL {
         let mut stage = stage(pane, size);
         check(&stage, pane.id());
         for key in keys(Mode::Lab, pane) {
@@ -282,7 +282,7 @@ fn press_everything(size: (u16, u16)) {
 
 /// Presses the keys of what has been opened on top of the panes.
 fn press_all(stage: &mut Stage, mode: Mode, done: &str) {
-    for key in keys(mode, Pane::TRACES) {
+    for key in keys(mode, Pane::Traces) {
         if stage.lab.popups().mode != mode {
             return;
         }

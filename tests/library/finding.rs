@@ -3,7 +3,7 @@
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::{LabRequest, Mode};
 use gyrolab::tui::keymap::Key;
-use gyrolab::tui::panes::PANES;
+use gyrolab::tui::panes;
 use ratatui::layout::Rect;
 
 const ESC: &str = "\u{1b}";
@@ -81,7 +81,7 @@ fn a_word_is_explained_by_its_sentence() {
 fn the_keys_of_a_pane_stand_under_its_title_and_turn_to_it() {
     let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 100, 150));
     stage.press("?");
-    for pane in PANES.iter().filter(|pane| !pane.keys.is_empty()) {
+    for pane in panes::rows().filter(|pane| !pane.keys.is_empty()) {
         stage.shows(&format!("{}: keys of this pane", pane.title));
     }
     let mut stage = open(SMALL);

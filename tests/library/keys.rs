@@ -4,7 +4,7 @@ use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::has;
 use gyrolab::lab::Mode;
 use gyrolab::tui::keymap::{BINDINGS, Key};
-use gyrolab::tui::panes::PANES;
+use gyrolab::tui::panes;
 use gyrolab::tui::panes::help::{HelpEntry, found};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -110,7 +110,7 @@ fn the_help_finds_keys_by_words_that_are_not_theirs() {
 
 /// The names of all keys there are in the lab.
 fn keys() -> Vec<String> {
-    let of_panes = PANES.iter().flat_map(|pane| pane.keys);
+    let of_panes = panes::rows().flat_map(|pane| pane.keys);
     let rows = BINDINGS.iter().chain(of_panes);
     let rows = rows.filter(|row| row.modes.contains(&Mode::Lab));
     rows.flat_map(|row| row.keys)

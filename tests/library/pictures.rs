@@ -528,7 +528,7 @@ fn drawn_parameters(list: &ValueList, (focus, filled): (bool, bool), size: (u16,
     let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
     let mut view = view(&now, Marker::Braille);
     view.filled = filled;
-    view.focus = [Pane::TRACES, Pane::PARAMETERS][usize::from(focus)];
+    view.focus = [Pane::Traces, Pane::Parameters][usize::from(focus)];
     let mut buf = Buffer::empty(Rect::new(0, 0, size.0, size.1));
     Parameters {
         scenario: now.scenario(),
@@ -685,7 +685,7 @@ proptest! {
         let mut now = run("wobble-push", &[], "", 3);
         let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
         let mut view = view(&now, Marker::Ascii);
-        (view.filled, view.focus) = (filled, Pane::PARAMETERS);
+        (view.filled, view.focus) = (filled, Pane::Parameters);
         let pane = Parameters {
             scenario: now.scenario(),
             motion: now.simulation().motion(),

@@ -115,11 +115,7 @@ fn at_120_columns_the_round_pictures_share_a_column() {
         let mut panes = layout.panes.iter();
         panes.find(|(pane, _)| *pane == wanted).unwrap().1
     };
-    let (above, space, traces) = (
-        place(Pane::FROM_ABOVE),
-        place(Pane::THREE_D),
-        place(Pane::TRACES),
-    );
+    let (above, space, traces) = (place(Pane::Above), place(Pane::ThreeD), place(Pane::Traces));
     assert_eq!(
         (above.x, above.width, above.bottom()),
         (space.x, space.width, space.y)
@@ -162,7 +158,7 @@ fn the_wheel_is_as_large_as_its_pane_allows() {
     stage.commands("pause = true\ngo_to = 0");
     let layout = ScreenLayout::new(stage.size, stage.lab.view(), true);
     let mut panes = layout.panes.iter();
-    let (_, place) = panes.find(|(pane, _)| *pane == Pane::THREE_D).unwrap();
+    let (_, place) = panes.find(|(pane, _)| *pane == Pane::ThreeD).unwrap();
     let picture = stage.picture();
     let rows = rows(&picture);
     // Above the legend, whose words have the letter too.

@@ -608,7 +608,7 @@ proptest! {
         stage.wait(seconds).press(&keys);
         let around = Rect::new(0, 0, width + 6, height + 6);
         let inside = Rect::new(3, 3, width, height);
-        for pane in gyrolab::tui::panes::IDS {
+        for pane in gyrolab::lab::view::Pane::ALL {
             let mut buffer = Buffer::filled(around, ratatui::buffer::Cell::new("#"));
             screen::draw_pane(&stage.lab, pane, inside, &mut buffer);
             for position in around.positions().filter(|position| !inside.contains(*position)) {

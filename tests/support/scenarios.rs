@@ -52,7 +52,7 @@ pub fn view(scenario: &Scenario, marker: Marker, colour: bool) -> View {
         colour,
         background: Background::Dark,
     };
-    View::new(scenario, marker, theme, &gyrolab::tui::panes::IDS)
+    View::new(scenario, marker, theme)
 }
 
 /// The scenario of `file` with `value` at `key`.

@@ -77,7 +77,7 @@ impl ValueKind {
         match self {
             OneOf(words) | WholeOr(_, words) => words.to_vec(),
             Pane(others) | Panes(others) => {
-                let panes = screen::panes().iter().map(|pane| pane.id());
+                let panes = screen::Pane::ALL.into_iter().map(screen::Pane::id);
                 panes.chain(others.iter().copied()).collect()
             }
             Flag => vec!["true", "false"],

@@ -3,7 +3,6 @@
 use crate::physics::workings::PHASE_NAMES;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::sync::OnceLock;
 
 /// The pane of the traces over time, and the figure of the same name.
 pub const TRACES: &str = "traces";
@@ -12,76 +11,59 @@ pub const ABOVE: &str = "above";
 /// The pane of the scene in space, and its figure.
 pub const THREE_D: &str = "3d";
 
-/// A pane. Its id is the word for it in commands, in `[view]` and in sessions.
+/// A pane of the screen. Its id is the word for it in commands, in `[view]` and in sessions. `tui` has a row for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pane {
-    id: &'static str,
-    /// Whether it is shown only where it is asked for; the others are shown where there is room.
-    pub is_on_request: bool,
-}
-
-/// The panes that the rooms below `tui` name themselves.
-const NAMED_PANES: [Pane; 6] = [
-    Pane::LESSON,
-    Pane::TRACES,
-    Pane::FROM_ABOVE,
-    Pane::THREE_D,
-    Pane::PARAMETERS,
-    Pane::STEP,
-];
-
-/// All panes of the screen: `tui` has their table.
-static REGISTERED_PANES: OnceLock<&'static [Pane]> = OnceLock::new();
-
-/// Says which panes the screen has. The program calls it before it reads a file.
-pub fn set_panes(panes: &'static [Pane]) {
-    let _ = REGISTERED_PANES.set(panes); // they are the same each time
-}
-
-pub fn panes() -> &'static [Pane] {
-    REGISTERED_PANES.get().copied().unwrap_or(&NAMED_PANES)
+pub enum Pane {
+    /// The page of a lesson. It is shown as long as there is one.
+    Lesson,
+    /// x, y, z and tilt over time.
+    Traces,
+    /// The path from above.
+    Above,
+    /// The scene in space.
+    ThreeD,
+    /// The scenario's values and the readouts.
+    Parameters,
+    /// One time step, phase by phase.
+    Step,
 }
 
 impl Pane {
-    /// x, y, z and tilt over time.
-    pub const TRACES: Self = Self::called(TRACES);
-    pub const FROM_ABOVE: Self = Self::called(ABOVE);
-    /// The scene in space.
-    pub const THREE_D: Self = Self::called(THREE_D);
-    /// The scenario's values and the readouts.
-    pub const PARAMETERS: Self = Self::called("parameters");
-    /// One time step, phase by phase.
-    pub const STEP: Self = Self::called("step").on_request();
-    /// The page of a lesson. It is shown as long as there is one.
-    pub const LESSON: Self = Self::called("lesson");
-
-    pub const fn called(id: &'static str) -> Self {
-        Self {
-            id,
-            is_on_request: false,
-        }
-    }
-
-    pub const fn on_request(self) -> Self {
-        Self {
-            is_on_request: true,
-            ..self
-        }
-    }
+    /// Every pane, from left to right on the screen; the focus goes through them in this order.
+    pub const ALL: [Self; 6] = [
+        Self::Lesson,
+        Self::Traces,
+        Self::Above,
+        Self::ThreeD,
+        Self::Parameters,
+        Self::Step,
+    ];
 
     pub const fn id(self) -> &'static str {
-        self.id
+        match self {
+            Self::Lesson => "lesson",
+            Self::Traces => TRACES,
+            Self::Above => ABOVE,
+            Self::ThreeD => THREE_D,
+            Self::Parameters => "parameters",
+            Self::Step => "step",
+        }
     }
 
-    /// The pane of that name in files and commands.
+    /// Whether it is shown only where it is asked for; the others are shown where there is room.
+    pub const fn is_on_request(self) -> bool {
+        matches!(self, Self::Step)
+    }
+
+    /// Returns the pane of that name in files and commands.
     pub fn named(id: &str) -> Option<Self> {
-        panes().iter().copied().find(|pane| pane.id == id)
+        Self::ALL.into_iter().find(|pane| pane.id() == id)
     }
 }
 
 impl Serialize for Pane {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.id.serialize(serializer)
+        self.id().serialize(serializer)
     }
 }
 

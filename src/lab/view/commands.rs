@@ -225,7 +225,7 @@ impl View {
     /// The command that shows the round picture in focus `rungs` larger.
     pub fn other_zoom(&self, rungs: i32) -> Result<Command, String> {
         let now = match self.focus {
-            Pane::THREE_D => self.zoom.three_d,
+            Pane::ThreeD => self.zoom.three_d,
             _ => self.zoom.above,
         };
         match Zoom::shifted(now, rungs) {
@@ -239,8 +239,8 @@ impl View {
     pub fn zoom_to(&self, factor: f64) -> Result<Command, String> {
         let mut zoom = self.zoom;
         match self.focus {
-            Pane::FROM_ABOVE => zoom.above = factor,
-            Pane::THREE_D => zoom.three_d = factor,
+            Pane::Above => zoom.above = factor,
+            Pane::ThreeD => zoom.three_d = factor,
             _ => return Err("the view from above and the 3-D view are zoomed: Tab".to_owned()),
         }
         Ok(Command::look("zoom", zoom))
@@ -266,11 +266,11 @@ impl View {
     /// The commands that fill the screen with the 3-D view, or show all panes again, with the page or the traces in focus.
     pub fn three_d_toggled(&self) -> Vec<Command> {
         let fill = |pane| Command::Fill(Some(pane));
-        if !self.is_filled_by(Pane::THREE_D) {
-            return vec![fill(Pane::THREE_D)];
+        if !self.is_filled_by(Pane::ThreeD) {
+            return vec![fill(Pane::ThreeD)];
         }
-        let has_page = self.may_show(Pane::LESSON);
-        let next = if has_page { Pane::LESSON } else { Pane::TRACES };
+        let has_page = self.may_show(Pane::Lesson);
+        let next = if has_page { Pane::Lesson } else { Pane::Traces };
         vec![fill(next), Command::Fill(None)]
     }
 }

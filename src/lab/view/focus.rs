@@ -6,7 +6,7 @@ use crate::lab::command::Command;
 impl View {
     /// The commands that show `pane`, one that is shown on request, beside another one, or take it away.
     pub(in crate::lab) fn toggled(&self, pane: Pane) -> Vec<Command> {
-        let with_it = [Pane::THREE_D, pane];
+        let with_it = [Pane::ThreeD, pane];
         let mut commands = Vec::new();
         if self.filled {
             commands.push(Command::Fill(None));
@@ -50,13 +50,13 @@ impl View {
             let mut panes: Vec<_> = among(&self.side_by_side);
             if !panes.is_empty() {
                 // A page that has just been opened is not in the list yet.
-                if self.may_show(Pane::LESSON) && !panes.contains(&Pane::LESSON) {
-                    panes.insert(0, Pane::LESSON);
+                if self.may_show(Pane::Lesson) && !panes.contains(&Pane::Lesson) {
+                    panes.insert(0, Pane::Lesson);
                 }
                 return panes;
             }
         }
-        among(self.panes)
+        among(&Pane::ALL)
     }
 
     /// Moves the focus to the next pane that can have it, or to the one before; after the last comes the first.
@@ -82,8 +82,8 @@ impl View {
     /// Moves the focus from the parameters to the first other pane that can have it; returns whether it did.
     pub fn leave_parameters(&mut self) -> bool {
         let mut others = self.focusable().into_iter();
-        let other = others.find(|&pane| pane != Pane::PARAMETERS);
-        let (true, Some(other)) = (self.focus == Pane::PARAMETERS, other) else {
+        let other = others.find(|&pane| pane != Pane::Parameters);
+        let (true, Some(other)) = (self.focus == Pane::Parameters, other) else {
             return false;
         };
         self.turn_to(other);
@@ -95,7 +95,7 @@ impl View {
     /// for the values beside the run, they fill it: leaving them shows the run again.
     pub(in crate::lab) fn leave_filled(&mut self) {
         self.turn_to_sheet();
-        if !self.side_by_side.contains(&Pane::PARAMETERS) {
+        if !self.side_by_side.contains(&Pane::Parameters) {
             self.leave_parameters();
         }
     }
@@ -103,14 +103,14 @@ impl View {
     /// Moves the focus to the first pane that can have it, if the one in focus no longer can.
     pub fn keep_focus(&mut self) {
         self.keep_focus_among(&self.focusable());
-        if self.focus != Pane::LESSON && !self.filled {
+        if self.focus != Pane::Lesson && !self.filled {
             self.beside = Some(self.focus);
         }
     }
 
     pub(super) fn keep_focus_among(&mut self, panes: &[Pane]) {
         if !panes.contains(&self.focus) {
-            self.focus = panes.first().copied().unwrap_or(Pane::TRACES);
+            self.focus = panes.first().copied().unwrap_or(Pane::Traces);
             self.is_touched = false;
         }
     }

@@ -28,7 +28,7 @@ use toml::{Table, Value};
 /// The longest time that one sweep of the traces may take at first, seconds of wall time.
 const LONGEST_SWEEP_S: f64 = 120.0;
 /// The panes of a bare screen, where none are chosen.
-const BARE: [Pane; 2] = [Pane::TRACES, Pane::FROM_ABOVE];
+const BARE: [Pane; 2] = [Pane::Traces, Pane::Above];
 /// Frames a second at most, where nothing is chosen.
 pub const FPS: u32 = 15;
 
@@ -105,8 +105,6 @@ impl ViewSettings {
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     pub look: ViewSettings,
-    /// Every pane there is, in the order in which the focus goes through them.
-    pub panes: &'static [Pane],
     pub focus: Pane,
     /// Whether the user turned to it, or pressed a key of its own: the footer then names those.
     pub is_touched: bool,
@@ -153,12 +151,11 @@ impl Deref for View {
 }
 
 impl View {
-    /// The view with which a lab of these `panes` starts: the first has the focus, and the traces show the run of `scenario`.
-    pub fn new(scenario: &Scenario, marker: Marker, theme: Theme, panes: &'static [Pane]) -> Self {
+    /// The view with which a lab starts: the first pane has the focus, and the traces show the run of `scenario`.
+    pub fn new(scenario: &Scenario, marker: Marker, theme: Theme) -> Self {
         let mut view = Self {
             look: ViewSettings::default(),
-            panes,
-            focus: panes.first().copied().unwrap_or(Pane::TRACES),
+            focus: Pane::ALL[0],
             is_touched: false,
             filled: false,
             marker,
@@ -176,7 +173,7 @@ impl View {
             measured: false,
             fps: FPS,
             mouse: true,
-            side_by_side: panes.to_vec(),
+            side_by_side: Pane::ALL.to_vec(),
         };
         view.fit(scenario);
         view
@@ -210,13 +207,13 @@ impl View {
     /// Whether a digit is for the sheet, which has the focus.
     pub fn sheet_takes_digits(&self) -> bool {
         let takes = self.sheet.as_ref().is_some_and(|sheet| sheet.takes_digits);
-        takes && self.focus == Pane::LESSON
+        takes && self.focus == Pane::Lesson
     }
 
     pub fn turn_to_sheet(&mut self) {
         if self.sheet.is_some() {
-            self.filled &= self.focus == Pane::LESSON;
-            self.focus = Pane::LESSON;
+            self.filled &= self.focus == Pane::Lesson;
+            self.focus = Pane::Lesson;
         }
     }
 
@@ -259,7 +256,7 @@ impl View {
             self.beside = self.shown.first().copied();
             self.side_by_side = self.to_show(); // until the lab is fitted to its screen again
         }
-        let comes = |pane: &Pane| pane.is_on_request && !before.shown.contains(pane);
+        let comes = |pane: &Pane| pane.is_on_request() && !before.shown.contains(pane);
         if let Some(pane) = self
             .shown
             .iter()
@@ -295,12 +292,12 @@ impl View {
     }
 
     pub fn may_show(&self, pane: Pane) -> bool {
-        if pane == Pane::LESSON {
+        if pane == Pane::Lesson {
             return self.sheet.is_some() && !self.hides(HideablePart::Pane(pane));
         }
         let is_shown = match (self.shown.is_empty(), self.bare) {
             (true, true) => BARE.contains(&pane),
-            (true, false) => !pane.is_on_request,
+            (true, false) => !pane.is_on_request(),
             (false, _) => self.shown.contains(&pane),
         };
         is_shown && !self.hides(HideablePart::Pane(pane))
@@ -312,7 +309,9 @@ impl View {
     }
 
     pub fn to_show(&self) -> Vec<Pane> {
-        let panes = self.panes.iter().copied();
-        panes.filter(|pane| self.may_show(*pane)).collect()
+        Pane::ALL
+            .into_iter()
+            .filter(|pane| self.may_show(*pane))
+            .collect()
     }
 }

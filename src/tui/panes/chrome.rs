@@ -209,7 +209,7 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
     // The keys of a page and of a pane that was asked for differ in meaning from those of the run, touched or not.
     let focus = lab.view().focus;
-    let always = focus == Pane::LESSON || focus.is_on_request;
+    let always = focus == Pane::Lesson || focus.is_on_request();
     let of_touched = of_pane.filter(|_| lab.view().is_touched || always);
     let of_lab = BINDINGS
         .iter()

@@ -53,7 +53,7 @@ const LEGEND_SEPARATORS: [&str; 2] = [", ", " "];
 const EARLIER_RUN_LEGEND: [&str; 2] = ["dotted: before"; 2];
 
 pub const FROM_ABOVE_ROW: PaneRow = PaneRow {
-    id: Pane::FROM_ABOVE,
+    id: Pane::Above,
     title: "from above",
     width: Width::Round,
     rank: 1,

@@ -1,7 +1,7 @@
 //! The help: keys and words, searched by typing; Enter does the key that is selected. Keys are grouped by their
 //! purpose, and the words are those of the glossary.
 
-use super::{PANES, popup_frame, write};
+use super::{popup_frame, rows, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::action::Action;
 use crate::lab::values::list::Match;
@@ -51,7 +51,7 @@ pub fn do_entry(lab: &mut Lab) -> Option<LabRequest> {
         lab.update(Action::Help);
     }
     if let Some(pane) = entry.pane
-        && (pane != Pane::LESSON || lab.view().sheet.is_some())
+        && (pane != Pane::Lesson || lab.view().sheet.is_some())
     {
         lab.turn_to(pane);
     }
@@ -259,7 +259,7 @@ pub fn entries() -> Vec<HelpEntry> {
         rows.map(move |row| key(group, None, row))
     };
     let of_lab = PURPOSES.map(|group| (Mode::Lab, group)).into_iter();
-    let of_pane = PANES.iter().flat_map(|pane| {
+    let of_pane = rows().flat_map(|pane| {
         let rows = pane.keys.iter();
         rows.map(|row| key(pane.title, Some(pane.id), row))
     });

@@ -16,7 +16,7 @@ use ratatui::style::{Modifier, Style};
 use std::iter::Peekable;
 
 pub const LESSON_ROW: PaneRow = PaneRow {
-    id: Pane::LESSON,
+    id: Pane::Lesson,
     title: "lesson",
     width: Width::Fixed,
     rank: 9,

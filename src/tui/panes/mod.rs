@@ -1,7 +1,6 @@
 //! The panes. Each borrows what it shows and draws it on its area; none of them changes anything.
 //!
-//! [`PANES`] is the one table of panes: a new pane is a file with its `ROW`, and that row's name in the table. The program
-//! gives the [`IDS`] to [`screen`](crate::engine::scenario::screen), by which files and commands name panes.
+//! A new pane is a variant of [`Pane`], a file with its `ROW`, and that row's name in [`row`].
 
 pub mod browser;
 pub mod chrome;
@@ -70,44 +69,31 @@ pub enum Width {
     Fixed,
 }
 
-/// Every pane, from left to right on the screen; the focus goes through them in this order.
-pub const PANES: &[PaneRow] = &[
-    lesson::LESSON_ROW,
-    traces::TRACES_ROW,
-    from_above::FROM_ABOVE_ROW,
-    three_d::THREE_D_ROW,
-    parameters::PARAMETERS_ROW,
-    step::STEP_ROW,
-];
-
-/// The ids of all panes, in the table's order.
-pub static IDS: [Pane; PANES.len()] = {
-    let mut ids = [PANES[0].id; PANES.len()];
-    let mut row = 0;
-    while row < PANES.len() {
-        ids[row] = PANES[row].id;
-        row += 1;
+pub fn row(pane: Pane) -> &'static PaneRow {
+    match pane {
+        Pane::Lesson => &lesson::LESSON_ROW,
+        Pane::Traces => &traces::TRACES_ROW,
+        Pane::Above => &from_above::FROM_ABOVE_ROW,
+        Pane::ThreeD => &three_d::THREE_D_ROW,
+        Pane::Parameters => &parameters::PARAMETERS_ROW,
+        Pane::Step => &step::STEP_ROW,
     }
-    ids
-};
-
-pub fn row(pane: Pane) -> Option<&'static PaneRow> {
-    PANES.iter().find(|row| row.id == pane)
 }
 
-pub fn keys(pane: Pane) -> &'static [Binding] {
-    row(pane).map_or(&[], |row| row.keys)
+/// The rows of all panes, from left to right on the screen.
+pub fn rows() -> impl Iterator<Item = &'static PaneRow> {
+    Pane::ALL.into_iter().map(row)
 }
 
 /// The keys of the pane in focus; in a lesson also the keys of the step pane where it is shown, and the keys that turn
 /// pages.
 pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
     let view = lab.view();
-    let is_beside = view.sheet.is_some() && view.side_by_side.contains(&Pane::STEP);
-    let own = keys(view.focus);
+    let is_beside = view.sheet.is_some() && view.side_by_side.contains(&Pane::Step);
+    let own = row(view.focus).keys;
     let beside = match view.focus {
-        Pane::LESSON if is_beside => keys(Pane::STEP),
-        _ if is_beside => keys(Pane::STEP).split_at(step::PHASE_KEYS).0,
+        Pane::Lesson if is_beside => step::STEP_ROW.keys,
+        _ if is_beside => step::STEP_ROW.keys.split_at(step::PHASE_KEYS).0,
         _ => &[],
     };
     let turns = if view.sheet.is_some() {
@@ -313,10 +299,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pane_has_a_rank_of_its_own_and_those_that_the_lab_names_are_among_them() {
-        assert_eq!(IDS, crate::engine::scenario::screen::panes());
-        for (index, row) in PANES.iter().enumerate() {
-            assert!(PANES[..index].iter().all(|other| other.rank != row.rank));
+    fn every_pane_has_a_row_and_a_rank_of_its_own() {
+        for (index, pane) in Pane::ALL.into_iter().enumerate() {
+            let (id, rank) = (row(pane).id, row(pane).rank);
+            assert_eq!(id, pane);
+            assert!(rows().take(index).all(|other| other.rank != rank), "{id:?}");
         }
     }
 

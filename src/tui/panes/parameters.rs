@@ -36,7 +36,7 @@ const MORE_BELOW: &str = "▼";
 const WATCHED_FROM: usize = 8;
 
 pub const PARAMETERS_ROW: PaneRow = PaneRow {
-    id: Pane::PARAMETERS,
+    id: Pane::Parameters,
     title: "parameters",
     width: Width::Fixed,
     rank: 2,

@@ -51,7 +51,7 @@ const NO_TORQUE: f64 = 1e-9;
 const CIRCLE_PARTS: usize = 72;
 
 pub const THREE_D_ROW: PaneRow = PaneRow {
-    id: Pane::THREE_D,
+    id: Pane::ThreeD,
     title: "3-D",
     width: Width::Round,
     rank: 3,

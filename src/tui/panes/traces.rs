@@ -42,7 +42,7 @@ const PEN: char = '│';
 const CURSOR_MARK: char = '┃';
 
 pub const TRACES_ROW: PaneRow = PaneRow {
-    id: Pane::TRACES,
+    id: Pane::Traces,
     title: "over time",
     width: Width::Wide,
     rank: 0,
