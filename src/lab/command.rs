@@ -56,8 +56,7 @@ pub enum Command {
     #[serde(with = "only_true")]
     Pause,
     /// Lets the next command of the script wait for this many seconds.
-    #[serde(rename = "wait_s")]
-    Wait(f64),
+    WaitS(f64),
     /// Begins a part of the script that has this title.
     Chapter(String),
     Undo(u32),
@@ -68,8 +67,8 @@ pub enum Command {
     Save(Save),
     Speed(Speed),
     /// Time at the left edge of the traces, s; `None`: they follow the run.
-    #[serde(rename = "since_s", with = "or_none")]
-    Since(Option<f64>),
+    #[serde(with = "or_none")]
+    SinceS(Option<f64>),
     /// How many times the values of the traces are magnified.
     Magnify(f64),
     /// The step at which the traces are read off.

@@ -48,9 +48,9 @@ impl Lab {
                 files.draw(figure, &edits.runs, player, comparison.measured())
             }
             Command::Save(save) => files.save_run(save, &edits.runs, player),
-            Command::Wait(seconds) => Ok(CommandScript::wait(*seconds, self.now)),
+            Command::WaitS(seconds) => Ok(CommandScript::wait(*seconds, self.now)),
             Command::Chapter(title) => Ok(script.begin_chapter(title)),
-            Command::Since(since_s) => Ok(view.set_since(*since_s)),
+            Command::SinceS(since_s) => Ok(view.set_since(*since_s)),
             Command::Magnify(times) => Ok(view.magnify(*times)),
             Command::Cursor(to) => view.set_cursor(*to, player),
             Command::Fill(pane) => {

@@ -166,7 +166,7 @@ pub(super) fn halt_in_words(halt: Halt, next: Option<&str>) -> Option<String> {
 /// motion is as it was opened.
 pub(super) fn next<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Option<Cow<'a, str>> {
     let file = &player.run().scenario().file;
-    let set = view.next.as_deref();
+    let set = view.look.next.as_deref();
     let set = set.or_else(|| file.viewed_text("next"));
     let next = set
         .or_else(|| match runs.changed_from_file() {
@@ -187,7 +187,7 @@ pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Co
         return "".into();
     }
     let file = || changed::look_at(player.run().scenario());
-    let set = view.look_at.as_deref();
+    let set = view.look.look_at.as_deref();
     let playback = &player.playback;
     let is_over = playback.is_endless() && playback.step_number() >= playback.end_step();
     if let Some(next) = next(view, runs, player).filter(|_| is_over) {

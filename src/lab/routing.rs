@@ -356,7 +356,7 @@ impl Lab {
         }
         self.follow_export();
         self.go_on_with_script(halt);
-        if self.changed && self.player.is_due(now, self.view.window_s) {
+        if self.changed && self.player.is_due(now, self.view.look.window_s) {
             self.read_now();
         }
     }

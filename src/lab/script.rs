@@ -127,7 +127,9 @@ impl CommandScript {
                 let (here, to_go) = (playback.step_number(), playback.steps_to_go()?);
                 Command::GoTo(SeekTarget::Step(here.saturating_add(to_go)))
             }
-            PendingAction::Waiting(until) => Command::Wait(until.saturating_sub(now).as_secs_f64()),
+            PendingAction::Waiting(until) => {
+                Command::WaitS(until.saturating_sub(now).as_secs_f64())
+            }
             _ => placed.command.clone(),
         };
         let line = placed.line;

@@ -186,7 +186,7 @@ impl KeptPlace {
         if let Some(problem) = keys::check_part(&look, "view").list.first() {
             return Err(Unreadable(problem.to_string()));
         }
-        view.take(self.look.clone());
+        view.set_look(self.look.clone());
         view.focus = Pane::named(&self.focus)
             .ok_or_else(|| Unreadable(format!("there is no pane {}", self.focus)))?;
         view.filled = self.filled;

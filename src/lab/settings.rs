@@ -52,8 +52,8 @@ const fn row(
 pub(super) const SETTINGS: [LabSetting; 8] = [
     row("line about the numbers", |view| shown(view, HideablePart::Health), |view, _| hide_or_show(view, HideablePart::Health)),
     row("what theory predicts", |view| shown(view, HideablePart::Predicted), |view, _| hide_or_show(view, HideablePart::Predicted)),
-    row("screen", |view| if view.bare { "bare: two panes, title and time" } else { "everything" }.to_owned(), |view, _| {
-        Changed::By(Command::look("bare", !view.bare))
+    row("screen", |view| if view.look.bare { "bare: two panes, title and time" } else { "everything" }.to_owned(), |view, _| {
+        Changed::By(Command::look("bare", !view.look.bare))
     }),
     row("dots", |view| view.marker.name().to_owned(), |view, forward| {
         view.marker = next(&Marker::ALL, view.marker, forward);
@@ -121,9 +121,9 @@ impl Settings {
 }
 
 fn hide_or_show(view: &View, part: HideablePart) -> Changed {
-    let mut hidden = view.hidden.clone();
+    let mut hidden = view.look.hide.clone();
     hidden.retain(|other| *other != part);
-    if hidden.len() == view.hidden.len() {
+    if hidden.len() == view.look.hide.len() {
         hidden.push(part);
     }
     Changed::By(Command::look("hide", hidden))

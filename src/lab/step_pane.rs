@@ -62,14 +62,14 @@ impl StepWorkings {
 
     /// Makes what the page of `view` needs, unless it is there.
     fn complete(&mut self, view: &View) {
-        let index = view.page.index(&self.workings);
+        let index = view.look.phase.index(&self.workings);
         let known = self.sums.as_ref().map(|(of, _)| *of);
-        if view.sum_to.is_some() && index.is_some() && known != index {
-            let phase = self.phase(view.page);
+        if view.look.sum_to.is_some() && index.is_some() && known != index {
+            let phase = self.phase(view.look.phase);
             let table = phase.and_then(|(phase, ..)| table_of(phase));
             self.sums = index.zip(table.map(ColumnSums::of));
         }
-        if view.page == StepPageChoice::Why && self.dip.is_none() {
+        if view.look.phase == StepPageChoice::Why && self.dip.is_none() {
             self.dip = Dip::of(&self.scenario, self.step);
         }
     }
@@ -155,7 +155,7 @@ impl StepPane {
             };
         };
         let count = shown.workings.phases().count().max(1) as i64;
-        let at = match view.page.index(&shown.workings) {
+        let at = match view.look.phase.index(&shown.workings) {
             Some(index) => index as i64,
             None if times > 0 => count - 1,
             None => count,
@@ -182,7 +182,10 @@ impl StepPane {
         times: i32,
         view: &View,
     ) -> Result<Command, String> {
-        let phase = self.shown.as_ref().and_then(|shown| shown.phase(view.page));
+        let phase = self
+            .shown
+            .as_ref()
+            .and_then(|shown| shown.phase(view.look.phase));
         let Some(table) = phase.and_then(|(phase, ..)| table_of(phase)) else {
             return Err("no table here: . and , go through the phases".to_owned());
         };
@@ -191,7 +194,7 @@ impl StepPane {
             return Err("Up and Down add up the table; . and , go by phase".to_owned());
         }
         let rows = direction.rows(PAGE_KEY_ROWS) as i64 * i64::from(times);
-        let now = match view.sum_to {
+        let now = match view.look.sum_to {
             Some(now) => (now as i64).min(all),
             None if rows > 0 => 0,
             None => all,
@@ -208,7 +211,7 @@ impl StepPane {
 impl View {
     /// The command that shows why the axle goes sideways, or the first phase again.
     pub fn why_toggled(&self) -> Command {
-        let page = match self.page {
+        let page = match self.look.phase {
             StepPageChoice::Why => self.page_before,
             _ => StepPageChoice::Why,
         };

@@ -80,7 +80,7 @@ impl<'a> LessonWalk<'a> {
             self.carry_out(&stage, go_on)?;
         }
         if page.predicts().next().is_some() {
-            let hidden = Predictions::hidden_after_lock(page, &self.lab.view().hidden);
+            let hidden = Predictions::hidden_after_lock(page, &self.lab.view().look.hide);
             // Hiding is never refused.
             let _ = self.lab.carry_out(&Command::look("hide", hidden));
         }

@@ -150,14 +150,14 @@ fn put_back(lab: &Lab) -> Vec<Command> {
     let shows_exact = lab.player().run().shows_exact();
     let all = [
         (view.filled, Command::Fill(None)),
-        (view.bare, Command::look("bare", false)),
+        (view.look.bare, Command::look("bare", false)),
         (view.pointed_at.is_some(), Command::PointAt(None)),
         (
             view.camera != Camera::default(),
             Command::look("camera", Camera::default()),
         ),
         (
-            view.zoom != Zoom::default(),
+            view.look.zoom != Zoom::default(),
             Command::look("zoom", Zoom::default()),
         ),
         (shows_exact, Command::Exact(false)),

@@ -225,7 +225,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('P')], Action::ChoosePush, "", "choose the push: point, force, direction, length").to(PUSH_GROUP),
     does(&[Lab], &[Char('u')], |_, count| one(Command::Undo(repeated(count).unsigned_abs())), "undo", "take back what was done last").to(CHANGE_GROUP),
     does(&[Lab], &[Char('U'), Ctrl('r')], |_, count| one(Command::Redo(repeated(count).unsigned_abs())), "", "do it again").to(CHANGE_GROUP),
-    does(&[Lab], &[Char('m')], |lab, _| one(Command::look("residuals", !lab.view().residuals)), "residuals", "residuals: measured data less the run, or both again; --measured FILE puts data beside a run").worth(FooterPriority::Kept),
+    does(&[Lab], &[Char('m')], |lab, _| one(Command::look("residuals", !lab.view().look.residuals)), "residuals", "residuals: measured data less the run, or both again; --measured FILE puts data beside a run").worth(FooterPriority::Kept),
     does(&[Lab], &[Char('i')], |lab, _| one(Command::Pin(!lab.comparison().is_pinned())), "", "pin this run as the reference beside every other, or take it away").found_by("compare keep"),
     does(&[Lab], &[Char('a')], |lab, _| one(lab.adviser().followed(lab.player())?), "", "take the advice about the numbers: the run from the start with what mends them"),
     row(&[Lab], &[Char('X')], Action::Ask(Ask::Figure), "", "figure of the run up to here (a plot, a graph): SVG, PDF or PNG").found_by("screenshot picture image").to(KEEP_GROUP),

@@ -71,7 +71,7 @@ impl ScreenLayout {
     pub fn saying(said: LinesBelow, area: Rect, view: &View, keys: bool) -> Self {
         let mut rest = area;
         let title = cut_top(&mut rest, area.height >= 3);
-        if view.bare {
+        if view.look.bare {
             // A message has the last line, over the panes.
             return Self {
                 title,
@@ -243,7 +243,8 @@ fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let mut panes: Vec<_> = usual()
         .filter(|row| {
             view.may_show(row.id)
-                && (view.shown.contains(&row.id) || joined.iter().any(|other| other.id == row.id))
+                && (view.look.show.contains(&row.id)
+                    || joined.iter().any(|other| other.id == row.id))
         })
         .collect();
     if panes.is_empty() {

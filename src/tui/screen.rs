@@ -71,7 +71,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     if !lab.view().hides(HideablePart::Health) && place == layout.hint {
         chrome::health(lab, layout.health, buf);
     }
-    if !lab.view().bare || hint::has_message(lab) {
+    if !lab.view().look.bare || hint::has_message(lab) {
         hint::draw(lab, keys && layout.is_cramped, place, buf);
     }
     chrome::keys(lab, layout.keys, buf);

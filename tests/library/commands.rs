@@ -201,7 +201,7 @@ fn a_command() -> impl Strategy<Value = Command> {
         condition.prop_map(|text| Command::RunUntil(Expression::condition(text).unwrap())),
         Just(Command::Run),
         Just(Command::Pause),
-        (0.0..1e4).prop_map(Command::Wait),
+        (0.0..1e4).prop_map(Command::WaitS),
         (1..10_000u32).prop_map(Command::Undo),
         (1..10_000u32).prop_map(Command::Redo),
         export,

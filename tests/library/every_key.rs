@@ -122,7 +122,7 @@ fn trouble(stage: &Stage) -> Option<String> {
 
 /// Where the last line has something else than keys of the table, each with its word.
 fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
-    if stage.lab.view().bare {
+    if stage.lab.view().look.bare {
         return None; // no line of keys
     }
     let last = picture.rows.get(stage.size.height as usize - 1)?;

@@ -72,7 +72,7 @@ fn what_is_shown_and_hidden_comes_back() {
     let hiding = preset("loops", &["view.hide=['traces']"]);
     let mut desk = Desk::with("loops", hiding);
     desk.commands("hide = []");
-    assert_eq!(resumed(&desk.lab.content()).lab.view().hidden, []);
+    assert_eq!(resumed(&desk.lab.content()).lab.view().look.hide, []);
 }
 
 /// Waits until the pictures of the pinned run are there.

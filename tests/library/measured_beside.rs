@@ -191,7 +191,7 @@ fn a_session_keeps_them_by_name() {
     let mut again = Desk::of(resumed(&content));
     again.wait(3);
     assert_eq!(sum(&again.lab).compared, 20);
-    assert!(again.lab.view().residuals);
+    assert!(again.lab.view().look.residuals);
     drop(folder);
     let without = resumed(&content);
     assert!(without.comparison().data().is_none());

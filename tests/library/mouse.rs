@@ -131,11 +131,11 @@ fn a_press_selects_a_pane_goes_to_a_place_and_does_a_key() {
 fn the_wheel_zooms_and_a_drag_turns_the_view_in_space() {
     let mut desk = Desk::open("method-2", LARGE);
     let traces = desk.pane("traces");
-    let before = desk.stage.lab.view().window_s;
+    let before = desk.stage.lab.view().look.window_s;
     desk.does(Did::WheelUp, (traces.x + 5, traces.y + 5));
-    assert!(desk.stage.lab.view().window_s < before);
+    assert!(desk.stage.lab.view().look.window_s < before);
     desk.does(Did::WheelDown, (traces.x + 5, traces.y + 5));
-    assert_eq!(desk.stage.lab.view().window_s, before);
+    assert_eq!(desk.stage.lab.view().look.window_s, before);
     let scene = desk.pane("3d");
     let camera = desk.stage.lab.view().camera;
     let from = (scene.x + 10, scene.y + 5);

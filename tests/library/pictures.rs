@@ -78,7 +78,7 @@ fn text(buf: &Buffer) -> String {
 
 fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: Marker) -> String {
     let mut view = view(run, marker);
-    view.look.window_s = window_s.unwrap_or(view.window_s);
+    view.look.window_s = window_s.unwrap_or(view.look.window_s);
     let alone = seen_alone(run, &view);
     drawn(Traces(PlotInputs { ghost, ..alone }), STRIPS)
 }
@@ -100,7 +100,7 @@ fn seen_alone<'a>(run: &'a LiveRun, view: &'a View) -> PlotInputs<'a> {
 
 /// No strip of its own for the fast motion: all strips show the same time.
 fn undivided(run: &LiveRun, view: &View) -> Detail {
-    let long = Strip::following(run.now().time_s, view.window_s, 1);
+    let long = Strip::following(run.now().time_s, view.look.window_s, 1);
     Detail {
         curve: RecordedCurve::Tilt,
         begin_s: long.begin_s,
@@ -294,7 +294,7 @@ fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
 /// The traces of `now` on the pane of an 80x24 screen, with the fast motion above.
 fn divided(now: &LiveRun, marker: Marker, buf: &mut Buffer) {
     let view = &view(now, marker);
-    let wanted = DetailRequest::following(view.window_s);
+    let wanted = DetailRequest::following(view.look.window_s);
     let readouts = LiveRun::new(Arc::clone(now.scenario())).readouts();
     let detail = Detail::new(now, &readouts, &wanted, None);
     let alone = seen_alone(now, view);

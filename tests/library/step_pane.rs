@@ -92,7 +92,7 @@ fn all_rows_add_up_to_the_schemes_own_sums() {
 fn place(stage: &Stage) -> (u64, usize, usize) {
     let lab = &stage.lab;
     let explained = lab.step_pane().shown().expect("a step that is shown");
-    let (_, number, count) = explained.phase(lab.view().page).expect("a phase");
+    let (_, number, count) = explained.phase(lab.view().look.phase).expect("a phase");
     assert_eq!(explained.step, stage.step());
     (explained.step, number, count)
 }
@@ -204,13 +204,13 @@ fn commands_and_files_say_it_too() {
 fn why_comes_back_to_where_it_was_asked() {
     let mut stage = Stage::open("cusps", &[], SMALL);
     stage.commands("pause = true\nstep = 300").press("v...");
-    let place = stage.lab.view().page;
+    let place = stage.lab.view().look.phase;
     assert!(matches!(place, StepPageChoice::Number(2..)));
     stage.shows(". next phase").shows("y why sideways");
     stage.press("y").shows("not down?").shows("first dip");
     stage.shows(". next step").shows("y phases");
     stage.press("y");
-    assert_eq!(stage.lab.view().page, place);
+    assert_eq!(stage.lab.view().look.phase, place);
 }
 
 #[test]

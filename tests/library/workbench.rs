@@ -189,7 +189,7 @@ fn each_press_shows_another_curve_enlarged_and_home_the_first() {
     stage.wait(1.0).press("↑").shows("the upper strip shows z");
     stage.press("↓").shows("the upper strip shows tilt");
     stage.key(Key::Home);
-    assert_eq!(stage.lab.view().detail_of, None);
+    assert_eq!(stage.lab.view().look.detail_of, None);
 }
 
 #[test]

@@ -65,9 +65,9 @@ impl FastStrip {
             None => Placement::Following,
         };
         let wanted = DetailRequest {
-            window_s: view.detail_s,
-            curve: view.detail_of,
-            long_s: view.window_s,
+            window_s: view.look.detail_s,
+            curve: view.look.detail_of,
+            long_s: view.look.window_s,
             place,
         };
         let before = self.is_of_run.then_some(&self.detail);
@@ -75,7 +75,7 @@ impl FastStrip {
         let is_other = before.is_some_and(|before| before.curve != detail.curve);
         (self.detail, self.chosen_at, self.is_of_run) = (detail, now, true);
         // After a jump in time the strip's label says it; only one who watches the run sees the strip change.
-        let is_watched = playback.is_running() && view.detail_of.is_none();
+        let is_watched = playback.is_running() && view.look.detail_of.is_none();
         (is_other && is_watched).then_some(match self.detail.curve {
             RecordedCurve::Tilt => "the upper strip shows the tilt again",
             _ => "the upper strip shows x now: it swings more often than the tilt",

@@ -51,7 +51,7 @@ impl View {
                     None => "the upper strip shows what swings: the tilt, or x".to_owned(),
                 }),
                 "phase" => {
-                    step_pane.may_show(look.page, player)?;
+                    step_pane.may_show(look.phase, player)?;
                     None
                 }
                 "residuals" if !self.measured => return Err(NO_DATA.into()),
@@ -61,7 +61,7 @@ impl View {
                 _ => None,
             };
         }
-        self.take(look);
+        self.set_look(look);
         Ok(Done::saying_any(said))
     }
 
@@ -100,7 +100,7 @@ impl View {
         let step = step.map(|step| step.min(run.furthest()));
         if let Some(step) = step {
             let sample = lookup::sample(run, step).map_err(|missing| missing.to_string())?;
-            let (begin_s, window_s) = (self.begin_s(player), self.window_s);
+            let (begin_s, window_s) = (self.begin_s(player), self.look.window_s);
             if !(begin_s..=begin_s + window_s).contains(&sample.time_s) {
                 self.since_s = Some((sample.time_s - 0.5 * window_s).max(0.0));
             }
@@ -153,7 +153,7 @@ impl View {
 
     /// The time at the left edge of the traces, s.
     fn begin_s(&self, player: &Player) -> f64 {
-        let (now_s, window_s) = (player.run().now().time_s, self.window_s);
+        let (now_s, window_s) = (player.run().now().time_s, self.look.window_s);
         self.since_s
             .unwrap_or_else(|| Strip::following(now_s, window_s, 1).begin_s)
     }
@@ -162,17 +162,17 @@ impl View {
     /// remain, which time is shown.
     pub fn other_window(&self, wider: bool, player: &Player) -> Result<Command, String> {
         let time_step_s = player.run().simulation().motion().time_step_s;
-        let window_s = self.window_s * if wider { 2.0 } else { 0.5 };
+        let window_s = self.look.window_s * if wider { 2.0 } else { 0.5 };
         if window_s >= 2.0 * time_step_s && window_s.is_finite() {
             Ok(Command::look("window_s", window_s))
         } else {
-            Err(format!("the traces show {} s", self.window_s))
+            Err(format!("the traces show {} s", self.look.window_s))
         }
     }
 
     /// The command that shows another curve in the strip of the fast motion than it shows now.
     pub fn other_detail(&self, direction: Direction, times: i32, player: &Player) -> Command {
-        let shown = self.detail_of.unwrap_or(player.detail().curve);
+        let shown = self.look.detail_of.unwrap_or(player.detail().curve);
         let curves = [
             RecordedCurve::X,
             RecordedCurve::Y,
@@ -189,7 +189,7 @@ impl View {
     }
 
     pub fn moved_cursor(&self, fiftieths: i32, player: &Player) -> Command {
-        let steps = CURSOR_SHARE * self.window_s / player.motion().time_step_s;
+        let steps = CURSOR_SHARE * self.look.window_s / player.motion().time_step_s;
         self.stepped_cursor(steps.round().max(1.0) as i64 * i64::from(fiftieths), player)
     }
 
@@ -200,8 +200,8 @@ impl View {
 
     /// The command that moves the window to later times, `times` halves of its length, or to earlier ones.
     pub fn panned(&self, times: i32, player: &Player) -> Command {
-        let by_s = PAN_SHARE * self.window_s * f64::from(times);
-        Command::Since(Some((self.begin_s(player) + by_s).max(0.0)))
+        let by_s = PAN_SHARE * self.look.window_s * f64::from(times);
+        Command::SinceS(Some((self.begin_s(player) + by_s).max(0.0)))
     }
 
     /// The command that doubles the magnification `notches` times, or halves it.
@@ -218,15 +218,15 @@ impl View {
             Command::Cursor(CursorTo::Nowhere),
             Command::Magnify(1.0),
             Command::look("window_s", usual_s),
-            Command::Since(None),
+            Command::SinceS(None),
         ]
     }
 
     /// The command that shows the round picture in focus `rungs` larger.
     pub fn other_zoom(&self, rungs: i32) -> Result<Command, String> {
         let now = match self.focus {
-            Pane::ThreeD => self.zoom.three_d,
-            _ => self.zoom.above,
+            Pane::ThreeD => self.look.zoom.three_d,
+            _ => self.look.zoom.above,
         };
         match Zoom::shifted(now, rungs) {
             Some(next) => self.zoom_to(next),
@@ -237,7 +237,7 @@ impl View {
 
     /// The command that shows the round picture in focus `factor` times as large as the whole.
     pub fn zoom_to(&self, factor: f64) -> Result<Command, String> {
-        let mut zoom = self.zoom;
+        let mut zoom = self.look.zoom;
         match self.focus {
             Pane::Above => zoom.above = factor,
             Pane::ThreeD => zoom.three_d = factor,

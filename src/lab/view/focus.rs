@@ -11,12 +11,12 @@ impl View {
         if self.filled {
             commands.push(Command::Fill(None));
         }
-        if self.shown.contains(&pane) == self.shows(pane) {
-            let mut panes = self.shown.clone();
-            panes.retain(|other| *other != pane && self.shown != with_it);
-            if self.shown.is_empty() {
+        if self.look.show.contains(&pane) == self.shows(pane) {
+            let mut panes = self.look.show.clone();
+            panes.retain(|other| *other != pane && self.look.show != with_it);
+            if self.look.show.is_empty() {
                 panes = with_it.to_vec();
-            } else if !self.shown.contains(&pane) {
+            } else if !self.look.show.contains(&pane) {
                 panes.push(pane);
             }
             commands.push(Command::look("show", panes));

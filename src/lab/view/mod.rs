@@ -19,7 +19,6 @@ use crate::plot::camera::{Camera, Zoom};
 pub use pane::{HideablePart, Pane};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
-use std::ops::Deref;
 use std::sync::Arc;
 use step::StepPageChoice;
 use theme::{Marker, Theme};
@@ -49,13 +48,10 @@ pub struct ViewSettings {
     /// How much larger than the whole the round pictures are shown.
     pub zoom: Zoom,
     /// The panes that share the screen; if empty, as many as there is room for.
-    #[serde(rename = "show")]
-    pub shown: Vec<Pane>,
-    #[serde(rename = "hide")]
-    pub hidden: Vec<HideablePart>,
+    pub show: Vec<Pane>,
+    pub hide: Vec<HideablePart>,
     /// The page that the step pane shows.
-    #[serde(rename = "phase")]
-    pub page: StepPageChoice,
+    pub phase: StepPageChoice,
     /// How many rows of a table the step pane adds up; `None`: all.
     #[serde(deserialize_with = "where_known")]
     pub sum_to: Option<usize>,
@@ -139,15 +135,6 @@ pub struct View {
     /// The panes that stand side by side on the screen, as it is now, while none fills it: from left to right, in the
     /// order in which the focus goes through them. Until the screen is known, all panes.
     pub side_by_side: Vec<Pane>,
-}
-
-/// What is drawn reads `view.zoom` as it reads `view.cursor`.
-impl Deref for View {
-    type Target = ViewSettings;
-
-    fn deref(&self) -> &ViewSettings {
-        &self.look
-    }
 }
 
 impl View {
@@ -240,7 +227,7 @@ impl View {
         if self.look.camera.is_none() {
             self.camera = Camera::default();
         }
-        self.take(usual.patched(&patch).unwrap_or(usual));
+        self.set_look(usual.patched(&patch).unwrap_or(usual));
         if !self.may_show(self.focus) {
             self.keep_focus_among(&self.to_show());
         }
@@ -250,29 +237,27 @@ impl View {
     }
 
     /// Shows the run as `look` says. A pane that is shown on request has the focus when it comes.
-    pub fn take(&mut self, look: ViewSettings) {
+    pub fn set_look(&mut self, look: ViewSettings) {
         let before = std::mem::replace(&mut self.look, look);
-        if before.shown != self.shown {
-            self.beside = self.shown.first().copied();
+        if before.show != self.look.show {
+            self.beside = self.look.show.first().copied();
             self.side_by_side = self.to_show(); // until the lab is fitted to its screen again
         }
-        let comes = |pane: &Pane| pane.is_on_request() && !before.shown.contains(pane);
-        if let Some(pane) = self
-            .shown
-            .iter()
-            .copied()
-            .find(comes)
-            .filter(|_| !self.filled)
+        let mut shown = self.look.show.iter();
+        let requested = shown.find(|pane| pane.is_on_request() && !before.show.contains(pane));
+        if let Some(pane) = requested
+            && !self.filled
         {
-            self.focus = pane;
+            self.focus = *pane;
         }
-        if before.page != StepPageChoice::Why {
-            self.page_before = before.page;
+        if before.phase != StepPageChoice::Why {
+            self.page_before = before.phase;
         }
         self.camera = self.look.camera.unwrap_or(self.camera);
         // The usual place is no choice.
-        let camera = &mut self.look.camera;
-        camera.take_if(|camera| *camera == Camera::default());
+        self.look
+            .camera
+            .take_if(|camera| *camera == Camera::default());
     }
 
     /// The time that the traces show of the run of `scenario` while none is chosen by hand, s.
@@ -288,17 +273,17 @@ impl View {
     }
 
     pub fn hides(&self, part: HideablePart) -> bool {
-        self.hidden.contains(&part)
+        self.look.hide.contains(&part)
     }
 
     pub fn may_show(&self, pane: Pane) -> bool {
         if pane == Pane::Lesson {
             return self.sheet.is_some() && !self.hides(HideablePart::Pane(pane));
         }
-        let is_shown = match (self.shown.is_empty(), self.bare) {
+        let is_shown = match (self.look.show.is_empty(), self.look.bare) {
             (true, true) => BARE.contains(&pane),
             (true, false) => !pane.is_on_request(),
-            (false, _) => self.shown.contains(&pane),
+            (false, _) => self.look.show.contains(&pane),
         };
         is_shown && !self.hides(HideablePart::Pane(pane))
     }

@@ -225,9 +225,9 @@ impl OpenLesson {
             return;
         };
         if self.place.predictions.are_locked_on(page) {
-            let hidden = lab.view().hidden.clone();
+            let hidden = lab.view().look.hide.clone();
             let hidden = Predictions::hidden_after_lock(page, &hidden);
-            if hidden != lab.view().hidden {
+            if hidden != lab.view().look.hide {
                 lab.carry_out_now(&Command::look("hide", hidden));
             }
         }

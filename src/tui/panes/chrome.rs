@@ -24,7 +24,7 @@ pub(super) const SEPARATOR: &str = " · ";
 
 /// Title, scheme and time step on the left, what fits of it; time, step and pace on the right, in fixed columns.
 pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
-    if lab.view().bare {
+    if lab.view().look.bare {
         return bare_title(lab, area, buf);
     }
     let theme = &lab.view().theme;
@@ -241,7 +241,7 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
 
 /// What the footer says of a key now; `None` where the key does nothing.
 fn word(lab: &Lab, goes_on: bool, row: &Binding) -> Option<&'static str> {
-    let is_why = lab.view().page == StepPageChoice::Why;
+    let is_why = lab.view().look.phase == StepPageChoice::Why;
     let sheet = lab.view().sheet.as_ref();
     let enter = sheet.map_or("", |sheet| sheet.enter);
     let action = match row.does {

@@ -69,7 +69,7 @@ pub struct FromAbove<'a>(pub PlotInputs<'a>);
 
 impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let zoom = self.0.view.zoom.above;
+        let zoom = self.0.view.look.zoom.above;
         let Some(inside) = round_frame(&FROM_ABOVE_ROW, zoom, &self.0, area, buf) else {
             return;
         };
@@ -116,7 +116,7 @@ impl FromAbove<'_> {
         let radius = radii.chain(away).fold(LEAST_RADIUS_M, f64::max);
         // In steps of 5 %, so that the scale does not change all the time.
         let radius = libm::exp((libm::log(radius) / RADIUS_STEP).ceil() * RADIUS_STEP) * 1.02;
-        let zoom = self.0.view.zoom.above;
+        let zoom = self.0.view.look.zoom.above;
         let half = radius / zoom;
         let plane = |middle| Plane::new(picture, self.0.view.marker, middle, (half, half));
         let whole = plane((middle.x, middle.y));

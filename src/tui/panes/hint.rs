@@ -38,7 +38,7 @@ pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
         return place;
     }
     let own = place.union(layout.health).height;
-    let most = match (lab.view().bare, layout.is_cramped) {
+    let most = match (lab.view().look.bare, layout.is_cramped) {
         (true, _) => place.height + 1,
         (false, _) if lab.view().sheet.is_some() => own.max(MOST_HINT_LINES),
         (false, true) => own.max(MOST_HINT_LINES),

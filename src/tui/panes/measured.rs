@@ -23,7 +23,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     };
     let theme = &lab.view().theme;
     let mark = lab.view().marker.point().to_string();
-    let what = if lab.view().residuals {
+    let what = if lab.view().look.residuals {
         " residuals: "
     } else {
         " measured: "

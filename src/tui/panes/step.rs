@@ -70,9 +70,9 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
     match lab.step_pane().shown() {
         None => nothing_yet(lab, inside, buf),
-        Some(_) if view.page == StepPageChoice::Why => why::draw(lab, inside, buf),
+        Some(_) if view.look.phase == StepPageChoice::Why => why::draw(lab, inside, buf),
         Some(explained) => {
-            if let Some((phase, number, _)) = explained.phase(view.page) {
+            if let Some((phase, number, _)) = explained.phase(view.look.phase) {
                 let own = lab.comparison().own_code();
                 let page = PhasePage {
                     explained,
@@ -94,7 +94,7 @@ fn title(lab: &Lab) -> String {
         return STEP_ROW.title.to_owned();
     };
     let step = explained.step;
-    match explained.phase(lab.view().page) {
+    match explained.phase(lab.view().look.phase) {
         Some((phase, number, count)) => {
             format!("step {step}: {number} of {count}, {}", phase.name)
         }
@@ -303,8 +303,11 @@ impl PhasePage<'_> {
     /// How many rows are added up, and their sums.
     fn sum(&self) -> Option<(usize, Vec<f64>)> {
         let table = table_of(self.phase)?;
-        let rows = self.view.sum_to?.min(table.points.len());
-        Some((rows, self.explained.sums(self.view.page, table, rows)?))
+        let rows = self.view.look.sum_to?.min(table.points.len());
+        Some((
+            rows,
+            self.explained.sums(self.view.look.phase, table, rows)?,
+        ))
     }
 
     /// The lines of the table that is the quantity of this index: `room` lines, or its fewest where that is more.

@@ -69,7 +69,7 @@ type SpaceLabel = (&'static str, Role, Vector3<f64>);
 
 impl Widget for ThreeD<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let zoom = self.0.view.zoom.three_d;
+        let zoom = self.0.view.look.zoom.three_d;
         let Some(inside) = round_frame(&THREE_D_ROW, zoom, &self.0, area, buf) else {
             return;
         };
@@ -178,7 +178,7 @@ impl<'a> SceneSubject<'a> {
         let lowest = circles.iter().map(end(-1.0)).fold(0.0, f64::min);
         let highest = circles.iter().map(end(1.0)).fold(0.0, f64::max);
         let widest = circles.iter().map(|circle| circle.0).fold(0.0, f64::max);
-        let zoom = self.seen.view.zoom.three_d;
+        let zoom = self.seen.view.look.zoom.three_d;
         let half = [widest, 0.5 * (highest - lowest)].map(|half| PICTURE_MARGIN * half / zoom);
         let middle = if zoom > 1.0 {
             let (right, up) = self.seen.view.camera.project(&self.wheel());

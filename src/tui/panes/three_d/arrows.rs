@@ -228,8 +228,8 @@ impl<'a> StepArrows<'a> {
     /// The phase on the page of the step pane of `view`, if that is on the screen.
     pub fn of(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
         let explained = explained.filter(|_| view.shows(Pane::Step))?;
-        let (phase, ..) = explained.phase(view.page)?;
-        let row = view.sum_to.and_then(|rows| rows.checked_sub(1));
+        let (phase, ..) = explained.phase(view.look.phase)?;
+        let row = view.look.sum_to.and_then(|rows| rows.checked_sub(1));
         let points = table_of(phase).map(|table| &table.points);
         Some(Self {
             explained,

@@ -63,7 +63,7 @@ impl Traces<'_> {
     pub(super) fn plots(&self, group: &Group, beside: u16, marks: &Marks) -> Vec<Plot> {
         let plot = |&(content, area): &(StripContent, Rect)| {
             let is_residual =
-                self.0.view.residuals && !group.is_zoom && self.index(content).is_some();
+                self.0.view.look.residuals && !group.is_zoom && self.index(content).is_some();
             let above = u16::from(beside == 0);
             Plot {
                 content,
