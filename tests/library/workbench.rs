@@ -548,7 +548,7 @@ fn extent_of_the_path(picture: &str) -> (f64, f64) {
         let dots = line
             .chars()
             .enumerate()
-            .filter(|(_, c)| ('\u{2800}'..='\u{28ff}').contains(&*c) || "▀▄█•".contains(*c));
+            .filter(|(_, c)| ('\u{2800}'..='\u{28ff}').contains(c) || "▀▄█•".contains(*c));
         // Not the timeline.
         for (x, _) in dots.filter(|_| line.starts_with('│')) {
             columns.insert(x);
