@@ -3,10 +3,12 @@
 use super::refuse;
 use crate::engine::data::{ColumnOptions, ColumnSigma};
 use crate::engine::export::CsvLayout;
-use crate::engine::export::layout::LayoutFile;
+use crate::engine::export::layout::{LAYOUT_KEYS, LayoutFile};
 use crate::engine::run::Simulation;
 use crate::engine::scenario::csv::{Renaming, renaming};
+use crate::engine::scenario::kind::ValueKind;
 use crate::engine::scenario::rescale::MOST_RUN_STEPS_BY_TIME;
+use crate::engine::scenario::schema::SchemaRow;
 use crate::engine::scenario::{Document, Problem, Problems, Scenario};
 use crate::lab::view::theme::Background;
 use crate::lab::view::theme::Marker;
@@ -15,11 +17,12 @@ use crate::tui::terminal::MOST_SCREEN_CELLS;
 use crate::tui::theme::ColourChoice;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::error::ErrorKind;
-use clap::{Args, ValueEnum};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 use std::io;
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::str::FromStr;
+use toml::{Table, Value};
 
 #[derive(Debug, Args)]
 pub(super) struct ScenarioArgs {
@@ -293,38 +296,79 @@ pub(super) struct LessonArgs {
     pub(super) look: DisplayArgs,
 }
 
-/// Which rows and columns a CSV has, and how its numbers are written.
-#[derive(Debug, Args)]
-pub(super) struct LayoutArgs {
-    /// Write every N-th row only, and the last
-    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true, value_parser = one_or_more)]
-    every: NonZeroU64,
+/// Which rows and columns a CSV has, and how its numbers are written: an option for each row of [`LAYOUT_KEYS`].
+#[derive(Debug)]
+pub(super) struct LayoutArgs(LayoutFile);
 
-    /// Write these columns only, in this order; gyrolab man csv lists them
-    #[arg(
-        long,
-        value_name = "A,B",
-        value_delimiter = ',',
-        requires = "output",
-        help_heading = ROWS_HEADING
-    )]
-    columns: Vec<String>,
+impl Args for LayoutArgs {
+    fn augment_args(command: Command) -> Command {
+        command.args(LAYOUT_KEYS.iter().map(layout_option))
+    }
 
-    /// Leave out the rows before this time, s; the run begins at 0 all the same
-    #[arg(long, value_name = "SECONDS", requires = "output", allow_negative_numbers = true, value_parser = time, help_heading = ROWS_HEADING)]
-    from: Option<f64>,
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
 
-    /// Leave out the rows after this time, s; the run goes on to its end all the same
-    #[arg(long, value_name = "SECONDS", requires = "output", allow_negative_numbers = true, value_parser = time, help_heading = ROWS_HEADING)]
-    to: Option<f64>,
+impl FromArgMatches for LayoutArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let value = |row: &SchemaRow| {
+            let name = layout_option_name(row);
+            Some(match row.kind {
+                ValueKind::Flag => matches.get_flag(name).into(),
+                ValueKind::Lines => {
+                    let columns = matches.get_many::<Value>(name)?;
+                    Value::Array(columns.cloned().collect())
+                }
+                _ => matches.get_one::<Value>(name)?.clone(),
+            })
+        };
+        let values = LAYOUT_KEYS
+            .iter()
+            .filter_map(|row| Some((row.path.to_owned(), value(row)?)));
+        let file = Table::from_iter(values).try_into::<LayoutFile>();
+        let wrong = |error| clap::Error::raw(ErrorKind::ValueValidation, error);
+        file.map(Self).map_err(wrong)
+    }
 
-    /// Write a row for each point of the body at each step: its name, mass, place and velocity
-    #[arg(long, requires = "output", help_heading = ROWS_HEADING)]
-    points: bool,
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
 
-    /// Write decimal commas, with semicolons between the columns, for Excel in German and other such languages
-    #[arg(long, requires = "output", help_heading = ROWS_HEADING)]
-    excel: bool,
+/// The option for a row of [`LAYOUT_KEYS`]; one without a default needs an output.
+fn layout_option(row: &SchemaRow) -> Arg {
+    let name = layout_option_name(row);
+    let arg = Arg::new(name).long(name).help(row.about);
+    let arg = match row.kind {
+        ValueKind::Flag => arg.action(ArgAction::SetTrue),
+        ValueKind::Lines => arg
+            .value_name("A,B")
+            .value_delimiter(',')
+            .action(ArgAction::Append)
+            .value_parser(|text: &str| Ok::<_, String>(Value::from(text))),
+        ValueKind::Whole(..) => arg
+            .value_name("N")
+            .allow_negative_numbers(true)
+            .value_parser(|text: &str| one_or_more(text).map(whole)),
+        _ => arg
+            .value_name("SECONDS")
+            .allow_negative_numbers(true)
+            .value_parser(|text: &str| time(text).map(Value::from)),
+    };
+    match row.default {
+        Some(default) => arg.default_value(default.to_string()),
+        None => arg.requires("output").help_heading(ROWS_HEADING),
+    }
+}
+
+fn layout_option_name(row: &SchemaRow) -> &'static str {
+    row.path.trim_end_matches("_s")
+}
+
+fn whole(number: NonZeroU64) -> Value {
+    i64::try_from(number.get()).unwrap_or(i64::MAX).into()
 }
 
 const ROWS_HEADING: &str = "Rows and columns of the CSV";
@@ -342,16 +386,7 @@ pub(super) fn time(text: &str) -> Result<f64, String> {
 impl LayoutArgs {
     /// The layout; the process ends where there is none such, as it does where clap refuses.
     pub(super) fn layout(&self) -> CsvLayout {
-        let file = LayoutFile {
-            every: Some(self.every),
-            from_s: self.from,
-            to_s: self.to,
-            columns: (!self.columns.is_empty()).then(|| self.columns.clone()),
-            points: self.points,
-            excel: self.excel,
-            note: None,
-        };
-        file.check().unwrap_or_else(|error| {
+        self.0.clone().check().unwrap_or_else(|error| {
             let option = error.key.trim_end_matches("_s");
             let message = format!("--{option}: {}", error.rule);
             refuse("run", ErrorKind::ValueValidation, &message)

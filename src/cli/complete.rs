@@ -6,8 +6,10 @@ use super::{command, print};
 use crate::engine::analysis::readouts::READOUTS;
 use crate::engine::data::SHIPPED;
 use crate::engine::export::columns::{COLUMNS, CsvColumn, OPTIONAL_COLUMNS, POINT_COLUMNS};
-use crate::engine::scenario::keys::{Effect, KEYS, ScenarioKey, ValueKind};
+use crate::engine::scenario::keys::{Effect, KEYS};
+use crate::engine::scenario::kind::ValueKind;
 use crate::engine::scenario::presets::PRESETS;
+use crate::engine::scenario::schema::SchemaRow;
 use crate::engine::text::shipped::Shipped;
 use crate::lessons::shipped::LESSONS;
 use crate::report::figure::kind;
@@ -26,7 +28,7 @@ use std::process::ExitCode;
 pub(super) const VARIABLE: &str = "GYROLAB_COMPLETE";
 
 /// Names with what they mean, given what is typed before them (a list up to its comma, a key up to its `=`) and of them.
-type CompletionSource = fn(&str, &str) -> Vec<(String, &'static str)>;
+type CompletionSource = fn(&str, &str) -> Vec<(String, String)>;
 
 /// The names that complete the value of the argument `arg` of `command`, and the endings of files that do; `None` where clap
 /// knows better.
@@ -127,7 +129,7 @@ fn completed(
     let fitting = fitting.filter(|(name, _)| name.starts_with(begin));
     let mut candidates: Vec<_> = fitting
         .map(|(name, about)| {
-            let about = (!about.is_empty()).then(|| about.to_owned().into());
+            let about = (!about.is_empty()).then(|| about.into());
             CompletionCandidate::new(format!("{typed}{name}")).help(about)
         })
         .collect();
@@ -144,23 +146,21 @@ fn completed(
     candidates
 }
 
-fn named<T>(
-    table: &[T],
-    row: fn(&T) -> (&'static str, &'static str),
-) -> Vec<(String, &'static str)> {
+fn named<T>(table: &[T], row: fn(&T) -> (&'static str, &'static str)) -> Vec<(String, String)> {
     let rows = table.iter().map(row);
-    rows.map(|(name, about)| (name.to_owned(), about)).collect()
+    rows.map(|(name, about)| (name.to_owned(), about.to_owned()))
+        .collect()
 }
 
-fn presets() -> Vec<(String, &'static str)> {
+fn presets() -> Vec<(String, String)> {
     named(PRESETS, |preset| (preset.name, ""))
 }
 
-fn shipped(list: &'static [Shipped]) -> Vec<(String, &'static str)> {
+fn shipped(list: &'static [Shipped]) -> Vec<(String, String)> {
     named(list, |file| (file.name, ""))
 }
 
-fn columns() -> Vec<(String, &'static str)> {
+fn columns() -> Vec<(String, String)> {
     let of_points = named(POINT_COLUMNS, |column| (column.name, column.about));
     let of_points = of_points.into_iter();
     let mut columns = named(COLUMNS, |column| (column.name, column.about));
@@ -171,13 +171,13 @@ fn columns() -> Vec<(String, &'static str)> {
     columns
 }
 
-fn topics() -> Vec<(String, &'static str)> {
+fn topics() -> Vec<(String, String)> {
     let names = names_and_commands(&command()).into_iter();
-    names.map(|name| (name, "")).collect()
+    names.map(|name| (name, String::new())).collect()
 }
 
 /// A dotted key with its `=`; behind that the words that it may hold.
-fn settings(typed: &str, begin: &str) -> Vec<(String, &'static str)> {
+fn settings(typed: &str, begin: &str) -> Vec<(String, String)> {
     let Some((key, _)) = typed.split_once('=') else {
         return keys(begin, |_| true, "=");
     };
@@ -187,21 +187,22 @@ fn settings(typed: &str, begin: &str) -> Vec<(String, &'static str)> {
 }
 
 /// The dotted keys that are `wanted`, each with `end`; of a vector that is typed its three numbers.
-fn keys(begin: &str, wanted: fn(&ScenarioKey) -> bool, end: &str) -> Vec<(String, &'static str)> {
+fn keys(begin: &str, wanted: fn(&SchemaRow) -> bool, end: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let of_scenario = KEYS.iter().filter(|key| !key.path.starts_with("edit."));
     for key in of_scenario.filter(|key| wanted(key)) {
         let path = instance(key.path, begin);
         if key.kind == ValueKind::Vector && begin.starts_with(&format!("{path}.")) {
-            found.extend([0, 1, 2].map(|place| (format!("{path}.{place}{end}"), key.about)));
+            found
+                .extend([0, 1, 2].map(|place| (format!("{path}.{place}{end}"), key.description())));
         } else {
-            found.push((path + end, key.about));
+            found.push((path + end, key.description()));
         }
     }
     found
 }
 
-fn is_free(key: &ScenarioKey) -> bool {
+fn is_free(key: &SchemaRow) -> bool {
     Effect::of(key.path) != Effect::None
         && matches!(key.kind, ValueKind::Number(_) | ValueKind::Vector)
 }

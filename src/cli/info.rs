@@ -6,7 +6,7 @@ use crate::engine::data;
 use crate::engine::export::summary::steps_in_words;
 use crate::engine::journal::changed::Original;
 use crate::engine::run::Clock;
-use crate::engine::scenario::keys::{KEYS, ScenarioKey};
+use crate::engine::scenario::keys::KEYS;
 use crate::engine::scenario::presets::{self, PRESETS, Preset};
 use crate::engine::scenario::problem::nearest;
 use crate::engine::scenario::{Document, Problems, Scenario, Window};
@@ -72,20 +72,13 @@ pub(super) fn scheme_list() -> Result<String, std::fmt::Error> {
 
 pub(super) fn key_list() -> Result<String, std::fmt::Error> {
     let mut text = String::new();
-    for ScenarioKey {
-        path,
-        required,
-        instead,
-        about,
-        ..
-    } in KEYS
-    {
-        let must = match (required, instead.is_empty()) {
+    for row in KEYS {
+        let must = match (row.required, row.instead.is_empty()) {
             (false, _) => String::new(),
             (true, true) => " (required)".to_owned(),
-            (true, false) => format!(" (required, or {})", instead.join(" or ")),
+            (true, false) => format!(" (required, or {})", row.instead.join(" or ")),
         };
-        writeln!(text, "{path}{must}\n    {about}")?;
+        writeln!(text, "{}{must}\n    {}", row.path, row.description())?;
     }
     text.push_str("\nA * stands for a number from 0: [[body.point]], [[body.part]], [[push]], [[expected]] and [[edit]] may be repeated.\n");
     text.push_str("A table may be left out whole where none of its keys is wanted, but [start] and [motion].\n");

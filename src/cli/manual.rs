@@ -4,7 +4,7 @@
 use super::{command, info, print, tell};
 use crate::engine::export::Destination;
 use crate::engine::export::columns::{COLUMNS, OPTIONAL_COLUMNS, POINT_COLUMNS};
-use crate::engine::scenario::keys::ValueKind;
+use crate::engine::scenario::kind::ValueKind;
 use crate::engine::scenario::problem::nearest;
 use crate::engine::text::printable::{PrintablePath, printable};
 use crate::engine::text::wrap::{columns, wrapped};
@@ -303,7 +303,7 @@ fn keys() -> String {
 fn files_of_commands() -> String {
     let rows = COMMANDS
         .iter()
-        .map(|row| (format!("{} = {}", row.name, row.value), row.about));
+        .map(|row| (format!("{} = {}", row.name, row.value), &*row.about));
     paragraph(
         "A file for --do is a list of [[do]] tables with one command each, carried out in order:",
     ) + "  [[do]]\n  set = { \"motion.time_step_s\" = 0.05 }\n\n  [[do]]\n  go_to = \"60 s\"\n\n"
@@ -316,13 +316,13 @@ fn files_of_commands() -> String {
 }
 
 fn chosen() -> String {
-    let rows = settings::SETTINGS_KEYS.iter().map(|(key, kind, about)| {
-        let value = match kind {
+    let rows = settings::SETTINGS_KEYS.iter().map(|row| {
+        let value = match row.kind {
             ValueKind::OneOf(words) => format!("\"{}\"", words.join("\", \"")),
             ValueKind::Whole(least, most) => format!("{least} to {most}"),
             _ => "true, false".to_owned(),
         };
-        (format!("{key} = {value}"), *about)
+        (format!("{} = {value}", row.path), row.about)
     });
     paragraph(
         "The lab's settings, each a line of $XDG_CONFIG_HOME/gyrolab/config.toml (by default \

@@ -98,15 +98,14 @@ fn option<T: ValueEnum>(value: Option<&Value>) -> Option<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::scenario::keys::ValueKind;
+    use crate::engine::scenario::kind::ValueKind;
     use crate::lab::view::theme::Background;
     use crate::tui::theme::ColourChoice;
 
     fn are_options<T: ValueEnum>(wanted: &str) -> bool {
-        let row = settings::SETTINGS_KEYS
-            .iter()
-            .find(|(key, ..)| *key == wanted);
-        let Some((_, ValueKind::OneOf(words), _)) = row else {
+        let mut rows = settings::SETTINGS_KEYS.iter();
+        let row = rows.find(|row| row.path == wanted);
+        let Some(ValueKind::OneOf(words)) = row.map(|row| row.kind) else {
             return false;
         };
         words

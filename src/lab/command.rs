@@ -13,10 +13,11 @@ pub use form::MOST_MAGNIFIED;
 use crate::engine::export::layout::LayoutFile;
 use crate::engine::journal::expression::Expression;
 use crate::engine::journal::next_push::Toward;
-use crate::engine::scenario::Problem;
 use crate::engine::scenario::file::Choice;
-use crate::engine::scenario::keys::{KEYS, ValueKind};
+use crate::engine::scenario::keys::KEYS;
+use crate::engine::scenario::kind::ValueKind;
 use crate::engine::scenario::screen::TRACES;
+use crate::engine::scenario::{Problem, Problems};
 use crate::lab::playback::pace::Speed;
 use crate::lab::view::{Pane, ViewSettings};
 use form::ValueSchema::{self, Is, View};
@@ -97,7 +98,7 @@ pub struct CommandRow {
     pub name: &'static str,
     /// Examples of its value, as TOML.
     pub value: Cow<'static, str>,
-    pub about: &'static str,
+    pub about: Cow<'static, str>,
     form: ValueSchema,
 }
 
@@ -110,7 +111,7 @@ fn row(
     CommandRow {
         name,
         value: value.into(),
-        about,
+        about: about.into(),
         form,
     }
 }
@@ -124,8 +125,8 @@ pub static COMMANDS: LazyLock<Vec<CommandRow>> = LazyLock::new(|| {
             rows.push(CommandRow {
                 name,
                 value: examples(key.kind).into(),
-                about: key.about,
-                form: View(name),
+                about: key.description().into(),
+                form: View(key.path),
             });
         }
     }
@@ -170,12 +171,12 @@ fn own() -> Vec<CommandRow> {
         row("since_s", "12.5, or \"none\"", "time at the left edge of the traces, s; none: they follow the run", form::SINCE),
         row("magnify", "4", "how many times the values of the traces are magnified, 1 to 1000000", form::MAGNIFY),
         row("cursor", "400, \"60 s\", \"next turn\", \"turn before\", \"mark\" or \"none\"", "the step at which the traces are read off; turns are those of the tilt; mark: mark this one, and from one that is marked count the swings", form::CURSOR_SCHEMA),
-        row("measured", "\"heidelberg-spin-decay\", \"data.csv\" or \"none\"", "put measured data beside the run: data that come with gyrolab, or a CSV file with a column t_s", View("measured")),
+        row("measured", "\"heidelberg-spin-decay\", \"data.csv\" or \"none\"", "put measured data beside the run: data that come with gyrolab, or a CSV file with a column t_s", View("view.measured")),
         row("pin", "true or false", "pin the present run as the reference, which stays in view; false: none is pinned", Is(ValueKind::Flag)),
         row("take_advice", "true", "begin the run anew at the time step, or by the scheme, that mends doubtful numbers, up to the same time", form::TRUE),
-        row("point_at", "\"above\"", "the pane that is pointed at, by a heavy frame, or \"none\"", View("fill")),
-        row("camera", "{ yaw_deg = 30, pitch_deg = 20 }", "from where the 3-D view is seen", View("camera")),
-        row("zoom", "{ above = 4, 3d = 2 }", "how much larger than the whole the path from above and the 3-D view are shown", View("zoom")),
+        row("point_at", "\"above\"", "the pane that is pointed at, by a heavy frame, or \"none\"", View("view.fill")),
+        row("camera", "{ yaw_deg = 30, pitch_deg = 20 }", "from where the 3-D view is seen", View("view.camera")),
+        row("zoom", "{ above = 4, 3d = 2 }", "how much larger than the whole the path from above and the 3-D view are shown", View("view.zoom")),
     ]
 }
 
@@ -324,16 +325,18 @@ mod or_none {
 
 impl Command {
     /// The command called `name` with `value`.
-    pub fn new(name: &str, value: &Value) -> Result<Self, Vec<Problem>> {
+    pub fn new(name: &str, value: &Value) -> Result<Self, Problems> {
         let Some(row) = COMMANDS.iter().find(|row| row.name == name) else {
-            return Err(vec![file::unknown(name, None)]);
+            return Err(file::unknown(name, None).into());
         };
-        let table = Table::from_iter([(name.to_owned(), row.form.check(value)?)]);
+        let table = Table::from_iter([(name.to_owned(), row.form.check(name, value)?)]);
         if ViewSettings::has(name) {
             return Ok(Self::Look(table));
         }
         let read = table.try_into();
-        read.map_err(|error: toml::de::Error| vec![Problem::with_value("", value, error.message())])
+        read.map_err(|error: toml::de::Error| {
+            Problem::with_value(name, value, error.message()).into()
+        })
     }
 
     /// The command that shows the run as the key `name` of `[view]` says with `value`.

@@ -1,16 +1,22 @@
 //! The TOML in the blocks of a lesson.
 
-mod content;
-
-use super::lesson::{AnswerKind, Check, Compare, Keep, LessonBlock, Predict, Right, Setup};
+use super::lesson::{
+    AnswerKind, Check, Compare, Keep, LessonBlock, PREDICTION, Predict, Right, Setup, WITH,
+};
 use super::names::KeptNames;
+use super::structure::on_line;
+use super::text::LessonText;
 use crate::engine::journal::expression::Expression;
-use crate::engine::scenario::Problem;
 use crate::engine::scenario::dotted::join;
-use crate::engine::text::printable::is_steering;
+use crate::engine::scenario::kind::Range::{Any, Positive};
+use crate::engine::scenario::kind::ValueKind::{self, By, Line, Lines, Number, Paragraph, Whole};
+use crate::engine::scenario::problem::nearest;
+use crate::engine::scenario::schema::{Schema, UNKNOWN_KEY, may, must};
+use crate::engine::scenario::{Document, Problem, Problems};
 use crate::lab::command::{COMMANDS, Command, LocatedCommand};
 use crate::lab::view;
-use content::BlockContent;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
 /// The words behind a fence that mean something in a lesson.
@@ -26,7 +32,117 @@ const RUN_UNTIL: &str = "run_until";
 const KEEP_KEY: &str = "keep";
 /// The most choices of a prediction.
 const MOST_CHOICES: usize = 9;
-const LONGEST_LESSON: u32 = 600;
+const LONGEST_LESSON: i64 = 600;
+const MOST_BLOCK_PROBLEMS: usize = 20;
+
+/// Markdown, not empty.
+const MARKDOWN: ValueKind = By(|value| match value.as_str() {
+    Some("") => Err("must not be empty".to_owned()),
+    _ => Paragraph.check(value),
+});
+
+const HEAD: Schema = Schema(&[&[
+    may("about", Line, "what the lesson is about"),
+    may("minutes", Whole(1, LONGEST_LESSON), "how long it takes"),
+]]);
+
+const PREDICT: Schema = Schema(&[&[
+    must("name", Line, "compare calls the prediction by it"),
+    must("ask", MARKDOWN, "the question"),
+    may("choices", By(are_choices), "the answers to choose from"),
+    may("unit", By(is_unit), "the unit of a number"),
+    may(
+        "right",
+        Number(Any),
+        "the number that comes out, or of the choice",
+    ),
+    may("within", Number(Positive), "how far off is right too"),
+]]);
+
+const COMPARE: Schema = Schema(&[&[
+    must(PREDICTION, Line, "the name of a predict block"),
+    may(WITH, Line, "a number of the run"),
+    must(
+        "text",
+        MARKDOWN,
+        "what is said, with {with:.2} and {prediction}",
+    ),
+]]);
+
+const CHECK: Schema = Schema(&[&[
+    must("that", Line, "the condition, such as \"t_s >= 60\""),
+    may("goal", By(is_goal), "what is to be reached"),
+    may("hint", MARKDOWN, "help for one who has not got there"),
+]]);
+
+#[derive(Deserialize)]
+struct HeadKeys {
+    #[serde(default)]
+    about: String,
+    minutes: Option<u32>,
+}
+
+#[derive(Deserialize)]
+struct PredictKeys {
+    name: String,
+    ask: String,
+    choices: Option<Vec<String>>,
+    unit: Option<String>,
+    right: Option<f64>,
+    within: Option<f64>,
+}
+
+#[derive(Deserialize)]
+struct CompareKeys {
+    prediction: String,
+    with: Option<String>,
+    text: String,
+}
+
+#[derive(Deserialize)]
+struct CheckKeys {
+    that: String,
+    goal: Option<Goal>,
+    #[serde(default)]
+    hint: String,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Goal {
+    Whole(String),
+    Parts(Vec<String>),
+}
+
+fn are_choices(value: &Value) -> Result<(), String> {
+    Lines.check(value)?;
+    let choices = value.as_array().map_or(&[][..], Vec::as_slice);
+    let is_repeated = |(index, choice)| choices[..index].contains(choice);
+    match choices.len() {
+        0 | 1 => Err("must be a list of at least two answers in quotes".to_owned()),
+        count if count > MOST_CHOICES => Err(format!("are too many: at most {MOST_CHOICES}")),
+        _ if choices.iter().enumerate().any(is_repeated) => {
+            Err("must differ from each other".to_owned())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A unit, which is empty for a pure number.
+fn is_unit(value: &Value) -> Result<(), String> {
+    match value.as_str() {
+        Some("") => Ok(()),
+        _ => Line.check(value),
+    }
+}
+
+/// A line of text, or a list of them.
+fn is_goal(value: &Value) -> Result<(), String> {
+    match value {
+        Value::Array(_) => Lines.check(value),
+        _ => Line.check(value),
+    }
+}
 
 type BlockResult<T> = Result<T, Vec<Problem>>;
 
@@ -39,6 +155,120 @@ pub(super) struct BlockReader<'a> {
     pub inside: &'a str,
     /// The line of its fence.
     pub line: usize,
+}
+
+/// The TOML of a block, and what is wrong with it.
+struct BlockContent<'a> {
+    reader: &'a BlockReader<'a>,
+    document: Document,
+    problems: Vec<Problem>,
+}
+
+impl<'a> BlockContent<'a> {
+    fn parse(reader: &'a BlockReader<'a>) -> BlockResult<Self> {
+        // As many empty lines before it as there are lines before it in the file: every line has its number there.
+        let text = "\n".repeat(reader.line) + reader.inside;
+        let document = Document::parse(&reader.origin, &text).map_err(|problems| problems.list)?;
+        let mut content = Self {
+            reader,
+            document,
+            problems: Vec::new(),
+        };
+        if content.document.table().is_empty() {
+            let rule = "holds nothing: its keys stand between the fences";
+            content.refuse(Problem::at("", rule));
+        }
+        Ok(content)
+    }
+
+    /// Parses the block, and its keys, which `schema` lists. Texts lose the blanks around them.
+    fn read<T: DeserializeOwned>(
+        reader: &'a BlockReader<'a>,
+        schema: Schema,
+    ) -> BlockResult<(Self, T)> {
+        let mut content = Self::parse(reader)?;
+        let mut table = content.document.table().clone();
+        table.iter_mut().for_each(|(_, value)| trim(value));
+        content.refuse(schema.check(&table));
+        match table.try_into() {
+            Ok(keys) if content.problems.is_empty() => return Ok((content, keys)),
+            Err(error) if content.problems.is_empty() => {
+                content.refuse(Problem::at("", error.message()));
+            }
+            _ => {}
+        }
+        Err(content.problems)
+    }
+
+    /// Adds problems, whose keys are those of the TOML.
+    fn refuse(&mut self, problems: impl Into<Problems>) {
+        for problem in self.document.placed(problems).list {
+            if self.problems.len() < MOST_BLOCK_PROBLEMS {
+                let line = format!("line {}", self.reader.line);
+                let place = problem.place.clone().unwrap_or(line);
+                let problem = problem.inside(self.reader.word);
+                self.problems.push(Problem {
+                    place: Some(place),
+                    ..problem
+                });
+            }
+        }
+    }
+
+    fn line_of(&self, key: &str) -> usize {
+        let lines = self.document.lines_of(std::iter::once(key.to_owned()));
+        let line = lines.into_iter().flatten().next();
+        line.unwrap_or(self.reader.line)
+    }
+
+    /// Reads the Markdown `source` at `key`.
+    fn text(
+        &mut self,
+        key: &str,
+        source: &str,
+        find: impl Fn(&str) -> Result<(), String>,
+    ) -> LessonText {
+        let line = self.line_of(key);
+        LessonText::read(source, line, find).unwrap_or_else(|problems| {
+            let key = join(self.reader.word, key);
+            let inside = |problem: Problem| Problem {
+                key: format!("{key} {}", problem.key),
+                ..on_line(line, problem)
+            };
+            self.problems.extend(problems.into_iter().map(inside));
+            LessonText::default()
+        })
+    }
+
+    /// Reads the expression `text` at `key`.
+    fn expression(
+        &mut self,
+        key: &str,
+        text: &str,
+        is_condition: bool,
+        find: impl Fn(&str) -> Result<(), String>,
+    ) -> Option<Expression> {
+        expression(text, is_condition, find)
+            .map_err(|rule| self.refuse(Problem::with_value(key, &text.into(), rule)))
+            .ok()
+    }
+
+    /// Returns `Ok(made)` if no problem was found.
+    fn finish<T>(self, made: T) -> BlockResult<T> {
+        if self.problems.is_empty() {
+            Ok(made)
+        } else {
+            Err(self.problems)
+        }
+    }
+}
+
+fn trim(value: &mut Value) {
+    match value {
+        Value::String(text) => *text = text.trim().to_owned(),
+        Value::Array(items) => items.iter_mut().for_each(trim),
+        _ => {}
+    }
 }
 
 fn expression(
@@ -62,18 +292,8 @@ fn expression(
 
 /// What the lesson is about, and how many minutes it takes.
 pub(super) fn head(reader: &BlockReader<'_>) -> BlockResult<(String, Option<u32>)> {
-    let mut content = reader.content(&["about", "minutes"])?;
-    let about = content.line("about", false);
-    let stated = content.get("minutes");
-    let minutes = stated.as_ref().and_then(|value| {
-        let whole = u32::try_from(value.as_integer()?).ok()?;
-        Some(whole).filter(|minutes| (1..=LONGEST_LESSON).contains(minutes))
-    });
-    if let (Some(value), None) = (stated, minutes) {
-        let rule = format!("must be a whole number from 1 to {LONGEST_LESSON}");
-        content.refuse(Problem::with_value("minutes", &value, rule));
-    }
-    content.finish((about, minutes))
+    let (_, HeadKeys { about, minutes }) = BlockContent::read(reader, HEAD)?;
+    Ok((about, minutes))
 }
 
 /// What the lab does: a `lab` or `task` block of page `page`, whose kept numbers are known from the page `known_from` on.
@@ -83,31 +303,43 @@ pub(super) fn setup(
     page: usize,
     known_from: usize,
 ) -> BlockResult<Setup> {
-    let rows = COMMANDS.iter().map(|row| row.name);
-    let rows = rows.filter(|name| COMMON.contains(name) || view::is_key(name));
+    let mut content = BlockContent::parse(reader).inspect_err(|_| names.lose())?;
+    let table = content.document.table().clone();
+    let is_of_setup = |name: &&str| COMMON.contains(name) || view::is_key(name);
+    let rows = COMMANDS.iter().map(|row| row.name).filter(is_of_setup);
     let order: Vec<_> = rows.chain(LAST_COMMANDS).chain([RUN_UNTIL]).collect();
-    let known: Vec<_> = order.iter().copied().chain([KEEP_KEY]).collect();
-    let mut content = reader.content(&known).inspect_err(|_| names.lose())?;
+    let known = || order.iter().copied().chain([KEEP_KEY]);
+    for name in table
+        .keys()
+        .filter(|name| known().all(|known| known != *name))
+    {
+        let rule = format!("{UNKNOWN_KEY}: {}", nearest(name, known()));
+        content.refuse(Problem::at(name, rule));
+    }
     let mut commands = Vec::new();
     for name in order {
-        let Some(value) = content.get(name) else {
-            continue;
-        };
-        match Command::new(name, &value) {
-            Ok(command) => commands.push(LocatedCommand {
+        match table.get(name).map(|value| Command::new(name, value)) {
+            Some(Ok(command)) => commands.push(LocatedCommand {
                 command,
                 line: Some(content.line_of(name)),
             }),
-            Err(problems) => problems
-                .into_iter()
-                .for_each(|problem| content.refuse_in(name, problem)),
+            Some(Err(problems)) => content.refuse(problems),
+            None => {}
         }
     }
-    if content.get("go_to").is_some() && content.get(RUN_UNTIL).is_some() {
+    if table.contains_key("go_to") && table.contains_key(RUN_UNTIL) {
         let rule = "has no place beside go_to: one of the two ends a block";
         content.refuse(Problem::at(RUN_UNTIL, rule));
     }
-    let keep = keep(&mut content, names, page, known_from);
+    let keep = match table.get(KEEP_KEY) {
+        None => Vec::new(),
+        Some(Value::Table(table)) => keep(&mut content, table, names, page, known_from),
+        Some(other) => {
+            let rule = "must be a table of names and expressions, { coarse = \"most_distance_m\" }";
+            content.refuse(Problem::with_value(KEEP_KEY, other, rule));
+            Vec::new()
+        }
+    };
     content.finish(Setup {
         line: reader.line,
         commands,
@@ -116,37 +348,35 @@ pub(super) fn setup(
 }
 
 fn keep(
-    content: &mut BlockContent,
+    content: &mut BlockContent<'_>,
+    table: &Table,
     names: &mut KeptNames,
     page: usize,
     known_from: usize,
 ) -> Vec<Keep> {
-    let table = match content.get(KEEP_KEY) {
-        None => return Vec::new(),
-        Some(Value::Table(table)) => table,
-        Some(other) => {
-            let rule = "must be a table of names and expressions, { coarse = \"most_distance_m\" }";
-            content.refuse(Problem::with_value(KEEP_KEY, &other, rule));
-            Table::new()
-        }
-    };
-    // What is kept at the same time is not known yet to each other.
+    // Numbers that are kept at the same time do not know each other.
     let earlier = names.clone();
     let mut kept = Vec::new();
     for (name, value) in table {
-        let key = join(KEEP_KEY, &name);
-        if let Err(rule) = names.keep(&name, known_from) {
+        let key = join(KEEP_KEY, name);
+        if let Err(rule) = names.keep(name, known_from) {
             content.refuse(Problem::at(key, rule));
             continue;
         }
-        let read = match value.as_str() {
-            None => Err("must be an expression in quotes".to_owned()),
-            Some(text) => expression(text, false, |name| earlier.find(name, page)),
+        let Some(text) = value.as_str() else {
+            let rule = "must be an expression in quotes";
+            content.refuse(Problem::with_value(key, value, rule));
+            continue;
         };
-        match read {
-            Ok(expression) => kept.push(Keep { name, expression }),
-            Err(rule) => content.refuse(Problem::with_value(key, &value, rule)),
-        }
+        let find = |name: &str| earlier.find(name, page);
+        kept.extend(
+            content
+                .expression(&key, text, false, find)
+                .map(|expression| Keep {
+                    name: name.clone(),
+                    expression,
+                }),
+        );
     }
     kept
 }
@@ -167,31 +397,34 @@ fn predict(
     reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> BlockResult<Predict> {
-    let mut content = reader.content(&["name", "ask", "choices", "unit", "right", "within"])?;
-    let name = content.needed("name", false, "compare calls the prediction by it");
-    let ask = content.text("ask", "the question", find);
-    let asked = match (content.get("choices"), content.get("unit")) {
+    let (mut content, keys) = BlockContent::read::<PredictKeys>(reader, PREDICT)?;
+    let ask = content.text("ask", &keys.ask, find);
+    let asked = match (keys.choices, keys.unit) {
+        (Some(choices), None) => AnswerKind::Choice(choices),
+        (None, Some(unit)) => AnswerKind::Number { unit },
         (Some(_), Some(_)) => {
             let rule = "has no place beside choices: a choice has no unit";
             content.refuse(Problem::at("unit", rule));
-            AnswerKind::Choice(Vec::new())
+            return Err(content.problems);
         }
-        (Some(value), None) => AnswerKind::Choice(choices(&mut content, &value)),
-        (None, Some(Value::String(unit))) if unit.is_empty() => AnswerKind::Number { unit },
-        (None, Some(_)) => AnswerKind::Number {
-            unit: content.line("unit", false),
-        },
         (None, None) => {
-            content.refuse_whole(
-                "lacks choices = [\"...\", \"...\"], or unit = \"deg\" where a number is asked for",
-            );
-            AnswerKind::Choice(Vec::new())
+            let rule =
+                "lacks choices = [\"...\", \"...\"], or unit = \"deg\" where a number is asked for";
+            content.refuse(Problem::at("", rule));
+            return Err(content.problems);
         }
     };
-    let right = right(&mut content, &asked);
+    let right = match right(keys.right, keys.within, &asked) {
+        Ok(right) => right,
+        Err(rule) => {
+            let key = keys.right.map_or("within", |_| "right");
+            content.refuse(Problem::at(key, rule));
+            None
+        }
+    };
     content.finish(Predict {
         line: reader.line,
-        name,
+        name: keys.name,
         ask,
         asked,
         right,
@@ -199,58 +432,24 @@ fn predict(
 }
 
 /// The number of the right choice; or the right number, and how far off an answer may be.
-fn right(content: &mut BlockContent, asked: &AnswerKind) -> Option<Right> {
-    let (right, within) = (content.get("right"), content.get("within"));
-    let key = if right.is_some() { "right" } else { "within" };
-    let value = right.as_ref().or(within.as_ref())?;
-    let number = |value: &Option<Value>| {
-        let value = value.as_ref()?;
-        let whole = value.as_integer().map(|whole| whole as f64);
-        value.as_float().or(whole).filter(|it| it.is_finite())
-    };
-    let (read, rule) = match asked {
-        AnswerKind::Choice(choices) => {
-            let choice = (1..=choices.len()).find(|it| number(&right) == Some(*it as f64));
-            let rule =
-                "must be the number of a choice, counted from 1, and within has no place there";
-            (choice.filter(|_| within.is_none()).map(Right::Choice), rule)
+fn right(
+    right: Option<f64>,
+    within: Option<f64>,
+    asked: &AnswerKind,
+) -> Result<Option<Right>, &'static str> {
+    match (asked, right, within) {
+        (_, None, None) => Ok(None),
+        (AnswerKind::Choice(choices), right, within) => (1..=choices.len())
+            .find(|number| within.is_none() && right == Some(*number as f64))
+            .map(|number| Some(Right::Choice(number)))
+            .ok_or("must be the number of a choice, counted from 1, and within has no place there"),
+        (AnswerKind::Number { .. }, Some(value), Some(within)) => {
+            Ok(Some(Right::Number { value, within }))
         }
-        AnswerKind::Number { .. } => {
-            let within = number(&within).filter(|within| *within > 0.0);
-            let number = number(&right).zip(within);
-            let rule = "must come together: right is the number that comes out, within (above 0) how far off is right too";
-            (
-                number.map(|(value, within)| Right::Number { value, within }),
-                rule,
-            )
-        }
-    };
-    if read.is_none() {
-        let problem = Problem::with_value(key, value, rule);
-        content.refuse(problem);
+        (AnswerKind::Number { .. }, ..) => Err(
+            "must come together: right is the number that comes out, within (above 0) how far off is right too",
+        ),
     }
-    read
-}
-
-fn choices(content: &mut BlockContent, value: &Value) -> Vec<String> {
-    let items = value.as_array().cloned().unwrap_or_default();
-    let words: Vec<String> = items
-        .iter()
-        .filter_map(|item| Some(item.as_str()?.trim().to_owned()))
-        .filter(|text| !text.is_empty() && !text.chars().any(is_steering))
-        .collect();
-    let mut different = words.clone();
-    different.sort();
-    different.dedup();
-    let rule = match words.len() {
-        count if count != items.len() => "must be lines of text, none of them empty",
-        0 | 1 => "must be a list of at least two answers in quotes",
-        count if count > MOST_CHOICES => "are too many: at most 9",
-        count if count != different.len() => "must differ from each other",
-        _ => return words,
-    };
-    content.refuse(Problem::with_value("choices", value, rule));
-    Vec::new()
 }
 
 /// A prediction beside what happened.
@@ -258,24 +457,18 @@ fn compare(
     reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> BlockResult<Compare> {
-    let mut content = reader.content(&["prediction", "with", "text"])?;
-    let prediction = content.needed("prediction", false, "the name of a predict block");
-    let has_with = content.get("with").is_some();
-    let with = content.expression("with", false, &find);
-    let text = content.text(
-        "text",
-        "what is said, with {with:.2} and {prediction}",
-        |name| match name {
-            "with" if has_with => Ok(()),
-            "with" => Err("there is no with in this block".to_owned()),
-            "prediction" => Ok(()),
-            name => find(name),
-        },
-    );
+    let (mut content, keys) = BlockContent::read::<CompareKeys>(reader, COMPARE)?;
+    let with = keys.with.as_ref();
+    let number = with.and_then(|with| content.expression(WITH, with, false, &find));
+    let text = content.text("text", &keys.text, |name| match name {
+        WITH if with.is_none() => Err("there is no with in this block".to_owned()),
+        WITH | PREDICTION => Ok(()),
+        name => find(name),
+    });
     content.finish(Compare {
         line: reader.line,
-        prediction,
-        with,
+        prediction: keys.prediction,
+        with: number,
         text,
     })
 }
@@ -285,19 +478,19 @@ fn check(
     reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> BlockResult<Check> {
-    let mut content = reader.content(&["that", "goal", "hint"])?;
-    let hint = content.line("hint", true);
-    let goals = goals(&mut content);
-    if content.get("that").is_none() {
-        content.refuse_whole("lacks that: the condition, such as \"t_s >= 60\"");
-    }
-    let Some(that) = content.expression("that", true, find) else {
+    let (mut content, keys) = BlockContent::read::<CheckKeys>(reader, CHECK)?;
+    let Some(that) = content.expression("that", &keys.that, true, find) else {
         return Err(content.problems);
     };
     if that.names().next().is_none() {
         let rule = "names no number of the run: it holds always or never";
         content.refuse(Problem::with_value("that", &that.text().into(), rule));
     }
+    let goals = match keys.goal {
+        None => Vec::new(),
+        Some(Goal::Whole(goal)) => vec![goal],
+        Some(Goal::Parts(goals)) => goals,
+    };
     let parts = that.conjuncts(|_| None).len();
     if goals.len() > 1 && goals.len() != parts {
         let rule = format!(
@@ -310,29 +503,6 @@ fn check(
         line: reader.line,
         that,
         goals,
-        hint,
+        hint: keys.hint,
     })
-}
-
-/// What is to be reached: a line of text, or a list of them.
-fn goals(content: &mut BlockContent) -> Vec<String> {
-    let Some(value) = content.get("goal") else {
-        return Vec::new();
-    };
-    let Some(items) = value.as_array() else {
-        return vec![content.line("goal", false)];
-    };
-    let lines: Vec<String> = items
-        .iter()
-        .filter_map(|item| Some(item.as_str()?.trim().to_owned()))
-        .collect();
-    if lines.len() != items.len()
-        || lines
-            .iter()
-            .any(|line| line.is_empty() || line.chars().any(is_steering))
-    {
-        let rule = "must be lines of text, one for each part of that";
-        content.refuse(Problem::with_value("goal", &value, rule));
-    }
-    lines
 }

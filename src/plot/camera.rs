@@ -1,6 +1,6 @@
 //! The parallel projection of the world onto a picture, along a direction that the user turns.
 
-use crate::engine::scenario::keys::{PITCH_DEG, ZOOM_RANGE};
+use crate::engine::scenario::kind::{PITCH_DEG, ZOOM_RANGE};
 use crate::engine::text::ladder;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

@@ -4,7 +4,8 @@ use super::quantity::{self, COUNTS, RunQuantity, TIME_COLUMN};
 use crate::analysis::readouts::{self, Readout, ReadoutSource};
 use crate::scenario::Problem;
 use crate::scenario::csv::Csv;
-use crate::scenario::keys::{self, ValueKind};
+use crate::scenario::keys;
+use crate::scenario::kind::ValueKind;
 use crate::text::unit::with_word;
 
 /// In the name of a column that is the uncertainty of another.

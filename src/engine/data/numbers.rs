@@ -5,7 +5,7 @@ use super::{MeasuredCurve, MeasuredPoint, MeasuredReadout, RunSetting, RunTable,
 use crate::scenario::Problem;
 use crate::scenario::csv::Csv;
 use crate::scenario::document::toml_or_text;
-use crate::scenario::keys::ValueKind;
+use crate::scenario::kind::ValueKind;
 use crate::scenario::problem::{Problems, at_line};
 use crate::text::number::shortest;
 use crate::text::printable::brief;

@@ -4,7 +4,9 @@
 use crate::physics::scheme;
 use crate::scenario::dotted::{find, join, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
-use crate::scenario::keys::{InLab, KEYS, Nudge, Range, ScenarioKey, ValueKind};
+use crate::scenario::keys::KEYS;
+use crate::scenario::kind::{Range, ValueKind};
+use crate::scenario::schema::{LabValue, Nudge, SchemaRow};
 use crate::scenario::solids::has_dimension;
 use crate::scenario::{Document, Problems, Scenario, float, nudge, start, vector};
 use crate::text::number::shortest;
@@ -21,7 +23,7 @@ pub struct Parameter {
     /// Dotted key, as `--set` takes it: `start.momentum_Js.2`, `push.0.force_N.0`.
     pub key: String,
     /// Its row in the table of keys; a component of a vector has the vector's row.
-    pub spec: &'static ScenarioKey,
+    pub spec: &'static SchemaRow,
     /// Heading under which it is listed: `scenario`, `body`, `point top`, `part wheel`, `start`, `motion`, `push 0`,
     /// `view`. Pushes and points without a name are numbered from 0, as in their keys.
     pub group: String,
@@ -35,7 +37,7 @@ pub struct Parameter {
     /// The words or point names to choose from; empty where the value is none of these.
     pub choices: Vec<String>,
     kind: ValueKind,
-    lab: InLab,
+    lab: LabValue,
     /// Scale of relative nudges: the absolute value, or the norm of the vector that it is a component of.
     size: f64,
 }
@@ -103,7 +105,7 @@ pub fn changed(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
     document.scenario()
 }
 
-fn array_of(key: &ScenarioKey) -> Option<&'static str> {
+fn array_of(key: &SchemaRow) -> Option<&'static str> {
     key.path.split_once(".*.").map(|(array, _)| array)
 }
 
@@ -120,7 +122,7 @@ fn names(table: &Table, array: &str) -> Vec<String> {
 
 /// The parameters of one key, at its `place` in `table`: none, one, or the three components of a vector.
 fn parameters_of(
-    key: &'static ScenarioKey,
+    key: &'static SchemaRow,
     place: &str,
     table: &Table,
     scenario: &Scenario,
@@ -129,10 +131,9 @@ fn parameters_of(
         return Vec::new();
     };
     let written = find(table, place);
-    let Some(value) = written
-        .cloned()
-        .or_else(|| present(key, place, table, scenario).or_else(|| key.default()))
-    else {
+    let unwritten =
+        || present(key, place, table, scenario).or_else(|| key.default.map(Value::from));
+    let Some(value) = written.cloned().or_else(unwritten) else {
         return Vec::new();
     };
     let parameter = Parameter {
@@ -159,7 +160,7 @@ fn parameters_of(
 
 /// The value that the file implies by leaving out the key at `place`, where it follows from other values: the spin or
 /// momentum of a start that is given in another way, the axis and the length of a part.
-fn present(key: &ScenarioKey, place: &str, table: &Table, scenario: &Scenario) -> Option<Value> {
+fn present(key: &SchemaRow, place: &str, table: &Table, scenario: &Scenario) -> Option<Value> {
     let start = &scenario.start;
     let spin = || scenario.spin_rad_per_s(start);
     match key.path {
@@ -210,7 +211,7 @@ fn group(place: &str, table: &Table) -> String {
     }
 }
 
-fn choices(key: &ScenarioKey, table: &Table, scenario: &Scenario) -> Vec<String> {
+fn choices(key: &SchemaRow, table: &Table, scenario: &Scenario) -> Vec<String> {
     match (key.kind, key.path) {
         (_, "motion.scheme") => {
             let able = scheme::true_to(scenario.friction);
@@ -242,7 +243,7 @@ fn as_kind(value: Value, kind: ValueKind) -> Value {
 
 impl Parameter {
     pub fn unit(&self) -> &'static str {
-        self.lab.unit
+        self.spec.unit
     }
 
     /// The value as text: a number with all its digits, text without quotes and with its line ends as `\n`.
@@ -296,9 +297,7 @@ impl Parameter {
                 Ok(whole) => Value::Integer(whole),
                 Err(_) => Value::String(text.trim().to_owned()),
             },
-            ValueKind::Line | ValueKind::Vector | ValueKind::Panes(_) | ValueKind::Settings => {
-                Value::String(text.to_owned())
-            }
+            _ => Value::String(text.to_owned()),
         };
         self.checked(value)
     }

@@ -5,6 +5,7 @@ use super::dotted::{find, is_in, overlap, set_key};
 use super::head::{is_file, read_text, text_of_stream};
 use super::limits;
 use super::problem::{PRESETS_FOLDER, Problem, Problems, at_line, nearest};
+use super::schema::UNKNOWN_KEY;
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, solids, start};
 use crate::text::number::shortest;
 use crate::text::printable::{brief, printable, printable_lines};
@@ -268,10 +269,10 @@ impl Document {
                 (Some(mistake), _) if problem.key == setting.key => {
                     (problem.value, problem.rule) = (String::new(), mistake.clone());
                 }
-                (_, Some(meant)) if problem.rule.starts_with(keys::UNKNOWN_KEY) => {
+                (_, Some(meant)) if problem.rule.starts_with(UNKNOWN_KEY) => {
                     // The whole key: whoever typed the argument does not see the tables of a file.
                     problem.key.clone_from(&setting.key);
-                    problem.rule = format!("{}: did you mean {meant}?", keys::UNKNOWN_KEY);
+                    problem.rule = format!("{}: did you mean {meant}?", UNKNOWN_KEY);
                 }
                 _ => problem
                     .rule

@@ -1,8 +1,8 @@
 //! The shape of scenario and run files, as serde reads and writes them. What each key means is in [`super::keys`].
 
 use super::dotted::join;
-use super::keys::{self, ValueKind};
-use super::kind::float;
+use super::keys::{self, SCENARIO};
+use super::kind::{ValueKind, float};
 pub use super::solids::PartFile;
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
@@ -203,7 +203,7 @@ impl Serialize for InOrder<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self(path, table) = self;
         let mut map = serializer.serialize_map(None)?;
-        for name in keys::names(path) {
+        for name in SCENARIO.names(path) {
             match table.get(name) {
                 Some(Value::Table(inner)) => {
                     map.serialize_entry(name, &InOrder(&join(path, name), inner))?;

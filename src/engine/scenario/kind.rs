@@ -5,7 +5,8 @@ use super::screen;
 use crate::text::printable::is_steering;
 use Range::{NotNegative, Positive, Within};
 use ValueKind::{
-    Flag, Line, Number, OneOf, Pane, Panes, Paragraph, Settings, Vector, Whole, WholeOr,
+    By, Flag, Line, Lines, Number, OneOf, Pane, Panes, Paragraph, Settings, Text, Vector, Whole,
+    WholeOr,
 };
 use nalgebra::Vector3;
 use toml::Value;
@@ -16,6 +17,10 @@ pub const LONGEST_PARAGRAPH: usize = 20_000;
 
 /// What a key may hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(
+    unpredictable_function_pointer_comparisons,
+    reason = "kinds with a check of their own are not compared"
+)]
 pub enum ValueKind {
     /// Text on one line, not empty.
     Line,
@@ -33,8 +38,14 @@ pub enum ValueKind {
     Pane(&'static [&'static str]),
     /// A list of such.
     Panes(&'static [&'static str]),
-    /// A table of dotted keys and their new values (run files).
+    /// A table of dotted keys and their new values.
     Settings,
+    /// A list of names, each one line.
+    Lines,
+    /// Text on one line that passes this check.
+    Text(fn(&str) -> Result<(), String>),
+    /// What passes this check.
+    By(fn(&Value) -> Result<(), String>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +78,10 @@ impl ValueKind {
             OneOf(_) | Pane(_) => text(value).and_then(|text| check_word(text, &self.words())),
             Panes(_) => check_words(value, &self.words()),
             Settings => is(value.is_table(), "a table of keys and values", value),
+            Lines => items(value, "a list of names in brackets")
+                .and_then(|items| check_each(items, |item| Line.check(item))),
+            Text(check) => text(value).and_then(|text| check_line(text).and_then(|()| check(text))),
+            By(check) => check(value),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Scenarios: from a TOML file, or a run's own CSV, to numbers that have been checked.
 //!
-//! A [`Document`] is the text with its `--set` overrides; [`keys`] is the one table of every key a file may hold;
+//! A [`Document`] is the text with its `--set` overrides; [`keys`] is the [`schema`] of every key a file may hold;
 //! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts`, `solids` and `start` make
 //! checked numbers of its tables, and `checks` a [`Scenario`] of those. What is refused comes back as [`Problems`], each
 //! with place, key, value and rule. [`csv`] reads the other CSVs: measured data and tables.
@@ -12,7 +12,7 @@ pub mod dotted;
 pub mod file;
 pub mod head;
 pub mod keys;
-mod kind;
+pub mod kind;
 pub mod limits;
 mod model;
 pub mod nudge;
@@ -20,6 +20,7 @@ mod parts;
 pub mod presets;
 pub mod problem;
 pub mod rescale;
+pub mod schema;
 pub mod screen;
 pub mod solids;
 pub mod start;

@@ -1,6 +1,6 @@
 //! Numbers as they are nudged and typed: steps of 1, 2 and 5 times a power of ten, free of binary noise, and units.
 
-use super::keys::Nudge;
+use super::schema::Nudge;
 use crate::text::ladder::{at_or_below, climbed};
 use crate::text::printable::brief;
 

@@ -1,7 +1,6 @@
 //! The parts of a scenario, each from its table in the file: points that exist, an inertia that can be inverted, pushes
 //! that say how long they act.
 
-use super::dotted::join;
 use super::file::{BodyFile, FrictionFile, MotionFile, PartFile, PushFile, StartFile};
 use super::keys::GRAVITY;
 use super::limits::MOST_POINTS;
@@ -99,11 +98,8 @@ impl PointNames {
 
     /// What is wrong with the part of this index, whose keys are those in its table.
     fn refuse(&mut self, problems: Problems, index: usize) {
-        for problem in problems.list {
-            let key = join(&format!("body.part.{index}"), &problem.key);
-            let key = key.trim_end_matches('.').to_owned();
-            self.problems.add(|| Problem { key, ..problem });
-        }
+        let place = format!("body.part.{index}");
+        self.problems.add_all(problems.inside(&place));
     }
 }
 

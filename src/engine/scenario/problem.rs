@@ -1,5 +1,6 @@
 //! What is wrong with a scenario, in words that one who has never seen the code can act on.
 
+use super::dotted::join;
 use crate::text::printable::{brief, printable};
 use std::fmt;
 
@@ -37,6 +38,13 @@ impl Problem {
             rule: rule.into(),
             place: None,
         }
+    }
+
+    /// The same problem, with its key below the key `outer`.
+    #[must_use]
+    pub fn inside(self, outer: &str) -> Self {
+        let key = join(outer, &self.key).trim_end_matches('.').to_owned();
+        Self { key, ..self }
     }
 
     /// The problem in words, without its place.
@@ -121,6 +129,14 @@ impl Problems {
         } else {
             Err(self)
         }
+    }
+
+    /// The same problems, with their keys below the key `outer`.
+    #[must_use]
+    pub fn inside(self, outer: &str) -> Self {
+        let list = self.list.into_iter();
+        let list = list.map(|problem| problem.inside(outer)).collect();
+        Self { list, ..self }
     }
 
     fn is_about_option(&self, problem: &Problem) -> bool {

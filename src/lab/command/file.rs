@@ -1,8 +1,8 @@
 //! A file of commands: a list of `[[do]]` tables with one command each.
 
-use super::form::{below, quoted};
 use super::{COMMANDS, Command, CommandRow};
 use crate::engine::scenario::problem::nearest;
+use crate::engine::scenario::schema::quoted;
 use crate::engine::scenario::{Document, Problem, Problems};
 use std::path::Path;
 use toml::Value;
@@ -44,13 +44,14 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
     }
     match document.table().get("do") {
         Some(Value::Array(tables)) => {
-            let keys = (0..tables.len()).map(|index| format!("do.{index}"));
-            let lines = document.lines_of(keys);
-            for ((index, value), line) in tables.iter().enumerate().zip(lines) {
-                match one(index, value) {
-                    Ok(command) => list.push(LocatedCommand { command, line }),
-                    Err(found) => problems.add_all(found),
-                }
+            let places: Vec<_> = (0..tables.len())
+                .map(|index| format!("do.{index}"))
+                .collect();
+            let lines = document.lines_of(places.iter().cloned());
+            for ((place, value), line) in places.iter().zip(tables).zip(lines) {
+                let command = one(value).map_err(|found| found.inside(place));
+                let command = problems.kept(command);
+                list.extend(command.map(|command| LocatedCommand { command, line }));
             }
         }
         Some(other) => problems.add(|| {
@@ -67,36 +68,29 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
     commands.map_err(|problems| document.placed(problems))
 }
 
-/// The command in the table `do.index`.
-fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
-    let here = format!("do.{index}");
-    let wrong = |rule: String| Err(vec![Problem::at(here.as_str(), rule)]);
+/// The command in `value`, a table `[[do]]`.
+fn one(value: &Value) -> Result<Command, Problems> {
     let Value::Table(table) = value else {
-        return Err(vec![Problem::with_value(here, value, "must be a table")]);
+        return Err(Problem::with_value("", value, "must be a table").into());
     };
     let beside = COMMANDS.iter().find(|row| table.contains_key(row.name));
-    let unknown: Vec<_> = table
-        .keys()
-        .filter(|name| !COMMANDS.iter().any(|row| row.name == name.as_str()))
-        .map(|name| below(&here, unknown(name, beside)))
-        .collect();
-    if !unknown.is_empty() {
-        return Err(unknown);
+    let is_known = |name: &str| COMMANDS.iter().any(|row| row.name == name);
+    let mut unknown_names = Problems::default();
+    for name in table.keys().filter(|name| !is_known(name)) {
+        unknown_names.add(|| unknown(name, beside));
     }
+    unknown_names.or(())?;
     match table.iter().collect::<Vec<_>>()[..] {
-        [(name, value)] => Command::new(name, value).map_err(|problems| {
-            let problems = problems.into_iter();
-            problems
-                .map(|problem| below(&here, below(name, problem)))
-                .collect()
-        }),
-        [] => wrong("holds no command: there is gyrolab man for their names".to_owned()),
+        [(name, value)] => Command::new(name, value),
+        [] => {
+            let rule = "holds no command: there is gyrolab man for their names";
+            Err(Problem::at("", rule).into())
+        }
         _ => {
             let names: Vec<_> = table.keys().map(String::as_str).collect();
             let names = names.join(", ");
-            wrong(format!(
-                "holds {names}: one command each, the next in a [[do]] of its own"
-            ))
+            let rule = format!("holds {names}: one command each, the next in a [[do]] of its own");
+            Err(Problem::at("", rule).into())
         }
     }
 }

@@ -5,8 +5,8 @@
 //! scenario is, by the table [`SETTINGS_KEYS`]; a setting that breaks a rule is not used, the others are.
 
 use super::own;
-use crate::engine::scenario::keys::ValueKind::{self, Flag, OneOf, Whole};
-use crate::engine::scenario::problem::nearest;
+use crate::engine::scenario::kind::ValueKind::{Flag, OneOf, Whole};
+use crate::engine::scenario::schema::{Schema, SchemaRow, may};
 use crate::engine::scenario::{Document, Problem, Problems};
 use crate::engine::text::printable::PrintablePath;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
@@ -21,26 +21,27 @@ const LONGEST: usize = 1 << 20;
 
 const SETTINGS_HEADER: &str = "# What was chosen in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and wins.\n";
 
-/// A setting's key, what it may hold, and its meaning.
-pub const SETTINGS_KEYS: [(&str, ValueKind, &str); 5] = [
-    (
+pub const SETTINGS_KEYS: &[SchemaRow] = &[
+    may(
         "marker",
         OneOf(&["braille", "half-block", "dot", "ascii"]),
         "what dots are made of",
     ),
-    (
+    may(
         "colour",
         OneOf(&["auto", "always", "never"]),
         "whether there are colours",
     ),
-    (
+    may(
         "background",
         OneOf(&["dark", "light"]),
         "what screen the colours are for",
     ),
-    ("fps", Whole(1, 60), "frames a second at most"),
-    ("mouse", Flag, "whether the lab takes the mouse"),
+    may("fps", Whole(1, 60), "frames a second at most"),
+    may("mouse", Flag, "whether the lab takes the mouse"),
 ];
+
+const SETTINGS: Schema = Schema(&[SETTINGS_KEYS]);
 
 /// The settings of one file, and what is wrong with it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -87,15 +88,10 @@ fn sifted(table: &Table) -> (Table, Problems) {
             "color" if !table.contains_key("colour") => "colour",
             other => other,
         };
-        match SETTINGS_KEYS.iter().find(|(known, ..)| *known == name) {
-            None => problems.add(|| {
-                let near = nearest(key, SETTINGS_KEYS.iter().map(|(known, ..)| *known));
-                Problem::at(key, format!("unknown key: {near}"))
-            }),
-            Some((_, kind, _)) => match kind.check(value) {
-                Ok(()) => drop(good.insert(name.to_owned(), value.clone())),
-                Err(rule) => problems.add(|| Problem::with_value(key, value, rule)),
-            },
+        let setting = Table::from_iter([(name.to_owned(), value.clone())]);
+        match SETTINGS.check(&setting).or(setting) {
+            Ok(setting) => good.extend(setting),
+            Err(found) => problems.add_all(found),
         }
     }
     (good, problems)

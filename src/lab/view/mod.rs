@@ -75,7 +75,7 @@ fn where_known<'de, T: DeserializeOwned, D: Deserializer<'de>>(
 /// Whether `[view]` has the key or table `name`.
 pub fn is_key(name: &str) -> bool {
     let path = format!("view.{name}");
-    keys::find(&path).is_ok() || keys::is_table(&path)
+    keys::find(&path).is_ok() || keys::SCENARIO.is_table(&path)
 }
 
 impl ViewSettings {

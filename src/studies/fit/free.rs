@@ -1,7 +1,9 @@
 //! A key whose value is looked for.
 
 use crate::engine::scenario::dotted;
-use crate::engine::scenario::keys::{self, Effect, Nudge, Range, ValueKind};
+use crate::engine::scenario::keys::{self, Effect};
+use crate::engine::scenario::kind::{Range, ValueKind};
+use crate::engine::scenario::schema::Nudge;
 use crate::engine::scenario::{Document, Problem, Problems, float};
 use crate::engine::text::number::shortest;
 use crate::engine::text::printable::brief;
@@ -93,7 +95,7 @@ impl Free {
             return Err("no number of a run depends on this key: it cannot be fitted".to_owned());
         }
         let written = dotted::find(scenario.table(), key).cloned();
-        let start = written.or_else(|| row.default());
+        let start = written.or_else(|| row.default.map(toml::Value::from));
         let start = start.and_then(|value| float(&value)).ok_or_else(|| {
             format!(
                 "has no value in the scenario, from which the search would begin: give it one by --set {key}=..."

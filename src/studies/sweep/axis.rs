@@ -3,7 +3,8 @@
 use super::file::VaryFile;
 use crate::engine::scenario::document::toml_or_text;
 use crate::engine::scenario::dotted::{join, overlap};
-use crate::engine::scenario::keys::{self, ValueKind};
+use crate::engine::scenario::keys;
+use crate::engine::scenario::kind::ValueKind;
 use crate::engine::scenario::start::exclude_each_other;
 use crate::engine::scenario::{Problem, Problems};
 use crate::engine::text::number::rounded;

@@ -2,9 +2,9 @@
 //! several machines.
 
 use crate::engine::scenario::document::Document;
-use crate::engine::scenario::dotted::join;
-use crate::engine::scenario::keys::{Range, ValueKind};
-use crate::engine::scenario::problem::nearest;
+use crate::engine::scenario::kind::Range;
+use crate::engine::scenario::kind::ValueKind::{By, Line, Lines, Number, Paragraph, Whole};
+use crate::engine::scenario::schema::{Schema, may, must};
 use crate::engine::scenario::{Problem, Problems, ScenarioFile};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -54,24 +54,42 @@ pub struct VaryFile {
     pub count: Option<u64>,
 }
 
-/// The keys of a sweep file and of `[[vary]]`, with what each may hold; the others are checked one by one.
-const SWEEP_FILE_KEYS: [(&str, Option<ValueKind>); 8] = [
-    ("gyrolab", Some(ValueKind::Line)),
-    ("title", Some(ValueKind::Line)),
-    ("about", Some(ValueKind::Paragraph)),
-    ("source", Some(ValueKind::Paragraph)),
-    ("shard", Some(ValueKind::Line)),
-    ("measure", None),
-    ("vary", None),
-    ("scenario", None),
-];
-const VARY_KEYS: [(&str, Option<ValueKind>); 5] = [
-    ("key", Some(ValueKind::Line)),
-    ("values", None),
-    ("from", Some(ValueKind::Number(Range::Any))),
-    ("to", Some(ValueKind::Number(Range::Any))),
-    ("count", Some(ValueKind::Whole(0, i64::MAX))),
-];
+const SWEEP_SCHEMA: Schema = Schema(&[&[
+    may("gyrolab", Line, "version of gyrolab that wrote the file"),
+    may("title", Line, "name of the sweep"),
+    may("about", Paragraph, ""),
+    may("source", Paragraph, ""),
+    may("shard", Line, "K/N: only the rows of this shard"),
+    may("measure", Lines, "the readouts"),
+    must("vary.*.key", Line, "the dotted key that varies"),
+    may("vary.*.values", By(is_list), "its values"),
+    may(
+        "vary.*.from",
+        Number(Range::Any),
+        "the first of evenly spaced values",
+    ),
+    may("vary.*.to", Number(Range::Any), "the last of them"),
+    may("vary.*.count", Whole(0, i64::MAX), "how many there are"),
+    must(
+        "scenario",
+        By(is_scenario),
+        "a preset's name, a file's path, or a table [scenario] with the scenario itself",
+    ),
+]]);
+
+fn is_list(value: &Value) -> Result<(), String> {
+    match value {
+        Value::Array(_) => Ok(()),
+        _ => Err("must be a list in brackets".to_owned()),
+    }
+}
+
+fn is_scenario(value: &Value) -> Result<(), String> {
+    match value {
+        Value::String(_) | Value::Table(_) => Ok(()),
+        _ => Err("must be a preset's name, a file's path, or a table".to_owned()),
+    }
+}
 
 impl Default for Base {
     fn default() -> Self {
@@ -80,85 +98,21 @@ impl Default for Base {
 }
 
 impl SweepFile {
-    /// The sweep in `document`; what its values mean is not checked.
+    /// Parses the sweep in `document`; what its values mean is not checked.
     pub fn read(document: &Document) -> Result<Self, Problems> {
         let table = document.table();
-        let mut problems = check(table, "", &SWEEP_FILE_KEYS);
-        let mut refuse = |key: &str, rule: &str| problems.push(refused(table, "", key, rule));
-        if !are_all(table.get("measure"), Value::is_str) {
-            refuse("measure", "must be a list of names in brackets");
-        }
-        if !matches!(
-            table.get("scenario"),
-            Some(Value::String(_) | Value::Table(_))
-        ) {
-            refuse(
-                "scenario",
-                "is missing, or is neither a preset's name, nor a file's path, nor a table [scenario] with the scenario itself",
-            );
-        }
-        let vary = table.get("vary");
-        if !are_all(vary, Value::is_table) {
-            refuse("vary", "must be tables: write [[vary]]");
-        }
-        let tables = vary.and_then(Value::as_array).into_iter().flatten();
-        for (index, table) in tables.filter_map(Value::as_table).enumerate() {
-            problems.extend(check_vary(table, &format!("vary.{index}")));
-        }
-        if !problems.is_empty() {
-            return Err(document.placed(problems));
-        }
+        let problems = SWEEP_SCHEMA.check(table);
+        problems
+            .or(())
+            .map_err(|problems| document.placed(problems))?;
         let file = table.clone().try_into();
-        file.map_err(|error: toml::de::Error| {
-            document.placed(vec![Problem::at("", error.message().to_owned())])
-        })
+        file.map_err(|error: toml::de::Error| document.placed(Problem::at("", error.message())))
     }
 
     pub fn to_toml(&self) -> String {
         // It holds nothing that TOML cannot write.
         toml::to_string(self).unwrap_or_default()
     }
-}
-
-/// Whether `list`, if it is there, is a list whose values all are so.
-fn are_all(list: Option<&Value>, is_so: fn(&Value) -> bool) -> bool {
-    list.is_none_or(|list| list.as_array().is_some_and(|all| all.iter().all(is_so)))
-}
-
-/// What is wrong with the `table` `[[vary]]` that stands at `path`.
-fn check_vary(table: &Table, path: &str) -> Vec<Problem> {
-    let mut problems = check(table, path, &VARY_KEYS);
-    let mut refuse = |key: &str, rule: &str| problems.push(refused(table, path, key, rule));
-    if !table.contains_key("key") {
-        refuse("key", "is missing: the dotted key that varies");
-    }
-    if !table.get("values").is_none_or(Value::is_array) {
-        refuse("values", "must be a list in brackets");
-    }
-    problems
-}
-
-/// The key `name` of `table`, which stands at `path`, breaks a `rule`.
-fn refused(table: &Table, path: &str, name: &str, rule: &str) -> Problem {
-    let key = join(path, name);
-    match table.get(name) {
-        Some(value) => Problem::with_value(key, value, rule),
-        None => Problem::at(key, rule),
-    }
-}
-
-/// What is wrong with the names in `table`, which stands at `path`, and with the values of `known` kinds.
-fn check(table: &Table, path: &str, known: &[(&str, Option<ValueKind>)]) -> Vec<Problem> {
-    let problem = |(name, value): (&String, &Value)| {
-        let Some((_, kind)) = known.iter().find(|(known, _)| known == name) else {
-            let near = nearest(name, known.iter().map(|(known, _)| *known));
-            let key = join(path, name);
-            return Some(Problem::at(key, format!("unknown key: {near}")));
-        };
-        let rule = kind.and_then(|kind| kind.check(value).err())?;
-        Some(refused(table, path, name, &rule))
-    };
-    table.iter().filter_map(problem).collect()
 }
 
 /// The shard `number` of `of`: of the points in their order the `number`-th of `of` ranges, which are as long as each other

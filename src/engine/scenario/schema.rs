@@ -1,0 +1,301 @@
+//! The schema of a table of TOML: a row for each key, and the check of a table against its rows.
+//!
+//! Scenario files, commands, sweeps, lesson blocks and settings have their own rows, and this one check: an unknown name
+//! or a wrong value is refused in the same words everywhere. Rules that need more than one value are checked where the
+//! values are used.
+
+use super::dotted::{is_in, join};
+use super::kind::ValueKind;
+use super::problem::{Problem, Problems, nearest};
+use std::fmt;
+use toml::{Table, Value};
+
+/// One key that a table may hold.
+#[derive(Debug, PartialEq)]
+pub struct SchemaRow {
+    /// Dotted path; `*` stands for any place in an array.
+    pub path: &'static str,
+    pub kind: ValueKind,
+    /// The unit as the lab shows it; empty for a value without one.
+    pub unit: &'static str,
+    /// The value if the key is absent, where that is always the same.
+    pub default: Option<DefaultValue>,
+    /// Whether its table is incomplete without it.
+    pub required: bool,
+    /// Names in its table any of which stands for it: with one of them it is not required.
+    pub instead: &'static [&'static str],
+    /// Meaning and unit, in one line.
+    pub about: &'static str,
+    /// How the lab shows and changes it; `None` where it does not.
+    pub lab: Option<LabValue>,
+}
+
+/// How the lab shows and changes a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LabValue {
+    /// Short name; of a vector the stem to which x, y or z is added.
+    pub label: &'static str,
+    pub nudge: Nudge,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Nudge {
+    /// Adds so much.
+    By(f64),
+    /// Adds the largest of 1, 2 and 5 times a power of ten that is not above a hundredth of the size (of a vector: of
+    /// its norm), or so much where the size is 0.
+    Hundredth(f64),
+    /// The same in whole numbers, 1 at the least.
+    WholeHundredth,
+    /// To the next of ..., 1, 2, 5, 10, 20, ...
+    Ladder,
+    /// To the next choice, after the last one the first again.
+    Turn,
+    /// Nothing: it is typed.
+    Typed,
+}
+
+/// The value of an absent key.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DefaultValue {
+    Number(f64),
+    Whole(i64),
+    Flag(bool),
+    Word(&'static str),
+}
+
+impl From<DefaultValue> for Value {
+    fn from(default: DefaultValue) -> Self {
+        match default {
+            DefaultValue::Number(number) => number.into(),
+            DefaultValue::Whole(number) => number.into(),
+            DefaultValue::Flag(flag) => flag.into(),
+            DefaultValue::Word(word) => word.into(),
+        }
+    }
+}
+
+impl fmt::Display for DefaultValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(f),
+            Self::Whole(number) => number.fmt(f),
+            Self::Flag(flag) => flag.fmt(f),
+            Self::Word(word) => word.fmt(f),
+        }
+    }
+}
+
+/// A key that its table must hold.
+pub const fn must(path: &'static str, kind: ValueKind, about: &'static str) -> SchemaRow {
+    SchemaRow {
+        required: true,
+        ..may(path, kind, about)
+    }
+}
+
+/// A key that its table may lack.
+pub const fn may(path: &'static str, kind: ValueKind, about: &'static str) -> SchemaRow {
+    SchemaRow {
+        path,
+        kind,
+        unit: "",
+        default: None,
+        required: false,
+        instead: &[],
+        about,
+        lab: None,
+    }
+}
+
+impl SchemaRow {
+    pub(super) const fn lab(
+        mut self,
+        label: &'static str,
+        unit: &'static str,
+        nudge: Nudge,
+    ) -> Self {
+        self.unit = unit;
+        self.lab = Some(LabValue { label, nudge });
+        self
+    }
+
+    /// Not required if the table has one of `names`.
+    pub(super) const fn unless(mut self, names: &'static [&'static str]) -> Self {
+        self.instead = names;
+        self
+    }
+
+    pub const fn or(mut self, default: DefaultValue) -> Self {
+        self.default = Some(default);
+        self
+    }
+
+    /// Meaning, unit and default, in one line.
+    pub fn description(&self) -> String {
+        match self.default {
+            Some(default) => format!("{} (default: {default})", self.about),
+            None => self.about.to_owned(),
+        }
+    }
+}
+
+/// The rows of a table and of the tables in it, in groups, in the order in which files are written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Schema(pub &'static [&'static [SchemaRow]]);
+
+impl Schema {
+    pub fn rows(self) -> impl Iterator<Item = &'static SchemaRow> + Clone {
+        self.0.iter().copied().flatten()
+    }
+
+    /// Returns the row of this path.
+    pub fn row(self, path: &str) -> Option<&'static SchemaRow> {
+        self.rows().find(|row| row.path == path)
+    }
+
+    /// Checks the whole `table`: unknown names, wrong types, numbers out of range, missing keys.
+    pub fn check(self, table: &Table) -> Problems {
+        let mut problems = Problems::default();
+        self.check_table(table, "", "", &mut problems);
+        problems
+    }
+
+    /// Checks `value`, which the file has at `path`, as the key or the table `under` of this schema.
+    pub fn check_part(self, value: &Value, under: &str, path: &str) -> Problems {
+        let mut problems = Problems::default();
+        let pattern = pattern(under);
+        match value {
+            _ if self.row(&pattern).is_some() => {
+                self.check_value(value, &pattern, path, &mut problems);
+            }
+            Value::Table(table) => self.check_table(table, &pattern, path, &mut problems),
+            other => problems.add(|| {
+                let rule = format!("must be a table of {}", self.names(&pattern).join(", "));
+                Problem::with_value(path, other, rule)
+            }),
+        }
+        problems
+    }
+
+    /// Checks `table`, whose keys begin with the pattern `under`, and which the file has at `path`.
+    fn check_table(self, table: &Table, under: &str, path: &str, problems: &mut Problems) {
+        let names = self.names(under);
+        for (name, value) in table {
+            if names.contains(&name.as_str()) {
+                self.check_value(value, &join(under, name), &join(path, name), problems);
+            } else {
+                problems.add(|| self.unknown(name, &names, path));
+            }
+        }
+        for (name, row) in self.below(under).filter(|(_, row)| row.required) {
+            let is_there = |name: &&str| table.contains_key(*name);
+            if !name.contains('.') && !is_there(&name) && !row.instead.iter().any(is_there) {
+                let rule = format!("is missing ({})", row.about);
+                problems.add(|| Problem::at(join(path, name), rule));
+            }
+        }
+    }
+
+    /// The problem that the table at `path`, whose keys are `names`, has no key `name`.
+    fn unknown(self, name: &str, names: &[&'static str], path: &str) -> Problem {
+        // It may belong into another table.
+        let home = self.only(|last| last == name).filter(|home| *home != name);
+        let near = match home {
+            Some(home) => format!("did you mean {home}?"),
+            None => nearest(name, names.iter().copied()),
+        };
+        Problem::at(join(path, &quoted(name)), format!("{UNKNOWN_KEY}: {near}"))
+    }
+
+    fn check_value(self, value: &Value, pattern: &str, path: &str, problems: &mut Problems) {
+        if let Some(row) = self.row(pattern) {
+            if let Err(rule) = row.kind.check(value) {
+                problems.add(|| Problem::with_value(path, value, rule));
+            }
+            return;
+        }
+        let element = format!("{pattern}.*");
+        let is_list = self.is_table(&element);
+        match value {
+            Value::Array(items) if is_list => {
+                for (index, item) in items.iter().enumerate() {
+                    let path = join(path, &index.to_string());
+                    match item {
+                        Value::Table(table) => self.check_table(table, &element, &path, problems),
+                        other => {
+                            problems.add(|| Problem::with_value(path, other, "must be a table"));
+                        }
+                    }
+                }
+            }
+            Value::Table(table) if !is_list => self.check_table(table, pattern, path, problems),
+            other => problems.add(|| {
+                let rule = if is_list {
+                    format!("must be an array of tables: write [[{pattern}]]")
+                } else {
+                    format!("must be a table: write [{pattern}]")
+                };
+                Problem::with_value(path, other, rule)
+            }),
+        }
+    }
+
+    /// Whether the dotted `key` leads to a table of keys, or to an element of an array of tables.
+    pub fn is_table(self, key: &str) -> bool {
+        let pattern = pattern(key);
+        self.rows()
+            .any(|row| row.path != pattern && is_in(row.path, &pattern))
+    }
+
+    /// Returns the names that a table of the pattern `under` may hold, each once.
+    pub fn names(self, under: &str) -> Vec<&'static str> {
+        let mut names: Vec<_> = self
+            .below(under)
+            .filter_map(|(rest, _)| rest.split('.').next())
+            .filter(|name| *name != "*")
+            .collect();
+        names.dedup();
+        names
+    }
+
+    /// The rows below the pattern `under`, and the rest of their paths.
+    fn below(self, under: &str) -> impl Iterator<Item = (&'static str, &'static SchemaRow)> {
+        let begin = match under {
+            "" => String::new(),
+            under => format!("{under}."),
+        };
+        self.rows()
+            .filter_map(move |row| Some((row.path.strip_prefix(&begin)?, row)))
+    }
+
+    /// Returns the one path outside of arrays whose last name fulfils `is_it`.
+    pub(super) fn only(self, is_it: impl Fn(&str) -> bool) -> Option<&'static str> {
+        let mut found = self
+            .rows()
+            .map(|row| row.path)
+            .filter(|path| path.rsplit('.').next().is_some_and(&is_it));
+        let first = found.next()?;
+        (found.next().is_none() && !first.contains('*')).then_some(first)
+    }
+}
+
+pub const UNKNOWN_KEY: &str = "unknown key";
+
+/// The dotted `key` with `*` in the place of each number.
+pub(super) fn pattern(key: &str) -> String {
+    let is_number = |name: &str| !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
+    let names = key
+        .split('.')
+        .map(|name| if is_number(name) { "*" } else { name });
+    names.collect::<Vec<_>>().join(".")
+}
+
+/// `key` as a TOML table has it as one key: in quotes where it has dots.
+pub fn quoted(key: &str) -> String {
+    if key.contains('.') {
+        format!("\"{key}\"")
+    } else {
+        key.to_owned()
+    }
+}
