@@ -203,7 +203,7 @@ fn keys(begin: &str, wanted: fn(&SchemaRow) -> bool, end: &str) -> Vec<(String, 
 }
 
 fn is_free(key: &SchemaRow) -> bool {
-    Effect::of(key.path) != Effect::None
+    Effect::of_key(key.path) != Effect::None
         && matches!(key.kind, ValueKind::Number(_) | ValueKind::Vector)
 }
 

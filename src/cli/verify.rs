@@ -231,7 +231,7 @@ fn own(
 ) -> anyhow::Result<bool> {
     let verdict = verdict(file, args, scenario, interruption).map_err(|error| match error {
         Unverified::Refused(problems) => {
-            Unverified::Refused(problems.of(file.display().to_string()))
+            Unverified::Refused(problems.in_file(file.display().to_string()))
         }
         stopped => stopped,
     })?;

@@ -389,15 +389,16 @@ impl From<SeekTarget> for Choice {
 impl SeekTarget {
     /// A step (421, 1e7), a time (12.5 s), start or end.
     pub fn parse(text: &str) -> Option<Self> {
-        let text = text.trim();
-        if let Some(time) = text.strip_suffix('s') {
-            let time_s: f64 = time.trim().parse().ok()?;
-            return Some(Self::Time(time_s)).filter(|_| time_s >= 0.0 && time_s.is_finite());
-        }
-        match text {
+        match text.trim() {
             "start" => Some(Self::Start),
             "end" => Some(Self::End),
-            _ => whole(text).map(Self::Step),
+            place => match place.strip_suffix('s') {
+                None => whole(place).map(Self::Step),
+                Some(time) => {
+                    let time_s: f64 = time.trim().parse().ok()?;
+                    (time_s >= 0.0 && time_s.is_finite()).then_some(Self::Time(time_s))
+                }
+            },
         }
     }
 }
@@ -406,10 +407,10 @@ impl SeekTarget {
 fn whole(text: &str) -> Option<u64> {
     /// Floats are exact whole numbers up to here.
     const LARGEST_WHOLE_ARGUMENT: f64 = 9e15;
-    let float = || {
-        text.parse().ok().filter(|number: &f64| {
-            number.fract() == 0.0 && (0.0..=LARGEST_WHOLE_ARGUMENT).contains(number)
-        })
-    };
-    text.parse().ok().or_else(|| Some(float()? as u64))
+    if let Ok(whole) = text.parse() {
+        return Some(whole);
+    }
+    let number: f64 = text.parse().ok()?;
+    let is_whole = number.fract() == 0.0 && (0.0..=LARGEST_WHOLE_ARGUMENT).contains(&number);
+    is_whole.then_some(number as u64)
 }

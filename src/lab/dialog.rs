@@ -351,7 +351,7 @@ fn about(parameter: &Parameter) -> Vec<String> {
     if !parameter.choices.is_empty() {
         lines.push(format!("one of {}", parameter.choices.join(", ")));
     }
-    let when = match Effect::of(&parameter.key) {
+    let when = match Effect::of_key(&parameter.key) {
         Effect::NewRun => "a new run begins with it; the one before stays, dotted",
         Effect::FromHere => "it acts from the next step on",
         Effect::None => "no number depends on it",

@@ -119,7 +119,7 @@ impl Edits {
         let (new, rest): (Table, Table) = table
             .clone()
             .into_iter()
-            .partition(|(key, _)| Effect::of(key) == Effect::NewRun);
+            .partition(|(key, _)| Effect::of_key(key) == Effect::NewRun);
         let acts = acts(rest);
         if new.is_empty() {
             let said = match table.len() {
@@ -402,7 +402,7 @@ impl Edits {
 
     fn value_in_words(&self, key: &str, player: &Player) -> String {
         let value = self.values.in_words(key);
-        match Effect::of(key) {
+        match Effect::of_key(key) {
             Effect::None => format!("{value}; u takes it back"),
             _ if is_of_a_push_that_is_over(key, player) => {
                 "that push is over and acts no more: u takes this back, \
@@ -429,7 +429,7 @@ fn is_of_a_push_that_is_over(key: &str, player: &Player) -> bool {
 fn acts(table: Table) -> Vec<Act> {
     let (idle, acting): (Table, Table) = table
         .into_iter()
-        .partition(|(key, _)| Effect::of(key) == Effect::None);
+        .partition(|(key, _)| Effect::of_key(key) == Effect::None);
     let edit = (!acting.is_empty()).then_some(Act::Edit(acting));
     let description = (!idle.is_empty()).then_some(Act::Describe(idle));
     edit.into_iter().chain(description).collect()

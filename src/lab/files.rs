@@ -7,7 +7,7 @@ use super::runs::Runs;
 use crate::engine::data::{self, MeasuredData};
 use crate::engine::export::Destination;
 use crate::engine::export::destination::DestinationError;
-use crate::engine::scenario::limits::{LONGEST_SCENARIO_FILE, SCENARIO_TOO_LONG, few_enough};
+use crate::engine::scenario::limits::{LONGEST_SCENARIO_FILE, SCENARIO_TOO_LONG, check_toml_size};
 use crate::engine::scenario::{Document, Problem, Problems, Scenario, presets};
 use crate::engine::text::printable::{PrintablePath, is_steering};
 use crate::lab::storage::confined::Confined;
@@ -221,7 +221,7 @@ impl Files {
         if content.len() as u64 > LONGEST_SCENARIO_FILE {
             return Err(format!("{what} {SCENARIO_TOO_LONG}").into());
         }
-        few_enough(content, 1).map_err(|problem| format!("{what} {}", problem.rule))?;
+        check_toml_size(content, 1).map_err(|problem| format!("{what} {}", problem.rule))?;
         self.admit_writing(path)?;
         let mut destination = Destination::open_file(path, force).map_err(refusal)?;
         let written = destination.write_all(content.as_bytes());

@@ -20,7 +20,7 @@ pub(super) fn keep(
     player: &Player,
 ) -> Result<(String, Command), Refusal> {
     let reason = |problems: Problems| {
-        let problems = problems.of("what was pasted").to_string();
+        let problems = problems.in_file("what was pasted").to_string();
         problems.lines().next().unwrap_or_default().to_owned()
     };
     if text.len() > MOST_PASTED {

@@ -117,11 +117,10 @@ enum Goal {
 fn are_choices(value: &Value) -> Result<(), String> {
     Lines.check(value)?;
     let choices = value.as_array().map_or(&[][..], Vec::as_slice);
-    let is_repeated = |(index, choice)| choices[..index].contains(choice);
     match choices.len() {
         0 | 1 => Err("must be a list of at least two answers in quotes".to_owned()),
         count if count > MOST_CHOICES => Err(format!("are too many: at most {MOST_CHOICES}")),
-        _ if choices.iter().enumerate().any(is_repeated) => {
+        count if (1..count).any(|at| choices[..at].contains(&choices[at])) => {
             Err("must differ from each other".to_owned())
         }
         _ => Ok(()),
@@ -204,13 +203,10 @@ impl<'a> BlockContent<'a> {
     fn refuse(&mut self, problems: impl Into<Problems>) {
         for problem in self.document.placed(problems).list {
             if self.problems.len() < MOST_BLOCK_PROBLEMS {
-                let line = format!("line {}", self.reader.line);
-                let place = problem.place.clone().unwrap_or(line);
-                let problem = problem.inside(self.reader.word);
-                self.problems.push(Problem {
-                    place: Some(place),
-                    ..problem
-                });
+                let mut problem = problem.inside(self.reader.word);
+                let line = self.reader.line;
+                problem.place.get_or_insert_with(|| format!("line {line}"));
+                self.problems.push(problem);
             }
         }
     }
@@ -230,12 +226,12 @@ impl<'a> BlockContent<'a> {
     ) -> LessonText {
         let line = self.line_of(key);
         LessonText::read(source, line, find).unwrap_or_else(|problems| {
-            let key = join(self.reader.word, key);
-            let inside = |problem: Problem| Problem {
-                key: format!("{key} {}", problem.key),
-                ..on_line(line, problem)
-            };
-            self.problems.extend(problems.into_iter().map(inside));
+            let word = self.reader.word;
+            self.problems
+                .extend(problems.into_iter().map(|problem| Problem {
+                    key: format!("{word}.{key} {}", problem.key),
+                    ..on_line(line, problem)
+                }));
             LessonText::default()
         })
     }
@@ -276,18 +272,17 @@ fn expression(
     is_condition: bool,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> Result<Expression, String> {
-    let read = if is_condition {
-        Expression::condition(text)
+    let parse: fn(&str) -> _ = if is_condition {
+        Expression::condition
     } else {
-        Expression::parse(text)
+        Expression::parse
     };
-    let read = read.map_err(|fault| fault.to_string())?;
-    read.bind(find).map_err(|fault| fault.to_string())?;
-    if read.is_condition() && !is_condition {
-        Err("compares: a number must stand here".to_owned())
-    } else {
-        Ok(read)
+    let expression = parse(text).map_err(|fault| fault.to_string())?;
+    expression.bind(find).map_err(|fault| fault.to_string())?;
+    if expression.is_condition() && !is_condition {
+        return Err("compares: a number must stand here".to_owned());
     }
+    Ok(expression)
 }
 
 /// What the lesson is about, and how many minutes it takes.
@@ -305,19 +300,21 @@ pub(super) fn setup(
 ) -> BlockResult<Setup> {
     let mut content = BlockContent::parse(reader).inspect_err(|_| names.lose())?;
     let table = content.document.table().clone();
-    let is_of_setup = |name: &&str| COMMON.contains(name) || view::is_key(name);
-    let rows = COMMANDS.iter().map(|row| row.name).filter(is_of_setup);
-    let order: Vec<_> = rows.chain(LAST_COMMANDS).chain([RUN_UNTIL]).collect();
-    let known = || order.iter().copied().chain([KEEP_KEY]);
-    for name in table
-        .keys()
-        .filter(|name| known().all(|known| known != *name))
-    {
-        let rule = format!("{UNKNOWN_KEY}: {}", nearest(name, known()));
-        content.refuse(Problem::at(name, rule));
+    let known: Vec<_> = COMMANDS
+        .iter()
+        .map(|row| row.name)
+        .filter(|name| COMMON.contains(name) || view::is_key(name))
+        .chain(LAST_COMMANDS)
+        .chain([RUN_UNTIL, KEEP_KEY])
+        .collect();
+    for name in table.keys() {
+        if !known.contains(&name.as_str()) {
+            let rule = format!("{UNKNOWN_KEY}: {}", nearest(name, known.iter().copied()));
+            content.refuse(Problem::at(name, rule));
+        }
     }
     let mut commands = Vec::new();
-    for name in order {
+    for name in known.into_iter().filter(|name| *name != KEEP_KEY) {
         match table.get(name).map(|value| Command::new(name, value)) {
             Some(Ok(command)) => commands.push(LocatedCommand {
                 command,
@@ -368,15 +365,11 @@ fn keep(
             content.refuse(Problem::with_value(key, value, rule));
             continue;
         };
-        let find = |name: &str| earlier.find(name, page);
-        kept.extend(
-            content
-                .expression(&key, text, false, find)
-                .map(|expression| Keep {
-                    name: name.clone(),
-                    expression,
-                }),
-        );
+        let number = content.expression(&key, text, false, |name| earlier.find(name, page));
+        kept.extend(number.map(|expression| Keep {
+            name: name.clone(),
+            expression,
+        }));
     }
     kept
 }

@@ -169,7 +169,7 @@ pub fn check(
             break; // the pages to come stand on it
         }
     }
-    found.of(&lesson.origin).or(unstated.list)
+    found.in_file(&lesson.origin).or(unstated.list)
 }
 
 impl<'a> LessonWalk<'a> {

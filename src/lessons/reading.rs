@@ -304,7 +304,7 @@ impl Assembly {
             return Ok(self.lesson);
         }
         self.found.list.sort_by_key(line_of);
-        Err(self.found.of(self.lesson.origin))
+        Err(self.found.in_file(self.lesson.origin))
     }
 
     /// Checks that the prediction of `compare` is asked for before it.

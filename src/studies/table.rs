@@ -99,7 +99,7 @@ impl TableSource {
         let Some((subject, title)) = head.and_then(|head| subject(&head)) else {
             return Ok(None);
         };
-        let csv = Csv::of(&text, MOST_TABLE_VALUES).map_err(|found| found.of(origin))?;
+        let csv = Csv::parse(&text, MOST_TABLE_VALUES).map_err(|found| found.in_file(origin))?;
         let origin = origin.to_owned();
         Ok(Some(Self {
             subject,

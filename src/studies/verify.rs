@@ -204,7 +204,7 @@ fn comparison(
         return Err(cannot(why.to_owned()));
     }
     let text = csv::text(path).map_err(|problem| Problems::one("", problem))?;
-    let table = Csv::of(&text, MOST_COMPARISON_VALUES)?;
+    let table = Csv::parse(&text, MOST_COMPARISON_VALUES)?;
     let (mut schemes, mut time_steps) = (Vec::<&SchemeInfo>::new(), BTreeMap::new());
     for (line, row) in &table.rows {
         let scheme = SchemeInfo::find(&row[0]);

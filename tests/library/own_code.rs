@@ -39,7 +39,7 @@ fn read(text: &str, map: &str, every: Option<u64>, dt: f64) -> Result<ProgramRow
     let map: Vec<_> = pairs
         .map(|(own, ours)| (own.to_owned(), ours.to_owned()))
         .collect();
-    rows::read(text, &map, every, dt).map_err(|problems| problems.of("mine.csv").to_string())
+    rows::read(text, &map, every, dt).map_err(|problems| problems.in_file("mine.csv").to_string())
 }
 
 fn judged(text: &str, against: &str, sets: &[&str]) -> Verdict {

@@ -79,7 +79,7 @@ pub fn read_with(
     options: &ColumnOptions,
 ) -> Result<MeasuredData, Problems> {
     let (cells, columns) = taken_apart(origin, text, options)
-        .map_err(|found| scenario_instead(origin, text).unwrap_or_else(|| found.of(origin)))?;
+        .map_err(|found| scenario_instead(origin, text).unwrap_or_else(|| found.in_file(origin)))?;
     let mut numbers = CellParser::of(&cells);
     let mut data = if columns.read.iter().any(|column| column.name == TIME_COLUMN) {
         DataKind::Series(numbers.series(&columns.read))
@@ -128,7 +128,7 @@ pub fn read_with(
         let place = problem.place.as_deref()?.strip_prefix("line ")?;
         place.parse::<u64>().ok()
     });
-    Err(found.of(origin))
+    Err(found.in_file(origin))
 }
 
 /// The cells of `text`, the file `origin`, and what its columns are.
@@ -137,7 +137,7 @@ fn taken_apart(
     text: &str,
     options: &ColumnOptions,
 ) -> Result<(Csv, Columns), Problems> {
-    let mut cells = Csv::of(text, MOST_DATA_VALUES)?;
+    let mut cells = Csv::parse(text, MOST_DATA_VALUES)?;
     cells.rename(&options.map, may_be)?;
     let known = name_columns(&mut cells, origin, |_| true).and_then(|()| named(&cells));
     let mut problems = match known {

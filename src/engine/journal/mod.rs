@@ -76,7 +76,7 @@ impl Act {
     /// [`Edit`](Self::Edit).
     pub fn set(key: &str, value: Value) -> Self {
         let set = Table::from_iter([(key.to_owned(), value)]);
-        match Effect::of(key) {
+        match Effect::of_key(key) {
             Effect::None => Self::Describe(set),
             Effect::FromHere | Effect::NewRun => Self::Edit(set),
         }

@@ -6,10 +6,12 @@ use super::file::{BodyFile, EditFile, MotionFile, PushFile, ScenarioFile};
 use super::keys::{self, EDITABLE_MOTION, Effect, KEYS, TOP};
 use super::limits::too_many;
 use super::model::{Edit, Motion, NamedBody, Pushes, Scenario};
-use super::parts::{body, friction, motion, objects, push, pushes, spinning};
+use super::parts::{
+    check_scheme, read_body, read_friction, read_motion, read_push, read_pushes, spinning_body,
+};
 use super::problem::{Problem, Problems, nearest};
-use super::start::start;
-use crate::physics::{self, Friction, State, observables};
+use super::start::start_state;
+use crate::physics::{self, Friction, PointMass, State, observables};
 use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -17,15 +19,15 @@ use toml::{Table, Value};
 
 pub fn scenario(mut file: ScenarioFile) -> Result<Scenario, Problems> {
     // Without a body nothing can be said of the rest; of that, each part is looked at by itself.
-    let mut body = body(&file.body)?;
-    let motion = motion(&file.motion);
+    let mut body = read_body(&file.body)?;
+    let motion = read_motion(&file.motion);
     let mut problems = Problems::default();
     let trace = problems.kept(match &file.trace {
         Some(name) => body.find("trace", name),
         None => Ok(traced(&body)),
     });
-    let started = problems.kept(started(&file, &body, &motion));
-    let pushed = problems.kept(pushes(&file.push, &body));
+    let started = problems.kept(read_start(&file, &body, &motion));
+    let pushed = problems.kept(read_pushes(&file.push, &body));
     let (Some(trace), Some((spinning, start, friction)), Some(pushes)) = (trace, started, pushed)
     else {
         return Err(problems);
@@ -37,7 +39,7 @@ pub fn scenario(mut file: ScenarioFile) -> Result<Scenario, Problems> {
         let name = names.find(|name| body.point(name) == Some(trace));
         file.trace = name.map(str::to_owned);
     }
-    let edits = edits(&file, &body, &pushes, &friction)?;
+    let edits = read_edits(&file, &body, &pushes, &friction)?;
     if !is_readable(&body, trace, &start, motion.gravity) {
         let rule = "energy or traced point leave the range of floating-point numbers: use momentum, gravity and distances nearer to 1";
         return Err(Problem::at("start", rule).into());
@@ -57,39 +59,39 @@ pub fn scenario(mut file: ScenarioFile) -> Result<Scenario, Problems> {
 }
 
 /// What spins, its state at the start, and the friction on it.
-fn started(
+fn read_start(
     file: &ScenarioFile,
     body: &NamedBody,
     motion: &Motion,
 ) -> Result<(physics::Body, State, Friction), Problem> {
-    let spinning = spinning(&file.start, body, &file.body.part)?;
-    let start = start(&file.start, &spinning, motion.gravity)?;
-    let friction = friction(file.friction.as_ref(), &spinning)?;
-    objects(motion.scheme, &friction)?;
+    let spinning = spinning_body(&file.start, body, &file.body.part)?;
+    let start = start_state(&file.start, &spinning, motion.gravity)?;
+    let friction = read_friction(file.friction.as_ref(), &spinning)?;
+    check_scheme(motion.scheme, &friction)?;
     Ok((spinning, start, friction))
 }
 
 /// Adds the unknown names of points in `table` to the problems `found` with its keys, so that both are printed together.
 /// Where the body itself is wrong, its points are unknown and nothing is added.
-pub fn names(table: &toml::Table, found: &mut Problems) {
-    let file = table.get("body").filter(|_| {
-        let wrong = found.list.iter();
-        found.more == 0
-            && wrong
-                .into_iter()
-                .all(|problem| !is_in(&problem.key, "body"))
-    });
-    let file = file.and_then(|body| body.clone().try_into::<BodyFile>().ok());
-    let Some(Ok(body)) = file.map(|file| body(&file)) else {
+pub fn check_names(table: &Table, found: &mut Problems) {
+    if found.more > 0 || found.list.iter().any(|problem| is_in(&problem.key, "body")) {
+        return;
+    }
+    let Some(Ok(file)) = table
+        .get("body")
+        .map(|body| body.clone().try_into::<BodyFile>())
+    else {
+        return;
+    };
+    let Ok(body) = read_body(&file) else {
         return;
     };
     let pushes = table.get("push").and_then(Value::as_array);
-    let pushes = pushes.into_iter().flatten().enumerate();
-    let pushed = pushes.map(|(index, push)| (format!("push.{index}.point"), push.get("point")));
-    let traced = std::iter::once(("trace".to_owned(), table.get("trace")));
-    for (key, name) in traced.chain(pushed) {
-        let name = name.and_then(Value::as_str);
-        if let Some(name) = name.filter(|name| body.point(name).is_none()) {
+    let pushed = (0..pushes.map_or(0, Vec::len)).map(|index| format!("push.{index}.point"));
+    for key in std::iter::once("trace".to_owned()).chain(pushed) {
+        if let Some(Value::String(name)) = find(table, &key)
+            && body.point(name).is_none()
+        {
             found.add(|| body.no_point(&key, name));
         }
     }
@@ -97,10 +99,10 @@ pub fn names(table: &toml::Table, found: &mut Problems) {
 
 /// Whether the first row of the run's CSV is made of finite numbers.
 fn is_readable(body: &NamedBody, trace: usize, start: &State, gravity: f64) -> bool {
-    let body = &body.mechanics;
-    let energy = observables::kinetic_energy(body, start)
-        + gravity * observables::weight_height(body, start);
-    let traced = observables::position(body, start, trace);
+    let mechanics = &body.mechanics;
+    let energy = observables::kinetic_energy(mechanics, start)
+        + gravity * observables::weight_height(mechanics, start);
+    let traced = observables::position(mechanics, start, trace);
     energy.is_finite() && traced.iter().all(|c| c.is_finite())
 }
 
@@ -110,23 +112,27 @@ fn traced(body: &NamedBody) -> usize {
     if let Some(top) = body.point(TOP) {
         return top;
     }
-    let distance = |place: usize| body.mechanics.points()[place].at.norm();
-    let farther = |best: usize, place: usize| {
-        if distance(place) > distance(best) {
+    let points = body.mechanics.points();
+    let named = body.names().into_iter().filter_map(|name| body.point(name));
+    farthest(points, named)
+        .filter(|&place| points[place].at.norm() > 0.0)
+        .or_else(|| farthest(points, 0..points.len()))
+        .unwrap_or(0)
+}
+
+/// Returns the first of `places` whose point is the farthest from the pivot.
+fn farthest(points: &[PointMass], places: impl Iterator<Item = usize>) -> Option<usize> {
+    places.reduce(|best, place| {
+        if points[place].at.norm() > points[best].at.norm() {
             place
         } else {
             best
         }
-    };
-    let named = body.names().into_iter().filter_map(|name| body.point(name));
-    let named = named.reduce(farther).filter(|&place| distance(place) > 0.0);
-    named
-        .or_else(|| (0..body.mechanics.points().len()).reduce(farther))
-        .unwrap_or(0)
+    })
 }
 
 /// The edits of `file`, whose pushes are `pushes` and whose friction is `friction`.
-fn edits(
+fn read_edits(
     file: &ScenarioFile,
     body: &NamedBody,
     pushes: &Pushes,
@@ -140,7 +146,7 @@ fn edits(
         body,
         friction,
         written: tables(file),
-        motion: motion(&file.motion),
+        motion: read_motion(&file.motion),
         pushes: Arc::clone(pushes),
     };
     let (mut edits, mut last) = (Vec::with_capacity(file.edit.len()), 0);
@@ -154,21 +160,18 @@ fn edits(
             return Err(Problem::with_value(key, &step, rule).into());
         }
         last = entry.step;
-        let edit = progress.edit(entry).map_err(|mut problems| {
-            for problem in &mut problems.list {
-                problem.key.insert_str(0, &format!("edit.{index}.set."));
-            }
-            problems
-        });
+        let edit = progress
+            .edit(entry)
+            .map_err(|problems| problems.inside(&format!("edit.{index}.set")));
         edits.push(edit?);
     }
     Ok(edits)
 }
 
 fn tables(file: &ScenarioFile) -> Table {
-    let empty = || Value::Array(Vec::new());
-    let motion = Value::try_from(&file.motion).unwrap_or_else(|_| empty());
-    let push = Value::try_from(&file.push).unwrap_or_else(|_| empty());
+    // They hold nothing that TOML cannot write.
+    let motion = Value::try_from(&file.motion).unwrap_or(Value::Array(Vec::new()));
+    let push = Value::try_from(&file.push).unwrap_or(Value::Array(Vec::new()));
     Table::from_iter([("motion".to_owned(), motion), ("push".to_owned(), push)])
 }
 
@@ -190,12 +193,15 @@ impl Progress<'_> {
         for (key, value) in &entry.set {
             let written =
                 may_edit(key, value).and_then(|()| set_key(&mut self.written, key, value.clone()));
-            let key = key.clone();
-            set_pushes.extend(number_of_push(&key));
-            written.map_err(|problem| Problem { key, ..problem })?;
+            set_pushes.extend(number_of_push(key));
+            written.map_err(|problem| Problem {
+                key: key.clone(),
+                ..problem
+            })?;
         }
-        let sets = |key: &str| entry.set.contains_key(key);
-        let begins_segment = EDITABLE_MOTION.into_iter().any(sets);
+        let begins_segment = EDITABLE_MOTION
+            .iter()
+            .any(|key| entry.set.contains_key(*key));
         let mut problems = Problems::default();
         if begins_segment {
             problems.kept(self.set_motion());
@@ -209,19 +215,19 @@ impl Progress<'_> {
             motion: self.motion,
             pushes: Arc::clone(&self.pushes),
             set_pushes: set_pushes.into_iter().collect(),
-            sets_time_step: sets("motion.time_step_s"),
+            sets_time_step: entry.set.contains_key("motion.time_step_s"),
             begins_segment,
         })
     }
 
     fn set_motion(&mut self) -> Result<(), Problems> {
-        self.motion = motion(&self.read::<MotionFile>("motion")?);
-        Ok(objects(self.motion.scheme, self.friction)?)
+        self.motion = read_motion(&self.read::<MotionFile>("motion")?);
+        Ok(check_scheme(self.motion.scheme, self.friction)?)
     }
 
     fn set_push(&mut self, place: usize) -> Result<(), Problems> {
         let key = format!("push.{place}");
-        let push = push(&self.read::<PushFile>(&key)?, self.body, &key)?;
+        let push = read_push(&self.read::<PushFile>(&key)?, self.body, &key)?;
         let pushes = Arc::make_mut(&mut self.pushes);
         match pushes.get_mut(place) {
             Some(old) => *old = push,
@@ -234,16 +240,15 @@ impl Progress<'_> {
 
     /// The table at `key`, held against the keys.
     fn read<T: DeserializeOwned>(&self, key: &str) -> Result<T, Problems> {
-        let table = find(&self.written, key).cloned();
-        let table = table.unwrap_or(Value::Boolean(false));
-        keys::check_part(&table, key).or(())?;
-        let read = table.try_into();
+        let table = find(&self.written, key).unwrap_or(&Value::Boolean(false));
+        keys::check_part(table, key).or(())?;
+        let read = table.clone().try_into();
         read.map_err(|error: toml::de::Error| Problem::at(key, error.message()).into())
     }
 }
 
 fn may_edit(key: &str, value: &Value) -> Result<(), Problem> {
-    if Effect::of(key) == Effect::FromHere {
+    if Effect::of_key(key) == Effect::FromHere {
         return Ok(());
     }
     if value.is_table() {

@@ -103,8 +103,10 @@ pub fn text_from(file: impl Read) -> Result<String, Problem> {
         let rule = "is text in UTF-16: save the file as \"CSV UTF-8\" (iconv -f UTF-16 -t UTF-8 converts it)";
         return Err(Problem::at("", rule));
     }
-    let is_of_text = |byte: &u8| !matches!(byte, 0..=8 | 14..=31 | 127..=159);
-    if str::from_utf8(&bytes).is_err() && bytes.iter().all(is_of_text) {
+    let is_latin = !bytes
+        .iter()
+        .any(|byte| matches!(byte, 0..=8 | 14..=31 | 127..=159));
+    if is_latin && str::from_utf8(&bytes).is_err() {
         return Ok(bytes.into_iter().map(char::from).collect());
     }
     utf8(bytes, " (\"CSV UTF-8\")")
@@ -120,19 +122,20 @@ fn cannot(error: &dyn fmt::Display) -> Problems {
 
 /// What parts the cells of a file whose first line is `line`.
 fn separator(line: &str) -> char {
-    let has = |separator: char| line.contains(separator);
-    let is_of_numbers = |c: char| c.is_ascii_digit() || "+-.,eE \t".contains(c);
+    let is_of_numbers = line
+        .chars()
+        .all(|c| c.is_ascii_digit() || "+-.,eE \t".contains(c));
     // "0,5 1,2": the commas are of decimals.
-    let has_decimal_commas = || !line.contains(", ") && line.trim().contains(' ');
-    if has(';') {
+    let has_decimal_commas = is_of_numbers && !line.contains(", ") && line.trim().contains(' ');
+    if line.contains(';') {
         ';'
-    } else if has('\t') && !line.contains(",\t") {
+    } else if line.contains('\t') && !line.contains(",\t") {
         '\t'
-    } else if has(',') && !(line.chars().all(is_of_numbers) && has_decimal_commas()) {
+    } else if line.contains(',') && !has_decimal_commas {
         ','
     } else if !line.contains('"') && line.split_whitespace().count() > 1 {
         ' '
-    } else if has(',') {
+    } else if line.contains(',') {
         ','
     } else {
         ';' // one column, whose numbers may have decimal commas
@@ -151,7 +154,7 @@ fn in_map(column: &str, name: &str, rule: String) -> Problem {
 
 impl Csv {
     /// Takes `text` apart, of at most `most` values (rows times columns).
-    pub fn of(text: &str, most: usize) -> Result<Self, Problems> {
+    pub fn parse(text: &str, most: usize) -> Result<Self, Problems> {
         let head = Head::read(&mut text.as_bytes()).map_err(|error| cannot(&error))?;
         let mut csv = Self {
             header: head.header()?,
@@ -163,8 +166,11 @@ impl Csv {
             separator: separator(str::from_utf8(head.names()).unwrap_or_default()),
             rows: Vec::new(),
         };
-        let lines = text.splitn(csv.line_of_names as usize, '\n').last();
-        let mut lines = lines.unwrap_or_default().trim_start_matches('\u{feff}');
+        let mut lines = text
+            .splitn(csv.line_of_names as usize, '\n')
+            .last()
+            .unwrap_or_default()
+            .trim_start_matches('\u{feff}');
         if let Some((titles, below)) = lines.split_once('\n')
             && csv.separator != ' '
             && titles.starts_with(csv.separator)
@@ -177,8 +183,10 @@ impl Csv {
                     .trim(),
             )
         {
-            let titles = titles.split(csv.separator);
-            csv.titles = titles.map(|title| title.trim().to_owned()).collect();
+            csv.titles = titles
+                .split(csv.separator)
+                .map(|title| title.trim().to_owned())
+                .collect();
             lines = below;
             csv.line_of_names += 1;
         }
@@ -195,20 +203,20 @@ impl Csv {
 
     fn read_rows(&mut self, text: &str, most: usize) -> Result<(), Problems> {
         // With every line ended alike, the reader's own count of lines is right.
-        let mut text = text.replace("\r\n", "\n") + "\n";
-        if self.separator == ' ' {
-            text = text
-                .lines()
+        let lines: String = if self.separator == ' ' {
+            text.lines()
                 .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n")
-                .collect();
-        }
+                .collect()
+        } else {
+            text.replace("\r\n", "\n") + "\n"
+        };
         let mut reader = ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
             .trim(Trim::All)
             .comment(Some(b'#'))
             .delimiter(self.separator as u8)
-            .from_reader(text.as_bytes());
+            .from_reader(lines.as_bytes());
         let (mut record, mut found) = (StringRecord::new(), Problems::default());
         loop {
             let read = reader.read_record(&mut record);
@@ -329,32 +337,32 @@ impl Csv {
             self.name_column(place, &ours, factor);
         }
         found.or(())?;
-        let is_kept = |place: usize| !left_out.contains(&place);
-        keep(&mut self.names, is_kept);
-        keep(&mut self.own, is_kept);
-        let rows = self.rows.iter_mut();
-        rows.for_each(|(_, row)| keep(row, is_kept));
+        remove(&mut self.names, &left_out);
+        remove(&mut self.own, &left_out);
+        for (_, row) in &mut self.rows {
+            remove(row, &left_out);
+        }
         Ok(())
     }
 
     /// The place of a column, by its own name or its number from 1.
     fn place_of(&self, column: &str) -> Result<usize, String> {
-        let named: Vec<&OwnColumn> = self.own.iter().filter(|own| own.name == column).collect();
+        let named: Vec<_> = self.own.iter().filter(|own| own.name == column).collect();
         match named[..] {
             [own] => Ok(own.number - 1),
-            [] => {
-                let number = column.parse::<usize>().ok();
-                let number = number.filter(|number| (1..=self.own.len()).contains(number));
-                number.map(|number| number - 1).ok_or_else(|| {
-                    let names = self.own.iter().map(|own| own.name.as_str());
-                    let near = nearest(column, names);
-                    format!("is no column of the file, by name or by number: {near}")
-                })
-            }
+            [] => match column.parse::<usize>() {
+                Ok(number) if (1..=self.own.len()).contains(&number) => Ok(number - 1),
+                _ => {
+                    let near = nearest(column, self.own.iter().map(|own| own.name.as_str()));
+                    Err(format!(
+                        "is no column of the file, by name or by number: {near}"
+                    ))
+                }
+            },
             _ => {
                 let numbers: Vec<_> = named.iter().map(|own| own.number.to_string()).collect();
-                let numbers = numbers.join(" and ");
-                Err(format!("is the name of columns {numbers}: give the number"))
+                let rule = "is the name of columns";
+                Err(format!("{rule} {}: give the number", numbers.join(" and ")))
             }
         }
     }
@@ -386,11 +394,12 @@ fn unit_between(own: &str, ours: &str) -> f64 {
     factor.unwrap_or(1.0)
 }
 
-fn keep<T>(items: &mut Vec<T>, is_kept: impl Fn(usize) -> bool) {
+/// Removes the items at `places`.
+fn remove<T>(items: &mut Vec<T>, places: &[usize]) {
     let mut place = 0;
     items.retain(|_| {
         place += 1;
-        is_kept(place - 1)
+        !places.contains(&(place - 1))
     });
 }
 
@@ -409,19 +418,22 @@ fn multiplied(cell: &str, factor: f64, separator: char) -> Option<String> {
     let power = libm::log10(factor).round();
     if (libm::pow(10.0, power) / factor - 1.0).abs() < 1e-12 {
         // Another exponent keeps every digit.
-        let (mantissa, exponent) = cell.split_once(['e', 'E']).unwrap_or((cell, "0"));
-        let exponent = exponent.parse::<i32>().ok()?.checked_add(power as i32)?;
+        let (mantissa, written) = cell.split_once(['e', 'E']).unwrap_or((cell, "0"));
+        let exponent = written.parse::<i32>().ok()?.checked_add(power as i32)?;
         return Some(format!("{mantissa}e{exponent}"));
     }
     let mantissa = plain.split(['e', 'E']).next().unwrap_or_default();
-    let digits = mantissa.trim_start_matches(['+', '-', '0', '.']).chars();
-    let digits = digits.filter(char::is_ascii_digit).count();
+    let digits = mantissa
+        .trim_start_matches(['+', '-', '0', '.'])
+        .chars()
+        .filter(char::is_ascii_digit)
+        .count();
     let shortest = format!("{:e}", number * factor);
-    let (mantissa, exponent) = shortest.split_once('e')?;
-    let (whole, part) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let part = format!("{part:0<width$}", width = digits.saturating_sub(1));
-    let exponent = exponent.parse::<i32>().ok()? - part.len() as i32;
-    Some(format!("{whole}{part}e{exponent}"))
+    let (significand, exponent) = shortest.split_once('e')?;
+    let (whole, decimals) = significand.split_once('.').unwrap_or((significand, ""));
+    let padded = format!("{decimals:0<width$}", width = digits.saturating_sub(1));
+    let last_digit = exponent.parse::<i32>().ok()? - padded.len() as i32;
+    Some(format!("{whole}{padded}e{last_digit}"))
 }
 
 #[cfg(test)]

@@ -88,26 +88,20 @@ impl Document {
 
     /// Takes `text` as the scenario that `origin` holds.
     pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
-        limits::few_enough(text, 1).map_err(|problem| Problems::one(origin, problem))?;
+        limits::check_toml_size(text, 1).map_err(|problem| Problems::one(origin, problem))?;
         Self::parse_header(origin, text)
     }
 
     /// The same for the header of a CSV, which may be twice as long.
     pub fn parse_header(origin: &str, text: &str) -> Result<Self, Problems> {
-        let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
-        if text.len() as u64 > limits::LONGEST_HEADER {
-            return Err(Problems::one(
-                origin,
-                Problem::at("", limits::SCENARIO_TOO_LONG),
-            ));
+        let lines = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+        match toml_within_limits(&lines) {
+            Ok(table) => Ok(Self {
+                text: lines,
+                ..Self::from_table(origin, table)
+            }),
+            Err(problem) => Err(Problems::one(origin, problem)),
         }
-        limits::few_enough(&text, 2).map_err(|problem| Problems::one(origin, problem))?;
-        let table = text.parse();
-        let table = table.map_err(|error| Problems::one(origin, syntax_problem(&text, &error)))?;
-        Ok(Self {
-            text,
-            ..Self::from_table(origin, table)
-        })
     }
 
     /// The document that `file` would be written as.
@@ -136,7 +130,7 @@ impl Document {
         if problems.list.is_empty() {
             return Ok(());
         }
-        checks::names(&self.table, &mut problems);
+        checks::check_names(&self.table, &mut problems);
         Err(self.placed(problems))
     }
 
@@ -184,16 +178,14 @@ impl Document {
 
     /// Takes the scenario to another time step (s), holding its seconds: see [`rescale`].
     pub fn set_time_step(&mut self, time_step_s: f64) -> Result<(), Problems> {
-        let file = rescale::at_time_step(&self.scenario()?.file, time_step_s);
-        let file = file.map_err(|mut problem| {
-            if problem.key == "motion.time_step_s" {
+        match rescale::at_time_step(&self.scenario()?.file, time_step_s) {
+            Ok(file) => *self = Self::from_file(&self.origin, &file)?,
+            Err(mut problem) if problem.key == "motion.time_step_s" => {
                 problem.place = Some(format!("--time-step {}", shortest(time_step_s)));
-                Problems::one(self.origin.as_str(), problem)
-            } else {
-                self.placed(problem)
+                return Err(Problems::one(self.origin.as_str(), problem));
             }
-        })?;
-        *self = Self::from_file(&self.origin, &file)?;
+            Err(problem) => return Err(self.placed(problem)),
+        }
         Ok(())
     }
 
@@ -257,11 +249,13 @@ impl Document {
         } else {
             self.text.parse().unwrap_or_default()
         };
-        let placed = |mut problem: Problem| {
+        let mut placed = Vec::with_capacity(list.len());
+        for mut problem in list {
             let Some(setting) = self.setting_behind(&problem.key, &written) else {
                 let line = line_of(&problem.key);
                 problem.place = line.map(|line| format!("line {line}"));
-                return (line.unwrap_or(0), problem);
+                placed.push((line.unwrap_or(0), problem));
+                continue;
             };
             problem.place = Some(set_place(&setting.argument));
             let meant = keys::meant(&setting.key);
@@ -272,15 +266,14 @@ impl Document {
                 (_, Some(meant)) if problem.rule.starts_with(UNKNOWN_KEY) => {
                     // The whole key: whoever typed the argument does not see the tables of a file.
                     problem.key.clone_from(&setting.key);
-                    problem.rule = format!("{}: did you mean {meant}?", UNKNOWN_KEY);
+                    problem.rule = format!("{UNKNOWN_KEY}: did you mean {meant}?");
                 }
                 _ => problem
                     .rule
                     .extend(Self::that_are_there(&problem, &written)),
             }
-            (usize::MAX, problem)
-        };
-        let mut placed: Vec<_> = list.into_iter().map(placed).collect();
+            placed.push((usize::MAX, problem));
+        }
         placed.sort_by_key(|(line, _)| *line);
         Problems {
             origin: self.origin.clone(),
@@ -290,14 +283,23 @@ impl Document {
     }
 }
 
+/// Parses `text`, the header of a CSV or shorter.
+fn toml_within_limits(text: &str) -> Result<toml::Table, Problem> {
+    if text.len() as u64 > limits::LONGEST_HEADER {
+        return Err(Problem::at("", limits::SCENARIO_TOO_LONG));
+    }
+    limits::check_toml_size(text, 2)?;
+    text.parse().map_err(|error| syntax_problem(text, &error))
+}
+
 /// `text` as TOML, or else as text; and why an array or a table is no TOML.
 pub fn toml_or_text(text: &str) -> (Value, Option<String>) {
     match text.trim().parse() {
         Ok(value) => (value, None),
-        Err(error) => {
-            let mistake = mistake(text.trim(), &error);
-            (Value::String(text.to_owned()), mistake)
-        }
+        Err(error) => (
+            Value::String(text.to_owned()),
+            why_no_toml(text.trim(), &error),
+        ),
     }
 }
 
@@ -320,22 +322,18 @@ fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
     const WIDEST: usize = 160;
     let picture = error.to_string();
     let mut lines = picture.trim_end().lines();
-    let rule = if lines.clone().all(|line| line.len() <= WIDEST) {
+    let shown = if lines.clone().all(|line| line.len() <= WIDEST) {
         printable_lines(picture.trim_end()).into_owned()
     } else {
         // A picture of a line that fills the screen shows nothing.
         let place = brief(lines.next().unwrap_or_default(), WIDEST);
         format!("{place}: {}", brief(error.message(), WIDEST))
     };
-    let rule = match error.span() {
-        Some(span) => repeated_table(text, span.start).unwrap_or(rule),
-        None => format!("cannot be read as TOML: {rule}"),
+    let Some(span) = error.span() else {
+        return Problem::at("", format!("cannot be read as TOML: {shown}"));
     };
-    let problem = Problem::at("", rule);
-    match error.span() {
-        Some(span) => at_line(line_at(text, span.start) as u64, problem),
-        None => problem,
-    }
+    let rule = repeated_table(text, span.start).unwrap_or(shown);
+    at_line(line_at(text, span.start) as u64, Problem::at("", rule))
 }
 
 /// The tables of which a file may have several.
@@ -360,14 +358,15 @@ fn line_at(text: &str, offset: usize) -> usize {
 
 /// Where the dotted `key`, or as much of it as there is, stands in the text: a value's key, a table's head.
 fn offset_of(table: &DeTable<'_>, key: &str) -> Option<usize> {
-    let entry = |name: &str| table.get_key_value(name);
     let quoted = key.strip_prefix('"').and_then(|key| key.strip_suffix('"'));
     let (name, rest) = match quoted {
         Some(name) => (name, ""),
         None => key.split_once('.').unwrap_or((key, "")),
     };
     // What an edit sets has the whole path for its name.
-    let (found, value) = entry(name).or_else(|| entry(key))?;
+    let (found, value) = table
+        .get_key_value(name)
+        .or_else(|| table.get_key_value(key))?;
     Some(offset_inside(value.get_ref(), rest).unwrap_or(found.span().start))
 }
 
@@ -384,17 +383,15 @@ fn offset_inside(value: &DeValue<'_>, key: &str) -> Option<usize> {
 }
 
 /// What is wrong with `value`, which begins as an array or a table and is no TOML.
-fn mistake(value: &str, error: &toml::de::Error) -> Option<String> {
+fn why_no_toml(value: &str, error: &toml::de::Error) -> Option<String> {
     if !value.starts_with(['[', '{']) {
         return None;
     }
     let from = error.span().map_or(0, |span| span.start);
-    let rest = value.get(from..).unwrap_or_default();
-    let rest = if rest.is_empty() {
-        "its end".to_owned()
-    } else {
-        format!("\"{}\"", brief(rest, 24))
+    let place = match value.get(from..).unwrap_or_default() {
+        "" => "its end".to_owned(),
+        rest => format!("\"{}\"", brief(rest, 24)),
     };
     let message = brief(error.message(), 120);
-    Some(format!("is no TOML: at {rest}: {message}"))
+    Some(format!("is no TOML: at {place}: {message}"))
 }

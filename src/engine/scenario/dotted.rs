@@ -26,19 +26,14 @@ pub fn set_key(table: &mut Table, key: &str, value: Value) -> Result<(), Problem
         let rule = "is not a dotted key such as motion.time_step_s";
         return Err(Problem::at(key, rule));
     }
-    let empty = |index: usize| match names.get(index + 1).map(|next| next.parse::<usize>()) {
-        Some(Ok(_)) => Value::Array(Vec::new()),
-        Some(Err(_)) => Value::Table(Table::new()),
-        None => Value::Boolean(false),
-    };
-    let mut inside = table.entry(names[0]).or_insert(empty(0));
+    let mut inside = table.entry(names[0]).or_insert(empty(&names[1..]));
     let mut path = names[0].to_owned();
     for (index, name) in names.iter().enumerate().skip(1) {
         let outer = path;
         path = join(&outer, name);
         inside = match inside {
-            Value::Table(table) => table.entry(*name).or_insert(empty(index)),
-            Value::Array(array) => place(array, name, &path, empty(index))?,
+            Value::Table(table) => table.entry(*name).or_insert(empty(&names[index + 1..])),
+            Value::Array(array) => place(array, name, &path, empty(&names[index + 1..]))?,
             other => {
                 let rule = format!("holds no {name}");
                 return Err(Problem::with_value(outer, other, rule));
@@ -47,6 +42,15 @@ pub fn set_key(table: &mut Table, key: &str, value: Value) -> Result<(), Problem
     }
     *inside = value;
     Ok(())
+}
+
+/// The empty value that has room for the names `inside`.
+fn empty(inside: &[&str]) -> Value {
+    match inside.first().map(|name| name.parse::<usize>()) {
+        Some(Ok(_)) => Value::Array(Vec::new()),
+        Some(Err(_)) => Value::Table(Table::new()),
+        None => Value::Boolean(false),
+    }
 }
 
 /// What stands at place `name` of `array`; `empty` is put there first where that is one past the end.

@@ -27,10 +27,10 @@ pub struct Head {
 impl Head {
     /// Reads the head of a file from its beginning; of a longer one no more than the longest.
     pub fn read(reader: &mut impl BufRead) -> io::Result<Self> {
-        let mut reader = reader.take(LONGEST_HEADER + 1);
+        let mut head = reader.take(LONGEST_HEADER + 1);
         let (mut bytes, mut names) = (Vec::new(), 0);
         loop {
-            reader.read_until(b'\n', &mut bytes)?;
+            head.read_until(b'\n', &mut bytes)?;
             let line = without_mark(&bytes[names..]);
             let is_above = line.starts_with(b"#") || line.trim_ascii().is_empty();
             if line.is_empty() || !is_above {
@@ -58,16 +58,14 @@ impl Head {
     /// Whether it is the head of a CSV that gyrolab wrote. Nothing in TOML is a line of names without a value.
     pub fn is_of_csv(&self) -> bool {
         let names = self.names();
-        let tells_version = || {
-            let mut lines = self.comments().split(|&byte| byte == b'\n');
-            lines.any(|line| line.starts_with(VERSION_LINE))
-        };
-        names.starts_with(EVERY_COLUMN)
-            || !names.is_empty()
-                && names
-                    .iter()
-                    .all(|byte| byte.is_ascii_alphanumeric() || b"_.,;\"".contains(byte))
-                && tells_version()
+        if names.starts_with(EVERY_COLUMN) {
+            return true;
+        }
+        let are_names = names
+            .iter()
+            .all(|byte| byte.is_ascii_alphanumeric() || b"_.,;\"".contains(byte));
+        let mut comments = self.comments().split(|&byte| byte == b'\n');
+        !names.is_empty() && are_names && comments.any(|line| line.starts_with(VERSION_LINE))
     }
 
     /// The lines that begin with `#`, without a byte order mark.
@@ -87,15 +85,15 @@ impl Head {
     /// The lines above the line of names without their `# `; none where there are none.
     pub fn header(&self) -> Result<String, Problem> {
         let lines = utf8(self.comments().to_vec(), "")?;
-        Ok(lines
-            .split_inclusive('\n')
-            .map(|line| {
-                let line = line.trim_start_matches('\u{feff}');
-                let line = line.strip_prefix('#').unwrap_or(line);
-                line.strip_prefix(' ').unwrap_or(line).to_owned()
-            })
-            .collect())
+        Ok(lines.split_inclusive('\n').map(uncommented).collect())
     }
+}
+
+/// `line` without the `# ` at its beginning.
+fn uncommented(line: &str) -> &str {
+    let whole = line.trim_start_matches('\u{feff}');
+    let comment = whole.strip_prefix('#').unwrap_or(whole);
+    comment.strip_prefix(' ').unwrap_or(comment)
 }
 
 fn without_mark(line: &[u8]) -> &[u8] {
@@ -104,26 +102,28 @@ fn without_mark(line: &[u8]) -> &[u8] {
 
 /// The text of a scenario, the run file in the header of a CSV, of which no more is read, or the one in a figure.
 pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
-    let whole = |rule: String| Problem::at("", rule);
-    let cannot = |error: io::Error| whole(unread(&error));
     if path.is_dir() {
-        return Err(whole("is a folder: name a file in it".to_owned()));
+        return Err(Problem::at("", "is a folder: name a file in it"));
     }
-    let mut reader = BufReader::new(File::open(path).map_err(cannot)?);
-    if let Some(figure) = FigureFile::read(&mut reader).map_err(whole)? {
+    let mut reader = BufReader::new(File::open(path).map_err(|error| cannot_read(&error))?);
+    let figure = FigureFile::read(&mut reader).map_err(|rule| Problem::at("", rule))?;
+    if let Some(figure) = figure {
         return run_of_figure(&figure);
     }
-    let head = Head::read(&mut reader).map_err(cannot)?;
+    let head = Head::read(&mut reader).map_err(|error| cannot_read(&error))?;
     if head.is_of_csv() {
         return head.run_file();
     }
     if path.extension().is_some_and(|extension| extension == "csv") {
         let names = String::from_utf8_lossy(EVERY_COLUMN);
-        return Err(whole(format!(
-            "is not the CSV of a run: no line \"{names}...\" below a run file"
-        )));
+        let rule = format!("is not the CSV of a run: no line \"{names}...\" below a run file");
+        return Err(Problem::at("", rule));
     }
     text_of_file(head.bytes.as_slice().chain(reader))
+}
+
+fn cannot_read(error: &io::Error) -> Problem {
+    Problem::at("", unread(error))
 }
 
 /// The run file in a figure: of several the first, of a table the one in its header.
@@ -138,8 +138,7 @@ fn run_of_figure(figure: &FigureFile) -> Result<String, Problem> {
         }
         Some(file) if file.holds == Payload::Table => {
             let head = Head::read(&mut file.text.as_bytes());
-            head.map_err(|error| Problem::at("", unread(&error)))?
-                .run_file()
+            head.map_err(|error| cannot_read(&error))?.run_file()
         }
         file => Ok(file.map(|file| file.text.clone()).unwrap_or_default()),
     }
@@ -154,7 +153,7 @@ pub fn is_file(name: &str) -> bool {
 /// The text of a scenario, or the run file in the header of a CSV, that `stream` holds.
 pub(super) fn text_of_stream(stream: impl Read) -> Result<String, Problem> {
     let mut reader = BufReader::new(stream);
-    let head = Head::read(&mut reader).map_err(|error| Problem::at("", unread(&error)))?;
+    let head = Head::read(&mut reader).map_err(|error| cannot_read(&error))?;
     if head.is_of_csv() {
         return head.run_file();
     }
@@ -166,14 +165,14 @@ fn text_of_file(file: impl Read) -> Result<String, Problem> {
         bytes_of(file, LONGEST_SCENARIO_FILE, limits::SCENARIO_TOO_LONG)?,
         "",
     )?;
-    limits::few_enough(&text, 1).map(|()| text)
+    limits::check_toml_size(&text, 1).map(|()| text)
 }
 
 /// The bytes of `file` to its end, of which no more than `most` and one are read.
 pub(super) fn bytes_of(file: impl Read, most: u64, too_long: &str) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::new();
     let read = file.take(most + 1).read_to_end(&mut bytes);
-    let length = read.map_err(|error| Problem::at("", unread(&error)))?;
+    let length = read.map_err(|error| cannot_read(&error))?;
     if length as u64 > most {
         return Err(Problem::at("", too_long));
     }

@@ -163,10 +163,6 @@ const ON_SCREEN: [(&str, &str); 4] = [
 pub(super) fn meant(key: &str) -> Option<&'static str> {
     let name = key.rsplit('.').next().unwrap_or(key);
     let on_screen = ON_SCREEN.iter().find(|(word, _)| *word == name);
-    let without_unit = |last: &str| {
-        let unit = last.strip_prefix(name);
-        unit.is_some_and(|unit| unit.starts_with('_'))
-    };
     on_screen
         .map(|(_, key)| *key)
         .or_else(|| {
@@ -174,7 +170,12 @@ pub(super) fn meant(key: &str) -> Option<&'static str> {
                 .only(|last| last == name)
                 .filter(|path| *path != key)
         })
-        .or_else(|| SCENARIO.only(without_unit))
+        .or_else(|| {
+            SCENARIO.only(|last| {
+                let unit = last.strip_prefix(name);
+                unit.is_some_and(|unit| unit.starts_with('_'))
+            })
+        })
 }
 
 /// What setting a key does to a run.
@@ -187,7 +188,7 @@ pub enum Effect {
 }
 
 impl Effect {
-    pub fn of(key: &str) -> Self {
+    pub fn of_key(key: &str) -> Self {
         const IDLE_KEYS: [&str; 4] = ["title", "about", "source", "motion.steps"];
         const IDLE_TABLES: [&str; 2] = ["view.", "expected."];
         if EDITABLE_MOTION.contains(&key) || key.starts_with("push.") {

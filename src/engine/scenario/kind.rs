@@ -1,6 +1,6 @@
 //! What a key may hold, and the rules by which a value is refused.
 
-use super::problem::nearest;
+use super::problem::near;
 use super::screen;
 use crate::text::printable::is_steering;
 use Range::{NotNegative, Positive, Within};
@@ -138,9 +138,11 @@ fn text(value: &Value) -> Result<&str, String> {
 }
 
 pub fn float(value: &Value) -> Option<f64> {
-    value
-        .as_float()
-        .or_else(|| value.as_integer().map(|whole| whole as f64))
+    match value {
+        Value::Float(number) => Some(*number),
+        Value::Integer(whole) => Some(*whole as f64),
+        _ => None,
+    }
 }
 
 fn number(value: &Value) -> Result<f64, String> {
@@ -190,16 +192,17 @@ fn check_whole(value: &Value, least: i64, most: i64) -> Result<(), String> {
 }
 
 fn check_vector(value: &Value) -> Result<(), String> {
-    let items = items(value, "three numbers in brackets")?;
-    if items.len() != 3 {
-        return Err(format!("must be three numbers, not {}", items.len()));
+    let numbers = items(value, "three numbers in brackets")?;
+    if numbers.len() != 3 {
+        return Err(format!("must be three numbers, not {}", numbers.len()));
     }
-    check_each(items, |item| number(item).map(drop))
+    check_each(numbers, |item| number(item).map(drop))
 }
 
 fn check_words(value: &Value, words: &[&str]) -> Result<(), String> {
-    let items = items(value, "a list in brackets")?;
-    check_each(items, |item| check_word(text(item)?, words))
+    check_each(items(value, "a list in brackets")?, |item| {
+        check_word(text(item)?, words)
+    })
 }
 
 fn items<'a>(value: &'a Value, wanted: &str) -> Result<&'a Vec<Value>, String> {
@@ -207,19 +210,21 @@ fn items<'a>(value: &'a Value, wanted: &str) -> Result<&'a Vec<Value>, String> {
 }
 
 fn check_each(items: &[Value], check: impl Fn(&Value) -> Result<(), String>) -> Result<(), String> {
-    let mut items = items.iter();
-    items.try_for_each(|item| check(item).map_err(|rule| format!("each {rule}")))
+    items
+        .iter()
+        .try_for_each(|item| check(item).map_err(|rule| format!("each {rule}")))
 }
 
 fn check_word(word: &str, words: &[&str]) -> Result<(), String> {
     if words.contains(&word) {
         return Ok(());
     }
-    let near = Some(nearest(word, words.iter().copied()));
-    let near = near.filter(|near| near.starts_with("did"));
-    let near = near.map_or(String::new(), |near| format!("; {near}"));
     let one_of = if words.len() > 1 { "one of " } else { "" };
-    Err(format!("must be {one_of}{}{near}", words.join(", ")))
+    let rule = format!("must be {one_of}{}", words.join(", "));
+    Err(match near(word, words.iter().copied()) {
+        Some(near) => format!("{rule}; did you mean {near}?"),
+        None => rule,
+    })
 }
 
 /// `vector` as the value of a key that holds one.

@@ -29,18 +29,10 @@ const MOST_FILE_VALUES: usize = 800_000;
 
 /// Refuses a `text` that has more than `times` the tables or values of a file: they would take far more memory than a usual
 /// scenario of its length. The header of a CSV may have twice as many: it writes on several lines what its scenario may have on one.
-pub fn few_enough(text: &str, times: usize) -> Result<(), Problem> {
+pub fn check_toml_size(text: &str, times: usize) -> Result<(), Problem> {
     let (most_tables, most_values) = (times * MOST_TABLES, times * MOST_FILE_VALUES);
     let (mut tables, mut values, mut heading) = (0, 0, "");
-    for line in text.lines() {
-        // A dot in quotes is part of a name.
-        let dots = |part: &str| {
-            let unquoted = part.split(['"', '\'']).step_by(2);
-            unquoted
-                .map(|part| part.matches('.').count())
-                .sum::<usize>()
-        };
-        let line = line.trim_start();
+    for line in text.lines().map(str::trim_start) {
         if line.starts_with('[') {
             // Around the second [[body.point]] no further table is made.
             tables += 1 + if line == heading { 0 } else { dots(line) };
@@ -62,34 +54,42 @@ pub fn few_enough(text: &str, times: usize) -> Result<(), Problem> {
     Err(Problem::at("", rule))
 }
 
+/// The dots in `part` of a line; one in quotes is part of a name.
+fn dots(part: &str) -> usize {
+    let unquoted = part.split(['"', '\'']).step_by(2);
+    unquoted.map(|part| part.matches('.').count()).sum()
+}
+
 /// What of the file in `table` is too large.
 pub(super) fn exceeded(table: &Table) -> Option<Problem> {
-    let count = |key: &str| {
-        let list = find(table, key).and_then(Value::as_array);
-        list.map_or(0, Vec::len)
-    };
     let rim = find(table, "body.rim.points").and_then(Value::as_integer);
-    let rim = usize::try_from(rim.unwrap_or(0)).unwrap_or(0);
-    let bodies = rim
-        .saturating_add(count("body.point"))
-        .saturating_add(count("body.part"));
-    too_many(count("edit"), bodies, count("push"))
+    let bodies = usize::try_from(rim.unwrap_or(0))
+        .unwrap_or(0)
+        .saturating_add(length(table, "body.point"))
+        .saturating_add(length(table, "body.part"));
+    too_many(length(table, "edit"), bodies, length(table, "push"))
+}
+
+fn length(table: &Table, key: &str) -> usize {
+    let list = find(table, key).and_then(Value::as_array);
+    list.map_or(0, Vec::len)
 }
 
 /// What there is against so many edits of a body of `bodies` points and parts, with so many pushes.
 pub(super) fn too_many(edits: usize, bodies: usize, pushes: usize) -> Option<Problem> {
-    let several = |key: &str, name: &str, count: usize, most: usize| {
-        let rule =
-            format!("{count} {name} are too many: at most {most} are allowed; leave some out");
-        (count > most).then(|| Problem::at(key, rule))
-    };
+    for (key, name, count, most) in [
+        ("push", "pushes", pushes, MOST_PUSHES),
+        ("edit", "edits", edits, MOST_EDITS),
+    ] {
+        if count > most {
+            let rule =
+                format!("{count} {name} are too many: at most {most} are allowed; leave some out");
+            return Some(Problem::at(key, rule));
+        }
+    }
     let others = bodies.saturating_add(pushes);
-    several("push", "pushes", pushes, MOST_PUSHES)
-        .or_else(|| several("edit", "edits", edits, MOST_EDITS))
-        .or_else(|| {
-            let rule = format!(
-                "{edits} edits of {others} points, parts and pushes are too many: {edits} times {others} may be at most {MOST_PRODUCT}; leave some out"
-            );
-            (edits.saturating_mul(others) > MOST_PRODUCT).then(|| Problem::at("edit", rule))
-        })
+    let rule = format!(
+        "{edits} edits of {others} points, parts and pushes are too many: {edits} times {others} may be at most {MOST_PRODUCT}; leave some out"
+    );
+    (edits.saturating_mul(others) > MOST_PRODUCT).then(|| Problem::at("edit", rule))
 }

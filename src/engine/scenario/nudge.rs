@@ -16,16 +16,16 @@ pub fn number(value: f64, size: f64, nudge: Nudge, times: i32) -> Option<f64> {
 
 /// `value` nudged `times` times in whole numbers.
 pub fn whole(value: i64, times: i32) -> i64 {
-    let step = hundredth(value.unsigned_abs() as f64);
-    let step = step.unwrap_or(1.0).max(1.0) as i64;
+    let hundredth = hundredth(value.unsigned_abs() as f64);
+    let step = hundredth.unwrap_or(1.0).max(1.0) as i64;
     value.saturating_add(step.saturating_mul(i64::from(times)))
 }
 
 /// `value` + `times` · `step`, with no more decimals than the two have: 0.1 + 0.2 is 0.3.
 fn added(value: f64, step: f64, times: i32) -> f64 {
     let sum = value + step * f64::from(times);
-    let decimals = decimals(value).max(decimals(step));
-    let clean: f64 = format!("{sum:.decimals$}").parse().unwrap_or(sum);
+    let most = decimals(value).max(decimals(step));
+    let clean: f64 = format!("{sum:.most$}").parse().unwrap_or(sum);
     clean + 0.0 // no -0
 }
 
@@ -39,8 +39,11 @@ fn decimals(value: f64) -> usize {
 /// the last precedes it. `None` for an empty list.
 pub fn cycled<T>(list: &[T], is_now: impl Fn(&T) -> bool, times: i32) -> Option<&T> {
     let count = i64::try_from(list.len()).ok().filter(|count| *count > 0)?;
-    let now = list.iter().position(is_now).map(|now| now as i64);
-    let now = now.unwrap_or(if times < 0 { 0 } else { -1 });
+    let now = match list.iter().position(is_now) {
+        Some(now) => now as i64,
+        None if times < 0 => 0,
+        None => -1,
+    };
     list.get((now + i64::from(times)).rem_euclid(count) as usize)
 }
 

@@ -23,7 +23,7 @@ const MOST_RATE: f64 = 1e100;
 /// [`SymmetricTop`]: less is the rounding of a scenario's digits.
 const AXLE_TOLERANCE: f64 = 1e-9;
 
-pub(super) fn body(file: &BodyFile) -> Result<NamedBody, Problems> {
+pub(super) fn read_body(file: &BodyFile) -> Result<NamedBody, Problems> {
     few_enough(file)?;
     let mut points = rim_points(file);
     let mut named = PointNames::default();
@@ -37,7 +37,7 @@ pub(super) fn body(file: &BodyFile) -> Result<NamedBody, Problems> {
     let mut parts = Vec::with_capacity(file.part.len());
     for (index, solid) in file.part.iter().enumerate() {
         named.add(&solid.name, points.len(), "part", index);
-        match solids::part(solid) {
+        match solids::read_part(solid) {
             Ok(part) => {
                 points.extend(part.points());
                 parts.push(part);
@@ -107,18 +107,18 @@ fn rim_points(file: &BodyFile) -> Vec<PointMass> {
     let Some(rim) = &file.rim else {
         return Vec::new();
     };
-    let point = |j: usize| {
-        let (sin, cos) = libm::sincos(TAU * j as f64 / rim.points as f64);
-        let at = Vector3::new(rim.radius_m * cos, rim.radius_m * sin, rim.height_m);
-        PointMass {
-            at,
-            mass: rim.point_mass_kg,
-        }
-    };
-    (0..rim.points).map(point).collect()
+    (0..rim.points)
+        .map(|j| {
+            let (sin, cos) = libm::sincos(TAU * j as f64 / rim.points as f64);
+            PointMass {
+                at: Vector3::new(rim.radius_m * cos, rim.radius_m * sin, rim.height_m),
+                mass: rim.point_mass_kg,
+            }
+        })
+        .collect()
 }
 
-pub(super) fn motion(file: &MotionFile) -> Motion {
+pub(super) fn read_motion(file: &MotionFile) -> Motion {
     let named = file.scheme.as_deref().and_then(SchemeInfo::find);
     Motion {
         gravity: file.gravity_m_per_s2.unwrap_or(GRAVITY),
@@ -127,24 +127,24 @@ pub(super) fn motion(file: &MotionFile) -> Motion {
     }
 }
 
-pub(super) fn pushes(files: &[PushFile], body: &NamedBody) -> Result<Pushes, Problems> {
+pub(super) fn read_pushes(files: &[PushFile], body: &NamedBody) -> Result<Pushes, Problems> {
     let mut found = Problems::default();
-    let pushes = files.iter().enumerate().filter_map(|(index, file)| {
-        // The nearest name is sought for those that are told alone: there may be 100 000 points.
+    let mut pushes = Vec::with_capacity(files.len());
+    for (index, file) in files.iter().enumerate() {
+        // The nearest name is sought for the problems that are listed: there may be 100 000 points.
         if found.is_full() && body.point(&file.point).is_none() {
             found.more += 1;
-            return None;
+        } else {
+            pushes.extend(found.kept(read_push(file, body, &format!("push.{index}"))));
         }
-        found.kept(push(file, body, &format!("push.{index}")))
-    });
-    let pushes = pushes.collect::<Vec<_>>().into();
-    found.or(pushes)
+    }
+    found.or(pushes.into())
 }
 
-pub(super) fn push(file: &PushFile, body: &NamedBody, key: &str) -> Result<Push, Problems> {
+pub(super) fn read_push(file: &PushFile, body: &NamedBody, key: &str) -> Result<Push, Problems> {
     let mut problems = Problems::default();
     let point = problems.kept(body.find(&format!("{key}.point"), &file.point));
-    let window = problems.kept(window(file, key));
+    let window = problems.kept(read_window(file, key));
     let (Some(point), Some(window)) = (point, window) else {
         return Err(problems);
     };
@@ -156,11 +156,13 @@ pub(super) fn push(file: &PushFile, body: &NamedBody, key: &str) -> Result<Push,
     })
 }
 
-fn window(file: &PushFile, key: &str) -> Result<Window, Problem> {
+fn read_window(file: &PushFile, key: &str) -> Result<Window, Problem> {
     let rule = match (file.first_step, file.steps, file.from_s, file.for_s) {
         (first, Some(count), None, None) => {
-            let first = first.unwrap_or(1);
-            return Ok(Window::Steps { first, count });
+            return Ok(Window::Steps {
+                first: first.unwrap_or(1),
+                count,
+            });
         }
         (None, None, from, Some(for_s)) if file.accumulates != Some(true) => {
             let from_s = from.unwrap_or(0.0);
@@ -177,7 +179,7 @@ fn window(file: &PushFile, key: &str) -> Result<Window, Problem> {
     Err(Problem::at(key, rule))
 }
 
-pub(super) fn friction(
+pub(super) fn read_friction(
     file: Option<&FrictionFile>,
     body: &physics::Body,
 ) -> Result<Friction, Problem> {
@@ -214,7 +216,10 @@ pub(super) fn friction(
 }
 
 /// Refuses a `scheme` that is not true to `friction`.
-pub(super) fn objects(scheme: &'static SchemeInfo, friction: &Friction) -> Result<(), Problem> {
+pub(super) fn check_scheme(
+    scheme: &'static SchemeInfo,
+    friction: &Friction,
+) -> Result<(), Problem> {
     let Some(why) = scheme.admits.objection(friction) else {
         return Ok(());
     };
@@ -229,48 +234,49 @@ pub(super) fn objects(scheme: &'static SchemeInfo, friction: &Friction) -> Resul
 /// The axle moves by the moments across of all that tilts, by L along the axle, and by the torque. Where the frame is
 /// symmetric too and turns freely about the axle, the gyroscope therefore moves as a rigid body whose moment about the axle
 /// is the rotor's: that is the body which is computed, and its spin, its energy and the work of friction are the rotor's.
-pub(super) fn spinning(
+pub(super) fn spinning_body(
     file: &StartFile,
     body: &NamedBody,
     parts: &[PartFile],
 ) -> Result<physics::Body, Problem> {
-    let whole = &body.mechanics;
     let Some(name) = &file.rotor else {
-        return Ok(whole.clone());
+        return Ok(body.mechanics.clone());
     };
-    let refused = |rule: &str| {
+    with_rotor(name, body, parts).map_err(|rule| {
         let value = Value::String(name.clone());
-        Err(Problem::with_value("start.rotor", &value, rule))
-    };
+        Problem::with_value("start.rotor", &value, rule)
+    })
+}
+
+/// Returns the mechanics of `body` with the part called `name` as its rotor.
+///
+/// # Errors
+/// Why that part is no rotor.
+fn with_rotor(name: &str, body: &NamedBody, parts: &[PartFile]) -> Result<physics::Body, String> {
+    let whole = &body.mechanics;
     let Some(index) = parts.iter().position(|part| part.name == *name) else {
         let near = nearest(name, parts.iter().map(|part| part.name.as_str()));
-        return refused(&format!("is no part of this body: {near}"));
+        return Err(format!("is no part of this body: {near}"));
     };
     if SymmetricTop::of(whole).is_none() {
-        return refused(
-            "needs a body that is symmetric about its axle, and this one is lopsided: leave it out",
-        );
+        let rule =
+            "needs a body that is symmetric about its axle, and this one is lopsided: leave it out";
+        return Err(rule.to_owned());
     }
-    match alone(&body.parts[index]) {
-        Ok(moment) => {
-            (whole.clone().with_rotor(moment)).or_else(|error| refused(&error.to_string()))
-        }
-        Err(rule) => refused(rule),
-    }
+    let moment = moment_alone(&body.parts[index])?;
+    let turning = whole.clone().with_rotor(moment);
+    turning.map_err(|error| error.to_string())
 }
 
 /// The moment about the axle of a `part` that can spin alone about it, kg m².
-fn alone(part: &PlacedSolid) -> Result<f64, &'static str> {
+fn moment_alone(part: &PlacedSolid) -> Result<f64, &'static str> {
     let moments = part.moments();
     let axis = part.directions.column(2);
     let size = (moments.amax() / part.mass).sqrt();
-    let is_small = |number: f64, size: f64| number.abs() <= AXLE_TOLERANCE * size;
-    let centre = part.centre;
-    let is_on_axle = [centre.x, centre.y]
-        .iter()
-        .all(|&across| is_small(across, size.max(centre.z.abs())));
-    let is_along = is_small(axis.x, 1.0) && is_small(axis.y, 1.0);
-    let is_round = is_small(moments.x - moments.y, moments.amax());
+    let off_axle = part.centre.x.abs().max(part.centre.y.abs());
+    let is_on_axle = off_axle <= AXLE_TOLERANCE * size.max(part.centre.z.abs());
+    let is_along = axis.x.abs().max(axis.y.abs()) <= AXLE_TOLERANCE;
+    let is_round = (moments.x - moments.y).abs() <= AXLE_TOLERANCE * moments.amax();
     match (is_on_axle, is_along, is_round) {
         (false, ..) => Err("must have its centre on the axle, x and y of at_m 0"),
         (_, false, _) => Err("must have its axis along the axle, [0, 0, 1]"),

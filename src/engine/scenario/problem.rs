@@ -88,13 +88,15 @@ pub struct Problems {
 impl Problems {
     /// The one `problem` of the file `origin`.
     pub fn one(origin: impl Into<String>, problem: Problem) -> Self {
-        Self::from(problem).of(origin)
+        Self::from(problem).in_file(origin)
     }
 
     /// The same, as those of the file `origin`.
-    pub fn of(self, origin: impl Into<String>) -> Self {
-        let origin = origin.into();
-        Self { origin, ..self }
+    pub fn in_file(self, origin: impl Into<String>) -> Self {
+        Self {
+            origin: origin.into(),
+            ..self
+        }
     }
 
     /// Adds a problem; beyond the first hundred they are only counted.
@@ -135,8 +137,10 @@ impl Problems {
     #[must_use]
     pub fn inside(self, outer: &str) -> Self {
         let list = self.list.into_iter();
-        let list = list.map(|problem| problem.inside(outer)).collect();
-        Self { list, ..self }
+        Self {
+            list: list.map(|problem| problem.inside(outer)).collect(),
+            ..self
+        }
     }
 
     fn is_about_option(&self, problem: &Problem) -> bool {
@@ -285,8 +289,8 @@ fn closest<'a>(
     // that differs in no letter and no digit ("method2" for "method-2", and not for "method-2-slow").
     if !bare.is_empty() {
         let same = known.clone().find(|name| letters(name) == bare);
-        let begins = |name: &&str| letters(name).starts_with(bare);
-        if let Some(found) = same.or_else(|| known.clone().find(begins)) {
+        let begins_so = || known.clone().find(|name| letters(name).starts_with(bare));
+        if let Some(found) = same.or_else(begins_so) {
             return Some(found);
         }
     }
@@ -298,11 +302,8 @@ fn closest<'a>(
         let may_be_near = name.len() <= LONGEST_COMPARED_NAME
             && name.chars().count().abs_diff(length) <= furthest;
         may_be_near.then(|| {
-            (
-                strsim::damerau_levenshtein(&lower, &name.to_lowercase()),
-                furthest,
-                name,
-            )
+            let distance = strsim::damerau_levenshtein(&lower, &name.to_lowercase());
+            (distance, furthest, name)
         })
     });
     let (distance, furthest, name) = distances.min_by_key(|(distance, ..)| *distance)?;

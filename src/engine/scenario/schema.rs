@@ -164,14 +164,14 @@ impl Schema {
     /// Checks `value`, which the file has at `path`, as the key or the table `under` of this schema.
     pub fn check_part(self, value: &Value, under: &str, path: &str) -> Problems {
         let mut problems = Problems::default();
-        let pattern = pattern(under);
+        let place = pattern(under);
         match value {
-            _ if self.row(&pattern).is_some() => {
-                self.check_value(value, &pattern, path, &mut problems);
+            _ if self.row(&place).is_some() => {
+                self.check_value(value, &place, path, &mut problems);
             }
-            Value::Table(table) => self.check_table(table, &pattern, path, &mut problems),
+            Value::Table(table) => self.check_table(table, &place, path, &mut problems),
             other => problems.add(|| {
-                let rule = format!("must be a table of {}", self.names(&pattern).join(", "));
+                let rule = format!("must be a table of {}", self.names(&place).join(", "));
                 Problem::with_value(path, other, rule)
             }),
         }
@@ -243,9 +243,9 @@ impl Schema {
 
     /// Whether the dotted `key` leads to a table of keys, or to an element of an array of tables.
     pub fn is_table(self, key: &str) -> bool {
-        let pattern = pattern(key);
+        let table = pattern(key);
         self.rows()
-            .any(|row| row.path != pattern && is_in(row.path, &pattern))
+            .any(|row| row.path != table && is_in(row.path, &table))
     }
 
     /// Returns the names that a table of the pattern `under` may hold, each once.
@@ -284,10 +284,10 @@ pub const UNKNOWN_KEY: &str = "unknown key";
 
 /// The dotted `key` with `*` in the place of each number.
 pub(super) fn pattern(key: &str) -> String {
-    let is_number = |name: &str| !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
-    let names = key
-        .split('.')
-        .map(|name| if is_number(name) { "*" } else { name });
+    let names = key.split('.').map(|name| {
+        let is_number = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
+        if is_number { "*" } else { name }
+    });
     names.collect::<Vec<_>>().join(".")
 }
 

@@ -63,21 +63,16 @@ const TUBE: [&str; 3] = ["inner_radius_m", "outer_radius_m", "length_m"];
 
 #[rustfmt::skip]
 pub(super) static FORMS: [SolidShape; 9] = [
-    form("ring", &["radius_m"], &[], |file| Shape::Ring { radius: of(file.radius_m) }),
-    form("cylinder", &["radius_m"], &["length_m"], |file| Shape::Cylinder { radius: of(file.radius_m), length: of(file.length_m) }),
-    form("tube", &TUBE, &[], |file| Shape::Tube { inner: of(file.inner_radius_m), outer: of(file.outer_radius_m), length: of(file.length_m) }),
-    form("rod", &["length_m"], &[], |file| Shape::Rod { length: of(file.length_m) }),
-    form("ball", &["radius_m"], &[], |file| Shape::Ball { radius: of(file.radius_m) }),
-    form("shell", &["radius_m"], &[], |file| Shape::Shell { radius: of(file.radius_m) }),
-    form("cone", &["radius_m", "length_m"], &[], |file| Shape::Cone { radius: of(file.radius_m), length: of(file.length_m) }),
-    form("block", &["size_m"], &[], |file| Shape::Block { size: of(file.size_m).into() }),
-    form("moments", &["moments_kg_m2"], &["about"], |file| Shape::Moments(Vector3::from(of(file.moments_kg_m2)) / file.mass_kg)),
+    form("ring", &["radius_m"], &[], |file| Shape::Ring { radius: file.radius_m.unwrap_or_default() }),
+    form("cylinder", &["radius_m"], &["length_m"], |file| Shape::Cylinder { radius: file.radius_m.unwrap_or_default(), length: file.length_m.unwrap_or_default() }),
+    form("tube", &TUBE, &[], |file| Shape::Tube { inner: file.inner_radius_m.unwrap_or_default(), outer: file.outer_radius_m.unwrap_or_default(), length: file.length_m.unwrap_or_default() }),
+    form("rod", &["length_m"], &[], |file| Shape::Rod { length: file.length_m.unwrap_or_default() }),
+    form("ball", &["radius_m"], &[], |file| Shape::Ball { radius: file.radius_m.unwrap_or_default() }),
+    form("shell", &["radius_m"], &[], |file| Shape::Shell { radius: file.radius_m.unwrap_or_default() }),
+    form("cone", &["radius_m", "length_m"], &[], |file| Shape::Cone { radius: file.radius_m.unwrap_or_default(), length: file.length_m.unwrap_or_default() }),
+    form("block", &["size_m"], &[], |file| Shape::Block { size: file.size_m.unwrap_or_default().into() }),
+    form("moments", &["moments_kg_m2"], &["about"], |file| Shape::Moments(Vector3::from(file.moments_kg_m2.unwrap_or_default()) / file.mass_kg)),
 ];
-
-/// The dimension that a form needs, or that is nothing where it may be left out.
-fn of<T: Default>(dimension: Option<T>) -> T {
-    dimension.unwrap_or_default()
-}
 
 /// The dimensions of any shape, in the order of the table of keys, and the point that moments are about.
 const DIMENSIONS: [&str; 7] = [
@@ -107,10 +102,10 @@ pub fn has_dimension(shape: &str, name: &str) -> bool {
 
 /// The part that `file` describes.
 /// In a refusal the keys are those in the part's table.
-pub(super) fn part(file: &PartFile) -> Result<PlacedSolid, Problems> {
+pub(super) fn read_part(file: &PartFile) -> Result<PlacedSolid, Problems> {
     // An unknown shape has been refused by the keys.
-    let form = FORMS.iter().find(|form| form.name == file.shape);
-    let form = form.unwrap_or(&FORMS[0]);
+    let known = FORMS.iter().find(|form| form.name == file.shape);
+    let form = known.unwrap_or(&FORMS[0]);
     Problems::from(wrong_dimensions(form, file)).or(())?;
     check_dimensions(form, file)?;
     let axis = Vector3::from(file.axis.unwrap_or([0.0, 0.0, 1.0]));
@@ -121,7 +116,7 @@ pub(super) fn part(file: &PartFile) -> Result<PlacedSolid, Problems> {
     let centre = Vector3::from(file.at_m);
     let part = match file.about {
         Some(About::Pivot) => {
-            let moments = of(file.moments_kg_m2).into();
+            let moments = file.moments_kg_m2.unwrap_or_default().into();
             PlacedSolid::about_pivot(&moments, file.mass_kg, centre, &axis)
         }
         Some(About::Center) | None => {
@@ -129,7 +124,7 @@ pub(super) fn part(file: &PartFile) -> Result<PlacedSolid, Problems> {
         }
     };
     Ok(part.map_err(|error| {
-        let moments = vector(&Vector3::from(of(file.moments_kg_m2)));
+        let moments = vector(&Vector3::from(file.moments_kg_m2.unwrap_or_default()));
         let rule = match error {
             PartError::OutOfRange => return Problem::at("", error.to_string()),
             PartError::Unreal(_) => format!("cannot be: {error}"),
@@ -160,19 +155,22 @@ fn moves_alike(file: &PartFile, nearer: f64) -> String {
 fn wrong_dimensions(form: &SolidShape, file: &PartFile) -> Vec<Problem> {
     let written = Table::try_from(file).unwrap_or_default();
     let all = [form.needs, form.may_have].concat().join(", ");
-    let wrong = |name: &'static str| match (written.get(name), has_dimension(form.name, name)) {
-        (None, _) if form.needs.contains(&name) => {
-            let rule = format!("is missing: a part of shape {} has {all}", form.name);
-            Some(Problem::at(name, rule))
+    let shape = form.name;
+    let mut problems = Vec::new();
+    for name in DIMENSIONS {
+        match written.get(name) {
+            None if form.needs.contains(&name) => {
+                let rule = format!("is missing: a part of shape {shape} has {all}");
+                problems.push(Problem::at(name, rule));
+            }
+            Some(value) if !has_dimension(shape, name) => {
+                let rule = format!("does not go with shape {shape}, which has {all}: leave it out");
+                problems.push(Problem::with_value(name, value, rule));
+            }
+            _ => {}
         }
-        (Some(value), false) => {
-            let shape = form.name;
-            let rule = format!("does not go with shape {shape}, which has {all}: leave it out");
-            Some(Problem::with_value(name, value, rule))
-        }
-        _ => None,
-    };
-    DIMENSIONS.into_iter().filter_map(wrong).collect()
+    }
+    problems
 }
 
 /// Refuses dimensions that no solid of this form has.
@@ -197,7 +195,7 @@ fn check_dimensions(form: &SolidShape, file: &PartFile) -> Result<(), Problem> {
         ("size_m", file.size_m),
         ("moments_kg_m2", file.moments_kg_m2),
     ] {
-        let numbers = Vector3::from(of(numbers));
+        let numbers = Vector3::from(numbers.unwrap_or_default());
         if numbers.min() < 0.0 {
             return refused(name, vector(&numbers), "must hold no negative number");
         }
@@ -230,8 +228,10 @@ pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
             if !told.is_empty() {
                 part.retain(|key, _| !DIMENSIONS.contains(&key));
             }
-            let told = told.into_iter();
-            part.extend(told.map(|(name, value)| (name.to_owned(), value)));
+            part.extend(
+                told.into_iter()
+                    .map(|(name, value)| (name.to_owned(), value)),
+            );
         }
         _ => {}
     }
@@ -240,10 +240,10 @@ pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
 /// The dimensions that a part of the shape `shape` has in the place of `old`; none where there is no such shape, or no such
 /// part.
 fn dimensions(old: &PartFile, shape: &str) -> Vec<(&'static str, Value)> {
-    let Ok(part) = part(old) else {
+    let Ok(part) = read_part(old) else {
         return Vec::new();
     };
-    let size = size(&part.shape);
+    let size = size_of(&part.shape);
     let (radius, length) = (0.5 * size.x.max(size.y), size.z);
     let hole = match part.shape {
         Shape::Tube { inner, .. } => inner,
@@ -268,8 +268,7 @@ fn dimensions(old: &PartFile, shape: &str) -> Vec<(&'static str, Value)> {
 }
 
 /// How long a solid is along its x, its y and its axis, m.
-fn size(shape: &Shape) -> Vector3<f64> {
-    let round = |radius: f64, length: f64| Vector3::new(2.0 * radius, 2.0 * radius, length);
+fn size_of(shape: &Shape) -> Vector3<f64> {
     match *shape {
         Shape::Ring { radius } => round(radius, 0.0),
         Shape::Cylinder { radius, length } | Shape::Cone { radius, length } => {
@@ -283,9 +282,12 @@ fn size(shape: &Shape) -> Vector3<f64> {
     }
 }
 
+fn round(radius: f64, length: f64) -> Vector3<f64> {
+    Vector3::new(2.0 * radius, 2.0 * radius, length)
+}
+
 /// The sides of the block that has these moments divided by the mass, m.
 fn block_of(moments: &Vector3<f64>) -> Vector3<f64> {
     let [a, b, c] = (*moments).into();
-    let side = |twice: f64| (6.0 * twice.max(0.0)).sqrt();
-    Vector3::new(side(b + c - a), side(a + c - b), side(a + b - c))
+    Vector3::new(b + c - a, a + c - b, a + b - c).map(|twice| (6.0 * twice.max(0.0)).sqrt())
 }

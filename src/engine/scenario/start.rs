@@ -22,33 +22,29 @@ const RATE_ROUNDING: f64 = 1e-15;
 const RPM: f64 = TAU / 60.0;
 
 /// The state at t = 0 under the gravity `gravity`, m/s²; pushes do not count.
-pub(super) fn start(
+pub(super) fn start_state(
     file: &StartFile,
     body: &physics::Body,
     gravity: f64,
 ) -> Result<State, Problem> {
     is_told_once(file)?;
-    let orientation = orientation(file);
-    let turned = |frame: Option<VectorFrame>, vector: [f64; 3]| match frame.unwrap_or_default() {
-        VectorFrame::World => Vector3::from(vector),
-        VectorFrame::Body => orientation * Vector3::from(vector),
-    };
-    let momentum_of = |velocity: Vector3<f64>| orientation * (body.inertia() * velocity);
-    let momentum = match (file.momentum_Js, file.omega_rad_per_s, spin(file)) {
-        (Some(momentum), ..) => turned(file.momentum_frame, momentum),
-        (None, Some(omega), _) => {
-            let omega = turned(file.omega_frame, omega);
-            momentum_of(orientation.tr_mul(&omega))
-        }
-        (None, None, None) => momentum_of(of_euler_rates(file, &orientation)),
-        (None, None, Some(spin)) => {
+    let orientation = written_orientation(file);
+    let momentum = if let Some(momentum) = file.momentum_Js {
+        in_world(momentum, file.momentum_frame, &orientation)
+    } else {
+        let velocity = if let Some(omega) = file.omega_rad_per_s {
+            orientation.tr_mul(&in_world(omega, file.omega_frame, &orientation))
+        } else if let Some(spin) = spin(file) {
             let mut velocity = Vector3::new(0.0, 0.0, spin);
             if file.steady == Some(true) {
                 let precession = steady(body, &orientation, spin, gravity);
                 velocity += precession.map_err(|rule| refused("steady", true, rule))?;
             }
-            momentum_of(velocity)
-        }
+            velocity
+        } else {
+            of_euler_rates(file, &orientation)
+        };
+        orientation * (body.inertia() * velocity)
     };
     Ok(State {
         time_s: 0.0,
@@ -57,23 +53,33 @@ pub(super) fn start(
     })
 }
 
+/// The world's components of `vector`, which is given in `frame`.
+fn in_world(
+    vector: [f64; 3],
+    frame: Option<VectorFrame>,
+    orientation: &Matrix3<f64>,
+) -> Vector3<f64> {
+    match frame.unwrap_or_default() {
+        VectorFrame::World => Vector3::from(vector),
+        VectorFrame::Body => orientation * Vector3::from(vector),
+    }
+}
+
 /// The same in revolutions a minute.
 pub fn rpm(rad_per_s: f64) -> f64 {
     rad_per_s / RPM
 }
 
 /// Rz(turn) Rx(tilt) Rz(roll); an angle of 0 leaves every bit of the others alone.
-fn orientation(file: &StartFile) -> Matrix3<f64> {
-    let about = |axis: Vector3<f64>, deg: Option<f64>| {
-        rotation::about(&axis, deg.unwrap_or(0.0).to_radians())
-    };
-    let is_turned = |deg: Option<f64>| deg.is_some_and(|deg| deg != 0.0);
-    let mut orientation = about(Vector3::x(), file.tilt_deg);
-    if is_turned(file.turn_deg) {
-        orientation = about(Vector3::z(), file.turn_deg) * orientation;
+fn written_orientation(file: &StartFile) -> Matrix3<f64> {
+    let [tilt, turn, roll] = [file.tilt_deg, file.turn_deg, file.roll_deg]
+        .map(|degrees| degrees.unwrap_or(0.0).to_radians());
+    let mut orientation = rotation::about(&Vector3::x(), tilt);
+    if turn != 0.0 {
+        orientation = rotation::about(&Vector3::z(), turn) * orientation;
     }
-    if is_turned(file.roll_deg) {
-        orientation *= about(Vector3::z(), file.roll_deg);
+    if roll != 0.0 {
+        orientation *= rotation::about(&Vector3::z(), roll);
     }
     orientation
 }
@@ -86,10 +92,9 @@ fn orientation(file: &StartFile) -> Matrix3<f64> {
 fn of_euler_rates(file: &StartFile, orientation: &Matrix3<f64>) -> Vector3<f64> {
     let vertical = orientation.row(2).transpose();
     let (nodes, _) = nodes(file);
-    let rate = |rate: Option<f64>| rate.unwrap_or(0.0);
-    rate(file.precession_rad_per_s) * vertical
-        + rate(file.nutation_rad_per_s) * nodes
-        + rate(file.psi_dot_rad_per_s) * Vector3::z()
+    file.precession_rad_per_s.unwrap_or(0.0) * vertical
+        + file.nutation_rad_per_s.unwrap_or(0.0) * nodes
+        + file.psi_dot_rad_per_s.unwrap_or(0.0) * Vector3::z()
 }
 
 /// Returns the line of nodes and the direction across it and the axle, body frame; with the latter the vertical is
@@ -190,9 +195,10 @@ fn steady(
         0.0 => Some(0.0),
         _ => steady_precession(top.across * cosine, top.along * spin, load).0,
     };
-    let slow = slow.filter(|slow| slow.is_finite());
-    slow.map(|slow| slow * across)
-        .ok_or_else(|| too_slow(least_spin(&top, cosine, load)))
+    match slow {
+        Some(slow) if slow.is_finite() => Ok(slow * across),
+        _ => Err(too_slow(least_spin(&top, cosine, load))),
+    }
 }
 
 /// The least spin with a steady precession, rad/s: I3² ω3² = 4 I1 cos θ M g l.
@@ -269,9 +275,9 @@ fn replaced(name: &str) -> Vec<&'static str> {
 
 /// Whether a file can have only one of the dotted keys `one` and `other`, since both tell the momentum at the start.
 pub fn exclude_each_other(one: &str, other: &str) -> bool {
-    let of_start = |key: &'_ str| Some(key.strip_prefix("start.")?.split('.').next()?.to_owned());
-    let names = of_start(one).zip(of_start(other));
-    names.is_some_and(|(one, other)| replaced(&one).contains(&other.as_str()))
+    let [one, other] = [one, other].map(|key| key.strip_prefix("start.")?.split('.').next());
+    one.zip(other)
+        .is_some_and(|(one, other)| replaced(one).contains(&other))
 }
 
 /// Removes from the file's `table` what a new value at `key` replaces.
@@ -290,17 +296,19 @@ fn remove(table: &mut Table, names: &[&str]) {
 
 /// Whether a new `value` at `key` is about a way of telling the momentum that `table` does not use.
 pub(super) fn is_other_way(table: &Table, key: &str, value: &Value) -> bool {
-    let is_given = |name: &str| find(table, &format!("start.{name}")).is_some();
     let name = key.strip_prefix("start.").unwrap_or_default();
-    match name.split_once('.').map_or(name, |(vector, _)| vector) {
-        "momentum_Js" if name != "momentum_Js" => !is_given("momentum_Js"),
-        "omega_rad_per_s" if name != "omega_rad_per_s" => !is_given("omega_rad_per_s"),
-        "momentum_frame" => !is_given("momentum_Js"),
-        "omega_frame" => !is_given("omega_rad_per_s"),
-        name if EULER.contains(&name) => !EULER.iter().any(|rate| is_given(rate)),
-        "steady" => value.as_bool() == Some(true) && !SPIN[..2].iter().any(|spin| is_given(spin)),
-        _ => false,
-    }
+    let ways: &[&str] = match name.split_once('.').map_or(name, |(vector, _)| vector) {
+        "momentum_Js" if name != "momentum_Js" => &["momentum_Js"],
+        "omega_rad_per_s" if name != "omega_rad_per_s" => &["omega_rad_per_s"],
+        "momentum_frame" => &["momentum_Js"],
+        "omega_frame" => &["omega_rad_per_s"],
+        name if EULER.contains(&name) => &EULER,
+        "steady" if value.as_bool() == Some(true) => &SPIN[..2],
+        _ => return false,
+    };
+    let start = find(table, "start");
+    ways.iter()
+        .all(|way| start.is_none_or(|start| start.get(way).is_none()))
 }
 
 /// Tells the momentum in `table` in the way that `key` is about, as it is at the start of `now`; where `value` is a frame,
@@ -318,25 +326,31 @@ pub(super) fn tell_other_way(
     let own = way_of(name).unwrap_or(&MOMENTUM_KEYS);
     remove(table, &replaced(own[own.len() - 1]));
     let start = &now.start;
-    let framed = |in_world: Vector3<f64>| match value.as_str() {
-        Some("body") => vector(&start.orientation.tr_mul(&in_world)),
-        _ => vector(&in_world),
-    };
+    let is_body_frame = value.as_str() == Some("body");
     let told: Vec<(&str, Value)> = match own[0] {
         "spin_rpm" => vec![("spin_rad_per_s", now.spin_rad_per_s(start).into())],
-        "omega_rad_per_s" => vec![(
-            "omega_rad_per_s",
-            framed(angular_velocity(&now.body.mechanics, start)),
-        )],
         "precession_rad_per_s" => {
             let rates = euler_rates(now).ok_or_else(|| Problem::at(key, NO_RATES))?;
             EULER.into_iter().zip(rates.map(Value::from)).collect()
         }
-        _ => vec![("momentum_Js", framed(start.momentum))],
+        way => {
+            let (name, in_world) = match way {
+                "omega_rad_per_s" => (way, angular_velocity(&now.body.mechanics, start)),
+                _ => ("momentum_Js", start.momentum),
+            };
+            let framed = if is_body_frame {
+                start.orientation.tr_mul(&in_world)
+            } else {
+                in_world
+            };
+            vec![(name, vector(&framed))]
+        }
     };
     if let Some(Value::Table(table)) = table.get_mut("start") {
-        let told = told.into_iter();
-        table.extend(told.map(|(name, value)| (name.to_owned(), value)));
+        table.extend(
+            told.into_iter()
+                .map(|(name, value)| (name.to_owned(), value)),
+        );
     }
     Ok(())
 }

@@ -74,10 +74,11 @@ fn one(value: &Value) -> Result<Command, Problems> {
         return Err(Problem::with_value("", value, "must be a table").into());
     };
     let beside = COMMANDS.iter().find(|row| table.contains_key(row.name));
-    let is_known = |name: &str| COMMANDS.iter().any(|row| row.name == name);
     let mut unknown_names = Problems::default();
-    for name in table.keys().filter(|name| !is_known(name)) {
-        unknown_names.add(|| unknown(name, beside));
+    for name in table.keys() {
+        if COMMANDS.iter().all(|row| row.name != name) {
+            unknown_names.add(|| unknown(name, beside));
+        }
     }
     unknown_names.or(())?;
     match table.iter().collect::<Vec<_>>()[..] {
@@ -87,8 +88,11 @@ fn one(value: &Value) -> Result<Command, Problems> {
             Err(Problem::at("", rule).into())
         }
         _ => {
-            let names: Vec<_> = table.keys().map(String::as_str).collect();
-            let names = names.join(", ");
+            let names = table
+                .keys()
+                .map(String::as_str)
+                .collect::<Vec<_>>()
+                .join(", ");
             let rule = format!("holds {names}: one command each, the next in a [[do]] of its own");
             Err(Problem::at("", rule).into())
         }

@@ -49,7 +49,7 @@ impl OwnCode {
             Err(problems)
                 if measured.is_err() && ![TIME_COLUMN, "="].iter().any(|it| text.contains(it)) =>
             {
-                return Err(problems.of(name));
+                return Err(problems.in_file(name));
             }
             Err(_) => return Ok((measured?, None)),
         };

@@ -91,7 +91,7 @@ impl Free {
         let ValueKind::Number(range) = kind else {
             return Err(not_a_number(key, kind));
         };
-        if Effect::of(key) == Effect::None || key.starts_with("edit.") {
+        if Effect::of_key(key) == Effect::None || key.starts_with("edit.") {
             return Err("no number of a run depends on this key: it cannot be fitted".to_owned());
         }
         let written = dotted::find(scenario.table(), key).cloned();

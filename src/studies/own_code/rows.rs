@@ -227,7 +227,7 @@ pub fn read(
 
 /// The cells of `text` with the names of `map`.
 fn renamed(text: &str, map: &[Renaming]) -> Result<Csv, Problems> {
-    let mut cells = Csv::of(text, MOST_ROW_VALUES)?;
+    let mut cells = Csv::parse(text, MOST_ROW_VALUES)?;
     cells.rename(map, |name| ROW_COLUMN_NAMES.contains(&name))?;
     if cells.titles.is_empty() {
         name_columns(&mut cells, "", |name| ROW_COLUMN_NAMES.contains(&name)).map_err(

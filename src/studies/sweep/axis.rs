@@ -25,10 +25,9 @@ const AXIS_VALUE_DIGITS: usize = 15;
 
 impl SweepAxis {
     pub(super) fn new(vary: &VaryFile, place: &str) -> Result<Self, Vec<Problem>> {
-        let at = |name: &str| join(place, name);
-        let kind = kind(&vary.key).map_err(|rule| {
+        let kind = kind_of(&vary.key).map_err(|rule| {
             let key = Value::String(vary.key.clone());
-            vec![Problem::with_value(at("key"), &key, rule)]
+            vec![Problem::with_value(join(place, "key"), &key, rule)]
         })?;
         let values = match (&vary.values, vary.from, vary.to, vary.count) {
             (Some(values), None, None, None) => values.clone(),
@@ -42,25 +41,26 @@ impl SweepAxis {
         };
         if values.is_empty() {
             let rule = "must hold at least one value";
-            return Err(vec![Problem::at(at("values"), rule)]);
+            return Err(vec![Problem::at(join(place, "values"), rule)]);
         }
-        let (key, values) = (vary.key.clone(), values.into_iter());
-        let values: Vec<_> = values.map(|value| as_kind(kind, value)).collect();
-        let problems: Vec<_> = values
-            .iter()
-            .filter_map(|value| {
-                let rule = fits(kind, value).err()?;
-                Some(Problem::with_value(key.clone(), value, rule))
-            })
-            .collect();
-        if !problems.is_empty() {
-            return Err(problems);
+        let axis = Self {
+            key: vary.key.clone(),
+            values: values
+                .into_iter()
+                .map(|value| as_kind(kind, value))
+                .collect(),
+        };
+        let mut problems = Vec::new();
+        for value in &axis.values {
+            if let Err(rule) = check_value(kind, value) {
+                problems.push(Problem::with_value(axis.key.clone(), value, rule));
+            }
         }
-        Ok(Self { key, values })
+        problems.is_empty().then_some(axis).ok_or(problems)
     }
 }
 
-pub(super) fn axes(files: &[VaryFile], problems: &mut Vec<Problem>) -> Vec<SweepAxis> {
+pub(super) fn read_axes(files: &[VaryFile], problems: &mut Vec<Problem>) -> Vec<SweepAxis> {
     let mut axes: Vec<SweepAxis> = Vec::new();
     if files.is_empty() {
         let rule = "is missing: a sweep varies at least one key, by [[vary]] or --vary KEY=A..B:N";
@@ -94,7 +94,7 @@ fn clash(key: &str, other: &str) -> Option<String> {
 }
 
 /// What a value of the dotted `key` may be.
-fn kind(key: &str) -> Result<ValueKind, String> {
+fn kind_of(key: &str) -> Result<ValueKind, String> {
     if ["gyrolab", "expected", "edit"].contains(&key.split('.').next().unwrap_or_default()) {
         return Err("is no part of the set-up, and cannot vary".to_owned());
     }
@@ -102,7 +102,7 @@ fn kind(key: &str) -> Result<ValueKind, String> {
 }
 
 /// Whether `value` may stand at a key of this kind. (Whether the scenario takes it shows at its point.)
-fn fits(kind: ValueKind, value: &Value) -> Result<(), String> {
+fn check_value(kind: ValueKind, value: &Value) -> Result<(), String> {
     kind.check(value)?;
     let is_steered = value
         .as_str()
@@ -127,15 +127,12 @@ fn range(from: f64, to: f64, count: u64) -> Result<Vec<Value>, String> {
         )),
         count => {
             let last = count - 1;
-            let value = |index: u64| match index {
-                0 => from,
-                index if index == last => to,
-                index => rounded(
-                    from + (to - from) * (index as f64 / last as f64),
-                    AXIS_VALUE_DIGITS,
-                ),
-            };
-            Ok((0..count).map(|index| Value::Float(value(index))).collect())
+            let inner = (1..last).map(|index| {
+                let share = index as f64 / last as f64;
+                rounded(from + (to - from) * share, AXIS_VALUE_DIGITS)
+            });
+            let values = std::iter::once(from).chain(inner).chain([to]);
+            Ok(values.map(Value::Float).collect())
         }
     }
 }
@@ -164,25 +161,26 @@ pub fn parse(argument: &str) -> Result<VaryFile, Problems> {
 }
 
 fn read(argument: &str) -> Result<VaryFile, String> {
-    let (key, text) = argument
+    let (key, written) = argument
         .split_once('=')
         .ok_or("must be KEY=A..B:N, or KEY=V1,V2,..., such as motion.time_step_s=0.01..0.1:10")?;
     let mut vary = VaryFile {
         key: key.trim().to_owned(),
         ..VaryFile::default()
     };
-    let text = text.trim();
+    let text = written.trim();
     let is_number = matches!(
-        kind(&vary.key),
+        kind_of(&vary.key),
         Ok(ValueKind::Number(_) | ValueKind::Whole(..))
     );
     let Some((from, rest)) = text.split_once("..").filter(|_| is_number) else {
         vary.values = Some(listed(text)?);
         return Ok(vary);
     };
-    let number = |text: &str| text.trim().parse::<f64>().ok();
     let (to, count) = rest.split_once(':').unwrap_or_default();
-    (vary.from, vary.to, vary.count) = (number(from), number(to), count.trim().parse().ok());
+    vary.from = from.trim().parse().ok();
+    vary.to = to.trim().parse().ok();
+    vary.count = count.trim().parse().ok();
     if vary.from.and(vary.to).and(vary.count).is_none() {
         return Err("must be A..B:N: two numbers and how many values, both ends among them".into());
     }
@@ -208,7 +206,7 @@ fn listed(text: &str) -> Result<Vec<Value>, String> {
     }
     parts.push(&text[begin..]);
     parts
-        .iter()
+        .into_iter()
         .map(|part| match (part.trim(), toml_or_text(part.trim())) {
             ("", _) => Err("has an empty place between its commas".to_owned()),
             (_, (value, mistake)) => mistake.map_or(Ok(value), Err),

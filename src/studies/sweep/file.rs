@@ -130,8 +130,8 @@ impl Shard {
 
     /// The points, of all `points` of a sweep, that belong to it.
     pub fn range(self, points: u64) -> ops::Range<u64> {
-        let begin = |number| points * number / self.of; // both are small enough for u64
-        begin(self.number - 1)..begin(self.number)
+        // Both are small enough for u64.
+        points * (self.number - 1) / self.of..points * self.number / self.of
     }
 }
 

@@ -1,6 +1,6 @@
 //! A checked sweep: its points in their order, the scenario of each, and its row.
 
-use super::axis::{SweepAxis, axes};
+use super::axis::{SweepAxis, read_axes};
 use super::file::{Base, Shard, SweepFile};
 use crate::engine::analysis::readouts::{
     self, READOUTS, Readout, ReadoutSource, ReadoutValue as Readable,
@@ -62,10 +62,13 @@ impl Sweep {
         placed: &dyn Fn(Vec<Problem>) -> Problems,
     ) -> Result<Self, Problems> {
         let mut problems = Vec::new();
-        let axes = axes(&file.vary, &mut problems);
+        let axes = read_axes(&file.vary, &mut problems);
         let measure = measured(file.measure.as_deref(), &axes, &mut problems);
-        let shard = file.shard.as_deref().map_or(Ok(Shard::WHOLE), str::parse);
-        let shard = shard.map_err(|rule| problems.push(Problem::at("shard", rule)));
+        let stated = file.shard.as_deref().map_or(Ok(Shard::WHOLE), str::parse);
+        let shard = stated.unwrap_or_else(|rule| {
+            problems.push(Problem::at("shard", rule));
+            Shard::WHOLE
+        });
         let counts = axes.iter().map(|axis| axis.values.len() as u64);
         let points = counts.fold(1, u64::saturating_mul);
         if points > MOST_GRID_POINTS {
@@ -91,8 +94,8 @@ impl Sweep {
             measure,
             shard: Shard::WHOLE,
             points,
-        };
-        let sweep = sweep.with_shard(shard.unwrap_or(Shard::WHOLE));
+        }
+        .with_shard(shard);
         let led = sweep.keys_lead_somewhere();
         led.map_err(|problem| placed(vec![problem]))?;
         Ok(sweep)
@@ -154,8 +157,8 @@ impl Sweep {
     fn counts_otherwise(&self, key: &str) -> Option<String> {
         number_of_push(key)?;
         let (entry, name) = key.rsplit_once('.')?;
-        let has = |name: &str| find(self.base.table(), &join(entry, name)).is_some();
-        let (in_steps, in_seconds) = (has("steps"), has("for_s"));
+        let [in_steps, in_seconds] =
+            ["steps", "for_s"].map(|name| find(self.base.table(), &join(entry, name)).is_some());
         IN_STEPS_OR_SECONDS.into_iter().find_map(|(steps, seconds)| {
             if name == steps && in_seconds {
                 return Some(format!(
@@ -211,10 +214,13 @@ impl Sweep {
         if record.len() != labels.len() + self.measure.len() {
             return None;
         }
-        let cells = record.iter().skip(labels.len());
-        let cells = self.measure.iter().zip(cells);
-        let cells = cells.map(|(readout, cell)| readout.parse(cell));
-        let cells: Vec<_> = cells.collect::<Option<_>>()?;
+        let written = record.iter().skip(labels.len());
+        let cells: Vec<_> = self
+            .measure
+            .iter()
+            .zip(written)
+            .map(|(readout, cell)| readout.parse(cell))
+            .collect::<Option<_>>()?;
         (line(&(labels, &cells)).as_bytes() == text).then_some(cells)
     }
 
@@ -258,12 +264,10 @@ impl Sweep {
         let is_empty = cells.iter().all(|cell| *cell == Readable::Nothing);
         Some(SweepRow {
             line: line(&(self.labels(row), cells)),
-            empty: is_empty.then(|| {
-                failure
-                    .clone()
-                    .unwrap_or_else(|| "none of its readouts can be stated".to_owned())
-            }),
             has_failed: failure.is_some(),
+            empty: is_empty.then(|| {
+                failure.unwrap_or_else(|| "none of its readouts can be stated".to_owned())
+            }),
         })
     }
 }
@@ -285,25 +289,25 @@ fn measured(
     }
     let mut found: Vec<&Readout> = Vec::new();
     for name in names {
-        let mut refuse = |rule: &str| {
-            let value = Value::String(name.clone());
-            problems.push(Problem::with_value("measure", &value, rule));
-        };
-        match readouts::find(name) {
-            None => refuse(&format!("is no readout: {}", readouts::nearest(name))),
+        let rule = match readouts::find(name) {
+            None => format!("is no readout: {}", readouts::nearest(name)),
             Some(readout) if readout.source == ReadoutSource::Clock => {
-                refuse(
-                    "is told by the clock: it is another number each time, and so would be the file",
-                );
+                "is told by the clock: it is another number each time, and so would be the file"
+                    .to_owned()
             }
             Some(readout) if found.iter().any(|other| other.name == readout.name) => {
-                refuse("is named twice");
+                "is named twice".to_owned()
             }
             Some(readout) if axes.iter().any(|axis| axis.key == readout.name) => {
-                refuse("varies, and has its column already");
+                "varies, and has its column already".to_owned()
             }
-            Some(readout) => found.push(readout),
-        }
+            Some(readout) => {
+                found.push(readout);
+                continue;
+            }
+        };
+        let value = Value::String(name.clone());
+        problems.push(Problem::with_value("measure", &value, rule));
     }
     found
 }
@@ -313,15 +317,7 @@ fn inside(problems: Problems, document: &Document) -> Problems {
     if problems.list.iter().any(|problem| problem.place.is_some()) {
         return problems; // they are those of an option
     }
-    let list: Vec<_> = problems
-        .list
-        .into_iter()
-        .map(|problem| Problem {
-            key: join("scenario", &problem.key),
-            ..problem
-        })
-        .collect();
-    document.placed(list)
+    document.placed(problems.inside("scenario").list)
 }
 
 fn line(cells: &impl Serialize) -> String {

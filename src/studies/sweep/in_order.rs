@@ -11,28 +11,31 @@ use std::time::Duration;
 
 /// How far the work may be ahead of the first result that is not there yet.
 const AHEAD: u64 = 1 << 14;
-/// Least time between two takings: each wakes the thread that takes.
-const LEAST_TAKE_INTERVAL: Duration = Duration::from_millis(10);
+/// Least time between two collections: each wakes the collecting thread.
+const LEAST_COLLECT_INTERVAL: Duration = Duration::from_millis(10);
 
-/// Computes `of` for all of `range` on all cores, and gives the results to `take` in the order of the range, as many at once
-/// as are there. It ends where `take` breaks, or where `of`, which is told whether to go on, gives nothing.
+/// Calls `compute` for every index of `range` on all cores, and passes the results to `collect` in the order of the range,
+/// as many at once as are ready. Ends when `collect` breaks, or when `compute` returns `None`; its second argument says
+/// whether to continue.
 pub fn in_order<T: Send>(
     range: Range<u64>,
-    of: impl Fn(u64, &dyn Fn() -> bool) -> Option<T> + Sync,
-    mut take: impl FnMut(Vec<T>) -> ControlFlow<()>,
+    compute: impl Fn(u64, &dyn Fn() -> bool) -> Option<T> + Sync,
+    mut collect: impl FnMut(Vec<T>) -> ControlFlow<()>,
 ) {
     let Some(pool) = cores::threads() else {
-        let mut results = range.map_while(|index| of(index, &|| true));
-        let _ = results.try_for_each(|result| take(vec![result]));
+        let mut results = range.map_while(|index| compute(index, &|| true));
+        let _ = results.try_for_each(|result| collect(vec![result]));
         return;
     };
     let (taken, goes_on) = (AtomicU64::new(range.start), AtomicBool::new(true));
-    let goes_on_now = || goes_on.load(Relaxed);
     let work = |results: &mut Sender<(u64, T)>, index: u64| {
-        while goes_on_now() && index >= taken.load(Relaxed) + AHEAD {
-            sleep(LEAST_TAKE_INTERVAL);
+        while goes_on.load(Relaxed) && index >= taken.load(Relaxed) + AHEAD {
+            sleep(LEAST_COLLECT_INTERVAL);
         }
-        let result = goes_on_now().then(|| of(index, &goes_on_now))??;
+        if !goes_on.load(Relaxed) {
+            return None;
+        }
+        let result = compute(index, &|| goes_on.load(Relaxed))?;
         results.send((index, result)).ok()
     };
     let (sender, receiver) = channel();
@@ -41,28 +44,28 @@ pub fn in_order<T: Send>(
             // Each core takes the next of the range: what is missing behind a result has been begun.
             range.par_bridge().try_for_each_with(sender, work);
         });
-        hand_over(&receiver, &taken, &mut take);
+        hand_over(&receiver, &taken, &mut collect);
         goes_on.store(false, Relaxed);
     });
 }
 
-/// Gives the results to `take` in their order, until the work has ended or `take` breaks. `taken` is the index of the next
-/// one.
+/// Passes the results to `collect` in their order, until the work has ended or `collect` breaks. `taken` is the index of the
+/// next one.
 fn hand_over<T>(
     receiver: &Receiver<(u64, T)>,
     taken: &AtomicU64,
-    take: &mut impl FnMut(Vec<T>) -> ControlFlow<()>,
+    collect: &mut impl FnMut(Vec<T>) -> ControlFlow<()>,
 ) {
     let (mut waiting, mut wanted) = (BTreeMap::new(), taken.load(Relaxed));
     while let Ok(first) = receiver.recv() {
-        sleep(LEAST_TAKE_INTERVAL);
+        sleep(LEAST_COLLECT_INTERVAL);
         waiting.extend(std::iter::once(first).chain(receiver.try_iter()));
         let mut ready = Vec::new();
         while let Some(result) = waiting.remove(&wanted) {
             ready.push(result);
             wanted += 1;
         }
-        if !ready.is_empty() && take(ready).is_break() {
+        if !ready.is_empty() && collect(ready).is_break() {
             return;
         }
         taken.store(wanted, Relaxed);

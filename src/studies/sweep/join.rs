@@ -3,7 +3,8 @@
 use super::file::Shard;
 use super::grid::Sweep;
 use super::part::{
-    EmptyRows, SweepFileError, There, cannot_read, cannot_write, first_difference, refused, whole,
+    EmptyRows, FoundRows, SweepFileError, cannot_read, cannot_write, first_difference, refused,
+    whole,
 };
 use crate::engine::export::Destination;
 use crate::engine::scenario::document::Document;
@@ -30,15 +31,14 @@ pub fn join(
         return Ok((sweep, empty));
     }
     let mut output = Destination::open_file(path, may_replace)?;
-    let cannot_write = |error| cannot_write(path, &error);
     let written = output.write_all(sweep.header().as_bytes());
-    written.map_err(cannot_write)?;
+    written.map_err(|error| cannot_write(path, &error))?;
     let (mut rows, mut empty) = (0, EmptyRows::default());
     for (shard, part) in &shards {
         let (of_shard, mut lines) = rows_of(shard, part)?;
         empty.append(of_shard, rows);
         rows += shard.rows();
-        io::copy(&mut lines, &mut output).map_err(cannot_write)?;
+        io::copy(&mut lines, &mut output).map_err(|error| cannot_write(path, &error))?;
     }
     output.keep()?;
     Ok((sweep, empty))
@@ -46,18 +46,22 @@ pub fn join(
 
 /// The rows without readouts in the file `path` of the whole `shard`, and a reader of its lines.
 fn rows_of(shard: &Sweep, path: &Path) -> Result<(EmptyRows, impl Read), SweepFileError> {
-    let cannot_read = |error| cannot_read(path, &error);
-    let file = File::open(path).map_err(cannot_read)?;
-    let there = There::of(&file, shard).map_err(cannot_read)?;
-    let empty = there.whole(shard).map_err(|why| {
-        let shard = shard.shard;
-        let why = format!("is not the whole shard {shard}: {why}; run its command again");
-        refused(path, why)
+    let (file, rows) = open_rows(path, shard).map_err(|error| cannot_read(path, &error))?;
+    let empty = rows.whole(shard).map_err(|why| {
+        let number = shard.shard;
+        let rule = format!("is not the whole shard {number}: {why}; run its command again");
+        refused(path, rule)
     })?;
+    Ok((empty, file))
+}
+
+/// Opens `path` at its first row, and compares its rows with those of `shard`.
+fn open_rows(path: &Path, shard: &Sweep) -> io::Result<(BufReader<File>, FoundRows)> {
+    let file = File::open(path)?;
+    let rows = FoundRows::read(&file, shard)?;
     let mut lines = BufReader::new(file);
-    let begin = SeekFrom::Start(shard.header().len() as u64);
-    lines.seek(begin).map_err(cannot_read)?;
-    Ok((empty, lines))
+    lines.seek(SeekFrom::Start(shard.header().len() as u64))?;
+    Ok((lines, rows))
 }
 
 /// The sweep whose shards these are, all of them and each once.
@@ -84,15 +88,16 @@ fn of_one_sweep(shards: &[(Sweep, &Path)]) -> Result<Sweep, SweepFileError> {
         return Err(refused(path, why));
     }
     let mut missing = (1..=of).filter(|number| !numbers.contains(number));
-    let named = missing.by_ref().take(MOST_MISSING_ROWS);
-    let named: Vec<_> = named.map(|number| number.to_string()).collect();
-    if named.is_empty() {
+    let first: Vec<_> = missing
+        .by_ref()
+        .take(MOST_MISSING_ROWS)
+        .map(|number| number.to_string())
+        .collect();
+    if first.is_empty() {
         return Ok(whole);
     }
-    let (named, more) = (
-        named.join(", "),
-        missing.next().map_or("", |_| ", and more"),
-    );
+    let named = first.join(", ");
+    let more = missing.next().map_or("", |_| ", and more");
     let why = format!("the sweep has {of} shards, and these are missing: {named}{more}");
     Err(SweepFileError::Refused(why))
 }

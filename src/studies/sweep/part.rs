@@ -82,17 +82,19 @@ impl EmptyRows {
     /// says yes.
     pub fn in_words(&self, sweep: &Sweep, goes_on: impl Fn() -> bool) -> Vec<String> {
         let begin = Instant::now();
-        let goes_on = || begin.elapsed() < EMPTY_ROW_LIMIT && goes_on();
-        let again = |row: u64| goes_on().then(|| sweep.row(row, &goes_on)?.empty).flatten();
-        self.first
-            .iter()
-            .map(|(row, why)| {
-                let why = why.clone().or_else(|| again(*row));
-                let why =
-                    why.unwrap_or_else(|| "gyrolab run with these values says why".to_owned());
-                format!("{}: {why}", sweep.point_in_words(*row))
-            })
-            .collect()
+        let has_time = || begin.elapsed() < EMPTY_ROW_LIMIT && goes_on();
+        let lines = self.first.iter().map(|(row, known)| {
+            let why = match known {
+                Some(why) => Some(why.clone()),
+                None if has_time() => sweep.row(*row, &has_time).and_then(|row| row.empty),
+                None => None,
+            };
+            let why = why
+                .as_deref()
+                .unwrap_or("gyrolab run with these values says why");
+            format!("{}: {why}", sweep.point_in_words(*row))
+        });
+        lines.collect()
     }
 }
 
@@ -137,7 +139,7 @@ impl PartialSweep {
             let _ = fs::remove_file(&path); // an empty file
             return Ok(Opened::Whole(empty));
         }
-        let there = There::of(&file, sweep).map_err(|error| cannot_read(&path, &error))?;
+        let there = FoundRows::read(&file, sweep).map_err(|error| cannot_read(&path, &error))?;
         if !may_replace && let Some(why) = there.other {
             let why = format!("has the rows of another sweep: {why}; --force discards them");
             return Err(refused(&path, why));
@@ -226,9 +228,10 @@ pub(super) fn whole(
     if !path.exists() {
         return Ok(None);
     }
-    let there = File::open(path).and_then(|file| There::of(&file, sweep));
-    let there = there.map_err(|error| cannot_read(path, &error))?;
-    match there.whole(sweep) {
+    let found = File::open(path)
+        .and_then(|file| FoundRows::read(&file, sweep))
+        .map_err(|error| cannot_read(path, &error))?;
+    match found.whole(sweep) {
         Ok(empty) => Ok(Some(empty)),
         Err(_) if may_replace => Ok(None),
         Err(why) => {
@@ -240,18 +243,19 @@ pub(super) fn whole(
 
 /// Opens the part file, which nobody else may be writing.
 fn locked(part: &Path) -> Result<File, SweepFileError> {
-    let cannot = |error| cannot_write(part, &error);
     loop {
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false);
-        let file = options.open(part).map_err(cannot)?;
+        let opened = options.open(part);
+        let file = opened.map_err(|error| cannot_write(part, &error))?;
         // Some file systems have no locks.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             return Err(refused(part, "is being written by another gyrolab now"));
         }
         // Another process may have renamed or removed its file between the opening and the lock.
-        let opened = file.metadata().map_err(cannot)?.ino();
-        if fs::metadata(part).is_ok_and(|named| named.ino() == opened) {
+        let metadata = file.metadata();
+        let inode = metadata.map_err(|error| cannot_write(part, &error))?.ino();
+        if fs::metadata(part).is_ok_and(|named| named.ino() == inode) {
             return Ok(file);
         }
     }
@@ -259,7 +263,7 @@ fn locked(part: &Path) -> Result<File, SweepFileError> {
 
 /// The content of a file, compared with a sweep.
 #[derive(Default)]
-pub(super) struct There {
+pub(super) struct FoundRows {
     /// How many rows at its beginning are those of the sweep.
     pub rows: u64,
     empty: EmptyRows,
@@ -271,9 +275,9 @@ pub(super) struct There {
     other: Option<String>,
 }
 
-impl There {
+impl FoundRows {
     /// Reads `file` up to the first line that is no row of `sweep`.
-    pub(super) fn of(file: &File, sweep: &Sweep) -> io::Result<Self> {
+    pub(super) fn read(file: &File, sweep: &Sweep) -> io::Result<Self> {
         let mut there = Self {
             length: file.metadata()?.len(),
             ..Self::default()
@@ -331,16 +335,17 @@ pub(super) fn first_difference(there: &str, wanted: &str) -> Option<String> {
     let lines: [Vec<&str>; 2] = [there, wanted].map(|text| text.split('\n').collect());
     let mut all = 0..lines[0].len().max(lines[1].len());
     let at = all.find(|&at| lines[0].get(at) != lines[1].get(at))?;
-    let [there, wanted] = lines.map(|lines| lines.get(at).copied().unwrap_or_default());
-    let pairs = there.chars().zip(wanted.chars());
+    let differing = lines.map(|lines| lines.get(at).copied().unwrap_or_default());
+    let pairs = differing[0].chars().zip(differing[1].chars());
     let same = pairs.take_while(|(a, b)| a == b);
     let begin = same.count().saturating_sub(ERROR_CONTEXT);
     let dots = if begin > 0 { "..." } else { "" };
-    let shown = |line: &str| brief(&line.chars().skip(begin).collect::<String>(), MOST_SHOWN);
+    let [is, should_be] = differing.map(|line| {
+        let rest: String = line.chars().skip(begin).collect();
+        brief(&rest, MOST_SHOWN)
+    });
+    let line = at + 1;
     Some(format!(
-        "its line {} is \"{dots}{}\", not \"{dots}{}\"",
-        at + 1,
-        shown(there),
-        shown(wanted)
+        "its line {line} is \"{dots}{is}\", not \"{dots}{should_be}\""
     ))
 }
