@@ -8,7 +8,7 @@ use super::view::{Pane, View};
 use crate::engine::scenario::Scenario;
 use crate::engine::scenario::screen::ALL_ROWS;
 use crate::lab::playback::dip::Dip;
-use crate::physics::workings::{ColumnSums, Phase, PointTable, WorkedValue};
+use crate::physics::workings::{ColumnSums, Phase, PhaseName, PointTable, WorkedValue};
 use crate::physics::{State, Workings};
 use std::sync::Arc;
 
@@ -130,8 +130,9 @@ impl StepPane {
         }
         names.dedup();
         let scheme = player.run().simulation().now().motion().scheme.name;
-        let names = names.join(", ");
-        Err(format!("{scheme} has no phase {name}: it has {names}"))
+        let texts: Vec<_> = names.into_iter().map(PhaseName::text).collect();
+        let texts = texts.join(", ");
+        Err(format!("{scheme} has no phase {name}: it has {texts}"))
     }
 
     /// The commands that go `times` phases forward or back. The first phase of the next step follows the last phase of

@@ -7,7 +7,7 @@
 //! feed one whose k1 dt/I3 is above 2. While the body does not turn, though, ω under a constant torque and friction is
 //! known in closed form: about the axle it is a Riccati equation, across it decays exponentially. Schemes take that.
 
-use super::workings::{Phase, PhaseTarget};
+use super::workings::{Phase, PhaseName, PhaseTarget};
 use super::{Body, Friction};
 use nalgebra::{Matrix3, Vector3};
 
@@ -180,7 +180,7 @@ pub(super) fn phase(
     impulse: &Vector3<f64>,
     momentum: &Vector3<f64>,
 ) -> Phase {
-    Phase::of("friction", "L ← L + ΔL, ΔL of −(k₀ sgn ω₃ + k₁ ω₃ + k₂ |ω₃| ω₃) a − k₄ ω across a, in the time h at this orientation").with("h", "s", time_s).with("Ω seen from the body", "rad/s", *omega).with("ΔL", "J s", *impulse).with("new L", "J s", *momentum)
+    Phase::new(PhaseName::Friction, "L ← L + ΔL, ΔL of −(k₀ sgn ω₃ + k₁ ω₃ + k₂ |ω₃| ω₃) a − k₄ ω across a, in the time h at this orientation").with("h", "s", time_s).with("Ω seen from the body", "rad/s", *omega).with("ΔL", "J s", *impulse).with("new L", "J s", *momentum)
     .changing(PhaseTarget::Momentum)
 }
 

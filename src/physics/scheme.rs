@@ -1,12 +1,12 @@
 //! The table of the numerical schemes. What each must do is [`Scheme`]'s. A new one is a row here and a file in `scheme`.
 
-mod rk4;
+mod runge_kutta;
 
 use super::exact::Exact;
 use super::splitting::{SplittingMethod, SplittingScheme};
 use super::stepping::Scheme;
 use super::{Body, Friction, report::ReportScheme};
-use rk4::Rk4;
+use runge_kutta::{RK4, RungeKutta};
 
 /// One row of the table of schemes.
 #[derive(Debug)]
@@ -76,7 +76,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         continuous: true,
         turns_exactly: false,
         admits: Admits::WithoutDry,
-        make: |body| Box::new(Rk4::new(body)),
+        make: |body| Box::new(RungeKutta::new(&RK4, body)),
     },
     SchemeInfo {
         name: "strang",

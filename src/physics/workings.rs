@@ -6,29 +6,63 @@
 
 use super::Loads;
 use nalgebra::{Matrix3, Vector3};
+use std::fmt;
 
-/// Every name that a phase has, by which files and commands choose one: those of the report's scheme first, in its order.
-pub const PHASE_NAMES: [&str; 19] = [
-    "inertia",
-    "angular velocity",
-    "axis and angle",
-    "rotation",
-    "new positions",
-    "torque",
-    "new momentum",
-    "friction",
-    "kick",
-    "free motion",
-    "spin about the axle",
-    "rounding taken out",
-    "new orientation",
-    "slope 1: at the beginning",
-    "slope 2: half way by slope 1",
-    "slope 3: half way by slope 2",
-    "slope 4: at the end by slope 3",
-    "theta functions",
-    "Taylor series",
-];
+/// Makes the enum of the phases of a time step, the list of all, and their texts from one table.
+macro_rules! phase_names {
+    ($($name:ident = $text:literal,)*) => {
+        /// The name of a phase; those of the report's scheme first, in its order.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum PhaseName {
+            $(#[doc = $text] $name,)*
+        }
+
+        impl PhaseName {
+            /// Every name.
+            pub const ALL: &[Self] = &[$(Self::$name),*];
+
+            /// Returns the words by which files and commands choose the phase.
+            pub const fn text(self) -> &'static str {
+                match self {
+                    $(Self::$name => $text,)*
+                }
+            }
+
+            /// Whether it finds a slope of a Runge-Kutta scheme.
+            pub fn is_slope(self) -> bool {
+                self.text().starts_with("slope")
+            }
+        }
+    };
+}
+
+phase_names! {
+    Inertia = "inertia",
+    AngularVelocity = "angular velocity",
+    AxisAndAngle = "axis and angle",
+    Rotation = "rotation",
+    NewPositions = "new positions",
+    Torque = "torque",
+    NewMomentum = "new momentum",
+    Friction = "friction",
+    Kick = "kick",
+    FreeMotion = "free motion",
+    SpinAboutAxle = "spin about the axle",
+    RoundingTakenOut = "rounding taken out",
+    NewOrientation = "new orientation",
+    Slope1AtBeginning = "slope 1: at the beginning",
+    Slope2HalfWay = "slope 2: half way by slope 1",
+    Slope3HalfWay = "slope 3: half way by slope 2",
+    Slope4AtEnd = "slope 4: at the end by slope 3",
+    ThetaFunctions = "theta functions",
+    TaylorSeries = "Taylor series",
+}
+
+impl fmt::Display for PhaseName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.text())
+    }
+}
 
 /// Rows between two sums that are stored.
 const ROWS_PER_SUM: usize = 256;
@@ -58,8 +92,8 @@ pub struct LoadInterval {
 /// One phase of a time step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
-    /// What it is called: "inertia".
-    pub name: &'static str,
+    /// What it is called.
+    pub name: PhaseName,
     /// What is computed, as a line of Unicode text.
     pub formula: &'static str,
     /// What of the state it changes.
@@ -150,7 +184,7 @@ impl Workings {
 }
 
 impl Phase {
-    pub(crate) fn of(name: &'static str, formula: &'static str) -> Self {
+    pub(crate) fn new(name: PhaseName, formula: &'static str) -> Self {
         Self {
             name,
             formula,

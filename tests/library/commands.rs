@@ -14,7 +14,7 @@ use gyrolab::lab::command::{self, COMMANDS, Command, Export, Force, PushChoice, 
 use gyrolab::lab::playback::pace::Speed;
 use gyrolab::lab::view::step::StepPageChoice;
 use gyrolab::lab::view::{HideablePart, Pane, ViewSettings};
-use gyrolab::physics::workings::PHASE_NAMES;
+use gyrolab::physics::workings::PhaseName;
 use gyrolab::plot::camera::Camera;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::{layout::ScreenLayout, screen};
@@ -100,7 +100,7 @@ fn a_set() -> impl Strategy<Value = Table> {
 fn a_page() -> impl Strategy<Value = StepPageChoice> {
     prop_oneof![
         (1..1000usize).prop_map(StepPageChoice::Number),
-        prop::sample::select(&PHASE_NAMES[..]).prop_map(StepPageChoice::Named),
+        prop::sample::select(PhaseName::ALL).prop_map(StepPageChoice::Named),
         Just(StepPageChoice::Last),
         Just(StepPageChoice::Why),
     ]

@@ -634,7 +634,7 @@ fn the_report_explains_its_friction_to_the_last_bit() {
         assert_eq!(plain.state(), explained.state(), "{name}");
         let workings = explained.now().workings().unwrap();
         let last = workings.phases().last().unwrap();
-        assert_eq!(last.name, "friction", "{name}");
+        assert_eq!(last.name.text(), "friction", "{name}");
         let told = last.value("new L").unwrap();
         assert_eq!(*told, explained.state().momentum.into(), "{name}");
     }

@@ -3,7 +3,7 @@
 use crate::support::scenarios::{parse, preset};
 use gyrolab::engine::export::{CsvLayout, CsvWriter, stream};
 use gyrolab::engine::run::{Sample, Simulation};
-use gyrolab::physics::workings::WorkedValue;
+use gyrolab::physics::workings::{PhaseName, WorkedValue};
 use gyrolab::physics::{Loads, SchemeInfo};
 use std::fmt::Write;
 use std::num::NonZeroU64;
@@ -192,7 +192,9 @@ fn pushed_steps(motion: &str, edits: &[(u64, &str)]) -> Vec<(u64, f64)> {
     let mut pushed = Vec::new();
     while simulation.step_number() < simulation.scenario().steps {
         let workings = simulation.step().unwrap().workings().unwrap();
-        let phase = workings.phases().find(|phase| phase.name == "torque");
+        let phase = workings
+            .phases()
+            .find(|phase| phase.name == PhaseName::Torque);
         let Some(&WorkedValue::Vector(torque)) = phase.unwrap().value("τ") else {
             panic!("a torque is a vector");
         };

@@ -7,7 +7,7 @@ use gyrolab::engine::run::Simulation;
 use gyrolab::engine::scenario::Document;
 use gyrolab::lab::view::step::StepPageChoice;
 use gyrolab::physics::scheme::SCHEMES;
-use gyrolab::physics::workings::{ColumnSums, PHASE_NAMES, Phase, WorkedValue};
+use gyrolab::physics::workings::{ColumnSums, Phase, WorkedValue};
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
 use ratatui::layout::Rect;
@@ -252,7 +252,7 @@ fn the_slope_of_the_momentum_names_friction_where_it_is_in_its_number() {
 }
 
 #[test]
-fn every_phase_of_every_scheme_has_a_name_in_the_list_and_a_page() {
+fn every_phase_of_every_scheme_has_a_page() {
     for scheme in SCHEMES {
         for preset in ["wobble-push", "cusps"] {
             let set = format!("motion.scheme='{}'", scheme.name);
@@ -260,8 +260,7 @@ fn every_phase_of_every_scheme_has_a_name_in_the_list_and_a_page() {
             stage.commands("pause = true\nstep = 2\nshow = ['step', '3d']");
             let workings = Arc::clone(&stage.lab.step_pane().shown().unwrap().workings);
             let count = workings.phases().count();
-            for (index, phase) in workings.phases().enumerate() {
-                assert!(PHASE_NAMES.contains(&phase.name), "{}", phase.name);
+            for index in 0..count {
                 stage.commands(&format!("phase = {}", index + 1));
                 let start = format!("step 2: {} of {count}, ", index + 1);
                 stage.shows(&start);

@@ -5,7 +5,7 @@ use gyrolab::engine::run::{Simulation, Step};
 use gyrolab::engine::scenario::{Document, Scenario};
 use gyrolab::lab::playback::live::LiveRun;
 use gyrolab::physics::scheme::SCHEMES;
-use gyrolab::physics::workings::{Phase, PhaseTarget, PointTable, WorkedValue};
+use gyrolab::physics::workings::{Phase, PhaseName, PhaseTarget, PointTable, WorkedValue};
 use gyrolab::physics::{observables, rotation};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use std::sync::Arc;
@@ -153,7 +153,7 @@ fn the_reports_step_follows_from_its_workings_to_the_last_bit() {
         each_step(&scenario, |step| {
             let workings = step.workings().unwrap();
             let phases: Vec<_> = workings.phases().collect();
-            let names: Vec<_> = phases.iter().map(|phase| phase.name).collect();
+            let names: Vec<_> = phases.iter().map(|phase| phase.name.text()).collect();
             let all = "inertia, angular velocity, axis and angle, rotation, new positions, torque, new momentum";
             assert_eq!(names.join(", "), all);
             let [inertia, velocity, axis, turn, moved, torque, momentum] = phases[..] else {
@@ -240,7 +240,7 @@ fn what_the_phases_say_they_change_is_what_changes() {
                 let turned = phases().find(last(PhaseTarget::Orientation)).unwrap();
                 match turned.value("new Q") {
                     Some(WorkedValue::Matrix(q)) => assert_eq!(*q, step.after().orientation),
-                    _ => assert_eq!(turned.name, "new positions"),
+                    _ => assert_eq!(turned.name, PhaseName::NewPositions),
                 }
                 let kicked = phases().find(last(PhaseTarget::Momentum)).unwrap();
                 let known = step.after().momentum;
@@ -289,7 +289,7 @@ fn the_splitting_step_follows_from_its_kicks() {
                     let (mut axle, mut duration_s, mut count) = (Vector3::zeros(), 0.0, 0);
                     for phase in phases() {
                         match phase.name {
-                            "kick" => {
+                            PhaseName::Kick => {
                                 let h = number(phase, "h");
                                 momentum += match phase.value("τ") {
                                     Some(WorkedValue::Vector(torque)) => torque * h,
@@ -302,11 +302,11 @@ fn the_splitting_step_follows_from_its_kicks() {
                                 duration_s += h;
                                 count += 1;
                             }
-                            "free motion" if phase.value("w").is_some() => {
+                            PhaseName::FreeMotion if phase.value("w").is_some() => {
                                 let turned = rotation::about(&vector(phase, "w"), 1.0) * axle;
                                 assert!((turned - vector(phase, "new a")).amax() < 1e-14);
                             }
-                            "new orientation" => {
+                            PhaseName::NewOrientation => {
                                 let (a, e) = (vector(phase, "a"), vector(phase, "e"));
                                 let q = Matrix3::from_columns(&[e, a.cross(&e), a]);
                                 assert_eq!(q, matrix(phase, "new Q"));
@@ -316,7 +316,7 @@ fn the_splitting_step_follows_from_its_kicks() {
                     }
                     assert_eq!(count, kicks, "{scheme}");
                     assert!((duration_s - part.length_s).abs() < 1e-15);
-                    let free = phases().filter(|phase| phase.name == "free motion");
+                    let free = phases().filter(|phase| phase.name == PhaseName::FreeMotion);
                     let free_s: f64 = free.map(|phase| number(phase, "h")).sum();
                     assert!((free_s - part.length_s).abs() < 1e-15);
                 }
@@ -332,7 +332,7 @@ fn the_exact_motion_says_how_it_was_found() {
     each_step(&lopsided, |step| {
         let workings = step.workings().unwrap();
         for phase in workings.phases() {
-            assert_eq!(phase.name, "Taylor series");
+            assert_eq!(phase.name, PhaseName::TaylorSeries);
         }
     });
     each_step(&symmetric, |step| {

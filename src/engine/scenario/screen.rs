@@ -1,6 +1,6 @@
 //! The names of what the lab's screen shows, as `[view]` of a scenario and commands have them.
 
-use crate::physics::workings::PHASE_NAMES;
+use crate::physics::workings::PhaseName;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -89,13 +89,13 @@ pub const LAST_PHASE: &str = "last";
 pub const ALL_ROWS: &str = "all";
 
 /// What the step pane can show besides a phase by its number.
-pub const PHASES: [&str; PHASE_NAMES.len() + 2] = {
-    let mut all = [LAST_PHASE; PHASE_NAMES.len() + 2];
+pub const PHASES: [&str; PhaseName::ALL.len() + 2] = {
+    let mut all = [LAST_PHASE; PhaseName::ALL.len() + 2];
     let mut at = 0;
-    while at < PHASE_NAMES.len() {
-        all[at] = PHASE_NAMES[at];
+    while at < PhaseName::ALL.len() {
+        all[at] = PhaseName::ALL[at].text();
         at += 1;
     }
-    all[PHASE_NAMES.len() + 1] = WHY;
+    all[PhaseName::ALL.len() + 1] = WHY;
     all
 };

@@ -3,7 +3,7 @@
 use crate::engine::scenario::file::Choice;
 use crate::engine::scenario::screen::{LAST_PHASE, WHY};
 use crate::physics::Workings;
-use crate::physics::workings::PHASE_NAMES;
+use crate::physics::workings::PhaseName;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -13,7 +13,7 @@ pub enum StepPageChoice {
     /// The phase of this number, from 1; the last one where there are fewer.
     Number(usize),
     /// The first phase of this name; the first phase of all if no phase has it.
-    Named(&'static str),
+    Named(PhaseName),
     Last,
     /// Why sideways, not down?
     Why,
@@ -32,9 +32,10 @@ impl<'de> Deserialize<'de> for StepPageChoice {
             Choice::Word(word) if word == LAST_PHASE => Ok(Self::Last),
             Choice::Word(word) if word == WHY => Ok(Self::Why),
             Choice::Word(word) => {
-                let name = PHASE_NAMES.into_iter().find(|known| *known == word);
-                let named = name.map(Self::Named);
-                named.ok_or_else(|| D::Error::custom(format!("there is no phase {word}")))
+                let mut names = PhaseName::ALL.iter();
+                let name = names.find(|name| name.text() == word);
+                name.map(|name| Self::Named(*name))
+                    .ok_or_else(|| D::Error::custom(format!("there is no phase {word}")))
             }
         }
     }
@@ -44,7 +45,7 @@ impl From<StepPageChoice> for Choice {
     fn from(page: StepPageChoice) -> Self {
         match page {
             StepPageChoice::Number(number) => Self::Number(number as u64),
-            StepPageChoice::Named(name) => Self::Word(name.to_owned()),
+            StepPageChoice::Named(name) => Self::Word(name.to_string()),
             StepPageChoice::Last => Self::Word(LAST_PHASE.to_owned()),
             StepPageChoice::Why => Self::Word(WHY.to_owned()),
         }

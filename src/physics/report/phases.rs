@@ -3,7 +3,7 @@
 use super::ReportScheme;
 use super::points::{Inertia, LANES, Moments, Pair};
 use crate::rotation::AxisAngle;
-use crate::workings::{Phase, PhaseTarget, PointTable};
+use crate::workings::{Phase, PhaseName, PhaseTarget, PointTable};
 use nalgebra::{Matrix3, Vector3};
 use wide::f64x2;
 
@@ -42,8 +42,8 @@ impl ReportScheme {
         }
         let (frame, inertia) = (self.body.frame_moment(), self.inertia.matrix());
         let whole_spins = frame == 0.0;
-        let phase = Phase::of(
-            "inertia",
+        let phase = Phase::new(
+            PhaseName::Inertia,
             if whole_spins {
                 "I = Σ m (|X|² E − X Xᵀ) = (Sxx + Syy + Szz) E − S, S = Σ m X Xᵀ"
             } else {
@@ -72,7 +72,7 @@ impl ReportScheme {
         for ((point, _, [x, y, z], _), (_, _, [new_x, new_y, new_z], _)) in both {
             table.add(point, [x, y, z, new_x, new_y, new_z]);
         }
-        Phase::of("new positions", "X ← R X, point by point")
+        Phase::new(PhaseName::NewPositions, "X ← R X, point by point")
             .with("X", "", table)
             .changing(PhaseTarget::Orientation)
     }
@@ -95,7 +95,7 @@ impl ReportScheme {
             let row = [force.x, force.y, force.z, torque.x, torque.y, torque.z];
             pushes.add(push.point, row);
         }
-        Phase::of("torque", "τ = Σ X × F at the new positions: the weight's (−g Σ m y, g Σ m x, 0), and each push's").with("m X", "", points).with("Σ m X", "kg m", *first_moment).with("g", "m/s²", self.gravity).with("τ of the weight", "N m", self.weight_torque(first_moment)).with("F", "", pushes).with("τ", "N m", *torque)
+        Phase::new(PhaseName::Torque, "τ = Σ X × F at the new positions: the weight's (−g Σ m y, g Σ m x, 0), and each push's").with("m X", "", points).with("Σ m X", "kg m", *first_moment).with("g", "m/s²", self.gravity).with("τ of the weight", "N m", self.weight_torque(first_moment)).with("F", "", pushes).with("τ", "N m", *torque)
     }
 }
 
@@ -104,7 +104,7 @@ pub(super) fn velocity_phase(
     momentum: &Vector3<f64>,
     omega: &Vector3<f64>,
 ) -> Phase {
-    Phase::of("angular velocity", "Ω = I⁻¹ L")
+    Phase::new(PhaseName::AngularVelocity, "Ω = I⁻¹ L")
         .with("I", "kg m²", inertia.matrix())
         .with("L", "J s", *momentum)
         .with("Ω", "rad/s", *omega)
@@ -117,18 +117,25 @@ pub(super) fn axis_phase(omega: &Vector3<f64>, dt: f64, turn: Option<&AxisAngle>
         None => (Vector3::zeros(), 0.0, Matrix3::zeros()),
     };
     let (sine, cosine) = turn.map_or((0.0, 1.0), |turn| (turn.sine, turn.cosine));
-    Phase::of("axis and angle", "u = Ω/|Ω|, P = u uᵀ, angle = |Ω| dt")
-        .with("Ω", "rad/s", *omega)
-        .with("dt", "s", dt)
-        .with("u", "", axis)
-        .with("angle", "rad", angle)
-        .with("sin", "", sine)
-        .with("cos", "", cosine)
-        .with("P", "", projection)
+    Phase::new(
+        PhaseName::AxisAndAngle,
+        "u = Ω/|Ω|, P = u uᵀ, angle = |Ω| dt",
+    )
+    .with("Ω", "rad/s", *omega)
+    .with("dt", "s", dt)
+    .with("u", "", axis)
+    .with("angle", "rad", angle)
+    .with("sin", "", sine)
+    .with("cos", "", cosine)
+    .with("P", "", projection)
 }
 
 pub(super) fn rotation_phase(rotation: &Matrix3<f64>) -> Phase {
-    Phase::of("rotation", "R = P + cos(|Ω| dt) (E − P) + sin(|Ω| dt) [u]×").with("R", "", *rotation)
+    Phase::new(
+        PhaseName::Rotation,
+        "R = P + cos(|Ω| dt) (E − P) + sin(|Ω| dt) [u]×",
+    )
+    .with("R", "", *rotation)
 }
 
 pub(super) fn momentum_phase(
@@ -137,7 +144,7 @@ pub(super) fn momentum_phase(
     from: &Vector3<f64>,
     to: &Vector3<f64>,
 ) -> Phase {
-    Phase::of("new momentum", "dL = dt τ, L ← L + dL")
+    Phase::new(PhaseName::NewMomentum, "dL = dt τ, L ← L + dL")
         .with("L", "J s", *from)
         .with("dt", "s", dt)
         .with("τ", "N m", *torque)

@@ -1,13 +1,13 @@
 //! The phases of a step of a splitting scheme, with their numbers.
 
 use super::turn::RotationByVector;
-use crate::workings::{Phase, PhaseTarget};
+use crate::workings::{Phase, PhaseName, PhaseTarget};
 use nalgebra::{Matrix3, Vector3};
 
 /// Of a symmetric body: the spin that it has more than its turning about L, done once a step.
 pub(super) fn spin(angle: f64, side: &Vector3<f64>) -> Phase {
-    Phase::of(
-        "spin about the axle",
+    Phase::new(
+        PhaseName::SpinAboutAxle,
         "e ← cos(angle) Qx + sin(angle) Qy, angle = (1/I₃ − 1/I₁) (L · a) dt",
     )
     .with("angle", "rad", angle)
@@ -23,8 +23,8 @@ pub(super) fn axle_kick(
     change: &Vector3<f64>,
     momentum: &Vector3<f64>,
 ) -> Phase {
-    Phase::of(
-        "kick",
+    Phase::new(
+        PhaseName::Kick,
         "L ← L + ΔL, ΔL = a × (h Σ s F), s F: a force times its height on the axle",
     )
     .with("h", "s", duration_s)
@@ -42,8 +42,8 @@ pub(super) fn axle_turn(
     axle: &Vector3<f64>,
     side: &Vector3<f64>,
 ) -> Phase {
-    Phase::of(
-        "free motion",
+    Phase::new(
+        PhaseName::FreeMotion,
         "a and e turn about L by the angle |w|, w = L h/I₁",
     )
     .with("h", "s", duration_s)
@@ -59,8 +59,8 @@ pub(super) fn put_together(
     side: &Vector3<f64>,
     orientation: &Matrix3<f64>,
 ) -> Phase {
-    Phase::of(
-        "new orientation",
+    Phase::new(
+        PhaseName::NewOrientation,
         "Q ← (e, a × e, a), e made a unit vector square to a",
     )
     .with("a", "", *axle)
@@ -71,7 +71,7 @@ pub(super) fn put_together(
 
 /// Of any body under any forces.
 pub(super) fn kick(duration_s: f64, torque: &Vector3<f64>, momentum: &Vector3<f64>) -> Phase {
-    Phase::of("kick", "L ← L + h τ(Q)")
+    Phase::new(PhaseName::Kick, "L ← L + h τ(Q)")
         .with("h", "s", duration_s)
         .with("τ", "N m", *torque)
         .with("new L", "J s", *momentum)
@@ -84,8 +84,8 @@ pub(super) fn free_motion(
     momentum: &Vector3<f64>,
     orientation: &Matrix3<f64>,
 ) -> Phase {
-    Phase::of(
-        "free motion",
+    Phase::new(
+        PhaseName::FreeMotion,
         "Q ← Q after the time h without forces, exactly; L stays",
     )
     .with("h", "s", duration_s)
@@ -96,7 +96,7 @@ pub(super) fn free_motion(
 
 /// What rounding has added to the orientation is taken away.
 pub(super) fn orthonormal(orientation: &Matrix3<f64>) -> Phase {
-    Phase::of("rounding taken out", "Q ← 3/2 Q − 1/2 Q Qᵀ Q")
+    Phase::new(PhaseName::RoundingTakenOut, "Q ← 3/2 Q − 1/2 Q Qᵀ Q")
         .with("new Q", "", *orientation)
         .changing(PhaseTarget::Orientation)
 }

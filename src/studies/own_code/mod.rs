@@ -17,7 +17,7 @@ mod words;
 use crate::engine::run::Simulation;
 use crate::engine::scenario::presets::PRESETS;
 use crate::engine::scenario::{Document, Problem, Problems, Scenario};
-use crate::physics::workings::WorkedQuantity;
+use crate::physics::workings::{PhaseName, WorkedQuantity};
 use crate::studies::verify::Unverified;
 use explain::{Explanation, MOST_FOR_PAIRS, Search};
 use follow::{ReferenceRun, Rounding, RowAgreement, follow};
@@ -95,7 +95,7 @@ pub struct SlipTrial {
 impl SlipTrial {
     /// The numbers of its step `step`, phase by phase; `None` for the steps before the first that differs, and for those so
     /// much later that they take long to compute.
-    pub fn numbers(&self, step: u64) -> Option<Vec<(&'static str, WorkedQuantity)>> {
+    pub fn numbers(&self, step: u64) -> Option<Vec<(PhaseName, WorkedQuantity)>> {
         const MOST_OFFSET_ROWS: u64 = 1000;
         let later = step
             .checked_sub(self.first)

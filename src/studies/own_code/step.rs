@@ -7,7 +7,7 @@
 use super::plan::Plan;
 use super::slips::{Along, FOREVER, Mutations, Other, Sequence};
 use crate::engine::scenario::{Push, Window};
-use crate::physics::workings::{WorkedQuantity, WorkedValue};
+use crate::physics::workings::{PhaseName, WorkedQuantity, WorkedValue};
 use nalgebra::{Matrix3, RealField, Vector3, convert, convert_unchecked};
 
 /// A floating-point number, f64 or f32.
@@ -155,26 +155,31 @@ impl<T: Real> MutantStepper<T> {
     }
 
     /// Takes a step, and gives what each phase of it results in, with the phase's name.
-    pub fn numbers(&mut self) -> Vec<(&'static str, WorkedQuantity)> {
+    pub fn numbers(&mut self) -> Vec<(PhaseName, WorkedQuantity)> {
         let vector = |of: &Vector3<T>| WorkedValue::from(of.map(T::f64));
         let matrix = |of: &Matrix3<T>| WorkedValue::from(of.map(T::f64));
         let (omega, turn, torque) = self.step();
         let mut numbers = vec![
-            ("inertia", "I", "kg m²", matrix(&self.inertia)),
-            ("angular velocity", "Ω", "rad/s", vector(&omega)),
+            (PhaseName::Inertia, "I", "kg m²", matrix(&self.inertia)),
+            (PhaseName::AngularVelocity, "Ω", "rad/s", vector(&omega)),
             (
-                "new positions",
+                PhaseName::NewPositions,
                 TRACED_SYMBOL,
                 "m",
                 vector(&self.points[self.traced].0),
             ),
-            ("torque", "τ", "N m", vector(&torque)),
-            ("new momentum", "new L", "J s", vector(&self.momentum)),
+            (PhaseName::Torque, "τ", "N m", vector(&torque)),
+            (
+                PhaseName::NewMomentum,
+                "new L",
+                "J s",
+                vector(&self.momentum),
+            ),
         ];
         if let Some(StepRotation { u, angle, rotation }) = &turn {
-            numbers.push(("axis and angle", "u", "", vector(u)));
-            numbers.push(("axis and angle", "angle", "rad", angle.f64().into()));
-            numbers.push(("rotation", "R", "", matrix(rotation)));
+            numbers.push((PhaseName::AxisAndAngle, "u", "", vector(u)));
+            numbers.push((PhaseName::AxisAndAngle, "angle", "rad", angle.f64().into()));
+            numbers.push((PhaseName::Rotation, "R", "", matrix(rotation)));
         }
         numbers
             .into_iter()

@@ -15,7 +15,7 @@ use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::step::StepPageChoice;
 use crate::lab::view::{Pane, View};
 use crate::physics::observables::position;
-use crate::physics::workings::{Phase, WorkedQuantity, WorkedValue};
+use crate::physics::workings::{Phase, PhaseName, WorkedQuantity, WorkedValue};
 use crate::studies::own_code::{SlipTrial, TRACED_SYMBOL};
 use crate::tui::keymap::{Binding, Key, Mode, does, one, row};
 use crate::tui::theme::Role;
@@ -365,49 +365,29 @@ fn name_of(scenario: &Scenario, point: usize) -> String {
     }
 }
 
-/// The words about each phase of a time step: its name, what happens in it, what it changes and what for, and where that is
-/// to be seen in the 3-D view, empty where nothing is.
+/// Returns what happens in the phase, what it changes and what for, and where that is to be seen in the 3-D view: empty where
+/// nothing is.
 #[rustfmt::skip]
-const PHASE_TEXTS: &[[&str; 4]] = &[
-    ["inertia", "How the masses lie about the pivot, added up point by point.", "nothing yet; gives I", "the body before the step (°)"],
-    ["angular velocity", "The axis about which the body turns now, and how fast: L divided by the inertia.", "nothing yet; gives Ω", "the arrow Ω"],
-    ["axis and angle", "The line u along Ω, and the angle about it in one time step.", "nothing yet; gives u and the angle", "the line u through the pivot"],
-    ["rotation", "The matrix that turns any point about u by that angle.", "nothing yet; gives R", "the body before (°) and after"],
-    ["new positions", "R turns every point to its new place.", "where the points are", "the body before (°) and after"],
-    ["torque", "How the forces turn the body about the pivot: each where its point is now.", "nothing yet; gives τ", "the arrow τ; forces: g and F"],
-    ["new momentum", "In the time dt the forces change L. The next step begins with the new L.", "L, and nothing else", "the arrow L, and dL at its tip"],
-    ["friction", "Friction slows the spin, and the swing of the axle: it takes from L while the body stands still.", "L, and nothing else", "the arrow L"],
-    ["kick", "The forces act for the time h: they change L while the body stands still.", "L, and nothing else", "the arrow L, and dL at its tip"],
-    ["free motion", "The body moves for the time h as if there were no forces: L stays.", "how the body stands", "the body before (°) and after"],
-    ["spin about the axle", "The body turns about its own axle, once for the whole step.", "how the body stands about its axle", "the body before (°) and after"],
-    ["rounding taken out", "Rounding has bent the orientation a little: it is made a rotation again.", "how the body stands, by a rounding", ""],
-    ["new orientation", "How the body stands at the end of the step.", "how the body stands", "the body before (°) and after"],
-    ["slope 1: at the beginning", "How fast orientation and momentum change as the step begins.", "nothing yet; four slopes make a step", "the arrow Ω"],
-    ["slope 2: half way by slope 1", "The same after half the step, if slope 1 held so long.", "nothing yet; four slopes make a step", "the arrow Ω"],
-    ["slope 3: half way by slope 2", "The same once more, with slope 2: better than slope 2.", "nothing yet; four slopes make a step", "the arrow Ω"],
-    ["slope 4: at the end by slope 3", "How fast they change as the step ends, if slope 3 held for all of it.", "nothing yet; four slopes make a step", "the arrow Ω"],
-    ["theta functions", "Two complex numbers that hold the orientation at the time t: exact, whatever the time step.", "nothing yet; gives α and β", ""],
-    ["Taylor series", "Orientation and momentum at the time t, from a series that is exact to the last digits.", "how the body stands, and L", "the body before (°) and after"],
-];
-
-/// The words about the phase of this `name`; empty where there are none.
-fn words_of(name: &str) -> [&'static str; 3] {
-    let found = PHASE_TEXTS.iter().find(|row| row[0] == name);
-    found.map_or([""; 3], |[_, happens, changes, seen]| {
-        [*happens, *changes, *seen]
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::physics::workings::PHASE_NAMES;
-
-    #[test]
-    fn every_phase_has_words() {
-        for name in PHASE_NAMES {
-            assert_ne!(words_of(name), [""; 3], "{name}");
-        }
-        assert_eq!(PHASE_TEXTS.len(), PHASE_NAMES.len());
+const fn words_of(phase: PhaseName) -> [&'static str; 3] {
+    match phase {
+        PhaseName::Inertia => ["How the masses lie about the pivot, added up point by point.", "nothing yet; gives I", "the body before the step (°)"],
+        PhaseName::AngularVelocity => ["The axis about which the body turns now, and how fast: L divided by the inertia.", "nothing yet; gives Ω", "the arrow Ω"],
+        PhaseName::AxisAndAngle => ["The line u along Ω, and the angle about it in one time step.", "nothing yet; gives u and the angle", "the line u through the pivot"],
+        PhaseName::Rotation => ["The matrix that turns any point about u by that angle.", "nothing yet; gives R", "the body before (°) and after"],
+        PhaseName::NewPositions => ["R turns every point to its new place.", "where the points are", "the body before (°) and after"],
+        PhaseName::Torque => ["How the forces turn the body about the pivot: each where its point is now.", "nothing yet; gives τ", "the arrow τ; forces: g and F"],
+        PhaseName::NewMomentum => ["In the time dt the forces change L. The next step begins with the new L.", "L, and nothing else", "the arrow L, and dL at its tip"],
+        PhaseName::Friction => ["Friction slows the spin, and the swing of the axle: it takes from L while the body stands still.", "L, and nothing else", "the arrow L"],
+        PhaseName::Kick => ["The forces act for the time h: they change L while the body stands still.", "L, and nothing else", "the arrow L, and dL at its tip"],
+        PhaseName::FreeMotion => ["The body moves for the time h as if there were no forces: L stays.", "how the body stands", "the body before (°) and after"],
+        PhaseName::SpinAboutAxle => ["The body turns about its own axle, once for the whole step.", "how the body stands about its axle", "the body before (°) and after"],
+        PhaseName::RoundingTakenOut => ["Rounding has bent the orientation a little: it is made a rotation again.", "how the body stands, by a rounding", ""],
+        PhaseName::NewOrientation => ["How the body stands at the end of the step.", "how the body stands", "the body before (°) and after"],
+        PhaseName::Slope1AtBeginning => ["How fast orientation and momentum change as the step begins.", "nothing yet; four slopes make a step", "the arrow Ω"],
+        PhaseName::Slope2HalfWay => ["The same after half the step, if slope 1 held so long.", "nothing yet; four slopes make a step", "the arrow Ω"],
+        PhaseName::Slope3HalfWay => ["The same once more, with slope 2: better than slope 2.", "nothing yet; four slopes make a step", "the arrow Ω"],
+        PhaseName::Slope4AtEnd => ["How fast they change as the step ends, if slope 3 held for all of it.", "nothing yet; four slopes make a step", "the arrow Ω"],
+        PhaseName::ThetaFunctions => ["Two complex numbers that hold the orientation at the time t: exact, whatever the time step.", "nothing yet; gives α and β", ""],
+        PhaseName::TaylorSeries => ["Orientation and momentum at the time t, from a series that is exact to the last digits.", "how the body stands, and L", "the body before (°) and after"],
     }
 }

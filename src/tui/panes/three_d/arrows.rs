@@ -6,7 +6,7 @@ use super::body::BodySign;
 use super::{CHANGE_ARROW_SHARE, MOMENTUM_ARROW_LENGTH, SceneSubject, SpaceLabel, write};
 use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::{Pane, View};
-use crate::physics::workings::{Phase, WorkedValue};
+use crate::physics::workings::{Phase, PhaseName, WorkedValue};
 use crate::physics::{State, observables};
 use crate::tui::dots::Ink;
 use crate::tui::scene::{DepthBias, DotScene, LineStroke};
@@ -243,12 +243,12 @@ impl<'a> StepArrows<'a> {
     /// The letters of the arrows that the phase is about.
     fn letters(&self) -> &'static [&'static str] {
         match self.phase.name {
-            "inertia" => &[],
-            "angular velocity" => &["Ω", "L"],
-            "torque" => &["τ", "g", "F"],
-            "new momentum" | "kick" => &["L", "dL", "new L"],
-            "free motion" | "friction" => &["L"],
-            name if name.starts_with("slope") => &["Ω", "τ"],
+            PhaseName::Inertia => &[],
+            PhaseName::AngularVelocity => &["Ω", "L"],
+            PhaseName::Torque => &["τ", "g", "F"],
+            PhaseName::NewMomentum | PhaseName::Kick => &["L", "dL", "new L"],
+            PhaseName::FreeMotion | PhaseName::Friction => &["L"],
+            name if name.is_slope() => &["Ω", "τ"],
             _ => &["u"],
         }
     }
@@ -256,9 +256,13 @@ impl<'a> StepArrows<'a> {
     /// Whether the body is drawn as it stood before the step too.
     fn has_before(&self) -> bool {
         match self.phase.name {
-            "angular velocity" | "axis and angle" | "torque" | "new momentum" | "kick"
-            | "friction" => false,
-            name => !name.starts_with("slope"),
+            PhaseName::AngularVelocity
+            | PhaseName::AxisAndAngle
+            | PhaseName::Torque
+            | PhaseName::NewMomentum
+            | PhaseName::Kick
+            | PhaseName::Friction => false,
+            name => !name.is_slope(),
         }
     }
 
@@ -323,7 +327,7 @@ impl SceneSubject<'_> {
             };
             let before = shown.before().orientation * point.at;
             let (from, to) = match shown.phase.name {
-                "inertia" => (Vector3::zeros(), before),
+                PhaseName::Inertia => (Vector3::zeros(), before),
                 _ => (before, self.state.orientation * point.at),
             };
             scene.line(&from, &to, LineStroke::Thin, Ink::Strong(Role::Focus));
