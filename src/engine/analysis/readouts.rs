@@ -6,7 +6,7 @@
 
 mod table;
 
-pub use table::{READOUTS, Readout, ReadoutSource, find, names, nearest};
+pub use table::{InPane, PaneGroup, READOUTS, Readout, ReadoutSource, find, names, nearest};
 
 use super::health::{Advice, advise};
 use super::report_theory::ReportTheory;

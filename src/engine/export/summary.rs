@@ -1,5 +1,6 @@
 //! The summary of a finished run, as text for a reader and as JSON for a program.
 
+use crate::analysis::readouts::{InPane, READOUTS};
 use crate::analysis::theory::{AxlePath, Theory, TheoryAxis};
 use crate::analysis::{MeasuredNumber, Readouts, WithoutNutation, remarks};
 use crate::scenario::Scenario;
@@ -261,15 +262,30 @@ impl RunSummary {
         format!("{along} with L.axle above {limit} J s; with {spin} {sleeps}")
     }
 
+    /// The lines that the table of readouts asks for.
+    fn labelled(&self) -> Vec<SummaryLine> {
+        let in_pane = READOUTS.iter().filter_map(|row| Some((row, row.in_pane?)));
+        in_pane
+            .filter(|(_, line)| line.is_in_summary)
+            .map(|(row, InPane { label, .. })| {
+                let number = row.of(&self.readouts).number();
+                let text = number.map_or(NOT_AVAILABLE.to_owned(), |number| fixed(number, 6));
+                let unit = if row.unit == "deg" {
+                    "degrees"
+                } else {
+                    row.unit
+                };
+                (label, format!("{text} {unit}"))
+            })
+            .collect()
+    }
+
     fn health(&self) -> Vec<SummaryLine> {
         let readouts = &self.readouts;
         let health = &readouts.health;
-        let azimuth = fixed(readouts.sample.azimuth_deg, 6);
-        let mut lines = vec![
-            ("azimuth", format!("{azimuth} degrees")),
-            ("a time step", remarks::step_in_full(health)),
-            ("lag", remarks::lag_in_full(health)),
-        ];
+        let mut lines = self.labelled();
+        lines.push(("a time step", remarks::step_in_full(health)));
+        lines.push(("lag", remarks::lag_in_full(health)));
         lines.extend(remarks::constants_in_full(health).map(|constants| ("L", constants)));
         let slowing = health.slowing.as_ref();
         lines.extend(slowing.map(|slowing| ("friction", slowing.to_string())));

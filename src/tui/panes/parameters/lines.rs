@@ -1,5 +1,7 @@
 //! The lines of the pane. Each number has as many decimals as there is room for.
 
+use crate::engine::analysis::Readouts;
+use crate::engine::analysis::readouts::{InPane, PaneGroup, READOUTS};
 use crate::engine::analysis::remarks::{short_no_drift, short_unit};
 use crate::engine::analysis::theory::{AxlePath, TheoryAxis};
 use crate::engine::scenario::{Motion, Scenario, Window};
@@ -238,33 +240,50 @@ pub(super) fn now_lines(reading: &Reading) -> Vec<ParameterLine> {
 /// The readouts that are shown too where there is room: the extremes so far, and how the wheel turns.
 pub(super) fn further_lines(reading: &Reading) -> Vec<ParameterLine> {
     let readouts = &reading.readouts;
-    let told =
-        |rank, label, name, digits, unit| number(rank, label, readouts.number(name), digits, unit);
-    let of_body = |rank, label, name, digits, unit| {
-        let known = readouts.number(name);
-        let known = known.filter(|_| readouts.health.is_a_rotation);
-        number(rank, label, known, digits, unit)
-    };
-    let mut lines = vec![
-        heading("so far"),
-        told(7, "tilt from", "measured_lowest_tilt_deg", 3, "deg"),
-        told(8, PREDICTED_LABEL, "predicted_lowest_tilt_deg", 3, "deg"),
-        told(7, "tilt to", "measured_highest_tilt_deg", 3, "deg"),
-        told(8, PREDICTED_LABEL, "predicted_highest_tilt_deg", 3, "deg"),
-        told(7, "z from", "measured_lowest_z_m", 4, "m"),
-        told(7, "z to", "measured_highest_z_m", 4, "m"),
-        heading("wheel"),
-        of_body(9, "L on axle", "L_axle_Js", 3, "J s"),
-        of_body(9, "turns", "turns_per_step", 4, "/step"),
-        of_body(9, "axle to L", "lag_deg", 3, "deg"),
-        told(9, "steady", "true_steady_lag_deg", 3, "deg"),
-        of_body(10, "azimuth", "azimuth_deg", 2, "deg"),
-        of_body(10, "off exact", "distance_m", 4, "m"),
-    ];
+    let mut lines = vec![heading("so far")];
+    lines.extend(readout_lines(PaneGroup::SoFar, readouts));
+    lines.push(heading("wheel"));
+    lines.extend(readout_lines(PaneGroup::Wheel, readouts));
     // Of a nearly symmetric body the predicted numbers are those of its mean moment.
-    let asymmetry = readouts.asymmetry.filter(|asymmetry| *asymmetry > 0.0);
-    let asymmetry = asymmetry.map(|asymmetry| significant(100.0 * asymmetry, 2));
-    lines.extend(asymmetry.map(|percent| value(8, "asymmetry", percent, "%")));
+    if let Some(asymmetry) = readouts.asymmetry.filter(|asymmetry| *asymmetry > 0.0) {
+        let percent = significant(100.0 * asymmetry, 2);
+        lines.push(value(8, "asymmetry", percent, "%"));
+    }
+    lines
+}
+
+/// The lines of the readouts of `group`, below each what theory predicts for it.
+fn readout_lines(group: PaneGroup, readouts: &Readouts) -> Vec<ParameterLine> {
+    let in_pane = READOUTS.iter().filter_map(|row| Some((row, row.in_pane?)));
+    let mut shown: Vec<_> = in_pane.filter(|(_, line)| line.group == group).collect();
+    shown.sort_by_key(|(_, line)| line.place);
+    let mut lines = Vec::new();
+    for (
+        row,
+        InPane {
+            label,
+            decimals,
+            rank,
+            unit,
+            ..
+        },
+    ) in shown
+    {
+        let unit = unit.unwrap_or(row.unit);
+        let is_lost = row.is_of_body() && !readouts.health.is_a_rotation;
+        let known = row.of(readouts).number().filter(|_| !is_lost);
+        lines.push(number(rank, label, known, decimals, unit));
+        if let Some(predicted) = row.predicted() {
+            let number_of_theory = predicted.of(readouts).number();
+            lines.push(number(
+                rank + 1,
+                PREDICTED_LABEL,
+                number_of_theory,
+                decimals,
+                unit,
+            ));
+        }
+    }
     lines
 }
 
